@@ -96,4 +96,18 @@ MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err
 MUST_CHECK Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
                              const char *second_path, EmitReport *report, Err *err);
 
+/* How much of a box vessels fill, in a density file for POV-Ray. */
+typedef struct DensityBox {
+    Box box;            /* mm */
+    Vec3 origin;        /* where its origin lies in the coordinates of the tree */
+    int64_t n[3];       /* voxels */
+    double thickest_mm; /* a diameter */
+} DensityBox;
+
+/* Appends a scene, params->file, in which the vessels of the density file params->second_file glow.
+ * Of the rest of `params` it needs templates, description, generator and command. STATUS_USAGE when
+ * POV-Ray cannot read a file of that name, STATUS_INPUT as Emitter.write. */
+MUST_CHECK Status emit_density(const EmitParams *params, const DensityBox *density, Text *out,
+                               Err *err);
+
 #endif

@@ -1,10 +1,11 @@
-/* The part of a cylinder in a box is exact. By the divergence theorem, of the field that points
- * along the cylinder's axis and is the height along it, cut off at its two ends: the divergence is
- * 1 within the cylinder and 0 beyond its ends, and the flow through its wall is 0, so the volume is
- * the flow through the box's faces where they are in the infinite cylinder. Seen along the axis
- * those are parallelograms in a disc, and the height is linear, or constant where it is cut off:
- * see disc.h. A ball is integrated over discs across z; as a function of the angle t, z = r sin t,
- * their part in the box is smooth but where a disc touches an edge of the box. */
+/* The parts of cylinders and balls in a box are exact, by the divergence theorem: of a field whose
+ * divergence is 1 in the body and 0 elsewhere they are the flow through the box's faces.
+ *
+ * In the infinite cylinder, take the field that points along the axis and is the height along it,
+ * cut off at the two ends: none of it flows through the wall. Seen along the axis the faces are
+ * parallelograms in a disc, and the height is linear on each, or constant where it is cut off. Of a
+ * ball, take x / 3 within, and x / 3 (r / |x|)^3 beyond, which has no divergence. See disc.h for
+ * both integrals. */
 #include "voxel/body.h"
 
 #include "voxel/disc.h"
@@ -201,36 +202,26 @@ static double cylinder_volume(const Body *body, const Cell *cell)
 
 /* ---- a ball in a box ------------------------------------------------------------------------- */
 
-static double rectangle_in_disc(const DiscPoint corner[4], double radius)
-{
-    DiscPart part = {0};
-    for (int i = 0; i < 4; i++)
-        discpart_add(&part, corner[i], corner[(i + 1) % 4], radius);
-    return part.one;
-}
-
-/* Half the nodes in [-1, 1] and the weights of Gauss and Legendre's rule of 12. */
-static const double nodes[6][2] = {
-    {0.1252334085114689, 0.2491470458134028}, {0.3678314989981802, 0.2334925365383548},
-    {0.5873179542866175, 0.2031674267230659}, {0.7699026741943047, 0.1600783285433462},
-    {0.9041172563704749, 0.1069393259953184}, {0.9815606342467192, 0.0471753363865118}};
-
 static double ball_volume(const Body *ball, const Cell *cell)
 {
-    Vec3 from = vec3_sub(cell->center, ball->start), half = cell->half;
-    double radius = ball->radius, volume = 0;
-    const DiscPoint corner[4] = {{from.x - half.x, from.y - half.y},
-                                 {from.x + half.x, from.y - half.y},
-                                 {from.x + half.x, from.y + half.y},
-                                 {from.x - half.x, from.y + half.y}};
-    double low = asin(fmax(-1, (from.z - half.z) / radius));
-    double high = asin(fmin(1, (from.z + half.z) / radius));
-    for (int i = 0; i < 12; i++) {
-        double node = i < 6 ? nodes[i][0] : -nodes[i - 6][0];
-        double across = radius * cos((low + high) / 2 + node * (high - low) / 2);
-        volume += nodes[i % 6][1] * across * rectangle_in_disc(corner, across);
+    Vec3 from = vec3_sub(cell->center, ball->start);
+    double volume = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        int first = (axis + 1) % 3, second = (axis + 2) % 3;
+        double u = vec3_component(from, first), u_half = vec3_component(cell->half, first);
+        double v = vec3_component(from, second), v_half = vec3_component(cell->half, second);
+        const DiscPoint corner[4] = {{u - u_half, v - v_half},
+                                     {u + u_half, v - v_half},
+                                     {u + u_half, v + v_half},
+                                     {u - u_half, v + v_half}};
+        for (int side = -1; side <= 1; side += 2) {
+            double out = side * vec3_component(from, axis) + vec3_component(cell->half, axis);
+            for (int i = 0; i < 4 && out != 0; i++)
+                volume +=
+                    out / 3 * ballshade_edge(corner[i], corner[(i + 1) % 4], ball->radius, out);
+        }
     }
-    return volume * (high - low) / 2;
+    return volume;
 }
 
 double body_part(const Body *body, const Cell *cell)

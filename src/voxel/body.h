@@ -39,7 +39,7 @@ static inline double cell_volume(const Cell *cell)
 bool body_meets(const Body *body, const Cell *cell);
 /* Whether all of the cell lies in the body. */
 bool body_holds(const Body *body, const Cell *cell);
-/* The part of the cell, in [0, 1], that lies in the body: to 1e-6 of a cylinder, 1e-4 of a ball. */
+/* The part of the cell, in [0, 1], that lies in the body, to 1e-7. */
 double body_part(const Body *body, const Cell *cell);
 
 /* From where to where a line along axis 0, 1 or 2 is in the body, in mm from `at`, a point of it;

@@ -1,12 +1,43 @@
 /* An edge is cut where it crosses the circle. With the origin, what is within makes a triangle, and
- * what is beyond a sector; both have closed forms. */
+ * what is beyond a sector; both have closed forms. Beyond the circle the shade is r^3 / (d^2 +
+ * s^2)^(3/2), s from the origin and d above: along a ray from the origin it integrates to a
+ * difference of r^3 / sqrt(d^2 + s^2), and that, over the angle to a straight edge at distance h,
+ * to that of r^3 / d asin(d sin a / sqrt(d^2 + h^2)), the angle a being that from the edge's
+ * nearest point. */
 #include "voxel/disc.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 static double cross(DiscPoint p, DiscPoint q)
 {
     return p.u * q.v - p.v * q.u;
+}
+
+static double dot(DiscPoint p, DiscPoint q)
+{
+    return p.u * q.u + p.v * q.v;
+}
+
+/* The part of an edge that is within the circle. */
+typedef struct Within {
+    DiscPoint in, out;
+    bool enters, leaves; /* at `in`, which is not p; at `out`, which is not q */
+} Within;
+
+/* False when there is none. */
+static bool cut_edge(DiscPoint p, DiscPoint q, double radius2, Within *within)
+{
+    DiscPoint d = {q.u - p.u, q.v - p.v};
+    double a = dot(d, d), b = dot(p, d), root2 = b * b - a * (dot(p, p) - radius2);
+    if (!(root2 > 0 && a > 0))
+        return false;
+    double root = sqrt(root2), from = (-b - root) / a, to = (-b + root) / a;
+    within->enters = from > 0;
+    within->leaves = to < 1;
+    within->in = from > 0 ? (DiscPoint){p.u + from * d.u, p.v + from * d.v} : p;
+    within->out = to < 1 ? (DiscPoint){p.u + to * d.u, p.v + to * d.v} : q;
+    return to > 0 && from < 1;
 }
 
 static void add_triangle(DiscPart *part, DiscPoint p, DiscPoint q)
@@ -20,9 +51,8 @@ static void add_triangle(DiscPart *part, DiscPoint p, DiscPoint q)
 /* Between the directions of p and q, which are less than half a turn apart. */
 static void add_sector(DiscPart *part, DiscPoint p, DiscPoint q, double radius)
 {
-    double angle = atan2(cross(p, q), p.u * q.u + p.v * q.v);
-    double third = radius * radius * radius / 3;
-    double to_p = third / sqrt(p.u * p.u + p.v * p.v), to_q = third / sqrt(q.u * q.u + q.v * q.v);
+    double angle = atan2(cross(p, q), dot(p, q)), third = radius * radius * radius / 3;
+    double to_p = third / sqrt(dot(p, p)), to_q = third / sqrt(dot(q, q));
     part->one += radius * radius * angle / 2;
     part->u += q.v * to_q - p.v * to_p;
     part->v += p.u * to_p - q.u * to_q;
@@ -30,22 +60,45 @@ static void add_sector(DiscPart *part, DiscPoint p, DiscPoint q, double radius)
 
 void discpart_add(DiscPart *part, DiscPoint p, DiscPoint q, double radius)
 {
-    DiscPoint d = {q.u - p.u, q.v - p.v};
-    double a = d.u * d.u + d.v * d.v, b = p.u * d.u + p.v * d.v;
-    double c = p.u * p.u + p.v * p.v - radius * radius, root2 = b * b - a * c;
-    if (!(a > 0))
+    Within within;
+    if (p.u == q.u && p.v == q.v)
         return;
-    double root = root2 > 0 ? sqrt(root2) : 0;
-    double from = (-b - root) / a, to = (-b + root) / a;
-    if (root2 <= 0 || to <= 0 || from >= 1) {
+    if (!cut_edge(p, q, radius * radius, &within)) {
         add_sector(part, p, q, radius);
         return;
     }
-    DiscPoint in = from > 0 ? (DiscPoint){p.u + from * d.u, p.v + from * d.v} : p;
-    DiscPoint out = to < 1 ? (DiscPoint){p.u + to * d.u, p.v + to * d.v} : q;
-    if (from > 0)
-        add_sector(part, p, in, radius);
-    add_triangle(part, in, out);
-    if (to < 1)
-        add_sector(part, out, q, radius);
+    if (within.enters)
+        add_sector(part, p, within.in, radius);
+    add_triangle(part, within.in, within.out);
+    if (within.leaves)
+        add_sector(part, within.out, q, radius);
+}
+
+/* Between the directions of p and q, the sector within the circle and what is beyond it; no circle
+ * where the ball does not reach the plane. */
+static double shade_of_sector(DiscPoint p, DiscPoint q, double radius, double above)
+{
+    DiscPoint edge = {q.u - p.u, q.v - p.v};
+    double turn = cross(p, q), length = sqrt(dot(edge, edge));
+    if (turn == 0)
+        return 0;
+    double h = fabs(turn) / length, pp = dot(p, p), qq = dot(q, q), d2 = above * above;
+    double at_p = atan2(above * dot(p, edge) / length, h * sqrt(d2 + pp));
+    double at_q = atan2(above * dot(q, edge) / length, h * sqrt(d2 + qq));
+    double angle = atan2(turn, dot(p, q)), r2 = radius * radius;
+    return fmax(0, r2 - d2) * angle / 2 +
+           r2 * radius * (angle / fmax(radius, above) - copysign(at_q - at_p, turn) / above);
+}
+
+double ballshade_edge(DiscPoint p, DiscPoint q, double radius, double above)
+{
+    double height = fabs(above), shade = 0;
+    Within within;
+    if (!cut_edge(p, q, radius * radius - height * height, &within))
+        return shade_of_sector(p, q, radius, height);
+    if (within.enters)
+        shade += shade_of_sector(p, within.in, radius, height);
+    if (within.leaves)
+        shade += shade_of_sector(within.out, q, radius, height);
+    return cross(within.in, within.out) / 2 + shade;
 }

@@ -1,4 +1,7 @@
-/* Integrals over what a disc and a polygon have in common; private to the room voxel. */
+/* Integrals over what a disc and a polygon have in common, and over the rest of the polygon;
+ * private to the room voxel. Each adds what lies between the edge from p to q of a polygon and the
+ * origin, signed, above 0 where the edge runs counterclockwise about it: the sum over the edges is
+ * the polygon's. */
 #ifndef CORCAST_VOXEL_DISC_H
 #define CORCAST_VOXEL_DISC_H
 
@@ -11,9 +14,11 @@ typedef struct DiscPart {
     double one, u, v;
 } DiscPart;
 
-/* Adds what lies between the edge from p to q, the origin and, beyond `radius` from it, the circle;
- * signed, above 0 where the edge runs counterclockwise about the origin. The sum over the edges of
- * a polygon is the integral over its part in the disc of that radius about the origin. */
+/* Over the part of the polygon in the disc of `radius` about the origin. */
 void discpart_add(DiscPart *part, DiscPoint p, DiscPoint q, double radius);
+
+/* The integral of min(1, (radius / distance)^3), the distance being that from a point `above` the
+ * origin, not 0. */
+double ballshade_edge(DiscPoint p, DiscPoint q, double radius, double above);
 
 #endif

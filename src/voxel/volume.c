@@ -191,7 +191,7 @@ const VolumeFormat volume_formats[] = {
      .most = UINT16_MAX,
      .types = DENSITIES,
      .big_endian = true,
-     .parts_alone = true,
+     .is_density = true,
      .put_header = put_df3},
     {0},
 };
@@ -217,7 +217,7 @@ Status volume_check(const VolumeFormat *format, const VoxelGrid *grid, SampleTyp
                 "`voxel`: %lld x %lld x %lld voxels; %s holds at most %lld along an axis",
                 (long long)grid->n[0], (long long)grid->n[1], (long long)grid->n[2], format->suffix,
                 (long long)format->most);
-    if (!parts && format->parts_alone)
+    if (!parts && format->is_density)
         return err_set(err, STATUS_USAGE, "%s holds no labels and no centrelines", format->suffix);
     if (!(format->types & 1u << type))
         return err_set(err, STATUS_USAGE, "%s has no samples of %s", format->suffix,

@@ -3,7 +3,9 @@
 
 #include "app/run/output.h"
 #include "app/run/progress.h"
+#include "app/run/templates.h"
 #include "derive/derive.h"
+#include "emit/emit.h"
 #include "stage/stage.h"
 #include "treeio/treeio.h"
 
@@ -47,18 +49,24 @@ static const Option volume_options[] = {
 
 const OptionTable volume_table = OPTION_TABLE(volume_options);
 
+/* Options of `export` about what is no volume. */
+static const char *const mesh_options[] = {
+    "model", "tolerance", "lod", "part-overlaps", "parts", "print", "look", "color-by",
+};
+
 Status volumes_check_needs(bool is_volume, const Parsed *parsed, Err *err)
 {
-    static const char of_volumes[] = "is for volumes, as V.nii.gz";
-    static const char of_meshes[] = "is for meshes; volumes are of rounded vessels";
-    const OptionNeed needs[] = {
-        {"voxel", is_volume, of_volumes},         {"depth", is_volume, of_volumes},
-        {"labels", is_volume, of_volumes},        {"centreline", is_volume, of_volumes},
-        {"model", !is_volume, of_meshes},         {"tolerance", !is_volume, of_meshes},
-        {"lod", !is_volume, of_meshes},           {"look", !is_volume, of_meshes},
-        {"part-overlaps", !is_volume, of_meshes}, {"print", !is_volume, of_meshes},
-        {"color-by", !is_volume, of_meshes},      {0}};
-    return options_check_needs(parsed, needs, err);
+    for (size_t i = 0; i < volume_table.n; i++) {
+        const OptionNeed need[] = {
+            {volume_table.options[i].name, is_volume, "is for volumes, as V.nii.gz"}, {0}};
+        TRY(options_check_needs(parsed, need, err));
+    }
+    for (size_t i = 0; i < sizeof mesh_options / sizeof *mesh_options; i++) {
+        const OptionNeed need[] = {
+            {mesh_options[i], !is_volume, "is for meshes; volumes are of rounded vessels"}, {0}};
+        TRY(options_check_needs(parsed, need, err));
+    }
+    return STATUS_OK;
 }
 
 void volumes_extensions(Text *out)
@@ -75,6 +83,7 @@ typedef enum VolumeFile {
     FILE_LABELS,
     FILE_CENTRELINE,
     FILE_TREE,
+    FILE_SCENE, /* of a density file */
     FILE_MANIFEST,
     FILES
 } VolumeFile;
@@ -111,6 +120,8 @@ static Status find_paths(const VolumeOptions *options, const VolumeFormat *forma
         TRY(beside(output, format, false, labels, &paths->of[FILE_LABELS], err));
     if (options->centreline)
         TRY(mem_strdup(&paths->of[FILE_CENTRELINE], options->centreline, err));
+    if (format->is_density)
+        TRY(beside(output, format, false, ".pov", &paths->of[FILE_SCENE], err));
     TRY(beside(output, format, false, ".csv", &paths->of[FILE_TREE], err));
     return beside(output, format, true, ".json", &paths->of[FILE_MANIFEST], err);
 }
@@ -123,6 +134,8 @@ Status volumes_note(const VolumeOptions *options, const VolumeFormat *format, co
     TRY_GOTO(find_paths(options, format, output, &paths, err));
     if (paths.of[FILE_LABELS])
         TRY_GOTO(files_write(files, "the labels", paths.of[FILE_LABELS], err));
+    if (paths.of[FILE_SCENE])
+        TRY_GOTO(files_write(files, "the scene", paths.of[FILE_SCENE], err));
     TRY_GOTO(files_write(files, "the tree beside it", paths.of[FILE_TREE], err));
     TRY_GOTO(files_write(files, "the manifest", paths.of[FILE_MANIFEST], err));
 done:
@@ -308,23 +321,58 @@ static json_t *manifest(const Volumes *made, const char *command)
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-/* The tree and the manifest. */
+/* Appends a scene in which the volume glows. */
+static Status put_scene(const Volumes *made, const char *command, Text *out, Err *err)
+{
+    const VoxelGrid *grid = &made->params.grid;
+    Vec3 low = vec3_add_scaled(grid->first, grid->step, -0.5), size = grid->step;
+    DensityBox density = {.origin = grid->origin};
+    Text description = TEXT_INIT;
+    char *templates = NULL;
+    Status status;
+    for (int axis = 0; axis < 3; axis++)
+        density.n[axis] = grid->n[axis];
+    size =
+        vec3((double)grid->n[0] * size.x, (double)grid->n[1] * size.y, (double)grid->n[2] * size.z);
+    density.box = (Box){low, vec3_add(low, size)};
+    for (size_t i = 0; i < made->geometry.n_primitives; i++)
+        density.thickest_mm = fmax(density.thickest_mm, 2 * made->geometry.primitives[i].radius_mm);
+    TRY_GOTO(templates_folder(&templates, err));
+    picture_description(&made->geometry, made->of->path, &description);
+    const EmitParams params = {.templates = templates,
+                               .file = file_name(made->paths.of[FILE_SCENE]),
+                               .second_file = file_name(made->paths.of[FILE_VALUES]),
+                               .description = text_chars(&description),
+                               .generator = GENERATOR,
+                               .command = command};
+    status = emit_density(&params, &density, out, err);
+done:
+    text_release(&description);
+    free(templates);
+    return status;
+}
+
+/* The tree, the manifest and the scene. */
 static Status write_beside(Volumes *made, const Parsed *parsed, Err *err)
 {
-    Text said = TEXT_TO(made->files[FILE_MANIFEST].stream);
-    Text tree = TEXT_TO(made->files[FILE_TREE].stream);
+    Text said[FILES];
     char *line = NULL;
     Status status;
-    TRY_GOTO(tree_write_text(&made->of->tree, made->paths.of[FILE_TREE], &tree, err));
-    TRY_GOTO(text_flush(&tree, err));
+    for (int i = 0; i < FILES; i++)
+        said[i] = TEXT_TO(made->files[i].stream);
     TRY_GOTO(command_line_text(parsed, &line, err));
-    text_json(&said, manifest(made, line), 2);
-    text_puts(&said, "\n");
-    TRY_GOTO(text_flush(&said, err));
+    TRY_GOTO(tree_write_text(&made->of->tree, made->paths.of[FILE_TREE], &said[FILE_TREE], err));
+    if (made->paths.of[FILE_SCENE])
+        TRY_GOTO(put_scene(made, line, &said[FILE_SCENE], err));
+    text_json(&said[FILE_MANIFEST], manifest(made, line), 2);
+    text_puts(&said[FILE_MANIFEST], "\n");
+    for (int i = FILE_TREE; i < FILES; i++)
+        if (said[i].stream)
+            TRY_GOTO(text_flush(&said[i], err));
 done:
     free(line);
-    text_release(&said);
-    text_release(&tree);
+    for (int i = 0; i < FILES; i++)
+        text_release(&said[i]);
     return status;
 }
 

@@ -1,0 +1,25 @@
+/* A box of a medium, its density read from a file, under an orthographic camera whose pixels are
+ * voxels. The light of a diameter of the thickest vessel is that of a full code. */
+#include "emit/emit.h"
+#include "emit/povray_text.h"
+#include "emit/rows.h"
+#include "emit/values.h"
+
+Status emit_density(const EmitParams *params, const DensityBox *density, Text *out, Err *err)
+{
+    const int64_t *n = density->n;
+    int64_t most = n[0] > n[1] ? n[0] : n[1];
+    Values values = {0};
+    most = n[2] > most ? n[2] : most;
+    TRY(povray_check_name(params->second_file, err));
+    add_file(&values, params->file, ".png", "\"");
+    add_about(&values, params, density->box, density->origin);
+    text_puts(add_value(&values, "density_file"), params->second_file);
+    text_printf(add_value(&values, "width"), "%lld", (long long)n[0]);
+    text_printf(add_value(&values, "height"), "%lld", (long long)n[1]);
+    text_printf(add_value(&values, "samples"), "%lld", (long long)most);
+    add_number(&values, "emission", 1 / density->thickest_mm);
+    put_vector(add_value(&values, "low"), density->box.low);
+    put_vector(add_value(&values, "high"), density->box.high);
+    return values_expand(&values, params, "povray/density.pov", out, err);
+}

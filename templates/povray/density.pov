@@ -1,0 +1,70 @@
+// Persistence of Vision Ray Tracer Scene Description File
+// File: ${file}
+// Vers: 3.7
+// Desc: ${description}
+// Auth: ${generator}, by: ${command}
+//
+// A glow in the shape of vessels: a medium whose density, from ${density_file}, is the part of each voxel that
+// they fill. Units are millimetres; seen from the front, x runs to the right, y up, and z towards the viewer.
+// Extent: ${extent}
+//
+// Render: povray +I${input} +O${output} +W${width} +H${height} -D
+// Size: ${width}x${height}
+//
+// What stands in #ifndef can be set before an #include of this file and, if it is a number, on the command line,
+// as Declare=Glow_Emission=2. A pixel has the colour Glow_Color * Glow_Emission * the millimetres of vessel behind it.
+#version 3.7;
+
+global_settings { assumed_gamma 1.0 max_trace_level 5 }
+
+#ifndef (Glow_Color)       #declare Glow_Color       = rgb <1, 0.42, 0.18>; #end // linear
+#ifndef (Glow_Emission)    #declare Glow_Emission    = ${emission}; #end // light of 1 mm of vessel
+#ifndef (Glow_Absorption)  #declare Glow_Absorption  = 0; #end // of 1 mm, of what is behind it
+#ifndef (Glow_Interpolate) #declare Glow_Interpolate = 1; #end // 0: voxels as boxes; 1: linear between them
+#ifndef (Glow_Samples)     #declare Glow_Samples     = ${samples}; #end // along a ray through the box
+#ifndef (Background_Color) #declare Background_Color = rgb <0.004, 0.006, 0.012>; #end
+
+#declare Glow_Low  = ${low};
+#declare Glow_High = ${high};
+#declare Glow_Size = Glow_High - Glow_Low;
+#declare Glow_Center = (Glow_Low + Glow_High) / 2;
+
+// ---- camera ---------------------------------------------------------------------------------
+#ifndef (Camera_Location)  #declare Camera_Location  = Glow_Center + z * vlength(Glow_Size); #end
+#ifndef (Camera_Right)     #declare Camera_Right     = x * Glow_Size.x; #end // full width
+#ifndef (Camera_Up)        #declare Camera_Up        = y * Glow_Size.y; #end // full height
+#ifndef (Camera_Direction) #declare Camera_Direction = -z; #end
+camera {
+  orthographic
+  location  Camera_Location
+  direction Camera_Direction
+  right     Camera_Right
+  up        Camera_Up
+}
+background { color Background_Color }
+
+// ---- vessels --------------------------------------------------------------------------------
+#declare D_Vessels = density {
+  density_file df3 "${density_file}"
+  interpolate Glow_Interpolate
+  scale Glow_Size
+  translate Glow_Low
+}
+#declare I_Glow = interior {
+  media {
+    emission   Glow_Color * Glow_Emission
+    absorption rgb Glow_Absorption
+    method 2 // a mean of evenly spaced samples; 3 adds to it
+    intervals 1
+    samples Glow_Samples
+    density { D_Vessels }
+  }
+}
+#ifndef (Glow_Alone)
+  box {
+    Glow_Low, Glow_High
+    hollow
+    texture { pigment { rgbt 1 } finish { ambient 0 diffuse 0 } }
+    interior { I_Glow }
+  }
+#end

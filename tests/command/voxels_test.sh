@@ -1,0 +1,234 @@
+#!/usr/bin/env bash
+# `export` to volumes: how much of each voxel vessels fill, labels, centrelines, read by programs that are not ours.
+. "$(dirname "$0")/../lib.sh"
+
+# python: runs standard input with numpy, nibabel and `volume(name)`: a volume as an array of x, y, z, and the list of
+# its voxels' sides, mm.
+python() {
+    /usr/bin/python3 -c 'import nibabel, numpy' 2>python.error || skip "python3-nibabel is not installed"
+    {
+        cat <<'END'
+import nibabel, numpy
+def volume(name):
+    image = nibabel.load(name)
+    return numpy.asarray(image.dataobj), image.header.get_zooms()
+END
+        cat
+    } >script.py
+    /usr/bin/python3 script.py >said 2>&1 || fail "python: $(tail -3 said | tr '\n' ' ')"
+}
+
+# grown: a tree of 23 terminals.
+grown() {
+    run_ok corcast grow --terminals 23 --domain ball:41 --seed 7 -o t.swc --quiet
+}
+
+test_a_vessel_with_round_ends_has_its_volume() {
+    local voxel depth
+    printf '1 3 0.13 -0.4 7.1 1.385 -1\n2 3 9.71 3.2 2.9 1.385 1\n' >one.swc
+    for voxel in 0.21 1.9 0.3,0.7,0.2; do
+        for depth in 8 16 float; do
+            run_ok corcast export one.swc -o one.nii.gz --voxel $voxel --depth $depth --quiet
+            jq '[.volume_mm3, .union_mm3] | @tsv' -r one.nii.gz.json | awk -v depth=$depth '{
+                r = 1.385; pi = atan2(0, -1)
+                volume = pi * r^2 * sqrt(9.58^2 + 3.6^2 + 4.2^2) + 4 / 3 * pi * r^3
+                off = depth == 8 ? 1e-3 : 3e-4
+                exit ($1 / volume - 1)^2 > off^2 || ($2 / volume - 1)^2 > 3e-4^2 }' ||
+                fail "volume at $voxel, $depth: $(jq -c . one.nii.gz.json)"
+        done
+    done
+}
+
+test_the_voxels_of_a_tree_have_the_volume_of_the_union() {
+    grown
+    run_ok corcast export t.swc -o t.nii.gz --voxel 0.4 --quiet
+    /usr/bin/python3 -c 'import numpy' 2>python.error || skip "python3-numpy is not installed"
+    run_ok "$REPO/tests/oracle/tree_volume.py" t.swc 0.05
+    jq --argjson volume "$(cat stdout)" '.volume_mm3 / $volume, .union_mm3 / $volume' t.nii.gz.json | tr '\n' ' ' >both
+    awk '{ exit !($1 > 0.999 && $1 < 1.001 && $2 > 0.9999 && $2 < 1.0001) }' both || fail "volume over that of lines: $(cat both)"
+    python <<'END'
+import json
+said = json.load(open("t.nii.gz.json"))
+image = nibabel.load("t.nii.gz")
+voxels, sides = volume("t.nii.gz")
+assert image.get_data_dtype() == numpy.uint8 and list(voxels.shape) == said["voxels"], image.header
+for form, code in (image.get_sform(True), image.get_qform(True)):
+    assert code == 1 and numpy.allclose(form[:3, :3], 0.4 * numpy.eye(3)), form
+    assert numpy.allclose(form[:3, 3], said["first_voxel_mm"]), form
+assert abs(image.get_fdata().sum() * 0.4 ** 3 / said["volume_mm3"] - 1) < 1e-6
+# What is filled is where the tree is: the fullest voxels lie on its axes.
+points = numpy.array([[float(x) for x in line.split()[2:5]] for line in open("t.swc") if line[0] != "#"])
+at = numpy.rint((points - said["first_voxel_mm"]) / 0.4).astype(int)
+assert (voxels[tuple(at.T)] > 0.4).mean() > 0.9
+END
+}
+
+test_other_readers_see_the_same_voxels_at_the_same_place() {
+    grown
+    run_ok corcast export t.swc -o t.nii.gz --voxel 0.9 --depth 16 --quiet
+    run_ok corcast export t.swc -o t.nii --voxel 0.9 --depth 16 --quiet
+    run_ok corcast export t.swc -o t.nrrd --voxel 0.9 --depth 16 --quiet
+    run_ok corcast export t.swc -o t.mha --voxel 0.9 --depth 16 --quiet
+    gzip -t t.nii.gz || fail "gzip finds t.nii.gz broken"
+    gzip -dc t.nii.gz >plain.nii
+    expect_same plain.nii t.nii
+    tail -c $(($(jq '.voxels | .[0] * .[1] * .[2] * 2' t.mha.json))) t.mha >meta.raw
+    tail -c +353 t.nii >nifti.raw
+    expect_same meta.raw nifti.raw
+    python <<'END'
+import vtkmodules.vtkIOImage as io, json
+from vtkmodules.util.numpy_support import vtk_to_numpy
+said = json.load(open("t.nii.gz.json"))
+voxels, sides = volume("t.nii.gz")
+stored = numpy.rint(voxels * 65535)
+for reader, name in (io.vtkNIFTIImageReader(), "t.nii.gz"), (io.vtkNrrdReader(), "t.nrrd"):
+    reader.SetFileName(name)
+    reader.Update()
+    data = reader.GetOutput()
+    assert list(data.GetDimensions()) == said["voxels"], (name, data.GetDimensions())
+    assert numpy.allclose(data.GetSpacing(), 0.9), (name, data.GetSpacing())
+    if name == "t.nrrd":
+        assert numpy.allclose(data.GetOrigin(), said["first_voxel_mm"]), (name, data.GetOrigin())
+    array = vtk_to_numpy(data.GetPointData().GetScalars()).reshape(voxels.shape[::-1]).T
+    assert (numpy.rint(array) == stored).all(), name
+END
+    run_ok corcast grow --domain mask:t.nii.gz --terminals 5 -o in.swc --quiet
+}
+
+test_vessels_thinner_than_a_voxel_do_not_break_up() {
+    grown
+    awk '!/^#/ { $6 *= 0.01 } 1' t.swc >thin.swc
+    run_ok corcast export thin.swc -o v.nii.gz --voxel 0.8 --labels segment --centreline c.nii.gz
+    grep -qE 'rounded to 8 bits, voxels hold .* more than the vessels' stderr || fail "expected a word on the rounding: $(cat stderr)"
+    run_ok corcast export thin.swc -o w.nii.gz --voxel 0.8 --depth float --quiet
+    expect_json w.nii.gz.json '(.volume_mm3 / .union_mm3 - 1) * 1e6 | . > -1 and . < 1'
+    python <<'END'
+v, c = volume("v.nii.gz")[0], volume("c.nii.gz")[0]
+assert c.max() == 1 and (v[c > 0] > 0).all()
+# One piece, through faces of voxels.
+left, todo = set(map(tuple, numpy.argwhere(c > 0))), []
+assert len(left) > 300
+todo.append(left.pop())
+while todo:
+    x, y, z = todo.pop()
+    for near in (x - 1, y, z), (x + 1, y, z), (x, y - 1, z), (x, y + 1, z), (x, y, z - 1), (x, y, z + 1):
+        if near in left:
+            left.remove(near)
+            todo.append(near)
+assert not left, len(left)
+END
+}
+
+test_every_id_has_a_voxel_also_where_vessels_share_all_of_theirs() {
+    grown
+    for voxel in 0.5 4; do
+        run_ok corcast export t.swc -o v.nii.gz --voxel $voxel --labels segment --quiet
+        python <<'END'
+labels, v = volume("v.labels.nii.gz")[0], volume("v.nii.gz")[0]
+ids = {int(line.split()[0]) for line in open("t.swc") if line[0] != "#" and line.split()[6] != "-1"}
+assert labels.dtype == numpy.uint16, labels.dtype
+assert set(numpy.unique(labels)) - {0} == ids, ids - set(numpy.unique(labels))
+assert ((labels > 0) == (v > 0)).all()
+END
+    done
+    expect_json v.nii.gz.json '.labels == "segment" and .labels_given_a_voxel > 0'
+    run corcast export t.swc -o x.nii.gz --voxel 30 --labels segment
+    expect_status 2
+    grep -qE -- '--voxel 30 x 30 x 30 mm: segment [0-9]+ has no voxel for its label' stderr || fail "$(cat stderr)"
+    [ ! -e x.nii.gz ] || fail "expected no volume"
+}
+
+test_a_voxel_is_labelled_by_what_fills_the_most_of_it() {
+    printf '1 3 0 0 0 0.9 -1\n2 3 10 0 0 0.9 1\n3 3 20 0 0 0.6 2\n4 3 17 6 0 0.4 2\n' >y.swc
+    run_ok corcast export y.swc -o y.nii.gz --voxel 0.5 --labels segment --quiet
+    run_ok corcast export y.swc -o o.nii.gz --voxel 0.5 --labels strahler --quiet
+    run_ok corcast export y.swc -o f.nii.gz --voxel 0.5 --labels tree --quiet
+    python <<'END'
+import json
+labels, first = volume("y.labels.nii.gz")[0], json.load(open("y.nii.gz.json"))["first_voxel_mm"]
+def at(x, y, z):
+    return labels[tuple(int(round((a - b) / 0.5)) for a, b in zip((x, y, z), first))]
+assert at(5, 0.5, 0) == 2 and at(15, 0, 0.5) == 3 and at(14, 3.5, 0) == 4 and at(5, 2, 0) == 0
+orders, trees = volume("o.labels.nii.gz")[0], volume("f.labels.nii.gz")[0]
+assert set(numpy.unique(orders)) == {0, 1, 2} and (orders[labels == 2] == 2).all() and (orders[labels == 3] == 1).all()
+assert set(numpy.unique(trees)) == {0, 1}
+END
+}
+
+test_ids_beyond_16_bits_take_32() {
+    printf '65535 3 0 0 0 0.9 -1\n65537 3 10 0 0 0.9 65535\n' >big.swc
+    run_ok corcast export big.swc -o b.nii.gz --voxel 0.5 --labels segment --quiet
+    python <<'END'
+labels = volume("b.labels.nii.gz")[0]
+assert labels.dtype == numpy.uint32 and set(numpy.unique(labels)) == {0, 65537}
+END
+}
+
+test_same_bytes_for_any_number_of_threads() {
+    local file
+    grown
+    run_ok corcast export t.swc -o one.nii.gz --voxel 0.3 --labels segment --centreline c1.nii.gz --threads 1 --quiet
+    run_ok corcast export t.swc -o six.nii.gz --voxel 0.3 --labels segment --centreline c6.nii.gz --threads 6 --quiet
+    expect_same c1.nii.gz c6.nii.gz
+    for file in nii.gz labels.nii.gz csv; do
+        expect_same one.$file six.$file
+    done
+    expect_same <(jq 'del(.command)' one.nii.gz.json) <(jq 'del(.command)' six.nii.gz.json)
+}
+
+test_memory_does_not_grow_with_the_volume() {
+    grown
+    # 400 million voxels.
+    (ulimit -v 300000 && "$CORCAST" export t.swc -o t.nii.gz --voxel 0.1 --threads 2 --quiet) 2>stderr || fail "$(cat stderr)"
+    expect_json t.nii.gz.json '.voxels | .[0] * .[1] * .[2] > 3.9e8'
+}
+
+test_volumes_of_parts_of_a_tree_fit_together() {
+    grown
+    run_ok corcast export t.swc -o t.nii.gz --voxel 0.7 --quiet
+    run_ok corcast export t.swc -o p.nii.gz --voxel 0.7 --prune-radius 0.5 --quiet
+    python <<'END'
+import json
+a, b = (numpy.array(json.load(open(name + ".nii.gz.json"))["first_voxel_mm"]) / 0.7 for name in "tp")
+assert numpy.allclose(a, numpy.rint(a)) and numpy.allclose(b, numpy.rint(b)) and (a != b).any()
+shift = numpy.rint(b - a).astype(int)
+whole, part = volume("t.nii.gz")[0], volume("p.nii.gz")[0]
+box = tuple(slice(s, s + n) for s, n in zip(shift, part.shape))
+assert part.sum() > 300 and (whole[box] + 0.015 >= part).all()
+END
+}
+
+test_the_tree_stands_beside_as_csv() {
+    grown
+    run_ok corcast export t.swc -o t.nii.gz --quiet
+    expect_only t.swc t.csv t.nii.gz t.nii.gz.json
+    run_ok corcast convert t.csv again.swc --quiet
+    expect_same <(grep -v '^#' t.swc) <(grep -v '^#' again.swc)
+}
+
+test_refuses_what_cannot_be() {
+    grown
+    while IFS='@' read -r options sentence; do
+        # shellcheck disable=SC2086
+        run corcast export t.swc --quiet $options
+        expect_status 2
+        expect_sentence "$sentence"
+    done <<'END'
+-o x.nii.gz --voxel 0@--voxel: 0 is not above 0
+-o x.nii.gz --voxel 1,2@--voxel takes one number or three, not 2
+-o x.nii.gz --voxel 1e-3@--voxel: [0-9]+ x [0-9]+ x [0-9]+ voxels; .nii.gz holds at most 32767 along an axis
+-o x.nrrd --voxel 1e-12@--voxel: 1e-12 mm would make .* voxels along an axis
+-o x.df3 --depth float@\.df3 has no samples of float
+-o x.df3 --labels tree@\.df3 holds no labels and no centrelines
+-o x.nii.gz --centreline c.stl@--centreline: 'c.stl' does not end as a volume does
+-o x.nii.gz --model isosurface@--model is for meshes; volumes are of rounded vessels
+-o x.stl --labels tree@--labels is for volumes
+-o x.tif@does not end in .*, or for volumes in .nii.gz, .nii, .nrrd, .mha, .df3
+END
+    run corcast export t.swc -o x.nii --voxel 0.003 --quiet
+    expect_status 3
+    expect_sentence 'x.nii: needs .* TB, and its disk has .* left'
+    expect_only t.swc
+}
+
+run_tests "$@"

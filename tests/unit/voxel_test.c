@@ -1,0 +1,182 @@
+#include "voxel/cover.h"
+#include "voxel/voxel.h"
+
+#include "base/base.h"
+#include "test_scene.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static double number(Random *random, double low, double high)
+{
+    return low + (high - low) * random_uniform(random);
+}
+
+static Vec3 point(Random *random, double size)
+{
+    double x = number(random, -size, size), y = number(random, -size, size);
+    return vec3(x, y, number(random, -size, size));
+}
+
+static const Cell cell = {.center = {0.31, -0.17, 0.43}, .half = {0.41, 0.53, 0.47}};
+
+/* About the cell, from far thinner to far thicker than it. */
+static Body random_body(Random *random)
+{
+    double radius = exp(number(random, log(0.004), log(40)));
+    Vec3 across = vec3_normalized(point(random, 1));
+    Vec3 near =
+        vec3_add_scaled(vec3_add(cell.center, point(random, 0.6)), across, radius > 1 ? radius : 0);
+    if (random_uniform(random) < 0.3)
+        return body_make(near, near, radius, 1);
+    Vec3 along = vec3_cross(across, vec3_normalized(point(random, 1)));
+    if (random_uniform(random) < 0.2)
+        along = vec3(0, number(random, 0.1, 2), 0);
+    double back = number(random, 0, 2);
+    return body_make(vec3_add_scaled(near, along, -back),
+                     vec3_add_scaled(near, along, exp(number(random, -3, 4))), radius, 1);
+}
+
+static double part_of_eighths(const Body *body, const Cell *whole, int depth)
+{
+    Vec3 half = vec3_scale(whole->half, 0.5);
+    double part = 0;
+    if (depth == 0)
+        return body_part(body, whole);
+    for (int i = 0; i < 8; i++) {
+        Vec3 move = {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
+        Cell eighth = {vec3_add(whole->center, move), half};
+        part += part_of_eighths(body, &eighth, depth - 1);
+    }
+    return part / 8;
+}
+
+static bool is_inside(const Body *body, Vec3 x)
+{
+    Vec3 from = vec3_sub(x, body->start);
+    double along = vec3_dot(from, body->axis);
+    return along >= 0 && along <= body->length &&
+           vec3_length(vec3_add_scaled(from, body->axis, -along)) <= body->radius;
+}
+
+/* The part of the cell's points, `side` along each axis, that are in one of the bodies. */
+static double part_by_points(const Body *bodies, int n, int side)
+{
+    int inside = 0;
+    for (int i = 0; i < side * side * side; i++) {
+        Vec3 at = vec3((2 * (i % side) + 1.0) / side - 1, (2 * (i / side % side) + 1.0) / side - 1,
+                       (2 * (i / side / side) + 1.0) / side - 1);
+        Vec3 x =
+            vec3_add(cell.center, vec3(at.x * cell.half.x, at.y * cell.half.y, at.z * cell.half.z));
+        bool found = false;
+        for (int k = 0; k < n && !found; k++)
+            found = is_inside(&bodies[k], x);
+        inside += found;
+    }
+    return (double)inside / (side * side * side);
+}
+
+static void part_of_a_body_is_exactly_that_of_the_eighths_of_the_cell(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 11);
+    double worst[2] = {0};
+    int partly = 0;
+    for (int i = 0; i < 4000; i++) {
+        Body body = random_body(&random);
+        double part = body_part(&body, &cell), eighths = part_of_eighths(&body, &cell, 2);
+        double *off = &worst[body_is_ball(&body)];
+        *off = fmax(*off, fabs(part - eighths));
+        partly += part > 0.01 && part < 0.99;
+    }
+    assert_true(partly > 1000);
+    assert_true(worst[0] < 1e-6);
+    assert_true(worst[1] < 1e-6);
+}
+
+static void part_of_a_body_is_that_of_points_in_it(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 12);
+    double worst = 0;
+    for (int i = 0; i < 60; i++) {
+        Body body = random_body(&random);
+        worst = fmax(worst, fabs(body_part(&body, &cell) - part_by_points(&body, 1, 40)));
+    }
+    assert_true(worst < 0.008);
+}
+
+static void thin_vessel_in_a_cell_has_its_volume(void **state)
+{
+    (void)state;
+    for (double radius = 1e-2; radius > 1e-5; radius /= 7) {
+        Body tube = body_make(vec3(0.2, -0.3, 0.3), vec3(0.41, 0.13, 0.61), radius, 1);
+        double volume = body_part(&tube, &cell) * cell_volume(&cell);
+        assert_true(fabs(volume / (acos(-1) * radius * radius * tube.length) - 1) < 1e-6);
+    }
+}
+
+static void part_of_a_union_is_that_of_points_in_it(void **state)
+{
+    (void)state;
+    enum { BODIES = 4 };
+    const uint32_t list[BODIES] = {0, 1, 2, 3};
+    Random random;
+    random_seed(&random, 13);
+    CoverRoom room = {0};
+    double worst = 0, sum2 = 0;
+    assert_int_equal(cover_reserve(&room, BODIES, NULL), STATUS_OK);
+    for (int i = 0; i < 200; i++) {
+        Body bodies[BODIES];
+        double radius = exp(number(&random, log(0.1), log(3)));
+        Vec3 node = vec3_add(cell.center, point(&random, radius));
+        bodies[3] = body_make(node, node, radius, 0);
+        for (uint32_t k = 0; k < 3; k++)
+            bodies[k] = body_make(node, vec3_add_scaled(node, point(&random, 1), 4 * radius),
+                                  radius * number(&random, 0.6, 1), k);
+        double off =
+            cover_part(bodies, list, BODIES, &cell, &room) - part_by_points(bodies, BODIES, 40);
+        worst = fmax(worst, fabs(off));
+        sum2 += off * off;
+    }
+    cover_release(&room);
+    assert_true(worst < 0.012);
+    assert_true(sqrt(sum2 / 200) < 0.003);
+}
+
+static void thin_vessels_that_meet_in_a_cell_have_their_volume(void **state)
+{
+    (void)state;
+    const uint32_t list[3] = {0, 1, 2};
+    CoverRoom room = {0};
+    assert_int_equal(cover_reserve(&room, 3, NULL), STATUS_OK);
+    for (double radius = 1e-2; radius > 1e-3; radius /= 3) {
+        Vec3 node = vec3(0.33, -0.1, 0.47), bend = vec3(0.2, -0.37, 0.29);
+        Body bodies[3] = {body_make(bend, node, radius, 0),
+                          body_make(node, vec3(0.41, 0.13, 0.61), radius, 0),
+                          body_make(node, node, radius, 0)};
+        double length = bodies[0].length + bodies[1].length;
+        double volume = cover_part(bodies, list, 3, &cell, &room) * cell_volume(&cell);
+        assert_true(fabs(volume / (acos(-1) * radius * radius * length) - 1) < 2 * radius);
+    }
+    cover_release(&room);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(part_of_a_body_is_exactly_that_of_the_eighths_of_the_cell),
+        cmocka_unit_test(part_of_a_body_is_that_of_points_in_it),
+        cmocka_unit_test(thin_vessel_in_a_cell_has_its_volume),
+        cmocka_unit_test(part_of_a_union_is_that_of_points_in_it),
+        cmocka_unit_test(thin_vessels_that_meet_in_a_cell_have_their_volume),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
