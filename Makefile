@@ -62,6 +62,7 @@ PLAIN_HEADERS := $(and $(wildcard $(NIFTI)/nifti2_io.h),$(wildcard $(EXR)/openex
 CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -ffp-contract=off $(WARNINGS)
 CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-config --cflags $(PACKAGES) $(HEADERS) 2>/dev/null)
 LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
+VIEWER := build/viewer/viewer.js
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
 .PHONY: all deps demo figures gallery validate bench bench-grow bench-render bench-compare bench-mesh export-all verify-all power power-program fit-blob check check-all check-quick program unit \
@@ -70,7 +71,7 @@ LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: build/corcast ## the program, build/corcast (the default)
+all: build/corcast $(and $(shell command -v npm),$(shell command -v esbuild),$(VIEWER)) ## the program, build/corcast (the default), and what its pages hold
 	@:
 
 help: ## this list
@@ -78,7 +79,7 @@ help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s %s\n", $$1, $$2 }' Makefile
 
 deps: ## install the Debian packages that are missing
-	$(Q).ci/deps $(or $(FOR),build run check)
+	$(Q).ci/deps $(or $(FOR),build run check page)
 
 demo: ## grow a tree, have POV-Ray and corcast draw it, verify; results in out/demo/
 	$(Q).ci/deps build run
@@ -148,11 +149,11 @@ fit-blob: $(FIT) ## how far the blob is from the potential; HOW=fit searches for
 	$(Q)$(FIT) $(HOW)
 
 check: ## every test; ends in "N passed, N failed"
-	$(Q).ci/deps build run check
+	$(Q).ci/deps build run check page
 	$(Q)JOBS=$(JOBS) tests/check
 
 check-all: ## `make check`, and what needs packages of hundreds of MB: PrusaSlicer, Blender
-	$(Q).ci/deps build run check
+	$(Q).ci/deps build run check page
 	$(Q).ci/deps all || echo 'what needs these packages is skipped' >&2
 	$(Q)JOBS=$(JOBS) tests/check usual all
 
@@ -167,6 +168,11 @@ else
 build/corcast:
 	$(Q)$(MAKE) MODE=release build/corcast
 endif
+
+# What pages of `export T -o P.html` hold. The program is complete without it.
+$(VIEWER): $(wildcard viewer/*)
+	$(call say,MADE,$@)
+	$(Q)viewer/bundle $(@D) || :
 
 program: $(BUILD)/corcast ## the program of this MODE, build/MODE/corcast
 
@@ -298,6 +304,7 @@ install: build/corcast build/share ## install under $(DESTDIR)$(PREFIX), with ma
 	install -Dm755 build/corcast $(DESTDIR)$(PREFIX)/bin/corcast
 	install -d $(SHARE)/corcast
 	cp -R templates $(SHARE)/corcast
+	test ! -e $(VIEWER) || install -Dm644 -t $(SHARE)/corcast/templates/page $(VIEWER)
 	cd build/share && find . -type f -exec install -Dm644 {} $(abspath $(SHARE))/{} \;
 	install -Dm644 -t $(SHARE)/doc/corcast README.md CHANGELOG.md LICENSE CITATION.cff
 	install -Dm644 -t $(SHARE)/doc/corcast/docs docs/*.md

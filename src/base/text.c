@@ -239,6 +239,21 @@ void text_escaped(Text *text, const char *chars)
     }
 }
 
+void text_base64(Text *text, const void *bytes, size_t size)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const uint8_t *from = bytes;
+    for (size_t i = 0; i < size; i += 3) {
+        uint32_t bits = 0;
+        for (size_t k = 0; k < 3; k++)
+            bits = bits << 8 | (i + k < size ? from[i + k] : 0u);
+        char four[4];
+        for (size_t k = 0; k < 4; k++)
+            four[k] = i + k <= size ? digits[bits >> (18 - 6 * k) & 63] : '=';
+        text_append(text, four, 4);
+    }
+}
+
 void text_number(Text *text, double value)
 {
     char number[NUMBER_TEXT_SIZE];

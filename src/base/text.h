@@ -83,6 +83,9 @@ void text_utf8(Text *text, const char *chars);
  * what is not UTF-8: for HTML and XML, in elements and attributes. */
 void text_escaped(Text *text, const char *chars);
 
+/* Appends `size` bytes in base64 [RFC 4648]. Pieces of one text of base64 have sizes that 3
+ * divides, but for the last. */
+void text_base64(Text *text, const void *bytes, size_t size);
 /* Appends it as number_text [base/number.h] writes it. */
 void text_number(Text *text, double value);
 

@@ -5,71 +5,17 @@
 // EXPECTED: {cases, worst: {id, differing, x, y, a: [r, g, b], b: [r, g, b], segment, depth, classes}}. Prints one line
 // for each expectation that fails; exit status 1 if any does.
 "use strict";
-const { spawn } = require("child_process");
 const fs = require("fs");
-const os = require("os");
-const path = require("path");
+const { runIn } = require("./browser.js");
 
 const [chromium, page, expectedFile] = process.argv.slice(2);
 const expected = JSON.parse(fs.readFileSync(expectedFile, "utf8"));
-const profile = fs.mkdtempSync(path.join(os.tmpdir(), "page-"));
-const browser = spawn(chromium, ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe",
-  "--user-data-dir=" + profile, "--window-size=1200,900", "about:blank"],
-  { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
-const [writer, reader] = [browser.stdio[3], browser.stdio[4]];
-
-let sequence = 0, rest = "", session, failures = 0;
-const waiting = new Map(), complaints = [], requests = [];
-
-function receive(message) {
-  if (message.id) {
-    const { resolve, reject } = waiting.get(message.id);
-    waiting.delete(message.id);
-    return message.error ? reject(new Error(message.error.message)) : resolve(message.result);
-  }
-  const p = message.params;
-  if (message.method === "Runtime.exceptionThrown")
-    complaints.push(p.exceptionDetails.exception ? p.exceptionDetails.exception.description : p.exceptionDetails.text);
-  if (message.method === "Log.entryAdded" && p.entry.level === "error") complaints.push(p.entry.text);
-  if (message.method === "Runtime.consoleAPICalled" && p.type === "error") complaints.push(JSON.stringify(p.args));
-  if (message.method === "Network.requestWillBeSent" && !/^(file|data):/.test(p.request.url)) requests.push(p.request.url);
-}
-
-reader.setEncoding("utf8");
-reader.on("data", function (chunk) {
-  const messages = (rest + chunk).split("\0");
-  rest = messages.pop();
-  messages.forEach(function (text) { receive(JSON.parse(text)); });
-});
-
-function send(method, params) {
-  const id = ++sequence;
-  const message = { id, method, params: params || {} };
-  if (session) message.sessionId = session;
-  writer.write(JSON.stringify(message) + "\0");
-  return new Promise(function (resolve, reject) { waiting.set(id, { resolve, reject }); });
-}
-
-async function evaluate(expression) {
-  const answer = await send("Runtime.evaluate", { expression, returnByValue: true, awaitPromise: true });
-  if (answer.exceptionDetails) throw new Error(expression + ": " + answer.exceptionDetails.exception.description);
-  return answer.result.value;
-}
-
-function check(ok, what) {
-  if (ok) return;
-  failures++;
-  console.log(what);
-}
-
-async function key(name) {
-  await send("Input.dispatchKeyEvent", { type: "keyDown", key: name, text: name.length === 1 ? name : undefined });
-  await send("Input.dispatchKeyEvent", { type: "keyUp", key: name });
-}
-
-async function mouse(type, x, y) {
-  await send("Input.dispatchMouseEvent", { type, x, y, button: type === "mouseMoved" ? "none" : "left", clickCount: 1 });
-}
+let browser;
+const evaluate = (expression) => browser.evaluate(expression);
+const check = (ok, what) => browser.check(ok, what);
+const key = (name) => browser.key(name);
+const mouse = (type, x, y) => browser.mouse(type, x, y);
+const send = (method, params) => browser.send(method, params);
 
 const hash = "(function () { var c = document.getElementById('stage'), d = c.getContext('2d')" +
   ".getImageData(0, 0, c.width, c.height).data, h = 0; for (var i = 0; i < d.length; i += 5) h = (h * 31 + d[i]) | 0;" +
@@ -241,13 +187,9 @@ async function checkColors() {
   check(colors[0] !== colors[1], "expected a dark page, too, got " + colors);
 }
 
-async function run() {
-  const target = await send("Target.createTarget", { url: "about:blank" });
-  session = (await send("Target.attachToTarget", { targetId: target.targetId, flatten: true })).sessionId;
-  for (const domain of ["Runtime", "Log", "Network", "Page"]) await send(domain + ".enable");
-  await send("Page.navigate", { url: "file://" + path.resolve(page) });
-  await evaluate("new Promise(function (r) { if (document.readyState === 'complete') setTimeout(r, 300);" +
-    " else window.addEventListener('load', function () { setTimeout(r, 300); }); })");
+runIn(chromium, ["--disable-gpu", "--window-size=1200,900"], async function (opened) {
+  browser = opened;
+  await browser.open(page);
   await checkOpening();
   await checkSorting();
   await checkHistogram();
@@ -258,29 +200,5 @@ async function run() {
   await checkPlanes();
   await checkPhone();
   await checkColors();
-  check(complaints.length === 0, "expected no console error, got " + complaints.join("; "));
-  check(requests.length === 0, "expected no network access, got " + requests.join(", "));
-}
-
-const patience = setTimeout(function () {
-  console.log("expected the browser to answer within a minute");
-  browser.kill("SIGKILL");
-  process.exit(1);
-}, 60000);
-
-run().catch(function (error) {
-  failures++;
-  console.log(error.message);
-}).finally(function () {
-  clearTimeout(patience);
-  // Its children may write for a moment longer, and rmSync does not look again for what they write.
-  browser.on("exit", function removeProfile(code, signal, tries = 50) {
-    try {
-      fs.rmSync(profile, { recursive: true, force: true });
-    } catch (error) {
-      if (tries > 0) return setTimeout(removeProfile, 100, code, signal, tries - 1);
-    }
-    process.exit(failures ? 1 : 0);
-  });
-  browser.kill("SIGKILL");
+  browser.checkSilence();
 });

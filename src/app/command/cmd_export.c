@@ -1,11 +1,14 @@
 /* The extension of the output chooses the emitter, as in cmd_scene.c; meshing.c makes the closed
- * surface that it writes. Options about colours are refused for a format that has none. */
+ * surface that it writes, or webpage.c a page. Options about colours are refused for a format that
+ * has none, those about the surface for a page. */
 #include "app/commands.h"
 #include "app/pictures/meshing.h"
 #include "app/pictures/picture.h"
 #include "app/pictures/povfiles.h"
 #include "app/pictures/volumes.h"
+#include "app/pictures/webpage.h"
 #include "emit/emit.h"
+#include <string.h>
 
 #include <string.h>
 
@@ -23,7 +26,8 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, ExportOptions, output),
      .argument = "M.stl",
-     .help = "the mesh, or a volume as V.nii.gz; its extension chooses the format"},
+     .help = "the mesh, a volume as V.nii.gz, or P.html, a page to turn the tree in; its extension "
+             "chooses the format"},
     {.name = "model",
      SETS(CHOICE, ExportOptions, meshing.body),
      .choices = vessel_body_names,
@@ -136,6 +140,35 @@ static Status export_volume(const ExportOptions *options, const VolumeFormat *fo
     return status;
 }
 
+/* STATUS_USAGE for an option about the surface, of which a page has none. */
+static Status refuse_surface(const Parsed *parsed, Err *err)
+{
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        const Option *option = setting->option;
+        if (setting->typed && option->group == GROUP_VESSELS &&
+            strcmp(option->name, "prune-radius") != 0)
+            return err_set(err, STATUS_USAGE,
+                           "--%s is for the surface; a page shows cylinders and balls",
+                           option->name);
+    }
+    return STATUS_OK;
+}
+
+static Status export_page(const ExportOptions *options, const Parsed *parsed, Err *err)
+{
+    const Coloring *coloring = &options->meshing.coloring;
+    PictureTree of;
+    TRY(refuse_surface(parsed, err));
+    TRY(webpage_check_needs(parsed, err));
+    TRY(coloring_check_needs(coloring, parsed, err));
+    TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
+    Status status =
+        webpage_write(coloring, options->meshing.look, &of, options->output, parsed, err);
+    picture_tree_release(&of);
+    return status;
+}
+
 static Status run_export(void *options, Parsed *parsed, Err *err)
 {
     ExportOptions *own_options = options;
@@ -143,6 +176,8 @@ static Status run_export(void *options, Parsed *parsed, Err *err)
     const Emitter *emitter;
     PictureTree of;
     TRY(volumes_check_needs(volume != NULL, parsed, err));
+    if (strcmp(file_extension(own_options->output), "html") == 0)
+        return export_page(own_options, parsed, err);
     if (volume)
         return export_volume(own_options, volume, parsed, err);
     TRY(find_emitter(own_options, &emitter, err));
@@ -159,12 +194,13 @@ static Status run_export(void *options, Parsed *parsed, Err *err)
 
 const Command command_export = {
     .name = "export",
-    .summary = "write the vessels as a closed mesh, or as voxels",
+    .summary = "write the vessels as a closed mesh, as voxels, or as a page to turn them in",
     .operands = "T.swc -o M.stl",
     .examples = "  corcast export tree.swc -o tree.stl\n"
                 "  corcast export tree.swc --color-by strahler -o tree.glb\n"
                 "  corcast export tree.swc --tolerance 0.05 -o tree.ply\n"
-                "  corcast export tree.swc --voxel 0.1 --labels segment -o tree.nii.gz\n",
+                "  corcast export tree.swc --voxel 0.1 --labels segment -o tree.nii.gz\n"
+                "  corcast export tree.swc --color-by flow -o tree.html\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,

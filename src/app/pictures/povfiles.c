@@ -20,6 +20,7 @@ Status scene_files_find(const char *output, bool of_meshes, const Emitter **emit
     if (of_meshes) {
         text_puts(&extensions, ", or for volumes in ");
         volumes_extensions(&extensions);
+        text_puts(&extensions, ", or for a page .html");
     }
     Status status =
         err_set(err, STATUS_USAGE, "-o: '%s' does not end in %s", output, text_chars(&extensions));

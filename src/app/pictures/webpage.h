@@ -1,0 +1,25 @@
+/* A tree as a page for browsers. */
+#ifndef CORCAST_APP_WEBPAGE_H
+#define CORCAST_APP_WEBPAGE_H
+
+#include "app/pictures/coloring.h"
+#include "app/pictures/picture.h"
+#include "app/run/options.h"
+#include "base/base.h"
+
+/* A page holds no more segments than this, with which a browser draws several pictures a second
+ * still, and which make a file of about 20 MB. */
+enum { WEBPAGE_MOST_SEGMENTS = 200000 };
+
+/* STATUS_USAGE for an option of the command line about colours that has no effect on a page. */
+MUST_CHECK Status webpage_check_needs(const Parsed *parsed, Err *err);
+
+/* Writes the page about a tree to `output`: with all fields that can be derived, all columns of its
+ * file and all colour maps, opened with what the coloring asks for. Says on standard error, unless
+ * quiet, which fields are left out, and the size. STATUS_INFEASIBLE when there are too many
+ * segments, STATUS_TOOL when the viewer was not built; errors as coloring_appearance and page_put
+ * have them. */
+MUST_CHECK Status webpage_write(const Coloring *coloring, const char *look, const PictureTree *of,
+                                const char *output, const Parsed *parsed, Err *err);
+
+#endif

@@ -1,0 +1,124 @@
+/* Arrays of little-endian numbers, each in a script element that no browser runs:
+ *
+ *     position  float x 3 of each node, less the origin, mm
+ *     radius    float of each node, mm
+ *     parent    uint32 of each node: its parent's number; of a root its own
+ *     id        uint32 of each node
+ *     field-K   float, or uint16 of whole numbers with 65535 for none, of each node, moment after
+ *               moment
+ *     map-K     uint8 x 3 of each colour, sRGB
+ *
+ * A value takes 4 characters for 3 bytes; numbers are packed into a piece of whole triples that
+ * goes to the text at once. */
+#include "page/blocks.h"
+
+#include <string.h>
+
+enum { PIECE = 3 << 10, NONE = 0xffff };
+
+typedef struct Packer {
+    uint8_t bytes[PIECE + 4];
+    size_t n;
+    Text *out;
+} Packer;
+
+static void put_word(Packer *packer, uint32_t word, int bytes)
+{
+    for (int i = 0; i < bytes; i++)
+        packer->bytes[packer->n++] = (uint8_t)(word >> 8 * i & 0xff);
+    if (packer->n < PIECE)
+        return;
+    text_base64(packer->out, packer->bytes, PIECE);
+    packer->n -= PIECE;
+    memmove(packer->bytes, packer->bytes + PIECE, packer->n);
+}
+
+static void put_float(Packer *packer, double value)
+{
+    float rounded = (float)value;
+    uint32_t bits;
+    memcpy(&bits, &rounded, sizeof bits);
+    put_word(packer, bits, 4);
+}
+
+static void begin(Packer *packer, const char *name, size_t number, bool is_numbered)
+{
+    packer->n = 0;
+    text_printf(packer->out, "<script type=\"text/plain\" id=\"%s", name);
+    if (is_numbered)
+        text_printf(packer->out, "-%zu", number);
+    text_puts(packer->out, "\">");
+}
+
+static void end(Packer *packer)
+{
+    text_base64(packer->out, packer->bytes, packer->n);
+    text_puts(packer->out, "</script>\n");
+}
+
+bool field_is_whole(const FieldSeries *series)
+{
+    for (size_t i = 0; i < series->field.n; i++) {
+        double value = series->field.value[i];
+        if (!isnan(value) && !(value >= 0 && value < NONE && value == floor(value)))
+            return false;
+    }
+    return true;
+}
+
+static void put_field(Packer *packer, const FieldSeries *series, size_t number)
+{
+    const bool whole = field_is_whole(series);
+    begin(packer, "field", number, true);
+    for (size_t i = 0; i < series->field.n; i++) {
+        double value = series->field.value[i];
+        if (whole)
+            put_word(packer, isnan(value) ? NONE : (uint32_t)value, 2);
+        else
+            put_float(packer, value);
+    }
+    end(packer);
+}
+
+static void put_map(Packer *packer, const Colormap *map, size_t number)
+{
+    begin(packer, "map", number, true);
+    for (size_t i = 0; i < map->n; i++)
+        for (int c = 0; c < 3; c++)
+            put_word(packer, (uint32_t)lrintf(map->srgb[i][c] * 255), 1);
+    end(packer);
+}
+
+static void put_nodes(Packer *packer, const Tree *tree, Vec3 origin)
+{
+    begin(packer, "position", 0, false);
+    for (size_t i = 0; i < tree->n; i++) {
+        Vec3 at = vec3_sub(tree->position[i], origin);
+        put_float(packer, at.x);
+        put_float(packer, at.y);
+        put_float(packer, at.z);
+    }
+    end(packer);
+    begin(packer, "radius", 0, false);
+    for (size_t i = 0; i < tree->n; i++)
+        put_float(packer, tree->radius_mm[i]);
+    end(packer);
+    begin(packer, "parent", 0, false);
+    for (size_t i = 0; i < tree->n; i++)
+        put_word(packer, tree_is_segment(tree, i) ? (uint32_t)tree->parent[i] : (uint32_t)i, 4);
+    end(packer);
+    begin(packer, "id", 0, false);
+    for (size_t i = 0; i < tree->n; i++)
+        put_word(packer, (uint32_t)tree->id[i], 4);
+    end(packer);
+}
+
+void put_blocks(const PageParams *params, Text *out)
+{
+    Packer packer = {.out = out};
+    put_nodes(&packer, params->tree, params->origin);
+    for (size_t i = 0; i < params->n_fields; i++)
+        put_field(&packer, &params->fields[i], i);
+    for (size_t i = 0; i < params->n_maps; i++)
+        put_map(&packer, &params->maps[i].map, i);
+}

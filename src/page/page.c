@@ -1,0 +1,168 @@
+/* Three parts fill the template: what is to be said of the tree, as JSON; its numbers, as blocks of
+ * base64, a fifth of their size as JSON and read at once; and the viewer, whose text stands in the
+ * page as it is. The JSON's '<' are escaped, so that no name of a file or column ends the element
+ * that holds it. */
+#include "page/page.h"
+
+#include "page/blocks.h"
+#include "tmpl/tmpl.h"
+#include <stdlib.h>
+
+static json_t *vector_json(Vec3 v)
+{
+    return json_pack("[o,o,o]", json_number(v.x), json_number(v.y), json_number(v.z));
+}
+
+static json_t *color_json(Rgb color)
+{
+    return vector_json(vec3((double)color.r, (double)color.g, (double)color.b));
+}
+
+static json_t *lights_json(const Look *look)
+{
+    json_t *lights = json_array();
+    for (int i = 0; i < look->n_lights; i++) {
+        const LookLight *light = &look->lights[i];
+        const JsonMember members[] = {{"point", json_boolean(light->is_point)},
+                                      {"direction", vector_json(light->direction)},
+                                      {"color", color_json(light->color)}};
+        lights = json_with_item(lights, json_with_members(json_object(), members, 3));
+    }
+    return lights;
+}
+
+static json_t *look_json(const Look *look)
+{
+    const Finish *finish = &look->finish;
+    const JsonMember members[] = {
+        {"color", color_json(look->color)},
+        {"ambient", json_number((double)finish->ambient)},
+        {"diffuse", json_number((double)finish->diffuse)},
+        {"brilliance", json_number((double)finish->brilliance)},
+        {"phong", json_number((double)finish->phong)},
+        {"phongSize", json_number((double)finish->phong_size)},
+        {"specular", json_number((double)finish->specular)},
+        {"roughness", json_number((double)finish->roughness)},
+        {"lights", lights_json(look)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+static json_t *fields_json(const PageParams *params)
+{
+    json_t *fields = json_array();
+    for (size_t i = 0; i < params->n_fields; i++) {
+        const FieldSeries *series = &params->fields[i];
+        json_t *times = json_array();
+        for (size_t k = 0; series->time && k < series->frames; k++)
+            times = json_with_item(times, json_number(series->time[k]));
+        const JsonMember members[] = {{"name", json_text(series->field.name)},
+                                      {"unit", json_text(series->field.unit)},
+                                      {"whole", json_boolean(field_is_whole(series))},
+                                      {"times", times}};
+        fields = json_with_item(fields, json_with_members(json_object(), members, 4));
+    }
+    return fields;
+}
+
+static json_t *maps_json(const PageParams *params)
+{
+    json_t *maps = json_array();
+    for (size_t i = 0; i < params->n_maps; i++) {
+        const PageMap *map = &params->maps[i];
+        const JsonMember members[] = {{"name", json_text(map->name)},
+                                      {"separate", json_boolean(map->map.separate)}};
+        maps = json_with_item(maps, json_with_members(json_object(), members, 2));
+    }
+    return maps;
+}
+
+static json_t *start_json(const PageParams *params)
+{
+    const ColorScale *scale = params->scale;
+    if (!scale)
+        return json_null();
+    const JsonMember members[] = {{"field", json_text(scale->name)},
+                                  {"map", json_text(params->map)},
+                                  {"log", json_boolean(scale->log)},
+                                  {"low", json_number(scale->range[0])},
+                                  {"high", json_number(scale->range[1])}};
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+static json_t *told_json(const PageParams *params)
+{
+    const JsonMember members[] = {
+        {"name", json_text(params->title)},
+        {"generator", json_text(params->generator)},
+        {"command", json_text(params->command)},
+        {"origin", vector_json(params->origin)},
+        {"look", look_json(params->look)},
+        {"fields", fields_json(params)},
+        {"maps", maps_json(params)},
+        {"start", start_json(params)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+static void put_told(const PageParams *params, Text *out)
+{
+    Text json = TEXT_INIT;
+    text_json(&json, told_json(params), 0);
+    const char *chars = text_chars(&json);
+    if (!chars)
+        text_puts(out, NULL);
+    for (; chars && *chars; chars++)
+        if (*chars == '<')
+            text_puts(out, "\\u003c");
+        else
+            text_append(out, chars, 1);
+    text_release(&json);
+}
+
+static Status put_data(Text *out, void *context, Err *err)
+{
+    const PageParams *params = context;
+    put_blocks(params, out);
+    return text_check(out, err);
+}
+
+static Status put_page(const PageParams *params, const char *viewer, const Tmpl *page, Text *out,
+                       Err *err)
+{
+    Text told = TEXT_INIT, title = TEXT_INIT;
+    put_told(params, &told);
+    text_escaped(&title, params->title);
+    Status status;
+    TRY_GOTO(text_check(&told, err));
+    TRY_GOTO(text_check(&title, err));
+    const TmplValue values[] = {{"title", text_chars(&title)},
+                                {"generator", params->generator},
+                                {"told", text_chars(&told)},
+                                {"viewer", viewer}};
+    PageParams given = *params;
+    const TmplPart parts[] = {{"data", put_data, &given}};
+    status = tmpl_stream(page, values, sizeof values / sizeof *values, parts, 1, out, err);
+done:
+    text_release(&told);
+    text_release(&title);
+    return status;
+}
+
+Status page_put(const PageParams *params, Text *out, Err *err)
+{
+    static const FileForm script = {.name = "a script", .most_bytes = 1e7, .is_text = true};
+    char *path = NULL, *viewer = NULL;
+    size_t size;
+    Tmpl page = {0};
+    Status status;
+    TRY_GOTO(file_join(params->templates, "page/page.html", &path, err));
+    TRY_GOTO(tmpl_load(&page, path, err));
+    TRY_GOTO(file_read(params->viewer, &script, &viewer, &size, err));
+    status = put_page(params, viewer, &page, out, err);
+done:
+    tmpl_release(&page);
+    free(viewer);
+    free(path);
+    return status;
+}

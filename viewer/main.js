@@ -1,0 +1,353 @@
+// The page's one program: state that the address tells, and what keys, hands and the address change of it. A picture is
+// drawn when something has changed, and only then.
+import { Color, Scene, SRGBColorSpace, WebGLRenderer } from "three";
+import { Scale } from "./colors.js";
+import { drawLegend, drawScaleBar, LEGEND_HEIGHT } from "./legend.js";
+import { ink, Panel } from "./panel.js";
+import { Tree } from "./tree.js";
+import { Vessels } from "./vessels.js";
+import { View, VIEWS } from "./view.js";
+
+const find = (id) => document.getElementById(id);
+const DECADES = 2.5; // from so many on a scale is logarithmic, unless somebody says otherwise
+const HIT = 4; // pixels of the page that a vessel is at least wide for a pointer
+
+const tree = new Tree();
+const start = tree.told.start;
+const state = {
+  field: null, map: null, log: null, moment: 0, grown: 1, fade: true, hovered: -1, pinned: -1,
+};
+let scale = null, wanted = false, playing = 0, written = 0;
+
+const canvas = find("stage");
+const renderer = new WebGLRenderer({ canvas, antialias: true });
+renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+const scene = new Scene(), vessels = new Vessels(tree), panel = new Panel(tree);
+const view = new View(canvas, tree, () => { wantPicture(); wantAddress(); });
+scene.add(vessels.mesh);
+
+// ---- pictures -----------------------------------------------------------------------------------
+
+function draw() {
+  view.step();
+  vessels.look(view.camera, canvas.height);
+  renderer.render(scene, view.camera);
+}
+
+function wantPicture() {
+  if (wanted) return;
+  wanted = true;
+  requestAnimationFrame(() => {
+    wanted = false;
+    draw();
+    panel.drawScaleBar(mmPerPixel());
+  });
+}
+
+function mmPerPixel() {
+  return view.isOrthographic ? view.pose.height / canvas.clientHeight : 0;
+}
+
+function resize() {
+  renderer.setSize(window.innerWidth, window.innerHeight, false);
+  view.resize(window.innerWidth, window.innerHeight);
+  panel.drawLegend();
+  wantPicture();
+}
+
+// The colours of the page, light or dark as the reader has it.
+function takeScheme() {
+  const styles = getComputedStyle(document.documentElement);
+  const color = (name) => new Color().setStyle(styles.getPropertyValue(name).trim(), SRGBColorSpace);
+  renderer.setClearColor(color("--paper"));
+  vessels.set("paper", color("--paper").convertLinearToSRGB());
+  vessels.set("accent", color("--accent"));
+  panel.drawLegend();
+  wantPicture();
+}
+
+// ---- what is shown ------------------------------------------------------------------------------
+
+const named = (list, name) => list.find((item) => item.name === name);
+
+// The range that the page was made with holds for its field as long as the scale is of its kind.
+function rangeFor(field, log) {
+  if (start && start.field === field.name && start.log === log) return [start.low, start.high];
+  return log ? field.logRange : field.range;
+}
+
+function isWide(field) {
+  const range = field.logRange;
+  return !field.whole && !!range && field.range[0] >= 0 && Math.log10(range[1] / range[0]) >= DECADES;
+}
+
+function makeScale() {
+  const field = named(tree.fields, state.field);
+  if (!field) return null;
+  let map = named(tree.maps, state.map) || named(tree.maps, "viridis") || tree.maps[0];
+  if (map.separate && !field.whole) map = tree.maps.find(({ separate }) => !separate);
+  const log = !!field.logRange && !(map.separate && field.whole) && (state.log === null ? isWide(field) : state.log);
+  return new Scale(field, map, log, rangeFor(field, log));
+}
+
+function shownMoment() {
+  return scale && scale.field.times.length > 1 ? Math.min(state.moment, scale.field.times.length - 1) : 0;
+}
+
+function show() {
+  scale = makeScale();
+  const moment = shownMoment(), shown = state.pinned >= 0 ? state.pinned : state.hovered;
+  vessels.paint(scale, moment);
+  vessels.set("grown", state.grown);
+  vessels.set("fade", state.fade ? 0.45 : 0);
+  find("grown").value = state.grown;
+  panel.showScale(scale, scale && scale.field);
+  panel.showTime(scale && scale.field, moment);
+  showSegment(shown);
+  wantAddress();
+}
+
+function showSegment(i) {
+  vessels.set("picked", i < 0 ? -1 : tree.segments.indexOf(i));
+  panel.showSegment(i, shownMoment(), i === state.pinned, pin);
+  wantPicture();
+}
+
+function change(what) {
+  Object.assign(state, what);
+  show();
+}
+
+// Another field is shown on its own kind of scale.
+function setField(name) { change({ field: named(tree.fields, name) ? name : null, log: null }); }
+
+function pin(i) { change({ pinned: i, hovered: -1 }); }
+
+function nextField(step) {
+  const names = [null, ...tree.fields.map(({ name }) => name)];
+  setField(names[(names.indexOf(state.field) + step + names.length) % names.length]);
+}
+
+// ---- the address --------------------------------------------------------------------------------
+
+const rounded = (v) => String(Number(v.toFixed(3)));
+const fromOrigin = (place, sign) => place.map((v, c) => v + sign * tree.told.origin[c]);
+
+// The view as options of `corcast render`, and with these names in the address.
+function viewOptions() {
+  const { turn, rise, target, height } = view.pose;
+  return [["projection", view.isOrthographic ? "orthographic" : "perspective"],
+    ["turn", `${rounded(turn)},${rounded(rise)}`], ["look-at", fromOrigin(target, 1).map(rounded).join(",")],
+    ["height", rounded(height)]];
+}
+
+function writeAddress() {
+  const parts = viewOptions();
+  if (state.field) parts.push(["field", state.field], ["map", scale.map.name], ["log", scale.log ? "on" : "off"]);
+  if (shownMoment()) parts.push(["moment", shownMoment() + 1]);
+  if (state.grown < 1) parts.push(["grown", state.grown]);
+  if (!state.fade) parts.push(["fade", "off"]);
+  if (state.pinned >= 0) parts.push(["segment", tree.id[state.pinned]]);
+  const text = parts.map(([key, value]) => `${key}=${encodeURIComponent(value).replaceAll("%2C", ",")}`).join("&");
+  history.replaceState(null, "", "#" + text);
+}
+
+function wantAddress() {
+  clearTimeout(written);
+  written = setTimeout(writeAddress, 150);
+}
+
+function numbers(text, count) {
+  const list = (text || "").split(",").map(Number);
+  return list.length === count && list.every(Number.isFinite) ? list : null;
+}
+
+function within(text, low, high, otherwise) {
+  const value = Number(text);
+  return text !== null && Number.isFinite(value) ? Math.min(high, Math.max(low, value)) : otherwise;
+}
+
+function readAddress() {
+  const get = new URLSearchParams(location.hash.slice(1));
+  const field = get.has("field") ? get.get("field") : get.has("turn") ? "" : start ? start.field : "";
+  view.project(get.get("projection") === "orthographic");
+  const turn = numbers(get.get("turn"), 2) || [0, 0];
+  view.frame(...turn);
+  const target = numbers(get.get("look-at"), 3), height = Number(get.get("height"));
+  if (target) view.change({ target: fromOrigin(target, -1) });
+  if (height > 0 && Number.isFinite(height)) view.change({ height });
+  const log = get.get("log");
+  change({
+    field: named(tree.fields, field) ? field : null,
+    map: get.get("map") || (start && start.map),
+    log: log === null ? (start && start.field === field ? start.log : null) : log === "on",
+    moment: Math.round(within(get.get("moment"), 1, 1e6, 1)) - 1,
+    grown: within(get.get("grown"), 0, 1, 1),
+    fade: get.get("fade") !== "off",
+    pinned: tree.numberOf.get(Number(get.get("segment"))) ?? -1,
+    hovered: -1,
+  });
+}
+
+// The command that draws what is shown as a figure, free of this machine's graphics.
+function renderCommand() {
+  const words = viewOptions().map(([key, value]) => `--${key} ${value}`);
+  if (!view.isOrthographic) words[3] = "";
+  if (scale) words.push(`--color-by ${scale.field.name}`, `--colormap ${scale.map.name}`, ...(scale.log ? ["--log"] : []));
+  if (shownMoment()) words.push(`--moment ${shownMoment() + 1}`);
+  return `corcast render ${tree.told.name} ${words.filter(Boolean).join(" ")} -o figure.png`;
+}
+
+// ---- hands and keys -----------------------------------------------------------------------------
+
+function pickAt(x, y) {
+  const { from, along, least, slack } = view.ray(x, y);
+  return tree.pick(from, along, (slack * HIT) / 2, (least * HIT) / 2, state.grown);
+}
+
+function hover(event) {
+  if (event.pointerType === "touch" || event.buttons || state.pinned >= 0) return;
+  const i = pickAt(event.clientX, event.clientY);
+  if (i === state.hovered) return;
+  state.hovered = i;
+  showSegment(i);
+}
+
+let pressed = null;
+
+function release(event) {
+  if (!pressed || Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) > 5) return;
+  pin(pickAt(event.clientX, event.clientY));
+}
+
+function save() {
+  draw();
+  const page = document.createElement("canvas"), ratio = canvas.width / canvas.clientWidth;
+  page.width = canvas.width;
+  page.height = canvas.height;
+  const context = page.getContext("2d"), margin = 24;
+  context.drawImage(canvas, 0, 0);
+  context.scale(ratio, ratio);
+  if (scale) {
+    context.translate(margin, canvas.clientHeight - margin - LEGEND_HEIGHT);
+    drawLegend(context, scale, 240, ink());
+    context.translate(-margin, LEGEND_HEIGHT + margin - canvas.clientHeight);
+  }
+  if (view.isOrthographic) {
+    context.translate(canvas.clientWidth - margin, canvas.clientHeight - margin - 22);
+    drawScaleBar(context, mmPerPixel(), 200, ink());
+  }
+  page.toBlob((png) => {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(png);
+    link.download = tree.told.name.replace(/\.[^.]*$/, "") + ".png";
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  });
+}
+
+async function copy(text, button) {
+  const label = button.textContent;
+  await navigator.clipboard.writeText(text);
+  button.textContent = "Copied";
+  setTimeout(() => { button.textContent = label; }, 1200);
+}
+
+function play() {
+  clearInterval(playing);
+  playing = playing ? 0 : setInterval(() => {
+    change({ moment: (shownMoment() + 1) % scale.field.times.length });
+  }, 120);
+  find("play").textContent = playing ? "Pause" : "Play";
+}
+
+function project() {
+  view.project(!view.isOrthographic);
+  find("project").setAttribute("aria-pressed", view.isOrthographic);
+  show();
+}
+
+function kin(up) {
+  if (state.pinned < 0) return pin(tree.segments[0]);
+  const near = up ? [tree.parent[state.pinned]] : [...tree.daughters[state.pinned]].sort((a, b) => tree.radius[b] - tree.radius[a]);
+  const next = near.find((i) => tree.numberOf.has(tree.id[i]));
+  if (next !== undefined) pin(next);
+}
+
+function turnBy(turn, rise) {
+  const { pose } = view;
+  view.change({ turn: pose.turn + turn, rise: pose.rise + rise });
+  show();
+}
+
+function moveBy(right, up) {
+  const { target, height } = view.pose, m = view.camera.matrixWorld.elements;
+  view.change({ target: target.map((v, c) => v + height * (right * m[c] + up * m[4 + c])) });
+  show();
+}
+
+function zoomBy(factor) {
+  view.change({ height: view.pose.height / factor });
+  show();
+}
+
+function fit() {
+  const { turn, rise } = view.pose;
+  view.frame(turn, rise);
+  show();
+}
+
+const KEYS = {
+  ArrowLeft: (shift) => (shift ? moveBy(0.05, 0) : turnBy(-5, 0)),
+  ArrowRight: (shift) => (shift ? moveBy(-0.05, 0) : turnBy(5, 0)),
+  ArrowUp: (shift) => (shift ? moveBy(0, -0.05) : turnBy(0, 5)),
+  ArrowDown: (shift) => (shift ? moveBy(0, 0.05) : turnBy(0, -5)),
+  "+": () => zoomBy(1.15), "=": () => zoomBy(1.15), "-": () => zoomBy(1 / 1.15), 0: fit,
+  f: () => nextField(1), F: () => nextField(-1), o: project, s: save,
+  d: () => kin(false), u: () => kin(true), h: () => change({ fade: !state.fade }), "?": () => find("help").showModal(),
+  Escape: () => pin(-1),
+};
+
+function key(event) {
+  const { tagName } = event.target, action = KEYS[event.key];
+  if (!action || event.ctrlKey || event.metaKey || event.altKey || find("help").open) return;
+  if (/^(INPUT|SELECT)$/.test(tagName) && event.key !== "Escape") return;
+  event.preventDefault();
+  action(event.shiftKey);
+}
+
+function listen() {
+  const on = (id, type, action) => find(id).addEventListener(type, action);
+  on("field", "change", (e) => setField(e.target.value));
+  on("map", "change", (e) => change({ map: e.target.value }));
+  on("log", "change", (e) => change({ log: e.target.checked }));
+  on("moment", "input", (e) => change({ moment: Number(e.target.value) }));
+  on("grown", "input", (e) => change({ grown: Number(e.target.value) }));
+  on("play", "click", play);
+  on("view", "change", (e) => { view.frame(...VIEWS[e.target.value]); e.target.value = ""; show(); });
+  on("project", "click", project);
+  on("save", "click", save);
+  on("render", "click", (e) => copy(renderCommand(), e.target));
+  on("keys", "click", () => find("help").showModal());
+  on("release", "click", () => pin(-1));
+  on("segment", "change", (e) => {
+    const i = tree.numberOf.get(Number(e.target.value));
+    e.target.setAttribute("aria-invalid", i === undefined);
+    if (i !== undefined) pin(i);
+  });
+  canvas.addEventListener("pointermove", hover);
+  canvas.addEventListener("pointerleave", () => { if (state.hovered >= 0) { state.hovered = -1; showSegment(state.pinned); } });
+  canvas.addEventListener("pointerdown", (e) => { pressed = e.isPrimary ? { x: e.clientX, y: e.clientY } : null; });
+  canvas.addEventListener("pointerup", release);
+  document.addEventListener("keydown", key);
+  window.addEventListener("resize", resize);
+  window.addEventListener("hashchange", readAddress);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", takeScheme);
+}
+
+find("view").append(...Object.keys(VIEWS).map((name) => new Option(name, name)));
+listen();
+resize();
+takeScheme();
+readAddress();
+find("project").setAttribute("aria-pressed", view.isOrthographic);

@@ -1,0 +1,105 @@
+// What stands beside the picture: which field is shown, the legend, and the values of a segment.
+import { number } from "./colors.js";
+import { drawLegend, drawScaleBar, LEGEND_HEIGHT, sized } from "./legend.js";
+
+const find = (id) => document.getElementById(id);
+
+function option(value, label) {
+  const made = document.createElement("option");
+  made.value = value;
+  made.textContent = label;
+  return made;
+}
+
+function row(name, value, unit) {
+  const made = document.createElement("tr");
+  for (const [kind, text] of [["th", name], ["td", value], ["td", unit]]) {
+    const cell = document.createElement(kind);
+    cell.textContent = text;
+    if (kind === "th") cell.scope = "row";
+    made.append(cell);
+  }
+  return made;
+}
+
+function jump(number, label, go) {
+  const made = document.createElement("button");
+  made.type = "button";
+  made.textContent = label;
+  made.addEventListener("click", () => go(number));
+  return made;
+}
+
+export function ink() {
+  return getComputedStyle(document.body).color;
+}
+
+export class Panel {
+  constructor(tree) {
+    this.tree = tree;
+    const { told, segments, low, high } = tree;
+    find("name").textContent = told.name;
+    const sides = low.map((l, c) => number(high[c] - l, 3)).join(" × ");
+    find("said").textContent = `${segments.length.toLocaleString("en")} segments, ${sides} mm`;
+    find("field").append(option("", "one colour"), ...tree.fields.map(({ name, unit }) => option(name, unit ? `${name} (${unit})` : name)));
+    find("map").append(...tree.maps.map(({ name }) => option(name, name)));
+    find("made").textContent = `${told.generator}: ${told.command}`;
+  }
+
+  showScale(scale, field) {
+    find("field").value = field ? field.name : "";
+    find("scale").hidden = !scale;
+    find("log").disabled = !field || !field.logRange || (scale && scale.counts);
+    find("log").checked = !!scale && scale.log;
+    for (const choice of find("map").options)
+      choice.disabled = !!field && !field.whole && this.tree.maps.find(({ name }) => name === choice.value).separate;
+    if (!scale) return;
+    find("map").value = scale.map.name;
+    this.scale = scale;
+    this.drawLegend();
+  }
+
+  drawLegend() {
+    const canvas = find("legend"), width = Math.round(canvas.parentElement.clientWidth);
+    if (!this.scale || width === 0) return;
+    drawLegend(sized(canvas, width, LEGEND_HEIGHT), this.scale, width, ink());
+    const [low, high] = this.scale.range, { name, unit } = this.scale.field;
+    canvas.setAttribute("aria-label", `${name} from ${number(low)} to ${number(high)} ${unit}`);
+  }
+
+  drawScaleBar(mmPerPixel) {
+    const canvas = find("bar");
+    canvas.hidden = !mmPerPixel;
+    if (!mmPerPixel) return;
+    const context = sized(canvas, 160, 22);
+    context.translate(160, 0);
+    drawScaleBar(context, mmPerPixel, 150, ink());
+  }
+
+  // The times of a field that changes, or none.
+  showTime(field, moment) {
+    const times = field ? field.times : [];
+    find("time").hidden = times.length < 2;
+    if (times.length < 2) return;
+    find("moment").max = times.length - 1;
+    find("moment").value = moment;
+    find("clock").textContent = `time ${number(times[moment])}`;
+  }
+
+  // All that is known of a segment; `pinned`: it stays.
+  showSegment(i, moment, pinned, go) {
+    const { tree } = this;
+    find("readout").hidden = i < 0;
+    if (i < 0) return;
+    if (document.activeElement !== find("segment")) find("segment").value = tree.id[i];
+    find("readout").classList.toggle("pinned", pinned);
+    find("values").replaceChildren(...tree.fields.map(({ name, unit, values, times }) => {
+      const at = times.length > 1 ? Math.min(moment, times.length - 1) * tree.n : 0;
+      return row(name, number(values[at + i], 5), unit);
+    }));
+    const up = tree.parent[i], isSegment = (node) => tree.numberOf.has(tree.id[node]);
+    find("kin").replaceChildren(
+      ...(isSegment(up) ? [jump(up, `↑ ${tree.id[up]}`, go)] : []),
+      ...tree.daughters[i].filter(isSegment).map((node) => jump(node, `↓ ${tree.id[node]}`, go)));
+  }
+}

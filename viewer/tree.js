@@ -1,0 +1,120 @@
+// The tree that the page holds: numbers of its nodes, unpacked once, and what follows from them. Node i other than a
+// root is the far end of segment i, a cylinder with round ends; coordinates are in mm from `origin` on.
+
+const NONE = 0xffff; // stands for no value among whole numbers of 16 bits
+
+function text(id) {
+  return document.getElementById(id).textContent;
+}
+
+// The numbers of a block of base64, little-endian as all machines are that browsers run on.
+function block(id, Numbers) {
+  const chars = atob(text(id));
+  const bytes = new Uint8Array(chars.length);
+  for (let i = 0; i < chars.length; i++) bytes[i] = chars.charCodeAt(i);
+  return new Numbers(bytes.buffer);
+}
+
+function readField(field, k) {
+  const packed = block("field-" + k, field.whole ? Uint16Array : Float32Array);
+  const values = field.whole ? Float32Array.from(packed, (v) => (v === NONE ? NaN : v)) : packed;
+  return { ...field, values };
+}
+
+// From the least to the greatest of what can be shown, in all moments; with `log` above 0.
+function rangeOf(values, n, segments, log) {
+  let low = Infinity, high = -Infinity;
+  for (let at = 0; at < values.length; at += n)
+    for (const i of segments) {
+      const v = values[at + i];
+      if (!Number.isFinite(v) || (log && v <= 0)) continue;
+      if (v < low) low = v;
+      if (v > high) high = v;
+    }
+  return low <= high ? [low, high] : null;
+}
+
+export class Tree {
+  constructor() {
+    this.told = JSON.parse(text("told"));
+    this.position = block("position", Float32Array);
+    this.radius = block("radius", Float32Array);
+    this.parent = block("parent", Uint32Array);
+    this.id = block("id", Uint32Array);
+    this.n = this.radius.length;
+    this.findSegments();
+    this.measure();
+    this.fields = this.told.fields.map((field, k) => {
+      const read = readField(field, k);
+      const range = rangeOf(read.values, this.n, this.segments, false);
+      return { ...read, range, logRange: rangeOf(read.values, this.n, this.segments, true) };
+    }).filter((field) => field.range);
+    this.maps = this.told.maps.map((map, k) => ({ ...map, bytes: block("map-" + k, Uint8Array) }));
+  }
+
+  // Segments that have a length and a radius, the number of each by its id, and the daughters of each node.
+  findSegments() {
+    const { n, parent, position, radius } = this;
+    this.segments = [];
+    this.numberOf = new Map();
+    this.daughters = Array.from({ length: n }, () => []);
+    for (let i = 0; i < n; i++) {
+      if (parent[i] !== i) this.daughters[parent[i]].push(i);
+      if (parent[i] === i || !(radius[i] > 0) || !(this.length(i) > 0)) continue;
+      this.segments.push(i);
+      this.numberOf.set(this.id[i], i);
+    }
+  }
+
+  // The box of what is drawn, and the way along the vessels from the root to each node.
+  measure() {
+    const { n, parent, position, radius } = this;
+    this.low = [Infinity, Infinity, Infinity];
+    this.high = [-Infinity, -Infinity, -Infinity];
+    for (const i of this.segments)
+      for (const node of [i, parent[i]])
+        for (let c = 0; c < 3; c++) {
+          this.low[c] = Math.min(this.low[c], position[3 * node + c] - radius[i]);
+          this.high[c] = Math.max(this.high[c], position[3 * node + c] + radius[i]);
+        }
+    this.way = new Float32Array(n);
+    this.longest = 0;
+    for (let i = 0; i < n; i++) {
+      if (parent[i] !== i) this.way[i] = this.way[parent[i]] + this.length(i);
+      if (this.way[i] > this.longest) this.longest = this.way[i];
+    }
+  }
+
+  length(i) {
+    const a = 3 * this.parent[i], b = 3 * i, p = this.position;
+    return Math.hypot(p[b] - p[a], p[b + 1] - p[a + 1], p[b + 2] - p[a + 2]);
+  }
+
+  // The segment that a ray meets first, of those within `grown` of the longest way, or -1; a vessel counts as at
+  // least `slack` thick for each mm from the ray's start on, and `least` thick anyhow, so that thin ones can be met.
+  pick(from, along, slack, least, grown) {
+    const { parent, position, radius } = this;
+    let best = -1, nearest = Infinity;
+    for (const i of this.segments) {
+      if (this.way[parent[i]] > grown * this.longest) continue;
+      const a = 3 * parent[i], b = 3 * i;
+      const x = position[b] - position[a], y = position[b + 1] - position[a + 1], z = position[b + 2] - position[a + 2];
+      const px = position[a] - from.x, py = position[a + 1] - from.y, pz = position[a + 2] - from.z;
+      const ee = x * x + y * y + z * z, ed = x * along.x + y * along.y + z * along.z;
+      const pe = px * x + py * y + pz * z, pd = px * along.x + py * along.y + pz * along.z;
+      const s = Math.min(1, Math.max(0, (pd * ed - pe) / Math.max(ee - ed * ed, 1e-12)));
+      const t = pd + s * ed;
+      if (t <= 0) continue;
+      const dx = px + s * x - t * along.x, dy = py + s * y - t * along.y, dz = pz + s * z - t * along.z;
+      const apart = dx * dx + dy * dy + dz * dz;
+      const reach = Math.max(radius[i], least + slack * t);
+      if (apart > reach * reach) continue;
+      const depth = t - Math.sqrt(reach * reach - apart);
+      if (depth < nearest) {
+        nearest = depth;
+        best = i;
+      }
+    }
+    return best;
+  }
+}

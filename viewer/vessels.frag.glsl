@@ -1,0 +1,87 @@
+// What a ray sees of a cylinder with round ends, in POV-Ray's light as corcast's pictures have it (METHODS section 3).
+// All distances are taken from a place on the box and by cross products, which floats can bear: a ray's start may be
+// 10^4 radii away. The part of the pixel that the vessel covers becomes coverage of the pixel's samples.
+precision highp float;
+precision highp int;
+
+flat in mat3 axes;
+flat in vec3 from;
+flat in vec2 size;
+flat in vec3 pigment;
+flat in float isPicked;
+in vec3 at, ray;
+
+uniform mat4 viewMatrix, projectionMatrix;
+uniform bool parallel;
+uniform float pixel;
+uniform float ambient, diffuse, brilliance, phong, phongSize, specular, sharpness;
+uniform float lightIsPoint[LIGHTS];
+uniform vec3 lightPlace[LIGHTS], lightColor[LIGHTS];
+uniform float halfDiagonal;
+uniform vec3 paper, accent; // the paper's colour is sRGB
+uniform float fade;
+
+out vec4 seen;
+
+// Where the ray enters the solid, t along it, when it passes the core at less than the radius.
+float entry(vec3 p, vec3 d, float len, float r) {
+  float a = max(dot(d.yz, d.yz), 1e-12), aside = p.y * d.z - p.z * d.y;
+  float t = (-dot(p.yz, d.yz) - sqrt(max(0.0, a * r * r - aside * aside))) / a;
+  float x = p.x + t * d.x;
+  if (x >= 0.0 && x <= len) return t;
+  vec3 q = p - vec3(x < 0.0 ? 0.0 : len, 0.0, 0.0);
+  float along = dot(q, d);
+  vec3 off = q - along * d;
+  return -along - sqrt(max(0.0, r * r - dot(off, off)));
+}
+
+vec3 lit(vec3 place, vec3 normal, vec3 view, vec3 color) {
+  vec3 sum = color * ambient;
+  for (int i = 0; i < LIGHTS; i++) {
+    vec3 middle = (viewMatrix * vec4(0, 0, 0, 1)).xyz;
+    vec3 towards = lightIsPoint[i] > 0.5 ? middle + halfDiagonal * lightPlace[i] - place : lightPlace[i];
+    towards = normalize(towards);
+    float cosine = dot(normal, towards);
+    if (cosine <= 0.0) continue;
+    float mirrored = dot(reflect(view, normal), towards);
+    float halfway = dot(normalize(towards - view), normal);
+    vec3 light = color * diffuse * pow(cosine, brilliance);
+    if (phong > 0.0 && mirrored > 0.0) light += phong * pow(mirrored, phongSize);
+    if (specular > 0.0 && halfway > 0.0) light += specular * pow(halfway, sharpness);
+    sum += lightColor[i] * light;
+  }
+  return sum;
+}
+
+vec3 encoded(vec3 c) {
+  c = clamp(c, 0.0, 1.0);
+  return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+}
+
+void main() {
+  float len = size.x, r = size.y;
+  vec3 d = normalize(ray * axes);
+  float a = max(dot(d.yz, d.yz), 1e-12);
+  float core = clamp(at.x - d.x * dot(at.yz, d.yz) / a, 0.0, len); // of the core's points, the nearest to the ray
+  vec3 q = at - vec3(core, 0.0, 0.0);
+  float along = -dot(q, d);
+  vec3 off = q + along * d;
+  float apart = length(off);
+
+  float h = 0.5 * pixel * (parallel ? 1.0 : length(ray) + along);
+  float cover = (min(r, apart + h) - max(-r, apart - h)) / (2.0 * h);
+  if (cover <= 0.0) discard;
+
+  float t = apart < r ? entry(at, d, len, r) : along;
+  vec3 hit = at + t * d;
+  vec3 normal = normalize(hit - vec3(clamp(hit.x, 0.0, len), 0.0, 0.0));
+  vec4 place = viewMatrix * vec4(from + axes * hit, 1.0);
+  vec4 clip = projectionMatrix * place;
+  gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
+
+  mat3 toView = mat3(viewMatrix) * axes;
+  vec3 color = lit(place.xyz, toView * normal, toView * d, mix(pigment, accent, 0.8 * isPicked));
+  float middle = (viewMatrix * vec4(0, 0, 0, 1)).z;
+  float depth = clamp(0.5 + 0.5 * (middle - place.z) / halfDiagonal, 0.0, 1.0);
+  seen = vec4(mix(encoded(color), paper, fade * depth), cover);
+}

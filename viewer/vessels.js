@@ -1,0 +1,115 @@
+// All segments as one mesh: a box for each, in whose pixels the shader finds the cylinder and its round ends exactly,
+// so that a segment costs 8 corners however close the viewer comes, and outlines are those of corcast's pictures.
+import {
+  BackSide, BufferAttribute, Color, CustomBlending, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, Mesh,
+  OneFactor, RawShaderMaterial, Vector3, ZeroFactor,
+} from "three";
+import vertexShader from "./vessels.vert.glsl";
+import fragmentShader from "./vessels.frag.glsl";
+
+const CORNERS = [-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1];
+const FACES = [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5];
+
+function geometry(tree) {
+  const { segments, parent, position, radius, way } = tree, n = segments.length;
+  const start = new Float32Array(3 * n), end = new Float32Array(3 * n), sizes = new Float32Array(3 * n);
+  segments.forEach((i, k) => {
+    for (let c = 0; c < 3; c++) {
+      start[3 * k + c] = position[3 * parent[i] + c];
+      end[3 * k + c] = position[3 * i + c];
+    }
+    sizes.set([radius[i], way[parent[i]] / tree.longest, way[i] / tree.longest], 3 * k);
+  });
+  const made = new InstancedBufferGeometry();
+  made.instanceCount = n;
+  made.setAttribute("position", new BufferAttribute(new Float32Array(CORNERS), 3));
+  made.setIndex(FACES);
+  made.setAttribute("start", new InstancedBufferAttribute(start, 3));
+  made.setAttribute("end", new InstancedBufferAttribute(end, 3));
+  made.setAttribute("sizes", new InstancedBufferAttribute(sizes, 3));
+  made.setAttribute("color", new InstancedBufferAttribute(new Uint8Array(4 * n), 4, true));
+  return made;
+}
+
+function uniforms(look) {
+  const value = (v) => ({ value: v });
+  const lights = look.lights.length ? look.lights : [{ point: false, direction: [0, 0, 1], color: [0, 0, 0] }];
+  return {
+    ambient: value(look.ambient),
+    diffuse: value(look.diffuse),
+    brilliance: value(look.brilliance),
+    phong: value(look.phong),
+    phongSize: value(look.phongSize),
+    specular: value(look.specular),
+    sharpness: value(look.roughness > 0 ? 1 / look.roughness : 0),
+    lightIsPoint: value(lights.map((light) => (light.point ? 1 : 0))),
+    lightPlace: value(lights.map((light) => new Vector3(...light.direction))),
+    lightColor: value(lights.map((light) => new Vector3(...light.color))),
+    eye: value(new Vector3()),
+    gaze: value(new Vector3()),
+    parallel: value(false),
+    pixel: value(0),
+    halfDiagonal: value(1), // of the box of the tree
+    paper: value(new Color()),
+    fade: value(0),
+    grown: value(1),
+    picked: value(-1),
+    accent: value(new Color()),
+  };
+}
+
+export class Vessels {
+  constructor(tree) {
+    this.tree = tree;
+    const look = tree.told.look;
+    this.material = new RawShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader,
+      fragmentShader,
+      defines: { LIGHTS: Math.max(1, look.lights.length) },
+      uniforms: uniforms(look),
+      side: BackSide, // so that a viewer inside a box sees it
+      alphaToCoverage: true, // and the picture stays opaque where samples are covered in part:
+      blending: CustomBlending,
+      blendSrc: OneFactor,
+      blendDst: ZeroFactor,
+      blendSrcAlpha: ZeroFactor,
+      blendDstAlpha: OneFactor,
+    });
+    this.mesh = new Mesh(geometry(tree), this.material);
+    this.mesh.frustumCulled = false;
+    this.set("halfDiagonal", Math.hypot(...tree.high.map((h, c) => h - tree.low[c])) / 2);
+    this.plain = encoded(look.color);
+  }
+
+  set(name, value) {
+    this.material.uniforms[name].value = value;
+  }
+
+  // Colours all segments by a scale, of the values of one moment; without, in the look's colour.
+  paint(scale, moment) {
+    const attribute = this.mesh.geometry.getAttribute("color"), { segments, n } = this.tree;
+    segments.forEach((i, k) => {
+      if (scale) scale.put(scale.field.values[moment * n + i], attribute.array, 4 * k);
+      else attribute.array.set(this.plain, 4 * k);
+    });
+    attribute.needsUpdate = true;
+  }
+
+  // What the shader needs to know of a camera of a picture so many pixels high.
+  look(camera, height) {
+    const { eye, gaze } = this.material.uniforms;
+    camera.updateMatrixWorld();
+    eye.value.setFromMatrixPosition(camera.matrixWorld);
+    camera.getWorldDirection(gaze.value);
+    this.set("parallel", !!camera.isOrthographicCamera);
+    this.set("pixel", camera.isOrthographicCamera
+      ? (camera.top - camera.bottom) / camera.zoom / height
+      : (2 * Math.tan((camera.fov * Math.PI) / 360)) / camera.zoom / height);
+  }
+}
+
+// sRGB bytes of a linear colour.
+function encoded(linear) {
+  return linear.map((v) => Math.round(255 * (v < 0.0031308 ? 12.92 * v : 1.055 * Math.pow(v, 1 / 2.4) - 0.055)));
+}

@@ -1,0 +1,126 @@
+// From where the tree is seen. A pose is what `corcast render` calls it: degrees to the right about the upright and
+// then up (--turn), the point in the middle (--look-at), and the mm that the picture's height shows there (--height),
+// in either projection.
+import { OrthographicCamera, PerspectiveCamera, Vector3 } from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+const ANGLE = 26; // degrees, from the top of a perspective picture to its bottom
+const MARGIN = 0.05; // free part on each side when the tree is framed
+const STEEPEST = 89.9;
+const radians = (degrees) => (degrees * Math.PI) / 180;
+const degrees = (radian) => (radian * 180) / Math.PI;
+
+export const VIEWS = {
+  Front: [0, 0], Right: [90, 0], Back: [180, 0], Left: [-90, 0], Top: [0, STEEPEST], Bottom: [0, -STEEPEST],
+  Oblique: [45, degrees(Math.atan(Math.SQRT1_2))],
+};
+
+function towardsEye(turn, rise) {
+  const level = Math.cos(radians(rise));
+  return new Vector3(level * Math.sin(radians(turn)), Math.sin(radians(rise)), level * Math.cos(radians(turn)));
+}
+
+export class View {
+  constructor(canvas, tree, changed) {
+    this.canvas = canvas;
+    this.tree = tree;
+    this.half = Math.hypot(...tree.high.map((h, c) => h - tree.low[c])) / 2;
+    this.perspective = new PerspectiveCamera(ANGLE, 1, 0.1, 10);
+    this.orthographic = new OrthographicCamera(-0.5, 0.5, 0.5, -0.5, 0, 10);
+    this.camera = this.perspective;
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.zoomToCursor = true;
+    this.controls.minPolarAngle = radians(90 - STEEPEST);
+    this.controls.maxPolarAngle = radians(90 + STEEPEST);
+    this.controls.addEventListener("change", changed);
+    const still = matchMedia("(prefers-reduced-motion: reduce)");
+    const settle = () => { this.controls.enableDamping = !still.matches; };
+    still.addEventListener("change", settle);
+    settle();
+  }
+
+  get isOrthographic() { return this.camera === this.orthographic; }
+
+  get pose() {
+    const away = this.camera.position.clone().sub(this.controls.target), distance = away.length();
+    return {
+      turn: degrees(Math.atan2(away.x, away.z)),
+      rise: degrees(Math.asin(Math.min(1, Math.max(-1, away.y / distance)))),
+      target: this.controls.target.toArray(),
+      height: this.isOrthographic ? 1 / this.orthographic.zoom : 2 * distance * Math.tan(radians(ANGLE / 2)),
+    };
+  }
+
+  set pose({ turn, rise, target, height }) {
+    const distance = this.isOrthographic ? 8 * this.half : height / (2 * Math.tan(radians(ANGLE / 2)));
+    const steep = Math.min(STEEPEST, Math.max(-STEEPEST, rise));
+    this.controls.target.fromArray(target);
+    this.camera.position.copy(towardsEye(turn, steep)).multiplyScalar(distance).add(this.controls.target);
+    this.camera.zoom = this.isOrthographic ? 1 / height : 1;
+    this.camera.lookAt(this.controls.target);
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+  }
+
+  change(what) { this.pose = { ...this.pose, ...what }; }
+
+  project(orthographic) {
+    if (orthographic === this.isOrthographic) return;
+    const { pose } = this;
+    this.camera = orthographic ? this.orthographic : this.perspective;
+    this.controls.object = this.camera;
+    this.pose = pose;
+  }
+
+  // Shows all of the tree from a direction.
+  frame(turn, rise) {
+    const back = towardsEye(turn, rise), right = new Vector3(0, 1, 0).cross(back).normalize(), up = back.clone().cross(right);
+    const { position, radius, segments, parent } = this.tree;
+    const axes = [right, up, back], low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    const at = new Vector3();
+    for (const i of segments)
+      for (const node of [i, parent[i]]) {
+        at.fromArray(position, 3 * node);
+        axes.forEach((axis, k) => {
+          const place = at.dot(axis);
+          low[k] = Math.min(low[k], place - radius[i]);
+          high[k] = Math.max(high[k], place + radius[i]);
+        });
+      }
+    const target = new Vector3();
+    axes.forEach((axis, k) => target.addScaledVector(axis, (low[k] + high[k]) / 2));
+    const span = Math.max(high[1] - low[1], (high[0] - low[0]) / this.aspect) / (1 - 2 * MARGIN);
+    // In perspective what is nearer is larger.
+    const height = this.isOrthographic ? span : span + (high[2] - low[2]) * Math.tan(radians(ANGLE / 2));
+    this.pose = { turn, rise, target: target.toArray(), height };
+  }
+
+  resize(width, height) {
+    this.aspect = width / height;
+    this.perspective.aspect = this.aspect;
+    this.orthographic.left = -this.aspect / 2;
+    this.orthographic.right = this.aspect / 2;
+    this.perspective.updateProjectionMatrix();
+    this.orthographic.updateProjectionMatrix();
+  }
+
+  // To be called before each picture: goes on with a movement, and has the depths hold all of the tree.
+  step() {
+    this.controls.update();
+    const { camera } = this, away = camera.position.length();
+    const near = this.isOrthographic ? 0 : Math.max(away - 1.1 * this.half, this.pose.height / 200);
+    camera.near = near;
+    camera.far = Math.max(away, 0) + 1.1 * this.half + near;
+    camera.updateProjectionMatrix();
+  }
+
+  // The ray through a place of the canvas, in pixels of the page, and how far apart two of those are on it: the first
+  // in mm, the second in mm for each mm along it.
+  ray(x, y) {
+    const box = this.canvas.getBoundingClientRect();
+    const place = [((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2];
+    const from = new Vector3(...place, -1).unproject(this.camera), to = new Vector3(...place, 1).unproject(this.camera);
+    const pixel = this.isOrthographic ? [this.pose.height / box.height, 0] : [0, (2 * Math.tan(radians(ANGLE / 2))) / box.height];
+    return { from, along: to.sub(from).normalize(), least: pixel[0], slack: pixel[1] };
+  }
+}
