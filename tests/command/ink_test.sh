@@ -33,6 +33,23 @@ test_a_drawing_lies_on_the_picture_of_the_same_view() {
     awk "BEGIN { exit !($beside < 0.02 * $ink) }" || fail "expected ink on vessels alone, got $beside of $ink beside"
 }
 
+# A panel in lines beside a picture, with an inset in lines: one picture, and lines in the panel's and the inset's paper.
+test_a_figure_has_panels_in_lines() {
+    printf '%s\n' '[figure]' 'size = 90mmx45mm' 'columns = 2' '[panels]' 'grow = --terminals 20 --domain ball:20 --seed 4' \
+        '[panel a]' 'ink = 0.15' 'model = cylinders' '[panel b]' 'model = rounded' \
+        '[inset c]' 'of = a' 'at = 0.5,0.4' 'place = 0.2,0.2' 'magnify = 3' 'width = 15' >lines.ini
+    run_ok corcast figure lines.ini -o lines.svg --dpi 100 --quiet
+    [ "$(grep -c '<image' lines.svg)" -eq 1 ] || fail "expected the picture of b alone"
+    [ "$(grep -c 'stroke-width="0.15"' lines.svg)" -ge 2 ] || fail "expected the lines of the panel and its inset"
+    run_ok corcast figure lines.ini -o lines.pdf --dpi 100 --quiet
+    [ "$(pdfimages -list lines.pdf | wc -l)" -eq 3 ] || fail "expected one picture in the PDF"
+    run_ok corcast figure lines.ini -o lines.png --dpi 100 --quiet
+    sed -i 's/^ink.*/&\ncolor-by = flow\nlegend = on/' lines.ini
+    run corcast figure lines.ini -o no.svg --quiet
+    expect_status 2
+    expect_sentence '\[panel a\]: --?legend has no effect on a line drawing'
+}
+
 test_what_has_no_effect_on_lines_is_refused() {
     run_ok corcast grow --terminals 5 -o tree.swc
     run corcast render tree.swc --ink 0.2 -o lines.png
@@ -43,7 +60,7 @@ test_what_has_no_effect_on_lines_is_refused() {
     expect_sentence 'color-by has no effect on a line drawing'
     run corcast render tree.swc --ink 0.2 --model joined -o lines.svg
     expect_status 2
-    expect_sentence 'ink is for --model rounded'
+    expect_sentence 'ink is for --model cylinders and rounded, not joined'
     run corcast render tree.swc --ink 0 -o lines.svg
     expect_status 2
     expect_sentence 'ink.*from 0\.01 to 10'

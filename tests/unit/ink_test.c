@@ -107,6 +107,53 @@ static void a_vessel_is_one_line_about_it_whose_outer_edge_is_its_own(void **sta
     strokes_release(&strokes);
 }
 
+/* At 60 degrees to the paper. */
+static void a_thin_vessel_towards_the_viewer_is_a_line_too(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    begin(&sketch);
+    add(&sketch, vec3(-2, 1, -2 * sqrt(3)), vec3(2, 1, 2 * sqrt(3)), 0.031);
+    Strokes strokes = drawn(&sketch, 1);
+    assert_int_equal(strokes.n, 1);
+    assert_true(fabs(length_of(&strokes) - 4 * SCALE) < 1e-9);
+    strokes_release(&strokes);
+}
+
+/* The edge of the nearer disc is seen whole, half of the other one's. */
+static void a_closed_cylinder_has_the_edges_of_its_discs(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    begin(&sketch);
+    add(&sketch, vec3(-2, 1, -2), vec3(2, 1, 2), 0.7);
+    sketch.n = 1; /* without its balls */
+    end(&sketch);
+    sketch.geometry.model = SCENE_CYLINDERS;
+    const InkParams params = {16 * SCALE, LINE_MM, 1};
+    Strokes strokes;
+    assert_int_equal(ink_draw(&sketch.geometry, &sketch.view, &params, &strokes, &err), STATUS_OK);
+    const double large = 0.7 * SCALE - LINE_MM / 2, small = large / sqrt(2);
+    const double ellipse =
+        PI * (3 * (large + small) - sqrt((3 * large + small) * (large + 3 * small)));
+    assert_true(fabs(length_of(&strokes) - 1.5 * ellipse - 8 * SCALE) < 0.02 * ellipse);
+    strokes_release(&strokes);
+}
+
+static void what_lies_beside_the_paper_is_left_out(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    begin(&sketch);
+    add(&sketch, vec3(-12, 1, 0), vec3(3, 1, 0), 0.031);
+    add(&sketch, vec3(-12, 9, 0), vec3(3, 9, 0), 0.031);
+    Strokes strokes = drawn(&sketch, 1);
+    assert_int_equal(strokes.n, 1);
+    assert_true(fabs(strokes.points[0][0]) < 1e-9);
+    assert_true(fabs(length_of(&strokes) - 11 * SCALE) < 1e-9);
+    strokes_release(&strokes);
+}
+
 static void a_vessel_thinner_than_two_lines_is_one_as_wide_as_it(void **state)
 {
     (void)state;
@@ -279,6 +326,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_vessel_is_one_line_about_it_whose_outer_edge_is_its_own),
         cmocka_unit_test(a_vessel_thinner_than_two_lines_is_one_as_wide_as_it),
+        cmocka_unit_test(a_thin_vessel_towards_the_viewer_is_a_line_too),
+        cmocka_unit_test(a_closed_cylinder_has_the_edges_of_its_discs),
+        cmocka_unit_test(what_lies_beside_the_paper_is_left_out),
         cmocka_unit_test(a_vessel_behind_another_is_broken_where_it_is_hidden),
         cmocka_unit_test(nothing_is_drawn_inside_where_vessels_meet),
         cmocka_unit_test(lines_lie_where_pictures_change_from_vessel_to_vessel),

@@ -196,16 +196,20 @@ static Status put_panel(Figure *figure, size_t i, int number, Err *err)
     const Letters letters = figure->options->letters;
     Annotation annotation = panel->annotation;
     char letter[8];
-    figure_add_picture(&figure->sheet.page, &panel->picture, place->left, place->top);
+    const FigureBox box = figure_panel_box(figure, i);
+    if (panel->in_lines)
+        figure_add_strokes(&figure->sheet.page, &panel->strokes, (FigurePoint){box.left, box.top},
+                           figure->ink);
+    else
+        figure_add_picture(&figure->sheet.page, &panel->picture, place->left, place->top);
     automatic_letter(number, letters == LETTERS_UPPER, letter);
     const char *shown = annotation.letter ? annotation.letter : letter;
     FigureColor paper = figure->sheet.page.background;
     if (annotation.letter || letters != LETTERS_NONE)
         put_letter(figure, i, shown, paper);
-    put_title(figure, i, ink_on(paper));
+    put_title(figure, i, figure->ink);
     annotation.letter = NULL;
-    return annotation_put(&annotation, &panel->scene, figure_panel_box(figure, i),
-                          &figure->sheet.page, err);
+    return annotation_put(&annotation, &panel->scene, box, &figure->sheet.page, err);
 }
 
 /* ---- text ------------------------------------------------------------------------------------ */
@@ -233,6 +237,7 @@ static Status fill_page(Figure *figure, Err *err)
 {
     int number = 0;
     figure->sheet.page.background = color_of(figure->options->background);
+    figure->ink = ink_on(figure->sheet.page.background);
     for (size_t i = 0; i < figure->plan.n; i++)
         if (figure_is_panel(figure, i)) {
             TRY(put_panel(figure, i, number++, err));

@@ -92,6 +92,14 @@ static void put_ties(FigurePage *page, const FigureBox *part, const FigureBox *i
     }
 }
 
+/* Its paper covers the panel's lines. */
+static void put_lines(Figure *figure, const PanelInset *inset, const FigureBox *shown)
+{
+    FigurePage *page = &figure->sheet.page;
+    figure_add_box(page, *shown, page->background);
+    figure_add_strokes(page, &inset->strokes, (FigurePoint){shown->left, shown->top}, figure->ink);
+}
+
 static Status put_inset(Figure *figure, const Section *section, size_t of, const PanelInset *inset,
                         Err *err)
 {
@@ -108,9 +116,12 @@ static Status put_inset(Figure *figure, const Section *section, size_t of, const
     if (left < 0 || top < 0 || left + inset->pixels[0] > figure_pixels(page, page->width_mm) ||
         top + inset->pixels[1] > figure_pixels(page, page->height_mm))
         return err_set(err, STATUS_USAGE, "[inset %s] does not lie on the page", section->name);
-    figure_add_picture(page, &inset->picture, left, top);
     const FigureBox shown = {left * pixel, top * pixel, (left + inset->pixels[0]) * pixel,
                              (top + inset->pixels[1]) * pixel};
+    if (!panel->in_lines)
+        figure_add_picture(page, &inset->picture, left, top);
+    else
+        put_lines(figure, inset, &shown);
     FigureBox part = panel_part(inset, &panel->scene.view.camera);
     part = (FigureBox){box.left + part.left * width, box.top + part.top * height,
                        box.left + part.right * width, box.top + part.bottom * height};

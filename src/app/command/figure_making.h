@@ -34,6 +34,7 @@ typedef struct Figure {
     Sheet sheet;
     Place *places;      /* of the sections that are panels; owned */
     Panel *panels;      /* likewise */
+    FigureColor ink;    /* read on the page's paper */
     PanelInset *insets; /* of the sections that are insets, in the order of their panels; owned */
 } Figure;
 

@@ -5,6 +5,7 @@
 #include "app/command/render_film.h"
 #include "app/command/render_options.h"
 #include "app/run/progress.h"
+#include "render/render.h"
 
 FigureBox panel_part(const PanelInset *inset, const Camera *camera)
 {
@@ -56,6 +57,31 @@ static Status draw_panel(const RenderParams *params, Panel *panel, Err *err)
     return status;
 }
 
+static Status draw_strokes(const RenderOptions *options, int threads, const Geometry *geometry,
+                           const View *view, Strokes *strokes, Err *err)
+{
+    const InkParams params = {.width_mm =
+                                  view->camera.width * MM_PER_INCH / options->picture.size.dpi,
+                              .line_mm = options->ink_mm,
+                              .threads = threads};
+    return ink_draw(geometry, view, &params, strokes, err);
+}
+
+/* --ink: lines of the same width in the panel and its insets. */
+static Status draw_lines(const RenderOptions *options, int threads, Panel *panel, Err *err)
+{
+    const Geometry *geometry = &panel->scene.geometry;
+    if (options->annotation.legend)
+        return err_set(err, STATUS_USAGE, "--legend has no effect on a line drawing (--ink)");
+    TRY(draw_strokes(options, threads, geometry, &panel->scene.view, &panel->strokes, err));
+    for (size_t i = 0; i < panel->n_insets; i++) {
+        PanelInset *inset = &panel->insets[i];
+        const View view = panel_inset_view(inset, &panel->scene.view);
+        TRY(draw_strokes(options, threads, geometry, &view, &inset->strokes, err));
+    }
+    return STATUS_OK;
+}
+
 Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
 {
     RenderOptions *options = parsed->options;
@@ -64,7 +90,8 @@ Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
     Animation still = {.first = 1, .last = 1, .n = 1};
     StageReport staged;
     Progress progress;
-    options->output = "panel";
+    panel->in_lines = options->ink_mm > 0;
+    options->output = panel->in_lines ? "panel.pdf" : "panel"; /* pages hold lines */
     render_settle(options);
     CellParams cells;
     RenderParams params = render_params_of(options, parsed->common.threads, &cells);
@@ -81,7 +108,8 @@ Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
                                    &still, err);
     progress_start(&progress, "rendering", parsed->common.quiet);
     if (status == STATUS_OK)
-        status = draw_panel(&params, panel, err);
+        status = panel->in_lines ? draw_lines(options, params.threads, panel, err)
+                                 : draw_panel(&params, panel, err);
     progress_end(&progress);
     panel->annotation = options->annotation;
     picture_source_release(&source);
@@ -90,8 +118,11 @@ Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
 
 void panel_release(Panel *panel)
 {
-    for (size_t i = 0; i < panel->n_insets; i++)
+    for (size_t i = 0; i < panel->n_insets; i++) {
         picture_release(&panel->insets[i].picture);
+        strokes_release(&panel->insets[i].strokes);
+    }
     picture_release(&panel->picture);
+    strokes_release(&panel->strokes);
     scene_release(&panel->scene);
 }

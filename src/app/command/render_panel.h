@@ -13,6 +13,7 @@ typedef struct PanelInset {
     double magnify;
     int pixels[2];   /* of the inset itself */
     Picture picture; /* made; owned */
+    Strokes strokes; /* made in its place, of a panel in lines; owned */
 } PanelInset;
 
 /* A picture of a tree. */
@@ -20,7 +21,9 @@ typedef struct Panel {
     const FigureFonts *fonts; /* borrowed */
     PanelInset *insets;       /* borrowed */
     size_t n_insets;
-    Picture picture;       /* made, of 8 bits; owned */
+    bool in_lines;
+    Picture picture;       /* made, of 8 bits, unless in lines; owned */
+    Strokes strokes;       /* made, in lines; owned */
     Scene scene;           /* made; owned */
     Annotation annotation; /* what the options ask for, to be drawn by the caller */
 } Panel;

@@ -1,9 +1,10 @@
 /* The outline of a cylinder is two lines along its wall, that of a ball is a circle: where the wall
- * is seen edge-on. Where such a curve is part of the picture's outline, nothing is in front of it,
- * and it lies inside nothing: a ray from beside it to the viewer meets no vessel, since one that
- * begins inside a vessel leaves it. So every curve is followed in steps of half a line, and where
- * what is seen changes, the place is halved down to a hundredth of a line [A. Appel, Proc. 22nd ACM
- * Nat. Conf. (1967) 387-393, with rays instead of counted crossings].
+ * is seen edge-on. A cylinder that ends in discs (SCENE_CYLINDERS) has their edges besides. Where
+ * such a curve is part of the picture's outline, nothing is in front of it, and it lies inside
+ * nothing: a ray from beside it to the viewer meets no vessel, since one that begins inside a
+ * vessel leaves it. So every curve is followed in steps of half a line, and where what is seen
+ * changes, the place is halved down to a hundredth of a line [A. Appel, Proc. 22nd ACM Nat. Conf.
+ * (1967) 387-393, with rays instead of counted crossings].
  *
  * Where vessels run into one another no line is drawn, as illustrators leave it out, too.
  *
@@ -28,6 +29,7 @@ typedef struct Hand {
     const Camera *camera;
     Caster *caster;
     double mm_per_pixel, line_mm;
+    double paper[2]; /* width and height, mm */
     size_t n_blocks;
     InkPieces *pieces; /* of each block */
     Status *status;    /* likewise */
@@ -166,18 +168,27 @@ static double distance_on_paper(const OnPaper *a, const OnPaper *b)
     return hypot(b->at[0] - a->at[0], b->at[1] - a->at[1]);
 }
 
+/* The wall's normal that is nearest to the viewer's direction. */
+static Vec3 front_normal(const Camera *camera, const Primitive *vessel)
+{
+    double distance;
+    Vec3 middle = vec3_scale(vec3_add(vessel->a, vessel->b), 0.5);
+    Vec3 towards = towards_viewer(camera, middle, &distance);
+    Vec3 axis = vec3_normalized(vec3_sub(vessel->b, vessel->a));
+    Vec3 front = vec3_add_scaled(towards, axis, -vec3_dot(towards, axis));
+    return vec3_length(front) > 1e-6 ? vec3_normalized(front) : towards;
+}
+
 /* A vessel that is one line on paper. */
 static Status draw_thin(const Hand *hand, int worker, const Primitive *vessel,
                         const OnPaper ends[2], InkPieces *pieces, Err *err)
 {
-    double distance;
-    Vec3 middle = vec3_scale(vec3_add(vessel->a, vessel->b), 0.5);
-    const Curve axis = {.from = vessel->a,
-                        .along = vec3_sub(vessel->b, vessel->a),
-                        .aside = vec3_scale(towards_viewer(hand->camera, middle, &distance),
-                                            (1 + BESIDE) * vessel->radius_mm),
-                        .length_mm = distance_on_paper(&ends[0], &ends[1]),
-                        .width_mm = vessel->radius_mm * (ends[0].per_mm + ends[1].per_mm)};
+    const Curve axis = {
+        .from = vessel->a,
+        .along = vec3_sub(vessel->b, vessel->a),
+        .aside = vec3_scale(front_normal(hand->camera, vessel), (1 + BESIDE) * vessel->radius_mm),
+        .length_mm = distance_on_paper(&ends[0], &ends[1]),
+        .width_mm = vessel->radius_mm * (ends[0].per_mm + ends[1].per_mm)};
     return draw_curve(hand, worker, &axis, pieces, err);
 }
 
@@ -221,6 +232,22 @@ static int edge_normals(const Camera *camera, const Primitive *vessel, Vec3 norm
     return 2;
 }
 
+/* The edge of one of the discs that close a cylinder. */
+static Status draw_edge(const Hand *hand, int worker, const Primitive *vessel, Vec3 center,
+                        double per_mm, InkPieces *pieces, Err *err)
+{
+    double radius_mm = vessel->radius_mm * per_mm;
+    Curve edge = {.is_circle = true,
+                  .from = center,
+                  .shrink = hand->line_mm / 2 / radius_mm,
+                  .length_mm = 6.283185307179586 * radius_mm,
+                  .width_mm = hand->line_mm};
+    vec3_across(vec3_normalized(vec3_sub(vessel->b, vessel->a)), &edge.u, &edge.v);
+    edge.u = vec3_scale(edge.u, vessel->radius_mm);
+    edge.v = vec3_scale(edge.v, vessel->radius_mm);
+    return draw_curve(hand, worker, &edge, pieces, err);
+}
+
 static Status draw_cylinder(const Hand *hand, int worker, const Primitive *vessel,
                             InkPieces *pieces, Err *err)
 {
@@ -231,6 +258,9 @@ static Status draw_cylinder(const Hand *hand, int worker, const Primitive *vesse
     int n = edge_normals(hand->camera, vessel, normals);
     for (int k = 0; k < n; k++)
         TRY(draw_side(hand, worker, vessel, normals[k], ends, pieces, err));
+    for (int k = 0; k < 2 && hand->geometry->model == SCENE_CYLINDERS; k++)
+        TRY(draw_edge(hand, worker, vessel, k ? vessel->b : vessel->a, ends[k].per_mm, pieces,
+                      err));
     return STATUS_OK;
 }
 
@@ -277,7 +307,7 @@ static Status gather(const Hand *hand, Strokes *strokes, Err *err)
         if (status != STATUS_OK)
             *err = hand->errors[b];
         else
-            status = inkpieces_append(&all, &hand->pieces[b], err);
+            status = inkpieces_append(&all, &hand->pieces[b], hand->paper, err);
     }
     if (status == STATUS_OK)
         status = inkpieces_join(&all, strokes, err);
@@ -310,6 +340,8 @@ Status ink_draw(const Geometry *geometry, const View *view, const InkParams *par
                  .line_mm = params->line_mm,
                  .n_blocks = (geometry->n_primitives + BLOCK - 1) / BLOCK};
     Status status;
+    hand.paper[0] = params->width_mm;
+    hand.paper[1] = camera->height * hand.mm_per_pixel;
     TRY(check_in_front(geometry, camera, err));
     TRY_GOTO(caster_new(geometry, NULL, threads, &hand.caster, err));
     TRY_GOTO(mem_calloc(&hand.pieces, hand.n_blocks, sizeof *hand.pieces, "strokes", err));
@@ -318,8 +350,8 @@ Status ink_draw(const Geometry *geometry, const View *view, const InkParams *par
     caster_shadow_from(hand.caster, 1e-9);
     threads_for(hand.n_blocks, threads, draw_block, &hand);
     TRY_GOTO(gather(&hand, strokes, err));
-    strokes->width_mm = params->width_mm;
-    strokes->height_mm = camera->height * hand.mm_per_pixel;
+    strokes->width_mm = hand.paper[0];
+    strokes->height_mm = hand.paper[1];
 done:
     for (size_t b = 0; hand.pieces && b < hand.n_blocks; b++)
         inkpieces_release(&hand.pieces[b]);

@@ -38,11 +38,51 @@ static Status add_points(InkPieces *pieces, const Strokes *from, size_t piece, b
     return STATUS_OK;
 }
 
-Status inkpieces_append(InkPieces *pieces, const InkPieces *more, Err *err)
+/* Where a line from `a` to `b` enters and leaves the paper, as parts of its way; false when it lies
+ * beside it [Liang, Barsky, ACM Trans. Graph. 3 (1984) 1-22]. */
+static bool crosses_paper(const double a[2], const double b[2], const double paper[2],
+                          double part[2])
+{
+    part[0] = 0;
+    part[1] = 1;
+    for (int k = 0; k < 2; k++) {
+        double way = b[k] - a[k], from = -a[k] / way, to = (paper[k] - a[k]) / way;
+        if (way == 0 && (a[k] < 0 || a[k] > paper[k]))
+            return false;
+        if (way == 0)
+            continue;
+        part[0] = fmax(part[0], fmin(from, to));
+        part[1] = fmin(part[1], fmax(from, to));
+    }
+    return part[0] < part[1];
+}
+
+static Status add_between(InkPieces *pieces, const double a[2], const double b[2], double part,
+                          Err *err)
+{
+    const double point[2] = {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])};
+    return inkpieces_add(pieces, part == 0 ? a : part == 1 ? b : point, err);
+}
+
+Status inkpieces_append(InkPieces *pieces, const InkPieces *more, const double paper[2], Err *err)
 {
     for (size_t i = 0; i < more->list.n; i++) {
-        TRY(inkpieces_begin(pieces, more->list.strokes[i].width_mm, err));
-        TRY(add_points(pieces, &more->list, i, false, 0, err));
+        const Stroke *stroke = &more->list.strokes[i];
+        bool begun = false;
+        for (size_t k = 1; k < stroke->n; k++) {
+            const double *a = more->list.points[stroke->first + k - 1], *b = a + 2;
+            double part[2];
+            if (!crosses_paper(a, b, paper, part)) {
+                begun = false;
+                continue;
+            }
+            if (!begun) {
+                TRY(inkpieces_begin(pieces, stroke->width_mm, err));
+                TRY(add_between(pieces, a, b, part[0], err));
+            }
+            TRY(add_between(pieces, a, b, part[1], err));
+            begun = part[1] == 1;
+        }
     }
     return STATUS_OK;
 }

@@ -15,8 +15,9 @@ typedef struct InkPieces {
 MUST_CHECK Status inkpieces_begin(InkPieces *pieces, double width_mm, Err *err);
 /* Adds a point to the last piece. STATUS_MEMORY. */
 MUST_CHECK Status inkpieces_add(InkPieces *pieces, const double point[2], Err *err);
-/* Appends all of `more`. STATUS_MEMORY. */
-MUST_CHECK Status inkpieces_append(InkPieces *pieces, const InkPieces *more, Err *err);
+/* Appends the parts of all of `more` that lie on a paper of this size, mm. STATUS_MEMORY. */
+MUST_CHECK Status inkpieces_append(InkPieces *pieces, const InkPieces *more, const double paper[2],
+                                   Err *err);
 void inkpieces_release(InkPieces *pieces);
 
 /* Joins pieces of one width that end within 0.02 mm of each other, each end with one other at most,
