@@ -10,7 +10,7 @@ commands() {
          !/^    / { inside = 0; next }
          { text = substr($0, 5) }
          text ~ /^; / { inside = 1; print "file " substr(text, 3); next }
-         text ~ /^(build\/corcast|povray|make|awk|ffmpeg) / { inside = 0; print "run " text; next }
+         text ~ /^(build\/corcast|povray|make|awk|ffmpeg|python3) / { inside = 0; print "run " text; next }
          inside { print "line " text }' "$REPO/$1"
 }
 
@@ -44,7 +44,7 @@ run_commands() {
         line*) echo "$text" | sed -E 's/^size = [0-9]+x[0-9]+$/size = 64x48/' >>"$file" ;;
         run*'# needs '*) ;;
         runmake*) make_target "$text" ;;
-        run*) run_ok bash -c "$(small "$text" | sed "s|build/corcast|'$CORCAST'|g")" ;;
+        run*) run_ok bash -c "$(small "$text" | sed "s|build/corcast|'$CORCAST'|g; s|^python3|/usr/bin/python3|")" ;;
         esac
     done < <(commands "$1")
 }

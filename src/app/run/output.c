@@ -79,12 +79,22 @@ static void put_setting(const Setting *setting, PutValue *put_value, Text *text)
     }
 }
 
+/* As file_extension, but "nii.gz" of V.nii.gz. */
+static const char *whole_extension(const char *path)
+{
+    const char *extension = file_extension(path), *name = file_name(path);
+    const char *at = extension - (extension > name);
+    while (at > name && at[-1] != '.')
+        at--;
+    return strcmp(extension, "gz") == 0 && at > name ? at : extension;
+}
+
 /* Appends the output under the name that the help gives it, with the extension that it has: what is
  * written does not depend on its own name, but where it tells that. */
 static void put_output(const Setting *setting, Text *text)
 {
     const char *path = *(const char *const *)(setting->base + setting->option->where);
-    const char *name = setting->option->argument, *extension = file_extension(path ? path : "");
+    const char *name = setting->option->argument, *extension = whole_extension(path ? path : "");
     if (!path)
         return;
     text_puts(text, " -o ");
