@@ -155,6 +155,7 @@ run_test() {
     mkdir "$folder"
     (
         trap 'times >"$folder.times"' EXIT
+        unset TEST_SLOTS # a file of tests that the test runs has slots of its own
         cd "$folder" && "test_$name"
     ) 9>"$folder.reason" >"$folder.output" 2>&1
     result=$?
@@ -174,26 +175,37 @@ run_test() {
     rm -rf "$folder"
 }
 
+# open_slots N: so many tests run at a time from here on, of every file that this shell starts: each takes a byte out
+# of a pipe, and puts it back as it ends.
+open_slots() {
+    exec 8<> <(:)
+    printf "%${1}s" >&8
+    export TEST_SLOTS=8
+}
+
 # Runs the tests named, all of the file by default, TEST_JOBS (1) at a time; with TEST_STOP up to the first that fails.
 run_tests() {
-    local number=0 name
+    local number=0 name slot
     tests_folder=$(mktemp -d)
     trap 'rm -rf "$tests_folder"' EXIT
+    [ -n "${TEST_SLOTS-}" ] || open_slots "${TEST_JOBS:-1}"
     for name in ${*:-$(sed -n 's/^test_\([a-z0-9_]*\)() *{.*/\1/p' "$0")}; do
         number=$((number + 1))
-        if [ "${TEST_JOBS:-1}" -eq 1 ]; then
+        read -rN 1 slot <&8
+        if [ -n "${TEST_STOP-}" ] && some_failed; then
+            break
+        fi
+        {
             run_test $number "$name"
             cat "$tests_folder/$number.tap"
-            [ -z "${TEST_STOP-}" ] || ! grep -q '^not ok' "$tests_folder/$number.tap" || break
-        else
-            [ "$(jobs -rp | wc -l)" -lt "$TEST_JOBS" ] || wait -n
-            run_test $number "$name" &
-        fi
+            printf ' ' >&8
+        } &
     done
-    if [ "${TEST_JOBS:-1}" -ne 1 ]; then
-        wait
-        cat $(seq -f "$tests_folder/%g.tap" $number)
-    fi
+    wait
     echo "1..$number"
-    ! grep -q '^not ok' $(seq -f "$tests_folder/%g.tap" $number)
+    ! some_failed
+}
+
+some_failed() {
+    grep -qs '^not ok' "$tests_folder"/*.tap
 }

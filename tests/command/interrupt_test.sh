@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # A run that is stopped leaves no file under the final name, no temporary, and the old file as it was.
 . "$(dirname "$0")/../lib.sh"
-TEST_JOBS=1
 
 # stop_after SECONDS SIGNAL COMMAND ...: starts the command, signals it, leaves its status in $status.
 stop_after() {
