@@ -78,6 +78,26 @@ const Emitter emitters[] = {
      .of_meshes = true,
      .has_colors = true,
      .write = threemf_write},
+    {.name = "blender",
+     .extension = "py",
+     .description = "a script that makes curves in Blender",
+     .of_lines = true,
+     .has_colors = true,
+     .write = blender_write},
+    {.name = "usd",
+     .extension = "usda",
+     .description = "curves as Universal Scene Description",
+     .of_lines = true,
+     .has_colors = true,
+     .write = usd_write},
+    {.name = "lattice",
+     .extension = "3mf",
+     .description = "a lattice of beams for printers",
+     .binary = true,
+     .of_lines = true,
+     .has_colors = true,
+     .option = "lattice",
+     .write = lattice_write},
     {.name = "mesh2",
      .extension = "inc",
      .description = "a mesh2 for POV-Ray 3.7",
@@ -87,10 +107,15 @@ const Emitter emitters[] = {
     {0},
 };
 
-/* Whether its extension stands for it among those of scenes, or of meshes. */
+static bool is_of_scenes(const Emitter *emitter)
+{
+    return !emitter->of_meshes && !emitter->of_lines;
+}
+
+/* Whether its extension stands for it among those of scenes, or of meshes and lines. */
 static bool is_listed(const Emitter *emitter, bool of_meshes)
 {
-    return emitter->of_meshes == of_meshes && !emitter->option;
+    return is_of_scenes(emitter) != of_meshes && !emitter->option;
 }
 
 const Emitter *emitter_find(const char *extension, bool of_meshes)
@@ -125,7 +150,7 @@ void emitter_extensions(bool of_meshes, Text *out)
 
 Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err)
 {
-    if (emitter->of_meshes || model_is_of(model, emitter->elements))
+    if (!is_of_scenes(emitter) || model_is_of(model, emitter->elements))
         return STATUS_OK;
     Text able = TEXT_INIT;
     models_of(emitter->elements, &able);
@@ -204,7 +229,7 @@ Status emit_files(const Emitter *emitter, const EmitParams *params, const char *
     Outputs outputs = {.path = {path, second_path, params->settings_path}};
     EmitReport written = {0};
     Status status;
-    if (!emitter->of_meshes)
+    if (is_of_scenes(emitter))
         TRY(emit_check_model(emitter, params->scene->geometry.model, err));
     if (second_path && emitter->check_name)
         TRY(emitter->check_name(params->second_file, err));

@@ -20,10 +20,10 @@ typedef enum EmitBeside {
 
 /* What is written, and how it is called. All is borrowed. */
 typedef struct EmitParams {
-    const Scene *scene;               /* NULL for an emitter of meshes */
+    const Scene *scene;               /* NULL for an emitter of meshes or lines */
     const Anatomy *anatomy;           /* of its tree; NULL: orders are 0, and nothing is named */
     const VesselMesh *mesh;           /* NULL for all others, and so are those that follow: */
-    const VesselTree *vessels;        /* whose segments the mesh's labels name */
+    const VesselTree *vessels;        /* whose segments the mesh's labels name, or that are lines */
     const Appearance *appearance;     /* for an emitter with colours */
     const double *orders;             /* Strahler order of each segment, by its number; likewise */
     const MeshEnds *ends;             /* of the mesh, for an emitter with parts */
@@ -61,6 +61,7 @@ typedef struct Emitter {
     bool binary;
     bool has_view;      /* it holds camera, lights and background, and not the vessels alone */
     bool of_meshes;     /* it writes params->mesh, not the scene */
+    bool of_lines;      /* likewise params->vessels, by params->anatomy; there is no mesh */
     bool has_colors;    /* of meshes: it writes params->appearance and groups by params->orders */
     bool has_parts;     /* of meshes: it writes params->ends */
     const char *option; /* that asks for it; NULL: it is the format of its extension */
@@ -80,9 +81,11 @@ typedef struct Emitter {
 
 /* A row without a name ends them. */
 extern const Emitter emitters[];
-/* The emitter of scenes, or of meshes, whose files have this extension ("pov"), or NULL. */
+/* The emitter of scenes, or of meshes and lines, whose files have this extension ("pov"), or NULL.
+ */
 const Emitter *emitter_find(const char *extension, bool of_meshes);
-/* The emitter of meshes with this extension that an option of this name asks for, or NULL. */
+/* The emitter of meshes or lines with this extension that an option of this name asks for, or NULL.
+ */
 const Emitter *emitter_asked(const char *extension, const char *option);
 /* Appends the extensions of one or the other: ".pov or .scad". */
 void emitter_extensions(bool of_meshes, Text *out);

@@ -197,12 +197,9 @@ static json_t *root_node(const Glb *glb, size_t n)
     return json_with_members(json_object(), members, 4);
 }
 
-/* A material whose highlights are as wide as Phong's of the look: a GGX lobe of alpha^2 =
- * 2 / (m + 2) is as wide as Blinn's of exponent m [Karis, Real Shading in Unreal Engine 4, 2013],
- * and Blinn's of 4 n as Phong's of n; glTF's roughness is the root of alpha. */
 static json_t *material(const Finish *finish)
 {
-    double roughness = pow(2 / (4 * (double)finish->phong_size + 2), 0.25);
+    double roughness = microfacet_roughness(finish);
     return json_pack("{s:s, s:{s:[f,f,f,f], s:f, s:f}}", "name", "vessel", "pbrMetallicRoughness",
                      "baseColorFactor", 1.0, 1.0, 1.0, 1.0, "metallicFactor", 0.0,
                      "roughnessFactor", roughness);

@@ -3,6 +3,7 @@
 #include "emit/meshparts.h"
 
 #include "image/image.h"
+#include <math.h>
 #include <stdlib.h>
 
 static size_t order_of(const EmitParams *params, size_t triangle)
@@ -52,6 +53,27 @@ void put_color_code(Text *out, const EmitParams *params, uint32_t segment)
     uint8_t codes[3];
     vessel_color_codes(params, segment, codes);
     text_printf(out, "%02X%02X%02X", codes[0], codes[1], codes[2]);
+}
+
+/* A GGX lobe of alpha^2 = 2 / (m + 2) is as wide as Blinn's of exponent m [Karis, Real Shading in
+ * Unreal Engine 4, 2013], and Blinn's of 4 n as Phong's of n. */
+double microfacet_roughness(const Finish *finish)
+{
+    return pow(2 / (4 * (double)finish->phong_size + 2), 0.25);
+}
+
+Box box_with_vessel(Box box, const FieldSegment *segment)
+{
+    box = box_with_ball(box, segment->a, segment->radius_mm);
+    return box_with_ball(box, segment->b, segment->radius_mm);
+}
+
+Box vessels_box(const VesselTree *vessels)
+{
+    Box box = box_empty();
+    for (size_t i = 0; i < vessels->n_segments; i++)
+        box = box_with_vessel(box, &vessels->segments[i]);
+    return box;
 }
 
 Box mesh_box(const VesselMesh *mesh)

@@ -25,8 +25,14 @@ void vessel_color_codes(const EmitParams *params, uint32_t segment, uint8_t code
 /* Appends the codes: "C0102A". */
 void put_color_code(Text *out, const EmitParams *params, uint32_t segment);
 
+/* The roughness, the root of a GGX lobe's alpha, of highlights as wide as Phong's of the look. */
+double microfacet_roughness(const Finish *finish);
+
 /* The box about its points. */
 Box mesh_box(const VesselMesh *mesh);
+/* The box about a vessel, or all, rounded at the ends, and what `box` holds. */
+Box box_with_vessel(Box box, const FieldSegment *segment);
+Box vessels_box(const VesselTree *vessels);
 
 /* For each point the segment of the first triangle about it, in *segments (owned). */
 MUST_CHECK Status mesh_point_segments(const VesselMesh *mesh, uint32_t **segments, Err *err);

@@ -29,6 +29,12 @@ Status threemf_write(const EmitParams *params, Text *out, Text *second, EmitRepo
                      Err *err);
 Status glb_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);
 
+Status blender_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                     Err *err);
+Status usd_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);
+Status lattice_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                     Err *err);
+
 /* [x,y,z], as OpenSCAD reads a point. */
 void put_point(Text *text, Vec3 v);
 

@@ -1,9 +1,10 @@
 /* 3MF: one object of XML in a ZIP archive [3MF Consortium, Core Specification 1.3; Materials and
  * Properties Extension 1.2, section 3]. All vessels are one mesh, painted triangle by triangle with
  * the colour of the segment: parts of one colour each would be open where they meet. */
+#include "emit/threemf.h"
+
 #include "emit/meshparts.h"
 #include "emit/rows.h"
-#include "emit/values.h"
 #include "emit/zip.h"
 
 /* A colour for each segment, or the one of all. */
@@ -19,16 +20,27 @@ static Status put_colors(Text *out, void *context, Err *err)
     return text_check(out, err);
 }
 
+void threemf_add_about(Values *values, EmitParams *params)
+{
+    text_escaped(add_value(values, "generator"), params->generator);
+    text_escaped(add_value(values, "description"), params->description);
+    text_escaped(add_value(values, "command"), params->command);
+    add_part(values, "colors", put_colors, params);
+}
+
+void threemf_put_vertex(Vec3 at, Text *out)
+{
+    char text[3][NUMBER_TEXT_SIZE];
+    text_printf(
+        out, "<vertex x=\"%s\" y=\"%s\" z=\"%s\"/>\n", number_text_float((float)at.x + 0, text[0]),
+        number_text_float((float)at.y + 0, text[1]), number_text_float((float)at.z + 0, text[2]));
+}
+
 static Status put_vertices(Text *out, void *context, Err *err)
 {
     const VesselMesh *mesh = ((const EmitParams *)context)->mesh;
-    for (size_t i = 0; i < mesh->n_points; i++) {
-        char x[NUMBER_TEXT_SIZE], y[NUMBER_TEXT_SIZE], z[NUMBER_TEXT_SIZE];
-        text_printf(out, "<vertex x=\"%s\" y=\"%s\" z=\"%s\"/>\n",
-                    number_text_float(mesh->points[i][0] + 0, x),
-                    number_text_float(mesh->points[i][1] + 0, y),
-                    number_text_float(mesh->points[i][2] + 0, z));
-    }
+    for (uint32_t i = 0; i < mesh->n_points; i++)
+        threemf_put_vertex(mesh_point(mesh, i), out);
     return text_check(out, err);
 }
 
@@ -49,15 +61,11 @@ static Status put_triangles(Text *out, void *context, Err *err)
 
 static Status put_model(Text *out, void *context, Err *err)
 {
-    const EmitParams *params = context;
     Values values = {0};
-    text_escaped(add_value(&values, "generator"), params->generator);
-    text_escaped(add_value(&values, "description"), params->description);
-    text_escaped(add_value(&values, "command"), params->command);
-    add_part(&values, "colors", put_colors, context);
+    threemf_add_about(&values, context);
     add_part(&values, "vertices", put_vertices, context);
     add_part(&values, "triangles", put_triangles, context);
-    return values_expand(&values, params, "3mf/model.xml", out, err);
+    return values_expand(&values, context, "3mf/model.xml", out, err);
 }
 
 static Status put_types(Text *out, void *context, Err *err)
@@ -72,15 +80,23 @@ static Status put_relations(Text *out, void *context, Err *err)
     return values_expand(&none, context, "3mf/rels.xml", out, err);
 }
 
+Status threemf_put_archive(const EmitParams *params,
+                           Status (*put)(Text *out, void *context, Err *err), void *context,
+                           Text *out, Err *err)
+{
+    EmitParams own = *params;
+    const ZipEntry entries[] = {{"[Content_Types].xml", put_types, &own},
+                                {"_rels/.rels", put_relations, &own},
+                                {"3D/3dmodel.model", put, context}};
+    TRY(zip_put(entries, sizeof entries / sizeof *entries, out, err));
+    return text_check(out, err);
+}
+
 Status threemf_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
                      Err *err)
 {
     (void)second;
     (void)report;
-    EmitParams context = *params;
-    const ZipEntry entries[] = {{"[Content_Types].xml", put_types, &context},
-                                {"_rels/.rels", put_relations, &context},
-                                {"3D/3dmodel.model", put_model, &context}};
-    TRY(zip_put(entries, sizeof entries / sizeof *entries, out, err));
-    return text_check(out, err);
+    EmitParams own = *params;
+    return threemf_put_archive(params, put_model, &own, out, err);
 }

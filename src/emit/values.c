@@ -30,6 +30,20 @@ void add_flag(Values *values, const char *name, bool value)
     text_puts(add_value(values, name), value ? "1" : "0");
 }
 
+void add_quoted(Values *values, const char *name, const char *chars)
+{
+    Text *text = add_value(values, name), line = TEXT_INIT;
+    text_put_line(&line, chars);
+    const char *at = text_chars(&line);
+    text_puts(text, at ? "\"" : NULL);
+    for (; at && *at; at++) {
+        text_puts(text, *at == '"' || *at == '\\' ? "\\" : "");
+        text_append(text, at, 1);
+    }
+    text_puts(text, "\"");
+    text_release(&line);
+}
+
 /* `name` in `quotes`, which another program reads, as a word of a shell; one line. */
 static void put_word(Text *text, const char *name, const char *quotes)
 {

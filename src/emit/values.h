@@ -22,6 +22,8 @@ void add_number(Values *values, const char *name, double value);
 void add_float(Values *values, const char *name, float value);
 /* "1" or "0" */
 void add_flag(Values *values, const char *name, bool value);
+/* As a string of Python and of USD: between ", one line. */
+void add_quoted(Values *values, const char *name, const char *chars);
 /* `name` as a word of a shell, one line, for a command line of another program, which asks for
  * `quotes` about a name with blanks, or for none (""). */
 void add_word(Values *values, const char *value, const char *name, const char *quotes);

@@ -1,5 +1,5 @@
 # Run by Blender, as blender_test.sh has it: `measure FILE...` prints of each file triangles, volume in mm^3, parts and
-# open edges; `draw FILE.glb PICTURE` draws 500 x 500 pixels, 100 mm high, seen along -z, y up, the sun behind the
+# open edges; `draw FILE PICTURE` draws of a GLB or a script 500 x 500 pixels, 100 mm high, seen along -z, y up, the sun behind the
 # camera, transparent where nothing is seen.
 import sys
 
@@ -9,10 +9,24 @@ import numpy
 numpy.bool = bool  # which Blender 3.4's importer of glTF asks of a numpy that no longer has it
 
 
+def make_meshes():
+    """Puts meshes in the place of all curves, as they are drawn."""
+    bpy.context.view_layer.update()
+    graph = bpy.context.evaluated_depsgraph_get()
+    for o in [o for o in bpy.data.objects if o.type == "CURVE"]:
+        made = bpy.data.objects.new(o.name, bpy.data.meshes.new_from_object(o.evaluated_get(graph)))
+        made.matrix_world = o.matrix_world
+        bpy.context.scene.collection.objects.link(made)
+        bpy.data.objects.remove(o)
+
+
 def read(path):
     """Reads a file into an empty scene: its meshes, and how many mm a unit of it is."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    if path.endswith(".glb"):
+    if path.endswith(".py"):
+        exec(compile(open(path).read(), path, "exec"), {})
+        make_meshes()
+    elif path.endswith(".glb"):
         bpy.ops.import_scene.gltf(filepath=path)
     elif path.endswith(".obj"):
         bpy.ops.wm.obj_import(filepath=path)
@@ -20,7 +34,7 @@ def read(path):
         bpy.ops.import_mesh.ply(filepath=path)
     else:
         bpy.ops.import_mesh.stl(filepath=path)
-    return [o for o in bpy.data.objects if o.type == "MESH"], 1000 if path.endswith(".glb") else 1
+    return [o for o in bpy.data.objects if o.type == "MESH"], 1000 if path.endswith((".glb", ".py")) else 1
 
 
 def corners(objects):
@@ -28,7 +42,8 @@ def corners(objects):
     points = []
     for o in objects:
         at = numpy.array([o.matrix_world @ v.co for v in o.data.vertices])
-        points.append(at[numpy.array([polygon.vertices for polygon in o.data.polygons])])
+        o.data.calc_loop_triangles()
+        points.append(at[numpy.array([triangle.vertices for triangle in o.data.loop_triangles])])
     points, numbers = numpy.unique(numpy.concatenate(points).reshape(-1, 3), axis=0, return_inverse=True)
     return points, numbers.reshape(-1, 3)
 

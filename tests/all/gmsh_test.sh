@@ -14,7 +14,7 @@ import csv, json, sys
 import numpy as np
 def expect(what, is_so):
     if not is_so:
-        sys.exit(print("gmsh:", what))
+        sys.exit(print("gmsh:", what) or 1)
 lines = open("t.msh").read().split("\n")
 at = lines.index("$Nodes") + 2
 points = {int(w[0]): [float(x) for x in w[1:]] for w in map(str.split, lines[at:lines.index("$EndNodes")])}

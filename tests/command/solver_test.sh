@@ -37,7 +37,7 @@ mesh = reader.GetOutput()
 manifest = json.load(open("t.vtp.json"))
 def expect(what, is_so):
     if not is_so:
-        sys.exit(print("VTK:", what))
+        sys.exit(print("VTK:", what) or 1)
 names = mesh.GetFieldData().GetAbstractArray("FaceNames")
 names = [names.GetValue(i) for i in range(names.GetNumberOfValues())]
 faces = vtk_to_numpy(mesh.GetCellData().GetArray("ModelFaceID"))

@@ -1,6 +1,6 @@
-/* The extension of the output chooses the emitter, as in cmd_scene.c; meshing.c makes the closed
- * surface that it writes, or webpage.c a page. Options about colours are refused for a format that
- * has none, those about the surface for a page. */
+/* The extension of the output chooses the emitter, as in cmd_scene.c, or an option does; meshing.c
+ * makes what it writes, volumes.c voxels, webpage.c a page. Options that have no effect on a format
+ * are refused. */
 #include "app/commands.h"
 #include "app/pictures/meshing.h"
 #include "app/pictures/picture.h"
@@ -15,7 +15,7 @@
 typedef struct ExportOptions {
     const char *output;
     double prune_radius_mm;
-    bool parts;
+    bool parts, lattice;
     const char *print;
     PrintSettings settings; /* what it says */
     MeshingOptions meshing;
@@ -26,8 +26,8 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, ExportOptions, output),
      .argument = "M.stl",
-     .help = "the mesh, a volume as V.nii.gz, or P.html, a page to turn the tree in; its extension "
-             "chooses the format"},
+     .help = "the mesh, curves, a volume as V.nii.gz, or P.html, a page to turn the tree in; its "
+             "extension chooses the format"},
     {.name = "model",
      SETS(CHOICE, ExportOptions, meshing.body),
      .choices = vessel_body_names,
@@ -58,6 +58,10 @@ static const Option own[] = {
      SETS(FLAG, ExportOptions, parts),
      .group = GROUP_VESSELS,
      .help = "of an STL: the wall and each end as a named solid, as text; a VTP has them always"},
+    {.name = "lattice",
+     SETS(FLAG, ExportOptions, lattice),
+     .group = GROUP_VESSELS,
+     .help = "of a 3MF: a beam for each segment, exactly, and no mesh but a preview"},
     {.name = "print",
      SETS(TEXT, ExportOptions, print),
      .argument = "KEY=VALUE,...",
@@ -83,14 +87,17 @@ static void set_defaults(void *options)
     coloring_set_defaults(&own_options->meshing.coloring);
 }
 
-/* STATUS_USAGE for an option about colours that has no effect. */
-static Status check_colors(const ExportOptions *options, const Emitter *emitter,
+/* STATUS_USAGE for an option that has no effect on a file of this format. */
+static Status check_format(const ExportOptions *options, const Emitter *emitter,
                            const Parsed *parsed, Err *err)
 {
     static const char of_colors[] = "is for formats with colours";
-    const OptionNeed format[] = {{"look", emitter->has_colors, of_colors},
-                                 {"color-by", emitter->has_colors, of_colors},
-                                 {0}};
+    static const char of_meshes[] = "is for formats of triangles";
+    const OptionNeed format[] = {
+        {"look", emitter->has_colors, of_colors}, {"color-by", emitter->has_colors, of_colors},
+        {"model", emitter->of_meshes, of_meshes}, {"tolerance", emitter->of_meshes, of_meshes},
+        {"lod", emitter->of_meshes, of_meshes},   {"part-overlaps", emitter->of_meshes, of_meshes},
+        {"print", emitter->of_meshes, of_meshes}, {0}};
     TRY(options_check_needs(parsed, format, err));
     return coloring_check_needs(&options->meshing.coloring, parsed, err);
 }
@@ -102,9 +109,15 @@ static Status find_emitter(const ExportOptions *options, const Emitter **emitter
     TRY(scene_files_find(options->output, true, emitter, err));
     if (options->parts)
         asked = emitter_asked((*emitter)->extension, "parts");
+    else if (options->lattice)
+        asked = emitter_asked((*emitter)->extension, "lattice");
+    else
+        return STATUS_OK;
     if (options->parts && !asked && !(*emitter)->has_parts)
         return err_set(err, STATUS_USAGE,
                        "--parts is for .stl and .vtp, which hold names of parts");
+    if (options->lattice && !asked)
+        return err_set(err, STATUS_USAGE, "--lattice is for .3mf, which holds beams");
     *emitter = asked ? asked : *emitter;
     return STATUS_OK;
 }
@@ -181,7 +194,7 @@ static Status run_export(void *options, Parsed *parsed, Err *err)
     if (volume)
         return export_volume(own_options, volume, parsed, err);
     TRY(find_emitter(own_options, &emitter, err));
-    TRY(check_colors(own_options, emitter, parsed, err));
+    TRY(check_format(own_options, emitter, parsed, err));
     TRY(read_print(own_options, emitter, err));
     TRY(scene_files_note(emitter, own_options->output, false, &parsed->files, err));
     TRY(picture_read_tree(&own_options->meshing.coloring, own_options->prune_radius_mm, parsed, &of,
@@ -194,11 +207,13 @@ static Status run_export(void *options, Parsed *parsed, Err *err)
 
 const Command command_export = {
     .name = "export",
-    .summary = "write the vessels as a closed mesh, as voxels, or as a page to turn them in",
+    .summary = "write the vessels as a mesh, curves, voxels, or a page to turn them in",
     .operands = "T.swc -o M.stl",
     .examples = "  corcast export tree.swc -o tree.stl\n"
                 "  corcast export tree.swc --color-by strahler -o tree.glb\n"
                 "  corcast export tree.swc --tolerance 0.05 -o tree.ply\n"
+                "  corcast export tree.swc --parts -o tree.stl\n"
+                "  corcast export tree.swc --color-by flow -o tree.py\n"
                 "  corcast export tree.swc --voxel 0.1 --labels segment -o tree.nii.gz\n"
                 "  corcast export tree.swc --color-by flow -o tree.html\n",
     .min_operands = 1,

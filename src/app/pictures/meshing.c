@@ -133,14 +133,16 @@ static Status triangulate(Meshing *made, const MeshingOptions *options, const Co
     return status;
 }
 
-static Status make(const Common *common, const MeshingOptions *options, bool colored, Meshing *made,
-                   Err *err)
+static Status make(const Common *common, const MeshingOptions *options, const Emitter *emitter,
+                   Meshing *made, Err *err)
 {
     TRY(take_vessels(made, (VesselBody)options->body, err));
     if (made->print)
         TRY(printing_prepare(made->print, &made->vessels, &made->changes, err));
-    if (colored)
+    if (emitter->has_colors)
         TRY(color_vessels(options, common->quiet, made, err));
+    if (emitter->of_lines)
+        return STATUS_OK;
     TRY(triangulate(made, options, common, err));
     TRY(meshreport_check(&made->report, &made->vessels, err));
     say_result(made, common->quiet);
@@ -251,8 +253,9 @@ Status meshing_write(const Emitter *emitter, const MeshingOptions *options, cons
     Meshing made = {.of = of, .print = options->print};
     char *line = NULL;
     Status status;
-    TRY_GOTO(make(&parsed->common, options, emitter->has_colors, &made, err));
-    TRY_GOTO(write_beside(emitter->has_parts, &made, err));
+    TRY_GOTO(make(&parsed->common, options, emitter, &made, err));
+    if (emitter->of_meshes)
+        TRY_GOTO(write_beside(emitter->has_parts, &made, err));
     TRY_GOTO(command_line_text(parsed, &line, err));
     EmitParams params = {.mesh = &made.mesh,
                          .vessels = &made.vessels,

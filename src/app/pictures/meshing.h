@@ -22,7 +22,8 @@ typedef struct MeshingOptions {
     Coloring coloring;
 } MeshingOptions;
 
-/* Triangulates the vessels of a tree and writes `output` and its manifest. Says on standard error,
+/* Triangulates the vessels of a tree, unless the emitter writes them as lines, and writes `output`
+ * and what stands beside it. Says on standard error,
  * unless quiet, how much work it is, and what is to be known of the mesh. STATUS_DIFFERS when the
  * mesh is not sound; errors as coloring_appearance, vesselmesh_build and emit_files have them. */
 MUST_CHECK Status meshing_write(const Emitter *emitter, const MeshingOptions *options,

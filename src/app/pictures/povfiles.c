@@ -94,11 +94,11 @@ done:
     return status;
 }
 
-static void surface_description(const char *tree_path, Text *out)
+static void export_description(const char *tree_path, bool of_lines, Text *out)
 {
     text_puts(out, "arterial tree ");
     text_put_line(out, file_name(tree_path));
-    text_puts(out, ", its surface");
+    text_puts(out, of_lines ? ", its vessels" : ", its surface");
 }
 
 /* What the colours mean, or NULL. */
@@ -120,7 +120,7 @@ Status scene_files_write(const Emitter *emitter, const EmitParams *params, const
     if (params->scene)
         picture_description(&params->scene->geometry, tree_path, &description);
     else
-        surface_description(tree_path, &description);
+        export_description(tree_path, emitter->of_lines, &description);
     if (said_of(params))
         text_printf(&description, ", coloured by %s", said_of(params));
     EmitParams all = *params;

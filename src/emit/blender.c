@@ -1,0 +1,146 @@
+/* A Python script of Blender's: what it does stands in the template, and C writes calls with
+ * numbers. Splines have no colours of their own but materials, of which an object has few: where
+ * there are more than MOST_MATERIALS colours, those whose codes agree in their leading bits become
+ * one, the bits being as many as keep them that few. */
+#include "emit/curves.h"
+#include "emit/meshparts.h"
+#include "emit/rows.h"
+#include "emit/values.h"
+
+#include <stdlib.h>
+
+enum { MOST_MATERIALS = 64 };
+
+typedef struct Script {
+    const EmitParams *params;
+    Curves curves;
+    uint32_t *paints;     /* the material of each segment, by its index; owned */
+    uint32_t *painted;    /* a segment of each material; owned */
+    uint64_t *color_keys; /* the leading bits of each segment's colour, and its index; owned */
+    size_t n_materials;
+} Script;
+
+static void release(Script *script)
+{
+    curves_release(&script->curves);
+    free(script->paints);
+    free(script->painted);
+    free(script->color_keys);
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+    const uint64_t *one = a, *other = b;
+    return (*one > *other) - (*one < *other);
+}
+
+/* Sorts the segments by so many leading bits of their colours' codes, and counts how many there
+ * are. */
+static size_t sort_colors(Script *script, int bits)
+{
+    size_t n = script->params->vessels->n_segments, found = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        uint8_t codes[3];
+        vessel_color_codes(script->params, i, codes);
+        uint64_t key = 0;
+        for (int k = 0; k < 3; k++)
+            key = key << 8 | codes[k] >> (8 - bits);
+        script->color_keys[i] = key << 32 | i;
+    }
+    qsort(script->color_keys, n, sizeof *script->color_keys, compare_keys);
+    for (size_t i = 0; i < n; i++)
+        found += i == 0 || script->color_keys[i] >> 32 != script->color_keys[i - 1] >> 32;
+    return found;
+}
+
+static Status find_materials(Script *script, Err *err)
+{
+    size_t n = script->params->vessels->n_segments;
+    int bits = 8;
+    TRY(mem_calloc(&script->paints, n, sizeof *script->paints, "materials", err));
+    TRY(mem_calloc(&script->painted, n, sizeof *script->painted, "materials", err));
+    TRY(mem_calloc(&script->color_keys, n, sizeof *script->color_keys, "materials", err));
+    while (sort_colors(script, bits) > MOST_MATERIALS)
+        bits--;
+    for (size_t i = 0; i < n; i++) {
+        uint32_t segment = (uint32_t)script->color_keys[i];
+        if (i == 0 || script->color_keys[i] >> 32 != script->color_keys[i - 1] >> 32)
+            script->painted[script->n_materials++] = segment;
+        script->paints[segment] = (uint32_t)script->n_materials - 1;
+    }
+    return STATUS_OK;
+}
+
+static Status put_materials(Text *out, void *context, Err *err)
+{
+    const Script *script = context;
+    for (size_t i = 0; i < script->n_materials; i++) {
+        Rgb color = vessel_color(script->params, script->painted[i]);
+        text_puts(out, "(\"vessel_");
+        put_color_code(out, script->params, script->painted[i]);
+        put_mesh_floats(out, "\", (", (const float[3]){color.r, color.g, color.b}, ", ", ")),\n");
+    }
+    return text_check(out, err);
+}
+
+static void put_spline(const Script *script, size_t curve, Text *out)
+{
+    const Curves *curves = &script->curves;
+    text_printf(out, "(%u, %u, [", curve_kind(curves, curve)->paint,
+                script->params->vessels->ids[curve_segment(curves, curve, 0)]);
+    for (size_t i = 0; i < curve_points(curves, curve); i++) {
+        Vec3 at = curve_point(curves, curve, i);
+        char radius[NUMBER_TEXT_SIZE];
+        uint32_t segment = curve_segment(curves, curve, i);
+        put_mesh_floats(out, i ? ", " : "", (const float[3]){(float)at.x, (float)at.y, (float)at.z},
+                        ", ", ", ");
+        text_puts(out,
+                  number_text_float((float)curves->vessels->segments[segment].radius_mm, radius));
+    }
+    text_puts(out, "]),\n");
+}
+
+static Status put_vessels(Text *out, void *context, Err *err)
+{
+    const Script *script = context;
+    const Curves *curves = &script->curves;
+    for (size_t curve = 0, end; curve < curves->n; curve = end) {
+        const CurveKind *kind = curve_kind(curves, curve);
+        end = curves_group_end(curves, curve);
+        text_puts(out, "vessels(\"");
+        curves_put_name(script->params, kind, out);
+        text_printf(out, "\", %u, %u, [\n", kind->tree + 1, kind->order);
+        for (size_t i = curve; i < end; i++)
+            put_spline(script, i, out);
+        text_puts(out, "])\n");
+    }
+    return text_check(out, err);
+}
+
+static Status put_script(Script *script, Text *out, Err *err)
+{
+    const EmitParams *params = script->params;
+    Values values = {0};
+    add_about(&values, params, vessels_box(params->vessels), vec3(0, 0, 0));
+    add_word(&values, "input", params->file, "");
+    add_number(&values, "roughness", microfacet_roughness(&params->appearance->finish));
+    add_quoted(&values, "quoted_command", params->command);
+    add_part(&values, "materials", put_materials, script);
+    add_part(&values, "vessels", put_vessels, script);
+    return values_expand(&values, params, "blender/tree.py", out, err);
+}
+
+Status blender_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                     Err *err)
+{
+    (void)second;
+    (void)report;
+    Script script = {.params = params};
+    Status status;
+    TRY_GOTO(find_materials(&script, err));
+    TRY_GOTO(curves_find(params, script.paints, &script.curves, err));
+    TRY_GOTO(put_script(&script, out, err));
+done:
+    release(&script);
+    return status;
+}

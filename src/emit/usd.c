@@ -1,0 +1,144 @@
+/* Universal Scene Description as text: BasisCurves, linear, one primitive for each Strahler order,
+ * and of a forest for each tree and order. Widths are diameters. There are no normals: curves that
+ * have some are ribbons. What points have, a segment each, stands in arrays of their own, so that
+ * the points of a primitive are walked once for each array. */
+#include "emit/curves.h"
+#include "emit/meshparts.h"
+#include "emit/rows.h"
+#include "emit/values.h"
+
+/* The curves of one primitive. */
+typedef struct Group {
+    const EmitParams *params;
+    const Curves *curves;
+    size_t first, end;
+} Group;
+
+static void put_counts(const Group *group, Text *out)
+{
+    for (size_t i = group->first; i < group->end; i++)
+        text_printf(out, "%s%zu", i > group->first ? ", " : "", curve_points(group->curves, i));
+}
+
+/* Appends what `put` does for each point, with commas between. */
+static Status put_each(const Group *group, void (*put)(const Group *, size_t, size_t, Text *),
+                       Text *out, Err *err)
+{
+    for (size_t curve = group->first; curve < group->end; curve++)
+        for (size_t i = 0; i < curve_points(group->curves, curve); i++) {
+            if (i > 0 || curve > group->first)
+                text_puts(out, i ? ", " : ",\n");
+            put(group, curve, i, out);
+        }
+    return text_check(out, err);
+}
+
+static void put_tuple(Vec3 v, Text *out)
+{
+    put_mesh_floats(out, "(", (const float[3]){(float)v.x, (float)v.y, (float)v.z}, ", ", ")");
+}
+
+static void put_place(const Group *group, size_t curve, size_t i, Text *out)
+{
+    put_tuple(curve_point(group->curves, curve, i), out);
+}
+
+static void put_width(const Group *group, size_t curve, size_t i, Text *out)
+{
+    char number[NUMBER_TEXT_SIZE];
+    uint32_t segment = curve_segment(group->curves, curve, i);
+    double radius = group->params->vessels->segments[segment].radius_mm;
+    text_puts(out, number_text_float((float)(2 * radius), number));
+}
+
+static void put_color(const Group *group, size_t curve, size_t i, Text *out)
+{
+    Rgb color = vessel_color(group->params, curve_segment(group->curves, curve, i));
+    put_mesh_floats(out, "(", (const float[3]){color.r, color.g, color.b}, ", ", ")");
+}
+
+static void put_id(const Group *group, size_t curve, size_t i, Text *out)
+{
+    text_printf(out, "%u", group->params->vessels->ids[curve_segment(group->curves, curve, i)]);
+}
+
+static Status put_points(Text *out, void *context, Err *err)
+{
+    return put_each(context, put_place, out, err);
+}
+
+static Status put_widths(Text *out, void *context, Err *err)
+{
+    return put_each(context, put_width, out, err);
+}
+
+/* One for all where the look has one. */
+static Status put_colors(Text *out, void *context, Err *err)
+{
+    const Group *group = context;
+    if (group->params->appearance->colors)
+        return put_each(group, put_color, out, err);
+    put_color(group, group->first, 0, out);
+    return text_check(out, err);
+}
+
+static Status put_segments(Text *out, void *context, Err *err)
+{
+    return put_each(context, put_id, out, err);
+}
+
+static Box group_box(const Group *group)
+{
+    const VesselTree *vessels = group->params->vessels;
+    Box box = box_empty();
+    for (size_t i = group->curves->first[group->first]; i < group->curves->first[group->end]; i++)
+        box = box_with_vessel(box, &vessels->segments[group->curves->segments[i]]);
+    return box;
+}
+
+static Status put_group(Group *group, Text *out, Err *err)
+{
+    const CurveKind *kind = curve_kind(group->curves, group->first);
+    Box box = group_box(group);
+    Values values = {0};
+    curves_put_name(group->params, kind, add_value(&values, "name"));
+    put_counts(group, add_value(&values, "counts"));
+    put_tuple(box.low, add_value(&values, "low"));
+    put_tuple(box.high, add_value(&values, "high"));
+    text_puts(add_value(&values, "colors_of"),
+              group->params->appearance->colors ? "vertex" : "constant");
+    text_printf(add_value(&values, "order"), "%u", kind->order);
+    text_printf(add_value(&values, "tree"), "%u", kind->tree + 1);
+    add_part(&values, "points", put_points, group);
+    add_part(&values, "widths", put_widths, group);
+    add_part(&values, "colors", put_colors, group);
+    add_part(&values, "segments", put_segments, group);
+    return values_expand(&values, group->params, "usd/curves.usda", out, err);
+}
+
+static Status put_groups(Text *out, void *context, Err *err)
+{
+    Group *group = context;
+    for (; group->first < group->curves->n; group->first = group->end) {
+        group->end = curves_group_end(group->curves, group->first);
+        TRY(put_group(group, out, err));
+    }
+    return text_check(out, err);
+}
+
+Status usd_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
+{
+    (void)second;
+    (void)report;
+    Curves curves;
+    TRY(curves_find(params, NULL, &curves, err));
+    Group group = {.params = params, .curves = &curves};
+    Values values = {0};
+    add_quoted(&values, "command", params->command);
+    add_quoted(&values, "generator", params->generator);
+    add_quoted(&values, "description", params->description);
+    add_part(&values, "curves", put_groups, &group);
+    Status status = values_expand(&values, params, "usd/tree.usda", out, err);
+    curves_release(&curves);
+    return status;
+}

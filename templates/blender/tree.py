@@ -1,0 +1,64 @@
+# ${description}
+# ${generator}: ${command}
+#
+# Vessels as curves for Blender 2.8 and later: blender -P ${input}
+# or open this file in the text editor and run it. Coordinates and radii are millimetres, y is up:
+# ${extent}.
+#
+# The empty "tree" makes metres of them and turns y up into z, which is up in Blender. Below it is
+# a curve object for each Strahler order, in a forest for each tree and order. Its splines are
+# vessels, with a radius at each point; Bevel > Depth is 1 and stays so. A spline ends where the
+# order ends or the material changes; the property segment_ids has the ids of their first segments.
+# Nothing else in the scene is changed.
+import bpy
+
+SCALE = 0.001  # metres a millimetre
+BEVEL = 6  # Bevel > Resolution: 16 sides
+ROUGHNESS = ${roughness}
+
+
+def material(name, color):
+    """A material of linear RGB, which the viewport shows, too."""
+    made = bpy.data.materials.new(name)
+    made.diffuse_color, made.roughness = (*color, 1), ROUGHNESS
+    made.use_nodes = True
+    for node in made.node_tree.nodes:
+        if node.type == "BSDF_PRINCIPLED":
+            node.inputs["Base Color"].default_value = (*color, 1)
+            node.inputs["Roughness"].default_value = ROUGHNESS
+    return made
+
+
+def add(name, data, **properties):
+    """An object of the data in the scene, with custom properties."""
+    made = bpy.data.objects.new(name, data)
+    for key, value in properties.items():
+        made[key] = value
+    bpy.context.scene.collection.objects.link(made)
+    return made
+
+
+def vessels(name, tree, order, splines):
+    """A curve object; of each spline the material, the id and x, y, z, radius, x, y, z, radius, ..."""
+    curve = bpy.data.curves.new(name, "CURVE")
+    curve.dimensions, curve.fill_mode = "3D", "FULL"
+    curve.bevel_depth, curve.bevel_resolution = 1, BEVEL
+    curve.use_fill_caps = True
+    for each in MATERIALS:
+        curve.materials.append(each)
+    for number, _, at in splines:
+        spline = curve.splines.new("POLY")
+        spline.material_index = number
+        spline.points.add(len(at) // 4 - 1)
+        for point, x, y, z, radius in zip(spline.points, at[::4], at[1::4], at[2::4], at[3::4]):
+            point.co, point.radius = (x, y, z, 1), radius
+    made = add(name, curve, tree=tree, strahler_order=order, segment_ids=[row[1] for row in splines])
+    made.parent = TREE
+
+
+TREE = add("tree", None, unit="mm", command=${quoted_command})
+TREE.rotation_euler, TREE.scale = (1.5707963267948966, 0, 0), (SCALE, SCALE, SCALE)
+MATERIALS = [material(name, color) for name, color in (
+${materials})]
+
+${vessels}
