@@ -1,4 +1,4 @@
-/* STL as text: a solid for the wall and for each end, named, which OpenFOAM's snappyHexMesh makes
+/* STL as text: a solid for each wall and each end, named, which OpenFOAM's snappyHexMesh makes
  * patches of. Triangles are sorted by their parts with counting, so that they keep their order
  * within each. Numbers read back to the same floats, so that the solids fit together exactly. */
 #include "emit/meshparts.h"
@@ -10,7 +10,7 @@
  * owned). */
 static Status sort_triangles(const EmitParams *params, uint32_t **sorted, size_t **ends, Err *err)
 {
-    const size_t n = params->mesh->n_triangles, n_parts = params->ends->n + 1;
+    const size_t n = params->mesh->n_triangles, n_parts = meshends_parts(params->ends);
     const uint32_t *parts = params->ends->parts;
     TRY(mem_calloc(sorted, n, sizeof **sorted, "triangles", err));
     TRY(mem_calloc(ends, n_parts + 1, sizeof **ends, "parts", err));
@@ -43,7 +43,7 @@ Status stl_write_parts(const EmitParams *params, Text *out, Text *second, EmitRe
     size_t *ends = NULL;
     Status status;
     TRY_GOTO(sort_triangles(params, &sorted, &ends, err));
-    for (size_t part = 0, i = 0; part <= params->ends->n; part++) {
+    for (size_t part = 0, i = 0; part < meshends_parts(params->ends); part++) {
         const char *name = meshends_part_name(params->ends, part);
         text_printf(out, "solid %s\n", name);
         for (; i < ends[part]; i++)

@@ -66,9 +66,9 @@ static void put_letters(Text *text, const char *chars)
 static void add_texts(Values *values, const EmitParams *params)
 {
     Text *names = add_value(values, "names");
-    for (size_t part = 0; part <= params->ends->n; part++)
+    for (size_t part = 0; part < meshends_parts(params->ends); part++)
         put_letters(names, meshends_part_name(params->ends, part));
-    text_printf(add_value(values, "n_names"), "%zu", params->ends->n + 1);
+    text_printf(add_value(values, "n_names"), "%zu", meshends_parts(params->ends));
     Text *about = add_value(values, "about");
     put_letters(about, params->generator);
     put_letters(about, params->description);

@@ -1,16 +1,31 @@
-/* A triangle of a cap says which segment it closes, and the side to which it faces says at which
- * end of it. Areas are added up place by place; the places that have one are sorted and numbered,
- * and the triangles are given the numbers of their places. */
+/* A flat triangle says which segment it is of, and the side to which it faces says at which end of
+ * it; of a hollow wall, whether it is of the lumen tells discs from rings. Areas are added up place
+ * by place; the places that have one are sorted and numbered, and the triangles are given the
+ * numbers of their places. */
 #include "scene/meshends.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Either end of a segment: place 2 i is where segment i begins, 2 i + 1 where it ends. */
+/* Disc and ring at either end of a segment: places 4 i and 4 i + 1 are the discs where segment i
+ * begins and ends, 4 i + 2 and 4 i + 3 the rings. */
+enum { PLACES = 4, AT_END = 1, IS_RING = 2 };
+
 typedef struct Place {
-    double area_mm2; /* 0: nothing closes it */
+    double area_mm2; /* 0: there is nothing */
     uint32_t part;
 } Place;
+
+/* What is no end. */
+enum { WALL, LUMEN, FRAME, WALLS };
+
+typedef struct Search {
+    const VesselMesh *mesh;
+    const VesselTree *tree;
+    bool is_hollow;
+    uint32_t walls[WALLS]; /* their parts */
+    Place *places;
+} Search;
 
 void meshends_release(MeshEnds *ends)
 {
@@ -24,14 +39,27 @@ static Vec3 axis_of(const FieldSegment *segment)
     return vec3_normalized(vec3_sub(segment->b, segment->a));
 }
 
-/* The place that a triangle of a cap closes. */
-static uint32_t place_of(const VesselMesh *mesh, const VesselTree *tree, size_t triangle)
+static int wall_of(const VesselMesh *mesh, size_t triangle)
+{
+    uint32_t label = mesh->labels[triangle];
+    return label & MESH_FRAME ? FRAME : label & MESH_LUMEN ? LUMEN : WALL;
+}
+
+static bool is_end(const VesselMesh *mesh, size_t triangle)
+{
+    return mesh_is_cap(mesh, triangle) && wall_of(mesh, triangle) != FRAME;
+}
+
+/* The place of a triangle of an end. */
+static uint32_t place_of(const Search *search, size_t triangle)
 {
     float normal[3];
-    uint32_t segment = mesh_segment(mesh, triangle);
-    mesh_flat_normal(mesh, triangle, normal);
+    uint32_t segment = mesh_segment(search->mesh, triangle);
+    mesh_flat_normal(search->mesh, triangle, normal);
     Vec3 out = vec3((double)normal[0], (double)normal[1], (double)normal[2]);
-    return 2 * segment + (vec3_dot(out, axis_of(&tree->segments[segment])) > 0);
+    bool at_end = vec3_dot(out, axis_of(&search->tree->segments[segment])) > 0;
+    bool is_ring = search->is_hollow && wall_of(search->mesh, triangle) != LUMEN;
+    return PLACES * segment + (at_end ? AT_END : 0) + (is_ring ? IS_RING : 0);
 }
 
 static double triangle_area(const VesselMesh *mesh, size_t triangle)
@@ -42,16 +70,32 @@ static double triangle_area(const VesselMesh *mesh, size_t triangle)
                                         vec3_sub(mesh_point(mesh, at[2]), a)));
 }
 
-static MeshEnd make_end(const VesselTree *tree, uint32_t place, double area_mm2)
+/* Which walls there are, and what they are called. */
+static void find_walls(Search *search, MeshEnds *ends)
 {
-    const FieldSegment *segment = &tree->segments[place / 2];
-    bool is_inlet = place % 2 == 0;
-    return (MeshEnd){.segment = place / 2,
+    bool found[WALLS] = {false};
+    for (size_t i = 0; i < search->mesh->n_triangles; i++)
+        found[wall_of(search->mesh, i)] = true;
+    search->is_hollow = found[LUMEN];
+    const char *const names[WALLS] = {found[LUMEN] ? "outer" : "wall", "lumen", "frame"};
+    for (int wall = 0; wall < WALLS; wall++)
+        if (found[wall]) {
+            search->walls[wall] = (uint32_t)ends->n_walls;
+            ends->walls[ends->n_walls++] = names[wall];
+        }
+}
+
+static MeshEnd make_end(const Search *search, uint32_t place)
+{
+    const FieldSegment *segment = &search->tree->segments[place / PLACES];
+    bool is_inlet = !(place & AT_END);
+    return (MeshEnd){.segment = place / PLACES,
                      .is_inlet = is_inlet,
+                     .is_ring = place & IS_RING,
                      .center = is_inlet ? segment->a : segment->b,
                      .normal = vec3_scale(axis_of(segment), is_inlet ? -1 : 1),
                      .radius_mm = segment->radius_mm,
-                     .area_mm2 = area_mm2};
+                     .area_mm2 = search->places[place].area_mm2};
 }
 
 static int compare_keys(const void *a, const void *b)
@@ -60,10 +104,11 @@ static int compare_keys(const void *a, const void *b)
     return (*one > *other) - (*one < *other);
 }
 
-/* Ends are sorted by whether blood leaves there, id, and place. */
+/* Ends are sorted by whether they are rings, whether blood leaves there, id, and segment. */
 static uint64_t sorting_key(const VesselTree *tree, uint32_t place)
 {
-    return (uint64_t)(place % 2) << 63 | (uint64_t)tree->ids[place / 2] << 32 | place / 2;
+    uint32_t segment = place / PLACES;
+    return (uint64_t)(place % PLACES) << 62 | (uint64_t)tree->ids[segment] << 32 | segment;
 }
 
 static void name_ends(const VesselTree *tree, MeshEnds *ends)
@@ -71,48 +116,49 @@ static void name_ends(const VesselTree *tree, MeshEnds *ends)
     size_t inlets = 0;
     int digits = 3;
     for (size_t i = 0; i < ends->n; i++) {
-        inlets += ends->ends[i].is_inlet;
-        int own = snprintf(NULL, 0, "%u", tree->ids[ends->ends[i].segment]);
+        const MeshEnd *end = &ends->ends[i];
+        inlets += end->is_inlet && end->is_ring == ends->ends[0].is_ring;
+        int own = snprintf(NULL, 0, "%u", tree->ids[end->segment]);
         digits = own > digits ? own : digits;
     }
     for (size_t i = 0; i < ends->n; i++) {
         MeshEnd *end = &ends->ends[i];
+        const char *ring = end->is_ring ? "_ring" : "";
         if (end->is_inlet && inlets == 1)
-            snprintf(end->name, sizeof end->name, "inlet");
+            snprintf(end->name, sizeof end->name, "inlet%s", ring);
         else
-            snprintf(end->name, sizeof end->name, "%s_%0*u", end->is_inlet ? "inlet" : "outlet",
-                     digits, tree->ids[end->segment]);
+            snprintf(end->name, sizeof end->name, "%s_%0*u%s", end->is_inlet ? "inlet" : "outlet",
+                     digits, tree->ids[end->segment], ring);
     }
 }
 
 /* Lists the places that have an area, in their order, and counts them. */
-static Status sort_places(const VesselTree *tree, const Place *places, uint64_t **keys, size_t *n,
-                          Err *err)
+static Status sort_places(const Search *search, uint64_t **keys, size_t *n, Err *err)
 {
     size_t count = 0;
-    for (size_t place = 0; place < 2 * tree->n_segments; place++)
-        count += places[place].area_mm2 > 0;
+    for (size_t place = 0; place < PLACES * search->tree->n_segments; place++)
+        count += search->places[place].area_mm2 > 0;
     TRY(mem_calloc(keys, count, sizeof **keys, "ends", err));
     for (uint32_t place = 0, at = 0; at < count; place++)
-        if (places[place].area_mm2 > 0)
-            (*keys)[at++] = sorting_key(tree, place);
+        if (search->places[place].area_mm2 > 0)
+            (*keys)[at++] = sorting_key(search->tree, place);
     qsort(*keys, count, sizeof **keys, compare_keys);
     *n = count;
     return STATUS_OK;
 }
 
-static Status list_ends(const VesselTree *tree, Place *places, MeshEnds *ends, Err *err)
+static Status list_ends(Search *search, MeshEnds *ends, Err *err)
 {
     uint64_t *keys = NULL;
     Status status;
-    TRY_GOTO(sort_places(tree, places, &keys, &ends->n, err));
+    TRY_GOTO(sort_places(search, &keys, &ends->n, err));
     TRY_GOTO(mem_calloc(&ends->ends, ends->n, sizeof *ends->ends, "ends", err));
     for (uint32_t i = 0; i < ends->n; i++) {
-        uint32_t place = (uint32_t)(2 * (keys[i] & UINT32_MAX) + (keys[i] >> 63));
-        ends->ends[i] = make_end(tree, place, places[place].area_mm2);
-        places[place].part = i + 1;
+        uint32_t place = PLACES * (uint32_t)keys[i] + (uint32_t)(keys[i] >> 62);
+        ends->ends[i] = make_end(search, place);
+        search->places[place].part = (uint32_t)ends->n_walls + i;
     }
-    name_ends(tree, ends);
+    name_ends(search->tree, ends);
 done:
     free(keys);
     return status;
@@ -121,21 +167,23 @@ done:
 Status meshends_find(const VesselMesh *mesh, const VesselTree *tree, MeshEnds *out, Err *err)
 {
     MeshEnds made = {0};
-    Place *places = NULL;
+    Search search = {.mesh = mesh, .tree = tree};
     Status status;
-    TRY_GOTO(mem_calloc(&places, 2 * tree->n_segments, sizeof *places, "ends", err));
+    TRY_GOTO(
+        mem_calloc(&search.places, PLACES * tree->n_segments, sizeof *search.places, "ends", err));
     TRY_GOTO(mem_calloc(&made.parts, mesh->n_triangles, sizeof *made.parts, "triangles", err));
+    find_walls(&search, &made);
     for (size_t i = 0; i < mesh->n_triangles; i++)
-        if (mesh_is_cap(mesh, i))
-            places[place_of(mesh, tree, i)].area_mm2 += triangle_area(mesh, i);
-    TRY_GOTO(list_ends(tree, places, &made, err));
+        if (is_end(mesh, i))
+            search.places[place_of(&search, i)].area_mm2 += triangle_area(mesh, i);
+    TRY_GOTO(list_ends(&search, &made, err));
     for (size_t i = 0; i < mesh->n_triangles; i++)
-        if (mesh_is_cap(mesh, i))
-            made.parts[i] = places[place_of(mesh, tree, i)].part;
+        made.parts[i] = is_end(mesh, i) ? search.places[place_of(&search, i)].part
+                                        : search.walls[wall_of(mesh, i)];
     *out = made;
     made = (MeshEnds){0};
 done:
     meshends_release(&made);
-    free(places);
+    free(search.places);
     return status;
 }

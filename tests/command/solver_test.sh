@@ -7,18 +7,19 @@ grown() {
     run_ok corcast grow --terminals 23 --domain ball:41 --seed 7 -o t.swc --quiet
 }
 
-# volume_of_tetrahedra NAME: of NAME.1.node and NAME.1.ele.
-volume_of_tetrahedra() {
+# volumes_of_tetrahedra NAME: of NAME.1.node and NAME.1.ele, of each region that TetGen numbers, rising.
+volumes_of_tetrahedra() {
     awk 'FNR == 1 || /^#/ { next }
         FILENAME ~ /node$/ { for (k = 0; k < 3; k++) x[$1, k] = $(k + 2); next }
         {
             for (i = 0; i < 3; i++) for (k = 0; k < 3; k++) v[i, k] = x[$(i + 3), k] - x[$2, k]
             for (k = 0; k < 3; k++) {
                 m = (k + 1) % 3; n = (k + 2) % 3
-                sum += v[0, k] * (v[1, m] * v[2, n] - v[1, n] * v[2, m]) / 6
+                sum[$6] += v[0, k] * (v[1, m] * v[2, n] - v[1, n] * v[2, m]) / 6
             }
         }
-        END { printf "%.9g\n", sum < 0 ? -sum : sum }' "$1.1.node" "$1.1.ele"
+        END { for (region in sum) printf "%.9g\n", sum[region] < 0 ? -sum[region] : sum[region] }' "$1.1.node" "$1.1.ele" |
+        sort -g
 }
 
 # The areas of ends are those of regular polygons within circles.
@@ -98,11 +99,45 @@ test_tetgen_fills_the_surface_as_it_is() {
     grown
     run_ok corcast export t.swc --parts -o t.stl --quiet
     run_ok timeout 60 tetgen -pYQ t.stl
-    awk -v a="$(jq .volume_mm3 t.stl.json)" -v b="$(volume_of_tetrahedra t)" 'BEGIN { exit !(a > 100 && (a / b - 1) ^ 2 < 1e-5 ^ 2) }' ||
-        fail "TetGen fills $(volume_of_tetrahedra t) mm^3 of $(jq .volume_mm3 t.stl.json)"
+    awk -v a="$(jq .volume_mm3 t.stl.json)" -v b="$(volumes_of_tetrahedra t)" 'BEGIN { exit !(a > 100 && (a / b - 1) ^ 2 < 1e-5 ^ 2) }' ||
+        fail "TetGen fills $(volumes_of_tetrahedra t) mm^3 of $(jq .volume_mm3 t.stl.json)"
     # -Y: no point is added on the surface.
     [ "$(awk '!/^#/ && NR > 1 { n++ } END { print n }' t.1.face)" = "$(jq .triangles t.stl.json)" ] ||
         fail "TetGen's surface has other triangles"
+}
+
+# The wall shares the lumen's triangles, so that the tetrahedra of both fit together.
+test_a_wall_is_a_second_surface_and_tetgen_fills_wall_and_lumen() {
+    command -v tetgen >/dev/null || skip "tetgen is not installed"
+    run_ok corcast grow --terminals 7 --domain ball:41 --seed 7 -o t.swc --quiet
+    run_ok corcast export t.swc --tolerance 0.06 --parts -o plain.stl --quiet
+    run_ok corcast export t.swc --tolerance 0.06 --parts --wall 0.285 -o t.stl --quiet
+    [ "$(sed -n 's/^solid //p' t.stl | head -3 | tr '\n' ' ')" = "outer lumen inlet " ] || fail "$(grep ^solid t.stl)"
+    sed 1d plain.ends.csv | sed 's/^\([^,]*\),[0-9]*,/\1,/' >discs
+    expect_same discs <(sed '1d; /_ring/d' t.ends.csv | sed 's/^\([^,]*\),[0-9]*,/\1,/')
+    [ "$(grep -c _ring, t.ends.csv)" = 8 ] || fail "expected a ring at each end"
+    # Of a ring the area lacks what polygons lack of circles.
+    awk -F , '/_ring,/ { c = 3.141592653589793 * (($10 + 0.285) ^ 2 - $10 ^ 2); if ($11 < 0.95 * c || $11 >= c || $12 != "") exit 1 }' \
+        t.ends.csv || fail "expected rings of 0.285 mm: $(grep _ring t.ends.csv)"
+    run_ok timeout 60 tetgen -pYAQ t.stl
+    volumes_of_tetrahedra t >volumes
+    jq '.print.lumen_mm3, .volume_mm3' t.stl.json | sort -g | paste volumes - |
+        awk 'NF != 2 || $2 < 50 || ($1 / $2 - 1) ^ 2 > 1e-5 ^ 2 { exit 1 } END { exit NR != 2 }' ||
+        fail "TetGen fills $(cat volumes), expected $(jq -c '[.print.lumen_mm3, .volume_mm3]' t.stl.json)"
+    expect_json plain.stl.json ".volume_mm3 / $(jq .print.lumen_mm3 t.stl.json) - 1 | . * . < 1e-12"
+}
+
+test_refuses_a_wall_without_named_parts_and_beside_a_print() {
+    run corcast export "$DATA/bifurcation.swc" --wall 0.3 -o m.stl
+    expect_status 2
+    expect_sentence '--wall is for named parts: a \.vtp, or an \.stl with --parts'
+    run corcast export "$DATA/bifurcation.swc" --wall 0.3 --print scale=2 -o m.vtp
+    expect_status 2
+    expect_sentence '--wall and --print, which has a wall= of its own, exclude each other'
+    run corcast export "$DATA/bifurcation.swc" --wall 0.3 --model rounded -o m.vtp
+    expect_status 2
+    expect_sentence '--wall: walls, .* need --model isosurface'
+    expect_only
 }
 
 test_the_centreline_beside_it_is_the_tree() {

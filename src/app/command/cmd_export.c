@@ -17,7 +17,8 @@ typedef struct ExportOptions {
     double prune_radius_mm;
     bool parts, lattice;
     const char *print;
-    PrintSettings settings; /* what it says */
+    PrintSettings settings; /* what it says, or --wall */
+    double wall_mm;         /* 0: none */
     MeshingOptions meshing;
     VolumeOptions volume;
 } ExportOptions;
@@ -62,6 +63,13 @@ static const Option own[] = {
      SETS(FLAG, ExportOptions, lattice),
      .group = GROUP_VESSELS,
      .help = "of a 3MF: a beam for each segment, exactly, and no mesh but a preview"},
+    {.name = "wall",
+     SETS(NUMBER, ExportOptions, wall_mm),
+     .group = GROUP_VESSELS,
+     FROM_TO(RANGE_ABOVE_0, 1e6),
+     .unit = "mm",
+     .otherwise = "",
+     .help = "of named parts: a second surface so far about the vessels, which are its lumen"},
     {.name = "print",
      SETS(TEXT, ExportOptions, print),
      .argument = "KEY=VALUE,...",
@@ -94,10 +102,15 @@ static Status check_format(const ExportOptions *options, const Emitter *emitter,
     static const char of_colors[] = "is for formats with colours";
     static const char of_meshes[] = "is for formats of triangles";
     const OptionNeed format[] = {
-        {"look", emitter->has_colors, of_colors}, {"color-by", emitter->has_colors, of_colors},
-        {"model", emitter->of_meshes, of_meshes}, {"tolerance", emitter->of_meshes, of_meshes},
-        {"lod", emitter->of_meshes, of_meshes},   {"part-overlaps", emitter->of_meshes, of_meshes},
-        {"print", emitter->of_meshes, of_meshes}, {0}};
+        {"look", emitter->has_colors, of_colors},
+        {"color-by", emitter->has_colors, of_colors},
+        {"model", emitter->of_meshes, of_meshes},
+        {"tolerance", emitter->of_meshes, of_meshes},
+        {"lod", emitter->of_meshes, of_meshes},
+        {"part-overlaps", emitter->of_meshes, of_meshes},
+        {"print", emitter->of_meshes, of_meshes},
+        {"wall", emitter->has_parts, "is for named parts: a .vtp, or an .stl with --parts"},
+        {0}};
     TRY(options_check_needs(parsed, format, err));
     return coloring_check_needs(&options->meshing.coloring, parsed, err);
 }
@@ -122,13 +135,18 @@ static Status find_emitter(const ExportOptions *options, const Emitter **emitter
     return STATUS_OK;
 }
 
-/* STATUS_USAGE where --print would not do what it says. */
+/* Reads --wall and --print. STATUS_USAGE where one would not do what it says. */
 static Status read_print(ExportOptions *options, const Emitter *emitter, Err *err)
 {
     PrintSettings *print = &options->settings;
-    if (!options->print)
+    if (!options->print && options->wall_mm == 0)
         return STATUS_OK;
-    TRY(printing_parse(options->print, print, err));
+    if (options->print && options->wall_mm > 0)
+        return err_set(err, STATUS_USAGE,
+                       "--wall and --print, which has a wall= of its own, exclude each other");
+    TRY(printing_parse(options->print ? options->print : "", print, err));
+    if (options->wall_mm > 0)
+        print->params = (PrintParams){.wall_mm = options->wall_mm, .lids = true};
     options->meshing.print = print;
     if (print->prunes)
         options->prune_radius_mm =
@@ -137,8 +155,8 @@ static Status read_print(ExportOptions *options, const Emitter *emitter, Err *er
         return err_set(err, STATUS_USAGE, "`print` is for solids, and .inc is a scene's");
     if (print_is_joined(&print->params) && options->meshing.body != BODY_POTENTIAL)
         return err_set(err, STATUS_USAGE,
-                       "`print`: walls, blocks and bases need --model isosurface, whose ends are "
-                       "flat");
+                       "`%s`: walls, blocks and bases need --model isosurface, whose ends are flat",
+                       options->print ? "print" : "wall");
     return STATUS_OK;
 }
 

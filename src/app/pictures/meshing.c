@@ -146,7 +146,7 @@ static Status make(const Common *common, const MeshingOptions *options, const Em
     TRY(triangulate(made, options, common, err));
     TRY(meshreport_check(&made->report, &made->vessels, err));
     say_result(made, common->quiet);
-    if (made->print && !common->quiet)
+    if (made->print && !made->print->params.lids && !common->quiet)
         printing_say(made->print, &made->changes, &made->printed, &made->mesh);
     return STATUS_OK;
 }

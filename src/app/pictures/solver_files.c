@@ -39,14 +39,16 @@ Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *ves
                    "flow_part\n");
     for (size_t i = 0; i < ends->n; i++) {
         const MeshEnd *end = &ends->ends[i];
-        text_printf(out, "%s,%zu,%u,", end->name, i + 2, vessels->ids[end->segment]);
+        text_printf(out, "%s,%zu,%u,", end->name, ends->n_walls + i + 1,
+                    vessels->ids[end->segment]);
         put_vector(end->center, out);
         put_vector(end->normal, out);
         text_number(out, end->radius_mm);
         text_puts(out, ",");
         text_number(out, end->area_mm2);
         text_puts(out, ",");
-        text_number(out, parts[vessels->segments[end->segment].segment]);
+        if (!end->is_ring)
+            text_number(out, parts[vessels->segments[end->segment].segment]);
         text_puts(out, "\n");
     }
     free(parts);

@@ -220,6 +220,32 @@ static Status prove(Making *making, MeshReport *report, Err *err)
     return meshreport_check(report, making->tree, err);
 }
 
+/* A disc about the middle of each opening of the lumen, with the outside of the lumen outside. */
+static Status add_lids(Making *making, Err *err)
+{
+    const CutEnds *ends = &making->sides[1].ends;
+    const PrintReport *report = &making->report;
+    if (report->n_closed)
+        return err_set(err, STATUS_INPUT,
+                       "the lumen of segment %u is not open at its end, because another vessel is "
+                       "in the way of its wall",
+                       making->tree->ids[report->closed[0]]);
+    for (size_t i = 0; i < ends->n; i++) {
+        const CutEnd *end = &ends->items[i];
+        const FieldSegment *segment = &making->tree->segments[end->segment];
+        Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a));
+        uint32_t middle;
+        TRY(solid_point(&making->solid, end->end ? segment->b : segment->a,
+                        vec3_scale(axis, end->end ? 1 : -1), &middle, err));
+        for (uint32_t k = 0; k < end->n; k++) {
+            uint32_t one = end->rim[k], next = end->rim[(k + 1) % end->n];
+            TRY(solid_triangle(&making->solid, middle, end->end ? one : next, end->end ? next : one,
+                               end->segment | MESH_CAP | MESH_LUMEN, err));
+        }
+    }
+    return STATUS_OK;
+}
+
 Status print_build(VesselTree *tree, const PrintParams *params, VesselMesh *mesh,
                    MeshReport *report, PrintReport *print, Err *err)
 {
@@ -233,6 +259,8 @@ Status print_build(VesselTree *tree, const PrintParams *params, VesselMesh *mesh
     TRY_GOTO(seams_make(tree, &making.seams, err));
     TRY_GOTO(add_sides(&making, err));
     TRY_GOTO(prove(&making, &found, err));
+    if (print_has_wall(params) && params->lids)
+        TRY_GOTO(add_lids(&making, err));
     *mesh = making.solid.mesh;
     *report = found;
     *print = making.report;

@@ -14,6 +14,8 @@ typedef struct PrintParams {
     bool part_overlaps; /* as vesseltree_part: walls and vessels that overlap are thinned */
     double wall_mm;     /* thickness of a wall about the vessels, which become its lumen ... */
     double wall_ratio;  /* ... and what it is thicker by, over the radius; both 0: solid vessels */
+    bool lids;          /* of a wall: discs close the openings of the lumen, of the same points, so
+                         * that wall and lumen are two solids that share it */
 } PrintParams;
 
 typedef struct PrintReport {
@@ -44,8 +46,10 @@ static inline bool print_is_joined(const PrintParams *params)
 /* Makes the solid of a tree, whose body must be BODY_POTENTIAL if surfaces are joined, and proves
  * it: *report is that of the solid. Ends of the tree are lengthened, and its vessels thinned, as
  * the report says; labels are indices of its segments, with MESH_LUMEN inside a wall, and MESH_CAP
- * where an end is cut off flat. Errors as vesselmesh_build; STATUS_INPUT naming a pair of ids when
- * walls meet, STATUS_DIFFERS when a surface is not sound. The same bytes for any number of threads.
+ * where an end is cut off flat; lids have both. What is proved is true of the solid without lids.
+ * Errors as vesselmesh_build; STATUS_INPUT naming a pair of ids when
+ * walls meet, or a segment that would have a lid but is not open, STATUS_DIFFERS when a surface is
+ * not sound. The same bytes for any number of threads.
  */
 MUST_CHECK Status print_build(VesselTree *tree, const PrintParams *params, VesselMesh *mesh,
                               MeshReport *report, PrintReport *print, Err *err);
