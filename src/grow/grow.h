@@ -139,11 +139,12 @@ typedef struct RefineReport {
 } RefineReport;
 
 /* Lowers the target of a tree, grown or read, by moving bifurcations and by connecting subtrees
- * elsewhere. The tree is binary with one root, which has one child, and its meta has all that
- * meta_check_cco asks for; flows may be unequal. `domain` holds all of it; NULL: it may be
- * anywhere.
+ * elsewhere. No node has more than two children, and the meta has all that meta_check_cco asks for;
+ * flows may be unequal, and there may be several roots: subtrees stay in their trees. A vessel of
+ * several segments is first made one straight segment. `domain` then holds all of it; NULL: it may
+ * be anywhere.
  *
- * Inlet, terminals, node types, flow shares and meta stay, columns go. Afterwards nodes are in
+ * Inlets, terminals, node types, flow shares and meta stay, columns go. Afterwards nodes are in
  * depth-first order with ids 1 .. n, and radii follow from the nodes' places by Murray's law and
  * the pressures, which hold to rounding. All segments that change stay in the domain. A segment
  * that was longer than wide and clear of those it shares no node with stays so; one that was not

@@ -111,7 +111,6 @@ clear of those of the other inlets|--inlet 0,50 --inlet 0,49.9 --q-perf 50000
 --inlet-shares -0.5: must be|--inlet 0,50 --inlet 3,4 --inlet-shares=-0.5,1
 --inlet-shares: '1,half' is not a list of numbers|--inlet 0,50 --inlet 3,4 --inlet-shares 1,half
 --terminals 1: must be at least one for each of 2 inlets|--inlet 0,50 --inlet 3,4 --terminals 1
---refine: takes one tree|--inlet 0,50 --inlet 3,4 --refine geometry
 END
 }
 

@@ -74,4 +74,62 @@ test_a_tree_that_cannot_be_refined_is_refused() {
     expect_sentence "refine.*fastest"
 }
 
+# Roots, and the terminals below each: "1 31.5 -20.25 0", sorted.
+terminals_by_tree() {
+    awk '/^#/ { next } { parent[$1] = $7; at[$1] = $3 " " $4 " " $5; is_parent[$7] = 1; id[++n] = $1 }
+         END { for (k = 1; k <= n; k++) {
+             i = id[k]
+             if (parent[i] == -1) { tree[i] = at[i]; print "root", at[i] } else tree[i] = tree[parent[i]]
+             if (!(i in is_parent)) print tree[i], "has", at[i] } }' "$1" | sort
+}
+
+test_forests_are_refined_each_tree_with_its_terminals() {
+    local level
+    run_ok corcast grow --terminals 400 --inlet 0,50 --inlet 3,-40.5 --inlet-shares 0.7,0.3 -o plain.swc
+    for level in geometry topology; do
+        run_ok corcast refine plain.swc --refine $level -o $level.swc
+        check_tree $level.swc
+        expect_stdout '^short 0$'
+        expect_stdout '^overlaps 0$'
+        [ "$(terminals_by_tree $level.swc)" = "$(terminals_by_tree plain.swc)" ] || fail "expected the same terminals on each tree"
+    done
+    expect_lower geometry.swc plain.swc 0.985
+    expect_lower topology.swc geometry.swc 0.99
+    run_ok corcast grow --terminals 60 --inlet 0,50 --inlet 3,-40.5 --refine geometry -o grown.swc
+}
+
+test_vessels_of_several_segments_become_straight() {
+    cat >bent.swc <<'END'
+# domain: rect:40,40
+# dimension: 2
+# gamma: 3
+# lambda: 2
+# p_perf_mmHg: 100
+# p_term_mmHg: 60
+# q_perf_ml_min: 40
+# viscosity_cP: 3.6
+1 2 0 19.5 0 1 -1
+2 2 0.3 17 0 1 1
+3 2 1.2 9 0 1 2
+4 2 0.5 6 0 0.9 3
+5 2 -6 2 0 0.5 4
+6 2 6.5 3.25 0 0.5 4
+7 2 9 -4 0 0.4 6
+8 2 -2 15.5 0 0.4 2
+END
+    run_ok corcast refine bent.swc --refine geometry -o straight.swc
+    check_tree straight.swc
+    run_ok corcast info straight.swc --json
+    expect_json stdout '.segments == 5 and .terminals == 3'
+    grep -q '^[0-9]* 2 9 -4 0 ' straight.swc || fail "expected the terminal where it was"
+    run corcast refine bent.swc --domain 'rect:14,40' -o refused.swc
+    expect_status 2
+    expect_sentence 'node 7 at \(9, -4, 0\) is outside the domain'
+    printf '0 20\n10 20\n10 -5\n5 -5\n5 2\n-8 2\n-8 1\n-10 1\n-10 20\n' >hook.txt
+    sed 's/^7 2 9 -4/7 2 5.1 -4/; s/^6 2 6.5 3.25/6 2 9 2.5/; s/^5 2 -6 2/5 2 -6 3/' bent.swc >round.swc
+    run corcast refine round.swc --domain polygon:hook.txt -o refused.swc
+    expect_status 2
+    expect_sentence 'the vessel that ends in node 7 leaves the domain when it is straight'
+}
+
 run_tests "$@"

@@ -252,12 +252,12 @@ static void stops_when_asked_with_a_tree_that_is_no_worse(void **state)
         Domain domain;
         Tree tree = grown(100, 2, 5, "disc:50", &domain);
         double before = target_of(&tree);
-        int left = 357;
+        int left = 157;
         RefineParams params = {
             .level = (GrowRefine)level, .seed = 3, .stop = stop_at_last, .stop_context = &left};
         RefineReport report;
         assert_int_equal(refine_tree(&params, &domain, &tree, &report, NULL), STATUS_OK);
-        assert_true(report.stopped && report.moves_tried <= 357);
+        assert_true(report.stopped && report.moves_tried <= 157);
         assert_true(target_of(&tree) <= before * (1 + 1e-12));
         assert_promises(&tree, 100);
         tree_release(&tree);

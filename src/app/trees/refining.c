@@ -49,10 +49,6 @@ Status refining_check_growing(const Refining *refining, const Growing *growing, 
     if (growing->from_path)
         return err_set(err, STATUS_USAGE,
                        "--refine: would move the tree of --from; use corcast refine afterwards");
-    if (growing->inlet.n > 1)
-        return err_set(err, STATUS_USAGE,
-                       "--refine: takes one tree, not one from each of %zu inlets",
-                       growing->inlet.n);
     return STATUS_OK;
 }
 

@@ -1,7 +1,8 @@
 /* Refinement is local search with two moves [refine_move.h]: a bifurcation moves to a better place,
  * or a subtree is cut off and connected elsewhere. A round (one turn of the loop in descend, detour
- * or anneal) tries all subtrees in random order (shuffle) and then all bifurcations (sweep); the
- * geometry level has the sweeps alone.
+ * or anneal) tries all subtrees in random order (shuffle) and then all bifurcations one by one
+ * (sweep), in descend after a joint move of them all [refine_joint.h]; the geometry level has no
+ * shuffles. Annealing has no joint moves: they settle what heat is to stir (T 0.7 % higher).
  *
  * Within the rules of clearance the search soon gets stuck where vessels are in each other's way:
  * better trees lie behind trees that cross. The topology level (improve_topology) therefore
@@ -24,6 +25,7 @@
 #include "grow/refine/refine_arbor.h"
 #include "grow/refine/refine_check.h"
 #include "grow/refine/refine_clearance.h"
+#include "grow/refine/refine_joint.h"
 #include "grow/refine/refine_move.h"
 #include "grow/refine/refine_penalty.h"
 #include "grow/refine/refine_result.h"
@@ -31,7 +33,7 @@
 
 /* Temperatures of annealing over S_root a segment, at first and at last, and the share of the
  * budget that is left then. */
-static const double hot = 0.2, cold = 0.03;
+static const double hot = 1, cold = 0.02;
 static const double last_part = 0.1;
 /* A round that gains less than this of S_root is the last: of sweeps; before a detour, on it and
  * after it. */
@@ -47,6 +49,8 @@ enum { NEIGHBOURS = 8 };
 enum { ROUNDS_PER_RESERVATION = 4 };
 /* Moves after which the clock is read. */
 enum { MOVES_PER_LOOK = 16 };
+/* Trees of more terminals have their geometry refined without sweeps. */
+enum { LARGE = 250000 };
 
 typedef struct Refinement {
     const RefineParams *params;
@@ -55,6 +59,7 @@ typedef struct Refinement {
     double fraction; /* of the budget that is spent */
     bool stopped;
     LocalSearch search;
+    Joints joints;
     double first_cost;
     int32_t *order; /* in which subtrees move, from 1 */
     /* The tree that is remembered: */
@@ -98,13 +103,34 @@ static Status sweep(Refinement *refinement, bool *over, Err *err)
 {
     const Arbor *arbor = &refinement->search.arbor;
     arbor_refresh(&refinement->search.arbor);
-    for (int32_t i = arbor_root(arbor); i != 0 && !*over; i = arbor_next(arbor, i)) {
+    for (int32_t i = arbor_first(arbor); i != 0 && !*over; i = arbor_next(arbor, i)) {
         if (arbor->branch[i].child[0] < 0)
             continue;
         TRY(move_bifurcation(&refinement->search, i, err));
         *over = is_over(refinement);
     }
     return STATUS_OK;
+}
+
+/* Moves all bifurcations at once, which counts as one move. */
+static Status move_jointly(Refinement *refinement, bool *over, Err *err)
+{
+    LocalSearch *search = &refinement->search;
+    bool kept;
+    if (*over)
+        return STATUS_OK;
+    TRY(joint_move(&refinement->joints, &search->arbor, &search->clearance, &kept, err));
+    search->tried++;
+    search->kept += kept;
+    *over = is_over(refinement);
+    return STATUS_OK;
+}
+
+/* Whether sweeps, O(depth) a bifurcation, would take minutes to gain a tenth of a joint move. */
+static bool is_large(const Refinement *refinement)
+{
+    return refinement->params->level == GROW_REFINE_GEOMETRY &&
+           refinement->search.arbor.terminals > LARGE;
 }
 
 static double temperature(const Refinement *refinement)
@@ -121,8 +147,8 @@ static Status shuffle(Refinement *refinement, bool *over, Err *err)
     LocalSearch *search = &refinement->search;
     size_t n = search->arbor.n;
     int32_t *order = refinement->order;
-    for (size_t k = 1; k < n && !*over; k++) {
-        if (k % (n / 16 + 1) == 1)
+    for (size_t k = search->arbor.inlets; k < n && !*over; k++) {
+        if (k % (n / 16 + 1) == 1 || k == search->arbor.inlets)
             arbor_refresh(&search->arbor);
         size_t drawn = k + (size_t)(random_uniform(&search->random) * (double)(n - k));
         int32_t i = order[drawn];
@@ -138,7 +164,7 @@ static void remember(Refinement *refinement)
 {
     const Arbor *arbor = &refinement->search.arbor;
     refinement->best_cost = arbor_cost(arbor);
-    for (size_t i = 1; i < arbor->n; i++) {
+    for (size_t i = 0; i < arbor->n; i++) {
         refinement->best_parent[i] = arbor->branch[i].parent;
         refinement->best_place[i] = arbor->shape[i].to;
     }
@@ -162,7 +188,7 @@ static Status settle_for_round(LocalSearch *search, int round, Err *err)
 static size_t count_unclear(const LocalSearch *search)
 {
     size_t count = 0;
-    for (size_t i = 1; i < search->arbor.n; i++)
+    for (size_t i = search->arbor.inlets; i < search->arbor.n; i++)
         count += !clearance_is_kept(&search->clearance, &search->arbor, (int32_t)i);
     return count;
 }
@@ -185,7 +211,9 @@ static Status descend(Refinement *refinement, double least_gain, bool *over, Err
         TRY(settle_for_round(search, round, err));
         if (refinement->params->level != GROW_REFINE_GEOMETRY)
             TRY(shuffle(refinement, over, err));
-        TRY(sweep(refinement, over, err));
+        TRY(move_jointly(refinement, over, err));
+        if (!is_large(refinement))
+            TRY(sweep(refinement, over, err));
         cost = arbor_cost(&search->arbor);
     }
     return STATUS_OK;
@@ -296,28 +324,27 @@ static Status start(Refinement *refinement, const Domain *domain, const Tree *tr
 {
     const RefineParams *params = refinement->params;
     LocalSearch *search = &refinement->search;
-    refinement->moves = params->moves         ? params->moves
-                        : params->seconds > 0 ? UINT64_MAX
-                                              : most_moves(params->level, tree->n / 2);
     random_seed(&search->random, params->seed);
     TRY(arbor_init(&search->arbor, tree, err));
+    size_t n = search->arbor.n;
+    refinement->moves = params->moves         ? params->moves
+                        : params->seconds > 0 ? UINT64_MAX
+                                              : most_moves(params->level, search->arbor.terminals);
     double cost = refinement->first_cost = arbor_cost(&search->arbor);
     if (!(cost > 0) || !isfinite(cost))
         return err_set(err, STATUS_INFEASIBLE,
                        "with gamma %g and lambda %g the radii span more than a double can hold",
                        tree->meta.number[META_GAMMA], tree->meta.number[META_LAMBDA]);
     TRY(clearance_init(&search->clearance, domain, &search->arbor, err));
+    TRY(joints_init(&refinement->joints, n, err));
     if (params->level == GROW_REFINE_GEOMETRY)
         return STATUS_OK;
-    TRY(penalties_init(&search->penalties, tree->n, err));
-    TRY(mem_calloc(&refinement->best_parent, tree->n, sizeof *refinement->best_parent, "nodes",
-                   err));
-    TRY(mem_calloc(&refinement->best_place, tree->n, sizeof *refinement->best_place, "nodes", err));
-    TRY(mem_calloc(&refinement->order, tree->n, sizeof *refinement->order, "segments", err));
-    for (size_t i = 0; i < tree->n; i++)
+    TRY(penalties_init(&search->penalties, n, err));
+    TRY(mem_calloc(&refinement->best_parent, n, sizeof *refinement->best_parent, "nodes", err));
+    TRY(mem_calloc(&refinement->best_place, n, sizeof *refinement->best_place, "nodes", err));
+    TRY(mem_calloc(&refinement->order, n, sizeof *refinement->order, "segments", err));
+    for (size_t i = 0; i < n; i++)
         refinement->order[i] = (int32_t)i;
-    refinement->best_parent[0] = TREE_NO_PARENT;
-    refinement->best_place[0] = tree->position[0];
     return STATUS_OK;
 }
 
@@ -347,6 +374,7 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
                                  .thickness = search->clearance.level,
                                  .stopped = refinement.stopped};
 done:
+    joints_release(&refinement.joints);
     free(refinement.order);
     free(refinement.best_parent);
     free(refinement.best_place);

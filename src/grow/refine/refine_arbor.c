@@ -38,39 +38,99 @@ static void sum(Arbor *arbor, int32_t i)
         fmax(branch->utilisation, reduced.widening * fmax(left->utilisation, right->utilisation));
 }
 
+/* Lists the nodes that are part of the arbor in `node`, inlets first, and their parents there in
+ * `parent`; `children` are the tree's counts. */
+static Status list_nodes(Arbor *arbor, const Tree *tree, const int32_t *children, int32_t *parent,
+                         Err *err)
+{
+    int32_t *index = NULL; /* of each node of the tree, or of the one its blood comes from */
+    TRY(mem_calloc(&index, tree->n, sizeof *index, "nodes", err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (!tree_is_segment(tree, i))
+            arbor->node[arbor->inlets++] = (int32_t)i;
+    size_t inlets = 0;
+    arbor->n = arbor->inlets;
+    for (size_t i = 0; i < tree->n; i++) {
+        if (!tree_is_segment(tree, i)) {
+            parent[inlets] = TREE_NO_PARENT;
+            index[i] = (int32_t)inlets++;
+            continue;
+        }
+        int32_t above = index[tree->parent[i]];
+        index[i] = children[i] == 1 ? above : (int32_t)arbor->n;
+        arbor->terminals += children[i] == 0;
+        if (children[i] == 1)
+            continue;
+        parent[arbor->n] = above;
+        arbor->node[arbor->n++] = (int32_t)i;
+    }
+    free(index);
+    return STATUS_OK;
+}
+
+/* Room for what there is of each node. */
+static Status allocate(Arbor *arbor, bool pries, Err *err)
+{
+    TRY(mem_calloc(&arbor->branch, arbor->n, sizeof *arbor->branch, "segments", err));
+    TRY(mem_calloc(&arbor->shape, arbor->n, sizeof *arbor->shape, "segments", err));
+    TRY(mem_calloc(&arbor->marginal, arbor->n, sizeof *arbor->marginal, "segments", err));
+    TRY(mem_calloc(&arbor->saved_branch, arbor->n, sizeof *arbor->saved_branch, "segments", err));
+    if (pries)
+        TRY(mem_calloc(&arbor->viscosity, arbor->n, sizeof *arbor->viscosity, "segments", err));
+    if (arbor->inlets > 1)
+        TRY(mem_calloc(&arbor->tree, arbor->n, sizeof *arbor->tree, "segments", err));
+    return STATUS_OK;
+}
+
+/* Fills in what the tree says of each node, and sums up. */
+static Status fill(Arbor *arbor, const Tree *tree, const int32_t *parent, Err *err)
+{
+    double *share = NULL, total = 0;
+    Vec3 *place = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(tree_flow_shares(tree, &share, err));
+    TRY_GOTO(mem_calloc(&place, arbor->n, sizeof *place, "places", err));
+    for (size_t i = 0; i < tree->n; i++)
+        total += share[i];
+    for (size_t i = 0; i < arbor->n; i++) {
+        size_t node = (size_t)arbor->node[i];
+        place[i] = tree->position[node];
+        arbor->branch[i].flow = share[node] / total * (double)arbor->terminals;
+        if (arbor->viscosity && i >= arbor->inlets)
+            arbor->viscosity[i] = viscosity_pries_pa_s(tree->radius_mm[node], arbor->hematocrit, 1);
+        if (arbor->tree)
+            arbor->tree[i] = i < arbor->inlets ? (int32_t)i : arbor->tree[parent[i]];
+    }
+    arbor_arrange(arbor, parent, place);
+    status = arbor_update_viscosity(arbor, err);
+done:
+    free(share);
+    free(place);
+    return status;
+}
+
 Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
 {
     const double *number = tree->meta.number;
     double drop = pa_from_mmhg(number[META_P_PERF]) - pa_from_mmhg(number[META_P_TERM]);
     bool pries = meta_number(&tree->meta, META_VISCOSITY_LAW) == VISCOSITY_PRIES;
     double reference_cp = number[pries ? META_PLASMA_VISCOSITY : META_VISCOSITY];
-    double flow = mm3_s_from_ml_min(number[META_Q_PERF]) / (double)(tree->n / 2);
     Arbor made = {.law = {number[META_GAMMA], number[META_LAMBDA]},
-                  .n = tree->n,
-                  .hematocrit = number[META_HEMATOCRIT],
-                  .radius_unit = law_radius_unit(pa_s_from_cp(reference_cp), flow, drop)};
-    double *share = NULL;
+                  .hematocrit = number[META_HEMATOCRIT]};
+    int32_t *children = NULL, *parent = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&made.branch, made.n, sizeof *made.branch, "segments", err));
-    TRY_GOTO(mem_calloc(&made.shape, made.n, sizeof *made.shape, "segments", err));
-    TRY_GOTO(mem_calloc(&made.marginal, made.n, sizeof *made.marginal, "segments", err));
-    TRY_GOTO(mem_calloc(&made.saved_branch, made.n, sizeof *made.saved_branch, "segments", err));
-    if (pries) {
-        TRY_GOTO(mem_calloc(&made.viscosity, made.n, sizeof *made.viscosity, "segments", err));
-        for (size_t i = 1; i < made.n; i++)
-            made.viscosity[i] = viscosity_pries_pa_s(tree->radius_mm[i], made.hematocrit, 1);
-    }
-    TRY_GOTO(tree_flow_shares(tree, &share, err));
-    double total = 0;
-    for (size_t i = 0; i < tree->n; i++)
-        total += share[i];
-    for (size_t i = 0; i < tree->n; i++)
-        made.branch[i].flow = share[i] / total * (double)(tree->n / 2);
-    arbor_arrange(&made, tree->parent, tree->position);
-    TRY_GOTO(arbor_update_viscosity(&made, err));
+    TRY_GOTO(tree_child_counts(tree, &children, err));
+    TRY_GOTO(mem_calloc(&parent, tree->n, sizeof *parent, "nodes", err));
+    TRY_GOTO(mem_calloc(&made.node, tree->n, sizeof *made.node, "nodes", err));
+    TRY_GOTO(list_nodes(&made, tree, children, parent, err));
+    double flow = mm3_s_from_ml_min(number[META_Q_PERF]) / (double)made.terminals;
+    made.radius_unit = law_radius_unit(pa_s_from_cp(reference_cp), flow, drop);
+    TRY_GOTO(allocate(&made, pries, err));
+    TRY_GOTO(fill(&made, tree, parent, err));
     *arbor = made;
 done:
-    free(share);
+    free(children);
+    free(parent);
     if (status != STATUS_OK)
         arbor_release(&made);
     return status;
@@ -78,6 +138,8 @@ done:
 
 void arbor_release(Arbor *arbor)
 {
+    free(arbor->node);
+    free(arbor->tree);
     free(arbor->branch);
     free(arbor->shape);
     free(arbor->marginal);
@@ -86,25 +148,36 @@ void arbor_release(Arbor *arbor)
     *arbor = (Arbor){0};
 }
 
-/* The segment after `i` in the order in which daughters come before their mother; 0 at last. */
-static int32_t next_upward(const Arbor *arbor, int32_t i)
+/* The first of `i` and all below it in the order in which daughters come before their mother. */
+static int32_t first_upward(const Arbor *arbor, int32_t i)
 {
-    const Branch *parent = &arbor->branch[arbor->branch[i].parent];
-    if (arbor->branch[i].parent == 0)
-        return 0;
-    if (parent->child[1] == i)
-        return arbor->branch[i].parent;
-    for (i = parent->child[1]; arbor->branch[i].child[0] >= 0;)
+    while (arbor->branch[i].child[0] >= 0)
         i = arbor->branch[i].child[0];
     return i;
 }
 
+/* The first segment of the tree after that of `inlet`; 0: there is none. */
+static int32_t next_tree(const Arbor *arbor, int32_t inlet)
+{
+    return (size_t)inlet + 1 < arbor->inlets ? arbor->branch[inlet + 1].child[0] : 0;
+}
+
+/* The segment after `i` in that order, tree after tree; 0 at last. */
+static int32_t next_upward(const Arbor *arbor, int32_t i)
+{
+    int32_t above = arbor->branch[i].parent, next;
+    const int32_t *child = arbor->branch[above].child;
+    if (child[0] == i && child[1] >= 0)
+        return first_upward(arbor, child[1]);
+    if (!arbor_is_inlet(arbor, above))
+        return above;
+    next = next_tree(arbor, above);
+    return next ? first_upward(arbor, next) : 0;
+}
+
 void arbor_sum(Arbor *arbor)
 {
-    int32_t i = arbor_root(arbor);
-    while (arbor->branch[i].child[0] >= 0)
-        i = arbor->branch[i].child[0];
-    for (; i != 0; i = next_upward(arbor, i)) {
+    for (int32_t i = first_upward(arbor, arbor_first(arbor)); i != 0; i = next_upward(arbor, i)) {
         arbor->branch[i].length = vec3_distance(arbor->shape[i].from, arbor->shape[i].to);
         sum(arbor, i);
     }
@@ -115,12 +188,12 @@ void arbor_arrange(Arbor *arbor, const int32_t *parent, const Vec3 *place)
     for (size_t i = 0; i < arbor->n; i++) {
         arbor->branch[i].parent = parent[i];
         arbor->branch[i].child[0] = arbor->branch[i].child[1] = -1;
+        arbor->shape[i].from = arbor->shape[i].to = place[i];
     }
-    for (size_t i = 1; i < arbor->n; i++) {
+    for (size_t i = arbor->inlets; i < arbor->n; i++) {
         int32_t *child = arbor->branch[parent[i]].child;
         child[child[0] >= 0] = (int32_t)i;
         arbor->shape[i].from = place[parent[i]];
-        arbor->shape[i].to = place[i];
     }
     arbor_sum(arbor);
 }
@@ -128,7 +201,7 @@ void arbor_arrange(Arbor *arbor, const int32_t *parent, const Vec3 *place)
 Marginal arbor_marginal(const Arbor *arbor, int32_t i)
 {
     int32_t parent = arbor->branch[i].parent;
-    if (parent == 0)
+    if (arbor_is_inlet(arbor, parent))
         return (Marginal){{0, 1}, 1, 0};
     const Marginal *above = &arbor->marginal[parent];
     Reduced mother = arbor_reduce(arbor, parent), daughter = arbor_reduce(arbor, i);
@@ -143,10 +216,14 @@ int32_t arbor_next(const Arbor *arbor, int32_t i)
 {
     if (arbor->branch[i].child[0] >= 0)
         return arbor->branch[i].child[0];
-    for (int32_t parent; (parent = arbor->branch[i].parent) != 0; i = parent)
-        if (arbor->branch[parent].child[0] == i)
-            return arbor->branch[parent].child[1];
-    return 0;
+    for (;; i = arbor->branch[i].parent) {
+        int32_t above = arbor->branch[i].parent;
+        const int32_t *child = arbor->branch[above].child;
+        if (child[0] == i && child[1] >= 0)
+            return child[1];
+        if (arbor_is_inlet(arbor, above))
+            return next_tree(arbor, above);
+    }
 }
 
 double arbor_radius_seen(const Arbor *arbor, int32_t i)
@@ -167,7 +244,7 @@ Status arbor_update_viscosity(Arbor *arbor, Err *err)
     for (int round = 0; round < MOST_ROUNDS && change > settled; round++) {
         change = 0;
         arbor_refresh(arbor);
-        for (size_t i = 1; i < arbor->n; i++) {
+        for (size_t i = arbor->inlets; i < arbor->n; i++) {
             double radius = arbor_radius_seen(arbor, (int32_t)i);
             double viscosity = viscosity_pries_pa_s(radius, arbor->hematocrit, 1);
             if (!isfinite(viscosity))
@@ -183,14 +260,27 @@ Status arbor_update_viscosity(Arbor *arbor, Err *err)
 double arbor_radius(const Arbor *arbor, int32_t i)
 {
     double radius = arbor->radius_unit * arbor_reduce(arbor, i).rho;
-    while ((i = arbor->branch[i].parent) != 0)
+    while (!arbor_is_inlet(arbor, i = arbor->branch[i].parent))
         radius *= arbor_reduce(arbor, i).widening;
     return radius;
 }
 
+/* The root segment with the greatest utilisation. */
+static int32_t fullest_root(const Arbor *arbor)
+{
+    int32_t fullest = arbor_first(arbor);
+    for (size_t k = 0; k < arbor->inlets; k++)
+        for (int slot = 0; slot < 2; slot++) {
+            int32_t root = arbor->branch[k].child[slot];
+            if (root >= 0 && arbor->branch[root].utilisation > arbor->branch[fullest].utilisation)
+                fullest = root;
+        }
+    return fullest;
+}
+
 int32_t arbor_find_overuse(const Arbor *arbor, double *radius)
 {
-    int32_t i = arbor_root(arbor);
+    int32_t i = fullest_root(arbor);
     double scale = arbor->radius_unit;
     if (!(scale * arbor->branch[i].utilisation > 1))
         return 0;
@@ -198,8 +288,10 @@ int32_t arbor_find_overuse(const Arbor *arbor, double *radius)
         Reduced reduced = arbor_reduce(arbor, i);
         *radius = scale * reduced.rho;
         const int32_t *child = arbor->branch[i].child;
-        if (*radius * arbor->branch[i].inverse_limit > 1 || child[0] < 0)
+        if (*radius * arbor->branch[i].inverse_limit > 1)
             return i;
+        if (child[0] < 0) /* rounding alone said that there was one */
+            return 0;
         scale *= reduced.widening;
         i = child[arbor->branch[child[1]].utilisation > arbor->branch[child[0]].utilisation];
     }
@@ -207,14 +299,15 @@ int32_t arbor_find_overuse(const Arbor *arbor, double *radius)
 
 void arbor_refresh(Arbor *arbor)
 {
-    for (int32_t i = arbor_root(arbor); i != 0; i = arbor_next(arbor, i))
+    for (int32_t i = arbor_first(arbor); i != 0; i = arbor_next(arbor, i))
         arbor->marginal[i] = arbor_marginal(arbor, i);
 }
 
 bool arbor_is_below(const Arbor *arbor, int32_t i, int32_t top)
 {
     /* Flow only grows towards the root. */
-    while (i != top && i != 0 && arbor->branch[i].flow <= arbor->branch[top].flow)
+    while (i != top && !arbor_is_inlet(arbor, i) &&
+           arbor->branch[i].flow <= arbor->branch[top].flow)
         i = arbor->branch[i].parent;
     return i == top;
 }
@@ -280,7 +373,7 @@ static void put(Arbor *arbor, int32_t i, Vec3 from, Vec3 to)
 
 void arbor_sum_from(Arbor *arbor, int32_t i)
 {
-    for (; i != 0; i = arbor->branch[i].parent) {
+    for (; !arbor_is_inlet(arbor, i); i = arbor->branch[i].parent) {
         branch_of(arbor, i);
         sum(arbor, i);
     }

@@ -8,8 +8,9 @@
  * fills the one cache line that a step of its walk to the root may cost; a common struct would take
  * two.
  *
- * Node i > 0 is the distal end of segment i; node 0 is the inlet, its only child the root segment.
- * Indices are those of the Tree it was made from and stay: a bifurcation that moves, or that moves
+ * The first nodes are the inlets, each with one root segment or two; every other is the distal end
+ * of the segment of its index. Nodes that blood only passes are left out, so that a vessel of
+ * several segments is one straight segment. Indices stay: a bifurcation that moves, or that moves
  * elsewhere with a subtree, is the same node. */
 #ifndef CORCAST_GROW_REFINE_ARBOR_H
 #define CORCAST_GROW_REFINE_ARBOR_H
@@ -57,7 +58,11 @@ enum { ARBOR_MOVE_SHAPES = 24 };
 
 typedef struct Arbor {
     Law law;
-    size_t n;           /* nodes */
+    size_t n;      /* nodes */
+    size_t inlets; /* of them, the first ones */
+    size_t terminals;
+    int32_t *node;      /* the node's index in the Tree it was made from */
+    int32_t *tree;      /* of each node: the inlet it hangs on; NULL: there is one */
     double radius_unit; /* q, mm^(3/4) */
     Branch *branch;
     Shape *shape;
@@ -90,7 +95,7 @@ MUST_CHECK Status arbor_init(Arbor *arbor, const Tree *tree, Err *err);
 void arbor_release(Arbor *arbor);
 
 /* Connects and places all nodes anew, parent[i] and place[i] (mm) of each, and sums up;
- * reservations stay and have to be made anew. place[0] is the inlet. O(n). */
+ * reservations stay and have to be made anew. O(n). */
 void arbor_arrange(Arbor *arbor, const int32_t *parent, const Vec3 *place);
 /* Computes the sums of all segments anew, lengths included. O(n). */
 void arbor_sum(Arbor *arbor);
@@ -100,9 +105,21 @@ MUST_CHECK Status arbor_update_viscosity(Arbor *arbor, Err *err);
 /* Brings the marginals of all segments up to date. Needs right sums. O(n). */
 void arbor_refresh(Arbor *arbor);
 
-static inline int32_t arbor_root(const Arbor *arbor)
+static inline bool arbor_is_inlet(const Arbor *arbor, int32_t i)
+{
+    return (size_t)i < arbor->inlets;
+}
+
+/* The first segment in depth-first order. */
+static inline int32_t arbor_first(const Arbor *arbor)
 {
     return arbor->branch[0].child[0];
+}
+
+/* Whether segments i and j are of one tree. */
+static inline bool arbor_is_same_tree(const Arbor *arbor, int32_t i, int32_t j)
+{
+    return !arbor->tree || arbor->tree[i] == arbor->tree[j];
 }
 
 /* The viscosity in segment i relative to the reference. */
@@ -114,11 +131,17 @@ static inline double arbor_viscosity(const Arbor *arbor, int32_t i)
 /* S_root; not finite, or 0, when the radii span more than a double can hold. */
 static inline double arbor_cost(const Arbor *arbor)
 {
-    return arbor->branch[arbor_root(arbor)].cost;
+    double cost = 0;
+    for (size_t k = 0; k < arbor->inlets; k++) {
+        const int32_t *child = arbor->branch[k].child;
+        cost += arbor->branch[child[0]].cost;
+        if (child[1] >= 0)
+            cost += arbor->branch[child[1]].cost;
+    }
+    return cost;
 }
 
-/* The segment after `i` in depth-first order, which begins with the root segment; 0 after the
- * last. */
+/* The segment after `i` in depth-first order, tree after tree; 0 after the last. */
 int32_t arbor_next(const Arbor *arbor, int32_t i);
 
 /* What hangs on the distal end of segment i. */

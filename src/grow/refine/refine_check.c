@@ -15,24 +15,30 @@ static Status check_meta(const TreeMeta *meta, Err *err)
 }
 
 /* Node i, which has so many children. */
-static Status check_node(const Tree *tree, size_t i, int32_t children, Err *err)
+/* The node that the vessel which ends at node i comes from: the nearest above it that blood does
+ * not only pass. */
+static size_t proximal(const Tree *tree, const int32_t *children, size_t i)
 {
-    int32_t id = tree->id[i];
-    if (i > 0 && !tree_is_segment(tree, i))
+    do
+        i = (size_t)tree->parent[i];
+    while (tree_is_segment(tree, i) && children[i] == 1);
+    return i;
+}
+
+static Status check_node(const Tree *tree, const int32_t *counts, size_t i, Err *err)
+{
+    int32_t id = tree->id[i], children = counts[i];
+    if (children > 2)
         return err_set(err, STATUS_INPUT,
-                       "node %d is a second root; refinement needs a tree with one", id);
-    if (i == 0 && children != 1)
-        return err_set(err, STATUS_INPUT,
-                       "node %d, the root, has %d children; refinement needs a root with 1", id,
-                       children);
-    if (i > 0 && children != 0 && children != 2)
-        return err_set(err, STATUS_INPUT,
-                       "node %d has %d children; refinement needs a binary tree, where every node "
-                       "but the root has 0 or 2",
+                       "node %d has %d children; refinement needs a tree in which no node has more "
+                       "than 2",
                        id, children);
-    if (i > 0 && !(tree_segment_length(tree, i) > 0))
+    if (!tree_is_segment(tree, i) && children == 0)
+        return err_set(err, STATUS_INPUT, "node %d is a root without a vessel", id);
+    if (tree_is_segment(tree, i) && children != 1 &&
+        !(vec3_distance(tree->position[i], tree->position[proximal(tree, counts, i)]) > 0))
         return err_set(err, STATUS_INPUT,
-                       "node %d is where its parent is; refinement needs segments with a length",
+                       "node %d is where its vessel begins; refinement needs vessels with a length",
                        id);
     if (tree->flow_share && (children == 0 ? !(tree->flow_share[i] > 0) : tree->flow_share[i] != 0))
         return err_set(err, STATUS_INPUT,
@@ -42,19 +48,22 @@ static Status check_node(const Tree *tree, size_t i, int32_t children, Err *err)
     return STATUS_OK;
 }
 
-static Status check_inside(const Tree *tree, size_t i, const Domain *domain, Err *err)
+static Status check_inside(const Tree *tree, const int32_t *counts, size_t i, const Domain *domain,
+                           Err *err)
 {
+    if (tree_is_segment(tree, i) && counts[i] == 1)
+        return STATUS_OK;
     Vec3 at = tree->position[i];
     if (!domain_inside(domain, at, domain->slack_mm))
         return err_set(err, STATUS_INPUT,
                        "node %d at (%.9g, %.9g, %.9g) is outside the domain; refinement needs the "
                        "whole tree inside",
                        tree->id[i], at.x, at.y, at.z);
-    if (i > 0 && !domain_is_convex(domain) &&
-        !domain_holds_segment(domain, tree->position[tree->parent[i]], at))
+    if (tree_is_segment(tree, i) && !domain_is_convex(domain) &&
+        !domain_holds_segment(domain, tree->position[proximal(tree, counts, i)], at))
         return err_set(err, STATUS_INPUT,
-                       "the segment that ends in node %d leaves the domain; refinement needs the "
-                       "whole tree inside",
+                       "the vessel that ends in node %d leaves the domain when it is straight; "
+                       "refinement needs the whole tree inside",
                        tree->id[i]);
     return STATUS_OK;
 }
@@ -71,9 +80,9 @@ Status refine_check(const RefineParams *params, const Domain *domain, const Tree
     TRY(tree_child_counts(tree, &children, err));
     Status status = STATUS_OK;
     for (size_t i = 0; i < tree->n && status == STATUS_OK; i++) {
-        status = check_node(tree, i, children[i], err);
+        status = check_node(tree, children, i, err);
         if (status == STATUS_OK && domain)
-            status = check_inside(tree, i, domain, err);
+            status = check_inside(tree, children, i, domain, err);
     }
     free(children);
     return status;

@@ -29,7 +29,7 @@ static Box box_of(const Domain *domain, const Arbor *arbor)
     if (domain)
         return domain->bounds;
     Box box = box_empty();
-    for (size_t i = 1; i < arbor->n; i++)
+    for (size_t i = arbor->inlets; i < arbor->n; i++)
         box = box_with_ball(box_with_ball(box, arbor->shape[i].from, 0), arbor->shape[i].to, 0);
     /* Not thinner than a hundredth of its length, or the grid's cells would be too small. */
     Vec3 size = vec3_sub(box.high, box.low);
@@ -108,10 +108,10 @@ static double fair_share(const Clearance *clearance, const Arbor *arbor, const d
 /* Finds the radii of all segments and empties the grid. */
 static Status measure(Clearance *clearance, Arbor *arbor, Err *err)
 {
-    TRY(grid_reset(&clearance->grid, clearance->box, cells_per_terminal * (double)(arbor->n / 2),
+    TRY(grid_reset(&clearance->grid, clearance->box, cells_per_terminal * (double)arbor->terminals,
                    arbor->n, 1, err));
     arbor_refresh(arbor);
-    for (size_t i = 1; i < arbor->n; i++)
+    for (size_t i = arbor->inlets; i < arbor->n; i++)
         clearance->radius[i] = arbor_radius_seen(arbor, (int32_t)i);
     return STATUS_OK;
 }
@@ -121,15 +121,15 @@ static Status measure(Clearance *clearance, Arbor *arbor, Err *err)
 static Status reserve_all(Clearance *clearance, Arbor *arbor, double *clear, Err *err)
 {
     TRY(measure(clearance, arbor, err));
-    for (size_t i = 1; i < arbor->n; i++) {
+    for (size_t i = arbor->inlets; i < arbor->n; i++) {
         arbor->shape[i].reserved_radius =
             reservation(clearance, &arbor->branch[i], clearance->radius[i], 1);
         TRY(enter(clearance, arbor, (int32_t)i, err));
     }
-    for (size_t i = 1; i < arbor->n; i++)
+    for (size_t i = arbor->inlets; i < arbor->n; i++)
         clearance->share[i] = fair_share(clearance, arbor, clearance->radius, (int32_t)i);
     size_t count = 0;
-    for (size_t i = 1; i < arbor->n; i++) {
+    for (size_t i = arbor->inlets; i < arbor->n; i++) {
         Branch *branch = &arbor->branch[i];
         double radius = clearance->radius[i],
                reserved_radius = reservation(clearance, branch, radius, clearance->share[i]);
@@ -139,20 +139,20 @@ static Status reserve_all(Clearance *clearance, Arbor *arbor, double *clear, Err
             reserved_radius > 0 ? fmin(clearance->level / reserved_radius, 1 / radius) : 0;
     }
     arbor_sum(arbor);
-    *clear = (double)count / (double)(arbor->n - 1);
+    *clear = (double)count / (double)(arbor->n - arbor->inlets);
     return STATUS_OK;
 }
 
 Status clearance_init(Clearance *clearance, const Domain *domain, Arbor *arbor, Err *err)
 {
     double total = 0, clear;
-    for (size_t i = 1; i < arbor->n; i++)
+    for (size_t i = arbor->inlets; i < arbor->n; i++)
         total += arbor->branch[i].length;
     Box box = box_of(domain, arbor);
     *clearance = (Clearance){.domain = domain,
                              .box = box,
                              .level = 1,
-                             .least_length = 1e-3 * total / (double)(arbor->n - 1),
+                             .least_length = 1e-3 * total / (double)(arbor->n - arbor->inlets),
                              .gap = 1e-7 * vec3_distance(box.low, box.high)};
     TRY(mem_calloc(&clearance->radius, arbor->n, sizeof *clearance->radius, "radii", err));
     TRY(mem_calloc(&clearance->share, arbor->n, sizeof *clearance->share, "reservations", err));
@@ -181,7 +181,7 @@ Status clearance_reserve(Clearance *clearance, Arbor *arbor, Err *err)
 Status clearance_waive(Clearance *clearance, Arbor *arbor, double reserved, Err *err)
 {
     TRY(measure(clearance, arbor, err));
-    for (size_t i = 1; i < arbor->n; i++) {
+    for (size_t i = arbor->inlets; i < arbor->n; i++) {
         arbor->shape[i].reserved_radius = reserved * clearance->level * clearance->radius[i];
         arbor->branch[i].inverse_limit = 0;
         TRY(enter(clearance, arbor, (int32_t)i, err));
@@ -215,6 +215,17 @@ static double most_room(const Clearance *clearance, const Arbor *arbor, int32_t 
             most = fmin(most, distance_of(shape, there) - there->reserved_radius - clearance->gap);
     }
     return most;
+}
+
+bool clearance_is_held(const Clearance *clearance, const Arbor *arbor, int32_t i)
+{
+    const Domain *domain = clearance->domain;
+    const Shape *shape = &arbor->shape[i];
+    if (!(arbor->branch[i].length >= clearance->least_length))
+        return false;
+    return !domain ||
+           (domain_inside(domain, shape->to, 0) &&
+            (domain_is_convex(domain) || domain_holds_segment(domain, shape->from, shape->to)));
 }
 
 bool clearance_is_inside(const Clearance *clearance, const Arbor *arbor)

@@ -45,6 +45,9 @@ static inline bool clearance_is_kept(const Clearance *clearance, const Arbor *ar
  * or not, and sets no limit to radii. O(n). STATUS_MEMORY. */
 MUST_CHECK Status clearance_waive(Clearance *clearance, Arbor *arbor, double reserved, Err *err);
 
+/* Whether segment i is inside the domain and no shorter than least_length. */
+bool clearance_is_held(const Clearance *clearance, const Arbor *arbor, int32_t i);
+
 /* Whether the segments that the present move has placed are inside the domain and no shorter than
  * least_length. */
 bool clearance_is_inside(const Clearance *clearance, const Arbor *arbor);

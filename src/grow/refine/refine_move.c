@@ -195,7 +195,7 @@ static void find_candidates(const LocalSearch *search, int32_t subtree, int32_t 
     propose(search, subtree, origin, out);
     if (out->count == 0)
         return;
-    if (above != 0) {
+    if (!arbor_is_inlet(arbor, above)) {
         propose(search, subtree, above, out);
         propose(search, subtree, arbor_sibling(arbor, origin), out);
     }
@@ -204,7 +204,8 @@ static void find_candidates(const LocalSearch *search, int32_t subtree, int32_t 
     int found =
         grid_nearest(&search->clearance.grid, arbor->shape[subtree].to, INFINITY, NEIGHBOURS, near);
     for (int k = 0; k < found; k++)
-        if (near[k].segment != fork && !arbor_is_below(arbor, near[k].segment, subtree))
+        if (near[k].segment != fork && arbor_is_same_tree(arbor, near[k].segment, subtree) &&
+            !arbor_is_below(arbor, near[k].segment, subtree))
             propose(search, subtree, near[k].segment, out);
 }
 
@@ -249,7 +250,7 @@ Status move_subtree(LocalSearch *search, int32_t i, double temperature, Err *err
 {
     Arbor *arbor = &search->arbor;
     search->tried++;
-    if (i == arbor_root(arbor))
+    if (arbor_is_inlet(arbor, arbor->branch[i].parent))
         return STATUS_OK;
     int32_t fork = arbor->branch[i].parent, origin = arbor_sibling(arbor, i);
     const int32_t here[] = {i, fork, origin};

@@ -22,7 +22,7 @@ MUST_CHECK Status move_bifurcation(LocalSearch *search, int32_t i, Err *err);
 /* Cuts segment i off, with all below it, and connects it where S_root and penalties are least among
  * the nearest segments, or where it was. With a `temperature` above 0, in units of S_root,
  * connections that cost more by that much are chosen with probability 1 / e relative to the best.
- * The root segment stays. */
+ * Root segments stay, and every subtree in its tree. */
 MUST_CHECK Status move_subtree(LocalSearch *search, int32_t i, double temperature, Err *err);
 
 #endif

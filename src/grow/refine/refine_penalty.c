@@ -31,9 +31,9 @@ void penalties_release(Penalties *penalties)
 void penalties_begin(Penalties *penalties, const Arbor *arbor, double rate)
 {
     double length = 0;
-    for (size_t i = 1; i < arbor->n; i++)
+    for (size_t i = arbor->inlets; i < arbor->n; i++)
         length += arbor->branch[i].length;
-    for (size_t i = 1; i < arbor->n; i++)
+    for (size_t i = arbor->inlets; i < arbor->n; i++)
         penalties->rate[i] = rate * arbor_cost(arbor) / length;
     penalties->active = true;
 }
@@ -46,7 +46,7 @@ Status penalties_reserve(Clearance *clearance, Arbor *arbor, Err *err)
 void penalties_raise(Penalties *penalties, const Clearance *clearance, const Arbor *arbor)
 {
     penalties->n_broken = 0;
-    for (size_t i = 1; i < arbor->n; i++) {
+    for (size_t i = arbor->inlets; i < arbor->n; i++) {
         bool clear = clearance_is_kept(clearance, arbor, (int32_t)i);
         penalties->rate[i] *= clear ? rise : steep_rise;
         if (!clear)

@@ -6,38 +6,60 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* Writes node `at` of *tree, which is node i of the arbor and of the tree `was`. */
+/* Writes node `at` of *tree, which is node i of the arbor; `was` is what the arbor was made of. */
 static void write_node(const Tree *was, const Arbor *arbor, int32_t i, int32_t at, Tree *tree)
 {
-    tree->type[at] = was->type[i];
-    tree->position[at] = i ? arbor->shape[i].to : was->position[0];
+    int32_t node = arbor->node[i];
+    tree->type[at] = was->type[node];
+    tree->position[at] = arbor->shape[i].to;
     if (was->flow_share)
-        tree->flow_share[at] = was->flow_share[i];
+        tree->flow_share[at] = was->flow_share[node];
 }
 
-/* Writes all segments depth first. `place` and `gauge` have room for one entry a node. */
-static Status write_segments(const Tree *was, const Arbor *arbor, int32_t *place, double *gauge,
-                             Tree *tree, Err *err)
+/* Writes segment i as node `at`, whose parent is there already. */
+static Status write_segment(const Tree *was, const Arbor *arbor, int32_t i, int32_t at,
+                            double *gauge, Tree *tree, Err *err)
 {
-    int32_t at = 1;
-    gauge[arbor_root(arbor)] = 1;
-    for (int32_t i = arbor_root(arbor); i != 0; i = arbor_next(arbor, i)) {
-        Reduced reduced = arbor_reduce(arbor, i);
-        double radius = arbor->radius_unit * gauge[i] * reduced.rho;
-        if (!(radius >= DBL_MIN) || !isfinite(radius))
-            return err_set(err, STATUS_INFEASIBLE,
-                           "the radii span more than a double can hold; move gamma, now %g, "
-                           "towards 3",
-                           arbor->law.gamma);
-        for (int side = 0; side < 2; side++)
-            if (arbor->branch[i].child[side] >= 0)
-                gauge[arbor->branch[i].child[side]] = gauge[i] * reduced.widening;
-        write_node(was, arbor, i, at, tree);
-        tree->radius_mm[at] = radius;
-        tree->parent[at] = place[arbor->branch[i].parent];
+    Reduced reduced = arbor_reduce(arbor, i);
+    double radius = arbor->radius_unit * gauge[i] * reduced.rho;
+    if (!(radius >= DBL_MIN) || !isfinite(radius))
+        return err_set(err, STATUS_INFEASIBLE,
+                       "the radii span more than a double can hold; move gamma, now %g, "
+                       "towards 3",
+                       arbor->law.gamma);
+    for (int side = 0; side < 2; side++)
+        if (arbor->branch[i].child[side] >= 0)
+            gauge[arbor->branch[i].child[side]] = gauge[i] * reduced.widening;
+    write_node(was, arbor, i, at, tree);
+    tree->radius_mm[at] = radius;
+    return STATUS_OK;
+}
+
+/* Writes all nodes depth first, tree after tree. `place` and `gauge` have room for one entry a
+ * node.
+ */
+static Status write_nodes(const Tree *was, const Arbor *arbor, int32_t *place, double *gauge,
+                          Tree *tree, Err *err)
+{
+    int32_t at = 0, inlet = -1;
+    for (int32_t i = arbor_first(arbor); i != 0; i = arbor_next(arbor, i)) {
+        int32_t above = arbor->branch[i].parent;
+        if (arbor_is_inlet(arbor, above)) {
+            gauge[i] = 1;
+            if (above != inlet) {
+                tree->parent[at] = TREE_NO_PARENT;
+                write_node(was, arbor, above, at, tree);
+                place[above] = at++;
+                inlet = above;
+            }
+        }
+        TRY(write_segment(was, arbor, i, at, gauge, tree, err));
+        tree->parent[at] = place[above];
+        if (arbor_is_inlet(arbor, above))
+            tree->radius_mm[place[above]] =
+                fmax(tree->radius_mm[place[above]], tree->radius_mm[at]);
         place[i] = at++;
     }
-    tree->radius_mm[0] = tree->radius_mm[1];
     return STATUS_OK;
 }
 
@@ -52,8 +74,7 @@ Status result_write(const Arbor *arbor, Tree *tree, Err *err)
     TRY_GOTO(tree_init(&made, arbor->n, err));
     if (tree->flow_share)
         TRY_GOTO(tree_add_flow_shares(&made, err));
-    write_node(tree, arbor, 0, 0, &made);
-    TRY_GOTO(write_segments(tree, arbor, place, gauge, &made, err));
+    TRY_GOTO(write_nodes(tree, arbor, place, gauge, &made, err));
     tree_renumber(&made);
     made.meta = tree->meta;
     tree->meta = (TreeMeta){0};

@@ -1,0 +1,297 @@
+/* With the weights dS_root / d length held, S_root is a sum of weighted lengths along a tree:
+ * convex in all places together. Lengths are rounded, sqrt(l^2 + smoothing^2), and one step of
+ * Newton's method takes all bifurcations to its minimum: its matrix is that of springs along the
+ * segments, eliminated from the terminals to the inlet as in bound_newton.c. A few steps with
+ * weights computed anew give the goals (find_goals); segments that would be shorter than wide are
+ * pushed apart. Where bifurcations would merge, moving them one by one gets stuck far from there:
+ * each waits for the other.
+ *
+ * The rules are kept by going only a part of the way to the goals: all of it at first, and half as
+ * far, in the end not at all, where a segment breaks a rule that it kept (give_way), until none
+ * does. */
+#include "grow/refine/refine_joint.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Over the mean length of the segments. */
+static const double smoothing_share = 0.1;
+/* Segments shorter than so many radii are pushed apart as by a spring so many times as stiff as
+ * their weight over that length. */
+static const double need_radii = 2.4, push = 10;
+enum { STEPS = 8, HALVINGS = 3, GIVING_WAY = 12 };
+/* A step that gains less than this of S_root is the last. */
+static const double least_gain = 1e-5;
+/* Less of the way than this is none. */
+static const double least_part = 0.02;
+/* Where that does not lower S_root, all set out for this share of the way. */
+static const double next_scale = 0.3;
+enum { SCALES = 3 };
+
+Status joints_init(Joints *joints, size_t nodes, Err *err)
+{
+    TRY(mem_calloc(&joints->order, nodes, sizeof *joints->order, "segments", err));
+    TRY(mem_calloc(&joints->parent, nodes, sizeof *joints->parent, "nodes", err));
+    TRY(mem_calloc(&joints->start, nodes, sizeof *joints->start, "places", err));
+    TRY(mem_calloc(&joints->goal, nodes, sizeof *joints->goal, "places", err));
+    TRY(mem_calloc(&joints->place, nodes, sizeof *joints->place, "places", err));
+    TRY(mem_calloc(&joints->load, nodes, sizeof *joints->load, "loads", err));
+    TRY(mem_calloc(&joints->step, nodes, sizeof *joints->step, "steps", err));
+    TRY(mem_calloc(&joints->spring, nodes, sizeof *joints->spring, "springs", err));
+    TRY(mem_calloc(&joints->part, nodes, sizeof *joints->part, "parts", err));
+    return mem_calloc(&joints->was_clear, nodes, sizeof *joints->was_clear, "segments", err);
+}
+
+void joints_release(Joints *joints)
+{
+    free(joints->order);
+    free(joints->parent);
+    free(joints->start);
+    free(joints->goal);
+    free(joints->place);
+    free(joints->load);
+    free(joints->step);
+    free(joints->spring);
+    free(joints->part);
+    free(joints->was_clear);
+    *joints = (Joints){0};
+}
+
+/* Of a segment: the pull on its distal end, and its second derivatives. */
+static Vec3 derive(const Joints *joints, const Arbor *arbor, int32_t i, double curvature[6])
+{
+    const Shape *shape = &arbor->shape[i];
+    Vec3 by = vec3_sub(shape->to, shape->from);
+    double length2 = vec3_dot(by, by) + joints->smoothing * joints->smoothing,
+           length = sqrt(length2);
+    Reduced reduced = arbor_reduce(arbor, i);
+    double burden = arbor->branch[i].flow * arbor_viscosity(arbor, i);
+    double weight = law_length_weight(&arbor->law, &reduced, arbor->marginal[i].adjoint, burden);
+    weight = fmax(weight, 1e-12 * reduced.rho_lambda);
+    double need = need_radii * joints->level * arbor_radius_seen(arbor, i);
+    double stiff = length < need ? push * weight / need : 0;
+    weight /= length;
+    curvature[0] = weight * (1 - by.x * by.x / length2);
+    curvature[1] = -weight * by.y * by.x / length2;
+    curvature[2] = weight * (1 - by.y * by.y / length2);
+    curvature[3] = -weight * by.z * by.x / length2;
+    curvature[4] = -weight * by.z * by.y / length2;
+    curvature[5] = weight * (1 - by.z * by.z / length2);
+    double along = stiff / length2;
+    curvature[0] += along * by.x * by.x;
+    curvature[1] += along * by.y * by.x;
+    curvature[2] += along * by.y * by.y;
+    curvature[3] += along * by.z * by.x;
+    curvature[4] += along * by.z * by.y;
+    curvature[5] += along * by.z * by.z;
+    return vec3_scale(by, weight + stiff * (length - need) / length);
+}
+
+static Vec3 times(const double m[6], Vec3 v)
+{
+    return vec3(m[0] * v.x + m[1] * v.y + m[3] * v.z, m[1] * v.x + m[2] * v.y + m[4] * v.z,
+                m[3] * v.x + m[4] * v.y + m[5] * v.z);
+}
+
+/* The inverse of a symmetric matrix whose pivots are above 0. */
+static void invert(const double m[6], double out[6])
+{
+    double a = m[2] * m[5] - m[4] * m[4], b = m[4] * m[3] - m[1] * m[5];
+    double c = m[1] * m[4] - m[2] * m[3];
+    double scale = 1 / (m[0] * a + m[1] * b + m[3] * c);
+    out[0] = a * scale;
+    out[1] = b * scale;
+    out[2] = (m[0] * m[5] - m[3] * m[3]) * scale;
+    out[3] = c * scale;
+    out[4] = (m[1] * m[3] - m[0] * m[4]) * scale;
+    out[5] = (m[0] * m[2] - m[1] * m[1]) * scale;
+}
+
+/* Adds K A^-1 H, made symmetric, to `to`. */
+static void add_in_series(const double k[6], const double inverse[6], const double h[6],
+                          double to[6])
+{
+    static const Vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double product[3][3];
+    for (int column = 0; column < 3; column++) {
+        Vec3 row = times(k, times(inverse, times(h, unit[column])));
+        for (int axis = 0; axis < 3; axis++)
+            product[axis][column] = vec3_component(row, axis);
+    }
+    for (int row = 0, at = 0; row < 3; row++)
+        for (int column = 0; column <= row; column++, at++)
+            to[at] += (product[row][column] + product[column][row]) / 2;
+}
+
+/* Eliminates the node at the end of segment i; leaves what its step follows from, the inverse of
+ * its matrix, in its spring. */
+static void eliminate(Joints *joints, const Arbor *arbor, int32_t i)
+{
+    int32_t above = arbor->branch[i].parent;
+    double curvature[6], *spring = joints->spring[i], sum[6], inverse[6];
+    Vec3 pull = derive(joints, arbor, i, curvature), handed = vec3(0, 0, 0);
+    if (arbor->branch[i].child[0] < 0) {
+        for (int k = 0; k < 6; k++)
+            joints->spring[above][k] += curvature[k];
+    } else {
+        for (int k = 0; k < 6; k++)
+            sum[k] = spring[k] + curvature[k];
+        invert(sum, inverse);
+        add_in_series(spring, inverse, curvature, joints->spring[above]);
+        joints->load[i] = vec3_add(joints->load[i], pull);
+        handed = times(curvature, times(inverse, joints->load[i]));
+        memcpy(spring, inverse, sizeof inverse);
+    }
+    joints->load[above] = vec3_add(joints->load[above], vec3_sub(handed, pull));
+}
+
+/* Finds the step of every bifurcation. */
+static void find_step(Joints *joints, const Arbor *arbor)
+{
+    memset(joints->spring, 0, arbor->n * sizeof *joints->spring);
+    memset(joints->load, 0, arbor->n * sizeof *joints->load);
+    memset(joints->step, 0, arbor->n * sizeof *joints->step);
+    for (size_t k = joints->n; k-- > 0;)
+        eliminate(joints, arbor, joints->order[k]);
+    for (size_t k = 0; k < joints->n; k++) {
+        int32_t i = joints->order[k];
+        double curvature[6];
+        if (arbor->branch[i].child[0] < 0)
+            continue;
+        derive(joints, arbor, i, curvature);
+        Vec3 right = times(curvature, joints->step[arbor->branch[i].parent]);
+        joints->step[i] = times(joints->spring[i], vec3_sub(right, joints->load[i]));
+    }
+}
+
+/* Puts every node a part of the way from one place to another. */
+static void arrange(const Joints *joints, Arbor *arbor, const Vec3 *from, const Vec3 *by,
+                    double part)
+{
+    for (size_t i = 0; i < arbor->n; i++)
+        joints->place[i] = vec3_add_scaled(from[i], by[i], part);
+    arbor_arrange(arbor, joints->parent, joints->place);
+}
+
+/* Takes the longest of a few parts of the step that lowers S_root, into goal. */
+static bool take_step(Joints *joints, Arbor *arbor)
+{
+    double before = arbor_cost(arbor), part = 1;
+    for (int k = 0; k < HALVINGS; k++, part /= 2) {
+        arrange(joints, arbor, joints->goal, joints->step, part);
+        double after = arbor_cost(arbor);
+        if (!(after < before))
+            continue;
+        memcpy(joints->goal, joints->place, arbor->n * sizeof *joints->goal);
+        return after < before * (1 - least_gain);
+    }
+    arbor_arrange(arbor, joints->parent, joints->goal);
+    return false;
+}
+
+static void begin(Joints *joints, const Arbor *arbor, const Clearance *clearance)
+{
+    joints->n = 0;
+    for (int32_t i = arbor_first(arbor); i != 0; i = arbor_next(arbor, i))
+        joints->order[joints->n++] = i;
+    for (size_t i = 0; i < arbor->n; i++) {
+        joints->parent[i] = arbor->branch[i].parent;
+        joints->start[i] = arbor->shape[i].to;
+        joints->was_clear[i] = clearance_is_kept(clearance, arbor, (int32_t)i);
+    }
+    memcpy(joints->goal, joints->start, arbor->n * sizeof *joints->goal);
+    double length = 0;
+    for (size_t k = 0; k < joints->n; k++)
+        length += arbor->branch[joints->order[k]].length;
+    joints->smoothing = smoothing_share * length / (double)joints->n;
+    joints->level = clearance->level;
+}
+
+/* Steps until one gains little. False when there is none. */
+static bool find_goals(Joints *joints, Arbor *arbor)
+{
+    double before = arbor_cost(arbor);
+    for (int k = 0; k < STEPS; k++) {
+        arbor_refresh(arbor);
+        find_step(joints, arbor);
+        if (!take_step(joints, arbor))
+            break;
+    }
+    return arbor_cost(arbor) < before;
+}
+
+/* Has the node go half as far. */
+static bool shorten(Joints *joints, const Arbor *arbor, int32_t i)
+{
+    if (arbor_is_inlet(arbor, i) || joints->part[i] == 0 || arbor->branch[i].child[0] < 0)
+        return false;
+    joints->part[i] = joints->part[i] / 2 >= least_part ? joints->part[i] / 2 : 0;
+    return true;
+}
+
+/* Whether segment i breaks a rule that it kept. */
+static bool is_newly_broken(const Joints *joints, const Arbor *arbor, const Clearance *clearance,
+                            int32_t i)
+{
+    bool moved = joints->part[i] > 0 || joints->part[arbor->branch[i].parent] > 0;
+    return joints->was_clear[i] && (!clearance_is_kept(clearance, arbor, i) ||
+                                    (moved && !clearance_is_held(clearance, arbor, i)));
+}
+
+/* Shortens the way of the ends of all segments that break a rule they kept; of all nodes, where
+ * that shortens none. False when there is no such segment. */
+static bool give_way(Joints *joints, const Arbor *arbor, const Clearance *clearance)
+{
+    bool is_broken = false, is_shorter = false;
+    for (size_t k = 0; k < joints->n; k++) {
+        int32_t i = joints->order[k];
+        if (!is_newly_broken(joints, arbor, clearance, i))
+            continue;
+        is_broken = true;
+        is_shorter |= shorten(joints, arbor, i);
+        is_shorter |= shorten(joints, arbor, arbor->branch[i].parent);
+    }
+    for (size_t i = arbor->inlets; is_broken && !is_shorter && i < arbor->n; i++)
+        shorten(joints, arbor, (int32_t)i);
+    return is_broken;
+}
+
+/* Goes from the starts that part of the way to the goals, or as much of it as the rules allow. */
+static Status approach(Joints *joints, Arbor *arbor, Clearance *clearance, double whole, Err *err)
+{
+    for (size_t i = 0; i < arbor->n; i++)
+        joints->part[i] = whole;
+    for (size_t i = arbor->inlets; i < arbor->n; i++) /* what breaks rules is not to get worse */
+        if (!joints->was_clear[i])
+            joints->part[i] = joints->part[arbor->branch[i].parent] = 0;
+    for (int k = 0;; k++) {
+        for (size_t i = 0; i < arbor->n; i++) {
+            if (k == GIVING_WAY)
+                joints->part[i] = 0;
+            joints->place[i] = vec3_add_scaled(
+                joints->start[i], vec3_sub(joints->goal[i], joints->start[i]), joints->part[i]);
+        }
+        arbor_arrange(arbor, joints->parent, joints->place);
+        TRY(clearance_reserve(clearance, arbor, err));
+        if (k == GIVING_WAY || !give_way(joints, arbor, clearance))
+            return STATUS_OK;
+    }
+}
+
+Status joint_move(Joints *joints, Arbor *arbor, Clearance *clearance, bool *kept, Err *err)
+{
+    double before = arbor_cost(arbor), whole = 1;
+    *kept = false;
+    TRY(clearance_reserve(clearance, arbor, err));
+    begin(joints, arbor, clearance);
+    if (!find_goals(joints, arbor))
+        return STATUS_OK;
+    for (int k = 0; k < SCALES && !*kept; k++, whole *= next_scale) {
+        TRY(approach(joints, arbor, clearance, whole, err));
+        *kept = arbor_cost(arbor) < before;
+    }
+    if (*kept)
+        return STATUS_OK;
+    arbor_arrange(arbor, joints->parent, joints->start);
+    return clearance_reserve(clearance, arbor, err);
+}
