@@ -16,21 +16,33 @@ test_a_line_drawing_is_vectors_of_black_alone() {
     pdfinfo lines.pdf | grep -q '^Page size: *170\.' || fail "expected a page of 60 mm"
 }
 
-# What the drawing encloses is what the picture shows, but for its lines.
-test_a_drawing_lies_on_the_picture_of_the_same_view() {
-    run_ok corcast grow --terminals 12 --seed 2 -o tree.swc
-    local view='--size 60mm --dpi 200 --projection perspective --quiet'
-    run_ok corcast render tree.swc --ink 0.3 $view -o lines.pdf
-    run_ok corcast render tree.swc --look flat --background 1,1,1 --antialias 1 --exact $view -o flat.ppm
+# Of a tree as MODEL: ink lies on what a flat picture of the same view shows, and on all of its outline.
+drawing_lies_on_picture() {
+    local view='--size 60mm --dpi 200 --projection perspective --turn 20,10 --quiet' beside ink edges bare
+    run_ok corcast render tree.swc --model "$1" --ink 0.3 $view -o lines.pdf
+    run_ok corcast render tree.swc --model "$1" --look flat --background 1,1,1 --antialias 1 --exact $view -o flat.ppm
     pdftoppm -r 200 lines.pdf lines
-    pamtopnm <flat.ppm | ppmtopgm | pamthreshold -simple -threshold 0.9 | pamtopnm >vessels.pbm
+    ppmtopgm flat.ppm | pamthreshold -simple -threshold 0.9 | pamtopnm >vessels.pbm
     ppmtopgm lines-1.ppm | pamthreshold -simple -threshold 0.5 | pamtopnm >ink.pbm
     # Dark in both is 0 in the sum; ink beside vessels would be 0 in `ink` alone.
-    local beside ink
     beside=$(pnmarith -subtract vessels.pbm ink.pbm | pamsumm -sum -brief)
     ink=$(pnminvert ink.pbm | pamsumm -sum -brief)
     [ "$ink" -gt 2000 ] || fail "expected lines, got $ink dark pixels"
     awk "BEGIN { exit !($beside < 0.02 * $ink) }" || fail "expected ink on vessels alone, got $beside of $ink beside"
+    pbmtopgm 7 7 ink.pbm | pamthreshold -simple -threshold 0.9999 | pamtopnm >near.pbm
+    pamdepth 255 vessels.pbm 2>error | pamtopnm | pgmtopgm | pamedge | pamthreshold -simple -threshold 0.1 | pamtopnm >edges.pbm
+    edges=$(pamsumm -sum -brief edges.pbm)
+    bare=$(pnmarith -multiply edges.pbm near.pbm | pamsumm -sum -brief)
+    [ "$edges" -gt 1000 ] || fail "expected an outline, got $edges pixels"
+    awk "BEGIN { exit !($bare < 0.02 * $edges) }" || fail "expected ink along the outline of $1, not on $bare of $edges pixels"
+}
+
+test_a_drawing_lies_on_the_picture_of_the_same_view() {
+    local model
+    run_ok corcast grow --terminals 12 --seed 2 -o tree.swc
+    for model in cylinders joined rounded; do
+        drawing_lies_on_picture $model
+    done
 }
 
 # A panel in lines beside a picture, with an inset in lines: one picture, and lines in the panel's and the inset's paper.
@@ -58,9 +70,9 @@ test_what_has_no_effect_on_lines_is_refused() {
     run corcast render tree.swc --ink 0.2 --color-by flow -o lines.svg
     expect_status 2
     expect_sentence 'color-by has no effect on a line drawing'
-    run corcast render tree.swc --ink 0.2 --model joined -o lines.svg
+    run corcast render tree.swc --ink 0.2 --model isosurface -o lines.svg
     expect_status 2
-    expect_sentence 'ink is for --model cylinders and rounded, not joined'
+    expect_sentence 'ink is for --model cylinders, joined and rounded, not isosurface'
     run corcast render tree.swc --ink 0 -o lines.svg
     expect_status 2
     expect_sentence 'ink.*from 0\.01 to 10'

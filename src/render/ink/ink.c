@@ -1,5 +1,7 @@
 /* The outline of a cylinder is two lines along its wall, that of a ball is a circle: where the wall
- * is seen edge-on. A cylinder that ends in discs (SCENE_CYLINDERS) has their edges besides. Where
+ * is seen edge-on. A cylinder's end that is neither in a ball nor a joint's has the edge of its
+ * disc besides. The outline of a joint is followed from ellipse to ellipse, and runs on along the
+ * edge between a joint and its cylinder where the viewer sees one of the two from behind. Where
  * such a curve is part of the picture's outline, nothing is in front of it, and it lies inside
  * nothing: a ray from beside it to the viewer meets no vessel, since one that begins inside a
  * vessel leaves it. So every curve is followed in steps of half a line, and where what is seen
@@ -13,11 +15,12 @@
 #include "render/ink/ink.h"
 
 #include "render/cast/caster.h"
+#include "render/ink/inkjoint.h"
 #include "render/ink/inkpieces.h"
 #include <math.h>
 #include <stdlib.h>
 
-enum { BLOCK = 64, LEAST_STEPS = 4, HALVINGS = 6 };
+enum { BLOCK = 64, LEAST_STEPS = 4, HALVINGS = 6, FINE_SAMPLES = 384, RULINGS = 16 };
 
 /* How far beside a wall, in radii, the ray begins. */
 #define BESIDE 1e-6
@@ -30,6 +33,8 @@ typedef struct Hand {
     Caster *caster;
     double mm_per_pixel, line_mm;
     double paper[2]; /* width and height, mm */
+    Vec3 *joined;    /* owned; ends of joints, sorted */
+    size_t n_joined;
     size_t n_blocks;
     InkPieces *pieces; /* of each block */
     Status *status;    /* likewise */
@@ -50,18 +55,6 @@ static OnPaper on_paper(const Hand *hand, Vec3 point)
                      seen.per_mm * hand->mm_per_pixel};
 }
 
-/* The direction from a point to the viewer, and how far away that is. */
-static Vec3 towards_viewer(const Camera *camera, Vec3 point, double *distance)
-{
-    Vec3 away = vec3_sub(camera->location, point);
-    if (camera->projection == PROJECTION_PERSPECTIVE) {
-        *distance = vec3_length(away);
-        return vec3_scale(away, 1 / *distance);
-    }
-    *distance = -vec3_dot(away, camera->direction);
-    return vec3_scale(camera->direction, -1);
-}
-
 static bool is_seen(const Hand *hand, int worker, Vec3 point)
 {
     static const Ground none;
@@ -72,37 +65,68 @@ static bool is_seen(const Hand *hand, int worker, Vec3 point)
 
 /* ---- curves ---------------------------------------------------------------------------------- */
 
-/* A line from `from` to `from` + `along`, or a circle about `from` through the ends of `u` and `v`,
- * both with a parameter from 0 to 1. */
+typedef enum CurveKind { CURVE_LINE, CURVE_ARC, CURVE_RULED } CurveKind;
+
+/* A line from `from` to `from` + `along`; a part of a circle about `from` through the ends of `u`
+ * and `v`; or the outline of a joint between two of its ellipses. The parameter is from 0 to 1. */
 typedef struct Curve {
-    bool is_circle;
+    CurveKind kind;
     Vec3 from, along, u, v;
-    Vec3 aside;       /* of a line: from it to where the ray to the viewer begins */
-    double shift[2];  /* of a line: where it is drawn, from where it is seen, mm of paper */
-    double shrink;    /* of a circle: how much smaller it is drawn, in radii */
-    double length_mm; /* on paper */
+    double begin, span;      /* of an arc, in turns */
+    const JointFrame *joint; /* of an outline: borrowed */
+    double angle[2], way[2]; /* likewise: about where it begins and ends, and on which ellipses */
+    Vec3 aside;              /* of a line: from it to where the ray to the viewer begins */
+    double shift[2];         /* of a line: where it is drawn, from where it is seen, mm of paper */
+    double shrink;           /* of a circle: how much smaller it is drawn, in radii */
+    double length_mm;        /* on paper */
     double width_mm;
 } Curve;
 
 /* Where a point of the curve is looked at, and, times 1 - `inwards` of its radius, drawn. */
 static Vec3 circle_point(const Curve *curve, double t, double radii)
 {
-    double angle = 6.283185307179586 * t;
+    double angle = 6.283185307179586 * (curve->begin + t * curve->span);
     Vec3 out = vec3_add_scaled(vec3_scale(curve->u, cos(angle)), curve->v, sin(angle));
     return vec3_add_scaled(curve->from, out, radii);
 }
 
+/* A place of a joint's outline and the normal there. */
+static Vec3 ruled_point(const Hand *hand, const Curve *curve, double t, Vec3 *normal)
+{
+    double way = curve->way[0] + t * (curve->way[1] - curve->way[0]);
+    double angle = curve->angle[0] + t * (curve->angle[1] - curve->angle[0]);
+    angle = joint_outline_near(hand->camera, curve->joint, angle, way);
+    *normal = joint_normal(curve->joint, angle, way);
+    return joint_point(curve->joint, cos(angle), sin(angle), way);
+}
+
 static bool curve_is_seen(const Hand *hand, int worker, const Curve *curve, double t)
 {
-    Vec3 place = curve->is_circle
-                     ? circle_point(curve, t, 1 + BESIDE)
-                     : vec3_add(vec3_add_scaled(curve->from, curve->along, t), curve->aside);
+    Vec3 place, normal;
+    if (curve->kind == CURVE_ARC)
+        place = circle_point(curve, t, 1 + BESIDE);
+    else if (curve->kind == CURVE_LINE)
+        place = vec3_add(vec3_add_scaled(curve->from, curve->along, t), curve->aside);
+    else
+        place = vec3_add_scaled(ruled_point(hand, curve, t, &normal), normal,
+                                BESIDE * curve->joint->radius);
     return is_seen(hand, worker, place);
+}
+
+/* Half a line within the outline. */
+static Status add_ruled(const Hand *hand, const Curve *curve, double t, InkPieces *pieces, Err *err)
+{
+    Vec3 normal, point = ruled_point(hand, curve, t, &normal);
+    OnPaper place = on_paper(hand, point);
+    double inwards = hand->line_mm / 2 / place.per_mm;
+    return inkpieces_add(pieces, on_paper(hand, vec3_add_scaled(point, normal, -inwards)).at, err);
 }
 
 static Status add_point(const Hand *hand, const Curve *curve, double t, InkPieces *pieces, Err *err)
 {
-    if (curve->is_circle)
+    if (curve->kind == CURVE_RULED)
+        return add_ruled(hand, curve, t, pieces, err);
+    if (curve->kind == CURVE_ARC)
         return inkpieces_add(pieces, on_paper(hand, circle_point(curve, t, 1 - curve->shrink)).at,
                              err);
     OnPaper place = on_paper(hand, vec3_add_scaled(curve->from, curve->along, t));
@@ -115,9 +139,9 @@ static Status add_point(const Hand *hand, const Curve *curve, double t, InkPiece
 static Status add_piece(const Hand *hand, const Curve *curve, double t, double end,
                         InkPieces *pieces, Err *err)
 {
-    double radius_mm = curve->length_mm / 6.283185307179586;
+    double radius_mm = curve->length_mm / curve->span / 6.283185307179586;
     double side = fmin(2 * acos(1 - fmin(SAGITTA_MM / radius_mm, 0.5)) / 6.283185307179586, 0.125);
-    int sides = curve->is_circle ? (int)ceil((end - t) / side) : 1;
+    int sides = curve->kind == CURVE_ARC ? (int)ceil((end - t) * curve->span / side) : 1;
     TRY(inkpieces_begin(pieces, curve->width_mm, err));
     for (int k = 0; k < sides; k++)
         TRY(add_point(hand, curve, t + (end - t) * k / sides, pieces, err));
@@ -144,7 +168,7 @@ static Status draw_curve(const Hand *hand, int worker, const Curve *curve, InkPi
                          Err *err)
 {
     double wanted = ceil(2 * curve->length_mm / hand->line_mm);
-    int steps = (int)fmin(fmax(wanted, LEAST_STEPS * (curve->is_circle ? 4 : 1)), 1e6);
+    int steps = (int)fmin(fmax(wanted, LEAST_STEPS * (curve->kind == CURVE_ARC ? 4 : 1)), 1e6);
     bool seen = curve_is_seen(hand, worker, curve, 0);
     double begin = 0;
     for (int k = 1; k <= steps; k++) {
@@ -232,12 +256,28 @@ static int edge_normals(const Camera *camera, const Primitive *vessel, Vec3 norm
     return 2;
 }
 
+static int order_points(const void *a, const void *b)
+{
+    const Vec3 *p = a, *q = b;
+    int order = number_order(p->x, q->x);
+    order = order ? order : number_order(p->y, q->y);
+    return order ? order : number_order(p->z, q->z);
+}
+
+/* Whether a cylinder's end is neither in a ball nor a joint's. */
+static bool ends_in_disc(const Hand *hand, Vec3 end)
+{
+    return hand->geometry->model != SCENE_ROUNDED &&
+           !bsearch(&end, hand->joined, hand->n_joined, sizeof end, order_points);
+}
+
 /* The edge of one of the discs that close a cylinder. */
 static Status draw_edge(const Hand *hand, int worker, const Primitive *vessel, Vec3 center,
                         double per_mm, InkPieces *pieces, Err *err)
 {
     double radius_mm = vessel->radius_mm * per_mm;
-    Curve edge = {.is_circle = true,
+    Curve edge = {.kind = CURVE_ARC,
+                  .span = 1,
                   .from = center,
                   .shrink = hand->line_mm / 2 / radius_mm,
                   .length_mm = 6.283185307179586 * radius_mm,
@@ -258,9 +298,82 @@ static Status draw_cylinder(const Hand *hand, int worker, const Primitive *vesse
     int n = edge_normals(hand->camera, vessel, normals);
     for (int k = 0; k < n; k++)
         TRY(draw_side(hand, worker, vessel, normals[k], ends, pieces, err));
-    for (int k = 0; k < 2 && hand->geometry->model == SCENE_CYLINDERS; k++)
-        TRY(draw_edge(hand, worker, vessel, k ? vessel->b : vessel->a, ends[k].per_mm, pieces,
-                      err));
+    for (int k = 0; k < 2; k++)
+        if (ends_in_disc(hand, k ? vessel->b : vessel->a))
+            TRY(draw_edge(hand, worker, vessel, k ? vessel->b : vessel->a, ends[k].per_mm, pieces,
+                          err));
+    return STATUS_OK;
+}
+
+/* The outline between two ellipses: from each angle of the first to the nearest of the second. */
+static Status draw_rulings(const Hand *hand, int worker, const JointFrame *joint,
+                           const double way[2], double length_mm, InkPieces *pieces, Err *err)
+{
+    double from[JOINT_OUTLINES], to[JOINT_OUTLINES];
+    int n = joint_outline(hand->camera, joint, way[0], from),
+        m = joint_outline(hand->camera, joint, way[1], to);
+    for (int i = 0; i < n; i++) {
+        double turn = 1; /* at most, in radians */
+        for (int k = 0; k < m; k++) {
+            double apart = remainder(to[k] - from[i], 6.283185307179586);
+            turn = fabs(apart) < fabs(turn) ? apart : turn;
+        }
+        const Curve outline = {.kind = CURVE_RULED,
+                               .joint = joint,
+                               .angle = {from[i], from[i] + turn},
+                               .way = {way[0], way[1]},
+                               .length_mm = length_mm,
+                               .width_mm = hand->line_mm};
+        if (turn < 1)
+            TRY(draw_curve(hand, worker, &outline, pieces, err));
+    }
+    return STATUS_OK;
+}
+
+/* The parts of the edge between a joint and its cylinder that are part of the outline. */
+static Status draw_creases(const Hand *hand, int worker, const JointFrame *joint, int end,
+                           double per_mm, InkPieces *pieces, Err *err)
+{
+    double radius = joint->radius + end * joint->radius_change;
+    const Curve circle = {.kind = CURVE_ARC,
+                          .from = vec3_add_scaled(joint->base, joint->span, end),
+                          .u = vec3_add_scaled(joint->across, joint->across_change, end),
+                          .v = vec3_scale(joint->side, radius),
+                          .shrink = hand->line_mm / 2 / (radius * per_mm),
+                          .width_mm = hand->line_mm};
+    for (int k = 0, next; k < FINE_SAMPLES; k = next) {
+        next = k + 1;
+        if (!joint_edge_is_outline(hand->camera, joint, end,
+                                   6.283185307179586 * (k + 0.5) / FINE_SAMPLES))
+            continue;
+        while (next < FINE_SAMPLES &&
+               joint_edge_is_outline(hand->camera, joint, end,
+                                     6.283185307179586 * (next + 0.5) / FINE_SAMPLES))
+            next++;
+        Curve arc = circle;
+        arc.begin = (double)k / FINE_SAMPLES;
+        arc.span = (double)(next - k) / FINE_SAMPLES;
+        arc.length_mm = 6.283185307179586 * radius * per_mm * arc.span;
+        TRY(draw_curve(hand, worker, &arc, pieces, err));
+    }
+    return STATUS_OK;
+}
+
+static Status draw_joint(const Hand *hand, int worker, const Primitive *vessel, InkPieces *pieces,
+                         Err *err)
+{
+    const OnPaper ends[2] = {on_paper(hand, vessel->a), on_paper(hand, vessel->b)};
+    const JointFrame joint = primitive_joint(vessel);
+    const double most = fmax(vessel->radius_mm, vessel->radius_b_mm);
+    if (most * fmax(ends[0].per_mm, ends[1].per_mm) <= hand->line_mm)
+        return draw_thin(hand, worker, vessel, ends, pieces, err);
+    double length_mm = 2 * most * ends[0].per_mm / RULINGS;
+    for (int k = 0; k < RULINGS; k++)
+        TRY(draw_rulings(hand, worker, &joint,
+                         (const double[]){(double)k / RULINGS, (k + 1.0) / RULINGS}, length_mm,
+                         pieces, err));
+    for (int end = 0; end < 2; end++)
+        TRY(draw_creases(hand, worker, &joint, end, ends[end].per_mm, pieces, err));
     return STATUS_OK;
 }
 
@@ -275,7 +388,8 @@ static Status draw_ball(const Hand *hand, int worker, const Primitive *ball, Ink
     bool perspective = hand->camera->projection == PROJECTION_PERSPECTIVE;
     double nearer = perspective ? ball->radius_mm / distance : 0; /* in radii */
     double radius = ball->radius_mm * sqrt(fmax(0, 1 - nearer * nearer));
-    Curve circle = {.is_circle = true,
+    Curve circle = {.kind = CURVE_ARC,
+                    .span = 1,
                     .from = vec3_add_scaled(ball->a, towards, nearer * ball->radius_mm),
                     .shrink = hand->line_mm / 2 / radius_mm,
                     .length_mm = 6.283185307179586 * radius_mm,
@@ -292,7 +406,9 @@ static void draw_block(size_t block, int worker, void *context)
     size_t n = hand->geometry->n_primitives, end = (block + 1) * BLOCK;
     for (size_t i = block * BLOCK; i < n && i < end && hand->status[block] == STATUS_OK; i++) {
         const Primitive *vessel = &hand->geometry->primitives[i];
-        hand->status[block] = (vessel->kind == PRIMITIVE_SPHERE ? draw_ball : draw_cylinder)(
+        hand->status[block] = (vessel->kind == PRIMITIVE_SPHERE  ? draw_ball
+                               : vessel->kind == PRIMITIVE_JOINT ? draw_joint
+                                                                 : draw_cylinder)(
             hand, worker, vessel, &hand->pieces[block], &hand->errors[block]);
     }
 }
@@ -313,6 +429,21 @@ static Status gather(const Hand *hand, Strokes *strokes, Err *err)
         status = inkpieces_join(&all, strokes, err);
     inkpieces_release(&all);
     return status;
+}
+
+/* The ends of all joints. */
+static Status list_joined(Hand *hand, Err *err)
+{
+    const Geometry *geometry = hand->geometry;
+    TRY(mem_calloc(&hand->joined, 2 * geometry->n_primitives + 1, sizeof *hand->joined, "joints",
+                   err));
+    for (size_t i = 0; i < geometry->n_primitives; i++)
+        if (geometry->primitives[i].kind == PRIMITIVE_JOINT) {
+            hand->joined[hand->n_joined++] = geometry->primitives[i].a;
+            hand->joined[hand->n_joined++] = geometry->primitives[i].b;
+        }
+    qsort(hand->joined, hand->n_joined, sizeof *hand->joined, order_points);
+    return STATUS_OK;
 }
 
 static Status check_in_front(const Geometry *geometry, const Camera *camera, Err *err)
@@ -343,6 +474,7 @@ Status ink_draw(const Geometry *geometry, const View *view, const InkParams *par
     hand.paper[0] = params->width_mm;
     hand.paper[1] = camera->height * hand.mm_per_pixel;
     TRY(check_in_front(geometry, camera, err));
+    TRY_GOTO(list_joined(&hand, err));
     TRY_GOTO(caster_new(geometry, NULL, threads, &hand.caster, err));
     TRY_GOTO(mem_calloc(&hand.pieces, hand.n_blocks, sizeof *hand.pieces, "strokes", err));
     TRY_GOTO(mem_calloc(&hand.status, hand.n_blocks, sizeof *hand.status, "strokes", err));
@@ -355,6 +487,7 @@ Status ink_draw(const Geometry *geometry, const View *view, const InkParams *par
 done:
     for (size_t b = 0; hand.pieces && b < hand.n_blocks; b++)
         inkpieces_release(&hand.pieces[b]);
+    free(hand.joined);
     free(hand.pieces);
     free(hand.status);
     free(hand.errors);

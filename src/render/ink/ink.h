@@ -11,13 +11,13 @@ typedef struct InkParams {
     int threads;     /* 0: all processors */
 } InkParams;
 
-/* Draws cylinders and balls (SCENE_CYLINDERS, SCENE_ROUNDED) in *strokes (owned). A vessel wider on
- * paper than two lines is drawn by its outlines, inside it, so that their outer edges are the
- * vessel's true edges; a thinner one by one line as wide as the vessel. What lies behind or inside
- * a vessel is left out, to a hundredth of a line; hidden parts shorter than half a line may be
- * drawn. Strokes that meet end to end are one. The same strokes for any number of threads.
- * STATUS_MEMORY; STATUS_USAGE when a vessel is not in front of the camera. O(n log n) of n vessels
- * and of the length of their lines.
+/* Draws the models of cylinders, joints and balls (SCENE_CYLINDERS, SCENE_JOINED, SCENE_ROUNDED) in
+ * *strokes (owned). A vessel wider on paper than two lines is drawn by its outlines, inside it, so
+ * that their outer edges are the vessel's true edges; a thinner one by one line as wide as the
+ * vessel. What lies behind or inside a vessel is left out, to a hundredth of a line; hidden parts
+ * shorter than half a line may be drawn. Strokes that meet end to end are one. The same strokes for
+ * any number of threads. STATUS_MEMORY; STATUS_USAGE when a vessel is not in front of the camera.
+ * O(n log n) of n vessels and of the length of their lines.
  */
 MUST_CHECK Status ink_draw(const Geometry *geometry, const View *view, const InkParams *params,
                            Strokes *strokes, Err *err);
