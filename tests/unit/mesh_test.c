@@ -404,6 +404,42 @@ static void a_twig_along_the_axis_of_a_trunk_is_swallowed_not_missing(void **sta
     release(&made);
 }
 
+/* It is so thin that it is not felt at the trunk's wall. */
+static void a_twig_that_ends_deep_in_a_trunk_does_not_come_out_behind_a_plane(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    sketch_begin(&sketch, vec3(0.247, -0.003, 0.097));
+    uint32_t fork = sketch_to(&sketch, 0, vec3(0, 0, 0), 0.065);
+    sketch_to(&sketch, fork, vec3(-1.613, -0.114, -0.516), 0.063);
+    sketch_to(&sketch, fork, vec3(-0.66, -0.044, -0.21), 0.03);
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    assert_int_equal(made.report.n_swallowed, 1);
+    assert_int_equal(made.report.swallowed[0], 2);
+    release(&made);
+}
+
+/* Two vessels leave each other at a small angle: with cells of the usual size triangles were
+ * 6.5 % of the radius above the bottom of the groove between them. */
+static void no_triangle_lies_far_above_the_bottom_of_a_narrow_groove(void **state)
+{
+    (void)state;
+    Sketch sketch;
+    Made made;
+    sketch_begin(&sketch, vec3(1.76, 1.118, 0.314));
+    uint32_t trunk = sketch_to(&sketch, 0, vec3(0, 0, 0), 0.3424);
+    sketch_to(&sketch, trunk, vec3(-3.79, -7.894, 1.035), 0.2985);
+    uint32_t fork = sketch_to(&sketch, trunk, vec3(-0.819, -0.086, 0.318), 0.2384);
+    sketch_to(&sketch, fork, vec3(-16.358, -1.292, 5.895), 0.2138);
+    sketch_to(&sketch, fork, vec3(-4.537, -1.422, 2.795), 0.1557);
+    make(&sketch.tree, &made);
+    expect_sound(&made, 1);
+    assert_true(made.report.off.ratio < 0.045);
+    release(&made);
+}
+
 /* A mesh of loose triangles. */
 static size_t crossings_of(float (*points)[3], uint32_t (*triangles)[3], size_t n)
 {
@@ -581,6 +617,8 @@ int main(void)
         cmocka_unit_test(vessels_at_both_ends_of_a_short_one_do_not_blend),
         cmocka_unit_test(a_twig_within_a_trunk_is_swallowed_not_missing),
         cmocka_unit_test(a_twig_along_the_axis_of_a_trunk_is_swallowed_not_missing),
+        cmocka_unit_test(a_twig_that_ends_deep_in_a_trunk_does_not_come_out_behind_a_plane),
+        cmocka_unit_test(no_triangle_lies_far_above_the_bottom_of_a_narrow_groove),
         cmocka_unit_test(the_wall_of_a_round_body_is_that_of_cylinders_and_balls),
         cmocka_unit_test(fine_steps_of_a_round_body_keep_its_volume),
         cmocka_unit_test(triangles_that_pierce_touch_or_fold_are_found),

@@ -261,6 +261,24 @@ static double last_place(const EndSearch *search, double most, TooMuch *too_much
     return 0;
 }
 
+/* The farthest place, from the end on, beside which another vessel ends within the segment's own:
+ * it may not be felt at the wall, and yet must not come out behind a plane. */
+static double last_within(const EndSearch *search)
+{
+    double last = 0, sign = search->end ? -1 : 1;
+    for (size_t i = 0; i < search->n; i++) {
+        const FieldSegment *other = &search->tree->segments[search->neighbors[i].segment];
+        for (int end = 0; end < 2; end++) {
+            Vec3 from = vec3_sub(end ? other->b : other->a, place_at(search, 0));
+            double along = sign * vec3_dot(from, search->axis);
+            double across2 = vec3_dot(from, from) - along * along;
+            if (across2 < search->self->radius_mm * search->self->radius_mm)
+                last = fmax(last, along);
+        }
+    }
+    return last;
+}
+
 static Status find_free(const FreeSearch *all, uint32_t segment, int end)
 {
     const VesselTree *tree = all->tree;
@@ -275,6 +293,7 @@ static Status find_free(const FreeSearch *all, uint32_t segment, int end)
         double clear = last_place(&search, search.neighbors[0].last_mm, is_disturbed), even = clear;
         if (tree->body != BODY_ROUND)
             even = last_place(&search, fmax(clear, radius), is_uneven);
+        even = fmax(even, last_within(&search));
         all->ends[segment][end] = (FreeEnd){even, fmax(clear, even)};
     }
 done:

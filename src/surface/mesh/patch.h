@@ -35,6 +35,12 @@ PatchPoint patch_wall_point(const ZoneField *field, Vec3 x, const FieldValue *va
 MUST_CHECK Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *number, Err *err);
 MUST_CHECK Status patch_add_triangle(Patch *patch, Triangle triangle, Err *err);
 
+/* A coordinate as the nearest whole multiple of `grid_mm`. */
+static inline float patch_rounded(double x_mm, double grid_mm)
+{
+    return (float)(round(x_mm / grid_mm) * grid_mm);
+}
+
 /* Leaves out the triangles whose first point is UINT32_MAX, and the points that no triangle has;
  * the order of the others stays. `renamed` has room for the points. */
 void patch_compact(Patch *patch, uint32_t *renamed);

@@ -16,7 +16,7 @@
 /* What the tolerance means for cells and edges, measured so that the mean distance to the surface
  * stays below 0.15 of it, and one sample of a thousand is beyond it. */
 static const double cells_at = 0.02, cell_ratio = 0.54, bending_ratio = 0.25, sagitta_part = 0.35,
-                    split_part = 0.65, cap_part = 0.2, farthest_part = 1.4;
+                    split_part = 0.65, cap_part = 0.2, farthest_part = 1.4, worst_part = 2.25;
 /* Of a round body: its balls bend both ways, and its creases are cut off. */
 static const double round_sagitta_part = 0.24, round_farthest_part = 1.75;
 
@@ -82,6 +82,7 @@ static ZoneFineness fineness_of(const VesselTree *tree, double tolerance, double
                           (is_round ? round_sagitta_part : sagitta_part) * tolerance,
                           split_part * tolerance,
                           (is_round ? round_farthest_part : farthest_part) * tolerance,
+                          worst_part * tolerance,
                           grid_mm};
 }
 

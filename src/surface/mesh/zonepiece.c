@@ -5,12 +5,15 @@
 #include "surface/mesh/zonepiece.h"
 
 #include "surface/mesh/nearpairs.h"
+#include "surface/mesh/patchcross.h"
 #include <stdlib.h>
 
 #define NONE UINT32_MAX
 
-enum { MOST_REPEATS = 7 };
-static const double finer = 0.85;
+enum { MOST_REPEATS = 7, MOST_NEARER = 3 };
+static const double finer = 0.85, least_part = 0.5;
+/* Over the radius: triangles so far off are none of the wall, as where vessels overlap. */
+static const double farthest_off = 0.5;
 /* Over the radius of the thinner: gaps that cells may be too wide for. */
 static const double narrow_gap = 0.3;
 /* Over the usual cell: a hole that is no flaw of the lattice. Where vessels do not blend, cells are
@@ -307,9 +310,15 @@ static Status finish(const Maker *maker, const ZoneFineness *fineness, uint8_t *
     TRY(find_fates(maker, fineness->cells.ratio, fates));
     TRY(collapse_make(&worker->collapser, &worker->patch, fineness->sagitta, maker->err));
     maker->piece->off = (MeshOff){0};
+    size_t n_points = worker->patch.n_points;
     TRY(refine_make(&worker->refiner, maker->plan, &worker->tree, fineness->split, &worker->patch,
                     &maker->piece->off, maker->err));
-    return prove(maker, sound);
+    TRY(prove(maker, sound));
+    bool crossing = false;
+    if (*sound && worker->patch.n_points > n_points)
+        TRY(patchcross_find(&worker->patch, n_points, fineness->grid_mm, &crossing, maker->err));
+    *sound = *sound && !crossing;
+    return STATUS_OK;
 }
 
 /* One attempt; *hole is how wide a tunnel is that makes the wall unsound, over the local radius. */
@@ -402,7 +411,7 @@ static PiecePoint rounded_point(const PatchPoint *point, double grid)
 {
     PiecePoint kept = {.segment = point->segment};
     for (int axis = 0; axis < 3; axis++) {
-        kept.x[axis] = (float)(round(vec3_component(point->x, axis) / grid) * grid);
+        kept.x[axis] = patch_rounded(vec3_component(point->x, axis), grid);
         kept.normal[axis] = (float)vec3_component(point->normal, axis);
     }
     return kept;
@@ -451,6 +460,12 @@ static bool is_own_tunnel(const Maker *maker, double hole, double before)
     return hole > lasting * before && hole <= most_stopped && find_gap(maker, pair) >= 0;
 }
 
+static void make_finer(ZoneFineness *fineness, double factor)
+{
+    fineness->cells.ratio *= factor;
+    fineness->cells.bending *= factor * factor;
+}
+
 /* How many steps finer the cells of the next attempt are; 0: none would help. A wide hole is there
  * for good, unless it is closed by a gap that cells are too wide for. */
 static int steps_finer(const Maker *maker, double hole, double cell, int left)
@@ -462,6 +477,51 @@ static int steps_finer(const Maker *maker, double hole, double cell, int left)
     return gap >= 0 && gap < narrow_gap ? left : 0;
 }
 
+/* Attempts with finer and finer cells until the wall is sound or none would help; *used are those
+ * of the last one. */
+static Status make_sound(const Maker *maker, ZoneFineness *used, uint8_t *fates, bool *sound)
+{
+    double hole, before = HUGE_VAL;
+    for (int steps = 1; steps; maker->piece->repeats += steps) {
+        int repeats = maker->piece->repeats;
+        zonepiece_release(maker->piece);
+        maker->piece->repeats = repeats;
+        TRY(attempt(maker, used, fates, sound, &hole));
+        steps = *sound ? 0 : steps_finer(maker, hole, used->cells.ratio, MOST_REPEATS - repeats);
+        if (steps && is_own_tunnel(maker, hole, before))
+            used->farthest = most_stopped;
+        before = hole;
+        make_finer(used, pow(finer, steps));
+    }
+    return STATUS_OK;
+}
+
+/* Where a triangle is too far off the wall, as over the bottom of a groove, which is too narrow to
+ * be found by splitting, cells so much finer as it is too far are tried for as long as they help.
+ */
+static Status come_near(const Maker *maker, ZoneFineness *used, uint8_t *fates)
+{
+    bool sound = true;
+    double off = maker->piece->off.ratio;
+    for (int i = 0; i < MOST_NEARER && off > used->worst; i++) {
+        ZoneFineness tried = *used;
+        int repeats = maker->piece->repeats;
+        double hole;
+        make_finer(&tried, fmax(least_part, finer * used->worst / off));
+        zonepiece_release(maker->piece);
+        TRY(attempt(maker, &tried, fates, &sound, &hole));
+        maker->piece->repeats = repeats + 1;
+        sound = sound && maker->piece->off.ratio < off;
+        if (!sound) {
+            zonepiece_release(maker->piece);
+            return attempt(maker, used, fates, &sound, &hole);
+        }
+        *used = tried;
+        off = maker->piece->off.ratio;
+    }
+    return STATUS_OK;
+}
+
 Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan,
                       const ZoneFineness *fineness, ZonePiece *piece, uint8_t *fates, Err *err)
 {
@@ -469,25 +529,15 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
     const Maker maker = {worker, tree, plan, &made, err};
     ZoneFineness used = *fineness;
     bool sound = false;
-    double hole, before = HUGE_VAL;
-    int repeats = 0;
-    Status status = STATUS_OK;
-    for (int steps = 1; steps; repeats += steps) {
-        zonepiece_release(&made);
-        TRY_GOTO(attempt(&maker, &used, fates, &sound, &hole));
-        steps = sound ? 0 : steps_finer(&maker, hole, used.cells.ratio, MOST_REPEATS - repeats);
-        if (steps && is_own_tunnel(&maker, hole, before))
-            used.farthest = most_stopped;
-        before = hole;
-        used.cells.ratio *= pow(finer, steps);
-        used.cells.bending *= pow(finer, 2 * steps);
-    }
-    made.repeats = repeats;
-    status = sound ? keep_patch(worker, fineness->grid_mm, &made, err) : refuse(&maker, err);
-    if (status == STATUS_OK) {
-        *piece = made;
-        made = (ZonePiece){0};
-    }
+    Status status;
+    TRY_GOTO(make_sound(&maker, &used, fates, &sound));
+    if (sound)
+        TRY_GOTO(come_near(&maker, &used, fates));
+    if (!sound || made.off.ratio > farthest_off)
+        TRY_GOTO(refuse(&maker, err));
+    TRY_GOTO(keep_patch(worker, fineness->grid_mm, &made, err));
+    *piece = made;
+    made = (ZonePiece){0};
 done:
     zonepiece_release(&made);
     return status;

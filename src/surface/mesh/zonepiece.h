@@ -46,6 +46,7 @@ typedef struct ZoneFineness {
     double sagitta;  /* of the local radius, for edges */
     double split;    /* likewise, triangles that are farther off the wall are split */
     double farthest; /* likewise, of points that close a gap, off the wall */
+    double worst;    /* likewise; zones with triangles farther off get finer cells */
     double grid_mm;  /* coordinates are rounded to its multiples */
 } ZoneFineness;
 

@@ -1,0 +1,55 @@
+/* What is split stays on the wall, and yet may run into the other side of a groove whose triangles
+ * are not split. Of a zone few triangles are new as a rule, and those lie together in a crotch: the
+ * triangles that reach into the box of the new ones are made a mesh of their own, and tested as the
+ * finished mesh is. */
+#include "surface/mesh/patchcross.h"
+
+#include "surface/mesh/meshcheck.h"
+#include <string.h>
+
+static Box box_of(const Patch *patch, const Triangle *triangle)
+{
+    Box box = box_empty();
+    for (int k = 0; k < 3; k++)
+        box = box_with_ball(box, patch->points[triangle->at[k]].x, 0);
+    return box;
+}
+
+static bool is_new(const Triangle *triangle, size_t first_new)
+{
+    return triangle->at[0] >= first_new || triangle->at[1] >= first_new ||
+           triangle->at[2] >= first_new;
+}
+
+static void copy_near(const Patch *patch, Box near, double grid_mm, VesselMesh *mesh)
+{
+    for (; mesh->n_points < patch->n_points; mesh->n_points++)
+        for (int axis = 0; axis < 3; axis++)
+            mesh->points[mesh->n_points][axis] =
+                patch_rounded(vec3_component(patch->points[mesh->n_points].x, axis), grid_mm);
+    for (size_t i = 0; i < patch->n_triangles; i++)
+        if (box_meets(box_of(patch, &patch->triangles[i]), near))
+            memcpy(mesh->triangles[mesh->n_triangles++], patch->triangles[i].at,
+                   sizeof *mesh->triangles);
+}
+
+Status patchcross_find(const Patch *patch, size_t first_new, double grid_mm, bool *crossing,
+                       Err *err)
+{
+    VesselMesh mesh = {0};
+    Box near = box_empty();
+    size_t crossings;
+    Status status;
+    for (size_t i = 0; i < patch->n_triangles; i++)
+        if (is_new(&patch->triangles[i], first_new))
+            near = box_union(near, box_of(patch, &patch->triangles[i]));
+    TRY_GOTO(mem_calloc(&mesh.points, patch->n_points, sizeof *mesh.points, "points", err));
+    TRY_GOTO(
+        mem_calloc(&mesh.triangles, patch->n_triangles, sizeof *mesh.triangles, "triangles", err));
+    copy_near(patch, near, grid_mm, &mesh);
+    TRY_GOTO(meshcheck_crossings(&mesh, grid_mm, 1, &crossings, err));
+    *crossing = crossings > 0;
+done:
+    vesselmesh_release(&mesh);
+    return status;
+}
