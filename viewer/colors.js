@@ -60,7 +60,7 @@ export class Scale {
 function linearTicks(low, high, whole) {
   const rough = (high - low) / 4, power = Math.pow(10, Math.floor(Math.log10(rough)));
   let step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= rough * 0.999);
-  if (whole) step = Math.max(1, Math.round(step));
+  if (whole) step = high - low <= 12 ? 1 : Math.ceil(step);
   const ticks = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) ticks.push(k * step);
   return ticks;

@@ -46,13 +46,13 @@ function drawLabels(context, ticks, width, top) {
   }
 }
 
-export const LEGEND_HEIGHT = 52;
+export const LEGEND_HEIGHT = 34, TITLE_HEIGHT = 18;
 
-// At the context's origin.
-export function drawLegend(context, scale, width, ink) {
+// At the context's origin; with `titled` the field is said in a line above.
+export function drawLegend(context, scale, width, ink, titled) {
   style(context, ink);
-  context.fillText(fieldName(scale), 0, 0);
-  const top = 18, ticks = scale.counts ? drawPatches(context, scale, width, top) : drawRamp(context, scale, width, top);
+  if (titled) context.fillText(fieldName(scale), 0, 0);
+  const top = titled ? TITLE_HEIGHT : 0, ticks = scale.counts ? drawPatches(context, scale, width, top) : drawRamp(context, scale, width, top);
   context.fillStyle = ink;
   drawLabels(context, ticks, width, top);
 }

@@ -1,37 +1,38 @@
 // The page's one program: state that the address tells, and what keys, hands and the address change of it. A picture is
 // drawn when something has changed, and only then.
-import { Color, Scene, SRGBColorSpace, WebGLRenderer } from "three";
+import { Color, SRGBColorSpace, WebGLRenderer } from "three";
 import { Scale } from "./colors.js";
-import { drawLegend, drawScaleBar, LEGEND_HEIGHT } from "./legend.js";
+import { drawLegend, drawScaleBar, LEGEND_HEIGHT, TITLE_HEIGHT } from "./legend.js";
 import { ink, Panel } from "./panel.js";
+import { Shade } from "./shade.js";
 import { Tree } from "./tree.js";
 import { Vessels } from "./vessels.js";
 import { View, VIEWS } from "./view.js";
 
 const find = (id) => document.getElementById(id);
 const DECADES = 2.5; // from so many on a scale is logarithmic, unless somebody says otherwise
+const SHADE = 0.75;
 const HIT = 4; // pixels of the page that a vessel is at least wide for a pointer
 
 const tree = new Tree();
 const start = tree.told.start;
 const state = {
-  field: null, map: null, log: null, moment: 0, grown: 1, fade: true, hovered: -1, pinned: -1,
+  field: null, map: null, log: null, moment: 0, grown: 1, haze: true, shade: true, panels: true, hovered: -1, pinned: -1,
 };
 let scale = null, wanted = false, playing = 0, written = 0;
 
 const canvas = find("stage");
 const renderer = new WebGLRenderer({ canvas, antialias: true });
 renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
-const scene = new Scene(), vessels = new Vessels(tree), panel = new Panel(tree);
+const vessels = new Vessels(tree), panel = new Panel(tree), shade = new Shade(renderer, vessels);
 const view = new View(canvas, tree, () => { wantPicture(); wantAddress(); });
-scene.add(vessels.mesh);
+vessels.set("open", shade.sum.texture);
 
 // ---- pictures -----------------------------------------------------------------------------------
 
 function draw() {
   view.step();
-  vessels.look(view.camera, canvas.height);
-  renderer.render(scene, view.camera);
+  vessels.draw(renderer, view.camera, canvas.height);
 }
 
 function wantPicture() {
@@ -48,11 +49,25 @@ function mmPerPixel() {
   return view.isOrthographic ? view.pose.height / canvas.clientHeight : 0;
 }
 
+// What of the window the panels leave free; the tree stands in its middle.
+function freeBox() {
+  const { innerWidth: width, innerHeight: height } = window, side = find("side").getBoundingClientRect();
+  if (side.width === 0) return { left: 0, top: 0, width, height };
+  if (side.width < width / 2) return { left: side.right, top: 0, width: width - side.right, height };
+  const top = find("tools").getBoundingClientRect().bottom;
+  return { left: 0, top, width, height: side.top - top };
+}
+
 function resize() {
   renderer.setSize(window.innerWidth, window.innerHeight, false);
-  view.resize(window.innerWidth, window.innerHeight);
   panel.drawLegend();
+  view.resize(window.innerWidth, window.innerHeight, freeBox());
   wantPicture();
+}
+
+function showPanels(shown) {
+  document.body.classList.toggle("bare", !shown);
+  resize();
 }
 
 // The colours of the page, light or dark as the reader has it.
@@ -62,8 +77,14 @@ function takeScheme() {
   renderer.setClearColor(color("--paper"));
   vessels.set("paper", color("--paper").convertLinearToSRGB());
   vessels.set("accent", color("--accent"));
+  vessels.set("fade", state.haze ? haze() : 0);
   panel.drawLegend();
   wantPicture();
+}
+
+// How faint what is farthest away is; on a dark ground it is soon lost.
+function haze() {
+  return matchMedia("(prefers-color-scheme: dark)").matches ? 0.25 : 0.45;
 }
 
 // ---- what is shown ------------------------------------------------------------------------------
@@ -99,7 +120,11 @@ function show() {
   const moment = shownMoment(), shown = state.pinned >= 0 ? state.pinned : state.hovered;
   vessels.paint(scale, moment);
   vessels.set("grown", state.grown);
-  vessels.set("fade", state.fade ? 0.45 : 0);
+  vessels.set("fade", state.haze ? haze() : 0);
+  vessels.set("shade", state.shade && shade.isDone ? SHADE : 0);
+  find("haze").checked = state.haze;
+  find("shade").checked = state.shade;
+  if (state.shade && !shade.isDone) findShade();
   find("grown").value = state.grown;
   panel.showScale(scale, scale && scale.field);
   panel.showTime(scale && scale.field, moment);
@@ -111,6 +136,20 @@ function showSegment(i) {
   vessels.set("picked", i < 0 ? -1 : tree.segments.indexOf(i));
   panel.showSegment(i, shownMoment(), i === state.pinned, pin);
   wantPicture();
+}
+
+let finding = false;
+
+// Finds the shade a few directions a picture, so that the page answers meanwhile.
+function findShade() {
+  if (finding) return;
+  finding = true;
+  requestAnimationFrame(function next() {
+    for (let k = 0; k < 4; k++) shade.step();
+    if (!shade.isDone) return requestAnimationFrame(next);
+    finding = false;
+    show();
+  });
 }
 
 function change(what) {
@@ -146,7 +185,7 @@ function writeAddress() {
   if (state.field) parts.push(["field", state.field], ["map", scale.map.name], ["log", scale.log ? "on" : "off"]);
   if (shownMoment()) parts.push(["moment", shownMoment() + 1]);
   if (state.grown < 1) parts.push(["grown", state.grown]);
-  if (!state.fade) parts.push(["fade", "off"]);
+  for (const name of ["haze", "shade", "panels"]) if (!state[name]) parts.push([name, "off"]);
   if (state.pinned >= 0) parts.push(["segment", tree.id[state.pinned]]);
   const text = parts.map(([key, value]) => `${key}=${encodeURIComponent(value).replaceAll("%2C", ",")}`).join("&");
   history.replaceState(null, "", "#" + text);
@@ -170,6 +209,7 @@ function within(text, low, high, otherwise) {
 function readAddress() {
   const get = new URLSearchParams(location.hash.slice(1));
   const field = get.has("field") ? get.get("field") : get.has("turn") ? "" : start ? start.field : "";
+  showPanels(get.get("panels") !== "off");
   view.project(get.get("projection") === "orthographic");
   const turn = numbers(get.get("turn"), 2) || [0, 0];
   view.frame(...turn);
@@ -183,7 +223,9 @@ function readAddress() {
     log: log === null ? (start && start.field === field ? start.log : null) : log === "on",
     moment: Math.round(within(get.get("moment"), 1, 1e6, 1)) - 1,
     grown: within(get.get("grown"), 0, 1, 1),
-    fade: get.get("fade") !== "off",
+    haze: get.get("haze") !== "off",
+    shade: get.get("shade") !== "off",
+    panels: get.get("panels") !== "off",
     pinned: tree.numberOf.get(Number(get.get("segment"))) ?? -1,
     hovered: -1,
   });
@@ -229,9 +271,10 @@ function save() {
   context.drawImage(canvas, 0, 0);
   context.scale(ratio, ratio);
   if (scale) {
-    context.translate(margin, canvas.clientHeight - margin - LEGEND_HEIGHT);
-    drawLegend(context, scale, 240, ink());
-    context.translate(-margin, LEGEND_HEIGHT + margin - canvas.clientHeight);
+    context.save();
+    context.translate(margin, canvas.clientHeight - margin - LEGEND_HEIGHT - TITLE_HEIGHT);
+    drawLegend(context, scale, 240, ink(), true);
+    context.restore();
   }
   if (view.isOrthographic) {
     context.translate(canvas.clientWidth - margin, canvas.clientHeight - margin - 22);
@@ -304,8 +347,8 @@ const KEYS = {
   ArrowDown: (shift) => (shift ? moveBy(0, 0.05) : turnBy(0, -5)),
   "+": () => zoomBy(1.15), "=": () => zoomBy(1.15), "-": () => zoomBy(1 / 1.15), 0: fit,
   f: () => nextField(1), F: () => nextField(-1), o: project, s: save,
-  d: () => kin(false), u: () => kin(true), h: () => change({ fade: !state.fade }), "?": () => find("help").showModal(),
-  Escape: () => pin(-1),
+  d: () => kin(false), u: () => kin(true), h: () => change({ haze: !state.haze }), "?": () => find("help").showModal(),
+  p: () => { change({ panels: !state.panels }); showPanels(state.panels); }, Escape: () => pin(-1),
 };
 
 function key(event) {
@@ -323,6 +366,8 @@ function listen() {
   on("log", "change", (e) => change({ log: e.target.checked }));
   on("moment", "input", (e) => change({ moment: Number(e.target.value) }));
   on("grown", "input", (e) => change({ grown: Number(e.target.value) }));
+  on("haze", "change", (e) => change({ haze: e.target.checked }));
+  on("shade", "change", (e) => change({ shade: e.target.checked }));
   on("play", "click", play);
   on("view", "change", (e) => { view.frame(...VIEWS[e.target.value]); e.target.value = ""; show(); });
   on("project", "click", project);

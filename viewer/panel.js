@@ -40,7 +40,7 @@ export class Panel {
     const { told, segments, low, high } = tree;
     find("name").textContent = told.name;
     const sides = low.map((l, c) => number(high[c] - l, 3)).join(" × ");
-    find("said").textContent = `${segments.length.toLocaleString("en")} segments, ${sides} mm`;
+    find("said").textContent = `${segments.length.toLocaleString("en")} segments, ${sides}\u00a0mm`;
     find("field").append(option("", "one colour"), ...tree.fields.map(({ name, unit }) => option(name, unit ? `${name} (${unit})` : name)));
     find("map").append(...tree.maps.map(({ name }) => option(name, name)));
     find("made").textContent = `${told.generator}: ${told.command}`;
@@ -62,7 +62,7 @@ export class Panel {
   drawLegend() {
     const canvas = find("legend"), width = Math.round(canvas.parentElement.clientWidth);
     if (!this.scale || width === 0) return;
-    drawLegend(sized(canvas, width, LEGEND_HEIGHT), this.scale, width, ink());
+    drawLegend(sized(canvas, width, LEGEND_HEIGHT), this.scale, width, ink(), false);
     const [low, high] = this.scale.range, { name, unit } = this.scale.field;
     canvas.setAttribute("aria-label", `${name} from ${number(low)} to ${number(high)} ${unit}`);
   }

@@ -9,6 +9,7 @@ flat in vec3 from;
 flat in vec2 size;
 flat in vec3 pigment;
 flat in float isPicked;
+flat in int number;
 in vec3 at, ray;
 
 uniform mat4 viewMatrix, projectionMatrix;
@@ -20,8 +21,12 @@ uniform vec3 lightPlace[LIGHTS], lightColor[LIGHTS];
 uniform float halfDiagonal;
 uniform vec3 paper, accent; // the paper's colour is sRGB
 uniform float fade;
+uniform highp sampler2D open; // sums of light that comes, and of what would
+uniform float shade;
 
+#ifndef DEPTHS
 out vec4 seen;
+#endif
 
 // Where the ray enters the solid, t along it, when it passes the core at less than the radius.
 float entry(vec3 p, vec3 d, float len, float r) {
@@ -53,6 +58,20 @@ vec3 lit(vec3 place, vec3 normal, vec3 view, vec3 color) {
   return sum;
 }
 
+float openTexel(int around, int along) {
+  int cell = number % (WIDTH / AROUND) * AROUND, line = number / (WIDTH / AROUND) * ALONG;
+  vec2 sums = texelFetch(open, ivec2(cell + (around + AROUND) % AROUND, line + clamp(along, 0, ALONG - 1)), 0).xy;
+  return sums.y > 0.0 ? sums.x / sums.y : 1.0;
+}
+
+// How open the wall is to the sky, from 0 to 1, between the nearest texels.
+float openness(vec3 normal, float part) {
+  float around = atan(normal.z, normal.y) / 6.2831853 * float(AROUND) - 0.5, along = part * float(ALONG) - 0.5;
+  int i = int(floor(around)), k = int(floor(along));
+  float x = around - floor(around), y = along - floor(along);
+  return mix(mix(openTexel(i, k), openTexel(i + 1, k), x), mix(openTexel(i, k + 1), openTexel(i + 1, k + 1), x), y);
+}
+
 vec3 encoded(vec3 c) {
   c = clamp(c, 0.0, 1.0);
   return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
@@ -70,18 +89,27 @@ void main() {
 
   float h = 0.5 * pixel * (parallel ? 1.0 : length(ray) + along);
   float cover = (min(r, apart + h) - max(-r, apart - h)) / (2.0 * h);
+#ifdef DEPTHS
+  // In the mean over many maps, a vessel thinner than a pixel darkens by what it covers.
+  if (cover <= fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))))) discard;
+#else
   if (cover <= 0.0) discard;
+#endif
 
   float t = apart < r ? entry(at, d, len, r) : along;
   vec3 hit = at + t * d;
   vec3 normal = normalize(hit - vec3(clamp(hit.x, 0.0, len), 0.0, 0.0));
   vec4 place = viewMatrix * vec4(from + axes * hit, 1.0);
   vec4 clip = projectionMatrix * place;
-  gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
+  gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0) * (1.0 - 0.999 * isPicked); // before all others
 
+#ifndef DEPTHS
   mat3 toView = mat3(viewMatrix) * axes;
-  vec3 color = lit(place.xyz, toView * normal, toView * d, mix(pigment, accent, 0.8 * isPicked));
+  vec3 color = lit(place.xyz, toView * normal, toView * d, pigment);
+  color = mix(color, accent, 0.8 * isPicked);
+  if (shade > 0.0 && isPicked == 0.0) color *= mix(1.0, openness(normal, hit.x / max(len, 1e-9)), shade);
   float middle = (viewMatrix * vec4(0, 0, 0, 1)).z;
   float depth = clamp(0.5 + 0.5 * (middle - place.z) / halfDiagonal, 0.0, 1.0);
-  seen = vec4(mix(encoded(color), paper, fade * depth), cover);
+  seen = vec4(mix(encoded(color), paper, fade * depth * (1.0 - isPicked)), cover);
+#endif
 }

@@ -2,10 +2,11 @@
 // so that a segment costs 8 corners however close the viewer comes, and outlines are those of corcast's pictures.
 import {
   BackSide, BufferAttribute, Color, CustomBlending, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, Mesh,
-  OneFactor, RawShaderMaterial, Vector3, ZeroFactor,
+  OneFactor, RawShaderMaterial, Scene, Vector3, ZeroFactor,
 } from "three";
 import vertexShader from "./vessels.vert.glsl";
 import fragmentShader from "./vessels.frag.glsl";
+import { ALONG, AROUND, WIDTH } from "./shade.js";
 
 const CORNERS = [-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1];
 const FACES = [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5];
@@ -55,6 +56,8 @@ function uniforms(look) {
     grown: value(1),
     picked: value(-1),
     accent: value(new Color()),
+    open: value(null), // texture of how open each place of the walls is
+    shade: value(0), // how much of that is shown
   };
 }
 
@@ -62,11 +65,12 @@ export class Vessels {
   constructor(tree) {
     this.tree = tree;
     const look = tree.told.look;
+    const defines = { LIGHTS: Math.max(1, look.lights.length), ALONG, AROUND, WIDTH };
     this.material = new RawShaderMaterial({
       glslVersion: GLSL3,
       vertexShader,
       fragmentShader,
-      defines: { LIGHTS: Math.max(1, look.lights.length) },
+      defines,
       uniforms: uniforms(look),
       side: BackSide, // so that a viewer inside a box sees it
       alphaToCoverage: true, // and the picture stays opaque where samples are covered in part:
@@ -76,7 +80,12 @@ export class Vessels {
       blendSrcAlpha: ZeroFactor,
       blendDstAlpha: OneFactor,
     });
+    this.depths = new RawShaderMaterial({
+      glslVersion: GLSL3, vertexShader, fragmentShader, defines: { ...defines, DEPTHS: 1 }, uniforms: uniforms(look), side: BackSide,
+    });
     this.mesh = new Mesh(geometry(tree), this.material);
+    this.scene = new Scene();
+    this.scene.add(this.mesh);
     this.mesh.frustumCulled = false;
     this.set("halfDiagonal", Math.hypot(...tree.high.map((h, c) => h - tree.low[c])) / 2);
     this.plain = encoded(look.color);
@@ -84,6 +93,19 @@ export class Vessels {
 
   set(name, value) {
     this.material.uniforms[name].value = value;
+  }
+
+  draw(renderer, camera, height) {
+    aim(this.material.uniforms, camera, height);
+    renderer.render(this.scene, camera);
+  }
+
+  // Depths alone, into the renderer's target.
+  drawDepths(renderer, camera, height) {
+    this.mesh.material = this.depths;
+    aim(this.depths.uniforms, camera, height);
+    renderer.render(this.scene, camera);
+    this.mesh.material = this.material;
   }
 
   // Colours all segments by a scale, of the values of one moment; without, in the look's colour.
@@ -95,18 +117,17 @@ export class Vessels {
     });
     attribute.needsUpdate = true;
   }
+}
 
-  // What the shader needs to know of a camera of a picture so many pixels high.
-  look(camera, height) {
-    const { eye, gaze } = this.material.uniforms;
-    camera.updateMatrixWorld();
-    eye.value.setFromMatrixPosition(camera.matrixWorld);
-    camera.getWorldDirection(gaze.value);
-    this.set("parallel", !!camera.isOrthographicCamera);
-    this.set("pixel", camera.isOrthographicCamera
-      ? (camera.top - camera.bottom) / camera.zoom / height
-      : (2 * Math.tan((camera.fov * Math.PI) / 360)) / camera.zoom / height);
-  }
+// What the shader needs to know of a camera of a picture so many pixels high.
+function aim({ eye, gaze, parallel, pixel }, camera, height) {
+  camera.updateMatrixWorld();
+  eye.value.setFromMatrixPosition(camera.matrixWorld);
+  camera.getWorldDirection(gaze.value);
+  parallel.value = !!camera.isOrthographicCamera;
+  pixel.value = camera.isOrthographicCamera
+    ? (camera.top - camera.bottom) / camera.zoom / height
+    : (2 * Math.tan((camera.fov * Math.PI) / 360)) / camera.zoom / height;
 }
 
 // sRGB bytes of a linear colour.

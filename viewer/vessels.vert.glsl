@@ -19,6 +19,7 @@ flat out vec3 from;
 flat out vec2 size; // length and radius
 flat out vec3 pigment;
 flat out float isPicked;
+flat out int number;
 out vec3 at, ray;
 
 vec3 decoded(vec3 c) {
@@ -32,11 +33,13 @@ void main() {
   vec3 v = normalize(cross(u, abs(u.z) < 0.9 ? vec3(0, 0, 1) : vec3(1, 0, 0)));
   axes = mat3(u, v, cross(u, v));
   from = start;
-  size = vec2(whole * part, sizes.x);
   pigment = decoded(color.rgb);
+  number = gl_InstanceID;
   isPicked = gl_InstanceID == picked ? 1.0 : 0.0;
   float reach = distance(eye, 0.5 * (start + end)) + whole;
-  float wide = sizes.x + pixel * (parallel ? 1.0 : reach);
+  float one = pixel * (parallel ? 1.0 : reach); // pixel there
+  size = vec2(whole * part, max(sizes.x, isPicked * 2.0 * one)); // what is picked can be seen, however thin
+  float wide = size.y + one;
   at = vec3(position.x > 0.0 ? size.x + wide : -wide, position.yz * wide);
   vec3 world = start + axes * at;
   ray = parallel ? gaze : world - eye;

@@ -89,19 +89,22 @@ export class View {
       }
     const target = new Vector3();
     axes.forEach((axis, k) => target.addScaledVector(axis, (low[k] + high[k]) / 2));
-    const span = Math.max(high[1] - low[1], (high[0] - low[0]) / this.aspect) / (1 - 2 * MARGIN);
+    const { free } = this, all = this.orthographic.view.fullHeight / (1 - 2 * MARGIN);
+    const span = all * Math.max((high[1] - low[1]) / free.height, (high[0] - low[0]) / free.width);
     // In perspective what is nearer is larger.
     const height = this.isOrthographic ? span : span + (high[2] - low[2]) * Math.tan(radians(ANGLE / 2));
     this.pose = { turn, rise, target: target.toArray(), height };
   }
 
-  resize(width, height) {
-    this.aspect = width / height;
-    this.perspective.aspect = this.aspect;
-    this.orthographic.left = -this.aspect / 2;
-    this.orthographic.right = this.aspect / 2;
-    this.perspective.updateProjectionMatrix();
-    this.orthographic.updateProjectionMatrix();
+  // A window of so many pixels of the page, of which a part is free.
+  resize(width, height, free) {
+    this.free = free;
+    this.perspective.aspect = width / height;
+    this.orthographic.left = -width / height / 2;
+    this.orthographic.right = width / height / 2;
+    const right = free.left + free.width / 2 - width / 2, down = free.top + free.height / 2 - height / 2;
+    for (const camera of [this.perspective, this.orthographic])
+      camera.setViewOffset(width, height, -right, -down, width, height);
   }
 
   // To be called before each picture: goes on with a movement, and has the depths hold all of the tree.

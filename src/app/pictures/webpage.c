@@ -94,12 +94,22 @@ static Status add_shown(Webpage *page, Err *err)
     return STATUS_OK;
 }
 
-/* The fields that can be derived; `lacking` lists those that lack what they need. */
+static size_t count_roots(const Tree *tree)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < tree->n; i++)
+        n += !tree_is_segment(tree, i);
+    return n;
+}
+
+/* The fields that can be derived, and that tell segments apart; `lacking` lists those that lack
+ * what they need. */
 static Status add_derived(Webpage *page, const TreeMeta *said, Text *lacking, Err *err)
 {
+    const bool is_alone = count_roots(&page->of->tree) == 1;
     const char *name;
     for (size_t i = 0; (name = derive_field_name(i)); i++) {
-        if (has_field(page, name))
+        if (has_field(page, name) || (is_alone && strcmp(name, "tree") == 0))
             continue;
         Status status = add_field(page, said, name, err);
         if (status == STATUS_INPUT)

@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# Pages of trees for browsers: what they hold, and in headless Chromium what they show; see tests/page/tree.js.
+. "$(dirname "$0")/../lib.sh"
+
+VIEW="--projection orthographic --look-at 1.5,-0.75,0 --height 56 --size 900x700"
+
+need_viewer() {
+    [ -e "$REPO/build/viewer/viewer.js" ] || skip "the viewer is not built, for want of npm, esbuild or three.js"
+}
+
+# A table of nodes with a field of three moments, and an unkind name.
+series() {
+    printf 'id,x,y,z,radius,parent,p_0.1,p_0.25,p_0.7,a</script><b>\n'
+    printf '1,0,0,0,1.5,-1,0,0,0,1\n2,0,-9.5,0,1.5,1,1.25,7,3,2\n3,4,-14,0,0.75,2,2,1,8.5,3\n4,-4,-14,1,0.7,2,3,2,9,4\n'
+}
+
+expectations() {
+    corcast convert tree.swc tree.segments.csv --fields all --quiet
+    # shellcheck disable=SC2086
+    corcast render tree.swc $VIEW --background '#fbfaf7' --quiet -o drawn.png
+    # shellcheck disable=SC2086
+    corcast render tree.swc $VIEW --exact --planes id --quiet -o exact.png
+    pngtopnm drawn.png >drawn.ppm
+    awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) name[i] = $i; next }
+        { printf "%s\"%s\": {", NR > 2 ? ", " : "{", $1; sep = ""
+          for (i = 1; i <= NF; i++) if (name[i] ~ /^(flow|pressure|wss|velocity|strahler|level)/) {
+              sub(/_.*/, "", name[i]); printf "%s\"%s\": %s", sep, name[i], $i; sep = ", " }
+          printf "}" } END { print "}" }' tree.segments.csv >segments.json
+    jq -n --slurpfile segments segments.json '{page: "tree.html", series: "series.html", width: 900, height: 700,
+        address: "projection=orthographic&turn=0,0&look-at=1.5,-0.75,0&height=56",
+        exact: "drawn.ppm", ids: "exact.id.ppm", segments: $segments[0]}' >expected.json
+}
+
+# Slow: a browser that draws by software.
+test_a_page_shows_a_tree_as_render_does_and_answers_to_hands_and_keys() {
+    need_viewer
+    command -v node >node.path || skip "nodejs is not installed"
+    command -v chromium >chromium.path || skip "chromium is not installed"
+    run_ok corcast grow --terminals 300 --seed 5 --domain ball:25 --quiet -o tree.swc
+    series >series.csv
+    expectations
+    run_ok corcast export tree.swc -o tree.html
+    run_ok corcast export series.csv -o series.html
+    run node "$REPO/tests/page/tree.js" chromium expected.json
+    [ "$status" -eq 0 ] || fail "$(head -5 stdout | tr '\n' ';')$(said)"
+}
+
+test_a_page_of_2000_segments_is_small_complete_and_the_same_each_time() {
+    need_viewer
+    run_ok corcast grow --terminals 1000 --seed 5 --quiet -o tree.swc
+    run_ok corcast export tree.swc --color-by flow --log --colormap magma -o a.html
+    run_ok corcast export tree.swc --color-by flow --log --colormap magma -o b.html --threads 1
+    expect_same a.html b.html
+    [ "$(wc -c <a.html)" -lt 1000000 ] || fail "expected less than 1 MB, got $(wc -c <a.html)"
+    grep -qE '(src|href)="' a.html && fail "expected nothing from elsewhere"
+    grep -q 'Permission is hereby granted' a.html || fail "expected the licence of three.js"
+    grep -q '<title>tree.swc, an arterial tree</title>' a.html || fail "expected a title"
+    sed -n 's/^<script type="application\/json" id="told">\(.*\)<\/script>$/\1/p' a.html >told.json
+    expect_json told.json '.start == {field: "flow", map: "magma", log: true, low: 0.5, high: 500}
+        and .command == "corcast export tree.swc --color-by flow --colormap magma --log -o P.html"
+        and ([.fields[].name] | index("wss") and index("radius") and (index("tree") | not))'
+}
+
+test_names_do_not_end_the_elements_that_hold_them() {
+    need_viewer
+    series >'t<b>.csv'
+    run_ok corcast export 't<b>.csv' -o page.html
+    grep -q '<b>' page.html && fail "expected names to be escaped"
+    sed -n 's/^<script type="application\/json" id="told">\(.*\)<\/script>$/\1/p' page.html >told.json
+    expect_json told.json '.fields | map(.name) | index("a</script><b>") and index("p")'
+    expect_json told.json '.fields[] | select(.name == "p").times == [0.1, 0.25, 0.7]'
+    grep -q 'flow, velocity, pressure, wss, reynolds are left out' stderr || fail "expected what is left out"
+}
+
+test_more_segments_than_a_browser_turns_are_refused_with_the_radius_that_leaves_fewer() {
+    awk 'BEGIN { for (i = 1; i <= 200002; i++) print i, 3, i / 100, 0, 0, 1 - i / 400000, i > 1 ? i - 1 : -1 }' >long.swc
+    run corcast export long.swc -o page.html
+    expect_status 2
+    expect_sentence 'long.swc: 200001 segments make a page of 1[89](\.[0-9])? MB, .* 200000 .*--prune-radius 0\.5 leaves'
+    expect_only long.swc
+}
+
+test_options_without_effect_on_a_page_are_refused() {
+    run_ok corcast grow --terminals 5 --quiet -o tree.swc
+    for option in "--tolerance 0.05" "--color-by flow --classes 3" "--color-by flow --moment 1" "--colormap magma" "--voxel 0.1"; do
+        # shellcheck disable=SC2086
+        run corcast export tree.swc $option -o page.html
+        expect_status 2
+        [ ! -e page.html ] || fail "expected no page for $option"
+    done
+}
+
+test_without_the_viewer_a_page_is_refused_and_what_is_missing_named() {
+    run_ok corcast grow --terminals 5 --quiet -o tree.swc
+    mkdir -p share && cp -R "$REPO/templates" share/templates
+    run env CORCAST_TEMPLATES="$PWD/share/templates" "$CORCAST" export tree.swc -o page.html
+    expect_status 3
+    expect_sentence 'without the viewer .* install npm and esbuild'
+    [ ! -e page.html ] || fail "expected no page"
+}
+
+run_tests "$@"

@@ -1,0 +1,244 @@
+// Opens the page of a tree in headless Chromium and uses it as a reader would.
+//
+//   node tree.js CHROMIUM EXPECTED.json
+//
+// EXPECTED: {page, series, address, width, height, exact: P.ppm, ids: I.ppm, segments: {id: {field: value}}}: the page
+// of a tree and one of a tree whose field p changes; a view as the address tells it, and what corcast drew of it, colours
+// on #fbfaf7 and the ids of segments. Prints one line for each expectation that fails; exit status 1 if any does.
+"use strict";
+const fs = require("fs");
+const { runIn } = require("./browser.js");
+
+const [chromium, expectedFile] = process.argv.slice(2);
+const expected = JSON.parse(fs.readFileSync(expectedFile, "utf8"));
+const PAPER = [0xfb, 0xfa, 0xf7];
+const LIGHT_OF_NOBODY = "haze=off&shade=off&panels=off"; // as corcast's pictures are
+let browser;
+const evaluate = (expression) => browser.evaluate(expression);
+const check = (ok, what) => browser.check(ok, what);
+const settled = () => evaluate("new Promise((r) => setTimeout(r, 250))"); // the address is written after 150 ms
+const text = (id) => evaluate(`document.getElementById("${id}").textContent`);
+
+function readPpm(file) {
+  const bytes = fs.readFileSync(file), words = [];
+  let at = 0;
+  while (words.length < 4) {
+    const match = /\s*(?:#[^\n]*\n\s*)*(\S+)\s/.exec(bytes.subarray(at, at + 200).toString("latin1"));
+    words.push(match[1]);
+    at += match.index + match[0].length;
+  }
+  return { width: Number(words[1]), height: Number(words[2]), data: bytes.subarray(at), step: 3 };
+}
+
+// What the page shows, as pixels.
+async function picture() {
+  const shot = await browser.send("Page.captureScreenshot", { format: "png" });
+  const data = await evaluate(`(async () => {
+    const bytes = Uint8Array.from(atob("${shot.data}"), (c) => c.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes]));
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height), context = canvas.getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const pixels = context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+    let text = "";
+    for (let i = 0; i < pixels.length; i += 32768) text += String.fromCharCode(...pixels.subarray(i, i + 32768));
+    return btoa(text);
+  })()`);
+  return { width: expected.width, height: expected.height, data: Buffer.from(data, "base64"), step: 4 };
+}
+
+const at = (picture, x, y) => {
+  const i = picture.step * (y * picture.width + x);
+  return [picture.data[i], picture.data[i + 1], picture.data[i + 2]];
+};
+const levels = (a, b) => Math.max(...a.map((v, c) => Math.abs(v - b[c])));
+const idAt = (ids, x, y) => at(ids, x, y).reduce((sum, v) => sum * 256 + v, 0);
+
+// The id that all pixels around one have, or 0.
+function lonelyId(ids, x, y, reach) {
+  const id = idAt(ids, x, y);
+  for (let dy = -reach; dy <= reach; dy++)
+    for (let dx = -reach; dx <= reach; dx++) if (idAt(ids, x + dx, y + dy) !== id) return 0;
+  return id;
+}
+
+// No pixel of the page shows a vessel where corcast has none within a pixel, nor paper within what corcast fills; and
+// inside vessels the colours are corcast's.
+async function checkPicture() {
+  await browser.open(expected.page, expected.address + "&" + LIGHT_OF_NOBODY);
+  const shown = await picture(), exact = readPpm(expected.exact), ids = readPpm(expected.ids);
+  let beyond = 0, lacking = 0, inside = 0, off = 0, vessels = 0;
+  for (let y = 1; y < expected.height - 1; y++)
+    for (let x = 1; x < expected.width - 1; x++) {
+      const around = [];
+      for (let dy = -1; dy <= 1; dy++) for (let dx = -1; dx <= 1; dx++) around.push(levels(at(exact, x + dx, y + dy), PAPER));
+      const isVessel = levels(at(shown, x, y), PAPER) > 40;
+      vessels += isVessel;
+      beyond += isVessel && Math.max(...around) <= 8;
+      lacking += !isVessel && Math.min(...around) > 60;
+      if (lonelyId(ids, x, y, 1) === 0) continue;
+      inside++;
+      off += levels(at(shown, x, y), at(exact, x, y));
+    }
+  check(vessels > 30000 && inside > 5000, `expected a picture of vessels, got ${vessels} pixels, ${inside} inside`);
+  check(beyond === 0, `expected no vessel a pixel beyond corcast's, got ${beyond} pixels`);
+  check(lacking === 0, `expected all vessels of corcast's picture, lacking ${lacking} pixels`);
+  check(off / inside < 4, `expected corcast's colours within 4 levels, got ${off / inside}`);
+  await checkPicking(ids);
+}
+
+async function values() {
+  return Object.fromEntries(await evaluate("[...document.querySelectorAll('#values tr')].map((r) =>" +
+    " [r.cells[0].textContent, [r.cells[1].textContent, r.cells[2].textContent]])"));
+}
+
+function checkValues(id, shown) {
+  for (const [name, value] of Object.entries(expected.segments[id])) {
+    const got = shown[name] && Number(shown[name][0]);
+    check(Math.abs(got - value) <= 2e-5 * Math.abs(value), `expected ${name} ${value} of segment ${id}, got ${shown[name]}`);
+  }
+}
+
+// The pointer meets the segments that corcast's id plane has there; a click holds one.
+async function checkPicking(ids) {
+  const places = new Map();
+  for (let y = 3; y < expected.height - 3; y += 2)
+    for (let x = 3; x < expected.width - 3; x += 2) {
+      const id = lonelyId(ids, x, y, 2);
+      if (id > 0 && expected.segments[id] && !places.has(id)) places.set(id, [x, y]);
+    }
+  check(places.size >= 8, `expected segments to point at, got ${places.size}`);
+  await browser.key("p");
+  for (const [id, [x, y]] of [...places].slice(0, 12)) {
+    const isFree = await evaluate(`document.elementFromPoint(${x}, ${y}).id === "stage"`);
+    if (!isFree) continue;
+    await browser.key("p"); // without the panels, which would move the tree
+    await browser.mouse("mouseMoved", x, y);
+    const shown = await evaluate("document.getElementById('segment').value");
+    check(shown === String(id), `expected segment ${id} at ${x}, ${y}, got ${shown}`);
+    checkValues(id, await values());
+    await browser.key("p");
+  }
+  const [id, [x, y]] = [...places][0];
+  await browser.key("p");
+  for (const type of ["mousePressed", "mouseReleased"]) await browser.mouse(type, x, y);
+  await browser.mouse("mouseMoved", 1, 1);
+  await settled();
+  check((await evaluate("location.hash")).includes("segment=" + id), "expected a click to hold the segment");
+  await browser.key("Escape");
+  await browser.key("p");
+}
+
+// Each field has a picture of its own, a legend and colours; the address brings it back.
+async function checkFields() {
+  const addresses = new Map(), hashes = new Set();
+  await browser.open(expected.page, "haze=off&shade=off");
+  for (const field of ["", "flow", "pressure", "strahler"]) {
+    await evaluate(`(() => { const s = document.getElementById("field"); s.value = "${field}"; s.dispatchEvent(new Event("change")); })()`);
+    await settled();
+    const hash = (await picture()).data.toString("base64");
+    hashes.add(hash);
+    addresses.set(await evaluate("location.hash"), hash);
+    check(await evaluate("document.getElementById('scale').hidden") === (field === ""), "expected a legend of " + field);
+  }
+  check(hashes.size === 4, "expected each field to look different");
+  check(/^pressure from 60(\.0\d*)? to \d+(\.\d+)? mmHg$/.test(await labelOf("pressure")), "expected the range, got " + await labelOf("pressure"));
+  for (const [address, hash] of addresses) {
+    await evaluate(`location.hash = ${JSON.stringify(address)}`);
+    await settled();
+    await evaluate("document.activeElement.blur()");
+    check((await picture()).data.toString("base64") === hash, "expected the same picture of " + address);
+    check(await evaluate("location.hash") === address, `expected ${address} to stay, got ${await evaluate("location.hash")}`);
+  }
+}
+
+async function labelOf(field) {
+  await evaluate(`location.hash = "#field=${field}"`);
+  await settled();
+  return evaluate("document.getElementById('legend').getAttribute('aria-label')");
+}
+
+async function checkKeys() {
+  await browser.open(expected.page, "shade=off&segment=40");
+  check(await evaluate("(document.getElementById('stage').focus(), document.activeElement.id)") === "stage", "expected the picture to take the focus");
+  checkValues(40, await values());
+  await browser.key("ArrowRight");
+  await browser.key("ArrowUp");
+  await browser.key("o");
+  await settled();
+  const address = await evaluate("location.hash");
+  check(address.includes("turn=5,5&") && address.includes("projection=orthographic"), "expected keys to turn, got " + address);
+  check(!(await evaluate("document.getElementById('bar').hidden")), "expected a scale bar where lengths are true");
+  await browser.key("u");
+  check(await evaluate("document.getElementById('segment').value") === "39", "expected u to go to the parent");
+  await browser.key("d");
+  check(await evaluate("document.getElementById('segment').value") === "40", "expected d to come back");
+  await evaluate("(() => { const s = document.getElementById('segment'); s.value = '77'; s.dispatchEvent(new Event('change')); })()");
+  checkValues(77, await values());
+}
+
+// Turned by hand; where motion is unwelcome it ends with the hand.
+async function checkHands() {
+  await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-reduced-motion", value: "reduce" }] });
+  await browser.mouse("mousePressed", 500, 300);
+  await browser.mouse("mouseMoved", 560, 300, { buttons: 1, button: "left" });
+  await browser.mouse("mouseReleased", 560, 300);
+  await settled();
+  const turned = await evaluate("location.hash");
+  check(!turned.includes("turn=5,5&"), "expected a drag to turn the tree, got " + turned);
+  await settled();
+  check(await evaluate("location.hash") === turned, "expected the tree to rest");
+  await browser.send("Emulation.setEmulatedMedia", { features: [] });
+}
+
+// The picture with its legend, as PNG of all pixels.
+async function checkSaving() {
+  await evaluate("window.saved = new Promise((resolve) => { const made = URL.createObjectURL;" +
+    " URL.createObjectURL = (blob) => { resolve(blob); return made.call(URL, blob); }; })");
+  await browser.key("s");
+  const size = await evaluate("saved.then(async (blob) => { const b = await createImageBitmap(blob);" +
+    " return [blob.type, b.width, b.height, document.getElementById('stage').width, document.getElementById('stage').height]; })");
+  check(size[0] === "image/png" && size[1] === size[3] && size[2] === size[4], "expected a PNG of the canvas, got " + size);
+}
+
+async function checkTime() {
+  await browser.open(expected.series, "field=p&shade=off");
+  const pictures = new Set(), clocks = [];
+  for (const moment of [0, 1, 2]) {
+    await evaluate(`(() => { const s = document.getElementById("moment"); s.value = ${moment}; s.dispatchEvent(new Event("input")); })()`);
+    await settled();
+    clocks.push(await text("clock"));
+    pictures.add((await picture()).data.toString("base64"));
+  }
+  check(pictures.size === 3, "expected each moment to look different");
+  check(clocks.join() === "time 0.1,time 0.25,time 0.7", "expected the times, got " + clocks);
+  check((await evaluate("location.hash")).includes("moment=3"), "expected the moment in the address");
+}
+
+async function checkSchemes() {
+  const colors = new Set();
+  for (const value of ["light", "dark"]) {
+    await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value }] });
+    await settled();
+    colors.add(String(at(await picture(), 2, Math.round(expected.height / 2))));
+  }
+  check(colors.has(String(PAPER)) && colors.size === 2, "expected light and dark paper, got " + [...colors].join(" and "));
+}
+
+async function checkPhone() {
+  await browser.send("Emulation.setDeviceMetricsOverride", { width: 390, height: 844, deviceScaleFactor: 1, mobile: true });
+  await browser.open(expected.page, "field=flow&segment=40&shade=off");
+  check(await evaluate("document.documentElement.scrollWidth") <= 390, "expected the page to fit a phone");
+  const cards = await evaluate("[...document.querySelectorAll('.card')].map((c) => { const b = c.getBoundingClientRect();" +
+    " return [c.id, b.left >= 0 && b.right <= 390 && b.top >= 0 && b.bottom <= 844, b.top, b.bottom]; })");
+  for (const [id, fits] of cards) check(fits, `expected ${id} to fit a phone`);
+  const [side, tools, readout] = ["side", "tools", "readout"].map((id) => cards.find((card) => card[0] === id));
+  check(tools[3] <= readout[2] && readout[3] <= side[2], "expected panels that do not cover each other");
+}
+
+runIn(chromium, ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"], async function (opened) {
+  browser = opened;
+  await browser.send("Emulation.setDeviceMetricsOverride",
+    { width: expected.width, height: expected.height, deviceScaleFactor: 1, mobile: false });
+  for (const part of [checkPicture, checkFields, checkKeys, checkHands, checkSaving, checkTime, checkSchemes, checkPhone]) await part();
+  browser.checkSilence();
+});

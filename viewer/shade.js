@@ -1,0 +1,93 @@
+// How open each place of the vessels' wall is to the sky around it: ambient occlusion, found once by the graphics card.
+// The tree is drawn as depths from directions all around, and each texel of a wall, 8 around a segment and 4 along it,
+// adds up the light of those that reach it, weighted by their cosines. It does not depend on the view, so that a tree
+// that is turned costs no more; its mean over directions smooths what a single map of depths is too coarse for.
+import {
+  CustomBlending, DataTexture, DepthTexture, FloatType, GLSL3, HalfFloatType, Mesh, NearestFilter, OneFactor,
+  OrthographicCamera, PlaneGeometry, RawShaderMaterial, RGBAFormat, Scene, UnsignedIntType, Vector3, WebGLRenderTarget,
+} from "three";
+import fragmentShader from "./shade.frag.glsl";
+
+export const AROUND = 8, ALONG = 4, WIDTH = 2048;
+const DIRECTIONS = 64, MAP = 1024;
+
+// Directions of equal parts of the sphere, so ordered that each next one is far from the one before.
+function direction(k) {
+  const z = 1 - (2 * (((k * 29) % DIRECTIONS) + 0.5)) / DIRECTIONS, turn = k * 29 * Math.PI * (3 - Math.sqrt(5));
+  const level = Math.sqrt(1 - z * z);
+  return new Vector3(level * Math.cos(turn), level * Math.sin(turn), z);
+}
+
+// Start and radius, then end, of each segment.
+function segmentTexture(geometry, n) {
+  const height = Math.ceil((2 * n) / WIDTH), numbers = new Float32Array(4 * WIDTH * height);
+  const [start, end, sizes] = ["start", "end", "sizes"].map((name) => geometry.getAttribute(name).array);
+  for (let k = 0; k < n; k++) {
+    numbers.set(start.subarray(3 * k, 3 * k + 3), 8 * k);
+    numbers[8 * k + 3] = sizes[3 * k];
+    numbers.set(end.subarray(3 * k, 3 * k + 3), 8 * k + 4);
+  }
+  const made = new DataTexture(numbers, WIDTH, height, RGBAFormat, FloatType);
+  made.needsUpdate = true;
+  return made;
+}
+
+export class Shade {
+  constructor(renderer, vessels) {
+    this.renderer = renderer;
+    this.vessels = vessels;
+    this.done = 0;
+    const n = vessels.tree.segments.length, rows = Math.ceil((n * AROUND) / WIDTH) * ALONG;
+    this.sum = new WebGLRenderTarget(WIDTH, rows, {
+      type: HalfFloatType, format: RGBAFormat, minFilter: NearestFilter, magFilter: NearestFilter, depthBuffer: false,
+    });
+    this.map = new WebGLRenderTarget(MAP, MAP, { depthTexture: new DepthTexture(MAP, MAP, UnsignedIntType) });
+    this.half = vessels.material.uniforms.halfDiagonal.value;
+    this.camera = new OrthographicCamera(-this.half, this.half, this.half, -this.half, 0, 2 * this.half);
+    this.camera.zoom = 1;
+    this.material = new RawShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: "in vec3 position; void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }",
+      fragmentShader,
+      defines: { AROUND, ALONG, WIDTH },
+      uniforms: {
+        segments: { value: segmentTexture(vessels.mesh.geometry, n) }, count: { value: n },
+        depths: { value: this.map.depthTexture }, fromWorld: { value: null },
+        towards: { value: new Vector3() }, texel: { value: (2 * this.half) / MAP }, deep: { value: 2 * this.half },
+      },
+      depthTest: false,
+      depthWrite: false,
+      blending: CustomBlending,
+      blendSrc: OneFactor,
+      blendDst: OneFactor,
+    });
+    this.sky = new Scene();
+    this.sky.add(new Mesh(new PlaneGeometry(2, 2), this.material));
+    this.sky.children[0].frustumCulled = false;
+    this.shadows = new Scene();
+  }
+
+  get isDone() { return this.done === DIRECTIONS; }
+
+  // Adds the light of the next direction; false when there is none.
+  step() {
+    if (this.isDone) return false;
+    const { renderer, camera } = this, towards = direction(this.done);
+    camera.position.copy(towards).multiplyScalar(this.half);
+    camera.up.set(Math.abs(towards.y) < 0.9 ? 0 : 1, Math.abs(towards.y) < 0.9 ? 1 : 0, 0);
+    camera.lookAt(0, 0, 0);
+    renderer.setRenderTarget(this.map);
+    renderer.clear();
+    this.vessels.drawDepths(renderer, camera, MAP);
+    this.material.uniforms.towards.value = towards;
+    this.material.uniforms.fromWorld.value = camera.projectionMatrix.clone().multiply(camera.matrixWorldInverse);
+    renderer.setRenderTarget(this.sum);
+    renderer.autoClear = false;
+    if (this.done === 0) renderer.clear();
+    renderer.render(this.sky, camera);
+    renderer.autoClear = true;
+    renderer.setRenderTarget(null);
+    this.done++;
+    return true;
+  }
+}
