@@ -65,11 +65,6 @@ function resize() {
   wantPicture();
 }
 
-function showPanels(shown) {
-  document.body.classList.toggle("bare", !shown);
-  resize();
-}
-
 // The colours of the page, light or dark as the reader has it.
 function takeScheme() {
   const styles = getComputedStyle(document.documentElement);
@@ -122,12 +117,15 @@ function show() {
   vessels.set("grown", state.grown);
   vessels.set("fade", state.haze ? haze() : 0);
   vessels.set("shade", state.shade && shade.isDone ? SHADE : 0);
+  document.body.classList.toggle("bare", !state.panels);
+  find("project").setAttribute("aria-pressed", view.isOrthographic);
   find("haze").checked = state.haze;
   find("shade").checked = state.shade;
   if (state.shade && !shade.isDone) findShade();
   find("grown").value = state.grown;
   panel.showScale(scale, scale && scale.field);
   panel.showTime(scale && scale.field, moment);
+  view.resize(window.innerWidth, window.innerHeight, freeBox()); // as the panels now are
   showSegment(shown);
   wantAddress();
 }
@@ -209,13 +207,7 @@ function within(text, low, high, otherwise) {
 function readAddress() {
   const get = new URLSearchParams(location.hash.slice(1));
   const field = get.has("field") ? get.get("field") : get.has("turn") ? "" : start ? start.field : "";
-  showPanels(get.get("panels") !== "off");
   view.project(get.get("projection") === "orthographic");
-  const turn = numbers(get.get("turn"), 2) || [0, 0];
-  view.frame(...turn);
-  const target = numbers(get.get("look-at"), 3), height = Number(get.get("height"));
-  if (target) view.change({ target: fromOrigin(target, -1) });
-  if (height > 0 && Number.isFinite(height)) view.change({ height });
   const log = get.get("log");
   change({
     field: named(tree.fields, field) ? field : null,
@@ -229,6 +221,15 @@ function readAddress() {
     pinned: tree.numberOf.get(Number(get.get("segment"))) ?? -1,
     hovered: -1,
   });
+  readPose(get);
+}
+
+// All of the tree, where the address does not tell what of it.
+function readPose(get) {
+  const target = numbers(get.get("look-at"), 3), height = Number(get.get("height"));
+  view.frame(...(numbers(get.get("turn"), 2) || [0, 0]));
+  if (target) view.change({ target: fromOrigin(target, -1) });
+  if (height > 0 && Number.isFinite(height)) view.change({ height });
 }
 
 // The command that draws what is shown as a figure, free of this machine's graphics.
@@ -306,7 +307,6 @@ function play() {
 
 function project() {
   view.project(!view.isOrthographic);
-  find("project").setAttribute("aria-pressed", view.isOrthographic);
   show();
 }
 
@@ -348,7 +348,7 @@ const KEYS = {
   "+": () => zoomBy(1.15), "=": () => zoomBy(1.15), "-": () => zoomBy(1 / 1.15), 0: fit,
   f: () => nextField(1), F: () => nextField(-1), o: project, s: save,
   d: () => kin(false), u: () => kin(true), h: () => change({ haze: !state.haze }), "?": () => find("help").showModal(),
-  p: () => { change({ panels: !state.panels }); showPanels(state.panels); }, Escape: () => pin(-1),
+  p: () => change({ panels: !state.panels }), Escape: () => pin(-1),
 };
 
 function key(event) {
@@ -395,4 +395,3 @@ listen();
 resize();
 takeScheme();
 readAddress();
-find("project").setAttribute("aria-pressed", view.isOrthographic);

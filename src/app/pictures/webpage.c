@@ -243,15 +243,15 @@ static Status radius_to_prune(const Tree *tree, double *radius_mm, Err *err)
 static Status check_count(const PictureTree *of, Err *err)
 {
     const double bytes_each = 95;
-    const size_t n = of->tree.n;
+    const size_t n = of->tree.n - count_roots(&of->tree);
     double radius_mm;
     char size[BYTES_TEXT_SIZE];
     if (n <= WEBPAGE_MOST_SEGMENTS)
         return STATUS_OK;
     TRY(radius_to_prune(&of->tree, &radius_mm, err));
     return err_set(err, STATUS_INFEASIBLE,
-                   "%s: %zu segments make a page of %s, and one of more than %d is none that a "
-                   "browser turns; --prune-radius %.3g leaves about as many",
+                   "%s: %zu segments make a page of %s, and a browser does not turn "
+                   "more than %d; --prune-radius %.3g leaves about as many",
                    of->path, n, bytes_text((double)n * bytes_each, size), WEBPAGE_MOST_SEGMENTS,
                    radius_mm);
 }
