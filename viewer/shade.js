@@ -3,7 +3,7 @@
 // adds up the light of those that reach it, weighted by their cosines. It does not depend on the view, so that a tree
 // that is turned costs no more; its mean over directions smooths what a single map of depths is too coarse for.
 import {
-  CustomBlending, DataTexture, DepthTexture, FloatType, GLSL3, HalfFloatType, Mesh, NearestFilter, OneFactor,
+  Color, CustomBlending, DataTexture, DepthTexture, FloatType, GLSL3, HalfFloatType, Mesh, NearestFilter, OneFactor,
   OrthographicCamera, PlaneGeometry, RawShaderMaterial, RGBAFormat, Scene, UnsignedIntType, Vector3, WebGLRenderTarget,
 } from "three";
 import fragmentShader from "./shade.frag.glsl";
@@ -30,6 +30,13 @@ function segmentTexture(geometry, n) {
   const made = new DataTexture(numbers, WIDTH, height, RGBAFormat, FloatType);
   made.needsUpdate = true;
   return made;
+}
+
+function clearToZero(renderer) {
+  const color = renderer.getClearColor(new Color());
+  renderer.setClearColor(0, 0);
+  renderer.clear();
+  renderer.setClearColor(color, 1);
 }
 
 export class Shade {
@@ -83,7 +90,7 @@ export class Shade {
     this.material.uniforms.fromWorld.value = camera.projectionMatrix.clone().multiply(camera.matrixWorldInverse);
     renderer.setRenderTarget(this.sum);
     renderer.autoClear = false;
-    if (this.done === 0) renderer.clear();
+    if (this.done === 0) clearToZero(renderer);
     renderer.render(this.sky, camera);
     renderer.autoClear = true;
     renderer.setRenderTarget(null);

@@ -24,9 +24,7 @@ uniform float fade;
 uniform highp sampler2D open; // sums of light that comes, and of what would
 uniform float shade;
 
-#ifndef DEPTHS
 out vec4 seen;
-#endif
 
 // Where the ray enters the solid, t along it, when it passes the core at less than the radius.
 float entry(vec3 p, vec3 d, float len, float r) {
@@ -103,6 +101,7 @@ void main() {
   vec4 clip = projectionMatrix * place;
   gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0) * (1.0 - 0.999 * isPicked); // before all others
 
+  seen = vec4(0);
 #ifndef DEPTHS
   mat3 toView = mat3(viewMatrix) * axes;
   vec3 color = lit(place.xyz, toView * normal, toView * d, pigment);
