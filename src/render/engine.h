@@ -20,6 +20,8 @@ typedef struct Engine {
     Status (*rows)(const Drawing *drawing, void *prepared, Frame *frame, Err *err);
     /* Frees what was prepared; NULL where nothing is. */
     void (*free)(void *prepared);
+    /* How it looks from lights; NULL: by rays alone. */
+    const struct LightViews *lights;
 } Engine;
 
 #endif

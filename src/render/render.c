@@ -311,7 +311,7 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Shar
     Drawing wide = widened(drawing, margin);
     Status status = see_vessels(renderer, &wide, &planes, err);
     if (status == STATUS_OK)
-        status = share_light(&wide, &planes, &renderer->beams, out, err);
+        status = share_light(&wide, renderer->engine->lights, &planes, &renderer->beams, out, err);
     frame_release(&planes);
     return status;
 }

@@ -129,13 +129,23 @@ int light_points(const Light *light)
     return light->samples > 1 ? light->samples * light->samples : 1;
 }
 
-LightWay light_way_to_point(const Light *light, int k, Vec3 place)
+Light light_at_point(const Light *light, int k)
 {
+    Light point = *light;
     int n = light->samples;
     if (n < 2)
-        return light_way(light, place);
+        return point;
     Vec3 at = vec3_add_scaled(light->location, light->sides[0], k % n / (n - 1.0) - 0.5);
-    return way_to(vec3_add_scaled(at, light->sides[1], k / n / (n - 1.0) - 0.5), place);
+    point.location = vec3_add_scaled(at, light->sides[1], k / n / (n - 1.0) - 0.5);
+    point.parallel = false;
+    point.samples = 1;
+    return point;
+}
+
+LightWay light_way_to_point(const Light *light, int k, Vec3 place)
+{
+    Light point = light_at_point(light, k);
+    return light_way(&point, place);
 }
 
 bool ground_hit(const Ground *ground, Ray ray, double near_mm, double far_mm, double *t)

@@ -77,7 +77,9 @@ LightWay light_way(const Light *light, Vec3 place);
 
 /* Points that shadows are averaged over: 1, or samples x samples. */
 int light_points(const Light *light);
-/* The way to point k of them, 0 <= k < light_points(), row by row along sides[0]. */
+/* Point k of them, 0 <= k < light_points(), row by row along sides[0], as a light of its own; and
+ * the way to it. */
+Light light_at_point(const Light *light, int k);
 LightWay light_way_to_point(const Light *light, int k, Vec3 place);
 
 /* A plane under or behind the vessels: the points x with normal . x = offset_mm. Only colour knows

@@ -80,20 +80,19 @@ static uint64_t facing(const Sight *sight, const Viewpoint *eye, const Light *li
 static void ask(const Geometry *geometry, const Light *light, const Viewpoint *eye, double from_mm,
                 int kind, uint64_t wanted, Sight *sight)
 {
-    FieldShadow *shadow;
-    FieldQueue *queue;
-    FieldSpace space;
-    assert_int_equal(fieldshadow_new(geometry, light, eye, 5, from_mm, 1, &shadow, NULL),
-                     STATUS_OK);
-    assert_int_equal(fieldqueue_new(shadow, &queue, NULL), STATUS_OK);
-    assert_int_equal(fieldspace_init(geometry, &space, NULL), STATUS_OK);
+    const View view = {.camera = {.width = 8, .height = 8}};
+    const RenderParams params = {.threads = 1, .shadow_from_mm = from_mm};
+    const Drawing drawing = {.geometry = geometry, .view = &view, .params = &params};
+    void *shadow, *queue;
+    assert_true(field_lights.can(geometry, &view, light));
+    assert_int_equal(field_lights.look(&drawing, light, eye, &shadow, NULL), STATUS_OK);
+    assert_int_equal(field_lights.queue_new(shadow, &queue, NULL), STATUS_OK);
     memset(sight->shadowed, 0, sizeof sight->shadowed);
-    fieldqueue_ask(queue, tilekernels[kind], &sight->places, wanted, 0);
-    assert_int_equal(fieldqueue_answer(queue, shadowkernels[kind], &space, sight->shadowed, NULL),
-                     STATUS_OK);
-    fieldspace_release(&space);
-    fieldqueue_free(queue);
-    fieldshadow_free(shadow);
+    field_lights.ask(queue, tilekernels[kind], &sight->places, wanted, 0);
+    RenderKernels kernels = (RenderKernels)(KERNELS_PORTABLE + kind);
+    assert_int_equal(field_lights.answer(queue, kernels, sight->shadowed, NULL), STATUS_OK);
+    field_lights.queue_free(queue);
+    field_lights.free(shadow);
 }
 
 /* The potential at t. */

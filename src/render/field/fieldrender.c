@@ -24,7 +24,7 @@ typedef struct FieldPass {
 /* The centres of all pixels, and the further samples; and what lights see. */
 typedef struct FieldPrepared {
     FieldPass center, further;
-    FieldShadow *shadows[VIEW_MAX_LIGHTS]; /* owned; NULL where the light casts none, or rays do */
+    void *shadows[VIEW_MAX_LIGHTS]; /* owned; NULL where the light casts none, or rays do */
 } FieldPrepared;
 
 /* A tile of a batch. */
@@ -39,10 +39,9 @@ typedef struct BatchTile {
 typedef struct Batch {
     BatchTile *tiles;
     int n_tiles;
-    uint8_t (*shadowed)[TILE_SAMPLES];   /* tile by tile, one a light */
-    FieldQueue *queues[VIEW_MAX_LIGHTS]; /* NULL where the light has no FieldShadow */
-    FieldSpace space;
-    Status status; /* of what a visitor could not report */
+    uint8_t (*shadowed)[TILE_SAMPLES]; /* tile by tile, one a light */
+    void *queues[VIEW_MAX_LIGHTS];     /* to the shadows that there are */
+    Status status;                     /* of what a visitor could not report */
     Err err;
 } Batch;
 
@@ -137,8 +136,8 @@ static void ask_lights(const FieldPicture *picture, int worker, const BatchTile 
             find_facing(picture, &tile->seen, &places, &picture->canvas.look.lights[i]);
         size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
         if (batch->queues[i])
-            fieldqueue_ask(batch->queues[i], picture->canvas.kernels, &places, wanted,
-                           (uint32_t)answer);
+            field_lights.ask(batch->queues[i], picture->canvas.kernels, &places, wanted,
+                             (uint32_t)answer);
         else
             cast_shadows(picture, &tile->seen, light, worker, wanted, tile->shadowed[i]);
     }
@@ -150,15 +149,14 @@ static Status find_shadows(const FieldPicture *picture, int worker, Err *err)
     Batch *batch = &picture->batches[worker];
     const Drawing *drawing = picture->canvas.drawing;
     size_t n_lights = drawing->view->n_lights;
-    ShadowKernel *kernel = shadowkernels[kernels_kind(drawing->params->kernels)];
     memset(batch->shadowed, 0, (size_t)batch->n_tiles * n_lights * sizeof *batch->shadowed);
     for (int i = 0; i < batch->n_tiles; i++)
         if (batch->tiles[i].seen.hits)
             ask_lights(picture, worker, &batch->tiles[i]);
     for (size_t i = 0; i < n_lights; i++)
         if (batch->queues[i])
-            TRY(fieldqueue_answer(batch->queues[i], kernel, &batch->space, batch->shadowed[0],
-                                  err));
+            TRY(field_lights.answer(batch->queues[i], drawing->params->kernels, batch->shadowed[0],
+                                    err));
     return STATUS_OK;
 }
 
@@ -398,36 +396,25 @@ static void release_prepared(void *prepared)
     release_pass(&field->center);
     release_pass(&field->further);
     for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
-        fieldshadow_free(field->shadows[i]);
+        field_lights.free(field->shadows[i]);
     free(field);
 }
 
-/* Whether a light that casts hard shadows is looked at from. */
-static bool has_view(const Drawing *drawing, const Light *light)
+static bool is_looked_from(const Drawing *drawing, const Light *light)
 {
-    return drawing->params->shadows && drawing->params->method != RENDER_TRACE &&
-           light->casts_shadows && light->samples <= 1 &&
-           fieldshadow_can(drawing->geometry, drawing->view, light);
-}
-
-/* Tiles on a side of a light's view: about as many as those of the picture. */
-static int tiles_for(const Camera *camera)
-{
-    enum { LEAST = 16, MOST = 384 };
-    int side = (camera->width > camera->height ? camera->width : camera->height) / TILE_SIDE;
-    return side < LEAST ? LEAST : side > MOST ? MOST : side;
+    return drawing->params->method != RENDER_TRACE &&
+           lightviews_can(&field_lights, drawing->geometry, drawing->view, light);
 }
 
 static Status prepare_shadows(const Drawing *drawing, FieldPrepared *field, Err *err)
 {
-    const RenderParams *params = drawing->params;
     const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
-    for (size_t i = 0; i < drawing->view->n_lights; i++)
-        if (has_view(drawing, &drawing->view->lights[i]))
-            TRY(fieldshadow_new(drawing->geometry, &drawing->view->lights[i], &eye,
-                                tiles_for(&drawing->view->camera),
-                                params->shadow_from_mm > 0 ? params->shadow_from_mm : 1e-3,
-                                params->threads, &field->shadows[i], err));
+    for (size_t i = 0; i < drawing->view->n_lights; i++) {
+        const Light *light = &drawing->view->lights[i];
+        if (drawing->params->shadows && light->casts_shadows && light->samples <= 1 &&
+            is_looked_from(drawing, light))
+            TRY(field_lights.look(drawing, light, &eye, &field->shadows[i], err));
+    }
     return STATUS_OK;
 }
 
@@ -454,12 +441,11 @@ static Status make_batch(const FieldPicture *picture, Batch *batch, Err *err)
     size_t n = (size_t)picture->batch_size, n_lights = picture->canvas.drawing->view->n_lights;
     TRY(mem_calloc(&batch->tiles, n, sizeof *batch->tiles, "tiles", err));
     TRY(mem_calloc(&batch->shadowed, n * n_lights, sizeof *batch->shadowed, "lights", err));
-    TRY(fieldspace_init(picture->canvas.drawing->geometry, &batch->space, err));
     for (size_t i = 0; i < n; i++)
         batch->tiles[i].shadowed = batch->shadowed + i * n_lights;
     for (size_t i = 0; i < n_lights; i++)
         if (picture->prepared->shadows[i])
-            TRY(fieldqueue_new(picture->prepared->shadows[i], &batch->queues[i], err));
+            TRY(field_lights.queue_new(picture->prepared->shadows[i], &batch->queues[i], err));
     return STATUS_OK;
 }
 
@@ -477,9 +463,8 @@ static void release_batch(Batch *batch)
 {
     free(batch->tiles);
     free(batch->shadowed);
-    fieldspace_release(&batch->space);
     for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
-        fieldqueue_free(batch->queues[i]);
+        field_lights.queue_free(batch->queues[i]);
 }
 
 static Status make_further_rows(FieldPicture *picture, Err *err)
@@ -548,7 +533,7 @@ static bool needs_rays(const Drawing *drawing)
     bool rays = params->occlusion > 0 && params->method == RENDER_TRACE;
     for (size_t i = 0; i < drawing->view->n_lights; i++)
         rays |= params->shadows && drawing->view->lights[i].casts_shadows &&
-                !has_view(drawing, &drawing->view->lights[i]);
+                !is_looked_from(drawing, &drawing->view->lights[i]);
     return rays;
 }
 
@@ -558,4 +543,5 @@ const Engine field_engine = {.name = "field",
                              .needs_rays = needs_rays,
                              .prepare = prepare,
                              .rows = draw_rows,
-                             .free = release_prepared};
+                             .free = release_prepared,
+                             .lights = &field_lights};

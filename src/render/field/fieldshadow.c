@@ -4,52 +4,44 @@
  * that lines of sight keep their places in the view and z rises towards the light. */
 #include "render/field/fieldshadow.h"
 
+#include "render/field/fieldkernels.h"
+#include "render/field/fieldspace.h"
 #include "render/field/vessellists.h"
 #include <stdlib.h>
 
-struct FieldShadow {
+/* Blockers nearer than this to the lit place cast no shadow [docs/POVRAY.md section 3]. */
+static const double nearest_mm = 1e-3;
+
+/* The segments as one light sees them; constant once built. */
+typedef struct FieldShadow {
     const Geometry *geometry;
     LightView view;
     LightAim aim;
     VesselLists lists;
     BinLists *rows; /* of tiles: the lists of each */
     TileSpan *columns;
-    Status status; /* of making them */
     int workers;
-};
+} FieldShadow;
 
-struct FieldQueue {
+typedef struct FieldQueue {
     const FieldShadow *shadow;
     LightQueue *queue;
     uint32_t answer[LIGHT_BATCH]; /* of each call */
     /* Of the answers at hand: */
     ShadowKernel *kernel;
-    FieldSpace *space;
     uint8_t *shadowed;
     Status status;
     Err *err;
     FieldPlaces places;
-};
+    FieldSpace space;
+} FieldQueue;
 
 /* ---- what a light sees ----------------------------------------------------------------------- */
 
-static bool is_before_ground(const View *view, const Geometry *geometry, const Light *light)
-{
-    const Ground *ground = &view->ground;
-    Vec3 center = box_center(geometry->bounds);
-    if (!ground->present)
-        return true;
-    double above = vec3_dot(ground->normal, center) - ground->offset_mm;
-    return above * vec3_dot(ground->normal, light_way(light, center).towards) > 0 &&
-           (light->parallel ||
-            above * (vec3_dot(ground->normal, light->location) - ground->offset_mm) > 0);
-}
-
-bool fieldshadow_can(const Geometry *geometry, const View *view, const Light *light)
+static bool can_look(const Geometry *geometry, const View *view, const Light *light)
 {
     LightWay way = light_way(light, box_center(geometry->bounds));
-    return lightview_sees_all(geometry, light) && way.distance > lightview_radius(geometry) &&
-           is_before_ground(view, geometry, light);
+    return lightview_sees_all(geometry, view, light) && way.distance > lightview_radius(geometry);
 }
 
 typedef struct Listing {
@@ -101,28 +93,9 @@ static void reflect_segments(VesselLists *lists)
     }
 }
 
-Status fieldshadow_new(const Geometry *geometry, const Light *light, const Viewpoint *camera,
-                       int tiles, double from_mm, int threads, FieldShadow **out, Err *err)
+static void free_shadow(void *of)
 {
-    Status status;
-    FieldShadow *shadow = NULL;
-    TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
-    shadow->geometry = geometry;
-    shadow->workers = threads;
-    shadow->view = lightview_of(geometry, light, tiles);
-    shadow->aim = lightview_aim(&shadow->view, camera, from_mm);
-    TRY_GOTO(vessellists_of_light(geometry, &shadow->view, threads, &shadow->lists, err));
-    TRY_GOTO(list_rows(shadow, err));
-    reflect_segments(&shadow->lists);
-    *out = shadow;
-    return STATUS_OK;
-done:
-    fieldshadow_free(shadow);
-    return status;
-}
-
-void fieldshadow_free(FieldShadow *shadow)
-{
+    FieldShadow *shadow = of;
     if (!shadow)
         return;
     for (int i = 0; shadow->rows && i < shadow->lists.tile_rows; i++)
@@ -133,26 +106,64 @@ void fieldshadow_free(FieldShadow *shadow)
     free(shadow);
 }
 
-/* ---- asking ---------------------------------------------------------------------------------- */
-
-Status fieldqueue_new(const FieldShadow *shadow, FieldQueue **out, Err *err)
+/* Tiles on a side of a light's view: about as many as those of the picture. */
+static int tiles_for(const Camera *camera)
 {
-    TRY(mem_calloc(out, 1, sizeof **out, "shadows", err));
-    (*out)->shadow = shadow;
-    return lightqueue_new(&shadow->aim, &(*out)->queue, err);
+    enum { LEAST = 16, MOST = 384 };
+    int side = (camera->width > camera->height ? camera->width : camera->height) / TILE_SIDE;
+    return side < LEAST ? LEAST : side > MOST ? MOST : side;
 }
 
-void fieldqueue_free(FieldQueue *queue)
+static Status look(const Drawing *drawing, const Light *light, const Viewpoint *frame, void **out,
+                   Err *err)
 {
+    Status status;
+    FieldShadow *shadow = NULL;
+    const RenderParams *params = drawing->params;
+    double from_mm = params->shadow_from_mm > 0 ? params->shadow_from_mm : nearest_mm;
+    TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
+    shadow->geometry = drawing->geometry;
+    shadow->workers = params->threads;
+    shadow->view = lightview_of(drawing->geometry, light, tiles_for(&drawing->view->camera));
+    shadow->aim = lightview_aim(&shadow->view, frame, from_mm);
+    TRY_GOTO(vessellists_of_light(drawing->geometry, &shadow->view, params->threads, &shadow->lists,
+                                  err));
+    TRY_GOTO(list_rows(shadow, err));
+    reflect_segments(&shadow->lists);
+    *out = shadow;
+    return STATUS_OK;
+done:
+    free_shadow(shadow);
+    return status;
+}
+
+/* ---- asking ---------------------------------------------------------------------------------- */
+
+static Status new_queue(const void *of, void **out, Err *err)
+{
+    const FieldShadow *shadow = of;
+    FieldQueue *queue;
+    TRY(mem_calloc(&queue, 1, sizeof *queue, "shadows", err));
+    *out = queue;
+    queue->shadow = shadow;
+    TRY(fieldspace_init(shadow->geometry, &queue->space, err));
+    return lightqueue_new(&shadow->aim, &queue->queue, err);
+}
+
+static void free_queue(void *of)
+{
+    FieldQueue *queue = of;
     if (!queue)
         return;
     lightqueue_free(queue->queue);
+    fieldspace_release(&queue->space);
     free(queue);
 }
 
-void fieldqueue_ask(FieldQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
-                    uint64_t wanted, uint32_t answer)
+static void ask(void *to, const TileKernels *kernels, const SeenPlaces *places, uint64_t wanted,
+                uint32_t answer)
 {
+    FieldQueue *queue = to;
     if (wanted)
         queue->answer[lightqueue_ask(queue->queue, kernels, places, wanted)] = answer;
 }
@@ -206,10 +217,10 @@ static Status decide(FieldQueue *queue, const FieldTile *tile, int number, Err *
                   (tile->middle_y + (double)places->y[number]) * scale, z};
     Vec3 towards = viewpoint_to_world(eye, eye->perspective ? place : vec3(0, 0, 1));
     Ray ray = {viewpoint_point(eye, place), vec3_normalized(vec3_scale(towards, -1))};
-    TRY(fieldspace_reserve_rays(queue->space, tile->n_terms, err));
+    TRY(fieldspace_reserve_rays(&queue->space, tile->n_terms, err));
     places->state[number] =
-        field_is_shadowed_among(shadow->geometry, queue->space->candidates, tile->n_terms,
-                                queue->space->scratch, ray, 0, HUGE_VAL)
+        field_is_shadowed_among(shadow->geometry, queue->space.candidates, tile->n_terms,
+                                queue->space.scratch, ray, 0, HUGE_VAL)
             ? PLACE_DARK
             : PLACE_LIT;
     return STATUS_OK;
@@ -219,7 +230,7 @@ static Status answer_tile(FieldQueue *queue, const LightRequest *request, Err *e
 {
     const FieldShadow *shadow = queue->shadow;
     FieldPlaces *places = &queue->places;
-    FieldSpace *space = queue->space;
+    FieldSpace *space = &queue->space;
     uint32_t kept[LIGHT_MOST_PLACES];
     FieldTile tile = tile_of(shadow, request->tile, space->groups);
     const BinLists *row = &shadow->rows[request->tile / shadow->view.tiles];
@@ -247,14 +258,21 @@ static void visit_tile(const LightRequest *request, void *context)
         queue->status = answer_tile(queue, request, queue->err);
 }
 
-Status fieldqueue_answer(FieldQueue *queue, ShadowKernel *kernel, FieldSpace *space,
-                         uint8_t *shadowed, Err *err)
+static Status answer(void *of, RenderKernels kernels, uint8_t *shadowed, Err *err)
 {
-    queue->kernel = kernel;
-    queue->space = space;
+    FieldQueue *queue = of;
+    queue->kernel = shadowkernels[kernels_kind(kernels)];
     queue->shadowed = shadowed;
     queue->status = STATUS_OK;
     queue->err = err;
     lightqueue_visit(queue->queue, visit_tile, queue);
     return queue->status;
 }
+
+const LightViews field_lights = {.can = can_look,
+                                 .look = look,
+                                 .free = free_shadow,
+                                 .queue_new = new_queue,
+                                 .queue_free = free_queue,
+                                 .ask = ask,
+                                 .answer = answer};

@@ -353,7 +353,7 @@ static Status prepare(const Drawing *drawing, void **prepared, Err *err)
     TRY_GOTO(prepare_samples(params, &view, raster, err));
     raster->has_shadows = params->shadows && params->want_color;
     if (raster->has_shadows)
-        TRY_GOTO(rastershadows_new(drawing->geometry, drawing->view, &view, params->threads,
+        TRY_GOTO(rastershadows_new(drawing->geometry, drawing->view, &view.eye, params->threads,
                                    raster->shadows, err));
     TRY_GOTO(rasterbins_new(drawing->geometry, &view, params->threads, &raster->bins, err));
     *prepared = raster;
@@ -449,4 +449,5 @@ const Engine raster_engine = {.name = "raster",
                               .needs_rays = needs_rays,
                               .prepare = prepare,
                               .rows = draw_rows,
-                              .free = release_prepared};
+                              .free = release_prepared,
+                              .lights = &raster_lights};

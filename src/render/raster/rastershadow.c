@@ -117,7 +117,7 @@ static Status list_rows(RasterShadow *shadow, Err *err)
     return STATUS_OK;
 }
 
-static Status make_shadow(const Geometry *geometry, const Light *light, const RasterView *camera,
+static Status make_shadow(const Geometry *geometry, const Light *light, const Viewpoint *camera,
                           int threads, RasterShadow **out, Err *err)
 {
     RasterShadow *shadow = NULL;
@@ -126,7 +126,7 @@ static Status make_shadow(const Geometry *geometry, const Light *light, const Ra
     RasterView view = view_of(&seen);
     /* Places and depths are rounded to 2^-24 of the scene's size, thrice. */
     double slack = slack_mm + 0x3p-23 * lightview_radius(geometry);
-    shadow->aim = lightview_aim(&seen, &camera->eye, slack);
+    shadow->aim = lightview_aim(&seen, camera, slack);
     shadow->grid = rastergrid_make(&view, 0.5, 0.5);
     shadow->workers = threads;
     Status status = rasterbins_new(geometry, &view, threads, &shadow->bins, err);
@@ -142,7 +142,7 @@ static Status make_shadow(const Geometry *geometry, const Light *light, const Ra
 
 typedef struct Making {
     const Geometry *geometry;
-    const RasterView *camera;
+    const Viewpoint *camera;
     const Light *light;
     RasterShadow **out;
     Status status;
@@ -176,7 +176,7 @@ static Status make_shadows(Making *making, size_t n, int threads, Err *err)
     return STATUS_OK;
 }
 
-Status rastershadows_new(const Geometry *geometry, const View *view, const RasterView *camera,
+Status rastershadows_new(const Geometry *geometry, const View *view, const Viewpoint *camera,
                          int threads, RasterShadow **shadows, Err *err)
 {
     Making *making = NULL;
@@ -185,7 +185,8 @@ Status rastershadows_new(const Geometry *geometry, const View *view, const Raste
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
         shadows[i] = NULL;
-        if (light->casts_shadows && light->samples <= 1 && lightview_sees_all(geometry, light))
+        if (light->casts_shadows && light->samples <= 1 &&
+            lightview_sees_all(geometry, view, light))
             making[n++] = (Making){
                 .geometry = geometry, .camera = camera, .light = light, .out = &shadows[i]};
     }
@@ -198,7 +199,7 @@ bool rastershadows_need_rays(const Geometry *geometry, const View *view)
 {
     for (size_t i = 0; i < view->n_lights; i++)
         if (view->lights[i].casts_shadows &&
-            (view->lights[i].samples > 1 || !lightview_sees_all(geometry, &view->lights[i])))
+            !lightviews_can(&raster_lights, geometry, view, &view->lights[i]))
             return true;
     return false;
 }
@@ -223,6 +224,7 @@ struct RasterQueue {
     const RasterShadow *shadow;
     LightQueue *places;
     const uint32_t *items[LIGHT_BATCH]; /* of each call */
+    uint32_t nowhere[TILE_SAMPLES];     /* items of places of which they are not known */
     uint32_t answer[LIGHT_BATCH];
     const RasterKernels *kernels;
     uint8_t *shadowed;
@@ -233,6 +235,7 @@ Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out, Err *err)
 {
     TRY(mem_calloc(out, 1, sizeof **out, "shadows", err));
     (*out)->shadow = shadow;
+    memset((*out)->nowhere, 0xff, sizeof(*out)->nowhere); /* RASTER_NOTHING */
     return lightqueue_new(&shadow->aim, &(*out)->places, err);
 }
 
@@ -250,7 +253,7 @@ void rasterqueue_ask(RasterQueue *queue, const TileKernels *kernels, const SeenP
     if (!wanted)
         return;
     int call = lightqueue_ask(queue->places, kernels, places, wanted);
-    queue->items[call] = items;
+    queue->items[call] = items ? items : queue->nowhere;
     queue->answer[call] = answer;
 }
 
@@ -313,3 +316,53 @@ void rasterqueue_answer(RasterQueue *queue, const RasterKernels *kernels, uint8_
     queue->shadowed = shadowed;
     lightqueue_visit(queue->places, test_tile, queue);
 }
+
+/* ---- for those who ask by places alone ------------------------------------------------------- */
+
+static Status look(const Drawing *drawing, const Light *light, const Viewpoint *frame,
+                   void **shadow, Err *err)
+{
+    RasterShadow *made;
+    TRY(make_shadow(drawing->geometry, light, frame, drawing->params->threads, &made, err));
+    *shadow = made;
+    return STATUS_OK;
+}
+
+static void free_shadow(void *shadow)
+{
+    rastershadow_free(shadow);
+}
+
+static Status new_queue(const void *shadow, void **queue, Err *err)
+{
+    RasterQueue *made = NULL;
+    Status status = rasterqueue_new(shadow, &made, err);
+    *queue = made;
+    return status;
+}
+
+static void free_queue(void *queue)
+{
+    rasterqueue_free(queue);
+}
+
+static void ask(void *queue, const TileKernels *kernels, const SeenPlaces *places, uint64_t wanted,
+                uint32_t answer)
+{
+    rasterqueue_ask(queue, kernels, places, NULL, wanted, answer);
+}
+
+static Status answer(void *queue, RenderKernels kernels, uint8_t *shadowed, Err *err)
+{
+    (void)err;
+    rasterqueue_answer(queue, rasterkernels[kernels_kind(kernels)], shadowed);
+    return STATUS_OK;
+}
+
+const LightViews raster_lights = {.can = lightview_sees_all,
+                                  .look = look,
+                                  .free = free_shadow,
+                                  .queue_new = new_queue,
+                                  .queue_free = free_queue,
+                                  .ask = ask,
+                                  .answer = answer};

@@ -9,15 +9,15 @@
 /* The geometry as one light sees it; constant once built. */
 typedef struct RasterShadow RasterShadow;
 
-/* That of light i of the view in shadows[i], NULL where the light casts none, is an area light or
- * is too near to see all of the geometry in one view, for places in the frame of `camera`. Borrows
- * the geometry. The shadows are the caller's even when this fails. */
+/* That of light i of the view in shadows[i], NULL where the light casts none, is an area light, or
+ * no one view of it sees all of the geometry; for places in the frame of `camera`. Borrows the
+ * geometry. The shadows are the caller's even when this fails. */
 MUST_CHECK Status rastershadows_new(const Geometry *geometry, const View *view,
-                                    const RasterView *camera, int threads, RasterShadow **shadows,
+                                    const Viewpoint *camera, int threads, RasterShadow **shadows,
                                     Err *err);
 void rastershadow_free(RasterShadow *shadow);
 
-/* Whether a light that casts shadows is an area light, or too near for a RasterShadow. */
+/* Whether a light that casts shadows has points from which no one view sees all of the geometry. */
 bool rastershadows_need_rays(const Geometry *geometry, const View *view);
 
 /* Shadow queries to one light, for the places of up to LIGHT_BATCH tiles of the picture. They are
@@ -39,5 +39,8 @@ void rasterqueue_ask(RasterQueue *queue, const TileKernels *kernels, const SeenP
  * and the place, by more than POV-Ray's 0.001 mm or the rounding of the light's view, else 0.
  * Answers that were not asked for are left alone. */
 void rasterqueue_answer(RasterQueue *queue, const RasterKernels *kernels, uint8_t *shadowed);
+
+/* All of this for those who ask by places alone, whatever items these lie on. */
+extern const LightViews raster_lights;
 
 #endif

@@ -5,6 +5,9 @@
  * Beams of a neighbour count by their cosine to the surface here: that is what light changes most
  * by on a thin vessel.
  *
+ * The points of an area light are looked from, those of one set after those of another, as lights
+ * are that cast hard shadows.
+ *
  * Views of some directions at a time are made, and asked by runs of pixels of one set. Answers are
  * bytes, so that a picture's need little memory, and are summed in one order. */
 #include "render/sky/share.h"
@@ -24,6 +27,7 @@ typedef struct Share {
     const Drawing *drawing;
     SharedLight *light;
     const BeamKernels *kernels;
+    const LightViews *views; /* NULL: lights are asked by rays */
     Beams *beams;
     uint32_t *pixels;        /* owned; of each number */
     size_t first[SETS + 1];  /* numbers of set i are [first[i], first[i + 1]) */
@@ -393,19 +397,32 @@ static bool point_is_of(const Light *light, int point, int set)
     return set_of(point % light->samples, point / light->samples) == set;
 }
 
-/* How many points of the set reach the place; rays begin a little off the surface, which depths of
- * single precision miss. */
+/* Where a place is, mm from SharedLight.origin, a little off the surface, which depths of single
+ * precision miss. */
+static Vec3 off_surface(const Share *share, const PixelPlace *place)
+{
+    Vec3 normal = {(double)place->normal[0], (double)place->normal[1], (double)place->normal[2]};
+    Vec3 at = {(double)place->at[0], (double)place->at[1], (double)place->at[2]};
+    Vec3 eye = vec3_sub(share->drawing->view->camera.location, share->light->origin);
+    return vec3_add_scaled(at, normal, 1e-6 * (vec3_length(at) + vec3_distance(at, eye)));
+}
+
+/* Whether the place faces the middle of the light at hand. */
+static bool is_facing(const Share *share, const PixelPlace *place, Vec3 point)
+{
+    const Light *light = &share->drawing->view->lights[share->number];
+    Vec3 normal = {(double)place->normal[0], (double)place->normal[1], (double)place->normal[2]};
+    return vec3_dot(normal, light_way(light, point).towards) >= LEAST_LIT_COSINE;
+}
+
+/* How many points of the set reach the place, by rays. */
 static uint16_t points_seen(const Share *share, const PixelPlace *place, int set, int worker)
 {
     const Drawing *drawing = share->drawing;
     const Light *light = &drawing->view->lights[share->number];
-    Vec3 normal = {(double)place->normal[0], (double)place->normal[1], (double)place->normal[2]};
-    Vec3 at = {(double)place->at[0], (double)place->at[1], (double)place->at[2]};
-    Vec3 point = vec3_add(share->light->origin, at);
+    Vec3 point = vec3_add(share->light->origin, off_surface(share, place));
     uint16_t seen = 0;
-    double off = 1e-6 * (vec3_length(at) + vec3_distance(point, drawing->view->camera.location));
-    point = vec3_add_scaled(point, normal, off);
-    if (vec3_dot(normal, light_way(light, point).towards) < LEAST_LIT_COSINE)
+    if (!is_facing(share, place, point))
         return 0;
     for (int k = 0; k < light_points(light); k++) {
         if (!point_is_of(light, k, set))
@@ -418,7 +435,7 @@ static uint16_t points_seen(const Share *share, const PixelPlace *place, int set
     return seen;
 }
 
-static void ask_light(size_t index, int worker, void *context)
+static void cast_to_light(size_t index, int worker, void *context)
 {
     const Share *share = context;
     int set;
@@ -428,23 +445,168 @@ static void ask_light(size_t index, int worker, void *context)
         share->reach[number] = points_seen(share, &share->light->places[number], set, worker);
 }
 
+/* The points of a set of the light at hand, each looked from, and what the threads ask them. */
+typedef struct SetLook {
+    const Share *share;
+    int set, n_points;
+    void **shadows; /* owned, as all that follows; of each point */
+    void **queues;  /* n_points a worker */
+    Status *status; /* one a worker */
+} SetLook;
+
+/* Asks all points about up to TILE_SAMPLES places from a number on, and returns which, as bits. */
+static uint64_t ask_places(const SetLook *look, size_t from, size_t to, int worker, uint32_t answer)
+{
+    const Share *share = look->share;
+    const TileKernels *kernels = tilekernels[kernels_kind(share->drawing->params->kernels)];
+    SeenPlaces places = {.x = {0}};
+    uint64_t wanted = 0;
+    for (size_t i = 0; i < TILE_SAMPLES && from + i < to; i++) {
+        const PixelPlace *place = &share->light->places[from + i];
+        Vec3 at = off_surface(share, place);
+        places.x[i] = at.x;
+        places.y[i] = at.y;
+        places.z[i] = at.z;
+        wanted |= (uint64_t)is_facing(share, place, vec3_add(share->light->origin, at)) << i;
+    }
+    for (int k = 0; k < look->n_points; k++)
+        share->views->ask(look->queues[worker * look->n_points + k], kernels, &places, wanted,
+                          answer);
+    return wanted;
+}
+
+static void look_at_run(size_t index, int worker, void *context)
+{
+    const SetLook *look = context;
+    const Share *share = look->share;
+    uint8_t shadowed[LIGHT_MOST_PLACES];
+    uint64_t wanted[LIGHT_BATCH];
+    size_t from = share->first[look->set] + index * LIGHT_MOST_PLACES;
+    size_t to = share->first[look->set + 1], n = to - from;
+    n = n < LIGHT_MOST_PLACES ? n : LIGHT_MOST_PLACES;
+    for (size_t i = 0; i < n; i += TILE_SAMPLES)
+        wanted[i / TILE_SAMPLES] = ask_places(look, from + i, to, worker, (uint32_t)i);
+    for (int k = 0; k < look->n_points; k++) {
+        memset(shadowed, 0, sizeof shadowed);
+        Status status = share->views->answer(look->queues[worker * look->n_points + k],
+                                             share->drawing->params->kernels, shadowed, NULL);
+        if (status != STATUS_OK)
+            look->status[worker] = status;
+        for (size_t i = 0; i < n; i++)
+            share->reach[from + i] +=
+                (wanted[i / TILE_SAMPLES] >> i % TILE_SAMPLES & 1) & !shadowed[i];
+    }
+}
+
+/* Looks from the points of the set, for all threads to ask. */
+static Status make_looks(SetLook *look, Err *err)
+{
+    const Share *share = look->share;
+    const LightViews *views = share->views;
+    const Light *light = &share->drawing->view->lights[share->number];
+    const Viewpoint frame = {
+        share->light->origin, {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)}, .perspective = false};
+    size_t workers = (size_t)share->drawing->params->threads, n = (size_t)light_points(light);
+    TRY(mem_calloc(&look->shadows, n, sizeof *look->shadows, "lights", err));
+    TRY(mem_calloc(&look->status, workers, sizeof *look->status, "lights", err));
+    for (int k = 0; k < light_points(light); k++) {
+        const Light point = light_at_point(light, k);
+        if (point_is_of(light, k, look->set))
+            TRY(views->look(share->drawing, &point, &frame, &look->shadows[look->n_points++], err));
+    }
+    n = workers * (size_t)look->n_points;
+    TRY(mem_calloc(&look->queues, n, sizeof *look->queues, "lights", err));
+    for (size_t i = 0; i < n; i++)
+        TRY(views->queue_new(look->shadows[i % (size_t)look->n_points], &look->queues[i], err));
+    return STATUS_OK;
+}
+
+static void release_looks(SetLook *look)
+{
+    const LightViews *views = look->share->views;
+    size_t workers = (size_t)look->share->drawing->params->threads;
+    for (size_t i = 0; look->queues && i < workers * (size_t)look->n_points; i++)
+        views->queue_free(look->queues[i]);
+    for (int k = 0; look->shadows && k < look->n_points; k++)
+        views->free(look->shadows[k]);
+    free(look->queues);
+    free(look->shadows);
+    free(look->status);
+}
+
+static Status look_from_set(const Share *share, int set, Err *err)
+{
+    SetLook look = {.share = share, .set = set};
+    size_t n = share->first[set + 1] - share->first[set];
+    int workers = share->drawing->params->threads;
+    Status status = make_looks(&look, err);
+    if (status == STATUS_OK)
+        threads_for((n + LIGHT_MOST_PLACES - 1) / LIGHT_MOST_PLACES, workers, look_at_run, &look);
+    for (int i = 0; i < workers && status == STATUS_OK; i++)
+        if (look.status[i] != STATUS_OK)
+            status = err_set(err, look.status[i], "out of memory: no room for soft shadows");
+    release_looks(&look);
+    return status;
+}
+
+/* Sets how many points of the light at hand each place sees. */
+static Status find_reach(Share *share, Err *err)
+{
+    const Drawing *drawing = share->drawing;
+    const Light *light = &drawing->view->lights[share->number];
+    memset(share->reach, 0, share->first[SETS] * sizeof *share->reach);
+    if (!share->views || !lightviews_can(share->views, drawing->geometry, drawing->view, light)) {
+        threads_for(all_runs(share), drawing->params->threads, cast_to_light, share);
+        return STATUS_OK;
+    }
+    for (int set = 0; set < SETS; set++)
+        TRY(look_from_set(share, set, err));
+    return STATUS_OK;
+}
+
+/* Whether all pixels about the place's, whatever surface they see, see as many points as it. */
+static bool is_even(const Share *share, uint32_t number)
+{
+    const SharedLight *light = share->light;
+    uint32_t pixel = share->pixels[number];
+    int column = (int)(pixel % (uint32_t)light->width), row = (int)(pixel / (uint32_t)light->width);
+    if (column == 0 || column == light->width - 1 || row == 0 || row == light->rows - 1)
+        return false;
+    const uint32_t *numbers = &light->numbers[pixel];
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) {
+            uint32_t other = numbers[j * light->width + i];
+            if (other != PLACE_NONE && share->reach[other] != share->reach[number])
+                return false;
+        }
+    return true;
+}
+
+/* The part of the light's points that reaches the place, by what its neighbours on its surface see
+ * of them. */
+static float gather_part(const Share *share, uint32_t number, int points)
+{
+    Neighbour found[9];
+    if (is_even(share, number))
+        return (float)(share->reach[number] * SETS) / (float)points;
+    int n = neighbours_of(share, number, found);
+    float sum = 0, all = 0;
+    for (int i = 0; i < n; i++) {
+        sum += found[i].part * (float)share->reach[found[i].number];
+        all += found[i].part;
+    }
+    return sum * SETS / (all * (float)points);
+}
+
 static void gather_reach(size_t index, int worker, void *context)
 {
     (void)worker;
     const Share *share = context;
-    const Light *light = &share->drawing->view->lights[share->number];
+    int points = light_points(&share->drawing->view->lights[share->number]);
+    float *parts = share->light->parts[share->number];
     size_t end = share->first[SETS], from = index * BEAMS_AT_ONCE;
-    for (size_t number = from; number < end && number < from + BEAMS_AT_ONCE; number++) {
-        Neighbour found[9];
-        int n = neighbours_of(share, (uint32_t)number, found);
-        float sum = 0, all = 0;
-        for (int i = 0; i < n; i++) {
-            sum += found[i].part * (float)share->reach[found[i].number];
-            all += found[i].part;
-        }
-        share->light->parts[share->number][number] =
-            sum * SETS / (all * (float)light_points(light));
-    }
+    for (size_t number = from; number < end && number < from + BEAMS_AT_ONCE; number++)
+        parts[number] = gather_part(share, (uint32_t)number, points);
 }
 
 static Status share_lights(Share *share, Err *err)
@@ -459,7 +621,7 @@ static Status share_lights(Share *share, Err *err)
             continue;
         TRY(mem_calloc(&light->parts[i], n, sizeof *light->parts[i], "lights", err));
         share->number = (int)i;
-        threads_for(all_runs(share), threads, ask_light, share);
+        TRY(find_reach(share, err));
         threads_for((n + BEAMS_AT_ONCE - 1) / BEAMS_AT_ONCE, threads, gather_reach, share);
     }
     return STATUS_OK;
@@ -487,12 +649,14 @@ static void release(Share *share)
     free(share->reach);
 }
 
-Status share_light(const Drawing *drawing, const Frame *planes, Beams *beams, SharedLight **out,
-                   Err *err)
+Status share_light(const Drawing *drawing, const LightViews *views, const Frame *planes,
+                   Beams *beams, SharedLight **out, Err *err)
 {
     const RenderParams *params = drawing->params;
-    Share share = {
-        .drawing = drawing, .beams = beams, .kernels = beamkernels[kernels_kind(params->kernels)]};
+    Share share = {.drawing = drawing,
+                   .views = views,
+                   .beams = beams,
+                   .kernels = beamkernels[kernels_kind(params->kernels)]};
     Status status;
     TRY(mem_calloc(&share.light, 1, sizeof *share.light, "places", err));
     share.light->side = 1;

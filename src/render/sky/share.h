@@ -5,6 +5,8 @@
 
 #include "render/light/sharedlight.h"
 #include "render/sky/beams.h"
+#include "render/tile/lightqueue.h"
+#include "render/tile/lightview.h"
 
 /* Whether samples share light: there is occlusion, or an area light that casts shadows, and not
  * every ray is to be traced [RENDER_TRACE]; and there is light at all, not the length of vessels.
@@ -16,10 +18,11 @@ enum { SHARE_MARGIN = 3 };
 
 /* Finds it for the drawing's band, whose centre rays have seen what `planes` has, depth and normal
  * of vessels. `beams` is of what hides the sky, and needed for occlusion alone; it keeps
- * views for the next band where they take little memory; area lights ask the
- * drawing's caster. *out is owned. The rows at the band's edges are right where they are the
- * picture's too, or SHARE_MARGIN away. STATUS_MEMORY. */
-MUST_CHECK Status share_light(const Drawing *drawing, const Frame *planes, Beams *beams,
-                              SharedLight **out, Err *err);
+ * views for the next band where they take little memory; area lights are looked from
+ * by `views`, or by rays of the drawing's caster where those cannot or are NULL. *out is owned. The
+ * rows at the band's edges are right where they are the picture's too, or SHARE_MARGIN away.
+ * STATUS_MEMORY. */
+MUST_CHECK Status share_light(const Drawing *drawing, const LightViews *views, const Frame *planes,
+                              Beams *beams, SharedLight **out, Err *err);
 
 #endif

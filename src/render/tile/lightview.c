@@ -11,10 +11,23 @@ double lightview_radius(const Geometry *geometry)
     return vec3_distance(box_center(geometry->bounds), geometry->bounds.high);
 }
 
-bool lightview_sees_all(const Geometry *geometry, const Light *light)
+/* Whether light and geometry are on one side of the ground. */
+static bool is_before_ground(const Ground *ground, const Light *light, Vec3 center)
 {
-    double distance = vec3_distance(light->location, box_center(geometry->bounds));
-    return light->parallel || distance > least_radii * lightview_radius(geometry);
+    Vec3 towards = light_way(light, center).towards;
+    double above = vec3_dot(ground->normal, center) - ground->offset_mm;
+    double to_light = light->parallel
+                          ? vec3_dot(ground->normal, towards)
+                          : vec3_dot(ground->normal, light->location) - ground->offset_mm;
+    return !ground->present || above * to_light > 0;
+}
+
+bool lightview_sees_all(const Geometry *geometry, const View *view, const Light *light)
+{
+    Vec3 center = box_center(geometry->bounds);
+    double distance = vec3_distance(light->location, center);
+    return (light->parallel || distance > least_radii * lightview_radius(geometry)) &&
+           is_before_ground(&view->ground, light, center);
 }
 
 static Vec3 corner(const Box *box, int number)
@@ -68,4 +81,15 @@ LightAim lightview_aim(const LightView *view, const Viewpoint *camera, double sl
     for (int i = 0; i < 3; i++)
         aim.axes[i] = viewpoint_to_frame(camera, view->eye.axes[i]);
     return aim;
+}
+
+bool lightviews_can(const LightViews *views, const Geometry *geometry, const View *view,
+                    const Light *light)
+{
+    bool can = true;
+    for (int k = 0; k < light_points(light); k++) {
+        Light point = light_at_point(light, k);
+        can = can && views->can(geometry, view, &point);
+    }
+    return can;
 }

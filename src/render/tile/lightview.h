@@ -18,13 +18,37 @@ typedef struct LightView {
 double lightview_radius(const Geometry *geometry);
 
 /* Whether one view of the light sees all of the geometry: it is parallel, or a point far enough
- * off. */
-bool lightview_sees_all(const Geometry *geometry, const Light *light);
+ * off, and the view's ground is not before it. */
+bool lightview_sees_all(const Geometry *geometry, const View *view, const Light *light);
 
 /* That view. */
 LightView lightview_of(const Geometry *geometry, const Light *light, int tiles);
 
 /* How it looks at places in the frame of a camera; see AimedPlaces for `slack`, mm. */
 LightAim lightview_aim(const LightView *view, const Viewpoint *camera, double slack);
+
+/* How an engine looks from lights, for those who ask by places alone. */
+typedef struct LightViews {
+    /* Whether it can, from one point or along parallel lines. */
+    bool (*can)(const Geometry *geometry, const View *view, const Light *light);
+    /* What a light that it can look from sees of the drawing's geometry, for places in `frame`:
+     * *shadow is owned. STATUS_MEMORY. */
+    Status (*look)(const struct Drawing *drawing, const Light *light, const Viewpoint *frame,
+                   void **shadow, Err *err);
+    void (*free)(void *shadow);
+    /* A queue of questions to it, for one thread; *queue is the caller's even when this fails. */
+    Status (*queue_new)(const void *shadow, void **queue, Err *err);
+    void (*queue_free)(void *queue);
+    /* Asks about the places whose bits are set in `wanted`, and answers all that was asked since
+     * the last answer, by up to LIGHT_BATCH calls: shadowed[answer + i] is 1 if the light is hidden
+     * from place i, else 0. */
+    void (*ask)(void *queue, const TileKernels *kernels, const SeenPlaces *places, uint64_t wanted,
+                uint32_t answer);
+    Status (*answer)(void *queue, RenderKernels kernels, uint8_t *shadowed, Err *err);
+} LightViews;
+
+/* Whether they can look from all points of a light. */
+bool lightviews_can(const LightViews *views, const Geometry *geometry, const View *view,
+                    const Light *light);
 
 #endif
