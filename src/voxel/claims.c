@@ -1,9 +1,9 @@
-/* A label holds the first voxel, from the middle of its axes on, that it fills the most of. Those
- * that fill the most of none are then given one that no label holds, or one whose holder can move
- * on to another: augmenting paths [Kuhn, Naval Research Logistics Quarterly 2 (1955) 83-97], so
- * that a label is refused a voxel only where labels are more than the voxels that their axes pass.
- * What is held stands in a table of linear probing, by voxel; a voxel that is held once stays so.
- */
+/* A label holds a voxel that it fills the most of: the first from the middles of its axes on, or
+ * else next to them. Those that fill the most of none are then given one that no label holds, or
+ * one whose holder can move on to another: augmenting paths [Kuhn, Naval Research Logistics
+ * Quarterly 2 (1955) 83-97], so that a label is refused a voxel only where labels are more than the
+ * voxels that they may hold. What is held stands in a table of linear probing, by voxel; a voxel
+ * that is held once stays so. */
 #include "voxel/claims.h"
 
 #include <stdlib.h>
@@ -32,6 +32,7 @@ typedef struct Claimer {
     size_t mask; /* entries less one, which are a power of two */
     size_t visit;
     BodyList near;
+    VoxelList path;
 } Claimer;
 
 enum { MOST_MOVES = 64 };
@@ -76,10 +77,41 @@ static Status list_axis(const VoxelGrid *grid, const Body *body, VoxelList *list
     return STATUS_OK;
 }
 
-/* Voxel `i` of a list, from its middle on. */
-static int64_t from_middle(const VoxelList *list, size_t i)
+static Cell numbered_cell(const VoxelGrid *grid, int64_t voxel)
 {
-    return list->item[(list->n / 2 + i) % list->n];
+    int64_t row = voxel / grid->n[0];
+    return grid_cell(grid, voxel % grid->n[0], row % grid->n[1], row / grid->n[1]);
+}
+
+/* Lists the voxels about one that the body fills a part of. There is a voxel on every side of it:
+ * the grid has a margin. */
+static Status list_about(const VoxelGrid *grid, const Body *body, int64_t voxel, VoxelList *list,
+                         Err *err)
+{
+    for (int i = 0; i < 27; i++) {
+        int64_t row = voxel / grid->n[0];
+        const int64_t at[3] = {voxel % grid->n[0] + i % 3 - 1, row % grid->n[1] + i / 3 % 3 - 1,
+                               row / grid->n[1] + i / 9 - 1};
+        Cell cell = grid_cell(grid, at[0], at[1], at[2]);
+        if (i != 13 && body_meets(body, &cell) && body_part(body, &cell) > 0)
+            TRY(push_voxel(grid, at, list, err));
+    }
+    return STATUS_OK;
+}
+
+/* Lists the voxels that a label may hold for a body: those that its axis passes, from the middle
+ * on, and then, if `about`, those about them. */
+static Status list_voxels(Claimer *claimer, const Body *body, bool about, VoxelList *list, Err *err)
+{
+    const VoxelGrid *grid = claimer->source->grid;
+    VoxelList *path = &claimer->path;
+    TRY(list_axis(grid, body, path, err));
+    TRY(mem_reserve(&list->item, &list->capacity, path->n, sizeof *list->item, "voxels", err));
+    for (list->n = 0; list->n < path->n; list->n++)
+        list->item[list->n] = path->item[(path->n / 2 + list->n) % path->n];
+    for (size_t i = 0; i < path->n && about; i++)
+        TRY(list_about(grid, body, list->item[i], list, err));
+    return STATUS_OK;
 }
 
 /* The label of the segment that fills the most of a voxel, 0 of an empty one. */
@@ -87,8 +119,7 @@ static Status find_owner(Claimer *claimer, int64_t voxel, uint32_t *label, Err *
 {
     const RowSource *source = claimer->source;
     const VoxelGrid *grid = source->grid;
-    int64_t row = voxel / grid->n[0];
-    Cell cell = grid_cell(grid, voxel % grid->n[0], row % grid->n[1], row / grid->n[1]);
+    Cell cell = numbered_cell(grid, voxel);
     BodyList *near = &claimer->near;
     TRY(bodies_in(source->bodies, cell_box(&cell), near, err));
     *label = near->n ? source->labels[cell_owner(source->bodies, near->item, near->n, &cell)] : 0;
@@ -135,6 +166,7 @@ static void claimer_release(Claimer *claimer)
     free(claimer->axes);
     free(claimer->held);
     free(claimer->near.item);
+    free(claimer->path.item);
 }
 
 /* ---- who holds what -------------------------------------------------------------------------- */
@@ -150,20 +182,19 @@ static bool has_label_of(const Claimer *claimer, size_t axis, size_t first)
 }
 
 /* Has a label, given by its first axis, hold a voxel that it fills the most of, if there is one. */
-static Status hold_own(Claimer *claimer, size_t first, bool *done, Err *err)
+static Status hold_own(Claimer *claimer, size_t first, bool about, bool *done, Err *err)
 {
     VoxelList list = {0};
     Status status = STATUS_OK;
     *done = false;
     for (size_t axis = first; !*done && has_label_of(claimer, axis, first); axis++) {
-        TRY_GOTO(list_axis(claimer->source->grid, axis_body(claimer, axis), &list, err));
+        TRY_GOTO(list_voxels(claimer, axis_body(claimer, axis), about, &list, err));
         for (size_t i = 0; i < list.n && !*done; i++) {
-            int64_t voxel = from_middle(&list, i);
             uint32_t owner;
-            TRY_GOTO(find_owner(claimer, voxel, &owner, err));
+            TRY_GOTO(find_owner(claimer, list.item[i], &owner, err));
             *done = owner == claimer->axes[first].label;
             if (*done)
-                *find_held(claimer, voxel) = (Held){voxel, first, claimer->visit};
+                *find_held(claimer, list.item[i]) = (Held){list.item[i], first, claimer->visit};
         }
     }
 done:
@@ -178,13 +209,13 @@ static Status hold_one_of(Claimer *claimer, const VoxelList *list, size_t first,
                           bool *done, Err *err)
 {
     for (size_t i = 0; i < list->n && !*done; i++) {
-        Held *held = find_held(claimer, from_middle(list, i));
+        Held *held = find_held(claimer, list->item[i]);
         *done = !held->visit;
         if (*done)
-            *held = (Held){from_middle(list, i), first, claimer->visit};
+            *held = (Held){list->item[i], first, claimer->visit};
     }
     for (size_t i = 0; i < list->n && !*done && moves < MOST_MOVES; i++) {
-        Held *held = find_held(claimer, from_middle(list, i));
+        Held *held = find_held(claimer, list->item[i]);
         if (held->visit == claimer->visit)
             continue;
         held->visit = claimer->visit;
@@ -201,7 +232,7 @@ static Status hold_any(Claimer *claimer, size_t first, int moves, bool *done, Er
     Status status = STATUS_OK;
     *done = false;
     for (size_t axis = first; !*done && has_label_of(claimer, axis, first); axis++) {
-        TRY_GOTO(list_axis(claimer->source->grid, axis_body(claimer, axis), &list, err));
+        TRY_GOTO(list_voxels(claimer, axis_body(claimer, axis), true, &list, err));
         TRY_GOTO(hold_one_of(claimer, &list, first, moves, done, err));
     }
 done:
@@ -212,11 +243,11 @@ done:
 static Status no_voxel(const Claimer *claimer, const Geometry *geometry, size_t axis, Err *err)
 {
     Vec3 step = claimer->source->grid->step;
-    return err_set(
-        err, STATUS_INFEASIBLE,
-        "`voxel` %g x %g x %g mm: segment %u has no voxel for its label; others need all "
-        "that it passes: take smaller voxels",
-        step.x, step.y, step.z, (unsigned)geometry->ids[axis_body(claimer, axis)->segment]);
+    const Body *body = axis_body(claimer, axis);
+    return err_set(err, STATUS_INFEASIBLE,
+                   "`voxel` %g x %g x %g mm: segment %u, %.3g mm long, has no voxel for its label; "
+                   "others need all that it meets: take smaller voxels",
+                   step.x, step.y, step.z, (unsigned)geometry->ids[body->segment], body->length);
 }
 
 /* First those that need nothing from others; *taken counts the rest. */
@@ -227,9 +258,9 @@ static Status hold_all(Claimer *claimer, const Geometry *geometry, size_t *taken
     TRY(mem_calloc(&lack, claimer->n_axes, 1, "labels", err));
     claimer->visit = 1;
     for (size_t axis = 0; axis < claimer->n_axes; axis++) {
-        bool done = true;
-        if (axis == 0 || !has_label_of(claimer, axis, axis - 1))
-            TRY_GOTO(hold_own(claimer, axis, &done, err));
+        bool done = axis > 0 && has_label_of(claimer, axis, axis - 1);
+        for (int about = 0; about < 2 && !done; about++)
+            TRY_GOTO(hold_own(claimer, axis, about, &done, err));
         lack[axis] = !done;
     }
     for (size_t axis = 0; axis < claimer->n_axes; axis++) {

@@ -16,8 +16,8 @@ typedef struct Claims {
     size_t taken; /* of these, voxels that others fill the most of */
 } Claims;
 
-/* STATUS_INFEASIBLE when labels cannot have a voxel each, of those that their axes pass, naming one
- * by the id of its segment; STATUS_MEMORY. */
+/* STATUS_INFEASIBLE when labels cannot have a voxel each, of those that their segments meet, naming
+ * one by the id of its segment; STATUS_MEMORY. */
 MUST_CHECK Status claims_make(const RowSource *source, const Geometry *geometry, Claims *out,
                               Err *err);
 void claims_release(Claims *claims);

@@ -38,7 +38,7 @@ typedef struct VoxelReport {
     double union_mm3;  /* what the vessels fill, before rounding to steps of the samples */
     double volume_mm3; /* what the voxels say */
     int64_t filled;    /* voxels that are not 0 */
-    size_t claimed;    /* labels that fill the most of no voxel on their axes, and were given one */
+    size_t claimed;    /* labels that fill the most of no voxel, and were given one */
 } VoxelReport;
 
 /* O(number of segments). */
@@ -46,9 +46,10 @@ VoxelEstimate voxels_estimate(const Geometry *geometry, const VoxelParams *param
 
 /* Fills the streams with the volumes of a geometry of cylinders and balls, whose union they show.
  * A voxel that an axis passes is never 0 where it should be above, so that vessels do not break
- * up; else samples are rounded. Every label has a voxel: one that fills the most of no voxel that
- * its axes pass is given one of these. The same bytes for any number of threads. STATUS_INFEASIBLE,
- * naming an id, when there are more labels than voxels for them; STATUS_IO, STATUS_MEMORY. */
+ * up; else samples are rounded. Every label has a voxel: one that fills the most of none on its
+ * axes or next to them is given one of those that it meets there. The same bytes for any number of
+ * threads. STATUS_INFEASIBLE, naming an id, when there are more labels than voxels for them;
+ * STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status voxels_write(const Geometry *geometry, const VoxelParams *params,
                                VoxelReport *report, Err *err);
 

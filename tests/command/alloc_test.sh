@@ -119,6 +119,11 @@ test_failed_allocations_in_export() {
     fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 --color-by flow -o o.3mf
 }
 
+test_failed_allocations_in_volumes() {
+    fail_each 1 many export "$DATA/bifurcation.swc" --voxel 6 --labels segment --centreline c.nii.gz -o o.nii.gz
+    fail_each 7 many export "$DATA/bifurcation.swc" --voxel 6 --depth 16 -o o.df3
+}
+
 test_failed_allocations_in_render() {
     local model
     inputs

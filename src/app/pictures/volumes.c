@@ -250,13 +250,12 @@ static void say_result(const Volumes *made, bool quiet)
     double more = 100 * (report->volume_mm3 / report->union_mm3 - 1);
     if (fabs(more) > 0.1)
         fprintf(stderr,
-                "corcast: rounded to %s bits, voxels hold %.2g %% %s than the vessels; take a "
+                "corcast: rounded to %s bits, voxels hold %.3g %% %s than the vessels; take a "
                 "--depth of more\n",
                 depths[made->options->depth], fabs(more), more > 0 ? "more" : "less");
     if (report->claimed)
         fprintf(stderr,
-                "corcast: %zu labels fill the most of no voxel, and each has one that its axis "
-                "passes\n",
+                "corcast: %zu labels fill the most of no voxel, and each has one that it meets\n",
                 report->claimed);
     if (!quiet)
         fprintf(stderr, "corcast: %lld voxels hold vessels, %.6g mm^3\n", (long long)report->filled,
