@@ -134,10 +134,51 @@ test_refuses_a_wall_without_named_parts_and_beside_a_print() {
     run corcast export "$DATA/bifurcation.swc" --wall 0.3 --print scale=2 -o m.vtp
     expect_status 2
     expect_sentence '--wall and --print, which has a wall= of its own, exclude each other'
-    run corcast export "$DATA/bifurcation.swc" --wall 0.3 --model rounded -o m.vtp
-    expect_status 2
-    expect_sentence '--wall: walls, .* need --model isosurface'
     expect_only
+}
+
+test_refuses_parts_of_a_body_without_flat_ends() {
+    run corcast export "$DATA/bifurcation.swc" --model rounded -o m.vtp
+    expect_status 2
+    expect_sentence '--model rounded has no flat ends that could be named parts'
+    expect_only
+}
+
+# Other vessels are in the way of the trunk's end.
+test_an_end_that_cannot_be_cut_off_flat_is_lengthened_until_it_can() {
+    run_ok corcast export "$DATA/coronary.swc" -o plain.stl --quiet
+    expect_json plain.stl.json '.round_ends == [2] and .segments_lengthened == []'
+    run_ok corcast export "$DATA/coronary.swc" --parts -o t.stl
+    grep -q '1 ends are lengthened' stderr || fail "it does not say so: $(cat stderr)"
+    expect_json t.stl.json '.round_ends == [] and .segments_lengthened == [2]'
+    [ "$(sed -n 's/^solid //p' t.stl | sed -n 2p)" = inlet ] || fail "expected an inlet: $(grep ^solid t.stl)"
+    run_ok corcast convert t.centreline.vtp again.swc --quiet
+    run_ok corcast convert "$DATA/coronary.swc" same.swc --quiet
+    [ "$(diff <(grep -v '^#' same.swc | cut -d ' ' -f 3-5) <(grep -v '^#' again.swc | cut -d ' ' -f 3-5) | grep -c '^>')" = 1 ] ||
+        fail "expected the root alone to be at another place"
+}
+
+# A triangle is as long as asked along its tube, and as wide as a side of its rim; the longest edges are those of discs.
+test_tubes_have_triangles_as_short_as_asked() {
+    printf '%s\n' '1 3 0 0 0 1.2 -1' '2 3 0.3 21 -0.7 1.2 1' '3 3 -9.1 32.2 1.1 0.87 2' '4 3 7.4 33.9 0.6 0.71 2' >t.swc
+    run_ok corcast export t.swc --parts --tolerance 0.05 -o long.stl --quiet
+    run_ok corcast export t.swc --parts --tolerance 0.05 --tube-edge 0.45 -o t.stl --quiet
+    expect_json t.stl.json '.watertight and .components == 1 and .genus == 0 and .self_intersections == 0'
+    expect_json t.stl.json ".triangles > 4 * $(jq .triangles long.stl.json)"
+    expect_json t.stl.json ".volume_mm3 / $(jq .volume_mm3 long.stl.json) - 1 | . * . < 0.01 * 0.01"
+    run_ok corcast export t.swc --parts --tolerance 0.05 --tube-edge 0.45 --threads 3 -o again.stl --quiet
+    expect_same t.stl again.stl
+    local name longest
+    for name in long t; do
+        longest=$(awk '$1 == "vertex" { n = (n + 1) % 3; for (k = 0; k < 3; k++) x[n, k] = $(k + 2)
+            if (n == 0) for (i = 0; i < 3; i++) {
+                d = 0
+                for (k = 0; k < 3; k++) d += (x[i, k] - x[(i + 1) % 3, k]) ^ 2
+                if (d > most) most = d
+            } } END { print sqrt(most) }' $name.stl)
+        awk -v name=$name -v d="$longest" 'BEGIN { exit name == "t" ? !(d < 1.21) : !(d > 8) }' ||
+            fail "the longest edge of $name.stl is $longest mm"
+    done
 }
 
 test_the_centreline_beside_it_is_the_tree() {

@@ -44,6 +44,12 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      FROM_TO(RANGE_ABOVE_0, 1),
      .help = "level of detail: make about this part of the triangles, farther off the surface"},
+    {.name = "tube-edge",
+     SETS(NUMBER, ExportOptions, meshing.tube_edge),
+     .group = GROUP_VESSELS,
+     FROM_TO(0.05, 1e6),
+     .otherwise = "as long as the tube",
+     .help = "how long triangles of straight tubes are along them, over the radius; for solvers"},
     {.name = "prune-radius",
      SETS(NUMBER, ExportOptions, prune_radius_mm),
      .group = GROUP_VESSELS,
@@ -107,11 +113,15 @@ static Status check_format(const ExportOptions *options, const Emitter *emitter,
         {"model", emitter->of_meshes, of_meshes},
         {"tolerance", emitter->of_meshes, of_meshes},
         {"lod", emitter->of_meshes, of_meshes},
+        {"tube-edge", emitter->of_meshes, of_meshes},
         {"part-overlaps", emitter->of_meshes, of_meshes},
         {"print", emitter->of_meshes, of_meshes},
         {"wall", emitter->has_parts, "is for named parts: a .vtp, or an .stl with --parts"},
         {0}};
     TRY(options_check_needs(parsed, format, err));
+    if (emitter->has_parts && options->meshing.body == BODY_ROUND)
+        return err_set(err, STATUS_USAGE,
+                       "`model` rounded has no flat ends that could be named parts");
     return coloring_check_needs(&options->meshing.coloring, parsed, err);
 }
 

@@ -28,7 +28,8 @@ typedef struct Meshing {
     PrintChanges changes;
     PrintReport printed;
     uint32_t *thinned; /* indices of segments, by --part-overlaps */
-    size_t n_thinned;
+    uint32_t *longer;  /* likewise, so that ends can be cut off flat, for an emitter with parts */
+    size_t n_thinned, n_longer;
 } Meshing;
 
 const char *const vessel_body_names[] = {
@@ -79,6 +80,9 @@ static void say_result(const Meshing *made, bool quiet)
                 "corcast: %zu segments are thinned, because they overlap others that they do not "
                 "belong with, or blend with such\n",
                 made->n_thinned);
+    if (made->n_longer)
+        fprintf(stderr, "corcast: %zu ends are lengthened, so that they can be cut off flat\n",
+                made->n_longer);
     if (report->n_swallowed)
         fprintf(stderr, "corcast: %zu segments lie wholly within others and have no wall\n",
                 report->n_swallowed);
@@ -107,28 +111,33 @@ static Status print_vessels(Meshing *made, const MeshParams *mesh, bool part_ove
     return printing_check_bed(made->print, &made->mesh, err);
 }
 
-static Status build(Meshing *made, const MeshParams *params, bool part_overlaps, Err *err)
+static Status build(Meshing *made, const MeshParams *params, bool part_overlaps, bool parts,
+                    Err *err)
 {
     if (made->print)
         return print_vessels(made, params, part_overlaps, err);
     if (part_overlaps)
         TRY(vesseltree_part(&made->vessels, params->threads, &made->thinned, &made->n_thinned,
                             err));
+    if (parts && made->vessels.body == BODY_POTENTIAL)
+        TRY(vesseltree_free_ends(&made->vessels, params->threads, &made->longer, &made->n_longer,
+                                 err));
     return vesselmesh_build(&made->vessels, params, &made->mesh, &made->report, err);
 }
 
-static Status triangulate(Meshing *made, const MeshingOptions *options, const Common *common,
-                          Err *err)
+static Status triangulate(Meshing *made, const MeshingOptions *options, bool parts,
+                          const Common *common, Err *err)
 {
     Progress progress;
     MeshParams params = {.tolerance = options->tolerance,
                          .lod = options->lod,
+                         .tube_edge = options->tube_edge,
                          .threads = common->threads,
                          .progress = progress_report,
                          .context = &progress};
     TRY(say_estimate(&made->vessels, &params, common->quiet, err));
     progress_start(&progress, "triangulating", common->quiet);
-    Status status = build(made, &params, options->part_overlaps, err);
+    Status status = build(made, &params, options->part_overlaps, parts, err);
     progress_end(&progress);
     return status;
 }
@@ -143,7 +152,7 @@ static Status make(const Common *common, const MeshingOptions *options, const Em
         TRY(color_vessels(options, common->quiet, made, err));
     if (emitter->of_lines)
         return STATUS_OK;
-    TRY(triangulate(made, options, common, err));
+    TRY(triangulate(made, options, emitter->has_parts, common, err));
     TRY(meshreport_check(&made->report, &made->vessels, err));
     say_result(made, common->quiet);
     if (made->print && !made->print->params.lids && !common->quiet)
@@ -202,6 +211,7 @@ static json_t *manifest(const Meshing *made)
         {"segments_missing", id_list(vessels, report->missing, report->n_missing)},
         {"segments_swallowed", id_list(vessels, report->swallowed, report->n_swallowed)},
         {"segments_thinned", id_list(vessels, made->thinned, made->n_thinned)},
+        {"segments_lengthened", id_list(vessels, made->longer, made->n_longer)},
         {"round_ends", id_list(vessels, report->round, report->n_round)},
         {"near_pairs", pair_list(vessels, report)},
         {"triangles", count(mesh->n_triangles)},
@@ -245,6 +255,7 @@ static void release(Meshing *made)
     for (size_t i = 0; i < BESIDES; i++)
         text_release(&made->beside[i]);
     free(made->thinned);
+    free(made->longer);
 }
 
 Status meshing_write(const Emitter *emitter, const MeshingOptions *options, const PictureTree *of,

@@ -16,6 +16,7 @@ typedef struct MeshingOptions {
     int body;                   /* choice: VesselBody */
     double tolerance;           /* over the local radius */
     double lod;                 /* the part of the triangles that are to be made; 0: as 1 */
+    double tube_edge;           /* as MeshParams has it */
     bool part_overlaps;         /* thin vessels that overlap others that they do not belong with */
     const PrintSettings *print; /* NULL: the surface as it is */
     const char *look;           /* for an emitter with colours, as the coloring */

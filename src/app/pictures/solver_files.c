@@ -1,5 +1,5 @@
-/* Ends are those of the mesh; how the flow parts among them is the tree's. Radii come from the
- * vessels, which --part-overlaps may have thinned. */
+/* Ends are those of the mesh; how the flow parts among them is the tree's. Radii and
+ * places come from the vessels, which may have been thinned, and lengthened at their ends. */
 #include "app/pictures/solver_files.h"
 
 #include "treeio/treeio.h"
@@ -58,11 +58,22 @@ Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *ves
 Status solver_centerline(const Tree *tree, const VesselTree *vessels, Text *out, Err *err)
 {
     Tree drawn = *tree;
-    TRY(mem_calloc(&drawn.radius_mm, tree->n, sizeof *drawn.radius_mm, "radii", err));
+    Status status;
+    drawn.radius_mm = NULL;
+    drawn.position = NULL;
+    TRY_GOTO(mem_calloc(&drawn.radius_mm, tree->n, sizeof *drawn.radius_mm, "radii", err));
+    TRY_GOTO(mem_calloc(&drawn.position, tree->n, sizeof *drawn.position, "points", err));
     memcpy(drawn.radius_mm, tree->radius_mm, tree->n * sizeof *drawn.radius_mm);
-    for (size_t i = 0; i < vessels->n_segments; i++)
-        drawn.radius_mm[vessels->segments[i].segment] = vessels->segments[i].radius_mm;
-    Status status = tree_write_text(&drawn, "centreline.vtp", out, err);
+    memcpy(drawn.position, tree->position, tree->n * sizeof *drawn.position);
+    for (size_t i = 0; i < vessels->n_segments; i++) {
+        const FieldSegment *segment = &vessels->segments[i];
+        drawn.radius_mm[segment->segment] = segment->radius_mm;
+        drawn.position[segment->segment] = segment->b;
+        drawn.position[tree->parent[segment->segment]] = segment->a;
+    }
+    TRY_GOTO(tree_write_text(&drawn, "centreline.vtp", out, err));
+done:
     free(drawn.radius_mm);
+    free(drawn.position);
     return status;
 }

@@ -11,7 +11,7 @@
 MUST_CHECK Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels,
                               Text *out, Err *err);
 
-/* Appends the tree as a VTP, with the radii that the vessels have. As tree_write. */
+/* Appends the tree as a VTP, with the radii and the ends that the vessels have. As tree_write. */
 MUST_CHECK Status solver_centerline(const Tree *tree, const VesselTree *vessels, Text *out,
                                     Err *err);
 

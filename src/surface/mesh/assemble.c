@@ -1,6 +1,7 @@
 /* A tube is a strip of triangles between two rims: both are walked by rising angle, and the one
  * whose next point comes first goes on. All its points lie on one cylinder, so that it is off the
- * wall by no more than the longest chord of its rims.
+ * wall by no more than the longest chord of its rims. Rims in between, where shorter triangles are
+ * asked for, are regular.
  *
  * Coordinates are rounded to whole multiples of the spacing of floats at the largest of them, which
  * makes every test of the finished mesh exact in whole numbers. */
@@ -27,6 +28,7 @@ typedef struct Assembly {
     double *angles; /* of the rims of one tube */
     size_t angle_capacity;
     uint32_t sides;
+    double tube_edge;
     MeshOff *off;
 } Assembly;
 
@@ -82,21 +84,33 @@ static void add_piece(Assembly *assembly, ZonePiece *piece)
     }
 }
 
-/* A flat end: a regular rim, and a disc about its middle. */
-static void add_cap(Assembly *assembly, uint32_t segment, int end)
+static Vec3 axis_of(const FieldSegment *segment)
 {
-    const FieldSegment *self = &assembly->tree->segments[segment];
-    Vec3 u, v, at = end ? self->b : self->a;
-    Vec3 axis = vec3_normalized(vec3_sub(self->b, self->a));
-    vec3_across(axis, &u, &v);
-    RimPlace *rim = &assembly->rims[segment][end];
-    *rim = (RimPlace){(uint32_t)assembly->n_rim_points, assembly->sides};
-    for (uint32_t i = 0; i < rim->n; i++) {
-        double angle = full_turn * ((i + 0.5) / rim->n - 0.5);
+    return vec3_normalized(vec3_sub(segment->b, segment->a));
+}
+
+/* A regular rim on a segment's wall about a place on its axis, turned by a part of a side. */
+static RimPlace add_rim(Assembly *assembly, const FieldSegment *self, Vec3 at, double turn)
+{
+    Vec3 u, v;
+    RimPlace rim = {(uint32_t)assembly->n_rim_points, assembly->sides};
+    vec3_across(axis_of(self), &u, &v);
+    for (uint32_t i = 0; i < rim.n; i++) {
+        double angle = full_turn * ((i + turn) / rim.n - 0.5);
         Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle)));
         assembly->rim_points[assembly->n_rim_points++] =
             add_point(assembly, vec3_add_scaled(at, way, self->radius_mm), way);
     }
+    return rim;
+}
+
+/* A flat end: a regular rim, and a disc about its middle. */
+static void add_cap(Assembly *assembly, uint32_t segment, int end)
+{
+    const FieldSegment *self = &assembly->tree->segments[segment];
+    Vec3 at = end ? self->b : self->a, axis = axis_of(self);
+    RimPlace *rim = &assembly->rims[segment][end];
+    *rim = add_rim(assembly, self, at, 0.5);
     uint32_t middle = add_point(assembly, at, vec3_scale(axis, end ? 1 : -1));
     const uint32_t *points = &assembly->rim_points[rim->first];
     for (uint32_t i = 0; i < rim->n; i++) {
@@ -136,9 +150,8 @@ static void measure_rim(const Assembly *assembly, const double *angles, uint32_t
     meshoff_add(assembly->off, radius * (1 - cos(widest / 2)), radius);
 }
 
-static Status add_strip(Assembly *assembly, uint32_t segment, Err *err)
+static Status add_strip(Assembly *assembly, uint32_t segment, RimPlace a, RimPlace b, Err *err)
 {
-    RimPlace a = assembly->rims[segment][0], b = assembly->rims[segment][1];
     const FieldSegment *self = &assembly->tree->segments[segment];
     TRY(mem_reserve(&assembly->angles, &assembly->angle_capacity, (size_t)a.n + b.n,
                     sizeof *assembly->angles, "rims", err));
@@ -176,6 +189,45 @@ double mesh_reach(const VesselTree *tree)
     return farthest;
 }
 
+/* How many rims between its own make a tube's triangles as short as asked. */
+static uint32_t count_rims(const Assembly *assembly, uint32_t segment)
+{
+    const FieldSegment *self = &assembly->tree->segments[segment];
+    const double *plane = assembly->zones->plane[segment];
+    if (assembly->tube_edge == 0)
+        return 0;
+    double edges = (vec3_distance(self->a, self->b) - plane[0] - plane[1]) /
+                   (assembly->tube_edge * self->radius_mm);
+    return edges > 1 ? (uint32_t)ceil(edges) - 1 : 0;
+}
+
+/* How far along its segment a rim lies, mm. */
+static double rim_along(const Assembly *assembly, const FieldSegment *self, RimPlace rim)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < rim.n; i++) {
+        uint32_t point = assembly->rim_points[rim.first + i];
+        sum += vec3_dot(vec3_sub(mesh_point(assembly->mesh, point), self->a), axis_of(self));
+    }
+    return sum / rim.n;
+}
+
+/* The wall between a tube's rims, by strips between others, each turned by half a side. */
+static Status add_tube(Assembly *assembly, uint32_t segment, Err *err)
+{
+    const FieldSegment *self = &assembly->tree->segments[segment];
+    RimPlace a = assembly->rims[segment][0], b = assembly->rims[segment][1];
+    uint32_t n = count_rims(assembly, segment);
+    double from = n ? rim_along(assembly, self, a) : 0, to = n ? rim_along(assembly, self, b) : 0;
+    for (uint32_t i = 1; i <= n; i++) {
+        Vec3 at = vec3_add_scaled(self->a, axis_of(self), from + (to - from) * i / (n + 1));
+        RimPlace next = add_rim(assembly, self, at, i % 2 ? 1 : 0.5);
+        TRY(add_strip(assembly, segment, a, next, err));
+        a = next;
+    }
+    return add_strip(assembly, segment, a, b, err);
+}
+
 double mesh_grid(double reach_mm)
 {
     int exponent;
@@ -204,6 +256,12 @@ static Status reserve(Assembly *assembly, const ZonePiece *pieces, Err *err)
     }
     VesselMesh *mesh = assembly->mesh;
     triangles += rims;
+    for (uint32_t i = 0; i < assembly->tree->n_segments; i++) {
+        size_t more = assembly->zones->is_tube[i] ? count_rims(assembly, i) * assembly->sides : 0;
+        points += more;
+        rims += more;
+        triangles += 2 * more;
+    }
     TRY(mem_calloc(&mesh->points, points, sizeof *mesh->points, "points", err));
     TRY(mem_calloc(&mesh->normals, points, sizeof *mesh->normals, "points", err));
     TRY(mem_calloc(&mesh->triangles, triangles, sizeof *mesh->triangles, "triangles", err));
@@ -214,7 +272,7 @@ static Status reserve(Assembly *assembly, const ZonePiece *pieces, Err *err)
 }
 
 Status assemble_mesh(const VesselTree *tree, const Zones *zones, ZonePiece *pieces, uint32_t sides,
-                     double grid_mm, VesselMesh *mesh, MeshOff *off, Err *err)
+                     double tube_edge, double grid_mm, VesselMesh *mesh, MeshOff *off, Err *err)
 {
     VesselMesh made = {0};
     Assembly assembly = {.tree = tree,
@@ -222,6 +280,7 @@ Status assemble_mesh(const VesselTree *tree, const Zones *zones, ZonePiece *piec
                          .mesh = &made,
                          .grid_mm = grid_mm,
                          .sides = sides,
+                         .tube_edge = tube_edge,
                          .off = off};
     Status status;
     TRY_GOTO(reserve(&assembly, pieces, err));
@@ -237,7 +296,7 @@ Status assemble_mesh(const VesselTree *tree, const Zones *zones, ZonePiece *piec
         for (int end = 0; end < 2; end++)
             if (zones->zone[tree->nodes[i][end]] == NO_ZONE)
                 add_cap(&assembly, i, end);
-        TRY_GOTO(add_strip(&assembly, i, err));
+        TRY_GOTO(add_tube(&assembly, i, err));
     }
     *mesh = made;
     made = (VesselMesh){0};

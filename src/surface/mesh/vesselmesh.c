@@ -117,13 +117,16 @@ static double tolerance_of(const MeshParams *params)
 
 MeshEstimate vesselmesh_estimate(const VesselTree *tree, const MeshParams *params)
 {
-    double radii = 0, per_tolerance = 1 / tolerance_of(params);
+    double radii = 0, per_tolerance = 1 / tolerance_of(params), rims = 0;
     for (size_t i = 0; i < tree->n_segments; i++) {
         const FieldSegment *segment = &tree->segments[i];
-        radii += fmin(vec3_distance(segment->a, segment->b) / segment->radius_mm, most_radii);
+        double length = vec3_distance(segment->a, segment->b) / segment->radius_mm;
+        radii += fmin(length, most_radii);
+        rims += params->tube_edge > 0 ? length / params->tube_edge : 0;
     }
     radii *= tree->body == BODY_ROUND ? round_part : 1;
     double triangles = radii * fmax(triangles_a * per_tolerance + triangles_b, least_triangles);
+    triangles += 2 * rims * sides_of(cap_part / per_tolerance);
     return (MeshEstimate){.triangles = triangles,
                           .bytes = least_bytes + bytes_a_triangle * triangles,
                           .seconds =
@@ -305,7 +308,7 @@ Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, Vessel
         found.off.ratio = fmax(found.off.ratio, build.pieces[z].off.ratio);
     }
     TRY_GOTO(assemble_mesh(tree, &build.zones, build.pieces, sides_of(cap_part * tolerance),
-                           build.fineness.grid_mm, &made, &found.off, err));
+                           params->tube_edge, build.fineness.grid_mm, &made, &found.off, err));
     TRY_GOTO(fill_report(&build, &made, &found, err));
     *mesh = made;
     *report = found;

@@ -16,10 +16,11 @@ double vesselmesh_volume(const VesselMesh *mesh);
 
 typedef struct MeshParams {
     double tolerance; /* of the local radius, in [0.001, 0.2]: what few places exceed */
-    double lod;      /* in (0, 1]: about this part of the triangles that the tolerance takes, and no
-                      * fewer than about 9 for each radius of length; 0: as 1 */
-    int threads;     /* 0: all processors */
-    double reach_mm; /* 0, or a coordinate of what it is to be joined with: both lie on one grid */
+    double lod; /* in (0, 1]: about this part of the triangles that the tolerance takes, and no
+                 * fewer than about 9 for each radius of length; 0: as 1 */
+    double tube_edge; /* how long triangles of straight tubes are along them, in radii; 0: any */
+    int threads;      /* 0: all processors */
+    double reach_mm;  /* 0, or a coordinate of what it is to be joined with: both lie on one grid */
     void (*progress)(double fraction, void *context); /* NULL: none */
     void *context;
 } MeshParams;
