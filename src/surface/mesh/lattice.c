@@ -22,6 +22,8 @@ static const double nearly = 0.3;
  * the edges: moved off them, triangles may run into each other. */
 static const double last_step = 1e-4;
 enum { MOST_STEPS = 40 };
+/* So many are all looked at away from active cells. */
+enum { FEW_TERMS = 512 };
 
 typedef struct Cutter {
     Lattice *lattice;
@@ -103,7 +105,7 @@ static Status find_local(Cutter *cutter, Vec3 x)
  * those that matter near by; the points of a walk lie close together. */
 static Status part_away(Cutter *cutter, Vec3 x, const FieldPart **part)
 {
-    bool few = cutter->whole.n_terms <= MOST_PART_TERMS;
+    bool few = cutter->whole.n_terms <= FEW_TERMS;
     if (!few && !(vec3_distance(x, cutter->local_at) < cutter->local_mm))
         TRY(find_local(cutter, x));
     *part = few ? &cutter->whole : &cutter->local;

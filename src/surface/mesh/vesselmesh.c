@@ -101,7 +101,8 @@ static uint32_t sides_of(double sagitta)
  * of length, of which a segment counts so many at most: triangles and seconds are a / tolerance +
  * b; a mesh of the least triangles has so many. */
 static const double most_radii = 6, triangles_a = 1.9, triangles_b = 5, least_triangles = 8,
-                    seconds_a = 1e-5, seconds_b = 1.4e-4, bytes_a_triangle = 100, least_bytes = 8e6;
+                    seconds_a = 1.15e-5, seconds_b = 1.6e-4, bytes_a_triangle = 50,
+                    least_bytes = 24e6;
 /* A round body takes so many times as much. */
 static const double round_part = 2.7;
 /* What is coarser than this has no fewer triangles. */

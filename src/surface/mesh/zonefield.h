@@ -59,7 +59,7 @@ typedef struct PartPool {
 void partpool_release(PartPool *pool);
 
 /* Of a part whose field is asked for. */
-enum { MOST_PART_TERMS = 512 };
+enum { MOST_PART_TERMS = 2048 };
 
 /* STATUS_INFEASIBLE, saying that a part has more. */
 Status zonefield_refuse(Err *err);
