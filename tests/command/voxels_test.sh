@@ -134,7 +134,7 @@ END
     expect_json v.nii.gz.json '.labels == "segment" and .labels_given_a_voxel > 0'
     run corcast export t.swc -o x.nii.gz --voxel 30 --labels segment
     expect_status 2
-    grep -qE -- '--voxel 30 x 30 x 30 mm: segment [0-9]+ has no voxel for its label' stderr || fail "$(cat stderr)"
+    grep -qE -- '--voxel 30 x 30 x 30 mm: segment [0-9]+, .* mm long, has no voxel for its label' stderr || fail "$(cat stderr)"
     [ ! -e x.nii.gz ] || fail "expected no volume"
 }
 
