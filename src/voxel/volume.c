@@ -169,6 +169,7 @@ const VolumeFormat volume_formats[] = {
      .most = INT16_MAX,
      .types = ANY_SAMPLE,
      .deflated = true,
+     .header_deflated = true,
      .put_header = put_nifti},
     {.suffix = ".nii",
      .description = "NIfTI-1",
@@ -232,29 +233,44 @@ static const uint8_t gzip_header[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};
 /* An empty last block. */
 static const uint8_t deflate_end[2] = {3, 0};
 
+/* What stands before the samples, in *bytes (owned). */
+static Status make_header(const VolumeStream *stream, const VoxelGrid *grid, bool parts,
+                          const char *about, char **bytes, size_t *size, Err *err)
+{
+    FILE *memory = open_memstream(bytes, size);
+    if (!memory)
+        return mem_out_of("for", stream->path, err);
+    Text header = TEXT_TO(memory);
+    stream->format->put_header(grid, stream->type, parts, about, &header);
+    Status status = text_flush(&header, err);
+    text_release(&header);
+    if (fclose(memory) != 0 && status == STATUS_OK)
+        status = mem_out_of("for", stream->path, err);
+    return status;
+}
+
 Status volume_begin(VolumeStream *stream, const VoxelGrid *grid, bool parts, const char *about,
                     Err *err)
 {
     const VolumeFormat *format = stream->format;
-    bool inside = format->deflated && format->put_header == put_nifti;
-    Text header = TEXT_INIT;
     VolumePart part = {0};
+    char *header = NULL;
+    size_t size = 0;
     Status status;
     stream->crc = (uint32_t)crc32(0, NULL, 0);
     stream->plain = 0;
-    format->put_header(grid, stream->type, parts, about, &header);
-    TRY_GOTO(text_check(&header, err));
-    if (!inside)
-        fwrite(header.chars, 1, header.length, stream->to);
+    TRY_GOTO(make_header(stream, grid, parts, about, &header, &size, err));
+    if (!format->header_deflated)
+        fwrite(header, 1, size, stream->to);
     if (format->deflated)
         fwrite(gzip_header, 1, sizeof gzip_header, stream->to);
-    if (inside) {
-        TRY_GOTO(volume_pack(stream, (uint8_t *)header.chars, header.length, &part, err));
+    if (format->header_deflated) {
+        TRY_GOTO(volume_pack(stream, (uint8_t *)header, size, &part, err));
         TRY_GOTO(volume_put(stream, &part, err));
     }
 done:
     free(part.bytes);
-    text_release(&header);
+    free(header);
     return status;
 }
 

@@ -27,6 +27,7 @@ typedef struct VolumeFormat {
     int64_t most;   /* voxels along an axis */
     unsigned types; /* bits 1 << SampleType */
     bool deflated, big_endian;
+    bool header_deflated; /* as the samples */
     bool is_density; /* it is for POV-Ray: it holds how much of voxels is filled, and no labels */
     /* Appends what stands before the samples; `parts`: full voxels are sample_full, not labels. */
     void (*put_header)(const VoxelGrid *grid, SampleType type, bool parts, const char *about,
