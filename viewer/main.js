@@ -21,6 +21,7 @@ const state = {
 };
 let scale = null, wanted = false, playing = 0, written = 0;
 
+const dark = matchMedia("(prefers-color-scheme: dark)");
 const canvas = find("stage");
 const renderer = new WebGLRenderer({ canvas, antialias: true });
 renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
@@ -73,14 +74,13 @@ function takeScheme() {
   vessels.set("paper", color("--paper").convertLinearToSRGB());
   vessels.set("accent", color("--accent"));
   vessels.set("fade", state.haze ? haze() : 0);
+  vessels.set("rim", dark.matches ? 0.12 : 0);
   panel.drawLegend();
   wantPicture();
 }
 
 // How faint what is farthest away is; on a dark ground it is soon lost.
-function haze() {
-  return matchMedia("(prefers-color-scheme: dark)").matches ? 0.25 : 0.45;
-}
+function haze() { return dark.matches ? 0.25 : 0.45; }
 
 // ---- what is shown ------------------------------------------------------------------------------
 
@@ -158,7 +158,11 @@ function change(what) {
 // Another field is shown on its own kind of scale.
 function setField(name) { change({ field: named(tree.fields, name) ? name : null, log: null }); }
 
-function pin(i) { change({ pinned: i, hovered: -1 }); }
+function pin(i) {
+  Object.assign(state, { pinned: i, hovered: -1 });
+  showSegment(i);
+  wantAddress();
+}
 
 function nextField(step) {
   const names = [null, ...tree.fields.map(({ name }) => name)];
@@ -181,6 +185,7 @@ function viewOptions() {
 function writeAddress() {
   const parts = viewOptions();
   if (state.field) parts.push(["field", state.field], ["map", scale.map.name], ["log", scale.log ? "on" : "off"]);
+  else if (start) parts.push(["field", "none"]);
   if (shownMoment()) parts.push(["moment", shownMoment() + 1]);
   if (state.grown < 1) parts.push(["grown", state.grown]);
   for (const name of ["haze", "shade", "panels"]) if (!state[name]) parts.push([name, "off"]);
@@ -206,12 +211,12 @@ function within(text, low, high, otherwise) {
 
 function readAddress() {
   const get = new URLSearchParams(location.hash.slice(1));
-  const field = get.has("field") ? get.get("field") : get.has("turn") ? "" : start ? start.field : "";
+  const field = get.get("field") ?? (start && start.field);
   view.project(get.get("projection") === "orthographic");
   const log = get.get("log");
   change({
     field: named(tree.fields, field) ? field : null,
-    map: get.get("map") || (start && start.map),
+    map: get.get("map") ?? (start && start.map),
     log: log === null ? (start && start.field === field ? start.log : null) : log === "on",
     moment: Math.round(within(get.get("moment"), 1, 1e6, 1)) - 1,
     grown: within(get.get("grown"), 0, 1, 1),
@@ -234,11 +239,21 @@ function readPose(get) {
 
 // The command that draws what is shown as a figure, free of this machine's graphics.
 function renderCommand() {
-  const words = viewOptions().map(([key, value]) => `--${key} ${value}`);
-  if (!view.isOrthographic) words[3] = "";
-  if (scale) words.push(`--color-by ${scale.field.name}`, `--colormap ${scale.map.name}`, ...(scale.log ? ["--log"] : []));
-  if (shownMoment()) words.push(`--moment ${shownMoment() + 1}`);
-  return `corcast render ${tree.told.name} ${words.filter(Boolean).join(" ")} -o figure.png`;
+  const { isOrthographic } = view, list = (place) => fromOrigin(place, 1).map(rounded).join(",");
+  const words = isOrthographic ? viewOptions() : [["projection", "perspective"], ["location", list(view.eye)],
+    ["look-at", list(view.pose.target)], ["angle", rounded(view.angleAcross)]];
+  words.push(["size", `${canvas.clientWidth}x${canvas.clientHeight}`]);
+  if (tree.told.look.name !== "cast") words.push(["look", tree.told.look.name]);
+  if (scale) words.push(["color-by", scale.field.name], ["colormap", scale.map.name]);
+  if (scale) words.push(["range", scale.range.map((v) => Number(v.toPrecision(6))).join(",")]);
+  if (shownMoment()) words.push(["moment", shownMoment() + 1]);
+  const options = words.map(([key, value]) => `--${key} ${value}`).join(" ") + (scale && scale.log ? " --log" : "");
+  return `corcast render ${tree.told.name} ${options} -o figure.png`;
+}
+
+function showHelp() {
+  find("figure").textContent = renderCommand();
+  find("help").showModal();
 }
 
 // ---- hands and keys -----------------------------------------------------------------------------
@@ -320,24 +335,18 @@ function kin(up) {
 function turnBy(turn, rise) {
   const { pose } = view;
   view.change({ turn: pose.turn + turn, rise: pose.rise + rise });
-  show();
 }
 
 function moveBy(right, up) {
   const { target, height } = view.pose, m = view.camera.matrixWorld.elements;
   view.change({ target: target.map((v, c) => v + height * (right * m[c] + up * m[4 + c])) });
-  show();
 }
 
-function zoomBy(factor) {
-  view.change({ height: view.pose.height / factor });
-  show();
-}
+function zoomBy(factor) { view.change({ height: view.pose.height / factor }); }
 
 function fit() {
   const { turn, rise } = view.pose;
   view.frame(turn, rise);
-  show();
 }
 
 const KEYS = {
@@ -347,7 +356,7 @@ const KEYS = {
   ArrowDown: (shift) => (shift ? moveBy(0, 0.05) : turnBy(0, -5)),
   "+": () => zoomBy(1.15), "=": () => zoomBy(1.15), "-": () => zoomBy(1 / 1.15), 0: fit,
   f: () => nextField(1), F: () => nextField(-1), o: project, s: save,
-  d: () => kin(false), u: () => kin(true), h: () => change({ haze: !state.haze }), "?": () => find("help").showModal(),
+  d: () => kin(false), u: () => kin(true), h: () => change({ haze: !state.haze }), "?": showHelp,
   p: () => change({ panels: !state.panels }), Escape: () => pin(-1),
 };
 
@@ -369,11 +378,11 @@ function listen() {
   on("haze", "change", (e) => change({ haze: e.target.checked }));
   on("shade", "change", (e) => change({ shade: e.target.checked }));
   on("play", "click", play);
-  on("view", "change", (e) => { view.frame(...VIEWS[e.target.value]); e.target.value = ""; show(); });
+  on("view", "change", (e) => { view.frame(...VIEWS[e.target.value]); e.target.value = ""; });
   on("project", "click", project);
   on("save", "click", save);
   on("render", "click", (e) => copy(renderCommand(), e.target));
-  on("keys", "click", () => find("help").showModal());
+  on("keys", "click", showHelp);
   on("release", "click", () => pin(-1));
   on("segment", "change", (e) => {
     const i = tree.numberOf.get(Number(e.target.value));
@@ -387,7 +396,7 @@ function listen() {
   document.addEventListener("keydown", key);
   window.addEventListener("resize", resize);
   window.addEventListener("hashchange", readAddress);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", takeScheme);
+  dark.addEventListener("change", takeScheme);
 }
 
 find("view").append(...Object.keys(VIEWS).map((name) => new Option(name, name)));

@@ -22,7 +22,7 @@ uniform float halfDiagonal;
 uniform vec3 paper, accent; // the paper's colour is sRGB
 uniform float fade;
 uniform highp sampler2D open; // sums of light that comes, and of what would
-uniform float shade;
+uniform float shade, rim;
 
 out vec4 seen;
 
@@ -107,6 +107,7 @@ void main() {
   vec3 color = lit(place.xyz, toView * normal, toView * d, pigment);
   color = mix(color, accent, 0.8 * isPicked);
   if (shade > 0.0 && isPicked == 0.0) color *= mix(1.0, openness(normal, hit.x / max(len, 1e-9)), shade);
+  color += rim * pow(1.0 - abs(dot(normal, d)), 3.0); // parts dark vessels from a dark ground
   float middle = (viewMatrix * vec4(0, 0, 0, 1)).z;
   float depth = clamp(0.5 + 0.5 * (middle - place.z) / halfDiagonal, 0.0, 1.0);
   seen = vec4(mix(encoded(color), paper, fade * depth * (1.0 - isPicked)), cover);

@@ -58,6 +58,7 @@ function uniforms(look) {
     accent: value(new Color()),
     open: value(null), // texture of how open each place of the walls is
     shade: value(0), // how much of that is shown
+    rim: value(0), // light from behind, linear
   };
 }
 

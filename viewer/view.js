@@ -24,6 +24,7 @@ export class View {
   constructor(canvas, tree, changed) {
     this.canvas = canvas;
     this.tree = tree;
+    this.changed = changed;
     this.half = Math.hypot(...tree.high.map((h, c) => h - tree.low[c])) / 2;
     this.perspective = new PerspectiveCamera(ANGLE, 1, 0.1, 10);
     this.orthographic = new OrthographicCamera(-0.5, 0.5, 0.5, -0.5, 0, 10);
@@ -60,7 +61,13 @@ export class View {
     this.camera.lookAt(this.controls.target);
     this.camera.updateProjectionMatrix();
     this.controls.update();
+    this.changed();
   }
+
+  get eye() { return this.camera.position.toArray(); }
+
+  // Degrees from the left of a perspective picture to its right.
+  get angleAcross() { return 2 * degrees(Math.atan(Math.tan(radians(ANGLE / 2)) * this.perspective.aspect)); }
 
   change(what) { this.pose = { ...this.pose, ...what }; }
 

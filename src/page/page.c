@@ -31,10 +31,12 @@ static json_t *lights_json(const Look *look)
     return lights;
 }
 
-static json_t *look_json(const Look *look)
+static json_t *look_json(const PageParams *params)
 {
+    const Look *look = params->look;
     const Finish *finish = &look->finish;
     const JsonMember members[] = {
+        {"name", json_text(params->look_name)},
         {"color", color_json(look->color)},
         {"ambient", json_number((double)finish->ambient)},
         {"diffuse", json_number((double)finish->diffuse)},
@@ -97,7 +99,7 @@ static json_t *told_json(const PageParams *params)
         {"generator", json_text(params->generator)},
         {"command", json_text(params->command)},
         {"origin", vector_json(params->origin)},
-        {"look", look_json(params->look)},
+        {"look", look_json(params)},
         {"fields", fields_json(params)},
         {"maps", maps_json(params)},
         {"start", start_json(params)},

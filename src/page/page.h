@@ -31,6 +31,7 @@ typedef struct PageParams {
     const PageMap *maps;
     size_t n_maps;
     const Look *look;
+    const char *look_name;   /* as `render` knows it */
     const ColorScale *scale; /* that the page opens with, of a field of that name; or NULL */
     const char *map;         /* the name of its map, which need not be among the others */
 } PageParams;

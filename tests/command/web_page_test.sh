@@ -2,7 +2,7 @@
 # Pages of trees for browsers: what they hold, and in headless Chromium what they show; see tests/page/tree.js.
 . "$(dirname "$0")/../lib.sh"
 
-VIEW="--projection orthographic --look-at 1.5,-0.75,0 --height 56 --size 640x500"
+VIEW="--projection orthographic --turn 0,0 --look-at 1.5,-0.75,0 --height 56"
 
 need_viewer() {
     [ -e "$REPO/build/viewer/viewer.js" ] || skip "the viewer is not built, for want of npm, esbuild or three.js"
@@ -17,18 +17,18 @@ series() {
 expectations() {
     corcast convert tree.swc tree.segments.csv --fields all --quiet
     # shellcheck disable=SC2086
-    corcast render tree.swc $VIEW --background '#fbfaf7' --quiet -o drawn.png
+    corcast render tree.swc $VIEW --size 640x500 --background '#fbfaf7' --quiet -o drawn.png
     # shellcheck disable=SC2086
-    corcast render tree.swc $VIEW --exact --planes id --quiet -o exact.png
+    corcast render tree.swc $VIEW --size 640x500 --exact --planes id --quiet -o exact.png
     pngtopnm drawn.png >drawn.ppm
     awk -F, '/^#/ { next }
         !n { for (i = n = 1; i <= NF; i++) { name[i] = $i; gsub(/"| .*/, "", name[i]) } next }
         { printf "%s\"%s\": {", (n++ > 1 ? ", " : "{"), $1
           for (i = 11; i <= NF; i++) printf "%s\"%s\": %s", (i > 11 ? ", " : ""), name[i], $i
           printf "}" } END { print "}" }' tree.segments.csv | jq 'map_values(del(.tree))' >segments.json
-    jq -n --slurpfile segments segments.json '{page: "tree.html", series: "series.html", width: 640, height: 500,
+    jq -n --slurpfile segments segments.json --arg options "$VIEW" '{page: "tree.html", series: "series.html", width: 640, height: 500,
         address: "projection=orthographic&turn=0,0&look-at=1.5,-0.75,0&height=56",
-        exact: "drawn.ppm", ids: "exact.id.ppm", segments: $segments[0]}' >expected.json
+        options: $options, exact: "drawn.ppm", ids: "exact.id.ppm", segments: $segments[0]}' >expected.json
 }
 
 # Slow: a browser that draws by software.

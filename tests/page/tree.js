@@ -2,9 +2,9 @@
 //
 //   node tree.js CHROMIUM EXPECTED.json
 //
-// EXPECTED: {page, series, address, width, height, exact: P.ppm, ids: I.ppm, segments: {id: {field: value}}}: the page
-// of a tree and one of a tree whose field p changes; a view as the address tells it, and what corcast drew of it, colours
-// on #fbfaf7 and the ids of segments. Prints one line for each expectation that fails; exit status 1 if any does.
+// EXPECTED: {page, series, address, options, width, height, exact: P.ppm, ids: I.ppm, segments: {id: {field: value}}}: the page
+// of a tree and one of a tree whose field p changes; a view as the address tells it, as options of
+// render, and what corcast drew of it, colours on #fbfaf7 and the ids of segments. Prints one line for each expectation that fails; exit status 1 if any does.
 "use strict";
 const fs = require("fs");
 const { runIn } = require("./browser.js");
@@ -88,6 +88,10 @@ async function checkPicture() {
   check(beyond === 0, `expected no vessel a pixel beyond corcast's, got ${beyond} pixels`);
   check(lacking === 0, `expected all vessels of corcast's picture, lacking ${lacking} pixels`);
   check(off / inside < 4, `expected corcast's colours within 4 levels, got ${off / inside}`);
+  await browser.key("?");
+  check(await text("figure") === `corcast render tree.swc ${expected.options} --size ${expected.width}x${expected.height} -o figure.png`,
+    "expected the command that draws the view, got " + await text("figure"));
+  await evaluate("document.getElementById('help').close()");
   await checkPicking(ids);
 }
 

@@ -55,6 +55,14 @@ test_the_commands_of_the_readme_run() {
     expect_file report/report.html
 }
 
+test_the_commands_for_teachers_run() {
+    [ -e "$REPO/build/viewer/viewer.js" ] || skip "the viewer is not built, for want of npm, esbuild or three.js"
+    ln -s "$REPO/tests" .
+    run_commands docs/TEACHERS.md
+    expect_file area.html
+    expect_file coronary.html
+}
+
 test_the_commands_for_artists_run() {
     ln -s "$REPO/tests" "$REPO/docs" .
     run_commands docs/ARTIST.md

@@ -201,8 +201,7 @@ static Status export_page(const ExportOptions *options, const Parsed *parsed, Er
     const Coloring *coloring = &options->meshing.coloring;
     PictureTree of;
     TRY(refuse_surface(parsed, err));
-    TRY(webpage_check_needs(parsed, err));
-    TRY(coloring_check_needs(coloring, parsed, err));
+    TRY(webpage_check_needs(coloring, parsed, err));
     TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
     Status status =
         webpage_write(coloring, options->meshing.look, &of, options->output, parsed, err);

@@ -41,7 +41,7 @@ static void webpage_release(Webpage *page)
     free(page->maps);
 }
 
-Status webpage_check_needs(const Parsed *parsed, Err *err)
+Status webpage_check_needs(const Coloring *coloring, const Parsed *parsed, Err *err)
 {
     static const char of_pictures[] = "is for pictures; a page has a scale that runs on";
     const OptionNeed needs[] = {
@@ -53,6 +53,12 @@ Status webpage_check_needs(const Parsed *parsed, Err *err)
         {"range-of", false, "is for pictures; a page holds what it shows"},
         {0},
     };
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        const Option *option = setting->option;
+        if (setting->typed && option->group == GROUP_COLOR && !coloring_takes(coloring, option))
+            return err_set(err, STATUS_USAGE, "--%s needs --color-by", option->name);
+    }
     return options_check_needs(parsed, needs, err);
 }
 
@@ -291,8 +297,8 @@ static Status put_file(const PageParams *params, const char *output, Err *err)
     return status;
 }
 
-static Status write_page(const Coloring *coloring, const Webpage *page, const char *output,
-                         const Parsed *parsed, Err *err)
+static Status write_page(const Coloring *coloring, const char *look, const Webpage *page,
+                         const char *output, const Parsed *parsed, Err *err)
 {
     char *templates = NULL, *viewer = NULL, *name = NULL, *command = NULL;
     const Tree *tree = &page->of->tree;
@@ -314,6 +320,7 @@ static Status write_page(const Coloring *coloring, const Webpage *page, const ch
                                .maps = page->maps,
                                .n_maps = page->n_maps,
                                .look = &page->look,
+                               .look_name = look,
                                .scale = page->appearance.colors ? &page->appearance.scale : NULL,
                                .map = file_name(coloring->colormap)};
     status = put_file(&params, output, err);
@@ -337,7 +344,7 @@ Status webpage_write(const Coloring *coloring, const char *look, const PictureTr
     TRY_GOTO(coloring_appearance(coloring, &tree, &page.look, &page.appearance, err));
     TRY_GOTO(add_fields(coloring, quiet, &page, err));
     TRY_GOTO(read_maps(coloring->colormap, &page, err));
-    status = write_page(coloring, &page, output, parsed, err);
+    status = write_page(coloring, look, &page, output, parsed, err);
 done:
     webpage_release(&page);
     return status;
