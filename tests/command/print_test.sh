@@ -30,6 +30,11 @@ test_a_wall_is_one_closed_solid_with_a_hole_for_each_end() {
     expect_json t.stl.json '.genus == 23 and .print.openings == 24'
 }
 
+# volume FILE: of the solid, mm^3, in its manifest.
+volume() {
+    jq .volume_mm3 "$1.json"
+}
+
 # The wall of a lone vessel is a tube of known volume; of a tree it is what its two sides enclose, each of which
 # `export` makes of a tree of such radii.
 test_a_wall_has_the_volume_between_its_sides() {
@@ -107,6 +112,81 @@ END
     expect_sentence '--print: walls, blocks and bases need --model isosurface'
     run corcast export "$DATA/bifurcation.swc" --print wall=1 -o m.inc
     expect_sentence '--print is for solids, and .inc is a scene'
+}
+
+test_a_block_is_a_box_less_its_vessels() {
+    run_ok corcast export "$DATA/bifurcation.swc" --print block=box:40x43x30 -o m.stl --quiet
+    run_ok corcast export "$DATA/bifurcation.swc" -o lumen.stl --quiet
+    expect_json m.stl.json '.components == 2 and .genus == 0 and .print.closed_cavities == 1 and .print.openings == 0'
+    awk -v a="$(volume m.stl)" -v b="$(volume lumen.stl)" 'BEGIN { exit !((a / (40 * 43 * 30 - b) - 1) ^ 2 < 1e-5 ^ 2) }' ||
+        fail "a block of $(volume m.stl) mm^3"
+    run_ok corcast export "$DATA/bifurcation.swc" --print block=cylinder:48x44 -o m.stl --quiet
+    awk -v a="$(volume m.stl)" -v b="$(volume lumen.stl)" 'BEGIN { pi = atan2(0, -1)
+        exit !((a / (pi * 24 ^ 2 * 44 - b) - 1) ^ 2 < 0.001 ^ 2) }' || fail "a cylinder of $(volume m.stl) mm^3"
+}
+
+test_ports_lead_vessels_out_of_a_block() {
+    local block
+    for block in box cylinder,margin=9; do
+        run_ok corcast export "$DATA/bifurcation.swc" --print "block=$block,ports" -o m.stl --quiet
+        expect_solid m.stl 1
+    done
+    run_ok corcast export "$DATA/bifurcation.swc" --print block=box,ports -o m.stl --quiet
+    expect_json m.stl.json '.genus == 2 and .euler == -2 and (.print | .openings == 3 and .rings == 3 and .closed_ends == [])'
+    run_ok corcast export "$DATA/bifurcation.swc" --print block=box,ports=inlet -o m.stl --quiet
+    expect_json m.stl.json '.genus == 0 and .print.openings == 1 and .print.closed_ends == [3, 4]'
+    grown 40
+    run_ok corcast export t.swc --print block=box,ports --tolerance 0.07 -o t.stl --quiet
+    expect_solid t.stl 1
+    expect_json t.stl.json '.genus == .print.openings - 1 and .print.openings > 36'
+    expect_json t.stl.json '.print.openings + (.print.closed_ends | length) == 41'
+}
+
+# Of an upright vessel, whose port meets the upper face at a right angle: a circle of 4.3 mm there, and one of 0.45 mm
+# less at the bottom of the fitting, 7.5 mm below.
+test_a_luer_port_has_the_size_of_the_fitting() {
+    printf '%s\n' '1 3 0 0 0 0.83 -1' '2 3 0 0 -17.3 0.83 1' >t.swc
+    run_ok corcast export t.swc --print block=box,ports=inlet:luer -o t.obj --quiet
+    awk '$1 == "v" { r = sqrt($2 ^ 2 + $3 ^ 2)
+            if (($4 - 15.83) ^ 2 < 1e-8 && r < 3) { top += (r - 2.15) ^ 2 > 1e-8; n_top++ }
+            if (($4 - 8.33) ^ 2 < 1e-8 && r < 3) { low += (r - 1.925) ^ 2 > 1e-8; n_low++ } }
+        END { exit !(n_top > 20 && n_top == n_low && top + low == 0) }' t.obj || fail "no fitting of that size"
+}
+
+test_refuses_blocks_that_hold_no_vessels() {
+    local said
+    while IFS='|' read -r print said; do
+        run corcast export "$DATA/bifurcation.swc" --print "$print" -o m.stl --quiet
+        expect_status 2
+        expect_sentence "$said"
+        expect_only
+    done <<'END'
+block=box:20x40x30|the block of 20 x 40 x 30 mm is smaller than the vessels with a margin of 3 mm, 27.97 x 41.16 x 10.77 mm
+block=cylinder:28x41|is smaller than the vessels with a margin of 3 mm
+block=box,margin=0.01,ports=luer|no end of a vessel can be led to a face of the block
+block=box,base|a block stands by itself
+block=box,wall=1|in a block vessels are hollow
+ports|ports and margin need a block
+block=ball|'block=ball' is wrong: block takes box or cylinder, with sizes
+ports=7|'ports=7' is wrong: ports takes all or inlet, luer or a taper from 0 to 1
+END
+}
+
+test_a_base_holds_vessels_by_pins() {
+    run_ok corcast export "$DATA/coronary.swc" --print base=1.7,min-diameter=1.3 -o m.stl --quiet
+    expect_solid m.stl 1
+    expect_json m.stl.json '.print.pins > 4 and .genus == .print.pins - 1 and .print.rings == .print.pins'
+    run_ok corcast export "$DATA/bifurcation.swc" --print base,wall=0.6 -o m.stl --quiet
+    expect_solid m.stl 1
+    expect_json m.stl.json '.print.openings == 3 and .genus == 2 + .print.pins - 1 and .segments == 3'
+}
+
+test_says_how_near_strangers_come() {
+    printf '%s\n' '1 3 0 0 0 1.1 -1' '2 3 9 0 0 1.1 1' '3 3 4 -5 3.37 0.6 -1' '4 3 4 7 3.37 0.6 3' >t.swc
+    run_ok corcast export t.swc --print scale=2 -o m.stl --quiet
+    expect_json m.stl.json '.print | .least_gap_mm > 3.3399 and .least_gap_mm < 3.3401 and .least_gap_between == [2, 4]'
+    run_ok corcast export t.swc --print wall=0.4 -o m.stl --quiet
+    expect_json m.stl.json '.print | .least_gap_mm > 0.8699 and .least_gap_mm < 0.8701 and .smallest_feature_mm == 0.4'
 }
 
 test_a_wall_has_the_same_bytes_for_any_number_of_threads() {

@@ -82,7 +82,7 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      .otherwise = "",
      .help = "make it fit for a printer: scale=N, min-diameter=MM, thin=clamp|prune, nozzle=MM, "
-             "wall=MM or as 0.2r, bed=AxBxC"},
+             "wall=MM or as 0.2r, base, block=box|cylinder, margin=MM, ports, bed=AxBxC"},
     {.name = "look",
      SETS(LOOKUP, ExportOptions, meshing.look),
      .group = GROUP_COLOR,

@@ -70,6 +70,42 @@ static bool read_bed(const PrintKey *key, const char *value, PrintSettings *out)
     return read_lengths(value, 3, member(key, out));
 }
 
+/* "box", "cylinder:30x45" */
+static bool read_block(const PrintKey *key, const char *value, PrintSettings *out)
+{
+    (void)key;
+    PrintBlock *block = &out->params.block;
+    size_t length = strcspn(value, ":");
+    block->is_round = length == 8 && !strncmp(value, "cylinder", length);
+    block->is_there = block->is_round || (length == 3 && !strncmp(value, "box", length));
+    return block->is_there &&
+           (!value[length] ||
+            read_lengths(&value[length + 1], block->is_round ? 2 : 3, block->size_mm));
+}
+
+/* "", "inlet", "luer", "inlet:0.1" */
+static bool read_ports(const PrintKey *key, const char *value, PrintSettings *out)
+{
+    (void)key;
+    PrintBlock *block = &out->params.block;
+    size_t length = strcspn(value, ":");
+    const char *taper = value[length] ? &value[length + 1] : "";
+    block->ports = length == 5 && !strncmp(value, "inlet", length) ? PORTS_INLET : PORTS_ALL;
+    if (block->ports == PORTS_ALL && length && strncmp(value, "all", length) != 0)
+        taper = value;
+    block->is_luer = !strcmp(taper, "luer");
+    return block->is_luer || !*taper ||
+           (number_parse(taper, &block->taper) && block->taper >= 0 && block->taper <= 1);
+}
+
+static bool read_base(const PrintKey *key, const char *value, PrintSettings *out)
+{
+    (void)key;
+    PrintBase *base = &out->params.base;
+    base->is_there = true;
+    return !*value || is_length(value, &base->thickness_mm);
+}
+
 #define MEMBER(path) .where = offsetof(PrintSettings, path)
 
 static const PrintKey keys[] = {
@@ -81,6 +117,17 @@ static const PrintKey keys[] = {
     {.name = "thin", .takes = "clamp or prune", .read = read_thin},
     {.name = "nozzle", .takes = "a diameter in mm", MEMBER(nozzle_mm), .read = read_length},
     {.name = "wall", .takes = "a thickness in mm, or over the radius, as 0.2r", .read = read_wall},
+    {.name = "block",
+     .takes = "box or cylinder, with sizes as box:60x40x30 or cylinder:50x60",
+     .read = read_block},
+    {.name = "margin",
+     .takes = "a length in mm",
+     MEMBER(params.block.margin_mm),
+     .read = read_length},
+    {.name = "ports",
+     .takes = "all or inlet, luer or a taper from 0 to 1, or both, as inlet:luer",
+     .read = read_ports},
+    {.name = "base", .takes = "nothing, or a thickness in mm", .read = read_base},
     {.name = "bed",
      .takes = "three lengths in mm, as 250x210x200",
      MEMBER(bed_mm),
@@ -125,9 +172,27 @@ static Status read_item(const char *item, PrintSettings *out, Err *err)
     return STATUS_OK;
 }
 
+static const double plain_margin_mm = 3, luer_margin_mm = 15, plain_taper = 0.06, plain_base_mm = 2;
+
+static Status settle_block(PrintParams *params, Err *err)
+{
+    PrintBlock *block = &params->block;
+    if (!block->is_there && (block->ports != PORTS_NONE || block->margin_mm > 0))
+        return err_set(err, STATUS_USAGE, "`print`: ports and margin need a block");
+    if (block->is_there && print_has_wall(params))
+        return err_set(err, STATUS_USAGE,
+                       "`print`: in a block vessels are hollow, and have no wall of their own");
+    if (block->is_there && params->base.is_there)
+        return err_set(err, STATUS_USAGE, "`print`: a block stands by itself, and takes no base");
+    if (block->margin_mm == 0)
+        block->margin_mm = block->is_luer ? luer_margin_mm : plain_margin_mm;
+    return STATUS_OK;
+}
+
 Status printing_parse(const char *text, PrintSettings *out, Err *err)
 {
-    PrintSettings made = {.scale = 1};
+    PrintSettings made = {
+        .scale = 1, .params = {.block.taper = plain_taper, .base.thickness_mm = plain_base_mm}};
     char *items = NULL;
     Status status = STATUS_OK;
     TRY(mem_strdup(&items, text, err));
@@ -139,17 +204,23 @@ Status printing_parse(const char *text, PrintSettings *out, Err *err)
     }
     free(items);
     TRY(status);
+    made.params.base.least_radius_mm = fmax(made.min_diameter_mm, made.nozzle_mm) / 2;
+    TRY(settle_block(&made.params, err));
     if (made.prunes && made.min_diameter_mm == 0)
         return err_set(err, STATUS_USAGE, "`print`: thin=prune needs min-diameter");
     *out = made;
     return STATUS_OK;
 }
 
+static double thinnest_wall(const PrintSettings *settings, const PrintChanges *changes)
+{
+    const PrintParams *params = &settings->params;
+    return params->wall_mm + params->wall_ratio * changes->thinnest_mm / 2;
+}
+
 static Status check_nozzle(const PrintSettings *settings, const PrintChanges *changes, Err *err)
 {
-    double nozzle = settings->nozzle_mm, wall = settings->params.wall_mm;
-    if (settings->params.wall_ratio > 0)
-        wall = settings->params.wall_ratio * changes->thinnest_mm / 2;
+    double nozzle = settings->nozzle_mm, wall = thinnest_wall(settings, changes);
     if (changes->trunk_mm < nozzle)
         return err_set(err, STATUS_INPUT,
                        "the nozzle of %g mm is wider than the trunk, %.3g mm when printed; no "
@@ -209,7 +280,7 @@ Status printing_check_bed(const PrintSettings *settings, const VesselMesh *mesh,
 }
 
 void printing_say(const PrintSettings *settings, const PrintChanges *changes,
-                  const PrintReport *report, const VesselMesh *mesh)
+                  const VesselTree *vessels, const PrintReport *report, const VesselMesh *mesh)
 {
     double size[3];
     size_of(mesh, size);
@@ -219,9 +290,26 @@ void printing_say(const PrintSettings *settings, const PrintChanges *changes,
     if (changes->below_two)
         fprintf(stderr, "corcast: %zu segments are thinner than two widths of the nozzle\n",
                 changes->below_two);
+    if (report->has_closest)
+        fprintf(stderr,
+                "corcast: vessels that do not belong together are %.3g mm apart at the least, "
+                "segments %u and %u\n",
+                report->closest.gap_mm, vessels->ids[report->closest.segments[0]],
+                vessels->ids[report->closest.segments[1]]);
+    if (report->cavities)
+        fprintf(stderr, "corcast: %zu trees are closed cavities, which cannot drain\n",
+                report->cavities);
     if (report->n_longer)
         fprintf(stderr, "corcast: %zu ends are lengthened, so that they can be cut off flat\n",
                 report->n_longer);
+    if (settings->params.base.is_there)
+        fprintf(stderr,
+                "corcast: %zu pins hold it on the base; %zu places hang free, as vessels or open "
+                "ends are in the way\n",
+                report->pins, report->hanging);
+    if (settings->params.block.is_there)
+        fprintf(stderr, "corcast: the block has %zu ports; %zu ends are closed in it\n",
+                report->openings, report->n_closed);
     if (print_has_wall(&settings->params))
         fprintf(stderr, "corcast: the wall has %zu openings; %zu ends are closed\n",
                 report->openings, report->n_closed);
@@ -251,19 +339,25 @@ static json_t *count_of(size_t n)
 }
 
 /* Of a wall. */
-static json_t *with_wall(json_t *object, const PrintSettings *settings, const VesselTree *vessels,
-                         const PrintReport *report)
+static json_t *with_wall(json_t *object, const PrintSettings *settings, const PrintReport *report)
 {
     const PrintParams *params = &settings->params;
     const JsonMember members[] = {
         {"wall_mm", json_number(params->wall_mm)},
         {"wall_over_radius", json_number(params->wall_ratio)},
-        {"openings", count_of(report->openings)},
-        {"closed_ends", ids_of(vessels, report->closed, report->n_closed)},
-        {"lumen_mm3", json_number(report->lumen_mm3)},
         {"outer_mm3", json_number(report->outer_mm3)},
     };
     return json_with_members(object, members, sizeof members / sizeof *members);
+}
+
+/* Of vessels, walls, and gaps between vessels. */
+static double smallest_of(const PrintSettings *settings, const PrintChanges *changes,
+                          const PrintReport *report)
+{
+    double least = changes->thinnest_mm;
+    if (print_has_wall(&settings->params))
+        least = fmin(least, thinnest_wall(settings, changes));
+    return report->has_closest ? fmin(least, report->closest.gap_mm) : least;
 }
 
 json_t *printing_json(const PrintSettings *settings, const PrintChanges *changes, size_t pruned,
@@ -280,11 +374,19 @@ json_t *printing_json(const PrintSettings *settings, const PrintChanges *changes
         {"segments_below_two_nozzles", count_of(changes->below_two)},
         {"thinnest_diameter_mm", json_number(changes->thinnest_mm)},
         {"segments_lengthened", ids_of(vessels, report->longer, report->n_longer)},
+        {"openings", count_of(report->openings)},
+        {"closed_ends", ids_of(vessels, report->closed, report->n_closed)},
+        {"lumen_mm3", json_number(report->lumen_mm3)},
+        {"pins", count_of(report->pins)},
+        {"hanging", count_of(report->hanging)},
         {"closed_cavities", count_of(report->cavities)},
         {"rings", count_of(report->rings)},
+        {"least_gap_mm", report->has_closest ? json_number(report->closest.gap_mm) : json_null()},
+        {"least_gap_between", ids_of(vessels, report->closest.segments, 2 * report->has_closest)},
+        {"smallest_feature_mm", json_number(smallest_of(settings, changes, report))},
         {"size_mm", lengths(size, 3)},
         {"bed_mm", settings->bed_mm[2] > 0 ? lengths(settings->bed_mm, 3) : json_null()},
     };
     json_t *all = json_with_members(json_object(), members, sizeof members / sizeof *members);
-    return print_has_wall(&settings->params) ? with_wall(all, settings, vessels, report) : all;
+    return print_has_wall(&settings->params) ? with_wall(all, settings, report) : all;
 }

@@ -39,7 +39,7 @@ MUST_CHECK Status printing_check_bed(const PrintSettings *settings, const Vessel
 
 /* Says on standard error what was made. */
 void printing_say(const PrintSettings *settings, const PrintChanges *changes,
-                  const PrintReport *report, const VesselMesh *mesh);
+                  const VesselTree *vessels, const PrintReport *report, const VesselMesh *mesh);
 
 /* The same and more for the manifest. NULL when memory runs out. */
 json_t *printing_json(const PrintSettings *settings, const PrintChanges *changes, size_t pruned,

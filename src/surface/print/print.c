@@ -6,6 +6,9 @@
 
 #include "surface/mesh/assemble.h"
 #include "surface/mesh/meshcheck.h"
+#include "surface/print/base.h"
+#include "surface/print/block.h"
+#include "surface/print/leastgap.h"
 #include "surface/print/proof.h"
 #include "surface/print/solid.h"
 #include <stdlib.h>
@@ -20,9 +23,11 @@ typedef struct Side {
 
 typedef struct Making {
     VesselTree *tree;
-    VesselTree outer; /* of a wall; segments are its own, all else the tree's */
+    VesselTree outer; /* with radii of the wall, and with pins */
+    Pins pins;
     PrintParams params;
     Side sides[2]; /* the outer one, and that of the lumen */
+    Casing casing; /* the block or the plate */
     Solid solid;
     Seams seams;
     PrintReport report;
@@ -45,7 +50,8 @@ static void release_side(Side *side)
 
 static void release_making(Making *making)
 {
-    free(making->outer.segments);
+    vesseltree_release(&making->outer);
+    pins_release(&making->pins);
     release_side(&making->sides[0]);
     release_side(&making->sides[1]);
     solid_release(&making->solid);
@@ -62,9 +68,14 @@ static Status take_outer(Making *making, Err *err)
 {
     VesselTree *outer = &making->outer;
     const VesselTree *tree = making->tree;
-    *outer = *tree;
-    outer->segments = NULL;
-    TRY(mem_calloc(&outer->segments, tree->n_segments, sizeof *outer->segments, "segments", err));
+    size_t n = outer->n_segments = tree->n_segments;
+    outer->n_nodes = tree->n_nodes;
+    outer->body = tree->body;
+    TRY(mem_calloc(&outer->segments, n, sizeof *outer->segments, "segments", err));
+    TRY(mem_calloc(&outer->nodes, n, sizeof *outer->nodes, "segments", err));
+    TRY(mem_calloc(&outer->ids, n, sizeof *outer->ids, "segments", err));
+    memcpy(outer->nodes, tree->nodes, n * sizeof *outer->nodes);
+    memcpy(outer->ids, tree->ids, n * sizeof *outer->ids);
     for (size_t i = 0; i < tree->n_segments; i++) {
         outer->segments[i] = tree->segments[i];
         outer->segments[i].radius_mm = outer_radius(&making->params, tree->segments[i].radius_mm);
@@ -98,7 +109,7 @@ static Status take_changes(Making *making, Err *err)
     return STATUS_OK;
 }
 
-/* Parts overlaps and lengthens ends. */
+/* Parts overlaps, lengthens ends and sets up pins. */
 static Status prepare(Making *making, Err *err)
 {
     const PrintParams *params = &making->params;
@@ -107,10 +118,48 @@ static Status prepare(Making *making, Err *err)
     if (params->part_overlaps)
         TRY(vesseltree_part(&making->outer, params->mesh.threads, &report->thinned,
                             &report->n_thinned, err));
-    if (print_has_wall(params))
+    if (print_is_hollow(params))
         TRY(vesseltree_free_ends(&making->outer, params->mesh.threads, &report->longer,
                                  &report->n_longer, err));
-    return take_changes(making, err);
+    TRY(take_changes(making, err));
+    TRY(leastgap_find(&making->outer, params->mesh.threads, &report->closest, &report->has_closest,
+                      err));
+    if (!params->base.is_there)
+        return STATUS_OK;
+    TRY(pins_add(&making->outer, &params->base, print_has_wall(params), &making->pins, err));
+    report->pins = making->pins.n_pins;
+    report->hanging = making->pins.n_hanging;
+    if (report->pins == 0)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "no pin can be led from the vessels to a base: all %zu places that need one "
+                       "have other vessels, or open ends, in the way",
+                       report->hanging);
+    return STATUS_OK;
+}
+
+static double rounded(double x, double step)
+{
+    return round(x / step) * step;
+}
+
+/* Finds the grid of all coordinates, and puts the block on it. */
+static Status lay_grid(Making *making, Err *err)
+{
+    Casing *casing = &making->casing;
+    double reach = mesh_reach(&making->outer), grid;
+    if (making->params.block.is_there)
+        TRY(block_casing(making->tree, &making->params.block, casing, err));
+    if (making->params.base.is_there)
+        *casing = pins_plate(&making->outer, &making->params.base, &making->pins);
+    for (int face = 0; face < CASING_FACES; face++)
+        reach = fmax(reach, fabs(face_place(casing, face)));
+    making->params.mesh.reach_mm = reach;
+    making->solid.grid_mm = grid = mesh_grid(reach);
+    Vec3 *ends[2] = {&casing->box.low, &casing->box.high};
+    for (int end = 0; end < 2; end++)
+        *ends[end] = vec3(rounded(ends[end]->x, grid), rounded(ends[end]->y, grid),
+                          rounded(ends[end]->z, grid));
+    return STATUS_OK;
 }
 
 static Status build_side(const VesselTree *tree, const MeshParams *params, Side *side, Err *err)
@@ -135,12 +184,19 @@ static Status build_sides(Making *making, Err *err)
     return status;
 }
 
-/* Opens the ends that both sides are cut off flat at. */
+static bool is_pin(const Pins *pins, const CutEnd *end)
+{
+    return end->segment >= pins->n_segments && pins->is_pin[end->segment - pins->n_segments];
+}
+
+/* Opens the ends of pins, and those that both sides are cut off flat at. */
 static void open_ends(Making *making)
 {
     CutEnds *ends = &making->sides[0].ends;
     for (size_t i = 0; i < ends->n; i++) {
         CutEnd *end = &ends->items[i];
+        if (making->pins.n_pins)
+            end->opened = is_pin(&making->pins, end);
         CutEnd *other = cutends_at(&making->sides[1].ends, end->segment, end->end);
         if (other)
             end->opened = other->opened = true;
@@ -153,9 +209,9 @@ static Status join_sides(Making *making, Err *err)
     const CutEnds *ends = &making->sides[0].ends;
     for (size_t i = 0; i < ends->n; i++) {
         const CutEnd *end = &ends->items[i];
-        if (!end->opened)
-            continue;
         const CutEnd *other = cutends_at(&making->sides[1].ends, end->segment, end->end);
+        if (!other)
+            continue;
         TRY(solid_ring(&making->solid, end->end ? end->rim : other->rim,
                        end->end ? other->rim : end->rim, end->n, end->segment | MESH_CAP, err));
         seams_ring(&making->seams, end->segment, end->segment | MESH_LUMEN);
@@ -164,19 +220,33 @@ static Status join_sides(Making *making, Err *err)
     return STATUS_OK;
 }
 
-static Status add_sides(Making *making, Err *err)
+static Status add_vessels(Making *making, Err *err)
 {
     Side *outer = &making->sides[0], *lumen = &making->sides[1];
-    for (uint32_t i = 0; i < making->tree->n_segments; i++)
-        seams_add(&making->seams, i);
+    open_ends(making);
     if (print_has_wall(&making->params)) {
-        open_ends(making);
         for (uint32_t i = 0; i < making->tree->n_segments; i++)
             seams_add(&making->seams, i | MESH_LUMEN);
         TRY(solid_surface(&making->solid, &lumen->mesh, &lumen->ends, true, MESH_LUMEN, err));
     }
     TRY(solid_surface(&making->solid, &outer->mesh, &outer->ends, false, 0, err));
-    return join_sides(making, err);
+    TRY(join_sides(making, err));
+    if (!making->params.base.is_there)
+        return STATUS_OK;
+    return pins_join(&making->solid, &making->casing, &outer->ends, &making->pins, &making->seams,
+                     err);
+}
+
+static Status add_all(Making *making, Err *err)
+{
+    Side *outer = &making->sides[0];
+    for (uint32_t i = 0; i < making->outer.n_segments; i++)
+        seams_add(&making->seams, i);
+    if (making->params.block.is_there)
+        return block_add(&making->solid, &making->outer, &outer->mesh, &outer->ends,
+                         &making->params.block, &making->casing, &making->seams,
+                         &making->report.openings, err);
+    return add_vessels(making, err);
 }
 
 /* Lists the segments with an end that nothing meets and that is not open. */
@@ -201,23 +271,53 @@ done:
     return status;
 }
 
+/* What was added to the tree is said of the segments that it was added to. */
+static void name_owners(Making *making, MeshReport *report)
+{
+    const Pins *pins = &making->pins;
+    VesselMesh *mesh = &making->solid.mesh;
+    uint32_t *const lists[] = {report->swallowed, report->round};
+    const size_t counts[] = {report->n_swallowed, report->n_round};
+    if (pins->n_added == 0)
+        return;
+    for (size_t i = 0; i < mesh->n_triangles; i++) {
+        uint32_t segment = mesh_segment(mesh, i);
+        bool is_own = segment < pins->n_segments || !pins->is_pin[segment - pins->n_segments];
+        mesh->labels[i] =
+            (mesh->labels[i] & MESH_FLAGS) | pins_owner(pins, segment) | (is_own ? 0 : MESH_FRAME);
+    }
+    for (int k = 0; k < 2; k++)
+        for (size_t i = 0; i < counts[k]; i++)
+            lists[k][i] = pins_owner(pins, lists[k][i]);
+    for (size_t i = 0; i < report->n_near; i++)
+        for (int k = 0; k < 2; k++)
+            report->near[i].segments[k] = pins_owner(pins, report->near[i].segments[k]);
+}
+
 /* The report of the solid: what is said of segments is what the outer side has. */
 static Status prove(Making *making, MeshReport *report, Err *err)
 {
     Side *outer = &making->sides[0];
     *report = outer->report;
     outer->report = (MeshReport){0};
-    making->report.outer_mm3 = vesselmesh_volume(&outer->mesh);
+    making->report.outer_mm3 = report->volume_mm3;
+    making->report.lumen_mm3 =
+        vesselmesh_volume(&making->sides[print_has_wall(&making->params)].mesh);
+    if (print_is_hollow(&making->params)) {
+        TRY(list_closed(making, err));
+        making->report.cavities =
+            seams_lone(&making->seams, print_has_wall(&making->params) ? MESH_LUMEN : 0);
+    }
     if (print_has_wall(&making->params)) {
-        making->report.lumen_mm3 = making->sides[1].report.volume_mm3;
         report->off.mm = fmax(report->off.mm, making->sides[1].report.off.mm);
         report->off.ratio = fmax(report->off.ratio, making->sides[1].report.off.ratio);
-        TRY(list_closed(making, err));
     }
     making->report.rings = making->seams.n_rings;
     TRY(seams_prove(&making->seams, &making->solid.mesh, making->solid.grid_mm,
                     making->params.mesh.threads, report, err));
-    return meshreport_check(report, making->tree, err);
+    TRY(meshreport_check(report, &making->outer, err));
+    name_owners(making, report);
+    return STATUS_OK;
 }
 
 /* A disc about the middle of each opening of the lumen, with the outside of the lumen outside. */
@@ -253,11 +353,10 @@ Status print_build(VesselTree *tree, const PrintParams *params, VesselMesh *mesh
     MeshReport found = {0};
     Status status;
     TRY_GOTO(prepare(&making, err));
-    making.params.mesh.reach_mm = mesh_reach(&making.outer);
-    making.solid.grid_mm = mesh_grid(making.params.mesh.reach_mm);
+    TRY_GOTO(lay_grid(&making, err));
     TRY_GOTO(build_sides(&making, err));
-    TRY_GOTO(seams_make(tree, &making.seams, err));
-    TRY_GOTO(add_sides(&making, err));
+    TRY_GOTO(seams_make(&making.outer, &making.seams, err));
+    TRY_GOTO(add_all(&making, err));
     TRY_GOTO(prove(&making, &found, err));
     if (print_has_wall(params) && params->lids)
         TRY_GOTO(add_lids(&making, err));

@@ -9,6 +9,28 @@
 
 #include "surface/mesh/vesselmesh.h"
 
+/* Which ends of vessels are led out of a block. */
+typedef enum PrintPorts { PORTS_NONE, PORTS_INLET, PORTS_ALL } PrintPorts;
+
+/* A block that vessels are hollow in. */
+typedef struct PrintBlock {
+    bool is_there;
+    bool is_round;     /* a cylinder along the axis that the first vessel is nearest to, which
+                        * vessels leave through its two flat faces; else a box */
+    double size_mm[3]; /* of a cylinder, diameter and height; 0: as the margin has it */
+    double margin_mm;  /* left about the vessels at the least */
+    PrintPorts ports;
+    double taper; /* of ports: by how much their diameter grows for each mm */
+    bool is_luer; /* ports end in the female half of a Luer fitting */
+} PrintBlock;
+
+/* A plate under the vessels, across the z axis, that they stand on by pins. */
+typedef struct PrintBase {
+    bool is_there;
+    double thickness_mm;
+    double least_radius_mm; /* of pins */
+} PrintBase;
+
 typedef struct PrintParams {
     MeshParams mesh;
     bool part_overlaps; /* as vesseltree_part: walls and vessels that overlap are thinned */
@@ -16,17 +38,24 @@ typedef struct PrintParams {
     double wall_ratio;  /* ... and what it is thicker by, over the radius; both 0: solid vessels */
     bool lids;          /* of a wall: discs close the openings of the lumen, of the same points, so
                          * that wall and lumen are two solids that share it */
+    PrintBlock block;
+    PrintBase base;
 } PrintParams;
 
 typedef struct PrintReport {
     size_t rings;      /* by which surfaces are joined */
-    size_t openings;   /* of lumens, ends of vessels */
-    size_t cavities;   /* closed ones */
+    size_t openings;   /* of lumens: ends of vessels, or ports of a block */
+    size_t pins;       /* between vessels and the base */
+    size_t hanging;    /* places that a printer begins in the air, and no pin could be led to */
+    size_t cavities;   /* lumens of trees without any */
+    NearPair closest;  /* of vessels that do not belong together, with their walls */
+    bool has_closest;  /* there are such */
     uint32_t *closed;  /* segments with an end that is not open; owned, as all of it */
     uint32_t *longer;  /* those that are lengthened, so that they can be cut off flat */
     uint32_t *thinned; /* those that are thinned, by part_overlaps */
     size_t n_closed, n_longer, n_thinned;
-    double lumen_mm3, outer_mm3; /* of a wall: what its two sides enclose */
+    double lumen_mm3, outer_mm3; /* what vessels enclose, and with a wall or in a block what that
+                                  * does */
 } PrintReport;
 
 void printreport_release(PrintReport *report);
@@ -37,10 +66,16 @@ static inline bool print_has_wall(const PrintParams *params)
     return params->wall_mm > 0 || params->wall_ratio > 0;
 }
 
+/* Whether the print has lumens. */
+static inline bool print_is_hollow(const PrintParams *params)
+{
+    return print_has_wall(params) || params->block.is_there;
+}
+
 /* Whether several surfaces are joined at flat ends. */
 static inline bool print_is_joined(const PrintParams *params)
 {
-    return print_has_wall(params);
+    return print_is_hollow(params) || params->base.is_there;
 }
 
 /* Makes the solid of a tree, whose body must be BODY_POTENTIAL if surfaces are joined, and proves

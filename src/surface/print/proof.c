@@ -70,6 +70,15 @@ void seams_ring(Seams *seams, uint32_t label, uint32_t other)
     seams->n_rings++;
 }
 
+size_t seams_lone(const Seams *seams, uint32_t kind)
+{
+    size_t n = 0;
+    uint32_t first = kind == MESH_LUMEN ? seams->n_nodes : 0;
+    for (uint32_t i = first; i < first + seams->n_nodes; i++)
+        n += seams->is_there[i] && seams->root[i] == i && seams->rings[i] == 0;
+    return n;
+}
+
 /* Euler numbers that the parts of the graph are to have, each at its root. */
 static void expect(const Seams *seams, long long *euler, MeshReport *report)
 {

@@ -5,7 +5,7 @@
 #include "surface/mesh/vesselmesh.h"
 
 /* Closed surfaces without holes, and the rings that join them, as a graph. A surface is the outer
- * side or the lumen of a tree, or the one frame. */
+ * side or the lumen of a tree, or the one casing. */
 typedef struct Seams {
     uint32_t *trees; /* of each segment: its tree; owned, as all of it */
     size_t n_segments;
@@ -25,6 +25,9 @@ uint32_t seams_surface(const Seams *seams, uint32_t label);
 void seams_add(Seams *seams, uint32_t label);
 /* Joins the surfaces of two labels by a ring. */
 void seams_ring(Seams *seams, uint32_t label, uint32_t other);
+
+/* How many trees have a surface of this kind, MESH_LUMEN or 0, that nothing is joined to. */
+size_t seams_lone(const Seams *seams, uint32_t kind);
 
 /* Fills what meshcheck_topology and meshcheck_crossings fill, and what is expected. STATUS_DIFFERS
  * when a part of the solid does not have the Euler number 2 (surfaces - rings) of its part of the

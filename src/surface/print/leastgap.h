@@ -1,0 +1,12 @@
+/* How near vessels come that do not belong together. */
+#ifndef CORCAST_SURFACE_LEASTGAP_H
+#define CORCAST_SURFACE_LEASTGAP_H
+
+#include "surface/mesh/vesselmesh.h"
+
+/* Finds the two segments without a common junction zone whose walls are the nearest to each other;
+ * false when there are none. Expected O(n log n) for vessels that fill a space evenly. */
+MUST_CHECK Status leastgap_find(const VesselTree *tree, int threads, NearPair *pair, bool *found,
+                                Err *err);
+
+#endif
