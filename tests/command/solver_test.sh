@@ -137,6 +137,14 @@ test_refuses_a_wall_without_named_parts_and_beside_a_print() {
     expect_only
 }
 
+test_the_flow_of_ends_parts_as_it_is_told() {
+    grown
+    run_ok corcast export t.swc --terminal-flow murray --gamma 2.27 -o t.vtp --quiet
+    awk -F , 'NR > 2 { r[NR] = $10 ^ 2.27; sum += r[NR]; part[NR] = $12 }
+        END { for (i in r) if ((part[i] - r[i] / sum) ^ 2 > 1e-24) exit 1; exit !(NR == 25) }' t.ends.csv ||
+        fail "expected parts as the radii to the power of 2.27: $(cat t.ends.csv)"
+}
+
 test_refuses_parts_of_a_body_without_flat_ends() {
     run corcast export "$DATA/bifurcation.swc" --model rounded -o m.vtp
     expect_status 2

@@ -10,7 +10,7 @@ commands() {
          !/^    / { inside = 0; next }
          { text = substr($0, 5) }
          text ~ /^; / { inside = 1; print "file " substr(text, 3); next }
-         text ~ /^(build\/corcast|povray|make|awk|ffmpeg|python3) / { inside = 0; print "run " text; next }
+         text ~ /^(build\/corcast|povray|make|awk|ffmpeg|python3|tetgen|printf) / { inside = 0; print "run " text; next }
          inside { print "line " text }' "$REPO/$1"
 }
 

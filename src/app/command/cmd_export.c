@@ -221,6 +221,7 @@ static Status run_export(void *options, Parsed *parsed, Err *err)
     if (volume)
         return export_volume(own_options, volume, parsed, err);
     TRY(find_emitter(own_options, &emitter, err));
+    own_options->meshing.coloring.with_flow = emitter->has_parts;
     TRY(check_format(own_options, emitter, parsed, err));
     TRY(read_print(own_options, emitter, err));
     TRY(scene_files_note(emitter, own_options->output, false, &parsed->files, err));

@@ -95,8 +95,10 @@ Rgb rgb_of_option(Vec3 srgb)
 bool coloring_takes(const Coloring *coloring, const Option *option)
 {
     static const char *const without_field[] = {"color-by", "look", NULL};
+    static const char *const of_flow[] = {"terminal-flow", "gamma", NULL};
     return coloring->field || (option->group != GROUP_COLOR && option->group != GROUP_BLOOD) ||
-           is_one_of(option->name, without_field);
+           is_one_of(option->name, without_field) ||
+           (coloring->with_flow && is_one_of(option->name, of_flow));
 }
 
 static bool has_bounds(const Coloring *coloring)

@@ -25,6 +25,7 @@ typedef struct Coloring {
     Vec3 under, over, none; /* sRGB in [0, 1] */
     bool has_under, has_over, has_none;
     BloodOptions blood;
+    bool with_flow; /* how flow parts has an effect without a field, too */
 } Coloring;
 
 /* Of a zeroed Coloring. */
