@@ -21,7 +21,7 @@ ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c) $(ROOMS:%=src/%/*/*.c))
 APP_SOURCES := $(wildcard src/app/*.c src/app/*/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
 FORMATTED := $(sort $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
-	tests/alloc/*.c tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h))
+	tests/alloc/*.c tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h tests/optima/*.c))
 
 ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o)
 APP_OBJECTS := $(APP_SOURCES:%.c=$(BUILD)/%.o)
@@ -35,6 +35,7 @@ EMBREE := $(BUILD)/tests/bench/embree
 FRAMES := $(BUILD)/tests/bench/frames
 MESHES := $(BUILD)/tests/bench/meshes
 FIT := $(BUILD)/tests/fit/fit_blob
+OPTIMA := $(BUILD)/tests/optima/optima
 FUZZ_SOURCES := $(wildcard tests/fuzz/*.c)
 HARNESSES := $(filter-out fuzz replay,$(FUZZ_SOURCES:tests/fuzz/%.c=%))
 FUZZ_PROGRAMS := $(HARNESSES:%=$(BUILD)/tests/fuzz/%)
@@ -65,7 +66,7 @@ LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 VIEWER := build/viewer/viewer.js
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo figures gallery validate bench bench-grow bench-render bench-compare bench-mesh export-all verify-all power power-program fit-blob check check-all check-quick program unit \
+.PHONY: all deps demo figures gallery validate bench bench-grow bench-render bench-compare bench-mesh export-all verify-all power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
 .DELETE_ON_ERROR:
@@ -145,6 +146,8 @@ power: ## plant faults and see what the judge finds, and the tests; writes its p
 
 power-program: $(POWER)
 
+optima: $(OPTIMA) ## the best trees of small point sets, and how often annealing finds them
+	$(Q)$(OPTIMA) tests/optima/sets.txt
 fit-blob: $(FIT) ## how far the blob is from the potential; HOW=fit searches for its numbers anew
 	$(Q)$(FIT) $(HOW)
 
@@ -198,7 +201,7 @@ $(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/app.a $(BUILD)/room
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka
 
-$(FIT): $(BUILD)/tests/fit/fit_blob.o $(BUILD)/rooms.a
+$(OPTIMA) $(FIT): %: %.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
@@ -254,7 +257,7 @@ ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)
 	@echo 'corcast needs $(PACKAGES) $(HEADERS), OpenEXR, libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
 endif
 
-unit-programs: $(TEST_PROGRAMS) $(ORACLE) $(FAILING)
+unit-programs: $(TEST_PROGRAMS) $(OPTIMA) $(ORACLE) $(FAILING)
 
 fuzz-programs: $(FUZZ_PROGRAMS)
 

@@ -1,8 +1,8 @@
 /* Every kind of domain is a row of `kinds`, a DomainOps, defined in the file of its family:
- * shapes.c, polygon.c, mask.c, mesh.c, hull.c. What is here is the same for all: the place (`@`)
- * that a domain's own coordinates are put at, and sampling. Points are sampled by rejection from
- * the bounding box (acceptance pi/4 in the disc, pi/6 in the ball) unless a kind knows better:
- * exactly uniform, and without functions whose last bit differs between machines. */
+ * shapes.c, polygon.c, mask.c, mesh.c, hull.c, surface.c. What is here is the same for all: the
+ * place (`@`) that a domain's own coordinates are put at, and sampling. Points are sampled by
+ * rejection from the bounding box (acceptance pi/4 in the disc, pi/6 in the ball) unless a kind
+ * knows better: exactly uniform, and without functions whose last bit differs between machines. */
 #include "domain/domain.h"
 
 #include "domain/hull.h"
@@ -12,7 +12,7 @@
 
 static const DomainOps *const kinds[] = {&disc_ops,      &ball_ops,  &rect_ops,    &box_ops,
                                          &ellipsoid_ops, &shell_ops, &polygon_ops, &mask_ops,
-                                         &mesh_ops,      &hull_ops};
+                                         &mesh_ops,      &hull_ops,  &surface_ops};
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
@@ -221,6 +221,17 @@ bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     if (ops->is_convex || vec3_distance(a, b) <= domain->slack_mm)
         return ops->inside(domain, a, domain->slack_mm) && ops->inside(domain, b, domain->slack_mm);
     return ops->holds_segment(domain, a, b);
+}
+
+bool domain_settles(const Domain *domain)
+{
+    return domain->ops->settle != NULL;
+}
+
+Vec3 domain_settle(const Domain *domain, Vec3 point)
+{
+    Vec3 own = domain->ops->settle(domain, to_own(domain, point));
+    return domain->is_placed ? vec3_add(own, domain->at) : own;
 }
 
 double domain_distance(const Domain *domain, Vec3 point, double most)

@@ -41,13 +41,14 @@ typedef struct Domain {
         Mesh *mesh;
         Hull *hull;
     };
-    bool is_placed;  /* by `at`, where its own coordinates have their origin, mm */
-    Vec3 at;         /* in the plane z = 0 in two dimensions */
-    Box own_bounds;  /* the bounds in its own coordinates */
-    Box bounds;      /* the smallest box that holds it, mm; flat in two dimensions */
-    double volume;   /* mm^3, or mm^2 in two dimensions */
-    Vec3 inlet;      /* where no other is asked for, mm: at its top, where y is largest */
-    double slack_mm; /* 1e-6 of the diagonal of the bounds: a length that does not matter */
+    struct Surface *surface; /* what surfaces know beside their mesh; owned */
+    bool is_placed;          /* by `at`, where its own coordinates have their origin, mm */
+    Vec3 at;                 /* in the plane z = 0 in two dimensions */
+    Box own_bounds;          /* the bounds in its own coordinates */
+    Box bounds;              /* the smallest box that holds it, mm; flat in two dimensions */
+    double volume;           /* mm^3, or mm^2 in two dimensions */
+    Vec3 inlet;              /* where no other is asked for, mm: at its top, where y is largest */
+    double slack_mm;         /* 1e-6 of the diagonal of the bounds: a length that does not matter */
 } Domain;
 
 /* Makes *domain from a text, reading the file it names. STATUS_USAGE,
@@ -84,6 +85,11 @@ bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm);
  * to slack_mm, so that it can begin at an inlet on the boundary. O(log n) in the n edges or
  * triangles of a boundary, O(m) in the m voxels on the way through a mask. */
 bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b);
+
+/* Whether forks are to be moved: the domain is a surface. */
+bool domain_settles(const Domain *domain);
+/* The place on the surface that is nearest to `point`, mm, which is in the domain. */
+Vec3 domain_settle(const Domain *domain, Vec3 point);
 
 /* How far outside the domain the point is, mm, to a thousandth of it, at most `most`; 0 inside. */
 double domain_distance(const Domain *domain, Vec3 point, double most);

@@ -18,12 +18,14 @@ typedef struct DomainOps {
     bool (*holds_segment)(const Domain *domain, Vec3 a, Vec3 b);
     /* NULL: rejection from the bounds. */
     Vec3 (*sample)(const Domain *domain, Random *random);
+    /* The point of the domain that a fork near it is moved to; NULL: it stays. */
+    Vec3 (*settle)(const Domain *domain, Vec3 point);
     /* Frees what the union holds; NULL for the kinds that read no file. */
     void (*release)(Domain *domain);
 } DomainOps;
 
 extern const DomainOps disc_ops, ball_ops, rect_ops, box_ops, ellipsoid_ops, shell_ops;
-extern const DomainOps polygon_ops, mask_ops, mesh_ops, hull_ops;
+extern const DomainOps polygon_ops, mask_ops, mesh_ops, hull_ops, surface_ops;
 
 /* Reads FILE[,MM] into file, size and n_sizes; size[0] is 1 where MM is not given. */
 MUST_CHECK Status domain_load_file_name(Domain *domain, const char *values, Err *err);

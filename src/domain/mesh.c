@@ -61,7 +61,7 @@ static bool count_crossings(const Mesh *mesh, Vec3 point, Vec3 end, int *count)
     return safe;
 }
 
-static bool is_odd(const Mesh *mesh, const Box *bounds, Vec3 point)
+bool mesh_is_odd(const Mesh *mesh, const Box *bounds, Vec3 point)
 {
     static const Vec3 directions[] = {
         {1, 0.0013713, 0.0007179},   {-1, 0.0031415, -0.0019321}, {0.0017711, 1, 0.0009173},
@@ -77,7 +77,7 @@ static bool is_odd(const Mesh *mesh, const Box *bounds, Vec3 point)
     return count % 2 == 1;
 }
 
-static double distance2(const Triangle *triangle, Vec3 point)
+double mesh_distance2(const Triangle *triangle, Vec3 point)
 {
     Vec3 to = vec3_sub(point, triangle->a);
     Vec3 normal = vec3_cross(triangle->ab, triangle->ac);
@@ -95,14 +95,14 @@ static bool is_near(const Mesh *mesh, Vec3 point, double reach)
     uint32_t i;
     Box around = box_with_ball(box_empty(), point, reach);
     for (BoxWalk walk = boxwalk_box(&mesh->tree, around); boxwalk_next(&walk, &i);)
-        if (distance2(&mesh->triangles[i], point) <= reach * reach)
+        if (mesh_distance2(&mesh->triangles[i], point) <= reach * reach)
             return true;
     return false;
 }
 
 static bool mesh_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    return is_odd(domain->mesh, &domain->own_bounds, point) ||
+    return mesh_is_odd(domain->mesh, &domain->own_bounds, point) ||
            (tolerance_mm > 0 && is_near(domain->mesh, point, tolerance_mm));
 }
 
@@ -215,24 +215,29 @@ static Status build(Domain *domain, const Soup *soup, Err *err)
     return STATUS_OK;
 }
 
-static Status mesh_load(Domain *domain, const char *values, Err *err)
+Status mesh_read(Domain *domain, double mm, Err *err)
 {
     domain->dimension = 3;
-    TRY(domain_load_file_name(domain, values, err));
     const char *extension = file_extension(domain->file);
     if (strcasecmp(extension, "stl") != 0 && strcasecmp(extension, "obj") != 0)
         return err_set(err, STATUS_USAGE, "the name of a mesh must end in .stl or .obj");
     TRY(mem_calloc(&domain->mesh, 1, sizeof *domain->mesh, "meshes", err));
     Soup soup = {0};
     Status status = STATUS_OK;
-    TRY_GOTO(soup_read(&soup, domain->file, domain->size[0], err));
+    TRY_GOTO(soup_read(&soup, domain->file, mm, err));
     status = build(domain, &soup, err);
 done:
     free(soup.corners);
     return status;
 }
 
-static void mesh_release(Domain *domain)
+static Status mesh_load(Domain *domain, const char *values, Err *err)
+{
+    TRY(domain_load_file_name(domain, values, err));
+    return mesh_read(domain, domain->size[0], err);
+}
+
+void mesh_release(Domain *domain)
 {
     if (!domain->mesh)
         return;

@@ -15,6 +15,16 @@ struct Mesh {
     BoxTree tree; /* over the triangles; owned */
 };
 
+/* Reads domain->file, each unit of it `mm`, and fills mesh, dimension, bounds, volume and inlet.
+ * STATUS_INPUT for what is no closed surface. */
+MUST_CHECK Status mesh_read(Domain *domain, double mm, Err *err);
+void mesh_release(Domain *domain);
+
+/* Whether the point is inside the surface, whose bounds these are. */
+bool mesh_is_odd(const Mesh *mesh, const Box *bounds, Vec3 point);
+/* The squared distance of a point from a triangle, mm^2. */
+double mesh_distance2(const Triangle *triangle, Vec3 point);
+
 /* Triangles as a file holds them: three corners each, nothing shared. */
 typedef struct Soup {
     Vec3 *corners; /* owned */

@@ -138,6 +138,20 @@ bool connection_optimise(const Network *net, const Rules *rules, Vec3 terminal,
     return true;
 }
 
+bool connection_settle(const Network *net, const Rules *rules, const Domain *domain, Vec3 terminal,
+                       Connection *connection)
+{
+    if (network_is_given(net, connection->segment))
+        return true;
+    Bifurcation problem = bifurcation_of(net, rules, connection->segment, terminal);
+    BifurcationState state;
+    bifurcation_at(&net->law, &problem, domain_settle(domain, connection->bifurcation), &state);
+    connection->price = state.price;
+    connection->bifurcation = state.place;
+    memcpy(connection->radius, state.radius, sizeof state.radius);
+    return isfinite(state.price) && bifurcation_is_long_enough(&problem, &state);
+}
+
 GridItem connection_item(const Network *net, const Grid *grid, const Rules *rules,
                          const Connection *connection, Vec3 terminal, int part)
 {

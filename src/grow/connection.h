@@ -41,6 +41,11 @@ bool connection_estimate(const Network *net, const Rules *rules, int32_t segment
 bool connection_optimise(const Network *net, const Rules *rules, Vec3 terminal,
                          Connection *connection);
 
+/* Moves the bifurcation of an optimised connection to the surface that the domain is; one on a
+ * given segment stays. False when a segment then is shorter than the rules allow. */
+bool connection_settle(const Network *net, const Rules *rules, const Domain *domain, Vec3 terminal,
+                       Connection *connection);
+
 /* Whether the three segments of an optimised connection lie in the domain. In a convex domain they
  * do when the bifurcation does; the two parts of a given segment may lie anywhere. */
 bool connection_is_inside(const Network *net, const Domain *domain, const Connection *connection,

@@ -50,7 +50,7 @@ static const double least_thickness = 1.0 / 64;
 typedef struct Growth {
     const GrowParams *params;
     const Domain *domain;
-    double size; /* of the domain's box, mm */
+    double size; /* of the domain's box, mm; on a surface, of vessels */
     Network net;
     Forest forest;
     Grid grid;
@@ -242,6 +242,8 @@ static Status start_trees(Growth *growth, Err *err)
     for (size_t k = 0; k < params->inlets; k++)
         network_append(net, -1, params->inlet[k]);
     TRY(first_segments_add(net, growth->domain, &growth->random, &distance, &growth->tosses, err));
+    if (domain_settles(growth->domain)) /* where no straight vessel is longer */
+        growth->size = distance;
     set_toss_distance(growth, distance);
     return STATUS_OK;
 }

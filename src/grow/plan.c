@@ -81,13 +81,17 @@ static PlanState choose(const Site *site, Planner *planner, Box zone, Vec3 termi
                         Connection *out)
 {
     Connection *connection = planner->connection;
-    bool inside = false, outside = false;
+    bool inside = false, outside = false, settles = domain_settles(site->domain);
     for (int count = offers.count; count > 0; count--) {
         int best = cheapest(connection, count);
         *out = connection[best];
         connection[best] = connection[count - 1];
         if (!connection_optimise(site->net, site->rules, terminal, out))
             continue;
+        if (settles && !connection_settle(site->net, site->rules, site->domain, terminal, out)) {
+            outside = true; /* no place on the surface is good */
+            continue;
+        }
         if (!connection_is_inside(site->net, site->domain, out, terminal)) {
             outside = true;
             continue;

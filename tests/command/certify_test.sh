@@ -123,4 +123,10 @@ test_says_what_has_no_bound() {
     [ ! -e none.cert ] || fail "expected no certificate of a tree without a bound"
 }
 
+test_annealing_finds_the_best_tree_of_each_small_point_set() {
+    run_ok "$(dirname "$CHECK_TREE")/optima/optima" "$REPO/tests/optima/sets.txt" 5 5
+    expect_stdout '^\| disc \| 5 \| 105 \| 20 \|'
+    expect_stdout '^The best tree of 40 of 40\.$'
+}
+
 run_tests "$@"

@@ -281,4 +281,24 @@ test_a_folder_is_not_an_output() {
     expect_only folder.swc
 }
 
+# write_cube FILE HALF: the surface of a cube; without its top with a third argument.
+write_cube() {
+    awk -v r="$2" 'BEGIN { for (i = 0; i < 8; i++) print "v", (i % 2 ? r : -r), (int(i / 2) % 2 ? r : -r), (i >= 4 ? r : -r) }' >"$1"
+    printf 'f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 1 5 7 3\nf 2 4 8 6\n' >>"$1"
+    [ -n "${3:-}" ] || printf 'f 3 7 8 4\n' >>"$1"
+}
+
+test_trees_grow_on_surfaces() {
+    write_cube cube.obj 31.5
+    run_ok corcast grow --domain surface:cube.obj,1.25 --terminals 400 --q-perf 20 -o tree.swc
+    grep -v '^#' tree.swc | awk '{ m = 0; for (k = 3; k <= 5; k++) { a = $k < 0 ? -$k : $k; if (a > m) m = a }
+        if (m < 31.5 - 1.25 - 0.55 || m > 31.5 - 1.25 + 0.55) { print "node " $1 " is at " m; exit } }' >off
+    [ ! -s off ] || fail "expected all nodes on the surface: $(cat off)"
+    grep -qx '# domain: surface:cube.obj,1.25' tree.swc || fail "expected the surface in the header"
+    write_cube open.obj 31.5 open
+    run corcast grow --domain surface:open.obj --terminals 40 -o refused.swc
+    expect_status 2
+    expect_sentence 'open.obj: the mesh is open: 4 edges have a triangle on one side only; close its holes'
+}
+
 run_tests "$@"

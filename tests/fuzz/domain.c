@@ -11,7 +11,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     Domain domain;
     /* Names of files are the matter of the other harnesses. */
     bool names_file = strncmp(spec, "mask", 4) == 0 || strncmp(spec, "mesh", 4) == 0 ||
-                      strncmp(spec, "polygon", 7) == 0;
+                      strncmp(spec, "polygon", 7) == 0 || strncmp(spec, "surface", 7) == 0;
     if (!names_file && domain_parse(&domain, spec, &err) == STATUS_OK) {
         Text text = TEXT_INIT, again = TEXT_INIT;
         Domain second;

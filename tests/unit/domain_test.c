@@ -674,6 +674,67 @@ static void a_hull_in_the_plane_has_two_dimensions(void **state)
     assert_int_equal(domain_of_tubes(&hull, &flat, 1, 0, "flat.swc", NULL), STATUS_USAGE);
 }
 
+/* How deep below the surface of the cube of +-20 mm about the middle a point is. */
+static double depth_in_cube(Vec3 p)
+{
+    double x = fabs(p.x), y = fabs(p.y), z = fabs(p.z), most = fmax(x, fmax(y, z));
+    if (most <= 20)
+        return 20 - most;
+    return -vec3_length(vec3(fmax(x - 20, 0), fmax(y - 20, 0), fmax(z - 20, 0)));
+}
+
+static void write_cube(void)
+{
+    Text text = TEXT_INIT;
+    put_box(&text, -20, 20, 1, false);
+    write_text("hollow.obj", text.chars);
+    text_release(&text);
+}
+
+static void a_surface_is_a_layer_at_its_offset(void **state)
+{
+    (void)state;
+    write_cube();
+    static const struct {
+        const char *spec;
+        double offset;
+    } cases[] = {{"surface:hollow.obj", 0},
+                 {"surface:hollow.obj,1.75", 1.75},
+                 {"surface:hollow.obj,-2.5", -2.5}};
+    double half = 0.005 * sqrt(3) * 40;
+    for (int k = 0; k < 3; k++) {
+        Domain layer = parse(cases[k].spec);
+        Random random;
+        random_seed(&random, 41);
+        assert_true(fabs(layer.volume / (6 * 1600 * 2 * half) - 1) < 1e-9);
+        assert_true(fabs(depth_in_cube(layer.inlet) - cases[k].offset) < 1e-9);
+        for (int i = 0; i < 3000; i++) {
+            Vec3 at = domain_sample(&layer, &random);
+            assert_true(fabs(depth_in_cube(at) - cases[k].offset) <= half);
+            Vec3 off = vec3_add(
+                at, vec3(random_uniform(&random) - 0.5, random_uniform(&random) - 0.5, 0.3));
+            double apart = fabs(depth_in_cube(off) - cases[k].offset);
+            if (fabs(apart - half) > 1e-9)
+                assert_int_equal(domain_inside(&layer, off, 0), apart < half);
+            if (apart < half)
+                assert_true(fabs(depth_in_cube(domain_settle(&layer, off)) - cases[k].offset) <
+                            (k < 2 ? 1e-6 : half));
+            Vec3 to = domain_sample(&layer, &random);
+            bool whole = true;
+            for (int n = 0; n <= 200 && whole; n++)
+                whole = fabs(depth_in_cube(vec3_add_scaled(at, vec3_sub(to, at), n / 200.0)) -
+                             cases[k].offset) <= half * (1 + 1.0 / 32);
+            assert_true(whole || !domain_holds_segment(&layer, at, to));
+        }
+        domain_release(&layer);
+    }
+    Domain domain;
+    Err err;
+    assert_int_equal(domain_parse(&domain, "surface:hollow.obj,20", &err), STATUS_USAGE);
+    assert_non_null(
+        strstr(err.text, "the OFFSET 20 mm is half of what the mesh is across, 40 mm, or more"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -692,6 +753,7 @@ int main(void)
         cmocka_unit_test(a_hull_is_all_that_is_near_its_tubes),
         cmocka_unit_test(a_hull_holds_segments_that_never_leave_it),
         cmocka_unit_test(a_hull_in_the_plane_has_two_dimensions),
+        cmocka_unit_test(a_surface_is_a_layer_at_its_offset),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);
 }

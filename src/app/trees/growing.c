@@ -24,7 +24,7 @@ static const Option rows[] = {
      .help =
          "tissue, mm: disc:R, ball:R, rect:W,H, box:A,B,C, ellipsoid:A,B,C, "
          "shell:A,B,C,THICKNESS, polygon:FILE, mask:FILE, mesh:FILE, hull:MM (what is within MM "
-         "of the tree of --from); @X,Y,Z behind it places it"},
+         "of the tree of --from), surface:FILE[,OFFSET]; @X,Y,Z behind it places it"},
     {.name = "inlet",
      SETS(VECTORS, Growing, inlet),
      .group = GROUP_TREE,

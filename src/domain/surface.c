@@ -1,0 +1,207 @@
+/* A layer along a closed surface: all that is within `half` of the surface at OFFSET mm below it,
+ * half a hundredth of the diagonal of its bounds. Vessels are straight, so the layer needs a
+ * thickness; terminals and forks are on the surface in its middle, or as near as a mesh lets them:
+ * below a concave edge the offset surface has no points.
+ *
+ * The distance from a surface changes along a way by no more than the way is long. So a segment is
+ * followed in steps as long as the point they begin at is deep in the layer, but at least a 64th of
+ * its half: it may leave the layer by that much. */
+#include "domain/kinds.h"
+#include "domain/mesh.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const double half_share = 0.005;
+static const double least_step = 1.0 / 64;
+/* How often a point is moved towards the surface. */
+enum { SETTLING = 4 };
+
+struct Surface {
+    double half;  /* of the layer's thickness, mm */
+    double *area; /* of the triangles up to and including each, summed up, mm^2; owned */
+};
+
+static Vec3 normal_of(const Triangle *triangle)
+{
+    return vec3_normalized(vec3_cross(triangle->ab, triangle->ac));
+}
+
+/* How deep below the surface the point is, mm, above 0 inside it; INFINITY when it is farther than
+ * `reach`. `nearest` gets the triangle. */
+static double depth_of(const Domain *domain, Vec3 point, double reach, uint32_t *nearest)
+{
+    const Mesh *mesh = domain->mesh;
+    double least2 = reach * reach;
+    bool found = false;
+    uint32_t i;
+    Box around = box_with_ball(box_empty(), point, reach);
+    for (BoxWalk walk = boxwalk_box(&mesh->tree, around); boxwalk_next(&walk, &i);) {
+        double apart2 = mesh_distance2(&mesh->triangles[i], point);
+        if (apart2 > least2 || (found && apart2 == least2))
+            continue;
+        least2 = apart2;
+        *nearest = i;
+        found = true;
+    }
+    if (!found)
+        return INFINITY;
+    return mesh_is_odd(mesh, &domain->own_bounds, point) ? sqrt(least2) : -sqrt(least2);
+}
+
+/* How far the point is from the faces of the layer; below 0 outside. */
+static double clearance_of(const Domain *domain, Vec3 point, double tolerance)
+{
+    double offset = domain->size[0], half = domain->surface->half + tolerance;
+    uint32_t nearest;
+    double depth = depth_of(domain, point, fabs(offset) + half, &nearest);
+    /* At a depth of 0 both sides are near, whatever the sign says. */
+    double off = fabs(offset) <= half ? fmin(fabs(depth - offset), fabs(-depth - offset))
+                                      : fabs(depth - offset);
+    return half - off;
+}
+
+static bool surface_inside(const Domain *domain, Vec3 point, double tolerance_mm)
+{
+    return clearance_of(domain, point, tolerance_mm) >= 0;
+}
+
+static bool surface_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
+{
+    Vec3 along = vec3_sub(b, a);
+    double length = vec3_length(along), least = least_step * domain->surface->half;
+    for (double at = 0; at < length;) {
+        double clearance = clearance_of(domain, vec3_add_scaled(a, along, at / length), least);
+        if (clearance < 0)
+            return false;
+        at += fmax(clearance, least);
+    }
+    return clearance_of(domain, b, least) >= 0;
+}
+
+static Vec3 surface_settle(const Domain *domain, Vec3 point)
+{
+    double reach = fabs(domain->size[0]) + 4 * domain->surface->half;
+    for (int k = 0; k < SETTLING; k++) {
+        uint32_t nearest;
+        double depth = depth_of(domain, point, reach, &nearest);
+        if (!isfinite(depth))
+            break;
+        const Triangle *triangle = &domain->mesh->triangles[nearest];
+        point = vec3_add_scaled(point, normal_of(triangle), depth - domain->size[0]);
+    }
+    return point;
+}
+
+static Vec3 surface_sample(const Domain *domain, Random *random)
+{
+    const struct Surface *surface = domain->surface;
+    const Mesh *mesh = domain->mesh;
+    double drawn = random_uniform(random) * surface->area[mesh->n - 1];
+    size_t low = 0, high = mesh->n - 1;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (surface->area[middle] <= drawn)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    const Triangle *triangle = &mesh->triangles[low];
+    double u = random_uniform(random), v = random_uniform(random);
+    bool beyond = u + v > 1;
+    Vec3 point = vec3_add_scaled(triangle->a, triangle->ab, beyond ? 1 - u : u);
+    point = vec3_add_scaled(point, triangle->ac, beyond ? 1 - v : v);
+    return vec3_add_scaled(point, normal_of(triangle), -domain->size[0]);
+}
+
+/* ---- reading ----------------------------------------------------------------------------------
+ */
+
+/* Takes the number behind the last comma off the text. */
+static bool take_last(char *text, double *number)
+{
+    char *comma = strrchr(text, ',');
+    if (!comma || !number_parse(comma + 1, number))
+        return false;
+    *comma = '\0';
+    return true;
+}
+
+/* Reads FILE[,OFFSET[,MM]] into file, size and n_sizes. */
+static Status read_values(Domain *domain, const char *values, Err *err)
+{
+    double number[2] = {0, 1};
+    TRY(mem_strdup(&domain->file, values, err));
+    while (domain->n_sizes < 2 && take_last(domain->file, &number[domain->n_sizes]))
+        domain->n_sizes++;
+    domain->size[0] = domain->n_sizes == 2 ? number[1] : number[0];
+    domain->size[1] = domain->n_sizes == 2 ? number[0] : 1;
+    domain->unit_is_guessed = domain->n_sizes < 2;
+    if (*domain->file == '\0')
+        return err_set(err, STATUS_USAGE, "the name of a file is missing; use surface:%s",
+                       domain->ops->parameters);
+    return STATUS_OK;
+}
+
+static Status sum_areas(const Mesh *mesh, struct Surface *surface, double *sum, Err *err)
+{
+    TRY(mem_calloc(&surface->area, mesh->n, sizeof *surface->area, "triangles", err));
+    *sum = 0;
+    for (size_t i = 0; i < mesh->n; i++) {
+        const Triangle *triangle = &mesh->triangles[i];
+        *sum += vec3_length(vec3_cross(triangle->ab, triangle->ac)) / 2;
+        surface->area[i] = *sum;
+    }
+    return STATUS_OK;
+}
+
+/* Fills in what is known beside the mesh. */
+static Status build(Domain *domain, Err *err)
+{
+    struct Surface *surface = domain->surface;
+    double area, offset = domain->size[0];
+    Box bounds = domain->bounds;
+    surface->half = half_share * vec3_distance(bounds.low, bounds.high);
+    TRY(sum_areas(domain->mesh, surface, &area, err));
+    Vec3 size = vec3_sub(bounds.high, bounds.low);
+    double thinnest = fmin(size.x, fmin(size.y, size.z));
+    if (!(offset < thinnest / 2))
+        return err_set(err, STATUS_USAGE,
+                       "the OFFSET %.9g mm is half of what the mesh is across, %.4g mm, or more",
+                       offset, thinnest);
+    domain->volume = area * 2 * surface->half;
+    domain->own_bounds = bounds;
+    domain->inlet = surface_settle(domain, domain->inlet);
+    domain->bounds = box_padded(bounds, surface->half + fmax(-offset, 0));
+    return STATUS_OK;
+}
+
+static Status surface_load(Domain *domain, const char *values, Err *err)
+{
+    TRY(read_values(domain, values, err));
+    double mm = domain->size[1];
+    if (!(fabs(domain->size[0]) <= DOMAIN_MAX_MM && mm >= DOMAIN_MIN_MM && mm <= DOMAIN_MAX_MM))
+        return err_set(err, STATUS_USAGE, "OFFSET and MM must be numbers of mm up to %g",
+                       DOMAIN_MAX_MM);
+    TRY(mesh_read(domain, mm, err));
+    TRY(mem_calloc(&domain->surface, 1, sizeof *domain->surface, "surfaces", err));
+    return build(domain, err);
+}
+
+static void surface_release(Domain *domain)
+{
+    mesh_release(domain);
+    if (domain->surface)
+        free(domain->surface->area);
+    free(domain->surface);
+}
+
+const DomainOps surface_ops = {
+    .name = "surface",
+    .parameters = "FILE[,OFFSET[,MM]]",
+    .load = surface_load,
+    .inside = surface_inside,
+    .holds_segment = surface_holds_segment,
+    .sample = surface_sample,
+    .settle = surface_settle,
+    .release = surface_release,
+};
