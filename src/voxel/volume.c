@@ -244,7 +244,8 @@ static Status make_header(const VolumeStream *stream, const VoxelGrid *grid, boo
     stream->format->put_header(grid, stream->type, parts, about, &header);
     Status status = text_flush(&header, err);
     text_release(&header);
-    if (fclose(memory) != 0 && status == STATUS_OK)
+    /* Closing tells only by NULL that there was no room for the bytes. */
+    if ((fclose(memory) != 0 || !*bytes) && status == STATUS_OK)
         status = mem_out_of("for", stream->path, err);
     return status;
 }
