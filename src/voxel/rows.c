@@ -185,23 +185,22 @@ static void fill_run(const Row *row, int64_t x, int64_t end)
     row->rows->n_filled += end - x;
 }
 
-/* Where the run of voxels that one of the active spans holds from x on ends; x: there is none. Of
- * labels, the first such segment's run, as long as no other begins. */
+/* Before which voxel a run of those that bodies hold ends that begins at x; x: there is none. Of
+ * labels it is one voxel, and *owner the first segment that holds it. */
 static int64_t full_end(const Row *row, size_t n_active, int64_t x, uint32_t *owner)
 {
     const RowRoom *room = row->room;
-    const Body *body = row->source->bodies->body;
     int64_t end = x;
     *owner = UINT32_MAX;
     for (size_t i = 0; i < n_active; i++) {
         const Span *span = &room->spans[room->active[i]];
-        uint32_t segment = body[span->body].segment;
+        uint32_t segment = row->source->bodies->body[span->body].segment;
         if (span->full_first > x || span->full_end <= x)
             continue;
-        end = !row->labels && span->full_end > end ? span->full_end : end > x ? end : x + 1;
+        end = span->full_end > end ? span->full_end : end;
         *owner = segment < *owner ? segment : *owner;
     }
-    return end;
+    return row->labels && end > x ? x + 1 : end;
 }
 
 static void list_active(RowRoom *room, size_t n_active)
@@ -237,8 +236,8 @@ static void sweep(const Row *row, size_t from, size_t to)
         int64_t end = full_end(row, n_active, x, &owner);
         if (end > x) {
             fill_run(row, x, end);
-            for (int64_t i = x; row->labels && i < end; i++)
-                row->labels[i] = row->source->labels[owner];
+            if (row->labels)
+                row->labels[x] = row->source->labels[owner];
             x = end;
         } else {
             list_active(room, n_active);

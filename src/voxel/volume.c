@@ -159,6 +159,7 @@ static void put_df3(const VoxelGrid *grid, SampleType type, bool parts, const ch
 /* ---- formats --------------------------------------------------------------------------------- */
 
 enum {
+    MOST_IN_A_ROW = 1 << 28, /* zlib takes no part of 4 GB */
     ANY_SAMPLE = 1 << SAMPLE_8 | 1 << SAMPLE_16 | 1 << SAMPLE_FLOAT | 1 << SAMPLE_32,
     DENSITIES = 1 << SAMPLE_8 | 1 << SAMPLE_16
 };
@@ -178,13 +179,13 @@ const VolumeFormat volume_formats[] = {
      .put_header = put_nifti},
     {.suffix = ".nrrd",
      .description = "NRRD, deflated",
-     .most = INT32_MAX,
+     .most = MOST_IN_A_ROW,
      .types = ANY_SAMPLE,
      .deflated = true,
      .put_header = put_nrrd},
     {.suffix = ".mha",
      .description = "MetaImage",
-     .most = INT32_MAX,
+     .most = MOST_IN_A_ROW,
      .types = ANY_SAMPLE,
      .put_header = put_meta},
     {.suffix = ".df3",
