@@ -91,6 +91,7 @@ test_make_install_puts_program_templates_and_documents_under_the_prefix() {
         done) || exit 1
     grow_tree 5
     run_ok stage/opt/corcast/bin/corcast scene tree.swc -o installed.pov
+    [ ! -e "$REPO/build/viewer/viewer.js" ] || run_ok stage/opt/corcast/bin/corcast export tree.swc -o installed.html
     run_ok make -C "$REPO" --no-print-directory uninstall "DESTDIR=$PWD/stage" PREFIX=/opt/corcast
     [ -z "$(find stage -type f)" ] || fail "expected nothing to be left, found $(find stage -type f)"
 }
@@ -138,6 +139,18 @@ test_deps_says_what_is_needed_when_it_is_neither_root_nor_has_sudo() {
     expect_status 3
     grep -q 'no sudo' stderr || fail "expected the reason on standard error$(said)"
     grep -q 'libjansson-dev' stderr || fail "expected the packages to be named$(said)"
+}
+
+test_without_npm_or_its_registry_the_viewer_is_not_built_and_the_reason_said() {
+    bare_path dirname mkdir cmp cp grep rm
+    run env PATH="$PWD/bin" "$REPO/viewer/bundle" made
+    expect_status 3
+    expect_sentence 'npm is not installed; export to \.html needs it, nothing else does'
+    command -v npm >npm.path && command -v esbuild >esbuild.path || skip "npm and esbuild are not installed"
+    run env npm_config_registry=http://127.0.0.1:9 npm_config_cache="$PWD/cache" npm_config_fetch_retries=0 "$REPO/viewer/bundle" made
+    expect_status 3
+    expect_sentence 'npm cannot install three.js: npm error'
+    [ ! -e made/viewer.js ] || fail "expected no viewer"
 }
 
 test_deps_touches_nothing_when_everything_is_installed() {

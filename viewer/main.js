@@ -23,11 +23,20 @@ let scale = null, wanted = false, playing = 0, written = 0;
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const canvas = find("stage");
-const renderer = new WebGLRenderer({ canvas, antialias: true });
+const renderer = makeRenderer();
 renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
 const vessels = new Vessels(tree), panel = new Panel(tree), shade = new Shade(renderer, vessels);
 const view = new View(canvas, tree, () => { wantPicture(); wantAddress(); });
 vessels.set("open", shade.sum.texture);
+
+function makeRenderer() {
+  try {
+    return new WebGLRenderer({ canvas, antialias: true });
+  } catch (error) {
+    find("failed").hidden = false;
+    throw error;
+  }
+}
 
 // ---- pictures -----------------------------------------------------------------------------------
 
@@ -396,6 +405,7 @@ function listen() {
   document.addEventListener("keydown", key);
   window.addEventListener("resize", resize);
   window.addEventListener("hashchange", readAddress);
+  canvas.addEventListener("webglcontextrestored", wantPicture);
   dark.addEventListener("change", takeScheme);
 }
 

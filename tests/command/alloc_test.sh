@@ -117,6 +117,7 @@ test_failed_allocations_in_export() {
     done
     fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 --color-by flow -o o.glb
     fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 --color-by flow -o o.3mf
+    [ ! -e "$REPO/build/viewer/viewer.js" ] || fail_each 17 one export "$DATA/bifurcation.swc" --color-by radius -o o.html
 }
 
 test_failed_allocations_in_volumes() {

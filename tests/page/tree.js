@@ -2,9 +2,10 @@
 //
 //   node tree.js CHROMIUM EXPECTED.json
 //
-// EXPECTED: {page, series, address, options, width, height, exact: P.ppm, ids: I.ppm, segments: {id: {field: value}}}: the page
-// of a tree and one of a tree whose field p changes; a view as the address tells it, as options of
-// render, and what corcast drew of it, colours on #fbfaf7 and the ids of segments. Prints one line for each expectation that fails; exit status 1 if any does.
+// EXPECTED: {page, series, address, options, width, height, exact: P.ppm, ids: I.ppm, segments: {id: {field: value}}}: the
+// page of a tree and one of a tree whose field p changes; a view as the address tells it and as options of render, and
+// what corcast drew of it, colours on #fbfaf7 and the ids of segments; values of all segments. Prints one line for each
+// expectation that fails; exit status 1 if any does.
 "use strict";
 const fs = require("fs");
 const { runIn } = require("./browser.js");
@@ -249,10 +250,18 @@ async function checkPhone() {
   check(tools[3] <= readout[2] && readout[3] <= side[2], "expected panels that do not cover each other");
 }
 
+// The reason is said where there is nothing to draw with.
+async function checkWithoutGraphics() {
+  await browser.send("Page.addScriptToEvaluateOnNewDocument", { source: "HTMLCanvasElement.prototype.getContext = () => null" });
+  await browser.open(expected.series);
+  check(await evaluate("document.getElementById('failed').checkVisibility()"), "expected it to be said that there is no WebGL");
+}
+
 runIn(chromium, ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"], async function (opened) {
   browser = opened;
   await browser.send("Emulation.setDeviceMetricsOverride",
     { width: expected.width, height: expected.height, deviceScaleFactor: 1, mobile: false });
   for (const part of [checkPicture, checkFields, checkKeys, checkHands, checkSaving, checkTime, checkShade, checkSchemes, checkPhone]) await part();
   browser.checkSilence();
+  await checkWithoutGraphics();
 });

@@ -107,6 +107,24 @@ static void text_grows_over_any_length(void **state)
     text_release(&text);
 }
 
+static void base64_is_that_of_rfc_4648(void **state)
+{
+    (void)state;
+    static const char *const vectors[][2] = {{"", ""},
+                                             {"f", "Zg=="},
+                                             {"fo", "Zm8="},
+                                             {"foo", "Zm9v"},
+                                             {"foob", "Zm9vYg=="},
+                                             {"foobar", "Zm9vYmFy"},
+                                             {"\xfb\xef\xff", "++//"}};
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+        Text text = TEXT_INIT;
+        text_base64(&text, vectors[i][0], strlen(vectors[i][0]));
+        assert_string_equal(text_chars(&text), vectors[i][1]);
+        text_release(&text);
+    }
+}
+
 static void a_text_with_a_stream_holds_only_what_is_not_written_yet(void **state)
 {
     (void)state;
@@ -576,6 +594,7 @@ int main(void)
         cmocka_unit_test(a_number_reads_as_strtod_reads_it),
         cmocka_unit_test(text_that_is_no_number_is_refused),
         cmocka_unit_test(text_grows_over_any_length),
+        cmocka_unit_test(base64_is_that_of_rfc_4648),
         cmocka_unit_test(a_text_with_a_stream_holds_only_what_is_not_written_yet),
         cmocka_unit_test(what_is_made_of_a_text_that_failed_fails_too),
         cmocka_unit_test(a_text_that_failed_is_no_json_and_one_that_is_not_there_is_null),
