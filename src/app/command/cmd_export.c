@@ -170,10 +170,26 @@ static Status read_print(ExportOptions *options, const Emitter *emitter, Err *er
     return STATUS_OK;
 }
 
+/* STATUS_USAGE for an option about the surface, of which some formats show none. */
+static Status refuse_surface(const Parsed *parsed, const char *shown, Err *err)
+{
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        const Option *option = setting->option;
+        if (setting->typed && option->group == GROUP_VESSELS &&
+            strcmp(option->name, "prune-radius") != 0)
+            return err_set(err, STATUS_USAGE, "--%s is for the surface; %s cylinders and balls",
+                           option->name, shown);
+    }
+    return STATUS_OK;
+}
+
 static Status export_volume(const ExportOptions *options, const VolumeFormat *format,
                             Parsed *parsed, Err *err)
 {
     PictureTree of;
+    TRY(refuse_surface(parsed, "volumes are of", err));
+    TRY(coloring_check_needs(&options->meshing.coloring, parsed, err));
     TRY(volumes_note(&options->volume, format, options->output, &parsed->files, err));
     TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, &of, err));
     Status status = volumes_write(&options->volume, format, &of, options->output, parsed, err);
@@ -181,26 +197,11 @@ static Status export_volume(const ExportOptions *options, const VolumeFormat *fo
     return status;
 }
 
-/* STATUS_USAGE for an option about the surface, of which a page has none. */
-static Status refuse_surface(const Parsed *parsed, Err *err)
-{
-    for (size_t i = 0; i < parsed->n_settings; i++) {
-        const Setting *setting = &parsed->settings[i];
-        const Option *option = setting->option;
-        if (setting->typed && option->group == GROUP_VESSELS &&
-            strcmp(option->name, "prune-radius") != 0)
-            return err_set(err, STATUS_USAGE,
-                           "--%s is for the surface; a page shows cylinders and balls",
-                           option->name);
-    }
-    return STATUS_OK;
-}
-
 static Status export_page(const ExportOptions *options, const Parsed *parsed, Err *err)
 {
     const Coloring *coloring = &options->meshing.coloring;
     PictureTree of;
-    TRY(refuse_surface(parsed, err));
+    TRY(refuse_surface(parsed, "a page shows", err));
     TRY(webpage_check_needs(coloring, parsed, err));
     TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
     Status status =

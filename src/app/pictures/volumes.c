@@ -49,24 +49,17 @@ static const Option volume_options[] = {
 
 const OptionTable volume_table = OPTION_TABLE(volume_options);
 
-/* Options of `export` about what is no volume. */
-static const char *const mesh_options[] = {
-    "model", "tolerance", "lod", "part-overlaps", "parts", "print", "look", "color-by",
-};
-
 Status volumes_check_needs(bool is_volume, const Parsed *parsed, Err *err)
 {
+    static const char of_colors[] = "is for formats with colours";
+    const OptionNeed colors[] = {
+        {"look", !is_volume, of_colors}, {"color-by", !is_volume, of_colors}, {0}};
     for (size_t i = 0; i < volume_table.n; i++) {
         const OptionNeed need[] = {
             {volume_table.options[i].name, is_volume, "is for volumes, as V.nii.gz"}, {0}};
         TRY(options_check_needs(parsed, need, err));
     }
-    for (size_t i = 0; i < sizeof mesh_options / sizeof *mesh_options; i++) {
-        const OptionNeed need[] = {
-            {mesh_options[i], !is_volume, "is for meshes; volumes are of rounded vessels"}, {0}};
-        TRY(options_check_needs(parsed, need, err));
-    }
-    return STATUS_OK;
+    return options_check_needs(parsed, colors, err);
 }
 
 void volumes_extensions(Text *out)
