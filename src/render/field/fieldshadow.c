@@ -110,7 +110,7 @@ static void free_shadow(void *of)
 static int tiles_for(const Camera *camera)
 {
     enum { LEAST = 16, MOST = 384 };
-    int side = (camera->width > camera->height ? camera->width : camera->height) / TILE_SIDE;
+    int side = (camera->width > camera->height ? camera->width : camera->height) / 12;
     return side < LEAST ? LEAST : side > MOST ? MOST : side;
 }
 

@@ -26,6 +26,10 @@
 #define RIM 0.998f
 #define SKIN 1.002f
 #define SURELY_BELOW (0.999f * LEVEL)
+/* What a term is outside the stretch where it counts, -ln of it, and how many may count. */
+#define FAINT (0.004f * LEVEL)
+#define MINUS_LOG_FAINT 7.5214609f
+#define MOST_PARTS 32
 
 /* Places, LANES of them, and the terms on the ways from there to the light. */
 typedef struct Departures {
@@ -84,6 +88,34 @@ LANE_FN Lanes most_beyond(const PacketTerm *term, Lanes z)
     return lanes_min(most, term->peak);
 }
 
+/* A term at a point, and no more than it is anywhere from there on. */
+typedef struct TermThere {
+    Lanes value, slope, most;
+} TermThere;
+
+/* The term falls for good where its computed slope says so and is right but for 2e-5 of its parts;
+ * where it recedes from both the axis' line and the end that it leaves; and where exp(-w^2) is next
+ * to nothing. It is complete. */
+LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
+{
+    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
+    Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), w_slope = -2.0f * w * term->w1;
+    TermThere there = {gauss, gauss * w_slope, lanes_set(0)};
+    LaneMask falls = w >= 0.0f;
+    if (!term->flat) {
+        Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
+        Lanes ends, ends_slope;
+        axial_factors(u, v, &ends, &ends_slope);
+        Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
+        there.value = gauss * ends;
+        there.slope = gauss * change;
+        falls &= lanes_select(term->u1 > 0.0f, v, u) < 0.0f;
+        falls |= (w > 4.8f) | ((change < 0.0f) & (ends > 0.02f));
+    }
+    there.most = lanes_select(falls, there.value, term->peak);
+    return there;
+}
+
 /* Phi at the places. Sets the margin for it. */
 LANE_FN PacketSample sample_places(const Departures *way, LaneMask open, Lanes *margin)
 {
@@ -111,6 +143,38 @@ LANE_FN PacketSample sample_places(const Departures *way, LaneMask open, Lanes *
     return sample;
 }
 
+/* Of the open lanes, those on which terms that overlap beyond z sum up to less than the level: a
+ * term counts with the most that it is beyond z on the stretch outside which it is below FAINT, and
+ * with FAINT elsewhere; their sum is largest where some stretch begins. */
+LANE_FN LaneMask lit_by_parts(const Departures *way, LaneMask open, Lanes z)
+{
+    const Packet *packet = &way->packet;
+    Lanes low[MOST_PARTS], high[MOST_PARTS], most[MOST_PARTS], worst = lanes_set(0);
+    int n = 0;
+    for (size_t i = 0; i < packet->n; i++) {
+        PacketTerm *term = &packet->terms[i];
+        Lanes here = most_beyond(term, z);
+        if (!lanes_any(open & (here > FAINT)))
+            continue;
+        if (n == MOST_PARTS)
+            return (LaneMask){0};
+        complete_term(term, packet->tile->perspective);
+        here = lanes_min(here, term_at(term, z).most);
+        Lanes beside2 = MINUS_LOG_FAINT - term->e2;
+        term_stretch(term, beside2, beside2 - 0.69314718f, &low[n], &high[n]);
+        low[n] = lanes_max(low[n] + term->z, z);
+        high[n] += term->z;
+        most[n++] = here;
+    }
+    for (int i = 0; i < n; i++) {
+        Lanes sum = lanes_set(0);
+        for (int j = 0; j < n; j++)
+            sum += lanes_select((low[j] <= low[i]) & (low[i] <= high[j]), most[j], lanes_set(0));
+        worst = lanes_max(worst, sum);
+    }
+    return open & (worst + FAINT * (float)packet->n < SURELY_BELOW);
+}
+
 /* Of the open lanes, those that are proven lit by what is at the places and beyond the first
  * stretch. */
 LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open)
@@ -132,7 +196,35 @@ LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open)
     Lanes sum = lanes_set(MARGIN_DROPPED + MARGIN_TERM * (float)packet->n);
     for (size_t i = 0; i < packet->n; i++)
         sum += most_beyond(&packet->terms[i], to);
-    return open & (sum < SURELY_BELOW);
+    LaneMask lit = open & (sum < SURELY_BELOW);
+    open &= ~lit;
+    return lanes_any(open) ? lit | lit_by_parts(way, open, to) : lit;
+}
+
+/* As sample_at, and the most that Phi is from z on. */
+LANE_FN PacketSample sample_departing(const Group *group, Lanes z, LaneMask live, Lanes *beyond)
+{
+    const Lanes far = lanes_set(1e30f);
+    float first = lanes_least(lanes_select(live, z, far));
+    float last = lanes_largest(lanes_select(live, z, -far));
+    PacketSample sample = {lanes_set(0), lanes_set(0), lanes_set(0), 1e30f};
+    *beyond = lanes_set(0);
+    for (size_t i = 0; i < group->n; i++) {
+        const PacketTerm *term = group->terms[i];
+        if (term->off < first || !matters(term, live))
+            continue;
+        if (term->on > last) {
+            sample.next = fminf(sample.next, term->on);
+            *beyond += term->peak;
+            continue;
+        }
+        TermThere there = term_at(term, z);
+        sample.phi += there.value;
+        sample.slope += there.slope;
+        sample.curvature += term->curvature;
+        *beyond += there.most;
+    }
+    return sample;
 }
 
 /* Marches the live lanes from z to `end`, or until they are proven dark or undecided; `leaving` are
@@ -141,7 +233,9 @@ LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving,
                             LaneMask *dark, LaneMask *unsure)
 {
     for (int steps = 0; lanes_any(live); steps++) {
-        PacketSample at = sample_at(group, z, live);
+        Lanes beyond;
+        PacketSample at = sample_departing(group, z, live, &beyond);
+        live &= ~(beyond + group->margin < SURELY_BELOW);
         leaving &= at.phi > RIM * LEVEL;
         Lanes level = lanes_select(leaving, lanes_set(SKIN * LEVEL), lanes_set(LEVEL));
         Lanes lack = level - at.phi, safe = lack - group->margin, slope = at.slope;
@@ -160,12 +254,6 @@ LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving,
         *unsure |= stuck;
         live &= ~stuck & (to <= end);
         z = lanes_select(live, to, z);
-        if (!lanes_any(live))
-            break;
-        Lanes beyond = lanes_set(0);
-        for (size_t i = 0; i < group->n; i++)
-            beyond += most_beyond(group->terms[i], z);
-        live &= ~(beyond + group->margin < SURELY_BELOW);
     }
 }
 
@@ -283,6 +371,7 @@ LANE_TARGET void SHADOW_KERNEL(const FieldTile *tile, TileWork *work, FieldPlace
              open &= open - 1)
             numbers[left++] = own[__builtin_ctz(open)];
     }
+
     for (int first = 0; first < left; first += LANES)
         decide_by_march(places, numbers + first, left - first < LANES ? left - first : LANES, &way);
 }

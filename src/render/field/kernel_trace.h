@@ -195,6 +195,14 @@ LANE_FN void add_to_packet(Packet *packet, const TileTerm *tile_term)
     packet->n++;
 }
 
+/* Sets where the ray is nearest to the ends. */
+LANE_FN void place_ends(PacketTerm *term)
+{
+    Lanes across = term->w0 * term->w1;
+    term->end_z[0] = -lanes_fma(term->u0, term->u1, across) * term->inverse_speed2;
+    term->end_z[1] = lanes_fma(term->v0, term->u1, -across) * term->inverse_speed2;
+}
+
 /* Sets what only packets need that may hit something. */
 LANE_FN void complete_term(PacketTerm *term, bool perspective)
 {
@@ -208,9 +216,7 @@ LANE_FN void complete_term(PacketTerm *term, bool perspective)
         term->spare -= lanes_log(factor);
         term->half_gauss = lanes_exp_minus(term->e2) * 0.5f;
     }
-    Lanes across = term->w0 * term->w1;
-    term->end_z[0] = -lanes_fma(term->u0, term->u1, across) * term->inverse_speed2;
-    term->end_z[1] = lanes_fma(term->v0, term->u1, -across) * term->inverse_speed2;
+    place_ends(term);
     term->flat = !perspective && fabsf(term->term->cosine) < 1e-8f;
     if (term->flat) {
         Lanes ends, ends_slope;
