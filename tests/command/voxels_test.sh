@@ -155,6 +155,13 @@ assert set(numpy.unique(trees)) == {0, 1}
 END
 }
 
+test_says_that_a_segment_with_the_ends_of_a_thicker_one_has_no_voxels() {
+    printf '1 3 0 0 0 0.9 -1\n2 3 10 0 0 0.9 1\n3 3 10 0 0 0.4 1\n' >s.swc
+    run_ok corcast export s.swc -o s.nii.gz --voxel 0.5 --labels segment --quiet
+    expect_sentence '1 segments have both ends of thicker ones and no voxels'
+    expect_json s.nii.gz.json '.segments == 2 and .segments_within_others == 1'
+}
+
 test_ids_beyond_16_bits_take_32() {
     printf '65535 3 0 0 0 0.9 -1\n65537 3 10 0 0 0.9 65535\n' >big.swc
     run_ok corcast export big.swc -o b.nii.gz --voxel 0.5 --labels segment --quiet

@@ -142,6 +142,7 @@ typedef struct Volumes {
     const VolumeOptions *options;
     const PictureTree *of;
     Geometry geometry;
+    size_t within;    /* segments that have both ends of thicker ones */
     uint32_t *labels; /* of segments; owned */
     uint32_t most_label;
     VoxelParams params;
@@ -159,6 +160,12 @@ static Status take_geometry(Volumes *made, Err *err)
     if (report.dropped)
         fprintf(stderr, "corcast: %zu segments have no length or no radius and are left out\n",
                 report.dropped);
+    made->within = made->geometry.drawn;
+    for (size_t i = 0; i < made->geometry.n_primitives; i++)
+        made->within -= made->geometry.primitives[i].kind == PRIMITIVE_CYLINDER;
+    if (made->within)
+        fprintf(stderr, "corcast: %zu segments have both ends of thicker ones and no voxels\n",
+                made->within);
     return STATUS_OK;
 }
 
@@ -304,6 +311,7 @@ static json_t *manifest(const Volumes *made, const char *command)
         {"first_voxel_mm", triple(first.x, first.y, first.z)},
         {"full", json_number(sample_full(made->streams[0].type))},
         {"segments", json_integer((json_int_t)made->geometry.drawn)},
+        {"segments_within_others", json_integer((json_int_t)made->within)},
         {"labels", json_text(label_kinds[made->options->labels])},
         {"labels_given_a_voxel", json_integer((json_int_t)report->claimed)},
         {"filled_voxels", json_integer(report->filled)},
