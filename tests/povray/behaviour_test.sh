@@ -298,4 +298,21 @@ test_povray_speaks_on_standard_error_and_exits_with_1_for_a_bad_scene() {
     expect_status 1
 }
 
+# A density file of 3 x 2 x 2 voxels: codes 10 to 120 of 255, x fastest; its light on 4 mm along z, 2 mm a voxel.
+test_media_sum_up_density_files_by_method_2_and_more_by_method_3() {
+    local method
+    printf '\0\3\0\2\0\2\12\24\36\50\62\74\106\120\132\144\156\170' >d.df3
+    for method in 2 3; do
+        draw 3x2 <<END
+$camera
+box { <-1.5, -1, -4>, <1.5, 1, 0> hollow pigment { rgbt 1 } interior { media {
+    emission 0.25 method $method intervals 1 samples 8
+    density { density_file df3 "d.df3" interpolate 0 scale <3, 2, 4> translate <-1.5, -1, -4> } } } }
+END
+        # Rows from the top: y = 1, then y = 0; 0.5 (below + above) / 255 of 65535.
+        [ $method = 3 ] || expect_codes 17990 20560 23130 10280 12850 15420
+    done
+    echo "$codes" | awk '{ exit !($1 > 17990 * 1.02 && $6 > 15420 * 1.02) }' || fail "expected more of method 3: $codes"
+}
+
 run_tests "$@"
