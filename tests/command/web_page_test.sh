@@ -76,8 +76,18 @@ test_more_segments_than_a_browser_turns_are_refused_with_the_radius_that_leaves_
     awk 'BEGIN { for (i = 1; i <= 200002; i++) print i, 3, i / 100, 0, 0, 1 - i / 400000, (i > 1 ? i - 1 : -1) }' >long.swc
     run corcast export long.swc -o page.html
     expect_status 2
-    expect_sentence 'long.swc: 200001 segments make a page of 1[89](\.[0-9]+)? MB, and a browser does not turn more than 200000; --prune-radius 0\.5 leaves'
+    expect_sentence 'long.swc: 200001 segments make a page of 17(\.[0-9]+)? MB, and a browser does not turn more than 200000; --prune-radius 0\.5 leaves'
     expect_only long.swc
+}
+
+test_values_of_more_moments_than_a_browser_opens_are_refused_with_their_size() {
+    awk 'BEGIN { printf "id,x,y,z,radius,parent"
+        for (k = 0; k < 130; k++) { printf ",p_%d", k; values = values ",1" }
+        for (i = 1; i <= 150000; i++) printf "\n%d,%g,0,0,1,%d%s", i, i / 100, (i > 1 ? i - 1 : -1), values }' >long.csv
+    run corcast export long.csv --quiet -o page.html
+    expect_status 2
+    expect_sentence 'the fields, 1[34][0-9] with all moments, make a page of 10[0-9](\.[0-9]+)? MB, .* 100 MB; leave columns'
+    expect_only long.csv
 }
 
 test_options_without_effect_on_a_page_are_refused() {

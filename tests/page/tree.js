@@ -179,9 +179,9 @@ async function checkKeys() {
 // Turned by hand; where motion is unwelcome it ends with the hand.
 async function checkHands() {
   await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-reduced-motion", value: "reduce" }] });
-  await browser.mouse("mousePressed", 500, 300);
-  await browser.mouse("mouseMoved", 560, 300, { buttons: 1, button: "left" });
-  await browser.mouse("mouseReleased", 560, 300);
+  await browser.mouse("mousePressed", 500, 150);
+  await browser.mouse("mouseMoved", 560, 150, { buttons: 1, button: "left" });
+  await browser.mouse("mouseReleased", 560, 150);
   await settled();
   const turned = await evaluate("location.hash");
   check(!turned.includes("turn=5,5&"), "expected a drag to turn the tree, got " + turned);
@@ -243,11 +243,20 @@ async function checkPhone() {
   await browser.send("Emulation.setDeviceMetricsOverride", { width: 390, height: 844, deviceScaleFactor: 1, mobile: true });
   await browser.open(expected.page, "field=flow&segment=40&shade=off");
   check(await evaluate("document.documentElement.scrollWidth") <= 390, "expected the page to fit a phone");
-  const cards = await evaluate("[...document.querySelectorAll('.card')].map((c) => { const b = c.getBoundingClientRect();" +
-    " return [c.id, b.left >= 0 && b.right <= 390 && b.top >= 0 && b.bottom <= 844, b.top, b.bottom]; })");
-  for (const [id, fits] of cards) check(fits, `expected ${id} to fit a phone`);
-  const [side, tools, readout] = ["side", "tools", "readout"].map((id) => cards.find((card) => card[0] === id));
-  check(tools[3] <= readout[2] && readout[3] <= side[2], "expected panels that do not cover each other");
+  check((await cards()).join() === "tools,readout", "expected the values of a segment in place of the controls, got " + await cards());
+  await browser.key("Escape");
+  check((await cards()).join() === "side,tools", "expected the controls back, got " + await cards());
+}
+
+// The panels that can be seen, each of which fits the window, and none of which covers another.
+async function cards() {
+  const boxes = await evaluate("[...document.querySelectorAll('.card')].filter((c) => c.checkVisibility({ visibilityProperty: true }))" +
+    ".map((c) => { const b = c.getBoundingClientRect(); return [c.id, b.left, b.top, b.right, b.bottom]; })");
+  for (const [id, left, top, right, bottom] of boxes)
+    check(left >= 0 && right <= 390 && top >= 0 && bottom <= 844, `expected ${id} to fit a phone`);
+  for (const a of boxes)
+    for (const b of boxes) check(a === b || a[4] <= b[2] || b[4] <= a[2], `expected ${a[0]} not to cover ${b[0]}`);
+  return boxes.map(([id]) => id);
 }
 
 // The reason is said where there is nothing to draw with.

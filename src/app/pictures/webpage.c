@@ -248,7 +248,7 @@ static Status radius_to_prune(const Tree *tree, double *radius_mm, Err *err)
 
 static Status check_count(const PictureTree *of, Err *err)
 {
-    const double bytes_each = 95;
+    const double bytes_each = 85;
     const size_t n = of->tree.n - count_roots(&of->tree);
     double radius_mm;
     char size[BYTES_TEXT_SIZE];
@@ -260,6 +260,25 @@ static Status check_count(const PictureTree *of, Err *err)
                    "more than %d; --prune-radius %.3g leaves about as many",
                    of->path, n, bytes_text((double)n * bytes_each, size), WEBPAGE_MOST_SEGMENTS,
                    radius_mm);
+}
+
+/* Of the values, as float in base64. */
+static Status check_bytes(const Webpage *page, Err *err)
+{
+    double bytes = 0;
+    size_t moments = 0;
+    char size[BYTES_TEXT_SIZE];
+    for (size_t i = 0; i < page->n_fields; i++) {
+        bytes += (double)page->fields[i].field.n * sizeof(float) * 4 / 3;
+        moments += page->fields[i].frames;
+    }
+    if (bytes <= WEBPAGE_MOST_BYTES)
+        return STATUS_OK;
+    return err_set(
+        err, STATUS_INFEASIBLE,
+        "%s: the fields, %zu with all moments, make a page of %s, and a browser does not "
+        "open more than %d MB; leave columns or moments out of the file",
+        page->of->path, moments, bytes_text(bytes, size), WEBPAGE_MOST_BYTES / 1000000);
 }
 
 /* The viewer's file in *path (owned). */
@@ -343,6 +362,7 @@ Status webpage_write(const Coloring *coloring, const char *look, const PictureTr
     TRY_GOTO(coloring_read_look(look, &page.look, err));
     TRY_GOTO(coloring_appearance(coloring, &tree, &page.look, &page.appearance, err));
     TRY_GOTO(add_fields(coloring, quiet, &page, err));
+    TRY_GOTO(check_bytes(&page, err));
     TRY_GOTO(read_maps(coloring->colormap, &page, err));
     status = write_page(coloring, look, &page, output, parsed, err);
 done:

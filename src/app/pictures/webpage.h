@@ -7,9 +7,9 @@
 #include "app/run/options.h"
 #include "base/base.h"
 
-/* A page holds no more segments than this, with which a browser draws several pictures a second
- * still, and which make a file of about 20 MB. */
-enum { WEBPAGE_MOST_SEGMENTS = 200000 };
+/* A page holds no more segments than this, which make a file of about 17 MB, and no more bytes of
+ * values. */
+enum { WEBPAGE_MOST_SEGMENTS = 200000, WEBPAGE_MOST_BYTES = 100000000 };
 
 /* STATUS_USAGE for an option of the command line about colours that has no effect on a page. Those
  * on blood have one, on the fields that it holds. */
@@ -17,8 +17,8 @@ MUST_CHECK Status webpage_check_needs(const Coloring *coloring, const Parsed *pa
 
 /* Writes the page about a tree to `output`: with all fields that can be derived, all columns of its
  * file and all colour maps, opened with what the coloring asks for. Says on standard error, unless
- * quiet, which fields are left out, and the size. STATUS_INFEASIBLE when there are too many
- * segments, STATUS_TOOL when the viewer was not built; errors as coloring_appearance and page_put
+ * quiet, which fields are left out. STATUS_INFEASIBLE when there are too many segments or
+ * moments, STATUS_TOOL when the viewer was not built; errors as coloring_appearance and page_put
  * have them. */
 MUST_CHECK Status webpage_write(const Coloring *coloring, const char *look, const PictureTree *of,
                                 const char *output, const Parsed *parsed, Err *err);
