@@ -58,9 +58,9 @@ static Status put_arrays(Text *out, void *context, Err *err)
 /* As the numbers of its letters, and a 0: the only form of text that VTK's XML has. */
 static void put_letters(Text *text, const char *chars)
 {
-    for (; *chars; chars++)
-        text_printf(text, "%d ", (unsigned char)*chars);
-    text_puts(text, "0\n");
+    for (const char *at = chars; at && *at; at++)
+        text_printf(text, "%d ", (unsigned char)*at);
+    text_puts(text, chars ? "0\n" : NULL);
 }
 
 static void add_texts(Values *values, const EmitParams *params)

@@ -120,6 +120,14 @@ test_failed_allocations_in_export() {
     [ ! -e "$REPO/build/viewer/viewer.js" ] || fail_each 17 one export "$DATA/bifurcation.swc" --color-by radius -o o.html
 }
 
+test_failed_allocations_in_export_of_parts_and_curves() {
+    fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o o.vtp
+    fail_each 9 many export "$DATA/bifurcation.swc" --tolerance 0.2 --wall 0.2 --tube-edge 1.5 --parts -o o.stl
+    fail_each 1 many export "$DATA/bifurcation.swc" --color-by flow -o o.py
+    fail_each 3 many export "$DATA/bifurcation.swc" --color-by flow -o o.usda
+    fail_each 3 many export "$DATA/bifurcation.swc" --lattice -o o.3mf
+}
+
 test_failed_allocations_in_volumes() {
     fail_each 1 many export "$DATA/bifurcation.swc" --voxel 6 --labels segment --centreline c.nii.gz -o o.nii.gz
     fail_each 7 many export "$DATA/bifurcation.swc" --voxel 6 --depth 16 -o o.df3
