@@ -1,20 +1,15 @@
 /* What made B of A, where that can be said for certain: each guess is a map of one picture onto the
- * other, and it is named when it explains the pictures, not when it merely resembles them. Guesses
- * about places come before those about colours. Shifts and gains are tried on a few hundred of the
- * pixels that differ, and only the one that fits them on all. */
-#include "verify/result.h"
+ * other, or a place, and it is named when it explains the pictures, not when it merely resembles
+ * them. Guesses about places come before those about colours, exact ones before those that leave
+ * something. All are tried on a few hundred of the pixels that differ, and only what fits those on
+ * all. Two faults at once have no sentence, unless one of them is a fiftieth of the other. */
+#include "verify/cause.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { SAMPLES = 256, REACH = 48, BLOCK = 64 };
-
-/* Pixels that differ, evenly spread over all that do. */
-typedef struct Samples {
-    PixelPlace at[SAMPLES];
-    int n;
-} Samples;
+enum { REACH = 48, BLOCK = 64 };
 
 static void take_block(const Picture *a, const Picture *b, int x, int y, size_t step, size_t *seen,
                        Samples *samples)
@@ -22,14 +17,14 @@ static void take_block(const Picture *a, const Picture *b, int x, int y, size_t 
     int end = x + BLOCK < a->width ? x + BLOCK : a->width;
     if (picture_rows_equal(a, b, y, x, end - x))
         return;
-    for (; x < end && samples->n < SAMPLES; x++)
+    for (; x < end && samples->n < CAUSE_SAMPLES; x++)
         if (!picture_rows_equal(a, b, y, x, 1) && (*seen)++ % step == 0)
             samples->at[samples->n++] = (PixelPlace){.x = x, .y = y};
 }
 
 static void choose_samples(const Picture *a, const Picture *b, size_t differing, Samples *samples)
 {
-    size_t step = (differing + SAMPLES - 1) / SAMPLES, seen = 0;
+    size_t step = (differing + CAUSE_SAMPLES - 1) / CAUSE_SAMPLES, seen = 0;
     samples->n = 0;
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width && !picture_rows_equal(a, b, y, 0, a->width); x += BLOCK)
@@ -42,46 +37,66 @@ static int code_at(const Picture *picture, int x, int y, int c)
     return picture_code(picture, pixel * (size_t)picture->channels + (size_t)c);
 }
 
+/* Whether what is left of the differences is at most a part of them. */
+static bool leaves(double before, double after, double part)
+{
+    return before > 0 && after <= part * before;
+}
+
 /* ---- turned, or with other channels ---------------------------------------------------------- */
 
 typedef struct Turn {
-    bool mirrored, upended, swapped; /* left and right, top and bottom, red and blue */
+    bool mirrored, upended;
+    int from[3]; /* the channel of A that each of B is */
     const char *sentence;
 } Turn;
 
-static bool is_turned(const Picture *a, const Picture *b, const Turn *turn)
+/* Adds the differences of a pixel of B without the turn and with it. */
+static void add_turned(const Picture *a, const Picture *b, const Turn *turn, int x, int y,
+                       double *before, double *after)
 {
-    int channels = a->channels;
-    for (int y = 0; y < a->height; y++)
-        for (int x = 0; x < a->width; x++)
-            for (int c = 0; c < channels; c++)
-                if (code_at(b, x, y, c) != code_at(a, turn->mirrored ? a->width - 1 - x : x,
-                                                   turn->upended ? a->height - 1 - y : y,
-                                                   turn->swapped ? channels - 1 - c : c))
-                    return false;
-    return true;
+    int u = turn->mirrored ? a->width - 1 - x : x, v = turn->upended ? a->height - 1 - y : y;
+    for (int c = 0; c < a->channels; c++) {
+        int code = code_at(b, x, y, c);
+        *before += abs(code - code_at(a, x, y, c));
+        *after += abs(code - code_at(a, u, v, turn->from[c]));
+    }
 }
 
-static const char *find_turn(const Picture *a, const Picture *b)
+static bool is_turned(const Picture *a, const Picture *b, const Samples *samples, const Turn *turn)
+{
+    double before = 0, after = 0;
+    if (a->channels == 1 && turn->from[0] != 0)
+        return false;
+    for (int i = 0; i < samples->n; i++)
+        add_turned(a, b, turn, samples->at[i].x, samples->at[i].y, &before, &after);
+    if (!leaves(before, after, 0.05))
+        return false;
+    before = after = 0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++)
+            add_turned(a, b, turn, x, y, &before, &after);
+    return leaves(before, after, 0.02);
+}
+
+static void find_turn(const Picture *a, const Picture *b, const Samples *samples, Sentence *out)
 {
     static const Turn turns[] = {
-        {true, false, false, "B is A mirrored, left for right"},
-        {false, true, false, "B is A upside down, top for bottom"},
-        {true, true, false, "B is A turned by 180 degrees"},
-        {false, false, true, "B is A with red and blue exchanged"},
+        {true, false, {0, 1, 2}, "mirrored, left for right"},
+        {false, true, {0, 1, 2}, "upside down, top for bottom"},
+        {true, true, {0, 1, 2}, "turned by 180 degrees"},
+        {false, false, {2, 1, 0}, "with red and blue exchanged"},
+        {false, false, {1, 0, 2}, "with red and green exchanged"},
+        {false, false, {0, 2, 1}, "with green and blue exchanged"},
+        {false, false, {1, 2, 0}, "with its channels as green, blue, red"},
+        {false, false, {2, 0, 1}, "with its channels as blue, red, green"},
     };
-    for (size_t i = 0; i < sizeof turns / sizeof *turns; i++)
-        if (is_turned(a, b, &turns[i]))
-            return turns[i].sentence;
-    return NULL;
+    for (size_t i = 0; i < sizeof turns / sizeof *turns && !*out->text; i++)
+        if (is_turned(a, b, samples, &turns[i]))
+            snprintf(out->text, out->size, "B is A %s", turns[i].sentence);
 }
 
 /* ---- moved ----------------------------------------------------------------------------------- */
-
-typedef struct Shift {
-    int dx, dy; /* pixel (x, y) of A is (x + dx, y + dy) of B */
-    double off; /* the sum of all differences, codes */
-} Shift;
 
 /* Sum of |b - a| of one pixel of A; false where B has no such pixel. */
 static bool differs_by(const Picture *a, const Picture *b, int x, int y, const Shift *shift,
@@ -95,9 +110,7 @@ static bool differs_by(const Picture *a, const Picture *b, int x, int y, const S
     return true;
 }
 
-/* The shift with the smallest mean difference of the samples that stay within the picture, three in
- * four of which have to. */
-static Shift best_shift(const Picture *a, const Picture *b, const Samples *samples)
+Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples)
 {
     int n = samples->n;
     Shift best = {.off = (double)INFINITY};
@@ -128,175 +141,41 @@ static double off_by(const Picture *a, const Picture *b, const Shift *shift, con
     return sum;
 }
 
-/* A shift that leaves less than a fiftieth of the differences where both pictures have pixels. */
-static bool find_shift(const Picture *a, const Picture *b, const Samples *samples, char *out,
-                       size_t size)
+void cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
+                 Sentence *out)
 {
     static const Shift none = {0};
-    Shift shift = best_shift(a, b, samples);
     double before = 0;
     for (int i = 0; i < samples->n; i++)
         differs_by(a, b, samples->at[i].x, samples->at[i].y, &none, &before);
-    if (shift.off * samples->n > before / 20)
-        return false;
-    before = off_by(a, b, &none, &shift);
-    double after = off_by(a, b, &shift, &shift);
-    if (after > before / 50)
-        return false;
-    snprintf(out, size, "B is %sA moved by (%d, %d) pixels, right and down being positive",
-             after > 0 ? "nearly " : "", shift.dx, shift.dy);
-    return true;
-}
-
-/* ---- brighter or darker ---------------------------------------------------------------------- */
-
-/* Of each code of a picture, what it means. */
-typedef struct Meaning {
-    Plane linear;    /* owned; a value for each code */
-    Plane levels;    /* owned; 8-bit levels of sRGB */
-    Plane predicted; /* owned; the levels of a gain times its linear value */
-} Meaning;
-
-static void meaning_release(Meaning *meaning)
-{
-    plane_release(&meaning->linear);
-    plane_release(&meaning->levels);
-    plane_release(&meaning->predicted);
-}
-
-static Status meaning_init(Meaning *meaning, const Picture *picture, Err *err)
-{
-    Picture codes;
-    int n = 1 << picture->bits;
-    TRY(picture_init(&codes, n, 1, 1, picture->bits, err));
-    codes.gamma = picture->gamma;
-    for (int i = 0; i < n; i++)
-        picture_set(&codes, (size_t)i, (uint16_t)i);
-    Status status = plane_from_picture(&meaning->linear, &codes, err);
-    picture_release(&codes);
-    if (status == STATUS_OK)
-        status = plane_init(&meaning->levels, n, 1, 1, err);
-    if (status == STATUS_OK)
-        status = plane_init(&meaning->predicted, n, 1, 1, err);
-    for (int i = 0; status == STATUS_OK && i < n; i++)
-        meaning->levels.values[i] = 255 * srgb_encode(meaning->linear.values[i]);
-    return status;
-}
-
-/* Linear light, and codes that are off by more than a level, before and after the gain. */
-typedef struct Light {
-    double a, b;
-    size_t beyond, misfits;
-} Light;
-
-/* Adds a sample, unless it is white in either picture, where it may be clipped. */
-static void add_sample(const Meaning *meaning, const Picture *a, const Picture *b, size_t i,
-                       Light *light)
-{
-    int in_a = picture_code(a, i), in_b = picture_code(b, i), white = meaning->linear.width - 1;
-    if (in_a == white || in_b == white)
+    if (!leaves(before, shift->off * samples->n, 0.05))
         return;
-    float level = meaning->levels.values[in_b];
-    light->a += (double)meaning->linear.values[in_a];
-    light->b += (double)meaning->linear.values[in_b];
-    light->beyond += fabsf(meaning->levels.values[in_a] - level) > 1.01F;
-    light->misfits += fabsf(meaning->predicted.values[in_a] - level) > 1.01F;
+    before = off_by(a, b, &none, shift);
+    double after = off_by(a, b, shift, shift);
+    if (leaves(before, after, 0.02))
+        snprintf(out->text, out->size,
+                 "B is %sA moved by (%d, %d) pixels, right and down being positive",
+                 after > 0 ? "nearly " : "", shift->dx, shift->dy);
 }
 
-static Light light_of_samples(const Meaning *meaning, const Picture *a, const Picture *b,
-                              const Samples *samples)
-{
-    Light light = {0};
-    size_t channels = (size_t)a->channels;
-    for (int i = 0; i < samples->n; i++)
-        for (size_t c = 0; c < channels; c++) {
-            size_t pixel = (size_t)samples->at[i].y * (size_t)a->width + (size_t)samples->at[i].x;
-            add_sample(meaning, a, b, pixel * channels + c, &light);
-        }
-    return light;
-}
-
-static Light light_of_all(const Meaning *meaning, const Picture *a, const Picture *b)
-{
-    Light light = {0};
-    for (size_t i = 0; i < picture_stride(a) * (size_t)a->height; i++)
-        add_sample(meaning, a, b, i, &light);
-    return light;
-}
-
-static void predict(Meaning *meaning, double gain)
-{
-    for (int i = 0; i < meaning->linear.width; i++)
-        meaning->predicted.values[i] = 255 * srgb_encode((float)gain * meaning->linear.values[i]);
-}
-
-/* Whether the gain brings 49 of 50 of the codes that are off by more than a level to within one. */
-static bool fits(const Light *light)
-{
-    return light->beyond > 0 && 50 * light->misfits <= light->beyond;
-}
-
-static Status find_gain(const Picture *a, const Picture *b, const Samples *samples, char *out,
-                        size_t size, Err *err)
-{
-    Meaning meaning = {0};
-    Status status = meaning_init(&meaning, a, err);
-    if (status == STATUS_OK) {
-        Light light = light_of_samples(&meaning, a, b, samples);
-        predict(&meaning, light.a > 0 ? light.b / light.a : 1);
-        light = light_of_samples(&meaning, a, b, samples);
-        if (fits(&light)) {
-            light = light_of_all(&meaning, a, b);
-            double gain = light.b / light.a;
-            predict(&meaning, gain);
-            light = light_of_all(&meaning, a, b);
-            if (fits(&light))
-                snprintf(out, size, "B is A made %s: its linear colours are %.4g times those of A",
-                         gain > 1 ? "brighter" : "darker", gain);
-        }
-    }
-    meaning_release(&meaning);
-    return status;
-}
-
-/* ---- shading --------------------------------------------------------------------------------- */
-
-static bool has_equal_outlines(const CompareResult *result)
-{
-    return result->has_mask && result->missing_pixels + result->extra_pixels == 0 &&
-           !(result->edge_mismatch_fraction > 0) && result->classes[PIXEL_WRONG_SEGMENT] == 0;
-}
-
-static void explain_shading(CompareResult *result)
-{
-    double all = sqrt((double)result->differing_pixels); /* sigmas, if all go one way */
-    snprintf(result->cause, sizeof result->cause,
-             "only shading differs, by up to %.4g levels on %.3g %% of the pixels, B %s; the "
-             "outlines %s",
-             result->max_abs, 100.0 * (double)result->differing_pixels / (double)result->pixels,
-             result->sign_sigma > 0.98 * all    ? "being brighter"
-             : result->sign_sigma < -0.98 * all ? "being darker"
-                                                : "being brighter here and darker there",
-             result->has_ids ? "of all segments are equal" : "against the background are equal");
-}
+/* ---- all of them ----------------------------------------------------------------------------- */
 
 Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, Err *err)
 {
-    size_t size = sizeof result->cause;
+    Sentence out = {result->cause, sizeof result->cause};
     if (result->differing_pixels == 0)
         return STATUS_OK;
     Samples samples;
     choose_samples(a, b, result->differing_pixels, &samples);
-    const char *turn = find_turn(a, b);
-    if (turn)
-        snprintf(result->cause, size, "%s", turn);
-    else if (find_shift(a, b, &samples, result->cause, size))
-        return STATUS_OK;
-    else if (result->max_code <= 1)
-        snprintf(result->cause, size, "only rounding differs: no code is off by more than 1");
-    else
-        TRY(find_gain(a, b, &samples, result->cause, size, err));
-    if (!*result->cause && has_equal_outlines(result))
-        explain_shading(result);
-    return STATUS_OK;
+    find_turn(a, b, &samples, &out);
+    const Shift shift = *out.text ? (Shift){0} : cause_best_shift(a, b, &samples);
+    if (!*out.text)
+        cause_shift(a, b, &samples, &shift, &out);
+    if (!*out.text && result->max_code <= 1)
+        snprintf(out.text, out.size, "only rounding differs: no code is off by more than 1");
+    if (!*out.text)
+        TRY(cause_tone(a, b, &samples, &out, err));
+    if (!*out.text)
+        TRY(cause_warp(a, b, &samples, &shift, &out, err));
+    return *out.text ? STATUS_OK : cause_place(a, b, result, &out, err);
 }

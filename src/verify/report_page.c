@@ -71,8 +71,8 @@ static void put_sentence(const ReportCase *report, Text *sentence)
         text_printf(sentence, "%d of %d planes differ%s. First, ", differing, compared,
                     differing == 1 ? "s" : "");
     text_printf(sentence, "%s.", reason);
-    if (!color->agrees && *color->cause)
-        text_printf(sentence, " The pictures: %s.", color->cause);
+    if (!color->agrees)
+        text_printf(sentence, " The pictures: %s.", *color->cause ? color->cause : "cause unknown");
 }
 
 /* What tells the case from others of the same tree and model: the options of its command. */

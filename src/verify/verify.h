@@ -236,8 +236,9 @@ MUST_CHECK Status compare_perception(const Picture *a, const Picture *b, Compare
 MUST_CHECK Status class_picture(Picture *out, const Rendering *a, const Rendering *b,
                                 const Tolerance *tolerance, Err *err);
 /* Says in result->cause what made B of A, of the same gamma, where that is certain: turned,
- * mirrored, moved by whole pixels (up to 48), rounded, brighter or darker throughout, or other
- * shades within equal outlines. */
+ * mirrored or with other channels, moved by pixels and parts of them, blurred, brighter or darker
+ * throughout, one thing missing, other outlines only, other highlights or shades only; "" where it
+ * is unknown. */
 MUST_CHECK Status compare_cause(const Picture *a, const Picture *b, CompareResult *result,
                                 Err *err);
 /* Compares two planes of linear colours, which may exceed 1, in levels of their sRGB encoding,

@@ -209,6 +209,11 @@ test_the_cause_is_said_where_it_is_certain() {
     expect_cause 'B is A moved by \(3, -2\) pixels, right and down being positive'
     oiiotool a.png --iscolorspace sRGB --tocolorspace linear --mulc 0.731 --tocolorspace sRGB -d uint8 -o b.png
     expect_cause 'B is A made darker: its linear colours are 0\.73[01][0-9]* times those of A'
+    oiiotool a.png --iscolorspace sRGB --tocolorspace linear -d float -o a.exr
+    oiiotool a.exr --mulc 0.731 -d float -o b.exr
+    run corcast compare a.exr b.exr --html page.html
+    expect_stdout '; B is A made darker: its linear colours are 0\.731 times those of A$'
+    grep -q 'The pictures: B is A made darker' page.html || fail "expected the cause in the page"
 }
 
 test_other_shades_within_the_same_outlines_are_told_from_other_shapes() {
@@ -216,7 +221,7 @@ test_other_shades_within_the_same_outlines_are_told_from_other_shapes() {
     sed 's/^phong = 0.32/phong = 0.39/' "$REPO/tests/golden/red.ini" >shiny.ini
     run_ok corcast render --exact tree.swc --size 121x93 --planes id --look "$REPO/tests/golden/red.ini" -o a.png
     run_ok corcast render --exact tree.swc --size 121x93 --planes id --look ./shiny.ini -o b.png
-    expect_cause 'only shading differs, by up to [0-9.]+ levels on [0-9.]+ % of the pixels, B being brighter; the outlines against the background are equal'
+    expect_cause 'only highlights differ, by up to [0-9.]+ levels on [0-9.]+ % of the pixels, B being brighter; the outlines against the background are equal'
     run corcast compare a.png b.png --ids-a a.id.ppm --ids-b b.id.ppm
     expect_stdout 'the outlines of all segments are equal$'
     run corcast compare b.png a.png --json
@@ -225,6 +230,7 @@ test_other_shades_within_the_same_outlines_are_told_from_other_shapes() {
     run_ok corcast render --exact thick.swc --size 121x93 --look "$REPO/tests/golden/red.ini" -o b.png
     run corcast compare a.png b.png --json
     expect_json stdout '.verdict == "differ" and .cause == null'
+    expect_cause 'cause unknown'
 }
 
 test_every_segment_has_its_line_in_the_ledger() {

@@ -286,11 +286,16 @@ static Status compare_linear(const CompareOptions *options, const Sides *sides,
                        options->metrics || options->page, result, err));
     Picture clipped[2] = {{0}, {0}};
     Status status = STATUS_OK;
-    if (options->heat || options->difference || options->flicker || options->page) {
+    bool pictures = options->heat || options->difference || options->flicker || options->page;
+    bool asks_cause = !result->agrees && result->nan_pixels_a + result->nan_pixels_b == 0;
+    if (pictures || asks_cause) {
         TRY_GOTO(picture_from_plane(&clipped[0], a, ENCODING_SRGB, 16, err));
         TRY_GOTO(picture_from_plane(&clipped[1], b, ENCODING_SRGB, 16, err));
-        status = write_pictures(options, sides, result, &clipped[0], &clipped[1], err);
     }
+    if (asks_cause)
+        TRY_GOTO(compare_cause(&clipped[0], &clipped[1], result, err));
+    if (pictures)
+        status = write_pictures(options, sides, result, &clipped[0], &clipped[1], err);
 done:
     picture_release(&clipped[0]);
     picture_release(&clipped[1]);

@@ -1,0 +1,238 @@
+/* Where two pictures differ, when no map of one onto the other explains it: one thing missing or
+ * extra, outlines only, highlights only, shading only. What is said is what the pixels show:
+ *
+ * - One thing is missing when the background took its place: the pixels seen in A only are one
+ *   region, which in A borders on background for three quarters of its rim (a cut end does, a worn
+ *   outline borders on what is left), and next to nothing else differs.
+ * - Outlines differ when the pixels that differ have neighbours of quite other colours in both
+ *   pictures, and there are others within the outlines to tell: of things a few pixels wide nothing
+ *   can be said.
+ * - Highlights differ when the light in which the pictures differ is nearly white (a highlight has
+ *   the lamp's colour, all else the surface's) on surfaces that are not. Of grey surfaces nothing
+ *   can be said. */
+#include "verify/cause.h"
+#include "verify/labels.h"
+#include "verify/result.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static size_t first_code(const Picture *picture, int x, int y)
+{
+    return ((size_t)y * (size_t)picture->width + (size_t)x) * (size_t)picture->channels;
+}
+
+/* ---- one thing missing ----------------------------------------------------------------------- */
+
+/* Pixels seen on one side only, and what side-neighbours that are not such pixels show there. */
+typedef struct Lack {
+    size_t pixels, rim, background;
+    int left, top, right, bottom;
+} Lack;
+
+static bool is_seen(const Labels *labels, const Picture *picture, int side, int x, int y)
+{
+    size_t at = first_code(picture, x, y);
+    for (int c = 0; c < picture->channels; c++)
+        if (picture_code(picture, at + (size_t)c) != labels->background[side][c])
+            return true;
+    return false;
+}
+
+static void add_lack(const Labels *labels, const Picture *const pictures[2], int side, int x, int y,
+                     Lack *lack)
+{
+    static const int steps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    lack->pixels++;
+    lack->left = x < lack->left ? x : lack->left;
+    lack->right = x > lack->right ? x : lack->right;
+    lack->top = y < lack->top ? y : lack->top;
+    lack->bottom = y;
+    for (int i = 0; i < 4; i++) {
+        int u = x + steps[i][0], v = y + steps[i][1];
+        if (u < 0 || v < 0 || u >= labels->width || v >= labels->height)
+            continue;
+        bool here = is_seen(labels, pictures[side], side, u, v);
+        bool lacking = here && !is_seen(labels, pictures[!side], !side, u, v);
+        lack->rim += !lacking;
+        lack->background += !here;
+    }
+}
+
+/* What side `side` shows and the other does not. */
+static Lack find_lack(const Labels *labels, const Picture *const pictures[2], int side)
+{
+    Lack lack = {.left = labels->width, .top = labels->height};
+    for (int y = 0; y < labels->height; y++)
+        for (int x = 0; x < labels->width; x++)
+            if (is_seen(labels, pictures[side], side, x, y) &&
+                !is_seen(labels, pictures[!side], !side, x, y))
+                add_lack(labels, pictures, side, x, y, &lack);
+    return lack;
+}
+
+static void say_lack(const Picture *a, const Picture *b, const CompareResult *result, Sentence *out)
+{
+    const Picture *const pictures[2] = {a, b};
+    const Labels labels = labels_from_background(a, b);
+    for (int side = 0; side < 2 && labels.source == LABELS_BACKGROUND && !*out->text; side++) {
+        Lack lack = find_lack(&labels, pictures, side);
+        bool one = 20 * result->largest_region >= 19 * lack.pixels;
+        bool only = 20 * lack.pixels >= 19 * result->differing_pixels;
+        if (lack.pixels >= 9 && one && only && 4 * lack.background >= 3 * lack.rim)
+            snprintf(out->text, out->size,
+                     "one thing, or a part of one, is in %s only, %zu pixels from (%d, %d) to "
+                     "(%d, %d); %zu other pixels differ",
+                     side ? "B" : "A", lack.pixels, lack.left, lack.top, lack.right, lack.bottom,
+                     result->differing_pixels - lack.pixels);
+    }
+}
+
+/* Likewise where ids tell the segments: one is missing, and it covers what differs. */
+static void say_missing_segment(const CompareResult *result, Sentence *out)
+{
+    for (int i = 0; i < result->n_worst_segments && !*out->text; i++) {
+        const LedgerEntry *entry = &result->worst_segments[i];
+        size_t area = entry->area_a + entry->area_b;
+        if ((entry->area_a == 0 || entry->area_b == 0) && area <= result->differing_pixels &&
+            20 * area >= 19 * result->differing_pixels)
+            snprintf(out->text, out->size,
+                     "segment %u is in %s only, %zu pixels from (%d, %d) to (%d, %d); %zu other "
+                     "pixels differ",
+                     entry->id, entry->area_a ? "A" : "B", area, entry->left, entry->top,
+                     entry->right, entry->bottom, result->differing_pixels - area);
+    }
+}
+
+/* ---- outlines -------------------------------------------------------------------------------- */
+
+/* The largest difference of a channel among a pixel and its neighbours, levels. */
+static int contrast(const Picture *picture, int x, int y)
+{
+    int largest = 0;
+    for (int c = 0; c < picture->channels; c++) {
+        int low = 65535, high = 0;
+        for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < picture->height; v++)
+            for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < picture->width; u++) {
+                int code = picture_code(picture, first_code(picture, u, v) + (size_t)c);
+                low = code < low ? code : low;
+                high = code > high ? code : high;
+            }
+        largest = high - low > largest ? high - low : largest;
+    }
+    return picture->bits == 8 ? largest : largest / 257;
+}
+
+static void say_outlines(const Picture *a, const Picture *b, const CompareResult *result,
+                         Sentence *out)
+{
+    enum { LEVELS = 32, SLIGHT = 2 };
+    const int slight = a->bits == 8 ? SLIGHT : 257 * SLIGHT;
+    const Labels labels = labels_from_background(a, b);
+    bool known = labels.source == LABELS_BACKGROUND;
+    size_t at_edges = 0, off = 0, inner = 0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++) {
+            size_t pixel = (size_t)y * (size_t)a->width + (size_t)x;
+            bool same = largest_difference(a, b, pixel) <= slight;
+            if (same && known && !is_seen(&labels, a, 0, x, y))
+                continue;
+            bool edge = contrast(a, x, y) >= LEVELS && contrast(b, x, y) >= LEVELS;
+            at_edges += edge && !same;
+            inner += !edge && same;
+            off += !edge && !same;
+        }
+    if (at_edges > 0 && 99 * off <= at_edges && 4 * inner >= at_edges)
+        snprintf(out->text, out->size,
+                 "only outlines differ by more than %d levels, by up to %.4g on %.3g %% of the "
+                 "pixels",
+                 SLIGHT, result->max_abs, 100.0 * (double)at_edges / (double)result->pixels);
+}
+
+/* ---- shading --------------------------------------------------------------------------------- */
+
+/* Of the light that B has more of than A, pixel by pixel: the squares, and the part of them that
+ * lies along white and along the colour of the pixel in A. */
+typedef struct Light {
+    double squares, white, own;
+} Light;
+
+static void add_light(const Plane *table, const Picture *a, const Picture *b, size_t at,
+                      Light *light)
+{
+    double sum = 0, squares = 0, along = 0, norm = 0;
+    for (int c = 0; c < 3; c++) {
+        int code_a = picture_code(a, at + (size_t)c), code_b = picture_code(b, at + (size_t)c);
+        if (code_a == table->width - 1 || code_b == table->width - 1)
+            return;
+        double in_a = (double)table->values[code_a];
+        double more = (double)table->values[code_b] - in_a;
+        sum += more;
+        squares += more * more;
+        along += more * in_a;
+        norm += in_a * in_a;
+    }
+    light->squares += squares;
+    light->white += sum * sum / 3;
+    light->own += norm > 0 ? along * along / norm : 0;
+}
+
+/* White light explains the differences, and more light of the surfaces' own colours does not. */
+static Status are_highlights(const Picture *a, const Picture *b, bool *highlights, Err *err)
+{
+    Picture codes;
+    Plane table;
+    Light light = {0};
+    *highlights = false;
+    if (a->channels != 3)
+        return STATUS_OK;
+    TRY(picture_init(&codes, 1 << a->bits, 1, 1, a->bits, err));
+    codes.gamma = a->gamma;
+    for (int i = 0; i < codes.width; i++)
+        picture_set(&codes, (size_t)i, (uint16_t)i);
+    Status status = plane_from_picture(&table, &codes, err);
+    picture_release(&codes);
+    TRY(status);
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width && !picture_rows_equal(a, b, y, 0, a->width); x++)
+            add_light(&table, a, b, first_code(a, x, y), &light);
+    plane_release(&table);
+    *highlights = light.white > 0.95 * light.squares && light.own < 0.95 * light.squares;
+    return STATUS_OK;
+}
+
+static bool has_equal_outlines(const CompareResult *result)
+{
+    return result->has_mask && result->missing_pixels + result->extra_pixels == 0 &&
+           !(result->edge_mismatch_fraction > 0) && result->classes[PIXEL_WRONG_SEGMENT] == 0;
+}
+
+static void say_shading(const CompareResult *result, bool highlights, Sentence *out)
+{
+    double all = sqrt((double)result->differing_pixels); /* sigmas, if all go one way */
+    snprintf(out->text, out->size,
+             "only %s, by up to %.4g levels on %.3g %% of the pixels, B %s; the outlines %s",
+             highlights ? "highlights differ" : "shading differs", result->max_abs,
+             100.0 * (double)result->differing_pixels / (double)result->pixels,
+             result->sign_sigma > 0.98 * all    ? "being brighter"
+             : result->sign_sigma < -0.98 * all ? "being darker"
+                                                : "being brighter here and darker there",
+             result->has_ids ? "of all segments are equal" : "against the background are equal");
+}
+
+Status cause_place(const Picture *a, const Picture *b, const CompareResult *result, Sentence *out,
+                   Err *err)
+{
+    say_missing_segment(result, out);
+    if (!*out->text && !result->has_ids)
+        say_lack(a, b, result, out);
+    if (!*out->text)
+        say_outlines(a, b, result, out);
+    if (*out->text || !has_equal_outlines(result))
+        return STATUS_OK;
+    bool highlights;
+    TRY(are_highlights(a, b, &highlights, err));
+    say_shading(result, highlights, out);
+    return STATUS_OK;
+}
