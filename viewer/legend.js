@@ -52,7 +52,8 @@ export const LEGEND_HEIGHT = 34, TITLE_HEIGHT = 18;
 export function drawLegend(context, scale, width, ink, titled) {
   style(context, ink);
   if (titled) context.fillText(fieldName(scale), 0, 0);
-  const top = titled ? TITLE_HEIGHT : 0, ticks = scale.counts ? drawPatches(context, scale, width, top) : drawRamp(context, scale, width, top);
+  const top = titled ? TITLE_HEIGHT : 0, draw = scale.counts ? drawPatches : drawRamp;
+  const ticks = draw(context, scale, width, top);
   context.fillStyle = ink;
   drawLabels(context, ticks, width, top);
 }

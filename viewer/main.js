@@ -12,12 +12,14 @@ import { View, VIEWS } from "./view.js";
 const find = (id) => document.getElementById(id);
 const DECADES = 2.5; // from so many on a scale is logarithmic, unless somebody says otherwise
 const SHADE = 0.75;
+const LOW = 544; // pixels of the page: a window less high has no room beside the tools
 const HIT = 4; // pixels of the page that a vessel is at least wide for a pointer
 
 const tree = new Tree();
 const start = tree.told.start;
 const state = {
-  field: null, map: null, log: null, moment: 0, grown: 1, haze: true, shade: true, panels: true, hovered: -1, pinned: -1,
+  field: null, map: null, log: null, moment: 0, grown: 1, haze: true, shade: true, panels: true,
+  hovered: -1, pinned: -1, // numbers of segments, or -1
 };
 let scale = null, wanted = false, playing = 0, written = 0;
 
@@ -63,9 +65,10 @@ function mmPerPixel() {
 function freeBox() {
   const { innerWidth: width, innerHeight: height } = window, side = find("side").getBoundingClientRect();
   if (side.width === 0) return { left: 0, top: 0, width, height };
-  if (side.width < width / 2) return { left: side.right, top: 0, width: width - side.right, height };
-  const top = find("tools").getBoundingClientRect().bottom;
-  return { left: 0, top, width, height: side.top - top };
+  const below = find("tools").getBoundingClientRect().bottom;
+  if (side.width >= width / 2) return { left: 0, top: below, width, height: side.top - below };
+  const top = height < LOW ? below : 0;
+  return { left: side.right, top, width: width - side.right, height: height - top };
 }
 
 function resize() {
@@ -280,6 +283,12 @@ function hover(event) {
   showSegment(i);
 }
 
+function leave() {
+  if (state.hovered < 0) return;
+  state.hovered = -1;
+  showSegment(state.pinned);
+}
+
 let pressed = null;
 
 function release(event) {
@@ -336,7 +345,8 @@ function project() {
 
 function kin(up) {
   if (state.pinned < 0) return pin(tree.segments[0]);
-  const near = up ? [tree.parent[state.pinned]] : [...tree.daughters[state.pinned]].sort((a, b) => tree.radius[b] - tree.radius[a]);
+  const thickest = (a, b) => tree.radius[b] - tree.radius[a];
+  const near = up ? [tree.parent[state.pinned]] : [...tree.daughters[state.pinned]].sort(thickest);
   const next = near.find((i) => tree.numberOf.has(tree.id[i]));
   if (next !== undefined) pin(next);
 }
@@ -399,7 +409,7 @@ function listen() {
     if (i !== undefined) pin(i);
   });
   canvas.addEventListener("pointermove", hover);
-  canvas.addEventListener("pointerleave", () => { if (state.hovered >= 0) { state.hovered = -1; showSegment(state.pinned); } });
+  canvas.addEventListener("pointerleave", leave);
   canvas.addEventListener("pointerdown", (e) => { pressed = e.isPrimary ? { x: e.clientX, y: e.clientY } : null; });
   canvas.addEventListener("pointerup", release);
   document.addEventListener("keydown", key);

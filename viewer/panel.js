@@ -41,7 +41,8 @@ export class Panel {
     find("name").textContent = told.name;
     const sides = low.map((l, c) => number(high[c] - l, 3)).join(" × ");
     find("said").textContent = `${segments.length.toLocaleString("en")} segments, ${sides}\u00a0mm`;
-    find("field").append(option("", "one colour"), ...tree.fields.map(({ name, unit }) => option(name, unit ? `${name} (${unit})` : name)));
+    const fields = tree.fields.map(({ name, unit }) => option(name, unit ? `${name} (${unit})` : name));
+    find("field").append(option("", "one colour"), ...fields);
     find("map").append(...tree.maps.map(({ name }) => option(name, name)));
     find("made").textContent = `${told.generator}: ${told.command}`;
   }

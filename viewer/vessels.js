@@ -9,7 +9,9 @@ import fragmentShader from "./vessels.frag.glsl";
 import { ALONG, AROUND, WIDTH } from "./shade.js";
 
 const CORNERS = [-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1];
-const FACES = [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5];
+const FACES = [
+  0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5,
+];
 
 function geometry(tree) {
   const { segments, parent, position, radius, way } = tree, n = segments.length;
@@ -82,7 +84,12 @@ export class Vessels {
       blendDstAlpha: OneFactor,
     });
     this.depths = new RawShaderMaterial({
-      glslVersion: GLSL3, vertexShader, fragmentShader, defines: { ...defines, DEPTHS: 1 }, uniforms: uniforms(look), side: BackSide,
+      glslVersion: GLSL3,
+      vertexShader,
+      fragmentShader,
+      defines: { ...defines, DEPTHS: 1 },
+      uniforms: uniforms(look),
+      side: BackSide,
     });
     this.mesh = new Mesh(geometry(tree), this.material);
     this.scene = new Scene();

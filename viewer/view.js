@@ -81,7 +81,8 @@ export class View {
 
   // Shows all of the tree from a direction.
   frame(turn, rise) {
-    const back = towardsEye(turn, rise), right = new Vector3(0, 1, 0).cross(back).normalize(), up = back.clone().cross(right);
+    const back = towardsEye(turn, rise), right = new Vector3(0, 1, 0).cross(back).normalize();
+    const up = back.clone().cross(right);
     const { position, radius, segments, parent } = this.tree;
     const axes = [right, up, back], low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     const at = new Vector3();
@@ -129,8 +130,9 @@ export class View {
   ray(x, y) {
     const box = this.canvas.getBoundingClientRect();
     const place = [((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2];
-    const from = new Vector3(...place, -1).unproject(this.camera), to = new Vector3(...place, 1).unproject(this.camera);
-    const pixel = this.isOrthographic ? [this.pose.height / box.height, 0] : [0, (2 * Math.tan(radians(ANGLE / 2))) / box.height];
-    return { from, along: to.sub(from).normalize(), least: pixel[0], slack: pixel[1] };
+    const from = new Vector3(...place, -1).unproject(this.camera);
+    const along = new Vector3(...place, 1).unproject(this.camera).sub(from).normalize();
+    if (this.isOrthographic) return { from, along, least: this.pose.height / box.height, slack: 0 };
+    return { from, along, least: 0, slack: (2 * Math.tan(radians(ANGLE / 2))) / box.height };
   }
 }
