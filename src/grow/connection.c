@@ -188,6 +188,7 @@ typedef struct Newcomer {
     double radius;    /* mm */
     double thickness; /* at which all radii count */
     double gap;       /* mm */
+    double apart;     /* mm; more than that from other trees */
     int32_t kin[4];   /* the first is the segment that is split */
 } Newcomer;
 
@@ -202,9 +203,11 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
                     .radius = connection->radius[part],
                     .thickness = rules->thickness,
                     .gap = rules->gap,
+                    .apart = rules->apart,
                     .kin = {host, host, host, host}};
     double per_radius = clearance_reserve * rules->thickness;
-    out.probe = grid_box_query(&out.item, per_radius * out.radius + rules->gap, per_radius);
+    out.probe =
+        grid_box_query(&out.item, per_radius * out.radius + rules->gap + rules->apart, per_radius);
     if (part != FRESH) {
         int32_t node = part == PROXIMAL ? net->segment[host].parent : host;
         out.kin[1] = node;
@@ -223,8 +226,14 @@ static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t othe
     double touch = newcomer->thickness * (newcomer->radius + (double)item->radius);
     double clear = clearance_reserve * touch + newcomer->gap;
     double apart2 = grid_distance2(&newcomer->item, item);
+    bool is_other_tree = newcomer->apart > 0 && network_tree(newcomer->net, other) !=
+                                                    network_tree(newcomer->net, newcomer->kin[0]);
+    if (is_other_tree)
+        clear += newcomer->apart;
     if (apart2 >= clear * clear)
         return true;
+    if (is_other_tree)
+        return false;
     touch = newcomer->gap + (network_is_piece(newcomer->net, other) ? 0 : touch);
     return apart2 >= touch * touch && apart2 >= grid_distance2(&grid->item[newcomer->kin[0]], item);
 }

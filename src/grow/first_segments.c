@@ -33,21 +33,21 @@ static bool is_nearest(const Network *net, size_t tree, Vec3 point)
 }
 
 /* Whether the fresh segment keeps clear of the root segments of the trees before `tree`. */
-static bool is_clear(const Network *net, size_t tree, const FirstSegment *fresh)
+static bool is_clear(const Network *net, size_t tree, const FirstSegment *fresh, double apart)
 {
     for (size_t k = 0; k < tree; k++) {
         int32_t inlet = net->inlet[k];
         FirstSegment other =
             first_segment(net, net->position[inlet], net->position[net->segment[inlet].child[0]]);
-        double clear = reserve * (fresh->radius + other.radius);
+        double clear = reserve * (fresh->radius + other.radius) + apart;
         if (segment_distance2(fresh->from, fresh->to, other.from, other.to) < clear * clear)
             return false;
     }
     return true;
 }
 
-static Status add_first_segment(Network *net, size_t tree, const Domain *domain, Random *random,
-                                double *distance, uint64_t *tosses, Err *err)
+static Status add_first_segment(Network *net, size_t tree, const Domain *domain, double apart,
+                                Random *random, double *distance, uint64_t *tosses, Err *err)
 {
     int32_t inlet = net->inlet[tree];
     Vec3 from = net->position[inlet];
@@ -56,7 +56,7 @@ static Status add_first_segment(Network *net, size_t tree, const Domain *domain,
         ++*tosses;
         if (vec3_distance(fresh.to, from) >= *distance && is_nearest(net, tree, fresh.to) &&
             (domain_is_convex(domain) || domain_holds_segment(domain, from, fresh.to)) &&
-            is_clear(net, tree, &fresh)) {
+            is_clear(net, tree, &fresh, apart)) {
             network_append(net, inlet, fresh.to);
             return STATUS_OK;
         }
@@ -73,13 +73,13 @@ static Status add_first_segment(Network *net, size_t tree, const Domain *domain,
                    from.x, from.y, from.z);
 }
 
-Status first_segments_add(Network *net, const Domain *domain, Random *random, double *distance,
-                          uint64_t *tosses, Err *err)
+Status first_segments_add(Network *net, const Domain *domain, double apart, Random *random,
+                          double *distance, uint64_t *tosses, Err *err)
 {
     double farthest = *distance;
     for (size_t k = 0; k < net->inlets; k++) {
         double own = farthest;
-        TRY(add_first_segment(net, k, domain, random, &own, tosses, err));
+        TRY(add_first_segment(net, k, domain, apart, random, &own, tosses, err));
         *distance = fmin(*distance, own);
     }
     network_resum(net);

@@ -9,9 +9,9 @@
  * domain to a random point that is nearer to this inlet than to any other, and about as far from it
  * as points of the domain are; root segments keep clear of each other. *distance, mm: how far
  * points have to be from their inlet at first; becomes the least distance that was asked for in the
- * end. *tosses is increased by the points drawn. Leaves right sums, and no radii. STATUS_INFEASIBLE
- * when there is no such point. */
-MUST_CHECK Status first_segments_add(Network *net, const Domain *domain, Random *random,
-                                     double *distance, uint64_t *tosses, Err *err);
+ * end. *tosses is increased by the points drawn. Trees keep `apart` mm apart. Leaves right sums,
+ * and no radii. STATUS_INFEASIBLE when there is no such point. */
+MUST_CHECK Status first_segments_add(Network *net, const Domain *domain, double apart,
+                                     Random *random, double *distance, uint64_t *tosses, Err *err);
 
 #endif

@@ -32,6 +32,9 @@
 static const double cells_per_terminal = 1;
 /* Radii and sensitivities serve until there are so many times the terminals. */
 static const double refresh_growth = 1.2;
+static const double fine_growth = 1.03; /* where a radius ends growth */
+/* Trees keep apart by so many times the clearance asked for, as vessels widen. */
+static const double clearance_spare = 1.05;
 /* A round adds about one terminal for every so many there are; in tiles, more. */
 enum { TERMINALS_PER_ADDED = 64, TERMINALS_PER_ADDED_IN_TILES = 12 };
 /* Points tossed for each terminal to be added. */
@@ -61,6 +64,7 @@ typedef struct Growth {
     Round round;
     double skipped; /* the share of the last round's points that lay in full cells */
     uint64_t tosses, rejected;
+    double end_radius;       /* mm; the terminals' mean as of the last refresh */
     size_t crowded, outside; /* points far enough from the tree since one was connected */
 } Growth;
 
@@ -98,6 +102,21 @@ static Status refresh(Growth *growth, WeightsPrecision precision, Err *err)
     return STATUS_OK;
 }
 
+/* Where a radius ends growth, it is looked at more often. */
+static double growth_until_refresh(const Growth *growth)
+{
+    return growth->params->min_radius_mm > 0 ? fine_growth : refresh_growth;
+}
+
+static double mean_end_radius(const Network *net)
+{
+    double sum = 0;
+    for (size_t i = 0; i < net->n; i++)
+        if (network_is_end(net, (int32_t)i) && network_kept_radius(net, (int32_t)i) == 0)
+            sum += (double)net->segment[i].radius;
+    return sum / (double)net->terminals;
+}
+
 /* Brings what ages with growth up to date when it is due. */
 static Status keep_up(Growth *growth, Err *err)
 {
@@ -107,7 +126,9 @@ static Status keep_up(Growth *growth, Err *err)
         TRY(refresh(growth, WEIGHTS_ROUGH, err));
         if (growth->grid.item)
             TRY(entries_widen(&growth->grid, &growth->rules, net, err));
-        growth->refresh_until = (size_t)(refresh_growth * (double)terminals) + 1;
+        if (growth->params->min_radius_mm > 0)
+            growth->end_radius = mean_end_radius(net);
+        growth->refresh_until = (size_t)(growth_until_refresh(growth) * (double)terminals) + 1;
     }
     return terminals >= growth->grid_until ? make_grid(growth, err) : STATUS_OK;
 }
@@ -241,7 +262,8 @@ static Status start_trees(Growth *growth, Err *err)
         network_append(net, -1, growth->domain->inlet);
     for (size_t k = 0; k < params->inlets; k++)
         network_append(net, -1, params->inlet[k]);
-    TRY(first_segments_add(net, growth->domain, &growth->random, &distance, &growth->tosses, err));
+    TRY(first_segments_add(net, growth->domain, growth->rules.apart, &growth->random, &distance,
+                           &growth->tosses, err));
     if (domain_settles(growth->domain)) /* where no straight vessel is longer */
         growth->size = distance;
     set_toss_distance(growth, distance);
@@ -277,7 +299,10 @@ static Status start(Growth *growth, Err *err)
     const GrowParams *params = growth->params;
     Box box = growth->domain->bounds;
     growth->size = vec3_distance(box.low, box.high);
-    growth->rules = (Rules){.thickness = 1, .gap = 1e-7 * growth->size, .widest = growth->size};
+    growth->rules = (Rules){.thickness = 1,
+                            .gap = 1e-7 * growth->size,
+                            .apart = clearance_spare * params->clearance_mm,
+                            .widest = growth->size};
     set_toss_distance(growth, growth->size);
     growth->refresh_until = growth->grid_until = 1;
     /* Other points than those that made the tree, if that was by the same seed. */
@@ -302,6 +327,29 @@ static Status start(Growth *growth, Err *err)
     else
         TRY(start_trees(growth, err));
     return start_forest(growth, err);
+}
+
+/* Whether terminals are as thin as they were to become. */
+static bool is_fine_enough(const Growth *growth)
+{
+    return growth->end_radius > 0 && growth->end_radius <= growth->params->min_radius_mm;
+}
+
+/* Holds the clearance of different trees against what was asked for. */
+static Status check_apart(const GrowParams *params, const Tree *tree, double *apart, Err *err)
+{
+    size_t pair[2];
+    *apart = INFINITY;
+    if (!(params->clearance_mm > 0))
+        return STATUS_OK;
+    TRY(trees_apart(tree, 2 * params->clearance_mm, apart, pair, err));
+    if (*apart >= params->clearance_mm)
+        return STATUS_OK;
+    return err_set(err, STATUS_INFEASIBLE,
+                   "`clearance_mm` %g cannot be kept: the vessels that end in nodes %d and %d, of "
+                   "different trees, are %.4g mm apart; lower it, lower `terminals`, or choose a "
+                   "larger `domain`",
+                   params->clearance_mm, tree->id[pair[0]], tree->id[pair[1]], *apart);
 }
 
 static void report_progress(const Growth *growth, size_t before)
@@ -339,7 +387,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     Status status = STATUS_OK;
     TRY_GOTO(start(&growth, err));
     size_t terminals;
-    while ((terminals = growth.net.terminals) < params->terminals) {
+    while ((terminals = growth.net.terminals) < params->terminals && !is_fine_enough(&growth)) {
         status = add_terminals(&growth, err);
         if (status == STATUS_INFEASIBLE && params->partial)
             break;
@@ -355,7 +403,11 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
                                 growth.round.threads, &broken, err));
     grid_release(&growth.grid);
     TRY_GOTO(finish_tree(&growth.net, params, domain, out, err));
-    if (!report)
+    double apart;
+    status = check_apart(params, out, &apart, err);
+    if (status != STATUS_OK)
+        tree_release(out);
+    if (!report || status != STATUS_OK)
         goto done;
     *report = (GrowReport){.seconds = clock_seconds() - begun,
                            .terminals = growth.net.terminals,
@@ -365,6 +417,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
                            .rejected = growth.rejected,
                            .thickness = growth.rules.thickness,
                            .broken = broken,
+                           .apart_mm = apart,
                            .complete = complete};
     if (params->from)
         status = continue_changes(params->from, out, report, err);

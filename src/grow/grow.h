@@ -47,7 +47,10 @@ typedef struct GrowParams {
     double viscosity_cp;        /* of the blood, by the constant law */
     double hematocrit;          /* by Pries's law */
     double plasma_viscosity_cp; /* by Pries's law */
-    int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
+    double
+        min_radius_mm; /* growth ends, complete, when the terminals' mean radius is this; 0: not */
+    double clearance_mm; /* least distance of the walls of vessels of different trees, >= 0 */
+    int candidates;      /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
     GrowToss toss;
     int threads;  /* 0: all processors. The tree does not depend on it */
     bool partial; /* whether the tree so far is a result when no more terminals find room */
@@ -73,6 +76,9 @@ typedef struct GrowReport {
     size_t broken; /* segments for which that does not hold, because they widened later on */
     /* The factors by which the radii of the segments of `from` changed; 0 where there are none. */
     double median_change, least_change, greatest_change;
+    /* The least distance of the walls of vessels of different trees, mm, by trees_apart, as far as
+     * it is below twice the clearance that was asked for; else INFINITY. */
+    double apart_mm;
     bool complete; /* false: a partial tree; err holds the sentence that says why */
 } GrowReport;
 
@@ -110,6 +116,13 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
  * STATUS_MEMORY. */
 MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,
                             GrowReport *report, Err *err);
+
+/* The least distance of the walls of vessels of different trees of a forest, mm, below 0 where they
+ * overlap, in *apart, and two such segments' nodes in pair[2]; INFINITY when there is none below
+ * `within`. Shares no code with growth. O(n log n) for vessels that are not crowded. STATUS_MEMORY.
+ */
+MUST_CHECK Status trees_apart(const Tree *tree, double within, double *apart, size_t pair[2],
+                              Err *err);
 
 /* How a whole tree is optimised after growth. */
 typedef enum GrowRefine {

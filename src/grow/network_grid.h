@@ -10,6 +10,7 @@ typedef struct Rules {
     double thickness;    /* vessels count at their radii times this, in [0, 1] */
     double least_length; /* mm; segments are at least this long, and as long as wide */
     double gap;          /* mm; the least distance of vessels without a common node */
+    double apart;        /* mm; the least distance of the walls of vessels of different trees */
     double widest;       /* mm; vessels count as no thicker than this */
 } Rules;
 
@@ -19,7 +20,7 @@ static inline double entry_reach(const Rules *rules, double radius)
 {
     const double reserve = 1.4;
     double reach = reserve * rules->thickness * radius;
-    return (reach < rules->widest ? reach : rules->widest) + rules->gap;
+    return (reach < rules->widest ? reach : rules->widest) + rules->gap + rules->apart;
 }
 
 /* Enters a segment, by its radius as of the last refresh, in every cell that its capsule meets. One

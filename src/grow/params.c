@@ -123,6 +123,12 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
         return err_set(err, STATUS_USAGE, "`terminals` %zu: must be from 1 to %d",
                        params->terminals, GROW_MAX_TERMINALS);
     TRY(check_physics(params, err));
+    if (!(params->clearance_mm >= 0) || !isfinite(params->clearance_mm))
+        return err_set(err, STATUS_USAGE, "`clearance_mm` %g: must be a number of mm not below 0",
+                       params->clearance_mm);
+    if (!(params->min_radius_mm >= 0) || !isfinite(params->min_radius_mm))
+        return err_set(err, STATUS_USAGE, "`min_radius_mm` %g: must be a number of mm not below 0",
+                       params->min_radius_mm);
     if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
         return err_set(err, STATUS_USAGE, "`candidates` %d: must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);

@@ -57,7 +57,8 @@ static double needed(const Repair *repair, int32_t i, int32_t j, double thicknes
     const Network *net = repair->net;
     if (network_is_given(net, i) && network_is_given(net, j))
         return 0;
-    return repair->rules->gap +
+    double apart = network_tree(net, i) == network_tree(net, j) ? 0 : repair->rules->apart;
+    return repair->rules->gap + apart +
            (network_is_piece(net, i) || network_is_piece(net, j) ? 0 : thickness);
 }
 
@@ -78,7 +79,8 @@ static double fault(const Repair *repair, int32_t i, double margin, int32_t belo
 {
     const Network *net = repair->net;
     const Grid *grid = repair->grid;
-    double radius = width(repair, i), scale = 1 + margin, gap = repair->rules->gap;
+    double radius = width(repair, i), scale = 1 + margin;
+    double gap = repair->rules->gap + repair->rules->apart;
     Vec3 a = proximal(net, i), b = net->position[i];
     bool may_be_short = network_is_piece(net, i) || network_kept_radius(net, i) > 0;
     double worst = may_be_short ? 0 : fmax(0, 2 * scale * radius - vec3_distance(a, b));

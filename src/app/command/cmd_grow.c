@@ -2,9 +2,9 @@
  * not as it should be is said with --quiet, too. */
 #include "app/commands.h"
 #include "app/run/output.h"
-#include "app/run/progress.h"
 #include "app/trees/growing.h"
 #include "app/trees/refining.h"
+#include "app/trees/staging.h"
 #include "treeio/treeio.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,7 +24,9 @@ static Status write_report(const char *path, const GrowReport *report, const Ref
     if (report->median_change > 0)
         change = json_pack("{s:f, s:f, s:f}", "median", report->median_change, "min",
                            report->least_change, "max", report->greatest_change);
-    return json_write(json_with(json, "radius_change", change), path, err);
+    json = json_with(json, "radius_change", change);
+    json_t *apart = isfinite(report->apart_mm) ? json_number(report->apart_mm) : json_null();
+    return json_write(json_with(json, "apart_mm", apart), path, err);
 }
 
 static void print_report(const GrowReport *report, bool keeps_radii)
@@ -76,21 +78,8 @@ static void print_warnings(const GrowReport *report, const Domain *domain, bool 
                 report->broken, report->broken == 1 ? " is" : "s are");
 }
 
-/* Grows with progress; why growth stopped early, if it did and that is allowed, goes to *why. */
-static Status grow(Growing *growing, bool quiet, Tree *tree, GrowReport *report, Err *why, Err *err)
-{
-    Progress progress;
-    growing->params.progress = progress_report;
-    growing->params.progress_context = &progress;
-    progress_start(&progress, "growing", quiet);
-    Status status = grow_tree(&growing->params, &growing->domain, tree, report, err);
-    *why = *err;
-    progress_end(&progress);
-    return status;
-}
-
 typedef struct GrowOptions {
-    const char *output, *json;
+    const char *output, *json, *stages;
     Growing growing;
     Refining refining;
 } GrowOptions;
@@ -98,6 +87,12 @@ typedef struct GrowOptions {
 static const Option own[] = {
     {.name = "output", SETS(OUTPUT, GrowOptions, output), .argument = "T.swc", .help = "the tree"},
     {.name = "json", SETS(OUTPUT, GrowOptions, json), .help = "what was done, as JSON"},
+    {.name = "stages",
+     SETS(INPUT, GrowOptions, stages),
+     .group = GROUP_TREE,
+     .argument = "FILE.ini",
+     .otherwise = "",
+     .help = "grow in stages: sections of options, each on the tree of the one before"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -137,10 +132,16 @@ static Status run_grow(void *options, Parsed *parsed, Err *err)
     Err why;
     Status status = STATUS_OK;
     TRY(tree_format_check(own_options->output, err));
+    if (own_options->stages && refining->level != GROW_REFINE_NONE)
+        TRY_GOTO(err_set(err, STATUS_USAGE,
+                         "--refine: would give --stages one law; use corcast refine afterwards"));
     TRY_GOTO(refining_check_growing(refining, growing, err));
     TRY_GOTO(refining_check(refining, parsed, err));
     TRY_GOTO(growing_prepare(growing, parsed, err));
-    TRY_GOTO(grow(growing, parsed->common.quiet, &tree, &report, &why, err));
+    if (own_options->stages)
+        TRY_GOTO(staging_grow(own_options->stages, growing, parsed, &tree, &report, &why, err));
+    else
+        TRY_GOTO(growing_run(growing, parsed->common.quiet, &tree, &report, &why, err));
     options_name_fields(parsed, &why);
     TRY_GOTO(refining_apply(refining, &parsed->common, &growing->domain, &tree, &refined, err));
     if (refined.target_before > 0)

@@ -2,6 +2,7 @@
  * of a tree to grow on from, and what the user gave, each over the one before. */
 #include "app/trees/growing.h"
 
+#include "app/run/progress.h"
 #include "app/run/reading.h"
 #include "app/trees/blood.h"
 #include "app/trees/tree_domain.h"
@@ -91,6 +92,18 @@ static const Option rows[] = {
      .choices = terminal_flow_names,
      .group = GROUP_BLOOD,
      .help = "the same through all terminals, or as large as the tissue nearest to each"},
+    {.name = "min-radius",
+     SETS(NUMBER, Growing, params.min_radius_mm),
+     FROM_TO(0, 1e3),
+     .group = GROUP_TREE,
+     .unit = "mm",
+     .help = "growth ends when the terminals' mean radius is this; 0: with --terminals"},
+    {.name = "clearance",
+     SETS(NUMBER, Growing, params.clearance_mm),
+     FROM_TO(0, 1e3),
+     .group = GROUP_TREE,
+     .unit = "mm",
+     .help = "least distance of the walls of vessels of different trees, proved at the end"},
     {.name = "candidates",
      SETS(WHOLE, Growing, params.candidates),
      FROM_TO(1, GROW_MAX_CANDIDATES),
@@ -171,6 +184,18 @@ Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
         TRY(tree_domain_parse(growing->domain_spec ? growing->domain_spec : plain_domain,
                               growing->params.from, growing->from_path, &growing->domain, err));
     return check(growing, parsed, err);
+}
+
+Status growing_run(Growing *growing, bool quiet, Tree *tree, GrowReport *report, Err *why, Err *err)
+{
+    Progress progress;
+    growing->params.progress = progress_report;
+    growing->params.progress_context = &progress;
+    progress_start(&progress, "growing", quiet);
+    Status status = grow_tree(&growing->params, &growing->domain, tree, report, err);
+    *why = *err;
+    progress_end(&progress);
+    return status;
 }
 
 void growing_release(Growing *growing)

@@ -24,6 +24,11 @@ extern const OptionTable growing_table; /* sets a Growing */
  * STATUS_USAGE, too, for options without effect. */
 MUST_CHECK Status growing_prepare(Growing *growing, Parsed *parsed, Err *err);
 
+/* Grows with progress, as grow_tree; why growth stopped early, if it did and that is allowed, goes
+ * to *why. */
+MUST_CHECK Status growing_run(Growing *growing, bool quiet, Tree *tree, GrowReport *report,
+                              Err *why, Err *err);
+
 void growing_release(Growing *growing);
 
 #endif

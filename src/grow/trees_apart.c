@@ -1,0 +1,92 @@
+/* Each segment's tube is a box in a tree of boxes; a segment asks for those within reach of its own
+ * box and takes the distance of both axes less both radii. The distance of two segments is the
+ * least of five: where the lines through them come nearest, if that is within both, and from each
+ * end to the other segment. */
+#include "grow/grow.h"
+
+#include <stdlib.h>
+
+static double end_distance2(Vec3 end, Vec3 a, Vec3 b)
+{
+    Vec3 along = vec3_sub(b, a);
+    double length2 = vec3_dot(along, along);
+    double t = length2 > 0 ? vec3_dot(vec3_sub(end, a), along) / length2 : 0;
+    Vec3 off = vec3_sub(end, vec3_add_scaled(a, along, fmin(1, fmax(0, t))));
+    return vec3_dot(off, off);
+}
+
+/* The squared distance of the lines through both segments; INFINITY when they are not nearest to
+ * each other within both. */
+static double inner_distance2(Vec3 a, Vec3 b, Vec3 c, Vec3 d)
+{
+    Vec3 u = vec3_sub(b, a), v = vec3_sub(d, c), w = vec3_sub(c, a), normal = vec3_cross(u, v);
+    double normal2 = vec3_dot(normal, normal);
+    if (!(normal2 > 0))
+        return INFINITY;
+    double s = vec3_dot(vec3_cross(w, v), normal) / normal2;
+    double t = vec3_dot(vec3_cross(w, u), normal) / normal2;
+    if (s < 0 || s > 1 || t < 0 || t > 1)
+        return INFINITY;
+    double height = vec3_dot(w, normal);
+    return height * height / normal2;
+}
+
+static double axis_distance(Vec3 a, Vec3 b, Vec3 c, Vec3 d)
+{
+    double least2 = inner_distance2(a, b, c, d);
+    least2 = fmin(least2, fmin(end_distance2(a, c, d), end_distance2(b, c, d)));
+    return sqrt(fmin(least2, fmin(end_distance2(c, a, b), end_distance2(d, a, b))));
+}
+
+static Box box_of(const Tree *tree, size_t i)
+{
+    double radius = tree->radius_mm[i];
+    size_t above = tree_is_segment(tree, i) ? (size_t)tree->parent[i] : i;
+    return box_with_ball(box_with_ball(box_empty(), tree->position[above], radius),
+                         tree->position[i], radius);
+}
+
+/* Looks at all segments of other trees than that of segment i, and with a lower index. */
+static void look(const Tree *tree, const BoxTree *boxes, const int32_t *root, size_t i,
+                 double within, double *apart, size_t pair[2])
+{
+    uint32_t j;
+    Vec3 a = tree->position[tree->parent[i]], b = tree->position[i];
+    for (BoxWalk walk = boxwalk_box(boxes, box_padded(box_of(tree, i), within));
+         boxwalk_next(&walk, &j);) {
+        if (j >= i || !tree_is_segment(tree, j) || root[j] == root[i])
+            continue;
+        double distance = axis_distance(a, b, tree->position[tree->parent[j]], tree->position[j]) -
+                          tree->radius_mm[i] - tree->radius_mm[j];
+        if (distance >= within || distance >= *apart)
+            continue;
+        *apart = distance;
+        pair[0] = j;
+        pair[1] = i;
+    }
+}
+
+Status trees_apart(const Tree *tree, double within, double *apart, size_t pair[2], Err *err)
+{
+    Box *box = NULL;
+    int32_t *root = NULL;
+    BoxTree boxes = {0};
+    Status status = STATUS_OK;
+    double least = INFINITY;
+    TRY_GOTO(mem_calloc(&box, tree->n, sizeof *box, "boxes", err));
+    TRY_GOTO(mem_calloc(&root, tree->n, sizeof *root, "roots", err));
+    for (size_t i = 0; i < tree->n; i++) {
+        box[i] = box_of(tree, i);
+        root[i] = tree_is_segment(tree, i) ? root[tree->parent[i]] : (int32_t)i;
+    }
+    TRY_GOTO(boxtree_build(box, tree->n, &boxes, err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i))
+            look(tree, &boxes, root, i, within, &least, pair);
+    *apart = least;
+done:
+    boxtree_release(&boxes);
+    free(box);
+    free(root);
+    return status;
+}

@@ -1,0 +1,101 @@
+#!/usr/bin/env bash
+# grow --stages: one tree in stages; --min-radius and --clearance, which stages can say, too.
+. "$(dirname "$0")/../lib.sh"
+
+write_stages() {
+    cat >stages.ini <<'END'
+# a trunk in the plane's ball, then the ball
+[trunk]
+domain = ball:30
+terminals = 40
+gamma = 2.4
+p-term = 88.5
+q-perf = 45
+[tissue]
+domain = ball:31.5
+terminals = 600
+keep-radii = on
+gamma = 3
+p-term = 60
+END
+}
+
+# expect_within OLD NEW: every node of OLD is in NEW with its place and, but for roots, its radius.
+expect_within() {
+    awk '/^#/ { next } FNR == NR { at[$1] = $3 " " $4 " " $5 " " ($7 == -1 ? "" : $6); next }
+         { seen[$1] = $3 " " $4 " " $5 " " ($7 == -1 ? "" : $6) }
+         END { for (id in at) if (seen[id] != at[id]) { print "node " id ": " at[id] " became " seen[id]; exit } }' "$1" "$2" >within.out
+    [ ! -s within.out ] || fail "$(cat within.out)"
+}
+
+test_each_stage_grows_on_the_one_before() {
+    write_stages
+    run_ok corcast grow --domain ball:30 --terminals 40 --gamma 2.4 --p-term 88.5 --q-perf 45 --seed 5 -o trunk.swc
+    run_ok corcast grow --stages stages.ini --seed 5 -o tree.swc --json tree.json
+    expect_within trunk.swc tree.swc
+    grep -qx '# domain: ball:31.5' tree.swc || fail "expected the last domain in the header"
+    grep -qx '# gamma: 3' tree.swc || fail "expected the last gamma in the header"
+    grep -qx '# command: corcast grow --stages stages.ini --seed 5 -o T.swc' tree.swc || fail "expected the stages in the command"
+    run_ok corcast info tree.swc --json
+    expect_json stdout '.terminals == 600 and (.terminal_pressure_mmHg.min - 60 | fabs) < 1e-6'
+    run_ok corcast grow --stages stages.ini --seed 5 --threads 1 -o again.swc
+    expect_same <(grep -v '^# command' tree.swc) <(grep -v '^# command' again.swc)
+}
+
+test_stages_that_contradict_each_other_are_refused_with_their_names() {
+    local change sentence
+    while IFS='|' read -r change sentence; do
+        write_stages
+        sed -i "$change" stages.ini
+        run corcast grow --stages stages.ini --quiet -o tree.swc
+        expect_status 2
+        expect_sentence "$sentence"
+        expect_only stages.ini
+    done <<'END'
+s/keep-radii = on/toss = terminal/|^corcast grow: stages.ini: \[tissue\]: gamma 3 would change the radii of stage \[trunk\], which has 2.4; say keep-radii = on, or the same gamma$
+s/p-term = 60/p-term = 90/|stages.ini: \[tissue\]: p-term 90 mmHg leaves nothing to drop beyond stage \[trunk\], whose radii are kept and whose terminals are at 88.5
+s/terminals = 600/terminals = 40/|stages.ini: \[tissue\]: .*must be above the 40 that the tree of .* has
+s/domain = ball:31.5/domain = ball:5@100,0,0/|stages.ini: \[tissue\]: .*the domain does not hold the tree
+s/gamma = 3/gama = 3/|stages.ini:12: 'gama' is no option of a stage
+s/gamma = 3/from = x.swc/|stages.ini:12: 'from' is no option of a stage
+s/gamma = 3/gamma = three/|stages.ini:12: --gamma: 'three'
+1,2s/.trunk./; none/|stages.ini:3: 'domain' stands above the first stage
+END
+    printf '# nothing\n' >stages.ini
+    run corcast grow --stages stages.ini -o tree.swc
+    expect_status 2
+    expect_sentence 'stages.ini: has no stage'
+    write_stages
+    run corcast grow --stages stages.ini --refine geometry -o tree.swc
+    expect_status 2
+    expect_sentence '--refine: would give --stages one law'
+}
+
+test_growth_ends_at_a_radius() {
+    run_ok corcast grow --terminals 5000 --min-radius 0.235 -o tree.swc
+    grep -v '^#' tree.swc | awk '{ r[$1] = $6; has[$7] = 1 } END { for (i in r) if (!(i in has)) { s += r[i]; n++ }
+        m = s / n; exit !(m > 0.22 && m < 0.237 && n > 50 && n < 1000) }' || fail "expected terminals of 0.235 mm in the mean"
+}
+
+# The least distance of the walls of two trees, by points on both axes.
+least_apart() {
+    awk '/^#/ { next } { x[$1] = $3; y[$1] = $4; r[$1] = $6; p[$1] = $7; tree[$1] = $7 == -1 ? $1 : tree[$7]; id[++n] = $1 }
+         END { least = 1e9
+             for (k = 1; k <= n; k++) if (p[id[k]] != -1) for (s = 0; s <= 8; s++) {
+                 i = id[k]; m++; px[m] = x[p[i]] + (x[i] - x[p[i]]) * s / 8; py[m] = y[p[i]] + (y[i] - y[p[i]]) * s / 8; pr[m] = r[i]; pt[m] = tree[i] }
+             for (a = 1; a <= m; a++) for (b = a + 1; b <= m; b++) if (pt[a] != pt[b]) {
+                 d = sqrt((px[a] - px[b]) ^ 2 + (py[a] - py[b]) ^ 2) - pr[a] - pr[b]; if (d < least) least = d }
+             print least }' "$1"
+}
+
+test_trees_keep_the_clearance_that_was_asked_for() {
+    run_ok corcast grow --terminals 160 --inlet 0,50 --inlet 4.5,-49 --q-perf 200 --clearance 3.25 -o apart.swc --json apart.json
+    expect_json apart.json '.apart_mm >= 3.25'
+    awk -v a="$(least_apart apart.swc)" -v b="$(jq .apart_mm apart.json)" 'BEGIN { exit !(a >= 3.25 && a >= b && a < b + 0.8) }' ||
+        fail "expected about $(jq .apart_mm apart.json) mm, got $(least_apart apart.swc)"
+    run corcast grow --terminals 160 --inlet 0,50 --inlet 4.5,-49 --clearance -1 -o none.swc
+    expect_status 2
+    expect_sentence "clearance.*-1"
+}
+
+run_tests "$@"

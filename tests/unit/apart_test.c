@@ -1,0 +1,96 @@
+/* The distance of the trees of a forest, held against all pairs of segments by another formula. */
+#include "grow/grow.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tree_promises.h"
+
+static Tree forest(const char *spec, double clearance, Err *err)
+{
+    const Vec3 inlet[] = {{0, 29.5, 0}, {4.5, -28, 0}, {-27, 3, 0}};
+    GrowParams params = grow_defaults();
+    Domain domain;
+    Tree tree = {0};
+    params.terminals = 220;
+    params.inlets = 3;
+    params.inlet = inlet;
+    params.q_perf_ml_min = 90;
+    params.clearance_mm = clearance;
+    assert_int_equal(domain_parse(&domain, spec, NULL), STATUS_OK);
+    if (grow_tree(&params, &domain, &tree, NULL, err) != STATUS_OK)
+        fail_msg("%s", err->text);
+    return tree;
+}
+
+/* By all pairs. */
+static double apart_by_pairs(const Tree *tree)
+{
+    double least = INFINITY;
+    int32_t *root = calloc(tree->n, sizeof *root);
+    assert_non_null(root);
+    for (size_t i = 0; i < tree->n; i++) {
+        root[i] = tree_is_segment(tree, i) ? root[tree->parent[i]] : (int32_t)i;
+        for (size_t j = 0; j < i && tree_is_segment(tree, i); j++)
+            if (tree_is_segment(tree, j) && root[i] != root[j])
+                least = fmin(least,
+                             segment_distance(tree->position[tree->parent[i]], tree->position[i],
+                                              tree->position[tree->parent[j]], tree->position[j]) -
+                                 tree->radius_mm[i] - tree->radius_mm[j]);
+    }
+    free(root);
+    return least;
+}
+
+static void trees_are_as_far_apart_as_their_nearest_pair(void **state)
+{
+    (void)state;
+    const char *const spec[] = {"disc:30", "ball:30"};
+    for (int k = 0; k < 4; k++) {
+        Err err = {""};
+        Tree tree = forest(spec[k % 2], k / 2 * 1.25, &err);
+        double apart, by_pairs = apart_by_pairs(&tree);
+        size_t pair[2];
+        assert_int_equal(trees_apart(&tree, 50, &apart, pair, NULL), STATUS_OK);
+        assert_true(fabs(apart - by_pairs) < 1e-6);
+        assert_true(apart >= k / 2 * 1.25);
+        assert_int_equal(trees_apart(&tree, by_pairs / 2, &apart, pair, NULL), STATUS_OK);
+        assert_true(isinf(apart));
+        tree_release(&tree);
+    }
+}
+
+static void vessels_that_overlap_are_less_than_nothing_apart(void **state)
+{
+    (void)state;
+    Tree tree;
+    assert_int_equal(tree_init(&tree, 4, NULL), STATUS_OK);
+    const Vec3 at[] = {{-5, 0, 0}, {5, 0, 0.5}, {0, -4, 1.5}, {0, 6, 1.5}};
+    for (size_t i = 0; i < 4; i++) {
+        tree.position[i] = at[i];
+        tree.radius_mm[i] = 0.85;
+        tree.parent[i] = i % 2 ? (int32_t)i - 1 : TREE_NO_PARENT;
+    }
+    double apart;
+    size_t pair[2];
+    assert_int_equal(trees_apart(&tree, 1, &apart, pair, NULL), STATUS_OK);
+    double expected = segment_distance(at[0], at[1], at[2], at[3]) - 1.7;
+    assert_true(apart < 0 && fabs(apart - expected) < 1e-6);
+    assert_int_equal(pair[0], 1);
+    assert_int_equal(pair[1], 3);
+    tree_release(&tree);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(trees_are_as_far_apart_as_their_nearest_pair),
+        cmocka_unit_test(vessels_that_overlap_are_less_than_nothing_apart),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
