@@ -246,6 +246,15 @@ async function checkPhone() {
   check((await cards()).join() === "tools,readout", "expected the values of a segment in place of the controls, got " + await cards());
   await browser.key("Escape");
   check((await cards()).join() === "side,tools", "expected the controls back, got " + await cards());
+  await browser.send("Emulation.setTouchEmulationEnabled", { enabled: true });
+  await settled();
+  check((await evaluate("location.hash")).includes("turn=0,0&"), "expected to look from the front");
+  const touch = (type, points) => browser.send("Input.dispatchTouchEvent", { type, touchPoints: points });
+  await touch("touchStart", [{ x: 150, y: 300 }]);
+  for (const x of [180, 210]) await touch("touchMove", [{ x, y: 300 }]);
+  await touch("touchEnd", []);
+  await settled();
+  check(!(await evaluate("location.hash")).includes("turn=0,0&"), "expected a finger to turn the tree");
 }
 
 // The panels that can be seen, each of which fits the window, and none of which covers another.
