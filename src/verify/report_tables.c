@@ -1,9 +1,11 @@
-/* The tables of a case on the page: a row for each rule, and a table for each heading of the
- * measures. */
+/* The tables of a case on the page: a row for each rule; and for each check its measures, a table
+ * for each heading, under a line with the first of them. Checks that differ are open. */
 #include "tmpl/tmpl.h"
 #include "verify/check.h"
 #include "verify/report.h"
 #include "verify/rounded.h"
+
+enum { FIRST_MEASURES = 3 };
 
 static Status put_rule(const Check *check, int index, const char *templates, Text *out, Err *err)
 {
@@ -35,6 +37,7 @@ static Status put_table(const char *caption, Text *rows, const char *templates, 
     return markup_put(&parts, templates, "measures.html", out, err);
 }
 
+/* The tables of a check's measures, those of one heading in each. */
 static Status put_measures(const Check *check, const char *templates, Text *out, Err *err)
 {
     Text rows = TEXT_INIT;
@@ -43,6 +46,7 @@ static Status put_measures(const Check *check, const char *templates, Text *out,
         const Measure *measure = &check->measures[i];
         Markup parts = {0};
         text_puts(markup_text(&parts, "name"), measure->name);
+        text_puts(markup_text(&parts, "class"), measure->value == 0 ? "zero" : "");
         text_rounded(markup_text(&parts, "value"), measure->value, measure->unit);
         TRY_GOTO(markup_put(&parts, templates, "measure.html", &rows, err));
         if (i + 1 == check->n_measures || measure[1].table != measure->table)
@@ -63,12 +67,36 @@ static Status put_settled(const ReportCase *report, const char *templates, Text 
         Markup parts = {0};
         settled_describe(pixel, report->a.name, report->b.name, markup_text(&parts, "name"));
         text_puts(markup_text(&parts, "value"), settled_cause_name(pixel->cause));
+        text_puts(markup_text(&parts, "class"), "");
         TRY_GOTO(markup_put(&parts, templates, "measure.html", &rows, err));
     }
     if (settled->n_first > 0)
         TRY_GOTO(put_table("Settled pixels, the first of them", &rows, templates, out, err));
 done:
     text_release(&rows);
+    return status;
+}
+
+/* All that was measured for one check. */
+static Status put_measured(const ReportCase *report, const Check *check, const char *templates,
+                           Text *out, Err *err)
+{
+    Markup parts = {0};
+    Text *first = markup_text(&parts, "first"), *tables = markup_raw(&parts, "tables");
+    text_puts(markup_text(&parts, "title"), check->title);
+    text_puts(markup_text(&parts, "verdict"), check->agrees ? "✓ agree" : "✗ differ");
+    text_puts(markup_text(&parts, "open"), check->agrees ? "" : " open");
+    for (int i = 0; i < check->n_measures && i < FIRST_MEASURES; i++) {
+        const Measure *measure = &check->measures[i];
+        text_printf(first, "%s%s ", i ? ", " : "", measure->name);
+        text_rounded(first, measure->value, measure->unit);
+    }
+    Status status = put_measures(check, templates, tables, err);
+    if (status == STATUS_OK && check->settled)
+        status = put_settled(report, templates, tables, err);
+    if (status == STATUS_OK)
+        status = markup_put(&parts, templates, "measured.html", out, err);
+    markup_release(&parts);
     return status;
 }
 
@@ -82,9 +110,8 @@ Status report_tables(const ReportCase *report, const char *templates, Text *rule
             TRY(put_unjudged(&checks[i], templates, rules, err));
         for (int k = 0; k < checks[i].n_rules; k++)
             TRY(put_rule(&checks[i], k, templates, rules, err));
-        TRY(put_measures(&checks[i], templates, measures, err));
-        if (checks[i].settled)
-            TRY(put_settled(report, templates, measures, err));
+        if (checks[i].n_measures > 0 || checks[i].settled)
+            TRY(put_measured(report, &checks[i], templates, measures, err));
     }
     return STATUS_OK;
 }

@@ -61,7 +61,7 @@ class Browser {
 
   // Opens a page, and waits until it has settled; `address` is what follows its "#".
   async open(page, address) {
-    await this.send("Page.navigate", { url: "file://" + path.resolve(page) + (address ? "#" + address : "") });
+    await this.send("Page.navigate", { url: /^about:/.test(page) ? page : "file://" + path.resolve(page) + (address ? "#" + address : "") });
     await this.evaluate("new Promise(function (r) { if (document.readyState === 'complete') setTimeout(r, 300);" +
       " else window.addEventListener('load', function () { setTimeout(r, 300); }); })");
   }

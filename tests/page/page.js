@@ -21,6 +21,7 @@ const hash = "(function () { var c = document.getElementById('stage'), d = c.get
   ".getImageData(0, 0, c.width, c.height).data, h = 0; for (var i = 0; i < d.length; i += 5) h = (h * 31 + d[i]) | 0;" +
   " return h; })()";
 const readout = "Array.from(document.querySelectorAll('#readout div')).map(function (d) { return d.textContent; })";
+const settled = "new Promise(function (r) { setTimeout(r, 250); })"; // the address is written after 150 ms
 const rows = "Array.from(document.querySelectorAll('.cases tbody tr')).map(function (r) { return r.dataset.case; })";
 
 async function checkOpening() {
@@ -29,6 +30,45 @@ async function checkOpening() {
   check(await evaluate("document.querySelectorAll('.case:not([hidden])').length") === 1, "expected one case to be shown");
   check(await evaluate("!!document.querySelector('.case:not([hidden]) #stage')"), "expected the viewer in it");
   check(await evaluate("Array.from(document.images).every(function (i) { return i.complete; })"), "expected all pictures");
+  check(await evaluate("document.getElementById('stage').getBoundingClientRect().top < window.innerHeight / 2"),
+    "expected the pictures in the upper half of the window");
+  check(await evaluate("location.hash") === "", "expected the address to stay as it is until something is changed");
+  check(await evaluate("new Set(Array.from(document.querySelectorAll('.cases tbody th')).map(function (c) {" +
+    " return c.textContent; })).size") === expected.cases, "expected cases to be told apart");
+  check(await evaluate("Array.from(document.querySelectorAll('.case:not([hidden]) .measured')).every(function (d) {" +
+    " return d.open === d.querySelector('.verdict').textContent.includes('differ'); })"), "expected what differs to be open, alone");
+}
+
+// The worst pixel is the first of the next ones, and the sentence leads to it.
+async function checkWorst() {
+  const w = expected.worst, place = w.x + ", " + w.y;
+  await key("n");
+  check((await evaluate(readout))[0].includes(")" + place), "expected n to begin with the worst, got " + await evaluate(readout));
+  await key("0");
+  await evaluate("document.querySelector('.case:not([hidden]) header a').click()");
+  await evaluate(settled);
+  check((await evaluate(readout))[0].includes(")" + place), "expected the sentence to lead to the worst pixel");
+  check(await evaluate("document.activeElement.id") === "stage", "expected a link to bring the keys to the pictures");
+  check(await evaluate("getComputedStyle(document.getElementById('stage')).outlineStyle") === "solid", "expected the focus to be seen");
+  await key("0");
+}
+
+// Sorted and filtered cases are in the address, too.
+async function checkFilter() {
+  const shown = "Array.from(document.querySelectorAll('.cases tbody tr:not([hidden])')).map(function (r) { return r.dataset.case; })";
+  await key("/");
+  check(await evaluate("document.activeElement.id") === "filter", "expected / to lead to the filter");
+  for (const letter of "differ") await key(letter);
+  check((await evaluate(shown)).join() === expected.worst.id, "expected the cases that differ, got " + await evaluate(shown));
+  await evaluate("document.querySelectorAll('.cases th[data-sort] button')[4].click()");
+  await evaluate(settled);
+  const address = await evaluate("location.hash");
+  check(address.includes("filter=differ") && address.includes("sort=5d"), "expected sort and filter in the address, got " + address);
+  await browser.open("about:blank");
+  await browser.open(page, address.slice(1));
+  check((await evaluate(shown)).join() === expected.worst.id, "expected the address to filter, got " + await evaluate(shown));
+  check(await evaluate("document.querySelectorAll('.cases th')[5].getAttribute('aria-sort')") === "descending", "expected the address to sort");
+  await evaluate("(function () { var f = document.getElementById('filter'); f.value = ''; f.dispatchEvent(new Event('input')); })()");
 }
 
 async function checkSorting() {
@@ -80,8 +120,6 @@ async function checkZoomAndValues() {
   }
 }
 
-const settled = "new Promise(function (r) { setTimeout(r, 250); })"; // the address is written after 150 ms
-
 // What is shown can be read off the address, and is shown again by it.
 async function checkAddress() {
   await mouse("mouseMoved", 1, 1);
@@ -121,7 +159,7 @@ async function checkPlanes() {
     await evaluate(settled);
     seen.push(await evaluate(hash));
   }
-  for (const map of ["steps", "x8", "x64", "classes"]) {
+  for (const map of ["steps", "x1", "x8", "x64", "classes"]) {
     await evaluate("location.hash = '#case=" + expected.worst.id + "&mode=difference&map=" + map + "'");
     await evaluate(settled);
     seen.push(await evaluate(hash));
@@ -133,12 +171,55 @@ async function checkPlanes() {
   await key("1");
 }
 
+const touch = (type, ...points) => send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+const number = async (name) => Number(new URLSearchParams((await evaluate("location.hash")).slice(1)).get(name));
+
+// A finger scrolls the page until the pictures are enlarged, and reads a pixel; two enlarge them.
+async function checkTouch() {
+  await evaluate("location.hash = '#case=" + expected.worst.id + "&mode=swipe'");
+  await evaluate(settled);
+  const action = "document.getElementById('stage').style.touchAction";
+  check(await evaluate(action) === "pan-y", "expected a finger to scroll the page, got " + await evaluate(action));
+  const [left, top, w, h] = await evaluate("(function () { var b = document.getElementById('stage').getBoundingClientRect();" +
+    " return [b.left, b.top, b.width, b.height]; })()");
+  const at = (x, y) => [left + x * w, top + y * h];
+  await touch("touchStart", at(0.25, 0.5));
+  await touch("touchEnd");
+  await evaluate(settled);
+  check(/pixel=(29|30),4[45]/.test(await evaluate("location.hash")), "expected a tap to hold its pixel, got " + await evaluate("location.hash"));
+  await touch("touchStart", at(0.4, 0.2));
+  await touch("touchStart", at(0.4, 0.2), at(0.6, 0.2));
+  for (const far of [0.15, 0.2, 0.25, 0.3]) await touch("touchMove", at(0.5 - far, 0.2), at(0.5 + far, 0.2));
+  await touch("touchEnd");
+  await evaluate(settled);
+  const zoom = await number("zoom") / (w / 120);
+  check(Math.abs(zoom - 3) < 0.06, "expected fingers three times as far apart to enlarge threefold, got " + zoom);
+  check(await evaluate(action) === "none", "expected a finger to move the enlarged pictures");
+  const x = await number("x");
+  await touch("touchStart", at(0.2, 0.5));
+  await touch("touchMove", at(0.3, 0.5));
+  await touch("touchEnd");
+  await evaluate(settled);
+  check(Math.abs(await number("x") - x + 0.1 * 120 / 3) < 0.3, "expected a finger to move by 4 pixels, got " + (await number("x") - x));
+}
+
 async function checkPhone() {
   await send("Emulation.setDeviceMetricsOverride", { width: 390, height: 844, deviceScaleFactor: 2, mobile: true });
-  await evaluate(settled);
+  await send("Emulation.setTouchEmulationEnabled", { enabled: true });
+  await browser.open("about:blank");
+  await browser.open(page);
   check(await evaluate("document.documentElement.scrollWidth <= 390"), "expected the page to fit a phone");
+  check(await evaluate("(function () { var b = document.getElementById('stage').getBoundingClientRect();" +
+    " return b.width > 350 && b.bottom < window.innerHeight; })()"), "expected the pictures on the first screen of a phone");
   check(await evaluate("Array.from(document.querySelectorAll('.case:not([hidden]) .rules td:last-child')).every(function (d) {" +
     " var b = d.getBoundingClientRect(); return b.width === 0 || b.right <= 390; })"), "expected the limits to be seen on a phone");
+  const blink = "document.querySelector('[data-mode=blink]').click()";
+  await evaluate(blink);
+  const first = await evaluate(hash);
+  await evaluate(blink);
+  check(await evaluate(hash) !== first, "expected the button to blink without keys");
+  await checkTouch();
+  await send("Emulation.setTouchEmulationEnabled", { enabled: false });
   await send("Emulation.clearDeviceMetricsOverride");
   await evaluate(settled);
 }
@@ -191,6 +272,8 @@ runIn(chromium, ["--disable-gpu", "--window-size=1200,900"], async function (ope
   browser = opened;
   await browser.open(page);
   await checkOpening();
+  await checkWorst();
+  await checkFilter();
   await checkSorting();
   await checkHistogram();
   await checkZoomAndValues();
