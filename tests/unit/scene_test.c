@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -169,6 +170,68 @@ static void the_part_of_a_mesh_has_the_triangles_of_its_segments(void **state)
     vesselmesh_release(&part);
 }
 
+/* Two segments along z, one behind the other's end, ids 1017 and 5; triangles of 1.5 x 2 / 2 mm^2
+ * that face up or down. */
+static FieldSegment along_z[] = {{{0, 0, 0}, {0, 0, 2.385}, 0.9, 0},
+                                 {{0, 0, 4}, {0, 0, 3}, 0.7, 1}};
+static uint32_t z_nodes[][2] = {{0, 1}, {2, 3}}, z_ids[] = {1017, 5};
+static const VesselTree z_tree = {
+    .segments = along_z, .nodes = z_nodes, .ids = z_ids, .n_segments = 2, .n_nodes = 4};
+static float flat_points[][3] = {{0, 0, 0}, {1.5, 0, 0}, {0, 2, 0}};
+static uint32_t up[] = {0, 1, 2}, down[] = {0, 2, 1};
+
+static void expect_end(const MeshEnds *ends, size_t i, const char *name, uint32_t segment, double z)
+{
+    const MeshEnd *end = &ends->ends[i];
+    assert_string_equal(end->name, name);
+    assert_int_equal(end->segment, segment);
+    assert_true(end->center.z == z);
+    assert_true(end->radius_mm == (segment ? 0.7 : 0.9));
+}
+
+static void ends_are_named_by_ids_inlets_first(void **state)
+{
+    (void)state;
+    uint32_t triangles[5][3],
+        labels[] = {0 | MESH_CAP, 0, 1 | MESH_CAP, 0 | MESH_CAP, 1 | MESH_CAP};
+    for (int i = 0; i < 5; i++)
+        memcpy(triangles[i], i == 0 || i == 4 ? up : down, sizeof up);
+    const VesselMesh mesh = {flat_points, flat_points, 3, triangles, labels, 5};
+    MeshEnds ends;
+    assert_int_equal(meshends_find(&mesh, &z_tree, &ends, NULL), STATUS_OK);
+    assert_int_equal(meshends_parts(&ends), 5);
+    assert_string_equal(meshends_part_name(&ends, 0), "wall");
+    expect_end(&ends, 0, "inlet_0005", 1, 4);
+    expect_end(&ends, 1, "inlet_1017", 0, 0);
+    expect_end(&ends, 2, "outlet_0005", 1, 3);
+    expect_end(&ends, 3, "outlet_1017", 0, 2.385);
+    assert_true(fabs(ends.ends[0].normal.z - 1) < 1e-12);
+    assert_true(fabs(ends.ends[3].area_mm2 - 1.5) < 1e-6);
+    const uint32_t parts[] = {4, 0, 3, 2, 1};
+    assert_memory_equal(ends.parts, parts, sizeof parts);
+    meshends_release(&ends);
+}
+
+static void a_hollow_wall_has_discs_and_rings_and_a_frame_no_ends(void **state)
+{
+    (void)state;
+    uint32_t triangles[5][3];
+    uint32_t labels[] = {0, MESH_LUMEN, 0 | MESH_CAP, 0 | MESH_CAP | MESH_LUMEN,
+                         1 | MESH_CAP | MESH_FRAME};
+    for (int i = 0; i < 5; i++)
+        memcpy(triangles[i], down, sizeof down);
+    const VesselMesh mesh = {flat_points, flat_points, 3, triangles, labels, 5};
+    MeshEnds ends;
+    assert_int_equal(meshends_find(&mesh, &z_tree, &ends, NULL), STATUS_OK);
+    static const char *const names[] = {"outer", "lumen", "frame", "inlet", "inlet_ring"};
+    assert_int_equal(meshends_parts(&ends), 5);
+    for (size_t i = 0; i < 5; i++)
+        assert_string_equal(meshends_part_name(&ends, i), names[i]);
+    const uint32_t parts[] = {0, 1, 4, 3, 2};
+    assert_memory_equal(ends.parts, parts, sizeof parts);
+    meshends_release(&ends);
+}
+
 static void expect_models(void (*list)(unsigned, Text *), unsigned elements, const char *expected)
 {
     Text names = TEXT_INIT;
@@ -203,6 +266,8 @@ int main(void)
         cmocka_unit_test(the_points_of_an_area_light_span_its_sides),
         cmocka_unit_test(models_are_listed_by_what_they_are_made_of),
         cmocka_unit_test(the_part_of_a_mesh_has_the_triangles_of_its_segments),
+        cmocka_unit_test(ends_are_named_by_ids_inlets_first),
+        cmocka_unit_test(a_hollow_wall_has_discs_and_rings_and_a_frame_no_ends),
         cmocka_unit_test(a_ground_is_not_seen_along_itself_nor_beyond_all_bounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
