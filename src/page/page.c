@@ -129,42 +129,62 @@ static Status put_data(Text *out, void *context, Err *err)
     return text_check(out, err);
 }
 
-static Status put_page(const PageParams *params, const char *viewer, const Tmpl *page, Text *out,
-                       Err *err)
+/* What a page is made of besides: the template, the viewer, and whose colours the maps are. */
+typedef struct Parts {
+    Tmpl page;
+    char *viewer, *notices; /* owned */
+} Parts;
+
+static Status put_page(const PageParams *params, const Parts *from, Text *out, Err *err)
 {
-    Text told = TEXT_INIT, title = TEXT_INIT;
+    Text told = TEXT_INIT, title = TEXT_INIT, notices = TEXT_INIT;
     put_told(params, &told);
     text_escaped(&title, params->title);
+    text_escaped(&notices, from->notices);
     Status status;
     TRY_GOTO(text_check(&told, err));
     TRY_GOTO(text_check(&title, err));
+    TRY_GOTO(text_check(&notices, err));
     const TmplValue values[] = {{"title", text_chars(&title)},
                                 {"generator", params->generator},
+                                {"notices", text_chars(&notices)},
                                 {"told", text_chars(&told)},
-                                {"viewer", viewer}};
+                                {"viewer", from->viewer}};
     PageParams given = *params;
     const TmplPart parts[] = {{"data", put_data, &given}};
-    status = tmpl_stream(page, values, sizeof values / sizeof *values, parts, 1, out, err);
+    status = tmpl_stream(&from->page, values, sizeof values / sizeof *values, parts, 1, out, err);
 done:
     text_release(&told);
     text_release(&title);
+    text_release(&notices);
+    return status;
+}
+
+static Status read_parts(const PageParams *params, Parts *parts, Err *err)
+{
+    static const FileForm text = {.name = "a text", .most_bytes = 1e7, .is_text = true};
+    char *page = NULL, *notices = NULL;
+    size_t size;
+    Status status;
+    TRY_GOTO(file_join(params->templates, "page/page.html", &page, err));
+    TRY_GOTO(file_join(params->templates, "colormaps/NOTICES", &notices, err));
+    TRY_GOTO(tmpl_load(&parts->page, page, err));
+    TRY_GOTO(file_read(notices, &text, &parts->notices, &size, err));
+    status = file_read(params->viewer, &text, &parts->viewer, &size, err);
+done:
+    free(page);
+    free(notices);
     return status;
 }
 
 Status page_put(const PageParams *params, Text *out, Err *err)
 {
-    static const FileForm script = {.name = "a script", .most_bytes = 1e7, .is_text = true};
-    char *path = NULL, *viewer = NULL;
-    size_t size;
-    Tmpl page = {0};
-    Status status;
-    TRY_GOTO(file_join(params->templates, "page/page.html", &path, err));
-    TRY_GOTO(tmpl_load(&page, path, err));
-    TRY_GOTO(file_read(params->viewer, &script, &viewer, &size, err));
-    status = put_page(params, viewer, &page, out, err);
-done:
-    tmpl_release(&page);
-    free(viewer);
-    free(path);
+    Parts parts = {0};
+    Status status = read_parts(params, &parts, err);
+    if (status == STATUS_OK)
+        status = put_page(params, &parts, out, err);
+    tmpl_release(&parts.page);
+    free(parts.viewer);
+    free(parts.notices);
     return status;
 }

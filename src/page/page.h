@@ -36,8 +36,8 @@ typedef struct PageParams {
     const char *map;         /* the name of its map, which need not be among the others */
 } PageParams;
 
-/* Appends the page. STATUS_INPUT when the template is missing or does not fit, STATUS_IO when the
- * viewer cannot be read, and as text_check. */
+/* Appends the page. STATUS_INPUT when a file of the templates or the viewer is missing or does not
+ * fit, and as file_read and text_check. */
 MUST_CHECK Status page_put(const PageParams *params, Text *out, Err *err);
 
 #endif

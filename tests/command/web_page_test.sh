@@ -54,6 +54,7 @@ test_a_page_of_2000_segments_is_small_complete_and_the_same_each_time() {
     [ "$(wc -c <a.html)" -lt 1000000 ] || fail "expected less than 1 MB, got $(wc -c <a.html)"
     grep -qE '(src|href)="' a.html && fail "expected nothing from elsewhere"
     grep -q 'Permission is hereby granted' a.html || fail "expected the licence of three.js"
+    grep -q 'Copyright (c) 2021 Fabio Crameri' a.html || fail "expected the licences of the colour maps"
     grep -q '<title>tree.swc, an arterial tree</title>' a.html || fail "expected a title"
     sed -n 's/^<script type="application\/json" id="told">\(.*\)<\/script>$/\1/p' a.html >told.json
     expect_json told.json '(.start | .field == "flow" and .map == "magma" and .log and (.low - 0.5 | fabs) < 1e-9 and (.high - 500 | fabs) < 1e-9)
