@@ -197,4 +197,28 @@ test_a_wall_has_the_same_bytes_for_any_number_of_threads() {
     expect_same one.ply.json three.ply.json
 }
 
+test_every_key_is_in_the_help_and_on_the_page() {
+    local key
+    run corcast export "$DATA/bifurcation.swc" --print none -o m.stl
+    for key in $(sed 's/.*is not one of //; s/,//g' stderr); do
+        run_ok corcast export --help
+        expect_stdout "[ ,]$key[=, ;]"
+        grep -qE "\`$key[=\`]" "$REPO/docs/MAKERS.md" || fail "docs/MAKERS.md does not have the key $key"
+    done
+    [ "$key" = bed ] || fail "expected the keys in the sentence: $(cat stderr)"
+}
+
+# The pictures of the page, smaller. Slow: OpenSCAD cuts the block.
+test_the_commands_of_the_page_run() {
+    local line
+    command -v xvfb-run >/dev/null && command -v openscad >/dev/null || skip "xvfb-run or openscad is not installed"
+    ln -s "$REPO/tests" .
+    while read -r line; do
+        run_ok timeout 60 bash -c "$(sed "s|build/corcast|'$CORCAST'|; s/imgsize [0-9,]*/imgsize 120,90/; s/ *#.*//" <<<"$line")"
+    done < <(sed -n ':a; /\\$/{N; s/\\\n *//; ba}; s/^    \(build\/corcast\|xvfb-run\)/\1/p' "$REPO/docs/MAKERS.md")
+    for picture in print block; do
+        [ "$(pngtopnm $picture.png | ppmhist -noheader | wc -l)" -gt 20 ] || fail "expected a model in $picture.png"
+    done
+}
+
 run_tests "$@"

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a cylinder; it keeps outside the prism by a thousandth of its radius. */
-enum { MOST_SIDES = 96 };
+/* Of the radius: what lies in the prism. */
+static const double in_prism = 0.998;
 
 typedef struct Enclosing {
     Solid *solid;
@@ -46,7 +46,7 @@ bool casing_holds_disc(const Casing *casing, int face, Vec3 at, double radius_mm
         far2 += off * off;
         holds = holds && (axis == face_axis(face) || off + radius_mm <= half);
     }
-    return holds && (!casing->is_round || sqrt(far2) + radius_mm <= 0.998 * radius_of(casing));
+    return holds && (!casing->is_round || sqrt(far2) + radius_mm <= in_prism * radius_of(casing));
 }
 
 /* One face, whose edge is given counterclockwise seen from outside, with its holes. */
@@ -103,21 +103,21 @@ static Status add_cylinder(const Enclosing *enclosing)
     const Casing *casing = enclosing->casing;
     int axis = casing->axis, u = (axis + 1) % 3, v = (axis + 2) % 3;
     Vec3 middle = middle_of(casing);
-    uint32_t rings[2][MOST_SIDES], turned[MOST_SIDES];
+    uint32_t rings[2][CASING_SIDES], turned[CASING_SIDES];
     for (int end = 0; end < 2; end++)
-        for (int i = 0; i < MOST_SIDES; i++) {
-            double at[3], angle = 6.283185307179586 * i / MOST_SIDES;
+        for (int i = 0; i < CASING_SIDES; i++) {
+            double at[3], angle = 6.283185307179586 * i / CASING_SIDES;
             at[axis] = face_place(casing, 2 * axis + end);
             at[u] = vec3_component(middle, u) + radius_of(casing) * cos(angle);
             at[v] = vec3_component(middle, v) + radius_of(casing) * sin(angle);
             TRY(add_corner(enclosing, at, &rings[end][i]));
         }
-    TRY(solid_ring(enclosing->solid, rings[0], rings[1], MOST_SIDES, MESH_CAP | MESH_FRAME,
+    TRY(solid_ring(enclosing->solid, rings[0], rings[1], CASING_SIDES, MESH_CAP | MESH_FRAME,
                    enclosing->err));
-    for (int i = 0; i < MOST_SIDES; i++)
-        turned[i] = rings[0][MOST_SIDES - 1 - i];
-    TRY(add_face(enclosing, 2 * axis, turned, MOST_SIDES));
-    return add_face(enclosing, 2 * axis + 1, rings[1], MOST_SIDES);
+    for (int i = 0; i < CASING_SIDES; i++)
+        turned[i] = rings[0][CASING_SIDES - 1 - i];
+    TRY(add_face(enclosing, 2 * axis, turned, CASING_SIDES));
+    return add_face(enclosing, 2 * axis + 1, rings[1], CASING_SIDES);
 }
 
 Status casing_add(Solid *solid, const Casing *casing, const CasingHole *holes, size_t n, Err *err)

@@ -11,6 +11,9 @@ typedef struct Casing {
     int axis;      /* of a cylinder: 0, 1 or 2 */
 } Casing;
 
+/* So many has a cylinder, as a prism. */
+enum { CASING_SIDES = 96 };
+
 /* The faces of a casing: 2 axis, and one more where its coordinate is the higher one. */
 enum { CASING_FACES = 6 };
 

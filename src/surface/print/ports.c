@@ -58,12 +58,13 @@ static double edge_room(double radius_mm)
     return fmin(1, 0.5 * radius_mm);
 }
 
-/* The place on a face that a way of this width ends at: where the axis leads, or as near to it as
- * the edges leave room. */
+/* The place on a face that a way of this width ends at: half as far aside as the axis leads, which
+ * takes one bend, or as near to it as the edges leave room. */
 static Vec3 place_on_face(const PortRing *rim, const Casing *casing, int face, double radius_mm)
 {
     double along = fmax(vec3_dot(rim->way, face_normal(face)), 0.7), at[3];
-    Vec3 ahead = vec3_add_scaled(rim->center, rim->way, depth_of(rim, casing, face) / along);
+    double way_mm = 0.5 * depth_of(rim, casing, face) / along;
+    Vec3 ahead = vec3_add_scaled(rim->center, rim->way, way_mm);
     for (int axis = 0; axis < 3; axis++) {
         double room = radius_mm + 1.01 * edge_room(radius_mm);
         double low = vec3_component(casing->box.low, axis) + room;
@@ -155,11 +156,16 @@ static bool lay_bent(const PortSearch *search, const PortRing *rim, int face, Po
            casing_holds_disc(search->casing, face, out, last_mm + edge_room(last_mm));
 }
 
+/* What a port fills between two rings; a straight one, as far as its ellipse reaches. */
 static FieldSegment stretch_of(const PortRing *rim, const Port *port, int i)
 {
     const PortRing *from = i ? &port->rings[i - 1] : rim, *to = &port->rings[i];
-    return (FieldSegment){
-        .a = from->center, .b = to->center, .radius_mm = fmax(from->radius_mm, to->radius_mm)};
+    double cosine = vec3_dot(to->way, face_normal(port->face)), beyond = 0;
+    if (port->is_straight)
+        beyond = to->radius_mm * sqrt(fmax(1 - cosine * cosine, 0)) / cosine;
+    return (FieldSegment){.a = from->center,
+                          .b = vec3_add_scaled(to->center, to->way, beyond),
+                          .radius_mm = fmax(from->radius_mm, to->radius_mm)};
 }
 
 static bool is_apart(const FieldSegment *one, const FieldSegment *other)
