@@ -27,6 +27,9 @@ typedef struct FieldPrepared {
     void *shadows[VIEW_MAX_LIGHTS]; /* owned; NULL where the light casts none, or rays do */
 } FieldPrepared;
 
+/* Rows of tiles whose centres are traced together, with shadows. */
+enum { ROWS_AT_ONCE = 4 };
+
 /* A tile of a batch. */
 typedef struct BatchTile {
     SeenTile seen; /* its hits are these, or NULL */
@@ -246,7 +249,9 @@ static void visit_center(const SeenTile *vessels, int worker, void *context)
 {
     FieldPicture *picture = context;
     Batch *batch = &picture->batches[worker];
-    add_tile(picture, vessels, batch);
+    if (vessels->hits || picture->canvas.drawing->view->ground.present ||
+        picture->canvas.wholly_colored)
+        add_tile(picture, vessels, batch);
     if (batch->n_tiles == picture->batch_size && batch->status == STATUS_OK)
         batch->status = shade_batch(picture, worker, keep_center, picture, &batch->err);
 }
@@ -258,11 +263,12 @@ static Status batch_status(const Batch *batch, Err *err)
     return batch->status;
 }
 
-static Status trace_centers(void *context, int row, int worker, Err *err)
+static Status trace_centers(void *context, int first, int rows, int worker, Err *err)
 {
     FieldPicture *picture = context;
-    TRY(fieldtiles_trace(picture->pass->tiles, (size_t)row, worker, NULL, visit_center, picture,
-                         err));
+    for (int row = first; row < first + rows; row++)
+        TRY(fieldtiles_trace(picture->pass->tiles, (size_t)row, worker, NULL, visit_center, picture,
+                             err));
     TRY(batch_status(&picture->batches[worker], err));
     return shade_batch(picture, worker, keep_center, picture, err);
 }
@@ -340,8 +346,9 @@ static void add_up(const FieldPicture *picture, const float *samples, int i, int
     }
 }
 
-static Status trace_further(void *context, int row, int worker, Err *err)
+static Status trace_further(void *context, int row, int rows, int worker, Err *err)
 {
+    (void)rows; /* one */
     FieldPicture *picture = context;
     FurtherRows *own = &picture->further[worker];
     int n = picture->canvas.more.side, width = picture->canvas.drawing->view->camera.width;
@@ -485,7 +492,7 @@ static Status antialias(FieldPicture *picture, Err *err)
 {
     TRY(canvas_choose(&picture->canvas, err));
     TRY(make_further_rows(picture, err));
-    return canvas_pass(&picture->canvas, true, trace_further, picture, err);
+    return canvas_pass(&picture->canvas, true, 1, trace_further, picture, err);
 }
 
 static void release(FieldPicture *picture)
@@ -513,7 +520,8 @@ static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Er
     canvas->wholly_colored = drawing->params->method == RENDER_TRACE &&
                              raycolor_is_needed(drawing->view, drawing->params);
     TRY_GOTO(make_batches(&picture, err));
-    TRY_GOTO(canvas_pass(canvas, false, trace_centers, &picture, err));
+    TRY_GOTO(canvas_pass(canvas, false, picture.has_shadows ? ROWS_AT_ONCE : 1, trace_centers,
+                         &picture, err));
     picture.pass = &field->further;
     if (canvas->more.side > 0)
         TRY_GOTO(antialias(&picture, err));

@@ -180,12 +180,13 @@ static FieldTile tile_of(const FieldShadow *shadow, int number, LocalGroups *gro
                        .middle_x = view->left + (column * TILE_SIDE + middle) * view->step_x,
                        .middle_y = view->top + (row * TILE_SIDE + middle) * view->step_y,
                        .half_size = (float)(1.0001 * half * hypot(view->step_x, view->step_y)),
-                       .z_min = -HUGE_VAL};
+                       .z_min = HUGE_VAL};
 }
 
-/* Sets the places of a request but for those outside the tile, and so outside the view: these see
- * the light. Moves the numbers of those that are set to the front of `kept`. */
-static void set_places(FieldQueue *queue, const LightRequest *request, const FieldTile *tile,
+/* Sets the places of a request, and from where on vessels matter, but for those outside the tile,
+ * and so outside the view: these see the light. Moves the numbers of those that are set to the
+ * front of `kept`. */
+static void set_places(FieldQueue *queue, const LightRequest *request, FieldTile *tile,
                        uint32_t *kept)
 {
     FieldPlaces *places = &queue->places;
@@ -202,6 +203,7 @@ static void set_places(FieldQueue *queue, const LightRequest *request, const Fie
         places->x[n] = (float)x;
         places->y[n] = (float)y;
         places->z[n] = -(aimed->z[place] + aim->z_middle);
+        tile->z_min = min_of(tile->z_min, places->z[n]);
         places->n++;
     }
 }

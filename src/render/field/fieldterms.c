@@ -68,11 +68,13 @@ static Encounter meet_in_perspective(const FrameSegment *segment, double x, doub
     return met;
 }
 
-/* False when the segment is out of reach. */
+/* False when the segment is out of reach, or of a tile of places behind them all. */
 static bool make_term(const FieldTile *tile, const FrameSegment *segment, uint32_t number,
                       TileTerm *term)
 {
     double x = tile->middle_x, y = tile->middle_y, far = (double)tile->half_size;
+    if (tile->any_depth && max_of(segment->a.z, segment->b.z) + segment->reach < tile->z_min)
+        return false;
     if (tile->perspective)
         far *= max_of(fabs(segment->a.z), fabs(segment->b.z)) + segment->reach;
     far += segment->reach;

@@ -44,7 +44,7 @@ typedef struct FieldTile {
     const float *x, *y; /* of the samples, relative to the middle ray */
     double middle_x, middle_y;
     float half_size; /* largest distance of a sample from the middle ray */
-    double z_min;    /* nothing is seen before it */
+    double z_min;    /* nothing is seen before it; of places: they are not before it */
 } FieldTile;
 
 /* Sets the terms of a tile, one for each of the n segments listed that is within reach of its rays,

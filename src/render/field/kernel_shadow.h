@@ -9,8 +9,9 @@
  *   Phi stays below the level, as a step of kernel_trace.h's march does.
  * - Beyond. A term is a Gaussian convolved with a segment, and log-concave along a line. Where it
  *   recedes from the segment's line it is at most exp(-E^2 - w^2) from there on, beyond an end that
- *   it leaves at most exp(-E^2 - w^2 - x^2) / 2, and elsewhere at most B. A place is lit if at the
- *   end of the stretch these sum up to less than the level.
+ *   it leaves at most exp(-E^2 - w^2 - x^2) / 2, once it falls at most what it is there, and
+ *   elsewhere at most B. A place is lit if at the end of the stretch these sum up to less than the
+ *   level, all of them, or all that overlap anywhere.
  * - Dark. A term that is passed at E^2 <= 1.9, both its ends 1.5 / k or more away, is 1.06 times
  *   the level there alone.
  *

@@ -28,6 +28,9 @@ typedef struct RasterPrepared {
     RasterGrid *further; /* owned; n x n, row by row */
 } RasterPrepared;
 
+/* Tiles that are drawn together, with shadows. */
+enum { MOST_TILES = 64 };
+
 /* A tile and what it sees. */
 typedef struct BatchTile {
     SeenTile seen; /* its hits are the surfels, or NULL */
@@ -294,8 +297,9 @@ static void begin_tile(const RasterPicture *picture, const RasterTile *raster, i
                             .middle_y = raster->y};
 }
 
-static Status draw_row(void *context, int row, int worker, Err *err)
+static Status draw_row(void *context, int row, int rows, int worker, Err *err)
 {
+    (void)rows; /* one */
     const RasterPicture *picture = context;
     const RasterBins *bins = picture->prepared->bins;
     Batch *batch = &picture->batches[worker];
@@ -380,7 +384,7 @@ static Status make_batch(const RasterPicture *picture, Batch *batch, Err *err)
 static Status make_batches(RasterPicture *picture, Err *err)
 {
     int workers = picture->canvas.workers;
-    picture->batch_size = picture->prepared->has_shadows ? LIGHT_BATCH : 1;
+    picture->batch_size = picture->prepared->has_shadows ? MOST_TILES : 1;
     TRY(mem_calloc(&picture->batches, (size_t)workers, sizeof *picture->batches, "canvases", err));
     for (int i = 0; i < workers; i++)
         TRY(make_batch(picture, &picture->batches[i], err));
@@ -413,11 +417,11 @@ static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Er
     if (!picture.chooses)
         canvas_blank_is_mean(canvas);
     TRY_GOTO(make_batches(&picture, err));
-    TRY_GOTO(canvas_pass(canvas, false, draw_row, &picture, err));
+    TRY_GOTO(canvas_pass(canvas, false, 1, draw_row, &picture, err));
     if (canvas->more.side > 0 && picture.chooses) {
         TRY_GOTO(canvas_choose(canvas, err));
         picture.second_round = true;
-        TRY_GOTO(canvas_pass(canvas, true, draw_row, &picture, err));
+        TRY_GOTO(canvas_pass(canvas, true, 1, draw_row, &picture, err));
     }
 done:
     release(&picture);

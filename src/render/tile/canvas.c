@@ -1,6 +1,7 @@
-/* Tiles of a row come from left to right, and only those that may see something: what lies between
- * them is filled row of pixels by row of pixels, so that a pixel is written once. A worker that
- * fails draws nothing any more, and its error is returned when all others are done. */
+/* Tiles come row by row, and in a row from left to right, and only those that may see something:
+ * what lies between them is filled row of pixels by row of pixels, so that a pixel is written once.
+ * A worker that fails draws nothing any more, and its error is returned when all others are done.
+ */
 #include "render/tile/canvas.h"
 
 #include "render/cast/caster.h"
@@ -350,6 +351,15 @@ static void store_blank(const Canvas *canvas, CanvasWorker *own, int end, int ro
         store_nothing(canvas, &empty, canvas->blank);
 }
 
+/* What the worker has not drawn of the rows of tiles above this. */
+static void blank_rows(const Canvas *canvas, CanvasWorker *own, int row)
+{
+    for (; own->row < row; own->row += TILE_SIDE) {
+        store_blank(canvas, own, canvas->drawing->view->camera.width, own->row);
+        own->column = 0;
+    }
+}
+
 void canvas_draw(const Canvas *canvas, int worker, const SeenTile *seen,
                  float color[3][TILE_SAMPLES])
 {
@@ -357,6 +367,7 @@ void canvas_draw(const Canvas *canvas, int worker, const SeenTile *seen,
     CanvasWorker *own = &canvas->each[worker];
     size_t width = 3 * (size_t)canvas->drawing->view->camera.width;
     size_t first = 3 * canvas_pixel(canvas, seen->column, seen->row);
+    blank_rows(canvas, own, seen->row);
     store_blank(canvas, own, seen->column, seen->row);
     own->column = seen->column + seen->n_columns;
     if (!seen->hits && !color) {
@@ -377,34 +388,42 @@ void canvas_draw(const Canvas *canvas, int worker, const SeenTile *seen,
 typedef struct Pass {
     Canvas *canvas;
     bool further;
-    CanvasRow *draw;
+    int rows, at_once; /* of tiles */
+    CanvasRows *draw;
     void *context;
 } Pass;
 
-static void draw_row(size_t number, int worker, void *context)
+static void draw_rows(size_t number, int worker, void *context)
 {
     const Pass *pass = context;
     Canvas *canvas = pass->canvas;
     const Band *band = &canvas->drawing->band;
     const Camera *camera = &canvas->drawing->view->camera;
     CanvasWorker *own = &canvas->each[worker];
-    int row = band->first / TILE_SIDE + (int)number;
+    int done = (int)number * pass->at_once, row = band->first / TILE_SIDE + done;
+    int n = pass->rows - done < pass->at_once ? pass->rows - done : pass->at_once;
     if (worker == 0)
         band_progress(band, canvas->drawing->params, camera->height, pass->further,
-                      (double)number * TILE_SIDE / band->rows);
+                      (double)done * TILE_SIDE / band->rows);
     if (own->status != STATUS_OK)
         return;
+    own->row = row * TILE_SIDE;
     own->column = 0;
-    own->status = pass->draw(pass->context, row, worker, &own->err);
+    own->status = pass->draw(pass->context, row, n, worker, &own->err);
     if (own->status == STATUS_OK && !pass->further)
-        store_blank(canvas, own, camera->width, row * TILE_SIDE);
+        blank_rows(canvas, own, (row + n) * TILE_SIDE);
 }
 
-Status canvas_pass(Canvas *canvas, bool further, CanvasRow *draw, void *context, Err *err)
+Status canvas_pass(Canvas *canvas, bool further, int at_once, CanvasRows *draw, void *context,
+                   Err *err)
 {
-    Pass pass = {canvas, further, draw, context};
-    size_t rows = ((size_t)canvas->drawing->band.rows + TILE_SIDE - 1) / TILE_SIDE;
-    threads_for(rows, canvas->workers, draw_row, &pass);
+    Pass pass = {.canvas = canvas,
+                 .further = further,
+                 .rows = (canvas->drawing->band.rows + TILE_SIDE - 1) / TILE_SIDE,
+                 .at_once = at_once,
+                 .draw = draw,
+                 .context = context};
+    threads_for((size_t)((pass.rows + at_once - 1) / at_once), canvas->workers, draw_rows, &pass);
     for (int i = 0; i < canvas->workers; i++)
         if (canvas->each[i].status != STATUS_OK) {
             if (err)

@@ -18,7 +18,7 @@ typedef struct CanvasWorker {
     float parts[VIEW_MAX_LIGHTS][TILE_SAMPLES];
     float color[3][TILE_SAMPLES];                    /* of the tile at hand */
     uint8_t shadowed[VIEW_MAX_LIGHTS][TILE_SAMPLES]; /* likewise, for engines to fill */
-    int column; /* the first of the row of tiles that is not drawn yet, in pixels */
+    int row, column; /* the first tile that is not drawn yet, in pixels */
     Status status;
     Err err;
 } CanvasWorker;
@@ -53,14 +53,14 @@ void canvas_release(Canvas *canvas);
  * which need not be the background in the last digit. */
 void canvas_blank_is_mean(Canvas *canvas);
 
-/* Draws one row of tiles of the picture, counted from its top. */
-typedef Status CanvasRow(void *context, int row, int worker, Err *err);
+/* Draws so many rows of tiles of the picture, `first` counted from its top. */
+typedef Status CanvasRows(void *context, int first, int rows, int worker, Err *err);
 
-/* Calls `draw` for each row of tiles of the band, one worker a row, and says how far it is; the
- * first failure is returned. In the pass of the centre samples (`further` false) tiles of a row
- * that canvas_draw has not been given are blank. */
-MUST_CHECK Status canvas_pass(Canvas *canvas, bool further, CanvasRow *draw, void *context,
-                              Err *err);
+/* Calls `draw` for all rows of tiles of the band, so many at once, one worker each, and says how
+ * far it is; the first failure is returned. In the pass of the centre samples (`further` false)
+ * tiles that canvas_draw has not been given are blank. */
+MUST_CHECK Status canvas_pass(Canvas *canvas, bool further, int at_once, CanvasRows *draw,
+                              void *context, Err *err);
 
 /* Which pixels get further samples, by the colours of the centre samples. STATUS_MEMORY. */
 MUST_CHECK Status canvas_choose(Canvas *canvas, Err *err);
@@ -83,8 +83,8 @@ void canvas_see_ground(const Canvas *canvas, SeenTile *seen, TileHits *hits);
 float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
                      const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES];
 
-/* Stores a tile of the centre samples in the planes of the frame; in a row, tiles go from left to
- * right. `color` NULL: the background's. */
+/* Stores a tile of the centre samples in the planes of the frame; tiles go row by row, and
+ * from left to right. `color` NULL: the background's. */
 void canvas_draw(const Canvas *canvas, int worker, const SeenTile *seen,
                  float color[3][TILE_SAMPLES]);
 
