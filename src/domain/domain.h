@@ -65,6 +65,21 @@ MUST_CHECK Status domain_parse(Domain *domain, const char *spec, Err *err);
 MUST_CHECK Status domain_of_tubes(Domain *domain, const DomainTube *tubes, size_t n, double mm,
                                   const char *file, Err *err);
 
+/* A map of how much blood tissue asks for. */
+typedef struct Demand Demand;
+
+/* Reads FILE,MM, a picture with pixels MM wide, or a NIfTI file, placed as masks are, into *demand
+ * (owned; demand_release): what is not above 0 asks for nothing. STATUS_USAGE naming `demand`,
+ * STATUS_INPUT naming the file, also when it asks for nothing anywhere. */
+MUST_CHECK Status demand_read(Demand **demand, const char *spec, Err *err);
+void demand_release(Demand *demand);
+/* The map's file; borrowed. */
+const char *demand_file(const Demand *demand);
+/* What the tissue at a point, mm, asks for, over the most that any does: from 0 to 1. O(1). */
+double demand_at(const Demand *demand, Vec3 point);
+/* STATUS_INPUT unless the domain asks for something: 1e-4 of the most, in the mean. */
+MUST_CHECK Status demand_check(const Demand *demand, const Domain *domain, Err *err);
+
 /* Frees what the domain owns. A zeroed or released domain is allowed. */
 void domain_release(Domain *domain);
 

@@ -152,8 +152,7 @@ static Vec3 mask_sample(const Domain *domain, Random *random)
 /* The volume of a voxel is at least this share of that of a brick with the same edges. */
 static const double least_upright = 1e-6;
 
-/* The inverse of the voxels' axes, which are to be of a sensible length and to span space. */
-static Status invert_axes(Mask *mask, const char *file, double *volume, Err *err)
+Status mask_invert_axes(Mask *mask, const char *file, double *volume, Err *err)
 {
     const Vec3 *step = mask->step;
     double brick = 1;
@@ -226,9 +225,27 @@ static bool ends_in(const char *text, const char *end)
     return length >= tail && strcasecmp(text + length - tail, end) == 0;
 }
 
+bool mask_is_nifti(const char *file)
+{
+    return ends_in(file, ".nii") || ends_in(file, ".nii.gz");
+}
+
+int64_t mask_voxel(const Mask *mask, Vec3 point)
+{
+    double index[3];
+    int64_t number = 0;
+    index_of(mask, point, index);
+    for (int axis = 2; axis >= 0; axis--) {
+        if (!(index[axis] >= 0 && index[axis] < (double)mask->n[axis]))
+            return -1;
+        number = number * mask->n[axis] + (int64_t)index[axis];
+    }
+    return number;
+}
+
 static Status read_file(Domain *domain, Err *err)
 {
-    bool is_nifti = ends_in(domain->file, ".nii") || ends_in(domain->file, ".nii.gz");
+    bool is_nifti = mask_is_nifti(domain->file);
     if (is_nifti && domain->n_sizes > 0)
         return err_set(err, STATUS_USAGE,
                        "a NIfTI file has its own units; use mask:FILE without a number");
@@ -250,7 +267,7 @@ static Status mask_load(Domain *domain, const char *values, Err *err)
     TRY(mem_calloc(&domain->mask, 1, sizeof *domain->mask, "masks", err));
     TRY(read_file(domain, err));
     double volume = 0;
-    TRY(invert_axes(domain->mask, domain->file, &volume, err));
+    TRY(mask_invert_axes(domain->mask, domain->file, &volume, err));
     TRY(list_tissue(domain, err));
     find_extent(domain);
     TRY(domain_check_point(domain->file, 0, domain->bounds.low, err));

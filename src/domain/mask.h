@@ -13,7 +13,9 @@ struct Mask {
     Vec3 corner;        /* of the index coordinates 0 0 0, mm */
     Vec3 step[3];       /* from one voxel to the next along i, j, k, mm */
     Vec3 inverse[3];    /* rows of the inverse of the matrix whose columns the steps are */
-    uint32_t *tissue;   /* the voxels of tissue, ascending; owned */
+    float *value;       /* of each voxel, where readers are to keep it: else NULL; owned */
+    bool keeps_values;
+    uint32_t *tissue; /* the voxels of tissue, ascending; owned */
     size_t n_tissue;
 };
 
@@ -24,6 +26,15 @@ MUST_CHECK Status mask_read_picture(Mask *mask, const char *path, double mm, Err
 /* NIfTI-1 or -2: what is above 0 is tissue; world coordinates are those of the sform or, without
  * one, of the qform. */
 MUST_CHECK Status mask_read_nifti(Mask *mask, const char *path, Err *err);
+
+/* The inverse of the voxels' axes, which are to be of a sensible length and to span space, and a
+ * voxel's volume, mm^3. STATUS_INPUT naming the file. */
+MUST_CHECK Status mask_invert_axes(Mask *mask, const char *file, double *volume, Err *err);
+/* The number of the voxel that holds the point, mm; -1 off the mask. In two dimensions z is not
+ * looked at. */
+int64_t mask_voxel(const Mask *mask, Vec3 point);
+/* Whether the file's name is that of a NIfTI file. */
+bool mask_is_nifti(const char *file);
 
 /* Room for n[0] n[1] n[2] voxels that are not tissue. STATUS_INPUT when there are 2^32 or more. */
 MUST_CHECK Status mask_init(Mask *mask, const char *path, const int64_t n[3], Err *err);

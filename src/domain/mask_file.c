@@ -31,8 +31,10 @@ Status mask_init(Mask *mask, const char *path, const int64_t n[3], Err *err)
     TRY(check_count(path, n, err));
     for (int axis = 0; axis < 3; axis++)
         mask->n[axis] = n[axis];
-    return mem_calloc(&mask->is_tissue, (size_t)n[0] * (size_t)n[1] * (size_t)n[2], 1, "voxels",
-                      err);
+    size_t voxels = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
+    if (mask->keeps_values)
+        TRY(mem_calloc(&mask->value, voxels, sizeof *mask->value, "voxels", err));
+    return mem_calloc(&mask->is_tissue, voxels, 1, "voxels", err);
 }
 
 Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err)
@@ -44,8 +46,11 @@ Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err)
     TRY_GOTO(mask_init(mask, path, n, err));
     size_t channels = (size_t)picture.channels;
     for (size_t i = 0; i < (size_t)picture.width * (size_t)picture.height; i++)
-        for (size_t c = 0; c < channels; c++)
+        for (size_t c = 0; c < channels; c++) {
             mask->is_tissue[i] |= picture_code(&picture, i * channels + c) != 0;
+            if (mask->keeps_values)
+                mask->value[i] += (float)picture_code(&picture, i * channels + c);
+        }
     mask->corner = vec3(-mm * picture.width / 2, mm * picture.height / 2, 0);
     mask->step[0] = vec3(mm, 0, 0);
     mask->step[1] = vec3(0, -mm, 0);
@@ -153,6 +158,8 @@ static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err 
         if (scaled)
             value = value * (double)image->scl_slope + (double)image->scl_inter;
         mask->is_tissue[i] = value > 0;
+        if (mask->keeps_values)
+            mask->value[i] = (float)value;
     }
     place(mask, image);
     return STATUS_OK;

@@ -141,8 +141,13 @@ static void set_toss_distance(Growth *growth, double distance)
 
 static Vec3 toss(Growth *growth)
 {
-    growth->tosses++;
-    return domain_sample(growth->domain, &growth->random);
+    const Demand *demand = growth->params->demand;
+    for (;;) {
+        growth->tosses++;
+        Vec3 point = domain_sample(growth->domain, &growth->random);
+        if (!demand || random_uniform(&growth->random) < demand_at(demand, point))
+            return point;
+    }
 }
 
 /* How many terminals the next round should add. */
@@ -169,6 +174,7 @@ static Status run_round(Growth *growth, size_t added, size_t *made, Err *err)
                  .domain = growth->domain,
                  .rules = &growth->rules,
                  .toss_distance = growth->toss_distance,
+                 .demand = growth->params->demand,
                  .terminals_only = growth->params->toss == GROW_TOSS_TERMINAL,
                  .candidates = growth->params->candidates};
     TRY(round_run(&growth->round, &site, 2 * added < left ? 2 * added : left,

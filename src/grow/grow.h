@@ -47,6 +47,9 @@ typedef struct GrowParams {
     double viscosity_cp;        /* of the blood, by the constant law */
     double hematocrit;          /* by Pries's law */
     double plasma_viscosity_cp; /* by Pries's law */
+    /* How densely terminals are to stand (borrowed): as many for a volume as the map says, relative
+     * to elsewhere; NULL: evenly. */
+    const Demand *demand;
     double
         min_radius_mm; /* growth ends, complete, when the terminals' mean radius is this; 0: not */
     double clearance_mm; /* least distance of the walls of vessels of different trees, >= 0 */

@@ -132,6 +132,8 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
         return err_set(err, STATUS_USAGE, "`candidates` %d: must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);
+    if (params->demand)
+        TRY(demand_check(params->demand, domain, err));
     if (params->keep_radii && !params->from)
         return err_set(err, STATUS_USAGE, "`keep_radii`: needs a tree to grow on from, `from`");
     if (params->from) {

@@ -105,13 +105,25 @@ static PlanState choose(const Site *site, Planner *planner, Box zone, Vec3 termi
     return offers.ahead ? PLAN_AHEAD : outside && !inside ? PLAN_OUTSIDE : PLAN_CROWDED;
 }
 
+/* The toss distance at a point: terminals that are to stand half as densely are further apart. */
+static double toss_distance_at(const Site *site, Vec3 point)
+{
+    const double most = 8;
+    if (!site->demand)
+        return site->toss_distance;
+    double share = demand_at(site->demand, point);
+    double spread = site->domain->dimension == 2 ? 1 / sqrt(share) : 1 / cbrt(share);
+    return site->toss_distance * fmin(spread, most);
+}
+
 PlanState plan_make(const Site *site, Planner *planner, Box zone, const size_t *left, Vec3 terminal,
                     Connection *out)
 {
-    if (!(grid_clearance(zone, terminal) > site->toss_distance))
+    double distance = toss_distance_at(site, terminal);
+    if (!(grid_clearance(zone, terminal) > distance))
         return PLAN_BEYOND;
-    GridVicinity room = grid_vicinity(site->grid, terminal, site->toss_distance,
-                                      site->terminals_only, site->rules->thickness);
+    GridVicinity room =
+        grid_vicinity(site->grid, terminal, distance, site->terminals_only, site->rules->thickness);
     if (room != GRID_FREE)
         return room == GRID_TOO_NEAR ? PLAN_TOO_NEAR : PLAN_IN_VESSEL;
     Offers offers = collect(site, planner, zone, left, terminal);

@@ -26,7 +26,8 @@ typedef struct Site {
     const Domain *domain;
     const Rules *rules;
     size_t *limit;        /* by tree: how many more terminals it may get */
-    double toss_distance; /* mm */
+    double toss_distance; /* mm; where demand is the greatest */
+    const Demand *demand; /* NULL: the same everywhere */
     bool terminals_only;  /* the toss distance is kept from terminals' ends, not from segments */
     int candidates;       /* nearest segments that are tried */
 } Site;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# grow --stages: one tree in stages; --min-radius and --clearance, which stages can say, too.
+# grow --stages: one tree in stages; --min-radius, --clearance and --demand, which stages can say, too.
 . "$(dirname "$0")/../lib.sh"
 
 write_stages() {
@@ -96,6 +96,41 @@ test_trees_keep_the_clearance_that_was_asked_for() {
     run corcast grow --terminals 160 --inlet 0,50 --inlet 4.5,-49 --clearance -1 -o none.swc
     expect_status 2
     expect_sentence "clearance.*-1"
+}
+
+# A picture of 100 x 100 pixels whose left half asks for five times as much blood as its right half.
+write_demand() {
+    awk 'BEGIN { print "P2 100 100 255"; for (y = 0; y < 100; y++) { for (x = 0; x < 100; x++) printf "%d ", x < 50 ? 255 : 51; print "" } }' >demand.pgm
+}
+
+test_terminals_stand_as_densely_as_the_map_demands() {
+    write_demand
+    run_ok corcast grow --demand demand.pgm,1 --terminals 1500 -o tree.swc
+    check_tree tree.swc
+    awk '/^#/ { next } { x[$1] = $3; has[$7] = 1 }
+         END { for (i in x) if (!(i in has)) { if (x[i] < 0) left++; else right++ } exit !(left > 4.2 * right && left < 5.5 * right) }' tree.swc ||
+        fail "expected about five times as many terminals on the left"
+    printf '[all]\ndemand = demand.pgm,1\nterminals = 300\n' >stages.ini
+    run_ok corcast grow --stages stages.ini -o staged.swc
+    run_ok corcast grow --demand demand.pgm,1 --terminals 300 -o plain.swc
+    expect_same <(grep -v '^#' staged.swc) <(grep -v '^#' plain.swc)
+}
+
+test_maps_of_demand_that_say_nothing_are_refused() {
+    write_demand
+    printf 'P2 2 2 255\n0 0\n0 0\n' >zero.pgm
+    local sentence options
+    while IFS='|' read -r sentence options; do
+        # shellcheck disable=SC2086
+        run corcast grow -o tree.swc $options
+        expect_status 2
+        expect_sentence "$sentence"
+    done <<'END'
+zero.pgm: the map of demand is empty: none of its values is above 0|--demand zero.pgm,1
+demand.pgm: the map of demand is of another place: of 20000 points of the domain, at x 490 to 510|--demand demand.pgm,1 --domain disc:10@500,0
+--demand demand.pgm: a picture needs the width of a pixel in mm, FILE,MM|--demand demand.pgm
+a pixel must be from 1e-06 to 1e.06 mm wide|--demand demand.pgm,0
+END
 }
 
 run_tests "$@"

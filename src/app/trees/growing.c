@@ -92,6 +92,12 @@ static const Option rows[] = {
      .choices = terminal_flow_names,
      .group = GROUP_BLOOD,
      .help = "the same through all terminals, or as large as the tissue nearest to each"},
+    {.name = "demand",
+     SETS(TEXT, Growing, demand_spec),
+     .group = GROUP_TREE,
+     .argument = "FILE[,MM]",
+     .otherwise = "even",
+     .help = "how densely terminals are to stand: a picture with pixels MM wide, or NIfTI"},
     {.name = "min-radius",
      SETS(NUMBER, Growing, params.min_radius_mm),
      FROM_TO(0, 1e3),
@@ -183,7 +189,21 @@ Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
     if (!has_domain)
         TRY(tree_domain_parse(growing->domain_spec ? growing->domain_spec : plain_domain,
                               growing->params.from, growing->from_path, &growing->domain, err));
+    TRY(growing_read_demand(growing, err));
+    if (growing->demand)
+        TRY(files_read(&parsed->files, "--demand", demand_file(growing->demand), err));
     return check(growing, parsed, err);
+}
+
+Status growing_read_demand(Growing *growing, Err *err)
+{
+    demand_release(growing->demand);
+    growing->params.demand = growing->demand = NULL;
+    if (!growing->demand_spec)
+        return STATUS_OK;
+    TRY(demand_read(&growing->demand, growing->demand_spec, err));
+    growing->params.demand = growing->demand;
+    return STATUS_OK;
 }
 
 Status growing_run(Growing *growing, bool quiet, Tree *tree, GrowReport *report, Err *why, Err *err)
@@ -201,5 +221,6 @@ Status growing_run(Growing *growing, bool quiet, Tree *tree, GrowReport *report,
 void growing_release(Growing *growing)
 {
     domain_release(&growing->domain);
+    demand_release(growing->demand);
     tree_release(&growing->from);
 }

@@ -9,7 +9,8 @@ typedef struct Growing {
     GrowParams params;
     Domain domain;
     Tree from;
-    const char *domain_spec, *from_path; /* NULL: not given */
+    const char *domain_spec, *from_path, *demand_spec; /* NULL: not given */
+    Demand *demand;                                    /* owned */
     VectorList inlet;
     NumberList inlet_share;
     bool given[META_KEYS]; /* which options of these keys were */
@@ -23,6 +24,9 @@ extern const OptionTable growing_table; /* sets a Growing */
  * they do not give is taken from the header of the tree to grow on from, where it tells.
  * STATUS_USAGE, too, for options without effect. */
 MUST_CHECK Status growing_prepare(Growing *growing, Parsed *parsed, Err *err);
+
+/* Reads the map of --demand, if it is given, instead of the one that there was. */
+MUST_CHECK Status growing_read_demand(Growing *growing, Err *err);
 
 /* Grows with progress, as grow_tree; why growth stopped early, if it did and that is allowed, goes
  * to *why. */

@@ -106,6 +106,8 @@ static Status grow_stage(Staging *staging, const char *name, Tree *tree, GrowRep
     }
     Status status = change_domain(staging, growing->params.from, err);
     if (status == STATUS_OK)
+        status = growing_read_demand(growing, err);
+    if (status == STATUS_OK)
         status = growing_run(growing, staging->parsed->common.quiet, &made, &own, why, err);
     if (status != STATUS_OK) {
         err_prefix(err, "%s: [%s]: ", staging->path, name);
@@ -161,6 +163,7 @@ Status staging_grow(const char *path, Growing *growing, const Parsed *parsed, Tr
     *growing = before;
     TRY_GOTO(grow_all(&staging, tree, report, why, err));
 done:
+    before.demand = growing->demand;
     before.domain = growing->domain; /* what else stages said is in their text */
     *growing = before;
     free(staging.line);

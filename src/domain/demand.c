@@ -1,0 +1,106 @@
+/* The map is a mask that keeps the voxels' values: nothing is interpolated between them. */
+#include "domain/domain.h"
+
+#include "domain/mask.h"
+#include <stdlib.h>
+#include <string.h>
+
+struct Demand {
+    char *file; /* owned */
+    Mask mask;
+    double most; /* value */
+};
+
+/* Points of the domain that are looked at, and the least that they are to ask for in the mean. */
+enum { LOOKS = 20000 };
+static const double least_mean = 1e-4;
+
+static Status read_values(Demand *demand, double mm, bool has_mm, Err *err)
+{
+    bool is_nifti = mask_is_nifti(demand->file);
+    if (is_nifti == has_mm)
+        return err_set(err, STATUS_USAGE,
+                       is_nifti ? "`demand` %s: a NIfTI file has its own units; give it without a "
+                                  "number"
+                                : "`demand` %s: a picture needs the width of a pixel in mm, "
+                                  "FILE,MM",
+                       demand->file);
+    if (is_nifti)
+        return mask_read_nifti(&demand->mask, demand->file, err);
+    return mask_read_picture(&demand->mask, demand->file, mm, err);
+}
+
+static Status load(Demand *demand, const char *spec, Err *err)
+{
+    double mm = 0, volume;
+    TRY(mem_strdup(&demand->file, spec, err));
+    char *comma = strrchr(demand->file, ',');
+    bool has_mm = comma && number_parse(comma + 1, &mm);
+    if (has_mm)
+        *comma = '\0';
+    if (has_mm && !(mm >= DOMAIN_MIN_MM && mm <= DOMAIN_MAX_MM))
+        return err_set(err, STATUS_USAGE, "`demand` %s: a pixel must be from %g to %g mm wide",
+                       spec, DOMAIN_MIN_MM, DOMAIN_MAX_MM);
+    demand->mask.keeps_values = true;
+    TRY(read_values(demand, mm, has_mm, err));
+    TRY(mask_invert_axes(&demand->mask, demand->file, &volume, err));
+    const Mask *mask = &demand->mask;
+    for (int64_t i = 0; i < mask->n[0] * mask->n[1] * mask->n[2]; i++)
+        if (isfinite(mask->value[i]))
+            demand->most = fmax(demand->most, (double)mask->value[i]);
+    if (demand->most > 0)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "%s: the map of demand is empty: none of its values is above 0", demand->file);
+}
+
+Status demand_read(Demand **demand, const char *spec, Err *err)
+{
+    TRY(mem_calloc(demand, 1, sizeof **demand, "maps", err));
+    Status status = load(*demand, spec, err);
+    if (status == STATUS_OK)
+        return STATUS_OK;
+    demand_release(*demand);
+    *demand = NULL;
+    return status;
+}
+
+void demand_release(Demand *demand)
+{
+    if (!demand)
+        return;
+    free(demand->file);
+    free(demand->mask.is_tissue);
+    free(demand->mask.value);
+    free(demand);
+}
+
+const char *demand_file(const Demand *demand)
+{
+    return demand->file;
+}
+
+double demand_at(const Demand *demand, Vec3 point)
+{
+    int64_t voxel = mask_voxel(&demand->mask, point);
+    if (voxel < 0 || !(demand->mask.value[voxel] > 0))
+        return 0;
+    return fmin(1, (double)demand->mask.value[voxel] / demand->most);
+}
+
+Status demand_check(const Demand *demand, const Domain *domain, Err *err)
+{
+    Random random;
+    double sum = 0;
+    random_seed(&random, 1);
+    for (int i = 0; i < LOOKS; i++)
+        sum += demand_at(demand, domain_sample(domain, &random));
+    if (sum >= least_mean * LOOKS)
+        return STATUS_OK;
+    return err_set(
+        err, STATUS_INPUT,
+        "%s: the map of demand is of another place: of %d points of the domain, at x %.4g "
+        "to %.4g, y %.4g to %.4g, z %.4g to %.4g mm, next to none asks for blood",
+        demand->file, LOOKS, domain->bounds.low.x, domain->bounds.high.x, domain->bounds.low.y,
+        domain->bounds.high.y, domain->bounds.low.z, domain->bounds.high.z);
+}
