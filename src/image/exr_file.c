@@ -1,7 +1,9 @@
 /* OpenEXR through the C library OpenEXRCore: one flat image in scan lines or tiles, its channels R
  * G B, whatever there is besides, X Y Z or a single one, as 32-bit floats whatever they are in the
- * file. Chunks are decoded one after the other straight into a plane of the data window, from the
- * file in memory; what the display window shows of it is the image. */
+ * file. Where a layer is asked for, these are the channels of the part of that name, or of any part
+ * with the layer's name and a dot before them. Chunks are decoded one after the other straight into
+ * a plane of the data window, from the file in memory; what the display window shows of it is the
+ * image. */
 #include "image/formats.h"
 
 #include <errno.h>
@@ -14,11 +16,13 @@ enum { MAX_CHANNELS = 4 };
 typedef struct Exr {
     ImageBytes file;
     exr_context_t context;
+    int part;
+    const char *prefix; /* of the channels' names: "", or the layer's name */
     bool is_tiled;
     exr_attr_box2i_t window, display; /* of the data; what is shown */
     const char *names[MAX_CHANNELS];  /* of the channels of the plane, the last one perhaps "A" */
     int channels;                     /* alpha not counted */
-    bool has_alpha;
+    bool has_alpha, is_colored;       /* its channels are R G B */
     Plane plane;         /* owned; of the data window, then of the display; alpha last */
     char complaint[200]; /* the library's, "" when there is none */
 } Exr;
@@ -74,12 +78,51 @@ static Status unsound(Exr *self, Err *err)
                    *self->complaint ? self->complaint : "its header and its data do not agree");
 }
 
-static bool has_channel(const exr_attr_chlist_t *list, const char *name)
+/* The name of a channel behind the prefix and its dot; NULL when the channel is of no such layer.
+ */
+static const char *name_in_layer(const char *channel, const char *prefix)
 {
-    for (int i = 0; i < list->num_channels; i++)
-        if (strcmp(list->entries[i].name.str, name) == 0)
-            return true;
-    return false;
+    size_t length = strlen(prefix);
+    if (length == 0)
+        return channel;
+    bool within = strncmp(channel, prefix, length) == 0 && channel[length] == '.';
+    return within && !strchr(channel + length + 1, '.') ? channel + length + 1 : NULL;
+}
+
+/* The full name of the layer's channel; NULL when there is none. */
+static const char *find_channel(const exr_attr_chlist_t *list, const char *prefix, const char *name)
+{
+    for (int i = 0; i < list->num_channels; i++) {
+        const char *channel = list->entries[i].name.str, *own = name_in_layer(channel, prefix);
+        if (own && strcmp(own, name) == 0)
+            return channel;
+    }
+    return NULL;
+}
+
+/* How many channels the layer has, alpha not counted; the last of them in *last. */
+static int count_channels(const exr_attr_chlist_t *list, const char *prefix, const char **last)
+{
+    int n = 0;
+    for (int i = 0; i < list->num_channels; i++) {
+        const char *own = name_in_layer(list->entries[i].name.str, prefix);
+        if (!own || strcmp(own, "A") == 0)
+            continue;
+        *last = list->entries[i].name.str;
+        n++;
+    }
+    return n;
+}
+
+static Status no_channels(const Exr *self, const exr_attr_chlist_t *list, Err *err)
+{
+    const char *first = list->num_channels ? list->entries[0].name.str : "none";
+    return err_set(err, STATUS_INPUT,
+                   "%s: has %d channels; only R G B, X Y Z or a single one, with an A or "
+                   "without, can be read%s%s",
+                   self->file.name, list->num_channels,
+                   strchr(first, '.') ? ", or those of one layer; the first channel is " : "",
+                   strchr(first, '.') ? first : "");
 }
 
 /* Which channels make the plane. */
@@ -87,32 +130,31 @@ static Status choose_channels(Exr *self, Err *err)
 {
     static const char *const triples[2][3] = {{"R", "G", "B"}, {"X", "Y", "Z"}};
     const exr_attr_chlist_t *list;
-    if (exr_get_channels(self->context, 0, &list) != EXR_ERR_SUCCESS)
+    const char *alpha, *last = NULL;
+    if (exr_get_channels(self->context, self->part, &list) != EXR_ERR_SUCCESS)
         return unsound(self, err);
-    self->has_alpha = has_channel(list, "A");
-    int others = list->num_channels - self->has_alpha;
-    for (int t = 0; t < 2 && self->channels == 0; t++)
-        if ((t == 0 || others == 3) && has_channel(list, triples[t][0]) &&
-            has_channel(list, triples[t][1]) && has_channel(list, triples[t][2])) {
-            memcpy(self->names, triples[t], sizeof triples[t]);
-            self->channels = 3;
-        }
-    for (int i = 0; i < list->num_channels && others == 1; i++)
-        if (strcmp(list->entries[i].name.str, "A") != 0) {
-            self->names[0] = list->entries[i].name.str;
-            self->channels = 1;
-        }
+    alpha = find_channel(list, self->prefix, "A");
+    self->has_alpha = alpha != NULL;
+    int others = count_channels(list, self->prefix, &last);
+    for (int t = 0; t < 2 && self->channels == 0; t++) {
+        int found = 0;
+        for (int c = 0; c < 3 && (t == 0 || others == 3); c++)
+            found += (self->names[c] = find_channel(list, self->prefix, triples[t][c])) != NULL;
+        self->channels = found == 3 ? 3 : 0;
+        self->is_colored = self->channels == 3 && t == 0;
+    }
+    if (self->channels == 0 && others == 1) {
+        self->names[0] = last;
+        self->channels = 1;
+    }
     if (self->channels == 0)
-        return err_set(err, STATUS_INPUT,
-                       "%s: has %d channels; only R G B, X Y Z or a single one, with an A or "
-                       "without, can be read",
-                       self->file.name, list->num_channels);
+        return no_channels(self, list, err);
     for (int i = 0; i < list->num_channels; i++)
         if (list->entries[i].x_sampling != 1 || list->entries[i].y_sampling != 1)
             return err_set(err, STATUS_INPUT, "%s: has subsampled channels, which cannot be read",
                            self->file.name);
     if (self->has_alpha)
-        self->names[self->channels] = "A";
+        self->names[self->channels] = alpha;
     return STATUS_OK;
 }
 
@@ -122,9 +164,10 @@ static Status check_colors(Exr *self, Err *err)
     exr_attr_chromaticities_t given;
     float values[8];
     double xy[8];
-    if (strcmp(self->names[0], "R") != 0)
+    if (!self->is_colored)
         return STATUS_OK;
-    exr_result_t found = exr_attr_get_chromaticities(self->context, 0, "chromaticities", &given);
+    exr_result_t found =
+        exr_attr_get_chromaticities(self->context, self->part, "chromaticities", &given);
     *self->complaint = '\0'; /* that there are none */
     if (found != EXR_ERR_SUCCESS)
         return STATUS_OK;
@@ -133,6 +176,58 @@ static Status check_colors(Exr *self, Err *err)
         xy[i] = (double)values[i];
     return image_is_srgb(xy) ? STATUS_OK
                              : image_other_colors(self->file.name, "chromaticities", err);
+}
+
+static const char *part_name(const Exr *self, int part)
+{
+    const char *name = NULL;
+    bool named = exr_get_name(self->context, part, &name) == EXR_ERR_SUCCESS;
+    return named && name ? name : "";
+}
+
+/* Whether the part has channels of the layer. */
+static bool has_layer(const Exr *self, int part, const char *layer)
+{
+    const exr_attr_chlist_t *list;
+    const char *last;
+    return exr_get_channels(self->context, part, &list) == EXR_ERR_SUCCESS &&
+           count_channels(list, layer, &last) > 0;
+}
+
+static Status no_layer(const Exr *self, int parts, Err *err)
+{
+    Text names = TEXT_INIT;
+    for (int i = 0; i < parts; i++)
+        text_printf(&names, "%s'%s'", i ? ", " : "", part_name(self, i));
+    const char *layer = self->file.layer;
+    Status status =
+        !layer || parts > 1
+            ? err_set(err, STATUS_INPUT, "%s: has %d parts, %s; %s%s%s", self->file.name, parts,
+                      text_chars(&names), layer ? "none has the name or the layer '" : "name one",
+                      layer ? layer : "", layer ? "'" : "")
+            : err_set(err, STATUS_INPUT, "%s: has no layer '%s'", self->file.name, layer);
+    text_release(&names);
+    return status;
+}
+
+/* The part of the layer's name, whose channels may have that name before them or not, or else the
+ * first part with channels of the layer. */
+static Status choose_part(Exr *self, int parts, Err *err)
+{
+    const char *layer = self->file.layer;
+    self->prefix = "";
+    if (!layer)
+        return parts == 1 ? STATUS_OK : no_layer(self, parts, err);
+    for (int pass = 0; pass < 2; pass++)
+        for (self->part = 0; self->part < parts; self->part++) {
+            bool inside = has_layer(self, self->part, layer);
+            if (pass == 0 ? strcmp(part_name(self, self->part), layer) != 0 : !inside)
+                continue;
+            self->prefix = inside ? layer : "";
+            *self->complaint = '\0'; /* that a part has no name */
+            return STATUS_OK;
+        }
+    return no_layer(self, parts, err);
 }
 
 static Status open_file(Exr *self, Err *err)
@@ -146,17 +241,18 @@ static Status open_file(Exr *self, Err *err)
     exr_compression_t compression;
     int parts;
     if (exr_start_read(&self->context, self->file.name, &setup) != EXR_ERR_SUCCESS ||
-        exr_get_count(self->context, &parts) != EXR_ERR_SUCCESS ||
-        exr_get_storage(self->context, 0, &storage) != EXR_ERR_SUCCESS ||
-        exr_get_compression(self->context, 0, &compression) != EXR_ERR_SUCCESS ||
-        exr_get_data_window(self->context, 0, &self->window) != EXR_ERR_SUCCESS ||
-        exr_get_display_window(self->context, 0, &self->display) != EXR_ERR_SUCCESS ||
+        exr_get_count(self->context, &parts) != EXR_ERR_SUCCESS)
+        return unsound(self, err);
+    TRY(choose_part(self, parts, err));
+    if (exr_get_storage(self->context, self->part, &storage) != EXR_ERR_SUCCESS ||
+        exr_get_compression(self->context, self->part, &compression) != EXR_ERR_SUCCESS ||
+        exr_get_data_window(self->context, self->part, &self->window) != EXR_ERR_SUCCESS ||
+        exr_get_display_window(self->context, self->part, &self->display) != EXR_ERR_SUCCESS ||
         errno == ENOMEM) /* it goes on without an attribute that it had no room for */
         return unsound(self, err);
     self->is_tiled = storage == EXR_STORAGE_TILED;
-    if (parts != 1 || (storage != EXR_STORAGE_SCANLINE && !self->is_tiled))
-        return err_set(err, STATUS_INPUT,
-                       "%s: has several parts or deep pixels; only one flat image can be read",
+    if (storage != EXR_STORAGE_SCANLINE && !self->is_tiled)
+        return err_set(err, STATUS_INPUT, "%s: has deep pixels; only flat images can be read",
                        self->file.name);
     if (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB)
         return err_set(err, STATUS_INPUT,
@@ -194,10 +290,11 @@ static bool measure_chunks(Exr *self, uint32_t *width, uint32_t *height)
     exr_tile_round_mode_t rounding;
     int32_t lines;
     if (self->is_tiled)
-        return exr_get_tile_descriptor(self->context, 0, width, height, &levels, &rounding) ==
-                   EXR_ERR_SUCCESS &&
+        return exr_get_tile_descriptor(self->context, self->part, width, height, &levels,
+                                       &rounding) == EXR_ERR_SUCCESS &&
                *width > 0 && *height > 0;
-    if (exr_get_scanlines_per_chunk(self->context, 0, &lines) != EXR_ERR_SUCCESS || lines < 1)
+    if (exr_get_scanlines_per_chunk(self->context, self->part, &lines) != EXR_ERR_SUCCESS ||
+        lines < 1)
         return false;
     *width = (uint32_t)self->plane.width;
     *height = (uint32_t)lines;
@@ -206,24 +303,25 @@ static bool measure_chunks(Exr *self, uint32_t *width, uint32_t *height)
 
 static bool find_chunk(Exr *self, int column, int row, int y, exr_chunk_info_t *chunk)
 {
-    return (self->is_tiled ? exr_read_tile_chunk_info(self->context, 0, column, row, 0, 0, chunk)
-                           : exr_read_scanline_chunk_info(self->context, 0, self->window.min.y + y,
-                                                          chunk)) == EXR_ERR_SUCCESS;
+    return (self->is_tiled
+                ? exr_read_tile_chunk_info(self->context, self->part, column, row, 0, 0, chunk)
+                : exr_read_scanline_chunk_info(self->context, self->part, self->window.min.y + y,
+                                               chunk)) == EXR_ERR_SUCCESS;
 }
 
 static bool decode_chunk(Exr *self, exr_decode_pipeline_t *decoder, const exr_chunk_info_t *chunk,
                          int x, int y)
 {
     bool first = x == 0 && y == 0;
-    exr_result_t result = first ? exr_decoding_initialize(self->context, 0, chunk, decoder)
-                                : exr_decoding_update(self->context, 0, chunk, decoder);
+    exr_result_t result = first ? exr_decoding_initialize(self->context, self->part, chunk, decoder)
+                                : exr_decoding_update(self->context, self->part, chunk, decoder);
     if (result != EXR_ERR_SUCCESS)
         return false;
     aim(self, decoder, x, y);
     if (first)
-        result = exr_decoding_choose_default_routines(self->context, 0, decoder);
+        result = exr_decoding_choose_default_routines(self->context, self->part, decoder);
     return result == EXR_ERR_SUCCESS &&
-           exr_decoding_run(self->context, 0, decoder) == EXR_ERR_SUCCESS;
+           exr_decoding_run(self->context, self->part, decoder) == EXR_ERR_SUCCESS;
 }
 
 static bool decode_chunks(Exr *self)
@@ -326,4 +424,4 @@ static Status exr_decode(const ImageBytes *file, Image *image, Err *err)
     return status;
 }
 
-const ImageDecoder exr_decoder = {exr_is, exr_decode};
+const ImageDecoder exr_decoder = {.is = exr_is, .decode = exr_decode, .has_layers = true};

@@ -11,6 +11,7 @@ typedef struct ImageBytes {
     const char *name;
     const uint8_t *bytes;
     size_t size;
+    const char *layer; /* that is asked for, of formats that have some; or NULL */
 } ImageBytes;
 
 /* STATUS_INPUT unless both sides, as a header states them, are in [1, IMAGE_MAX_SIDE]. */
@@ -118,9 +119,11 @@ typedef struct ImageDecoder {
     bool (*is)(const ImageBytes *file); /* by the first bytes, all that may be there */
     /* Fills in the picture or the plane of a zeroed image; it is untouched on failure. */
     Status (*decode)(const ImageBytes *file, Image *image, Err *err);
+    bool has_layers;
 } ImageDecoder;
 
-extern const ImageDecoder png_decoder, pnm_decoder, pfm_decoder, exr_decoder, tiff_decoder;
+extern const ImageDecoder png_decoder, pnm_decoder, pfm_decoder, exr_decoder, tiff_decoder,
+    jpeg_decoder, webp_decoder;
 
 /* Deflate shrinks at most 1032-fold, which bounds what a PNG's header may claim. */
 enum { DEFLATE_MAX_RATIO = 1032 };

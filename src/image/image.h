@@ -248,8 +248,9 @@ void imagereader_close(ImageReader *reader);
 MUST_CHECK Status picture_put_uri(const Picture *picture, Text *out, Err *err);
 /* What a file holds: integer codes, or linear floats. */
 typedef struct Image {
-    Picture picture; /* without codes when the file holds floats */
-    Plane plane;     /* without values when it holds codes */
+    Picture picture;   /* without codes when the file holds floats */
+    Plane plane;       /* without values when it holds codes */
+    const char *lossy; /* the compression that changed the codes: "JPEG", "WebP"; else NULL */
 } Image;
 
 void image_release(Image *image);
@@ -260,16 +261,22 @@ void image_release(Image *image);
  * gamma by gAMA, unless sRGB says otherwise; 0.4550 to 0.4560 is sRGB's), TIFF (8 and 16 bit, grey
  * and RGB, interleaved; turned as Orientation says). Floats: PFM (both byte orders, scale 1),
  * OpenEXR (half and float; channels R G B and any others, X Y Z or a single one; the display
- * window, 0 outside the data window), TIFF (32 bit). Infinities and NaN are kept. An alpha channel
- * is refused unless opaque throughout, and so are colours of another space than sRGB (profiles,
- * primaries), animations and TIFF files of several pages. STATUS_INPUT with a sentence naming the
- * file on truncated, corrupt and other files. */
+ * window, 0 outside the data window), TIFF (32 bit). Lossy: JPEG (grey and colours), WebP.
+ * Infinities and NaN are kept. An alpha channel is refused unless opaque throughout, and so are
+ * colours of another space than sRGB (profiles, primaries), animations and TIFF files of several
+ * pages. STATUS_INPUT with a sentence naming the file on truncated, corrupt and other files. */
 MUST_CHECK Status image_read(Image *image, const char *path, Err *err);
 /* As image_read, but a picture or plane that is transparent anywhere keeps its alpha as the last
  * channel: pictures have 4 then, their colours not multiplied by it, planes 2 or 4, whose colours
  * are. */
 MUST_CHECK Status image_read_transparent(Image *image, const char *path, Err *err);
-/* Likewise, and STATUS_INPUT when the file holds floats. */
+/* As image_read, or image_read_transparent; of an OpenEXR file the part with the name `layer`, or
+ * the channels of that layer ("layer.R", "layer.G", ...) of the first part that has some. NULL: of
+ * a file with a single part, the channels of no layer. STATUS_INPUT, naming the parts, when there
+ * is no such layer. */
+MUST_CHECK Status image_read_layer(Image *image, const char *path, const char *layer,
+                                   bool transparent, Err *err);
+/* As image_read_transparent, and STATUS_INPUT when the file holds floats. */
 MUST_CHECK Status picture_read_transparent(Picture *picture, const char *path, Err *err);
 /* Likewise, and STATUS_INPUT when the file holds codes. */
 MUST_CHECK Status plane_read_transparent(Plane *plane, const char *path, Err *err);

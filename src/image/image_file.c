@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const ImageDecoder *const decoders[] = {&png_decoder, &pnm_decoder, &pfm_decoder,
-                                               &exr_decoder, &tiff_decoder};
+static const ImageDecoder *const decoders[] = {&png_decoder, &pnm_decoder,  &pfm_decoder,
+                                               &exr_decoder, &tiff_decoder, &jpeg_decoder,
+                                               &webp_decoder};
 
 /* NULL when the file is of no known format. */
 static const ImageDecoder *decoder_of(const ImageBytes *file)
@@ -29,17 +30,24 @@ static const char *name_of(const char *path)
     return strcmp(path, "-") ? path : "standard input";
 }
 
-static Status read_image(Image *image, const char *path, ImageAlpha alpha, Err *err)
+/* `layer` may be NULL. */
+static Status read_image(Image *image, const char *path, const char *layer, ImageAlpha alpha,
+                         Err *err)
 {
-    static const FileForm form = {.name = "a PPM, PGM, PFM, PNG, TIFF or OpenEXR file",
+    static const FileForm form = {.name = "a PPM, PGM, PFM, PNG, TIFF, OpenEXR, JPEG or WebP file",
                                   .most_bytes = 16e9,
                                   .begins = is_known};
     char *bytes;
     size_t size;
     TRY(file_read(path, &form, &bytes, &size, err));
-    ImageBytes file = {name_of(path), (const uint8_t *)bytes, size};
+    ImageBytes file = {name_of(path), (const uint8_t *)bytes, size, layer};
     Image made = {0};
-    Status status = decoder_of(&file)->decode(&file, &made, err);
+    const ImageDecoder *decoder = decoder_of(&file);
+    Status status =
+        layer && !decoder->has_layers
+            ? err_set(err, STATUS_INPUT, "%s: has no layer '%s': only OpenEXR files have layers",
+                      file.name, layer)
+            : decoder->decode(&file, &made, err);
     free(bytes);
     if (status == STATUS_OK)
         status = image_settle_alpha(&made, alpha, file.name, err);
@@ -54,18 +62,24 @@ static Status read_image(Image *image, const char *path, ImageAlpha alpha, Err *
 
 Status image_read(Image *image, const char *path, Err *err)
 {
-    return read_image(image, path, ALPHA_REFUSED, err);
+    return read_image(image, path, NULL, ALPHA_REFUSED, err);
 }
 
 Status image_read_transparent(Image *image, const char *path, Err *err)
 {
-    return read_image(image, path, ALPHA_KEPT, err);
+    return read_image(image, path, NULL, ALPHA_KEPT, err);
+}
+
+Status image_read_layer(Image *image, const char *path, const char *layer, bool transparent,
+                        Err *err)
+{
+    return read_image(image, path, layer, transparent ? ALPHA_KEPT : ALPHA_REFUSED, err);
 }
 
 static Status read_picture(Picture *picture, const char *path, ImageAlpha alpha, Err *err)
 {
     Image image;
-    TRY(read_image(&image, path, alpha, err));
+    TRY(read_image(&image, path, NULL, alpha, err));
     if (image.plane.values) {
         image_release(&image);
         return err_set(err, STATUS_INPUT,
@@ -93,7 +107,7 @@ Status picture_read_mask(Picture *picture, const char *path, Err *err)
 static Status read_plane(Plane *plane, const char *path, ImageAlpha alpha, Err *err)
 {
     Image image;
-    TRY(read_image(&image, path, alpha, err));
+    TRY(read_image(&image, path, NULL, alpha, err));
     if (!image.plane.values) {
         image_release(&image);
         return err_set(

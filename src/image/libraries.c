@@ -8,6 +8,7 @@
 #include <openexr_base.h>
 #include <png.h>
 #include <tiffio.h>
+#include <webp/decode.h>
 
 #define QUOTED(word) #word
 #define TEXT_OF(macro) QUOTED(macro)
@@ -23,6 +24,8 @@ void image_put_libraries(Text *text)
                 png_get_libpng_ver(NULL), (int)strspn(tiff, "0123456789."), tiff);
     int lcms = cmsGetEncodedCMMversion(); /* 2140 */
     text_puts(text, "libjpeg-turbo " TEXT_OF(LIBJPEG_TURBO_VERSION) ", ");
+    int webp = WebPGetDecoderVersion(); /* 0x010204 */
+    text_printf(text, "libwebp %d.%d.%d, ", webp >> 16, webp >> 8 & 255, webp & 255);
     text_printf(text, "lcms2 %d.%d, ", lcms / 1000, lcms % 1000 / 10);
     text_printf(text, "OpenEXR %d.%d.%d", major, minor, patch);
 }

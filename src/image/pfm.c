@@ -62,7 +62,7 @@ static Status pfm_decode(const ImageBytes *file, Image *image, Err *err)
     return STATUS_OK;
 }
 
-const ImageDecoder pfm_decoder = {pfm_is, pfm_decode};
+const ImageDecoder pfm_decoder = {.is = pfm_is, .decode = pfm_decode};
 
 /* ------------------------------------------------------------------------------------ writing */
 

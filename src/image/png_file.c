@@ -203,7 +203,7 @@ static Status png_decode(const ImageBytes *file, Image *image, Err *err)
     return status;
 }
 
-const ImageDecoder png_decoder = {png_is, png_decode};
+const ImageDecoder png_decoder = {.is = png_is, .decode = png_decode};
 
 /* ------------------------------------------------------------------------------------ writing */
 

@@ -110,7 +110,7 @@ static Status pnm_decode(const ImageBytes *file, Image *image, Err *err)
     return STATUS_OK;
 }
 
-const ImageDecoder pnm_decoder = {pnm_is, pnm_decode};
+const ImageDecoder pnm_decoder = {.is = pnm_is, .decode = pnm_decode};
 
 /* ------------------------------------------------------------------------------------ writing */
 

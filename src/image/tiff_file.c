@@ -286,4 +286,4 @@ static Status tiff_decode(const ImageBytes *file, Image *image, Err *err)
     return status;
 }
 
-const ImageDecoder tiff_decoder = {tiff_is, tiff_decode};
+const ImageDecoder tiff_decoder = {.is = tiff_is, .decode = tiff_decode};

@@ -114,6 +114,66 @@ test_the_verdict_names_its_tier() {
     expect_stdout '^agree \(tier given\): 1 of 20'
 }
 
+test_parts_and_layers_of_openexr_are_read_by_name() {
+    picture 100 >a.ppm
+    picture 155 >b.ppm
+    oiiotool a.ppm -d float --attrib oiio:subimagename beauty -o a.exr
+    oiiotool b.ppm -d float --attrib oiio:subimagename diffuse -o b.exr
+    oiiotool a.exr b.exr --siappend -o parts.exr
+    oiiotool b.exr --chnames diffuse.R,diffuse.G,diffuse.B a.exr --chappend -o layers.exr
+    run_ok corcast compare a.exr parts.exr --layer beauty
+    run corcast compare a.exr parts.exr
+    expect_status 2
+    expect_sentence "parts\.exr: has 2 parts, 'beauty', 'diffuse'; name one"
+    run corcast compare parts.exr layers.exr --layer diffuse
+    expect_status 0
+    run_ok corcast compare layers.exr a.exr
+    run corcast compare layers.exr parts.exr --layer shadow
+    expect_status 2
+    expect_sentence "layers\.exr: has no layer 'shadow'"
+    run corcast compare parts.exr parts.exr --layer shadow
+    expect_sentence "parts\.exr: has 2 parts, 'beauty', 'diffuse'; none has the name or the layer 'shadow'"
+    run corcast compare a.ppm b.ppm --layer beauty
+    expect_sentence "a\.ppm: has no layer 'beauty': only OpenEXR files have layers"
+}
+
+test_files_of_unlike_depth_are_compared_at_the_depth_that_is_asked_for() {
+    picture 100 >a.ppm
+    oiiotool a.ppm -d uint16 --mulc 1.0009 -o b.png
+    oiiotool a.ppm --iscolorspace sRGB --tocolorspace linear -d float -o c.exr
+    run corcast compare a.ppm b.png
+    expect_status 1
+    run_ok corcast compare a.ppm b.png --bits 8
+    run corcast compare a.ppm c.exr
+    expect_status 2
+    expect_sentence 'or two that --bits makes pictures of 8 or 16 bits'
+    run_ok corcast compare a.ppm c.exr --bits 8
+}
+
+test_jpeg_and_webp_are_read_and_called_lossy() {
+    run_ok corcast grow --terminals 12 --seed 3 -o tree.swc
+    run_ok corcast render --exact tree.swc --size 87x65 -o a.png
+    run_ok corcast convert a.png b.jpg --quality 91
+    run corcast compare a.png b.jpg --tier none --json
+    expect_status 0
+    grep -q 'b\.jpg is lossy (JPEG)' stderr || fail "expected the loss to be said: $(cat stderr)"
+    expect_json stdout '.max_abs > 2 and .psnr_db > 30'
+    jpegtopnm -dct int b.jpg >b.ppm 2>said
+    run_ok corcast compare b.ppm b.jpg
+    oiiotool a.png -o c.webp
+    run corcast compare a.png c.webp --tier none --json
+    grep -q 'c\.webp is lossy (WebP)' stderr || fail "expected the loss to be said: $(cat stderr)"
+    expect_json stdout '.psnr_db > 25'
+    head -c 900 b.jpg >cut.jpg
+    run corcast compare a.png cut.jpg
+    expect_status 2
+    expect_sentence 'cut\.jpg: is not a sound JPEG file'
+    head -c 300 c.webp >cut.webp
+    run corcast compare a.png cut.webp
+    expect_status 2
+    expect_sentence 'cut\.webp: is not a sound WebP file'
+}
+
 test_a_tolerance_file_sets_the_limits() {
     picture 100 >a.ppm
     picture 104 >b.ppm

@@ -155,7 +155,7 @@ test_version_tells_what_a_report_of_a_fault_needs() {
     expect_stdout '^corcast [0-9.]+$'
     expect_stdout '^compiler +(gcc|clang) [0-9]'
     expect_stdout '^kernels +(portable|avx2|avx512)'
-    expect_stdout 'libpng [0-9.]+, libdeflate [0-9.]+, libtiff [0-9.]+, libjpeg-turbo [0-9.]+, lcms2 [0-9.]+, OpenEXR [0-9.]+, FreeType [0-9.]+, cairo [0-9.]+, jansson [0-9.]+$'
+    expect_stdout 'libpng [0-9.]+, libdeflate [0-9.]+, libtiff [0-9.]+, libjpeg-turbo [0-9.]+, libwebp [0-9.]+, lcms2 [0-9.]+, OpenEXR [0-9.]+, FreeType [0-9.]+, cairo [0-9.]+, jansson [0-9.]+$'
     printf '#!/bin/sh\necho "POV-Ray 3.7.99.of-mine" >&2\n' >mine
     chmod +x mine
     CORCAST_POVRAY=$PWD/mine run_ok corcast version

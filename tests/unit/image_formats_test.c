@@ -320,7 +320,8 @@ static char *sample(size_t i, size_t *size)
     static const char *const names[] = {
         "rgb8-lzw.tif",     "rgb16-zip.tif", "float.tif",      "half-zip.exr", "float-piz.exr",
         "depth.exr",        "tiled.exr",     "tiles-8.tif",    "turned-6.tif", "pages.tif",
-        "srgb-profile.png", "gamma-0.5.png", "window-4-3.exr", "aces.exr"};
+        "srgb-profile.png", "gamma-0.5.png", "window-4-3.exr", "aces.exr",     "parts.exr",
+        "lossy.jpg",        "lossy.webp"};
     char path[128] = "build/image_formats_test.png", *bytes;
     if (i < sizeof names / sizeof *names) {
         path_of(names[i], path);
@@ -335,7 +336,7 @@ static char *sample(size_t i, size_t *size)
     assert_int_equal(file_read(path, &any_file, &bytes, size, &err), STATUS_OK);
     return bytes;
 }
-enum { SAMPLES = 16 };
+enum { SAMPLES = 19 };
 
 static void survives_files_cut_anywhere(void **state)
 {

@@ -18,7 +18,8 @@ typedef struct CompareOptions {
     PlaneKind kind; /* PLANE_KINDS: told by the names */
     Tier tier;
     const char *ids_a, *ids_b;
-    const char *tolerance, *junit;
+    const char *tolerance, *junit, *layer;
+    int bits; /* index of bit_counts */
     const char *heat, *difference, *flicker, *ledger, *page;
     char *line; /* owned; the command */
     bool json, metrics, has_metrics, has_tier, has_levels, has_ppm, has_pixelmatch;
@@ -34,7 +35,9 @@ typedef struct Sides {
     Status status[4];
     Err err[4];
     const char *id_paths[2];
+    const char *layer;   /* or NULL */
     float background[3]; /* linear; what is transparent is laid on it */
+    int bits;            /* pictures are compared so deep; 0: as deep as they are */
     bool color;
 } Sides;
 
@@ -76,13 +79,29 @@ static Status read_ids(IdPlane *ids, const char *path, Err *err)
     return status;
 }
 
+/* Codes of sRGB of so many bits, whatever the file holds. */
+static Status set_bits(Image *image, int bits, Err *err)
+{
+    Picture made;
+    if (image->plane.values)
+        TRY(picture_from_plane(&made, &image->plane, ENCODING_SRGB, bits, err));
+    else
+        TRY(picture_to_srgb(&made, &image->picture, bits, err));
+    const char *lossy = image->lossy;
+    image_release(image);
+    *image = (Image){.picture = made, .lossy = lossy};
+    return STATUS_OK;
+}
+
 /* Of a plane of geometry every value counts: it has no alpha. */
 static Status read_side(const Sides *sides, const char *path, Image *image, Err *err)
 {
+    TRY(image_read_layer(image, path, sides->layer, sides->color, err));
     if (!sides->color)
-        return image_read(image, path, err);
-    TRY(image_read_transparent(image, path, err));
+        return STATUS_OK;
     Status status = image_lay_on(image, sides->background, err);
+    if (status == STATUS_OK && sides->bits)
+        status = set_bits(image, sides->bits, err);
     if (status != STATUS_OK)
         image_release(image);
     return status;
@@ -112,7 +131,8 @@ static Status read_files(Sides *sides, int threads, Err *err)
     if (!sides->images[0].plane.values != !sides->images[1].plane.values &&
         (sides->paths[0] && sides->paths[1]))
         return err_set(err, STATUS_INPUT,
-                       "%s holds %s and %s %s; only images of one depth can be compared",
+                       "%s holds %s and %s %s; only images of one depth can be compared, or two "
+                       "that --bits makes pictures of 8 or 16 bits",
                        sides->paths[0], sides->images[0].plane.values ? "floats" : "whole numbers",
                        sides->paths[1], sides->images[1].plane.values ? "floats" : "whole numbers");
     return STATUS_OK;
@@ -340,6 +360,17 @@ static Status compare_files(const CompareOptions *options, PlaneKind kind, Sides
     return compare_codes(options, sides, tolerance, result, err);
 }
 
+/* Says which of the files had lost something before they were compared. */
+static void note_losses(const Sides *sides)
+{
+    for (int side = 0; side < 2; side++)
+        if (sides->images[side].lossy)
+            fprintf(stderr,
+                    "corcast compare: %s is lossy (%s): its colours are off by what was "
+                    "compressed away\n",
+                    sides->paths[side], sides->images[side].lossy);
+}
+
 /* ---- output ---------------------------------------------------------------------------------- */
 
 static Status write_junit(const CompareResult *result, const char *path, const char *name,
@@ -389,6 +420,7 @@ static Status check_options(const CompareOptions *options, PlaneKind kind, Err *
 }
 
 static const char *const kinds[] = {"color", "depth", "normal", "id", "auto", NULL};
+static const char *const bit_counts[] = {"own", "8", "16", NULL};
 static const char *const tiers[] = {"A", "B", "surface", "none", NULL};
 
 static const Option own[] = {
@@ -401,6 +433,14 @@ static const Option own[] = {
      SETS(CHOICE, CompareOptions, kind),
      .choices = kinds,
      .help = "what the files hold; auto: by their names"},
+    {.name = "layer",
+     SETS(TEXT, CompareOptions, layer),
+     .argument = "NAME",
+     .help = "of OpenEXR files the part or the layer of this name"},
+    {.name = "bits",
+     SETS(CHOICE, CompareOptions, bits),
+     .choices = bit_counts,
+     .help = "compare pictures as sRGB of 8 or 16 bits, whatever they hold"},
     {.name = "background",
      SETS(COLOR, CompareOptions, background),
      .help = "what transparent pictures are laid on"},
@@ -493,6 +533,8 @@ static Status compare(const CompareOptions *options, PlaneKind kind, const Parse
     char *tier_name = NULL, *name = NULL;
     const Rgb ground = rgb_of_option(options->background);
     Sides sides = {.paths = {parsed->operands[0], parsed->operands[1]},
+                   .layer = options->layer,
+                   .bits = 8 * options->bits,
                    .background = {ground.r, ground.g, ground.b},
                    .color = kind == PLANE_COLOR};
     double start_s = clock_seconds();
@@ -500,6 +542,8 @@ static Status compare(const CompareOptions *options, PlaneKind kind, const Parse
     TRY_GOTO(make_tolerance(options, &tolerance, &tier_name, err));
     TRY_GOTO(
         compare_files(options, kind, &sides, &tolerance, parsed->common.threads, &result, err));
+    if (!parsed->common.quiet)
+        note_losses(&sides);
     TRY_GOTO(shown_name(parsed->operands[0], &name, err));
     TRY_GOTO(write_junit(&result, options->junit, name, clock_seconds() - start_s, err));
     TRY_GOTO(print_result(options, &result, parsed->common.quiet, err));
@@ -522,6 +566,8 @@ static Status run_compare(void *options, Parsed *parsed, Err *err)
                                 {"levels", color, "is for two pictures"},
                                 {"background", color, "is for two pictures"},
                                 {"pixelmatch", color, "is for two pictures"},
+                                {"bits", color, "is for two pictures"},
+                                {"layer", kind != PLANE_ID, "is for other planes than ids"},
                                 {"ids-a", kind != PLANE_ID, "is for other planes than ids"},
                                 {"ids-b", kind != PLANE_ID, "is for other planes than ids"},
                                 {0}};

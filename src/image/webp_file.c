@@ -1,0 +1,71 @@
+/* WebP through libwebp, from the file in memory: a single picture of 8 bits, in colours, with alpha
+ * where it has some. Only what VP8 compressed is lossy; VP8L keeps every code. */
+#include "image/formats.h"
+
+#include <string.h>
+#include <webp/decode.h>
+
+static bool webp_is(const ImageBytes *file)
+{
+    return file->size >= 12 && memcmp(file->bytes, "RIFF", 4) == 0 &&
+           memcmp(file->bytes + 8, "WEBP", 4) == 0;
+}
+
+static Status unsound(const ImageBytes *file, Err *err)
+{
+    return err_set(err, STATUS_INPUT, "%s: is not a sound WebP file", file->name);
+}
+
+/* The bytes of a chunk of the container [WebP Container Specification], NULL when there is none. */
+static const uint8_t *find_chunk(const ImageBytes *file, const char *name, size_t *size)
+{
+    for (size_t at = 12; at + 8 <= file->size; at += 8 + *size + *size % 2) {
+        const uint8_t *head = file->bytes + at;
+        *size = head[4] | (size_t)head[5] << 8 | (size_t)head[6] << 16 | (size_t)head[7] << 24;
+        if (*size > file->size - at - 8)
+            return NULL;
+        if (memcmp(head, name, 4) == 0)
+            return head + 8;
+    }
+    return NULL;
+}
+
+static Status check_features(const ImageBytes *file, const WebPBitstreamFeatures *features,
+                             Err *err)
+{
+    size_t size, pixels = (size_t)features->width * (size_t)features->height;
+    const uint8_t *profile = find_chunk(file, "ICCP", &size);
+    enum { BLANK = 64 << 20 }; /* a blank picture of any size takes a few bytes */
+    if (features->has_animation)
+        return err_set(err, STATUS_INPUT, "%s: is an animation; only a single picture can be read",
+                       file->name);
+    if (profile)
+        TRY(image_check_profile(file->name, profile, size, err));
+    TRY(image_check_sides(file->name, features->width, features->height, err));
+    return image_check_claim(file, features->width, features->height, 4 * pixels,
+                             file->size * 10000 + BLANK, err);
+}
+
+static Status webp_decode(const ImageBytes *file, Image *image, Err *err)
+{
+    WebPBitstreamFeatures features;
+    Picture made;
+    if (WebPGetFeatures(file->bytes, file->size, &features) != VP8_STATUS_OK)
+        return unsound(file, err);
+    TRY(check_features(file, &features, err));
+    TRY(picture_init(&made, features.width, features.height, features.has_alpha ? 4 : 3, 8, err));
+    size_t stride = picture_stride(&made), bytes = stride * (size_t)made.height;
+    bool decoded =
+        features.has_alpha
+            ? WebPDecodeRGBAInto(file->bytes, file->size, made.codes8, bytes, (int)stride) != NULL
+            : WebPDecodeRGBInto(file->bytes, file->size, made.codes8, bytes, (int)stride) != NULL;
+    if (!decoded) {
+        picture_release(&made);
+        return unsound(file, err);
+    }
+    image->picture = made;
+    image->lossy = features.format == 2 ? NULL : "WebP";
+    return STATUS_OK;
+}
+
+const ImageDecoder webp_decoder = {.is = webp_is, .decode = webp_decode};
