@@ -31,9 +31,10 @@ MUST_CHECK Status report_planes(const ReportSide *a, const ReportSide *b,
 /* A small copy of a picture, at most 96 pixels across, each the mean of a box. */
 MUST_CHECK Status report_thumbnail(Picture *out, const Picture *picture, Err *err);
 
-/* How the templates case.html and row.html call their case, and what marks it in a page, for
- * report_merge to find. */
+/* How the templates case.html and row.html call their case, where they have room for its folder,
+ * and what marks them in a page, for report_merge to find. */
 #define REPORT_FIRST_CASE "case-1"
+#define REPORT_FOLDER "<!-- folder -->"
 #define REPORT_ROW_BEGIN "<!-- row: begin -->\n"
 #define REPORT_ROW_END "<!-- row: end -->\n"
 #define REPORT_CASE_BEGIN "<!-- case: begin -->\n"

@@ -8,6 +8,7 @@
 #include <string.h>
 
 typedef struct MergedCase {
+    const char *folder;        /* borrowed */
     char *page;                /* owned */
     const char *row, *section; /* within page */
     size_t row_size, section_size;
@@ -83,23 +84,43 @@ static int worst_first(const void *left, const void *right)
     return (a->number > b->number) - (a->number < b->number);
 }
 
-/* Appends a part, with the number of its case in place of 1. */
-static void append_numbered(Text *out, const char *part, size_t size, size_t number)
+/* What a part has in place of the number of its case, and of its folder. */
+enum { MARK_CASE, MARK_LINK, MARK_FOLDER, MARKS };
+static const char *const marks[MARKS] = {[MARK_CASE] = "\"" REPORT_FIRST_CASE "\"",
+                                         [MARK_LINK] = "\"#" REPORT_FIRST_CASE "\"",
+                                         [MARK_FOLDER] = REPORT_FOLDER};
+
+static void append_mark(Text *out, int mark, const MergedCase *merged)
 {
-    const size_t length = strlen(REPORT_FIRST_CASE);
+    if (mark == MARK_FOLDER) {
+        text_puts(out, " in ");
+        text_escaped(out, merged->folder);
+    } else {
+        text_printf(out, "\"%scase-%zu\"", mark == MARK_LINK ? "#" : "", merged->number);
+    }
+}
+
+/* Appends a part, with all marks filled in. */
+static void append_part(Text *out, const char *part, size_t size, const MergedCase *merged)
+{
     while (size > 0) {
-        const char *found = memmem(part, size, "\"" REPORT_FIRST_CASE "\"", length + 2);
-        const char *link = memmem(part, size, "\"#" REPORT_FIRST_CASE "\"", length + 3);
-        if (!found || (link && link < found))
-            found = link;
-        size_t before = found ? (size_t)(found - part) : size;
+        const char *first = NULL;
+        int mark = 0;
+        for (int k = 0; k < MARKS; k++) {
+            const char *found = memmem(part, size, marks[k], strlen(marks[k]));
+            if (found && (!first || found < first)) {
+                first = found;
+                mark = k;
+            }
+        }
+        size_t before = first ? (size_t)(first - part) : size;
         text_append(out, part, before);
-        if (!found)
+        if (!first)
             return;
-        size_t skip = length + (found == link ? 3 : 2);
-        text_printf(out, found == link ? "\"#case-%zu\"" : "\"case-%zu\"", number);
-        part = found + skip;
-        size -= before + skip;
+        append_mark(out, mark, merged);
+        size_t skip = before + strlen(marks[mark]);
+        part += skip;
+        size -= skip;
     }
 }
 
@@ -189,8 +210,8 @@ static Status write_page(const MergedCase *cases, size_t n, const Text *power,
     Text rows = TEXT_INIT, sections = TEXT_INIT, heading = TEXT_INIT;
     size_t differing = 0;
     for (size_t i = 0; i < n; i++) {
-        append_numbered(&rows, cases[i].row, cases[i].row_size, cases[i].number);
-        append_numbered(&sections, cases[i].section, cases[i].section_size, cases[i].number);
+        append_part(&rows, cases[i].row, cases[i].row_size, &cases[i]);
+        append_part(&sections, cases[i].section, cases[i].section_size, &cases[i]);
         differing += cases[i].severity > 0;
     }
     if (differing)
@@ -222,6 +243,7 @@ Status report_merge(const char *const *folders, size_t n, const char *power, con
     Status status = STATUS_OK;
     bool agree = true;
     for (size_t i = 0; i < n; i++) {
+        cases[i].folder = folders[i];
         cases[i].number = i + 1;
         TRY_GOTO(read_case(&cases[i], folders[i], err));
         agree = agree && cases[i].severity == 0;

@@ -12,7 +12,7 @@ two_cases() {
     expect_status 1
     run corcast report good bad -o page.html
     expect_status 1
-    grep -q '<small><code>tree.swc --size 120x90 -o good</code>' page.html || fail "expected cases to be told apart"
+    grep -q '<small><code>tree.swc --size 120x90 -o good</code> in good</small>' page.html || fail "expected cases to be told apart"
     expect_stdout '^differ: 2 cases; page.html'
 }
 
