@@ -129,4 +129,21 @@ test_annealing_finds_the_best_tree_of_each_small_point_set() {
     expect_stdout '^The best tree of 40 of 40\.$'
 }
 
+test_reports_in_json_carry_the_bound() {
+    run_ok corcast grow --terminals 85 --seed 3 --bound --json grow.json -o tree.swc
+    run_ok corcast certify tree.swc --json
+    cp stdout certified.json
+    expect_json grow.json '.bound.above > 0.005 and .bound.bound < .target'
+    run_ok corcast info tree.swc --json --bound
+    expect_json stdout "(.bound.bound / $(jq .bound certified.json) - 1 | fabs) < 1e-9"
+    run_ok corcast refine tree.swc --json refined.json -o refined.swc
+    expect_json refined.json '.bound.target == .target or (.bound.target / .target - 1 | fabs) < 1e-9'
+    expect_json refined.json '.target < .target_before and .bound.above > 0 and .moves_kept <= .moves_tried and .stopped == false'
+    run_ok corcast grow --terminals 30 --viscosity-law pries --bound --json pries.json -o pries.swc
+    expect_json pries.json '.bound == null'
+    run corcast info tree.swc --bound
+    expect_status 2
+    expect_sentence '--bound needs --json'
+}
+
 run_tests "$@"

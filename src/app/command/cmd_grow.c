@@ -2,6 +2,7 @@
  * not as it should be is said with --quiet, too. */
 #include "app/commands.h"
 #include "app/run/output.h"
+#include "app/trees/certifying.h"
 #include "app/trees/growing.h"
 #include "app/trees/refining.h"
 #include "app/trees/staging.h"
@@ -9,9 +10,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* The report as JSON; with the bound of the tree `bounded`, if it is not NULL. */
 static Status write_report(const char *path, const GrowReport *report, const RefineReport *refined,
-                           int threads, Err *err)
+                           int threads, const Tree *bounded, Err *err)
 {
+    json_t *bound = json_null();
+    if (bounded)
+        TRY(certified_json(bounded, &bound, err));
     double target = refined->target_before > 0 ? refined->target_after : report->target;
     json_t *json =
         json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:f, s:I, s:b, s:i}", "generator", GENERATOR,
@@ -26,7 +31,8 @@ static Status write_report(const char *path, const GrowReport *report, const Ref
                            report->least_change, "max", report->greatest_change);
     json = json_with(json, "radius_change", change);
     json_t *apart = isfinite(report->apart_mm) ? json_number(report->apart_mm) : json_null();
-    return json_write(json_with(json, "apart_mm", apart), path, err);
+    json = json_with(json, "apart_mm", apart);
+    return json_write(json_with(json, "bound", bound), path, err);
 }
 
 static void print_report(const GrowReport *report, bool keeps_radii)
@@ -80,6 +86,7 @@ static void print_warnings(const GrowReport *report, const Domain *domain, bool 
 
 typedef struct GrowOptions {
     const char *output, *json, *stages;
+    bool bound;
     Growing growing;
     Refining refining;
 } GrowOptions;
@@ -87,6 +94,10 @@ typedef struct GrowOptions {
 static const Option own[] = {
     {.name = "output", SETS(OUTPUT, GrowOptions, output), .argument = "T.swc", .help = "the tree"},
     {.name = "json", SETS(OUTPUT, GrowOptions, json), .help = "what was done, as JSON"},
+    {.name = "bound",
+     SETS(FLAG, GrowOptions, bound),
+     .group = GROUP_OPTIMUM,
+     .help = "--json also says how low the target of this topology can get, as certify proves"},
     {.name = "stages",
      SETS(INPUT, GrowOptions, stages),
      .group = GROUP_TREE,
@@ -110,7 +121,8 @@ static Status finish(const GrowOptions *options, const Common *common, const Tre
     int threads = common->threads ? common->threads : threads_available();
     TRY(output_tree("grow", tree, options->output, common->quiet, err));
     if (options->json)
-        TRY(write_report(options->json, report, refined, threads, err));
+        TRY(write_report(options->json, report, refined, threads, options->bound ? tree : NULL,
+                         err));
     if (!report->complete)
         fprintf(stderr, "corcast grow: %s\n", why->text);
     if (!common->quiet)
@@ -136,6 +148,8 @@ static Status run_grow(void *options, Parsed *parsed, Err *err)
         TRY_GOTO(err_set(err, STATUS_USAGE,
                          "--refine: would give --stages one law; use corcast refine afterwards"));
     TRY_GOTO(refining_check_growing(refining, growing, err));
+    const OptionNeed needs[] = {{"bound", own_options->json != NULL, "needs --json"}, {0}};
+    TRY_GOTO(options_check_needs(parsed, needs, err));
     TRY_GOTO(refining_check(refining, parsed, err));
     TRY_GOTO(growing_prepare(growing, parsed, err));
     if (own_options->stages)

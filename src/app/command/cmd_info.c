@@ -7,6 +7,7 @@
 #include "app/run/output.h"
 #include "app/run/reading.h"
 #include "app/trees/blood.h"
+#include "app/trees/certifying.h"
 #include "app/trees/summary_json.h"
 #include "derive/derive.h"
 #include "treeio/treeio.h"
@@ -95,7 +96,7 @@ static Status print_columns(const Tree *tree, Err *err)
 }
 
 typedef struct InfoOptions {
-    bool json, stats;
+    bool json, stats, bound;
     const char *morphometry; /* NULL: beside none */
     BloodOptions blood;
 } InfoOptions;
@@ -114,6 +115,10 @@ static const Option own[] = {
     {.name = "stats",
      SETS(FLAG, InfoOptions, stats),
      .help = "radius and length by level and order, branching ratios"},
+    {.name = "bound",
+     SETS(FLAG, InfoOptions, bound),
+     .group = GROUP_OPTIMUM,
+     .help = "with --json, how low the target of this topology can get, as certify proves"},
     {.name = "morphometry",
      SETS(LOOKUP, InfoOptions, morphometry),
      .list = "morphometries",
@@ -130,6 +135,9 @@ static const OptionTable own_table = OPTION_TABLE(own);
 static Status show(const InfoOptions *options, const char *path, const Tree *tree,
                    const Findings *found, Err *err)
 {
+    json_t *bound = NULL;
+    if (options->bound)
+        TRY(certified_json(tree, &bound, err));
     if (options->json) {
         json_t *json = summary_json(&found->summary);
         if (tree->n_columns > 0)
@@ -140,6 +148,8 @@ static Status show(const InfoOptions *options, const char *path, const Tree *tre
             json =
                 json_with(json, "morphometry", morphometry_json(&found->table, &found->comparison));
         json = json_with(json, "reading", reading_json(&found->reading));
+        if (options->bound)
+            json = json_with(json, "bound", bound);
         return json_write(json, "-", err);
     }
     print_summary(path, &found->summary);
@@ -170,6 +180,8 @@ static Status run_info(void *options, Parsed *parsed, Err *err)
     Status status = STATUS_OK;
     Tree tree = {0};
     Findings found = {0};
+    const OptionNeed needs[] = {{"bound", own_options->json, "needs --json"}, {0}};
+    TRY(options_check_needs(parsed, needs, err));
     TRY(reading_tree(parsed, parsed->operands[0], &tree, &found.reading, err));
     TRY_GOTO(blood_settle(&own_options->blood, parsed, &tree, err));
     TRY_GOTO(find_out(own_options, &tree, &found, err));

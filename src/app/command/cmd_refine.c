@@ -2,13 +2,14 @@
 #include "app/commands.h"
 #include "app/run/output.h"
 #include "app/run/reading.h"
+#include "app/trees/certifying.h"
 #include "app/trees/refining.h"
 #include "app/trees/tree_domain.h"
 #include "treeio/treeio.h"
 #include <stdio.h>
 
 typedef struct RefineOptions {
-    const char *output, *domain;
+    const char *output, *domain, *json;
     Refining refining;
 } RefineOptions;
 
@@ -17,6 +18,10 @@ static const Option own[] = {
      SETS(OUTPUT, RefineOptions, output),
      .argument = "R.swc",
      .help = "the refined tree"},
+    {.name = "json",
+     SETS(OUTPUT, RefineOptions, json),
+     .otherwise = "",
+     .help = "what was done, and how low the target of this topology can get, as JSON"},
     {.name = "domain",
      SETS(TEXT, RefineOptions, domain),
      .group = GROUP_TREE,
@@ -41,6 +46,25 @@ static Status find_domain(const char *spec, const Tree *tree, Domain *domain, bo
     return tree_domain_parse(spec, NULL, NULL, domain, err);
 }
 
+static Status write_report(const char *path, const RefineReport *report, const Tree *tree, Err *err)
+{
+    json_t *bound;
+    TRY(certified_json(tree, &bound, err));
+    const JsonMember members[] = {
+        {"generator", json_text(GENERATOR)},
+        {"seconds", json_number(report->seconds)},
+        {"target_before", json_number(report->target_before)},
+        {"target", json_number(report->target_after)},
+        {"moves_tried", json_integer((json_int_t)report->moves_tried)},
+        {"moves_kept", json_integer((json_int_t)report->moves_kept)},
+        {"thickness", json_number(report->thickness)},
+        {"stopped", json_boolean(report->stopped)},
+        {"bound", bound},
+    };
+    return json_write(json_with_members(json_object(), members, sizeof members / sizeof *members),
+                      path, err);
+}
+
 static Status run_refine(void *options, Parsed *parsed, Err *err)
 {
     const RefineOptions *own_options = options;
@@ -63,6 +87,8 @@ static Status run_refine(void *options, Parsed *parsed, Err *err)
     TRY_GOTO(command_describe(parsed, &tree.meta, err));
     TRY_GOTO(refining_describe(refining, &report, &tree.meta, err));
     TRY_GOTO(output_tree("refine", &tree, own_options->output, parsed->common.quiet, err));
+    if (own_options->json)
+        TRY_GOTO(write_report(own_options->json, &report, &tree, err));
     if (!parsed->common.quiet)
         refining_print(&report);
 done:

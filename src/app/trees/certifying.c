@@ -147,3 +147,20 @@ Status certifying_apply(const Certifying *certifying, const Parsed *parsed, Tree
     part_distance(found);
     return STATUS_OK;
 }
+
+Status certified_json(const Tree *tree, json_t **out, Err *err)
+{
+    double lambda = meta_number(&tree->meta, META_LAMBDA);
+    bool pries = meta_number(&tree->meta, META_VISCOSITY_LAW) == VISCOSITY_PRIES;
+    *out = json_null();
+    if (pries || !tree->meta.known[META_LAMBDA] || !range_has(BOUND_LAMBDA_RANGE, lambda))
+        return STATUS_OK;
+    Bound bound;
+    TRY(bound_tree(tree, lambda, &bound, err));
+    const JsonMember members[] = {{"target", json_number(bound.target)},
+                                  {"bound", json_number(bound.bound)},
+                                  {"above", json_number(bound.target / bound.bound - 1)}};
+    *out = json_with_members(json_object(), members, sizeof members / sizeof *members);
+    bound_release(&bound);
+    return STATUS_OK;
+}
