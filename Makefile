@@ -173,9 +173,9 @@ build/corcast:
 endif
 
 # What pages of `export T -o P.html` hold. The program is complete without it.
-$(VIEWER): $(wildcard viewer/*)
+$(VIEWER): $(wildcard templates/viewer/*)
 	$(call say,MADE,$@)
-	$(Q)viewer/bundle $(@D) || :
+	$(Q)templates/viewer/bundle $(@D) || :
 
 program: $(BUILD)/corcast ## the program of this MODE, build/MODE/corcast
 

@@ -143,11 +143,11 @@ test_deps_says_what_is_needed_when_it_is_neither_root_nor_has_sudo() {
 
 test_without_npm_or_its_registry_the_viewer_is_not_built_and_the_reason_said() {
     bare_path dirname mkdir cmp cp grep rm
-    run env PATH="$PWD/bin" "$REPO/viewer/bundle" made
+    run env PATH="$PWD/bin" "$REPO/templates/viewer/bundle" made
     expect_status 3
     expect_sentence 'npm is not installed; export to \.html needs it, nothing else does'
     command -v npm >npm.path && command -v esbuild >esbuild.path || skip "npm and esbuild are not installed"
-    run env npm_config_registry=http://127.0.0.1:9 npm_config_cache="$PWD/cache" npm_config_fetch_retries=0 "$REPO/viewer/bundle" made
+    run env npm_config_registry=http://127.0.0.1:9 npm_config_cache="$PWD/cache" npm_config_fetch_retries=0 "$REPO/templates/viewer/bundle" made
     expect_status 3
     expect_sentence 'npm cannot install three.js: npm error'
     [ ! -e made/viewer.js ] || fail "expected no viewer"

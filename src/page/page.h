@@ -1,7 +1,7 @@
 /* The door of the room page: a tree as one page for browsers, in which it can be turned.
  *
- * The page is a file that needs nothing else: a template, the viewer [viewer/], and the tree's
- * numbers in base64, from which the viewer draws cylinders and balls. */
+ * The page is a file that needs nothing else: a template, the viewer [templates/viewer/], and the
+ * tree's numbers in base64, from which the viewer draws cylinders and balls. */
 #ifndef CORCAST_PAGE_PAGE_H
 #define CORCAST_PAGE_PAGE_H
 

@@ -1,6 +1,6 @@
-/* The viewer is built apart from the program [viewer/bundle], as it takes npm, and stands beside
- * the templates where it is installed, or in the build folder. A page holds whatever fields there
- * are, so that who reads it needs no other. */
+/* The viewer is built apart from the program [templates/viewer/bundle], as it takes npm, and stands
+ * beside the templates where it is installed, or in the build folder. A page holds whatever fields
+ * there are, so that who reads it needs no other. */
 #include "app/pictures/webpage.h"
 
 #include "app/run/output.h"

@@ -493,8 +493,8 @@ static void look_at_run(size_t index, int worker, void *context)
         if (status != STATUS_OK)
             look->status[worker] = status;
         for (size_t i = 0; i < n; i++)
-            share->reach[from + i] +=
-                (wanted[i / TILE_SAMPLES] >> i % TILE_SAMPLES & 1) & !shadowed[i];
+            if (wanted[i / TILE_SAMPLES] >> i % TILE_SAMPLES & 1 && !shadowed[i])
+                share->reach[from + i]++;
     }
 }
 
