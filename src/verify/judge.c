@@ -5,6 +5,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* What a rule measures, and the pixel to look at when it is broken. */
@@ -188,12 +189,22 @@ static void describe_place(const CompareResult *result, const PixelPlace *place,
                  place->id_a ? a : "the background");
 }
 
+/* To three digits, as people read it, or to as many as tell it from what is allowed. */
+static void describe_measured(const Rule *rule, char *out, size_t size)
+{
+    double value = rule->measured;
+    bool whole = (value == floor(value) || fabs(value) >= 1000) && fabs(value) < 1e15;
+    snprintf(out, size, whole ? "%.0f" : "%.3g", value);
+    if (strtod(out, NULL) <= rule->allowed)
+        snprintf(out, size, "%.6g", value);
+}
+
 void rule_sentence(const CompareResult *result, const Rule *rule, char *out, size_t size)
 {
-    char place[120];
-    int length =
-        snprintf(out, size, "%s: %s: %.6g%s%s, at most %.6g allowed", result_title(result),
-                 rule->name, rule->measured, *rule->unit ? " " : "", rule->unit, rule->allowed);
+    char place[120], measured[32];
+    describe_measured(rule, measured, sizeof measured);
+    int length = snprintf(out, size, "%s: %s: %s%s%s, at most %.6g allowed", result_title(result),
+                          rule->name, measured, *rule->unit ? " " : "", rule->unit, rule->allowed);
     if (rule->at.x < 0)
         return;
     describe_place(result, &rule->at, place, sizeof place);
