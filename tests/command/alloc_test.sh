@@ -123,6 +123,8 @@ test_failed_allocations_in_export() {
 test_failed_allocations_in_export_of_parts_and_curves() {
     fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o o.vtp
     fail_each 9 many export "$DATA/bifurcation.swc" --tolerance 0.2 --wall 0.2 --tube-edge 1.5 --parts -o o.stl
+    fail_each 9 many export "$DATA/bifurcation.swc" --print block=box,ports --tolerance 0.2 -o o.stl
+    fail_each 9 many export "$DATA/bifurcation.swc" --print wall=0.3,base --tolerance 0.2 -o o.stl
     fail_each 1 many export "$DATA/bifurcation.swc" --color-by flow -o o.py
     fail_each 3 many export "$DATA/bifurcation.swc" --color-by flow -o o.usda
     fail_each 3 many export "$DATA/bifurcation.swc" --lattice -o o.3mf

@@ -181,6 +181,14 @@ test_a_base_holds_vessels_by_pins() {
     expect_json m.stl.json '.print.openings == 3 and .genus == 2 + .print.pins - 1 and .segments == 3'
 }
 
+# Flat, so that a pin leaves every node, and many are near others.
+test_a_flat_tree_stands_on_the_pins_that_have_room() {
+    run_ok corcast grow --terminals 60 --seed 3 -o t.swc --quiet
+    run_ok corcast export t.swc --print base,wall=0.2r --tolerance 0.1 -o t.stl --quiet
+    expect_solid t.stl 1
+    expect_json t.stl.json '.print | .pins > 80 and .hanging > 0 and .openings + (.closed_ends | length) == 61'
+}
+
 test_says_how_near_strangers_come() {
     printf '%s\n' '1 3 0 0 0 1.1 -1' '2 3 9 0 0 1.1 1' '3 3 4 -5 3.37 0.6 -1' '4 3 4 7 3.37 0.6 3' >t.swc
     run_ok corcast export t.swc --print scale=2 -o m.stl --quiet

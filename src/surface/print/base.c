@@ -3,6 +3,7 @@
 #include "surface/print/base.h"
 
 #include "surface/mesh/nearpairs.h"
+#include "surface/mesh/zones.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,7 +19,8 @@ static const double level_part = 0.25;
 
 /* A place that a pin is to begin at. */
 typedef struct Foot {
-    uint32_t node, segment; /* one that ends there */
+    uint32_t node, segment; /* one that ended there before any was cut */
+    Vec3 at;
     double radius_mm;
 } Foot;
 
@@ -60,7 +62,7 @@ static bool is_lowest(const Standing *standing, uint32_t node, Foot *foot)
         if (rise < -level_part * radius)
             return false;
         if (radius > foot->radius_mm)
-            *foot = (Foot){node, segment, radius};
+            *foot = (Foot){node, segment, place_of(tree, segment, end), radius};
     }
     return first[1] > first[0];
 }
@@ -189,7 +191,7 @@ static Status move_foot(Standing *standing, Foot *foot, bool *done)
 {
     VesselTree *tree = standing->tree;
     double radius = tree->segments[foot->segment].radius_mm, off = from_end * radius;
-    Vec3 end = place_of(tree, foot->segment, segment_end_at(tree, foot->segment, foot->node));
+    Vec3 end = foot->at;
     Spot spot;
     *done = walk_from(standing, foot, off, &spot);
     if (!*done)
@@ -201,6 +203,8 @@ static Status move_foot(Standing *standing, Foot *foot, bool *done)
     *done = rise <= most_rise * off;
     foot->segment = spot.segment;
     foot->node = tree->nodes[spot.segment][!spot.end];
+    foot->at =
+        left > radius ? vec3_add_scaled(from, vec3_normalized(vec3_sub(to, from)), spot.mm) : to;
     return *done && left > radius ? cut_at(standing, &spot, &foot->node) : STATUS_OK;
 }
 
@@ -211,9 +215,9 @@ static Status add_pin(Standing *standing, Foot foot, bool open_ends)
     bool has_room = true;
     if (open_ends && first[1] - first[0] == 1)
         TRY(move_foot(standing, &foot, &has_room));
-    Vec3 at = place_of(tree, foot.segment, segment_end_at(tree, foot.segment, foot.node));
-    const FieldSegment pin = {
-        .a = at, .b = vec3(at.x, at.y, standing->pins.top_mm), .radius_mm = foot.radius_mm};
+    const FieldSegment pin = {.a = foot.at,
+                              .b = vec3(foot.at.x, foot.at.y, standing->pins.top_mm),
+                              .radius_mm = foot.radius_mm};
     if (!has_room || !is_free(standing, &pin, foot.node)) {
         standing->pins.n_hanging++;
         return STATUS_OK;
@@ -223,7 +227,64 @@ static Status add_pin(Standing *standing, Foot foot, bool open_ends)
                        pins_owner(&standing->pins, foot.segment), true);
 }
 
-Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, Pins *out, Err *err)
+/* Whether a pin is not cut off flat at the plate, or overlaps a vessel. */
+static bool is_spoilt(const Standing *standing, const Zones *zones, uint32_t segment)
+{
+    for (size_t i = 0; i < zones->n_overlapping; i++)
+        if (zones->strangers[i].segments[0] == segment ||
+            zones->strangers[i].segments[1] == segment)
+            return true;
+    return zones->zone[standing->tree->nodes[segment][1]] != NO_ZONE;
+}
+
+/* Takes away what is spoilt, and tells how many pins that were. */
+static size_t take_spoilt(Standing *standing, const Zones *zones)
+{
+    VesselTree *tree = standing->tree;
+    Pins *pins = &standing->pins;
+    size_t kept = 0, n = pins->n_added;
+    for (size_t i = 0; i < n; i++) {
+        size_t from = pins->n_segments + i, to = pins->n_segments + kept;
+        if (pins->is_pin[i] && is_spoilt(standing, zones, (uint32_t)from))
+            continue;
+        tree->segments[to] = tree->segments[from];
+        tree->nodes[to][0] = tree->nodes[from][0];
+        tree->nodes[to][1] = tree->nodes[from][1];
+        tree->ids[to] = tree->ids[from];
+        pins->owner[kept] = pins->owner[i];
+        pins->is_pin[kept++] = pins->is_pin[i];
+    }
+    pins->n_added = kept;
+    pins->n_pins -= n - kept;
+    pins->n_hanging += n - kept;
+    tree->n_segments = pins->n_segments + kept;
+    return n - kept;
+}
+
+/* Leaves the pins that are cut off flat. */
+static Status keep_flat(Standing *standing, int threads)
+{
+    bool done = false;
+    while (!done) {
+        NumberLists incident = {0}, blending = {0};
+        Zones zones = {0};
+        Status status;
+        Err *err = standing->err;
+        TRY_GOTO(vesseltree_incident(standing->tree, &incident, err));
+        TRY_GOTO(vesseltree_blending(standing->tree, &incident, &blending, err));
+        TRY_GOTO(zones_find(standing->tree, &incident, &blending, threads, &zones, err));
+        done = take_spoilt(standing, &zones) == 0;
+    done:
+        numberlists_release(&incident);
+        numberlists_release(&blending);
+        zones_release(&zones);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, int threads, Pins *out,
+                Err *err)
 {
     size_t n = tree->n_segments;
     Standing standing = {.tree = tree,
@@ -238,6 +299,7 @@ Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, Pins *o
     standing.pins.top_mm = top_of(&standing);
     for (size_t i = 0; i < standing.n_feet; i++)
         TRY_GOTO(add_pin(&standing, standing.feet[i], open_ends));
+    TRY_GOTO(keep_flat(&standing, threads));
     *out = standing.pins;
     standing.pins = (Pins){0};
 done:

@@ -126,7 +126,8 @@ static Status prepare(Making *making, Err *err)
                       err));
     if (!params->base.is_there)
         return STATUS_OK;
-    TRY(pins_add(&making->outer, &params->base, print_has_wall(params), &making->pins, err));
+    TRY(pins_add(&making->outer, &params->base, print_has_wall(params), params->mesh.threads,
+                 &making->pins, err));
     report->pins = making->pins.n_pins;
     report->hanging = making->pins.n_hanging;
     if (report->pins == 0)
