@@ -21,7 +21,7 @@ const hash = "(function () { var c = document.getElementById('stage'), d = c.get
   ".getImageData(0, 0, c.width, c.height).data, h = 0; for (var i = 0; i < d.length; i += 5) h = (h * 31 + d[i]) | 0;" +
   " return h; })()";
 const readout = "Array.from(document.querySelectorAll('#readout div')).map(function (d) { return d.textContent; })";
-const settled = "new Promise(function (r) { setTimeout(r, 250); })"; // the address is written after 150 ms
+const settled = "new Promise(function (r) { setTimeout(r, 160); })"; // the address is written after 100 ms
 const rows = "Array.from(document.querySelectorAll('.cases tbody tr')).map(function (r) { return r.dataset.case; })";
 
 async function checkOpening() {
@@ -95,7 +95,7 @@ async function checkHistogram() {
 async function checkZoomAndValues() {
   const w = expected.worst;
   await evaluate("location.hash = '#case=" + w.id + "&mode=beside&zoom=48&x=" + w.x + "&y=" + w.y + "'");
-  await evaluate("new Promise(function (r) { setTimeout(r, 300); })");
+  await evaluate(settled);
   await evaluate("document.getElementById('stage').scrollIntoView({ block: 'center' })");
   const box = await evaluate("(function () { var b = document.getElementById('stage').getBoundingClientRect();" +
     " return [b.left, b.top, b.width, b.height]; })()");
@@ -117,6 +117,19 @@ async function checkZoomAndValues() {
     const v = w.a[0] / 255, expectedLinear = v < 0.04045 ? v / 12.92 : Math.pow((v + 0.055) / 1.055, 2.4);
     check(Math.abs(linear - expectedLinear) < 1e-4, "expected linear " + expectedLinear + ", got " + linear);
     check(/^Pixel[^a-z]*\(column, row\)[0-9, ]+(shading|edge|shadow)$/.test(cells[0]), "expected the pixel's class, got " + cells[0]);
+  }
+}
+
+// Enlarged, the difference says by how much, in the pixels themselves.
+async function checkWrittenDifferences() {
+  const w = expected.worst;
+  await evaluate("(function () { var write = CanvasRenderingContext2D.prototype.fillText; window.written = [];" +
+    " CanvasRenderingContext2D.prototype.fillText = function (text) { written.push(text); write.apply(this, arguments); }; })()");
+  for (const map of ["steps", "x8"]) {
+    await evaluate("written = []; location.hash = '#case=" + w.id + "&mode=difference&map=" + map + "&zoom=96&x=" + w.x + "&y=" + w.y + "'");
+    await evaluate(settled);
+    const written = (await evaluate("written")).join(" "), d = w.b.map(function (v, i) { return v - w.a[i]; }).join(" ");
+    check((" " + written + " ").includes(" " + d + " "), "expected " + d + " in a pixel, got " + written);
   }
 }
 
@@ -226,7 +239,7 @@ async function checkPhone() {
 
 async function checkSwipeAndBlink() {
   await evaluate("location.hash = '#case=" + expected.worst.id + "&mode=swipe&split=0.9'");
-  await evaluate("new Promise(function (r) { setTimeout(r, 200); })");
+  await evaluate(settled);
   const right = await evaluate(hash);
   await evaluate("(function () { var s = document.getElementById('split'); s.value = 100; s.dispatchEvent(new Event('input')); })()");
   check(await evaluate(hash) !== right, "expected the swipe edge to move");
@@ -277,6 +290,7 @@ runIn(chromium, ["--disable-gpu", "--window-size=1200,900"], async function (ope
   await checkSorting();
   await checkHistogram();
   await checkZoomAndValues();
+  await checkWrittenDifferences();
   await checkSwipeAndBlink();
   await checkKeysAndCrops();
   await checkAddress();
