@@ -96,6 +96,9 @@ test_trees_keep_the_clearance_that_was_asked_for() {
     run corcast grow --terminals 160 --inlet 0,50 --inlet 4.5,-49 --clearance -1 -o none.swc
     expect_status 2
     expect_sentence "clearance.*-1"
+    run corcast grow --terminals 160 --inlet 0,50 --inlet 4.5,49 --clearance 30.5 -o none.swc
+    expect_status 2
+    expect_sentence 'no straight vessel leads from --inlet 4.5,49,0 into the domain, clear of those of the other inlets'
 }
 
 # A picture of 100 x 100 pixels whose left half asks for five times as much blood as its right half.
