@@ -365,6 +365,19 @@ test_two_pictures_have_a_page() {
     expect_sentence '--html are of two pictures, not of two depth planes'
 }
 
+test_reports_of_compared_pictures_are_merged() {
+    picture 100 >a.ppm
+    picture 131 >b.ppm
+    run corcast compare a.ppm b.ppm --report wrong
+    expect_status 1
+    run_ok corcast compare a.ppm a.ppm --report right
+    expect_json wrong/report.json '.verdict == "differ" and .planes.color.max_abs == 31'
+    run corcast report right wrong -o all.html
+    expect_status 1
+    grep -q 'a\.ppm and b\.ppm' all.html || fail "expected the case that differs"
+    grep -q 'a\.ppm and a\.ppm' all.html || fail "expected the case that agrees"
+}
+
 test_sides_beyond_all_bounds_are_refused() {
     printf 'P6\n99999999 3\n255\nabc' >a.ppm
     run corcast compare a.ppm a.ppm

@@ -20,7 +20,7 @@ typedef struct CompareOptions {
     const char *ids_a, *ids_b;
     const char *tolerance, *junit, *layer;
     int bits; /* index of bit_counts */
-    const char *heat, *difference, *flicker, *ledger, *page;
+    const char *heat, *difference, *flicker, *ledger, *page, *report;
     char *line; /* owned; the command */
     bool json, metrics, has_metrics, has_tier, has_levels, has_ppm, has_pixelmatch;
     double levels, ppm, depth_mm, pixelmatch;
@@ -211,6 +211,7 @@ static ReportSide side_of(const Sides *sides, int side, const Picture *picture)
                         .ids = sides->ids[side].ids ? &sides->ids[side] : NULL};
 }
 
+/* The page alone, or the folder that `report` merges with others. */
 static Status write_page(const CompareOptions *options, const Sides *sides,
                          const CompareResult *result, const Picture *a, const Picture *b, Err *err)
 {
@@ -228,7 +229,12 @@ static Status write_page(const CompareOptions *options, const Sides *sides,
                                .commands = commands,
                                .n_commands = 1,
                                .planes = {[PLANE_COLOR] = result}};
-    status = report_write_page(&report, folder, options->page, err);
+    if (options->page)
+        TRY_GOTO(report_write_page(&report, folder, options->page, err));
+    if (options->report)
+        TRY_GOTO(file_make_folder(options->report, err));
+    if (options->report)
+        status = report_write(&report, folder, options->report, err);
 done:
     text_release(&title);
     free(folder);
@@ -239,7 +245,7 @@ static Status write_pictures(const CompareOptions *options, const Sides *sides,
                              const CompareResult *result, const Picture *a, const Picture *b,
                              Err *err)
 {
-    if (options->page)
+    if (options->page || options->report)
         TRY(write_page(options, sides, result, a, b, err));
     TRY(write_picture(heat_picture, options->heat, a, b, err));
     TRY(write_picture(difference_picture, options->difference, a, b, err));
@@ -284,7 +290,7 @@ static Status compare_codes(const CompareOptions *options, const Sides *sides,
         TRY_GOTO(picture_to_srgb(&shown[1], b.picture, 16, err));
     const Picture *shown_a = coded ? a.picture : &shown[0];
     const Picture *shown_b = coded ? b.picture : &shown[1];
-    if (options->metrics || options->page)
+    if (options->metrics || options->page || options->report)
         TRY_GOTO(compare_perception(shown_a, shown_b, result, err));
     status = write_pictures(options, sides, result, shown_a, shown_b, err);
 done:
@@ -303,10 +309,11 @@ static Status compare_linear(const CompareOptions *options, const Sides *sides,
                        "--ledger is of two pictures of 8 or 16 bits and one gamma");
     bool ids = options->ids_a != NULL;
     TRY(compare_colors(a, b, ids ? &sides->ids[0] : NULL, ids ? &sides->ids[1] : NULL, tolerance,
-                       options->metrics || options->page, result, err));
+                       options->metrics || options->page || options->report, result, err));
     Picture clipped[2] = {{0}, {0}};
     Status status = STATUS_OK;
-    bool pictures = options->heat || options->difference || options->flicker || options->page;
+    bool pictures = options->heat || options->difference || options->flicker || options->page ||
+                    options->report;
     bool asks_cause = !result->agrees && result->nan_pixels_a + result->nan_pixels_b == 0;
     if (pictures || asks_cause) {
         TRY_GOTO(picture_from_plane(&clipped[0], a, ENCODING_SRGB, 16, err));
@@ -411,9 +418,10 @@ static Status check_options(const CompareOptions *options, PlaneKind kind, Err *
     if (options->ledger && !options->ids_a)
         return err_set(err, STATUS_USAGE, "--ledger needs --ids-a and --ids-b, to tell segments");
     if (kind != PLANE_COLOR && (options->heat || options->difference || options->flicker ||
-                                options->ledger || options->page))
+                                options->ledger || options->page || options->report))
         return err_set(err, STATUS_USAGE,
-                       "-o, --difference, --flicker, --ledger and --html are of two pictures, not "
+                       "-o, --difference, --flicker, --ledger, --html and --report are of two "
+                       "pictures, not "
                        "of two %s planes",
                        plane_kind_name(kind));
     return STATUS_OK;
@@ -513,6 +521,10 @@ static const Option own[] = {
      .is_told = true,
      .argument = "PAGE.html",
      .help = "one page about two pictures: swipe, blink, zoom, differences, numbers"},
+    {.name = "report",
+     SETS(FOLDER, CompareOptions, report),
+     .is_told = true,
+     .help = "that page, JSON, JUnit and the heat map, for `report` to merge with others"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
