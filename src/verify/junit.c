@@ -5,6 +5,7 @@
 #include "verify/report.h"
 #include "verify/result.h"
 #include "verify/rounded.h"
+#include "verify/suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -124,5 +125,20 @@ void report_junit(const ReportCase *report, Text *out)
     begin_suite(out, report->name, tests, failures, (double)NAN);
     for (int i = 0; i < tests; i++)
         put_check(out, report, &checks[i]);
+    end_suite(out);
+}
+
+void suite_junit(const Suite *suite, const char *name, double seconds, Text *out)
+{
+    size_t passed = suite->count[SUITE_SAME] + suite->count[SUITE_WITHIN];
+    begin_suite(out, name, (int)suite->n, (int)(suite->n - passed), seconds);
+    for (size_t i = 0; i < suite->n; i++) {
+        const SuiteCase *entry = &suite->cases[i];
+        begin_case(out, name, entry->name, entry->seconds);
+        put_property(out, "state", suite_state_name(entry->state));
+        put_number(out, "differing pixels", (double)entry->differing);
+        put_number(out, "masked pixels", (double)entry->masked);
+        end_case(out, *entry->sentence ? entry->sentence : NULL);
+    }
     end_suite(out);
 }

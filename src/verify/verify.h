@@ -7,6 +7,7 @@
 #include "image/image.h"
 #include "verify/oracle.h"        // IWYU pragma: export
 #include "verify/settled.h"       // IWYU pragma: export
+#include "verify/suite.h"         // IWYU pragma: export
 #include "verify/surface_check.h" // IWYU pragma: export
 
 typedef enum PlaneKind { PLANE_COLOR, PLANE_DEPTH, PLANE_NORMAL, PLANE_ID, PLANE_KINDS } PlaneKind;

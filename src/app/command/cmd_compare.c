@@ -21,6 +21,7 @@ typedef struct CompareOptions {
     const char *tolerance, *junit, *layer;
     int bits; /* index of bit_counts */
     const char *heat, *difference, *flicker, *ledger, *page, *report;
+    const char *reference, *accept, *reason;
     char *line; /* owned; the command */
     bool json, metrics, has_metrics, has_tier, has_levels, has_ppm, has_pixelmatch;
     double levels, ppm, depth_mm, pixelmatch;
@@ -441,6 +442,18 @@ static const Option own[] = {
      SETS(CHOICE, CompareOptions, kind),
      .choices = kinds,
      .help = "what the files hold; auto: by their names"},
+    {.name = "reference",
+     SETS(TEXT, CompareOptions, reference),
+     .argument = "DIR",
+     .help = "hold all pictures of the folder A against those of the same names in this one"},
+    {.name = "accept",
+     SETS(TEXT, CompareOptions, accept),
+     .argument = "CASE",
+     .help = "make the picture of this name in the folder A its reference"},
+    {.name = "reason",
+     SETS(TEXT, CompareOptions, reason),
+     .argument = "TEXT",
+     .help = "why it is accepted; kept in DIR/accepted.tsv"},
     {.name = "layer",
      SETS(TEXT, CompareOptions, layer),
      .argument = "NAME",
@@ -567,10 +580,91 @@ done:
     return status;
 }
 
+/* ---- folders --------------------------------------------------------------------------------- */
+
+static Status put_suite(const CompareOptions *options, const Suite *suite, const char *folder,
+                        double seconds, bool quiet, Err *err)
+{
+    Text text = TEXT_INIT, xml = TEXT_INIT;
+    Status status = STATUS_OK;
+    suite_junit(suite, folder, seconds, &xml);
+    if (options->junit)
+        TRY_GOTO(file_write_text(options->junit, &xml, err));
+    if (options->json)
+        TRY_GOTO(json_write(suite_json(suite), "-", err));
+    if (!quiet && !options->json)
+        suite_text(suite, &text);
+    TRY_GOTO(text_check(&text, err));
+    fwrite(text_chars(&text), 1, text.length, stdout);
+done:
+    text_release(&text);
+    text_release(&xml);
+    return status;
+}
+
+/* The folder of pictures against that of references. */
+static Status compare_folders(const CompareOptions *options, const Parsed *parsed, Err *err)
+{
+    const char *folder = parsed->operands[0];
+    if (parsed->n_operands != 1)
+        return err_set(err, STATUS_USAGE,
+                       "--reference takes one folder of pictures, not two files");
+    if (!options->accept != !options->reason || (options->reason && !*options->reason))
+        return err_set(err, STATUS_USAGE, "--accept and --reason go together; one is missing");
+    if (options->accept)
+        return suite_accept(options->reference, folder, options->accept, options->reason, err);
+    const Rgb ground = rgb_of_option(options->background);
+    const float background[3] = {ground.r, ground.g, ground.b};
+    Tolerance tolerance;
+    Suite suite = {0};
+    char *tier_name = NULL;
+    double start_s = clock_seconds();
+    Status status = STATUS_OK;
+    TRY_GOTO(make_tolerance(options, &tolerance, &tier_name, err));
+    TRY_GOTO(suite_judge(&suite, options->reference, folder, &tolerance, background,
+                         parsed->common.threads, err));
+    TRY_GOTO(
+        put_suite(options, &suite, folder, clock_seconds() - start_s, parsed->common.quiet, err));
+    status = suite.agrees ? STATUS_OK : STATUS_DIFFERS;
+done:
+    suite_release(&suite);
+    free(tier_name);
+    return status;
+}
+
+/* Options that folders do not have, or that only they have. */
+static Status check_folders(const CompareOptions *options, const Parsed *parsed, Err *err)
+{
+    const bool pair = options->reference == NULL;
+    const OptionNeed needs[] = {{"html", pair, "is for two pictures, not for --reference"},
+                                {"report", pair, "is for two pictures, not for --reference"},
+                                {"output", pair, "is for two pictures, not for --reference"},
+                                {"difference", pair, "is for two pictures, not for --reference"},
+                                {"flicker", pair, "is for two pictures, not for --reference"},
+                                {"ledger", pair, "is for two pictures, not for --reference"},
+                                {"ids-a", pair, "is for two pictures, not for --reference"},
+                                {"ids-b", pair, "is for two pictures, not for --reference"},
+                                {"kind", pair, "is for two files, not for --reference"},
+                                {"layer", pair, "is for two files, not for --reference"},
+                                {"bits", pair, "is for two files, not for --reference"},
+                                {"metrics", pair, "is for two files, not for --reference"},
+                                {"accept", !pair, "needs --reference"},
+                                {"reason", !pair, "needs --reference"},
+                                {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    if (pair && parsed->n_operands != 2)
+        return err_set(err, STATUS_USAGE,
+                       "compare needs two files, A and B, or --reference and one folder");
+    return STATUS_OK;
+}
+
 static Status run_compare(void *options, Parsed *parsed, Err *err)
 {
     CompareOptions *own_options = options;
     bool agrees;
+    TRY(check_folders(own_options, parsed, err));
+    if (own_options->reference)
+        return compare_folders(own_options, parsed, err);
     PlaneKind kind =
         own_options->kind == PLANE_KINDS ? kind_of(parsed->operands[0]) : own_options->kind;
     bool color = kind == PLANE_COLOR;
@@ -604,6 +698,8 @@ const Command command_compare = {
         "  corcast compare a.exr b.exr --metrics on --tolerance mine.ini\n"
         "  corcast compare a.depth.pfm b.depth.pfm --depth-mm 0.01\n"
         "  corcast compare reference.png mine.png --html page.html\n"
+        "  corcast compare --reference references drawn --tier B --junit junit.xml\n"
+        "  corcast compare --reference references drawn --accept a.png --reason 'new lamp'\n"
         "\ntiers of agreement:\n"
         "  A        identity: on all but 2 pixels in a million the same colours, ids and depths\n"
         "  B        what a renderer in single precision keeps: a few pixels at edges, no bias,\n"
@@ -611,7 +707,7 @@ const Command command_compare = {
         "  surface  what iteration towards a surface keeps: 99.5 % of colours within 2 levels,\n"
         "           99 % of depths within 0.01 mm, nothing missing\n"
         "  none     everything is measured, nothing is judged but numbers that are none\n",
-    .min_operands = 2,
+    .min_operands = 1,
     .max_operands = 2,
     .size = sizeof(CompareOptions),
     .set_defaults = set_defaults,
