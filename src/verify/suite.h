@@ -42,8 +42,8 @@ typedef struct Suite {
  * pictures are cases that fail; STATUS_IO when a folder cannot be read, STATUS_INPUT when there is
  * no picture in either, STATUS_MEMORY. */
 MUST_CHECK Status suite_judge(Suite *suite, const char *reference, const char *pictures,
-                              const struct Tolerance *tolerance, const float background[3], int threads,
-                              Err *err);
+                              const struct Tolerance *tolerance, const float background[3],
+                              int threads, Err *err);
 void suite_release(Suite *suite);
 
 /* Makes the picture of a case its reference, or removes the reference where there is no picture,

@@ -362,7 +362,7 @@ test_two_pictures_have_a_page() {
     expect_file floats.html
     run corcast compare "$DATA/images/depth.exr" "$DATA/images/depth.exr" --kind depth --html depth.html
     expect_status 2
-    expect_sentence '--html are of two pictures, not of two depth planes'
+    expect_sentence '--html and --report are of two pictures, not of two depth planes'
 }
 
 test_reports_of_compared_pictures_are_merged() {
