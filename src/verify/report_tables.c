@@ -91,6 +91,8 @@ static Status put_measured(const ReportCase *report, const Check *check, const c
         text_printf(first, "%s%s ", i ? ", " : "", measure->name);
         text_rounded(first, measure->value, measure->unit);
     }
+    if (check->settled)
+        text_printf(first, "the first %d pixels", report->settled->n_first);
     Status status = put_measures(check, templates, tables, err);
     if (status == STATUS_OK && check->settled)
         status = put_settled(report, templates, tables, err);

@@ -42,12 +42,13 @@ async function checkOpening() {
 // The worst pixel is the first of the next ones, and the sentence leads to it.
 async function checkWorst() {
   const w = expected.worst, place = w.x + ", " + w.y;
+  check((await evaluate(readout))[0].startsWith("Worst pixel (column, row)" + place), "expected the worst pixel's values at first");
   await key("n");
-  check((await evaluate(readout))[0].includes(")" + place), "expected n to begin with the worst, got " + await evaluate(readout));
+  check((await evaluate(readout))[0].startsWith("Pixel (column, row)" + place), "expected n to begin with the worst, got " + await evaluate(readout));
   await key("0");
   await evaluate("document.querySelector('.case:not([hidden]) header a').click()");
   await evaluate(settled);
-  check((await evaluate(readout))[0].includes(")" + place), "expected the sentence to lead to the worst pixel");
+  check((await evaluate(readout))[0].startsWith("Pixel (column, row)" + place), "expected the sentence to lead to the worst pixel");
   check(await evaluate("document.activeElement.id") === "stage", "expected a link to bring the keys to the pictures");
   check(await evaluate("getComputedStyle(document.getElementById('stage')).outlineStyle") === "solid", "expected the focus to be seen");
   await key("0");
