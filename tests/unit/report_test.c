@@ -1,5 +1,6 @@
 #include "any_file.h"
 #include "verify/check.h"
+#include "verify/result.h"
 #include "verify/verify.h"
 #include <math.h>
 #include <setjmp.h>
@@ -407,6 +408,30 @@ static void says_when_the_template_is_missing(void **state)
     scene_release(&scene);
 }
 
+static void rounds_what_a_rule_measures_but_not_to_what_is_allowed(void **state)
+{
+    (void)state;
+    static const struct {
+        double measured, allowed;
+        const char *sentence;
+    } cases[] = {{14577.083, 2, "14577 ppm, at most 2 allowed"},
+                 {108.3333, 2, "108 ppm, at most 2 allowed"},
+                 {0.0413667, 0.01, "0.0414 ppm, at most 0.01 allowed"},
+                 {0.15004, 0.15, "0.15004 ppm, at most 0.15 allowed"},
+                 {3e38, 2, "3e+38 ppm, at most 2 allowed"}};
+    const CompareResult plane = {.kind = PLANE_COLOR};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const Rule rule = {.name = "pixels off",
+                           .unit = "ppm",
+                           .measured = cases[i].measured,
+                           .allowed = cases[i].allowed,
+                           .at = {.x = -1}};
+        char sentence[200];
+        rule_sentence(&plane, &rule, sentence, sizeof sentence);
+        assert_holds(sentence, cases[i].sentence);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -423,6 +448,7 @@ int main(void)
         cmocka_unit_test(a_surface_that_is_missing_extra_or_too_far_is_found_out),
         cmocka_unit_test(writes_the_same_bytes_again),
         cmocka_unit_test(says_when_the_template_is_missing),
+        cmocka_unit_test(rounds_what_a_rule_measures_but_not_to_what_is_allowed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
