@@ -242,6 +242,23 @@ MUST_CHECK Status class_picture(Picture *out, const Rendering *a, const Renderin
  * is unknown. */
 MUST_CHECK Status compare_cause(const Picture *a, const Picture *b, CompareResult *result,
                                 Err *err);
+/* Whether two renderings with noise have one mean. */
+typedef struct NoiseResult {
+    bool agrees;
+    double rate;          /* of false alarms, of the whole test */
+    double sigmas, limit; /* of the whole picture, the worst channel or all; what chance allows */
+    double gain;          /* of that channel: the mean of B over that of A, weighted */
+    double tile_sigmas, tile_limit; /* of the worst tile of 32 x 32 pixels */
+    PixelPlace tile;                /* its first pixel; no ids */
+} NoiseResult;
+
+/* Compares two planes of linear colours whose noise has the same variance, given for each value, of
+ * one rendering. It calls pictures of one mean different at most at this rate, in (0, 1).
+ * STATUS_INPUT when shapes differ, a value is not finite or a variance below 0. */
+MUST_CHECK Status compare_noise(const Plane *a, const Plane *b, const Plane *variance, double rate,
+                                NoiseResult *result, Err *err);
+/* The variance of each value over n >= 2 renderings (new plane). STATUS_INPUT when sizes differ. */
+MUST_CHECK Status noise_of_renderings(const Plane *renderings, size_t n, Plane *variance, Err *err);
 /* Compares two planes of linear colours, which may exceed 1, in levels of their sRGB encoding,
  * continued beyond white and mirrored below black. Pixels with a value that is not finite are
  * counted and enter nothing else. The id planes, both or neither NULL, only name segments. Adds

@@ -378,6 +378,24 @@ test_reports_of_compared_pictures_are_merged() {
     grep -q 'a\.ppm and a\.ppm' all.html || fail "expected the case that agrees"
 }
 
+test_noisy_pictures_are_tested_at_a_rate_of_false_alarms() {
+    local i
+    for i in 1 2 3 4 5; do
+        oiiotool --create 64x48 3 --addc 0.4 --noise:type=gaussian:mean=0:stddev=0.03:seed=$i -d float -o r$i.exr
+    done
+    oiiotool r5.exr --mulc 1.012 -d float -o biased.exr
+    run_ok corcast compare r4.exr r5.exr --noise r1.exr,r2.exr,r3.exr
+    expect_stdout '^agree \(noise, false alarms 0\.01\): '
+    run corcast compare r4.exr biased.exr --noise r1.exr,r2.exr,r3.exr --json
+    expect_status 1
+    expect_json stdout '.verdict == "differ" and .gain > 1.006 and .gain < 1.018 and .alarm_rate == 0.01'
+    oiiotool --create 64x48 3 --addc 0.0009 -d float -o v.exr
+    run_ok corcast compare r4.exr r5.exr --noise v.exr --alarms 0.001
+    run corcast compare r4.exr r5.exr --alarms 0.001
+    expect_status 2
+    expect_sentence '--alarms needs --noise'
+}
+
 test_sides_beyond_all_bounds_are_refused() {
     printf 'P6\n99999999 3\n255\nabc' >a.ppm
     run corcast compare a.ppm a.ppm

@@ -21,7 +21,8 @@ typedef struct CompareOptions {
     const char *tolerance, *junit, *layer;
     int bits; /* index of bit_counts */
     const char *heat, *difference, *flicker, *ledger, *page, *report;
-    const char *reference, *accept, *reason;
+    const char *reference, *accept, *reason, *noise;
+    double alarms;
     char *line; /* owned; the command */
     bool json, metrics, has_metrics, has_tier, has_levels, has_ppm, has_pixelmatch;
     double levels, ppm, depth_mm, pixelmatch;
@@ -442,6 +443,17 @@ static const Option own[] = {
      SETS(CHOICE, CompareOptions, kind),
      .choices = kinds,
      .help = "what the files hold; auto: by their names"},
+    {.name = "noise",
+     SETS(TEXT, CompareOptions, noise),
+     .group = GROUP_JUDGE,
+     .argument = "V.exr|R1,R2,...",
+     .help = "test whether two noisy pictures have one mean; the variance of a pixel is V, or "
+             "that of several renderings"},
+    {.name = "alarms",
+     SETS(NUMBER, CompareOptions, alarms),
+     FROM_TO(1e-9, 0.5),
+     .group = GROUP_JUDGE,
+     .help = "rate of false alarms of --noise"},
     {.name = "reference",
      SETS(TEXT, CompareOptions, reference),
      .argument = "DIR",
@@ -547,6 +559,7 @@ static void set_defaults(void *options)
     CompareOptions *own_options = options;
     own_options->kind = PLANE_KINDS;
     own_options->background = vec3(1, 1, 1);
+    own_options->alarms = 0.01;
 }
 
 /* Reads, compares and says what was found. */
@@ -577,6 +590,93 @@ done:
     sides_release(&sides);
     free(tier_name);
     free(name);
+    return status;
+}
+
+/* ---- noise ----------------------------------------------------------------------------------- */
+
+/* Linear colours, whatever the file holds. */
+static Status read_colors(Plane *plane, const char *path, Err *err)
+{
+    Image image = {0};
+    TRY(image_read(&image, path, err));
+    if (image.plane.values) {
+        *plane = image.plane;
+        return STATUS_OK;
+    }
+    Status status = plane_from_picture(plane, &image.picture, err);
+    image_release(&image);
+    return status;
+}
+
+/* `names` is one plane of variances, or renderings with commas between them. */
+static Status read_noise(Plane *variance, const char *names, Err *err)
+{
+    enum { MOST = 64 };
+    Plane planes[MOST] = {{0}};
+    size_t n = 0;
+    char *copy = NULL, *rest = NULL;
+    Status status = mem_strdup(&copy, names, err);
+    char *name = status == STATUS_OK ? strtok_r(copy, ",", &rest) : NULL;
+    for (; name && status == STATUS_OK; name = strtok_r(NULL, ",", &rest)) {
+        status = n < MOST ? read_colors(&planes[n], name, err)
+                          : err_set(err, STATUS_USAGE, "--noise takes at most %d files", MOST);
+        n += status == STATUS_OK;
+    }
+    if (status == STATUS_OK && n == 0)
+        status = err_set(err, STATUS_USAGE, "--noise names no file");
+    if (status == STATUS_OK && n > 1)
+        status = noise_of_renderings(planes, n, variance, err);
+    if (status == STATUS_OK && n == 1) {
+        *variance = planes[0];
+        planes[0] = (Plane){0};
+    }
+    for (size_t i = 0; i < n; i++)
+        plane_release(&planes[i]);
+    free(copy);
+    return status;
+}
+
+static Status print_noise(const NoiseResult *result, bool json, bool quiet, Err *err)
+{
+    const JsonMember members[] = {
+        {"verdict", json_text(result->agrees ? "agree" : "differ")},
+        {"alarm_rate", json_number(result->rate)},
+        {"sigmas", json_number(result->sigmas)},
+        {"sigmas_allowed", json_number(result->limit)},
+        {"gain", json_number(result->gain)},
+        {"tile_sigmas", json_number(result->tile_sigmas)},
+        {"tile_sigmas_allowed", json_number(result->tile_limit)},
+    };
+    json_t *object = json_with_members(json_object(), members, sizeof members / sizeof *members);
+    if (json)
+        return json_write(object, "-", err);
+    json_decref(object);
+    if (!quiet)
+        printf("%s (noise, false alarms %.3g): B is %.5g times as bright as A, %.3g sigmas, at "
+               "most %.3g allowed; the worst tile of 32 x 32 pixels, %.3g sigmas, at most %.3g "
+               "allowed, begins at (%d, %d)\n",
+               result->agrees ? "agree" : "differ", result->rate, result->gain, result->sigmas,
+               result->limit, result->tile_sigmas, result->tile_limit, result->tile.x,
+               result->tile.y);
+    return STATUS_OK;
+}
+
+static Status compare_noisy(const CompareOptions *options, const Parsed *parsed, Err *err)
+{
+    Plane a = {0}, b = {0}, variance = {0};
+    NoiseResult result;
+    Status status = STATUS_OK;
+    TRY_GOTO(read_colors(&a, parsed->operands[0], err));
+    TRY_GOTO(read_colors(&b, parsed->operands[1], err));
+    TRY_GOTO(read_noise(&variance, options->noise, err));
+    TRY_GOTO(compare_noise(&a, &b, &variance, options->alarms, &result, err));
+    TRY_GOTO(print_noise(&result, options->json, parsed->common.quiet, err));
+    status = result.agrees ? STATUS_OK : STATUS_DIFFERS;
+done:
+    plane_release(&a);
+    plane_release(&b);
+    plane_release(&variance);
     return status;
 }
 
@@ -648,6 +748,8 @@ static Status check_folders(const CompareOptions *options, const Parsed *parsed,
                                 {"layer", pair, "is for two files, not for --reference"},
                                 {"bits", pair, "is for two files, not for --reference"},
                                 {"metrics", pair, "is for two files, not for --reference"},
+                                {"noise", pair, "is for two files, not for --reference"},
+                                {"alarms", options->noise, "needs --noise"},
                                 {"accept", !pair, "needs --reference"},
                                 {"reason", !pair, "needs --reference"},
                                 {0}};
@@ -665,6 +767,8 @@ static Status run_compare(void *options, Parsed *parsed, Err *err)
     TRY(check_folders(own_options, parsed, err));
     if (own_options->reference)
         return compare_folders(own_options, parsed, err);
+    if (own_options->noise)
+        return compare_noisy(own_options, parsed, err);
     PlaneKind kind =
         own_options->kind == PLANE_KINDS ? kind_of(parsed->operands[0]) : own_options->kind;
     bool color = kind == PLANE_COLOR;
