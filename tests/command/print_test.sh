@@ -68,6 +68,7 @@ test_thin_vessels_are_thickened_or_pruned_and_counted() {
     expect_json m.stl.json '.print.segments_thickened == 23 and .print.thinnest_diameter_mm == 1.9 and .segments == 45'
     grep -q '23 segments are thickened to 1.9 mm' stderr || fail "it does not say so: $(cat stderr)"
     run_ok corcast export t.swc --print scale=2,min-diameter=1.9,thin=prune -o p.stl --tolerance 0.1
+    grep -q '^corcast: 23 thin segments are pruned$' stderr || fail "expected the pruned to be counted$(said)"
     expect_json p.stl.json '.print.segments_pruned == 23 and .print.segments_thickened == 0 and .segments == 22'
     expect_json p.stl.json '.print.thinnest_diameter_mm > 1.9'
 }

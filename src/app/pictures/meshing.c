@@ -156,7 +156,8 @@ static Status make(const Common *common, const MeshingOptions *options, const Em
     TRY(meshreport_check(&made->report, &made->vessels, err));
     say_result(made, common->quiet);
     if (made->print && !made->print->params.lids && !common->quiet)
-        printing_say(made->print, &made->changes, &made->vessels, &made->printed, &made->mesh);
+        printing_say(made->print, &made->changes, made->of->pruned, &made->vessels, &made->printed,
+                     &made->mesh);
     return STATUS_OK;
 }
 

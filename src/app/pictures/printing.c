@@ -279,7 +279,7 @@ Status printing_check_bed(const PrintSettings *settings, const VesselMesh *mesh,
                    size[0], size[1], size[2], bed[0], bed[1], bed[2]);
 }
 
-void printing_say(const PrintSettings *settings, const PrintChanges *changes,
+void printing_say(const PrintSettings *settings, const PrintChanges *changes, size_t pruned,
                   const VesselTree *vessels, const PrintReport *report, const VesselMesh *mesh)
 {
     double size[3];
@@ -287,6 +287,8 @@ void printing_say(const PrintSettings *settings, const PrintChanges *changes,
     if (changes->thickened)
         fprintf(stderr, "corcast: %zu segments are thickened to %g mm\n", changes->thickened,
                 settings->min_diameter_mm);
+    if (pruned)
+        fprintf(stderr, "corcast: %zu thin segments are pruned\n", pruned);
     if (changes->below_two)
         fprintf(stderr, "corcast: %zu segments are thinner than two widths of the nozzle\n",
                 changes->below_two);

@@ -38,7 +38,7 @@ MUST_CHECK Status printing_check_bed(const PrintSettings *settings, const Vessel
                                      Err *err);
 
 /* Says on standard error what was made. */
-void printing_say(const PrintSettings *settings, const PrintChanges *changes,
+void printing_say(const PrintSettings *settings, const PrintChanges *changes, size_t pruned,
                   const VesselTree *vessels, const PrintReport *report, const VesselMesh *mesh);
 
 /* The same and more for the manifest. NULL when memory runs out. */
