@@ -132,17 +132,18 @@ static void say_outlines(const Picture *a, const Picture *b, const CompareResult
     const Labels labels = labels_from_background(a, b);
     bool known = labels.source == LABELS_BACKGROUND;
     size_t at_edges = 0, off = 0, inner = 0;
-    for (int y = 0; y < a->height; y++)
-        for (int x = 0; x < a->width; x++) {
-            size_t pixel = (size_t)y * (size_t)a->width + (size_t)x;
-            bool same = largest_difference(a, b, pixel) <= slight;
-            if (same && known && !is_seen(&labels, a, 0, x, y))
-                continue;
-            bool edge = contrast(a, x, y) >= LEVELS && contrast(b, x, y) >= LEVELS;
-            at_edges += edge && !same;
-            inner += !edge && same;
-            off += !edge && !same;
-        }
+    for (int inside = 0; inside < 2 && 99 * off <= at_edges; inside++)
+        for (int y = 0; y < a->height; y++)
+            for (int x = 0; x < a->width; x++) {
+                size_t pixel = (size_t)y * (size_t)a->width + (size_t)x;
+                bool same = largest_difference(a, b, pixel) <= slight;
+                if (same != inside || (same && known && !is_seen(&labels, a, 0, x, y)))
+                    continue;
+                bool edge = contrast(a, x, y) >= LEVELS && contrast(b, x, y) >= LEVELS;
+                at_edges += edge && !same;
+                inner += !edge && same;
+                off += !edge && !same;
+            }
     if (at_edges > 0 && 99 * off <= at_edges && 4 * inner >= at_edges)
         snprintf(out->text, out->size,
                  "only outlines differ by more than %d levels, by up to %.4g on %.3g %% of the "
