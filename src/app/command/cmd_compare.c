@@ -1,6 +1,6 @@
 /* Two images or planes, whole numbers or floats: what they hold decides which of the comparisons of
- * verify they go to, and the tolerance is made of a tier, a file and single limits, each over the
- * one before. The exit status is the verdict. */
+ * verify they go to. The exit status is the verdict. */
+#include "app/command/compare_options.h"
 #include "app/commands.h"
 #include "app/pictures/coloring.h"
 #include "app/run/options.h"
@@ -11,23 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef enum Tier { TIER_A, TIER_B, TIER_SURFACE, TIER_NONE } Tier;
-
-typedef struct CompareOptions {
-    PlaneKind kind; /* PLANE_KINDS: told by the names */
-    Tier tier;
-    const char *ids_a, *ids_b;
-    const char *tolerance, *junit, *layer;
-    int bits; /* index of bit_counts */
-    const char *heat, *difference, *flicker, *ledger, *page, *report;
-    const char *reference, *accept, *reason, *noise;
-    double alarms;
-    char *line; /* owned; the command */
-    bool json, metrics, has_metrics, has_tier, has_levels, has_ppm, has_pixelmatch;
-    double levels, ppm, depth_mm, pixelmatch;
-    Vec3 background; /* sRGB in [0, 1] */
-} CompareOptions;
 
 /* What is compared. */
 typedef struct Sides {
@@ -155,37 +138,6 @@ static Status match_pictures(Image images[2], Err *err)
         TRY(plane_from_picture(&images[side].plane, &images[side].picture, err));
         picture_release(&images[side].picture);
     }
-    return STATUS_OK;
-}
-
-/* ---- tolerance ------------------------------------------------------------------------------- */
-
-/* *name owns the tier's name when that comes from a file. */
-static Status make_tolerance(const CompareOptions *options, Tolerance *tolerance, char **name,
-                             Err *err)
-{
-    Tier tier = options->tolerance && !options->has_tier ? TIER_NONE : options->tier;
-    *tolerance = tier == TIER_A         ? tolerance_identity(options->depth_mm)
-                 : tier == TIER_B       ? tolerance_tolerant(options->depth_mm)
-                 : tier == TIER_SURFACE ? tolerance_surface(options->depth_mm)
-                                        : tolerance_none();
-    if (options->tolerance)
-        TRY(tolerance_read(tolerance, name, options->tolerance, err));
-    if (options->has_levels) {
-        tolerance->color_levels = options->levels;
-        tolerance->interior_levels = (double)INFINITY;
-    }
-    if (options->has_ppm)
-        tolerance->color_ppm = tolerance->id_ppm = tolerance->depth_ppm = tolerance->normal_ppm =
-            tolerance->coverage_ppm = tolerance->pixelmatch_ppm = options->ppm;
-    if (options->has_pixelmatch) {
-        tolerance->pixelmatch = options->pixelmatch;
-        tolerance->color_ppm = (double)INFINITY;
-        if (!options->has_ppm)
-            tolerance->pixelmatch_ppm = 0;
-    }
-    if (options->has_levels || options->has_ppm || options->depth_mm > 0 || options->has_pixelmatch)
-        tolerance->tier = "given";
     return STATUS_OK;
 }
 
@@ -429,139 +381,6 @@ static Status check_options(const CompareOptions *options, PlaneKind kind, Err *
     return STATUS_OK;
 }
 
-static const char *const kinds[] = {"color", "depth", "normal", "id", "auto", NULL};
-static const char *const bit_counts[] = {"own", "8", "16", NULL};
-static const char *const tiers[] = {"A", "B", "surface", "none", NULL};
-
-static const Option own[] = {
-    {.name = "json", SETS(FLAG, CompareOptions, json), .help = "as JSON"},
-    {.name = "junit",
-     SETS(OUTPUT, CompareOptions, junit),
-     .argument = "FILE.xml",
-     .help = "JUnit XML, a test case for each rule"},
-    {.name = "kind",
-     SETS(CHOICE, CompareOptions, kind),
-     .choices = kinds,
-     .help = "what the files hold; auto: by their names"},
-    {.name = "noise",
-     SETS(TEXT, CompareOptions, noise),
-     .group = GROUP_JUDGE,
-     .argument = "V.exr|R1,R2,...",
-     .help = "test whether two noisy pictures have one mean; the variance of a pixel is V, or "
-             "that of several renderings"},
-    {.name = "alarms",
-     SETS(NUMBER, CompareOptions, alarms),
-     FROM_TO(1e-9, 0.5),
-     .group = GROUP_JUDGE,
-     .help = "rate of false alarms of --noise"},
-    {.name = "reference",
-     SETS(TEXT, CompareOptions, reference),
-     .argument = "DIR",
-     .help = "hold all pictures of the folder A against those of the same names in this one"},
-    {.name = "accept",
-     SETS(TEXT, CompareOptions, accept),
-     .argument = "CASE",
-     .help = "make the picture of this name in the folder A its reference"},
-    {.name = "reason",
-     SETS(TEXT, CompareOptions, reason),
-     .argument = "TEXT",
-     .help = "why it is accepted; kept in DIR/accepted.tsv"},
-    {.name = "layer",
-     SETS(TEXT, CompareOptions, layer),
-     .argument = "NAME",
-     .help = "of OpenEXR files the part or the layer of this name"},
-    {.name = "bits",
-     SETS(CHOICE, CompareOptions, bits),
-     .choices = bit_counts,
-     .help = "compare pictures as sRGB of 8 or 16 bits, whatever they hold"},
-    {.name = "background",
-     SETS(COLOR, CompareOptions, background),
-     .help = "what transparent pictures are laid on"},
-    {.name = "tier",
-     SETS(CHOICE, CompareOptions, tier),
-     GIVEN(CompareOptions, has_tier),
-     .choices = tiers,
-     .group = GROUP_JUDGE,
-     .help = "what is still agreement"},
-    {.name = "tolerance",
-     SETS(INPUT, CompareOptions, tolerance),
-     .group = GROUP_JUDGE,
-     .argument = "FILE.ini",
-     .help = "limits of one's own, the others unjudged unless --tier is given"},
-    {.name = "levels",
-     SETS(NUMBER, CompareOptions, levels),
-     GIVEN(CompareOptions, has_levels),
-     FROM_TO(0, 255),
-     .group = GROUP_JUDGE,
-     .help = "8-bit levels a pixel may be off"},
-    {.name = "ppm",
-     SETS(NUMBER, CompareOptions, ppm),
-     GIVEN(CompareOptions, has_ppm),
-     FROM_TO(0, 1e6),
-     .group = GROUP_JUDGE,
-     .otherwise = "2 in tier A",
-     .help = "pixels in a million that may be off by more"},
-    {.name = "depth-mm",
-     SETS(NUMBER, CompareOptions, depth_mm),
-     FROM_TO(0, 1e7),
-     .group = GROUP_JUDGE,
-     .unit = "mm",
-     .help = "a depth may be off"},
-    {.name = "pixelmatch",
-     SETS(NUMBER, CompareOptions, pixelmatch),
-     GIVEN(CompareOptions, has_pixelmatch),
-     FROM_TO(0, 1),
-     .group = GROUP_JUDGE,
-     .argument = "T",
-     .otherwise = "",
-     .help = "count pixels as pixelmatch 7.2.0 does at this threshold; 0.1 is its own"},
-    {.name = "metrics",
-     SETS(SWITCH, CompareOptions, metrics),
-     GIVEN(CompareOptions, has_metrics),
-     .group = GROUP_JUDGE,
-     .otherwise = "on with --json",
-     .help = "FLIP, SSIM, CIEDE2000 and all that was measured"},
-    {.name = "ids-a",
-     SETS(INPUT, CompareOptions, ids_a),
-     .help = "id plane of A; tells silhouettes from surfaces"},
-    {.name = "ids-b", SETS(INPUT, CompareOptions, ids_b), .help = "id plane of B"},
-    {.name = "output",
-     SETS(OUTPUT, CompareOptions, heat),
-     .argument = "H.png",
-     .help = "heat map of the difference of two pictures"},
-    {.name = "difference",
-     SETS(OUTPUT, CompareOptions, difference),
-     .argument = "D.png",
-     .help = "signed difference, 128 + 8 (B - A)"},
-    {.name = "flicker",
-     SETS(OUTPUT, CompareOptions, flicker),
-     .argument = "F.png",
-     .help = "animated PNG that shows A and B in turn"},
-    {.name = "ledger",
-     SETS(OUTPUT, CompareOptions, ledger),
-     .argument = "L.csv",
-     .help = "the account of every segment"},
-    {.name = "html",
-     SETS(OUTPUT, CompareOptions, page),
-     .is_told = true,
-     .argument = "PAGE.html",
-     .help = "one page about two pictures: swipe, blink, zoom, differences, numbers"},
-    {.name = "report",
-     SETS(FOLDER, CompareOptions, report),
-     .is_told = true,
-     .help = "that page, JSON, JUnit and the heat map, for `report` to merge with others"},
-};
-
-static const OptionTable own_table = OPTION_TABLE(own);
-
-static void set_defaults(void *options)
-{
-    CompareOptions *own_options = options;
-    own_options->kind = PLANE_KINDS;
-    own_options->background = vec3(1, 1, 1);
-    own_options->alarms = 0.01;
-}
-
 /* Reads, compares and says what was found. */
 static Status compare(const CompareOptions *options, PlaneKind kind, const Parsed *parsed,
                       bool *agrees, Err *err)
@@ -577,7 +396,7 @@ static Status compare(const CompareOptions *options, PlaneKind kind, const Parse
                    .color = kind == PLANE_COLOR};
     double start_s = clock_seconds();
     Status status = STATUS_OK;
-    TRY_GOTO(make_tolerance(options, &tolerance, &tier_name, err));
+    TRY_GOTO(compare_tolerance(options, &tolerance, &tier_name, err));
     TRY_GOTO(
         compare_files(options, kind, &sides, &tolerance, parsed->common.threads, &result, err));
     if (!parsed->common.quiet)
@@ -593,178 +412,11 @@ done:
     return status;
 }
 
-/* ---- noise ----------------------------------------------------------------------------------- */
-
-/* Linear colours, whatever the file holds. */
-static Status read_colors(Plane *plane, const char *path, Err *err)
-{
-    Image image = {0};
-    TRY(image_read(&image, path, err));
-    if (image.plane.values) {
-        *plane = image.plane;
-        return STATUS_OK;
-    }
-    Status status = plane_from_picture(plane, &image.picture, err);
-    image_release(&image);
-    return status;
-}
-
-/* `names` is one plane of variances, or renderings with commas between them. */
-static Status read_noise(Plane *variance, const char *names, Err *err)
-{
-    enum { MOST = 64 };
-    Plane planes[MOST] = {{0}};
-    size_t n = 0;
-    char *copy = NULL, *rest = NULL;
-    Status status = mem_strdup(&copy, names, err);
-    char *name = status == STATUS_OK ? strtok_r(copy, ",", &rest) : NULL;
-    for (; name && status == STATUS_OK; name = strtok_r(NULL, ",", &rest)) {
-        status = n < MOST ? read_colors(&planes[n], name, err)
-                          : err_set(err, STATUS_USAGE, "--noise takes at most %d files", MOST);
-        n += status == STATUS_OK;
-    }
-    if (status == STATUS_OK && n == 0)
-        status = err_set(err, STATUS_USAGE, "--noise names no file");
-    if (status == STATUS_OK && n > 1)
-        status = noise_of_renderings(planes, n, variance, err);
-    if (status == STATUS_OK && n == 1) {
-        *variance = planes[0];
-        planes[0] = (Plane){0};
-    }
-    for (size_t i = 0; i < n; i++)
-        plane_release(&planes[i]);
-    free(copy);
-    return status;
-}
-
-static Status print_noise(const NoiseResult *result, bool json, bool quiet, Err *err)
-{
-    const JsonMember members[] = {
-        {"verdict", json_text(result->agrees ? "agree" : "differ")},
-        {"alarm_rate", json_number(result->rate)},
-        {"sigmas", json_number(result->sigmas)},
-        {"sigmas_allowed", json_number(result->limit)},
-        {"gain", json_number(result->gain)},
-        {"tile_sigmas", json_number(result->tile_sigmas)},
-        {"tile_sigmas_allowed", json_number(result->tile_limit)},
-    };
-    json_t *object = json_with_members(json_object(), members, sizeof members / sizeof *members);
-    if (json)
-        return json_write(object, "-", err);
-    json_decref(object);
-    if (!quiet)
-        printf("%s (noise, false alarms %.3g): B is %.5g times as bright as A, %.3g sigmas, at "
-               "most %.3g allowed; the worst tile of 32 x 32 pixels, %.3g sigmas, at most %.3g "
-               "allowed, begins at (%d, %d)\n",
-               result->agrees ? "agree" : "differ", result->rate, result->gain, result->sigmas,
-               result->limit, result->tile_sigmas, result->tile_limit, result->tile.x,
-               result->tile.y);
-    return STATUS_OK;
-}
-
-static Status compare_noisy(const CompareOptions *options, const Parsed *parsed, Err *err)
-{
-    Plane a = {0}, b = {0}, variance = {0};
-    NoiseResult result;
-    Status status = STATUS_OK;
-    TRY_GOTO(read_colors(&a, parsed->operands[0], err));
-    TRY_GOTO(read_colors(&b, parsed->operands[1], err));
-    TRY_GOTO(read_noise(&variance, options->noise, err));
-    TRY_GOTO(compare_noise(&a, &b, &variance, options->alarms, &result, err));
-    TRY_GOTO(print_noise(&result, options->json, parsed->common.quiet, err));
-    status = result.agrees ? STATUS_OK : STATUS_DIFFERS;
-done:
-    plane_release(&a);
-    plane_release(&b);
-    plane_release(&variance);
-    return status;
-}
-
-/* ---- folders --------------------------------------------------------------------------------- */
-
-static Status put_suite(const CompareOptions *options, const Suite *suite, const char *folder,
-                        double seconds, bool quiet, Err *err)
-{
-    Text text = TEXT_INIT, xml = TEXT_INIT;
-    Status status = STATUS_OK;
-    suite_junit(suite, folder, seconds, &xml);
-    if (options->junit)
-        TRY_GOTO(file_write_text(options->junit, &xml, err));
-    if (options->json)
-        TRY_GOTO(json_write(suite_json(suite), "-", err));
-    if (!quiet && !options->json)
-        suite_text(suite, &text);
-    TRY_GOTO(text_check(&text, err));
-    fwrite(text_chars(&text), 1, text.length, stdout);
-done:
-    text_release(&text);
-    text_release(&xml);
-    return status;
-}
-
-/* The folder of pictures against that of references. */
-static Status compare_folders(const CompareOptions *options, const Parsed *parsed, Err *err)
-{
-    const char *folder = parsed->operands[0];
-    if (parsed->n_operands != 1)
-        return err_set(err, STATUS_USAGE,
-                       "--reference takes one folder of pictures, not two files");
-    if (!options->accept != !options->reason || (options->reason && !*options->reason))
-        return err_set(err, STATUS_USAGE, "--accept and --reason go together; one is missing");
-    if (options->accept)
-        return suite_accept(options->reference, folder, options->accept, options->reason, err);
-    const Rgb ground = rgb_of_option(options->background);
-    const float background[3] = {ground.r, ground.g, ground.b};
-    Tolerance tolerance;
-    Suite suite = {0};
-    char *tier_name = NULL;
-    double start_s = clock_seconds();
-    Status status = STATUS_OK;
-    TRY_GOTO(make_tolerance(options, &tolerance, &tier_name, err));
-    TRY_GOTO(suite_judge(&suite, options->reference, folder, &tolerance, background,
-                         parsed->common.threads, err));
-    TRY_GOTO(
-        put_suite(options, &suite, folder, clock_seconds() - start_s, parsed->common.quiet, err));
-    status = suite.agrees ? STATUS_OK : STATUS_DIFFERS;
-done:
-    suite_release(&suite);
-    free(tier_name);
-    return status;
-}
-
-/* Options that folders do not have, or that only they have. */
-static Status check_folders(const CompareOptions *options, const Parsed *parsed, Err *err)
-{
-    const bool pair = options->reference == NULL;
-    const OptionNeed needs[] = {{"html", pair, "is for two pictures, not for --reference"},
-                                {"report", pair, "is for two pictures, not for --reference"},
-                                {"output", pair, "is for two pictures, not for --reference"},
-                                {"difference", pair, "is for two pictures, not for --reference"},
-                                {"flicker", pair, "is for two pictures, not for --reference"},
-                                {"ledger", pair, "is for two pictures, not for --reference"},
-                                {"ids-a", pair, "is for two pictures, not for --reference"},
-                                {"ids-b", pair, "is for two pictures, not for --reference"},
-                                {"kind", pair, "is for two files, not for --reference"},
-                                {"layer", pair, "is for two files, not for --reference"},
-                                {"bits", pair, "is for two files, not for --reference"},
-                                {"metrics", pair, "is for two files, not for --reference"},
-                                {"noise", pair, "is for two files, not for --reference"},
-                                {"alarms", options->noise, "needs --noise"},
-                                {"accept", !pair, "needs --reference"},
-                                {"reason", !pair, "needs --reference"},
-                                {0}};
-    TRY(options_check_needs(parsed, needs, err));
-    if (pair && parsed->n_operands != 2)
-        return err_set(err, STATUS_USAGE,
-                       "compare needs two files, A and B, or --reference and one folder");
-    return STATUS_OK;
-}
-
 static Status run_compare(void *options, Parsed *parsed, Err *err)
 {
     CompareOptions *own_options = options;
     bool agrees;
-    TRY(check_folders(own_options, parsed, err));
+    TRY(compare_check_folders(own_options, parsed, err));
     if (own_options->reference)
         return compare_folders(own_options, parsed, err);
     if (own_options->noise)
@@ -814,7 +466,7 @@ const Command command_compare = {
     .min_operands = 1,
     .max_operands = 2,
     .size = sizeof(CompareOptions),
-    .set_defaults = set_defaults,
-    .tables = {{&own_table, 0}},
+    .set_defaults = compare_set_defaults,
+    .tables = {{&compare_options, 0}},
     .run = run_compare,
 };

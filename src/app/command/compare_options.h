@@ -1,0 +1,44 @@
+/* The options of `compare`, and what it does besides holding two files against each other. */
+#ifndef CORCAST_APP_COMPARE_OPTIONS_H
+#define CORCAST_APP_COMPARE_OPTIONS_H
+
+#include "app/run/options.h"
+#include "verify/verify.h"
+
+typedef enum Tier { TIER_A, TIER_B, TIER_SURFACE, TIER_NONE } Tier;
+
+typedef struct CompareOptions {
+    PlaneKind kind; /* PLANE_KINDS: told by the names */
+    Tier tier;
+    const char *ids_a, *ids_b;
+    const char *tolerance, *junit, *layer;
+    int bits; /* index of bit_counts */
+    const char *heat, *difference, *flicker, *ledger, *page, *report;
+    const char *reference, *accept, *reason, *noise;
+    double alarms;
+    char *line; /* owned; the command */
+    bool json, metrics, has_metrics, has_tier, has_levels, has_ppm, has_pixelmatch;
+    double levels, ppm, depth_mm, pixelmatch;
+    Vec3 background; /* sRGB in [0, 1] */
+} CompareOptions;
+
+extern const OptionTable compare_options;
+void compare_set_defaults(void *options);
+
+/* The tier, then the file, then single limits, each over the one before. *name owns the tier's name
+ * when that comes from a file. */
+MUST_CHECK Status compare_tolerance(const CompareOptions *options, Tolerance *tolerance,
+                                    char **name, Err *err);
+
+/* Tests whether two noisy pictures have one mean, and says so; STATUS_DIFFERS when not. */
+MUST_CHECK Status compare_noisy(const CompareOptions *options, const Parsed *parsed, Err *err);
+
+/* Holds a folder of pictures against that of references, or accepts a picture as one;
+ * STATUS_DIFFERS when they disagree. */
+MUST_CHECK Status compare_folders(const CompareOptions *options, const Parsed *parsed, Err *err);
+
+/* STATUS_USAGE for options that folders do not have, or that only they have. */
+MUST_CHECK Status compare_check_folders(const CompareOptions *options, const Parsed *parsed,
+                                        Err *err);
+
+#endif
