@@ -164,6 +164,8 @@ typedef enum ImageCompression { IMAGE_LZW, IMAGE_DEFLATE, IMAGE_UNCOMPRESSED } I
 /* Where a format leaves a choice; zeros are the usual one. */
 typedef struct ImagePacking {
     ImageCompression compression; /* of a TIFF; none loses anything */
+    int threads;                  /* that compress a PNG, whose bytes do not depend on them; 0: all
+                                   * processors */
     int quality;                  /* of a JPEG, from 1 to 100; 0: 95 */
     bool half;                    /* OpenEXR: channels of 16 bits, but the exact ones */
     const Inks *inks; /* borrowed; TIFF and JPEG in colours of a press, its profile in the file;

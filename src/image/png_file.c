@@ -1,10 +1,12 @@
-/* PNG through libpng: writing, and reading what png_plain.c leaves to it. libpng reports an error
+/* PNG through libpng: reading what png_plain.c leaves to it, and writing all but the pixels, which
+ * png_stripes.c compresses. libpng reports an error
  * by longjmp; setjmp therefore stands in functions that only call the one that does the work, and
  * everything that work allocates hangs on a struct outside it, so that nothing leaks and no local
  * is clobbered.
  *
  * What a header claims is bounded before allocation. */
 #include "image/png_complaint.h"
+#include "image/png_stripes.h"
 
 #include <errno.h>
 #include <setjmp.h>
@@ -212,8 +214,8 @@ typedef struct Writer {
     ImageForm form;
     png_structp png;
     png_infop info;
-    uint8_t *row;     /* owned; of 16-bit codes */
-    png_text *chunks; /* owned */
+    PngStripes *stripes; /* owned */
+    png_text *chunks;    /* owned */
     PngComplaint complaint;
 } Writer;
 
@@ -243,6 +245,9 @@ static void set_provenance(Writer *self, const ImageNotes *notes)
     }
 }
 
+/* Vessels on a plain ground repeat whole stretches of bytes, which filters hide: without, most
+ * files are smaller, by up to a fourth, and written in half the time. Only where pixels are so many
+ * that shades hardly change from row to row, differences are shorter. */
 enum { MANY_ROWS = 6000 };
 
 static int color_type(int channels)
@@ -256,11 +261,6 @@ static void write_header(Writer *self)
 {
     const ImageForm *form = &self->form;
     png_init_io(self->png, self->stream);
-    /* Vessels on a plain ground repeat whole stretches of bytes, which filters hide: without, most
-     * files are smaller, by up to a fourth, and written in half the time. Only where pixels are so
-     * many that shades hardly change from row to row, differences are shorter. */
-    png_set_filter(self->png, PNG_FILTER_TYPE_BASE,
-                   form->height < MANY_ROWS ? PNG_FILTER_NONE : PNG_FILTER_UP);
     png_set_user_limits(self->png, IMAGE_MAX_SIDE, IMAGE_MAX_SIDE);
     png_set_IHDR(self->png, self->info, (png_uint_32)form->width, (png_uint_32)form->height,
                  form->bits, color_type(form->channels), PNG_INTERLACE_NONE,
@@ -274,23 +274,10 @@ static void write_header(Writer *self)
     png_write_info(self->png, self->info);
 }
 
-/* 16-bit codes go with the high byte first. */
-static void put_rows(Writer *self, const void *values, int n)
+/* libpng writes the chunk and its checksum. */
+static void write_bytes(void *self, const uint8_t *bytes, size_t n)
 {
-    size_t samples = (size_t)self->form.width * (size_t)self->form.channels;
-    const uint8_t *codes8 = values;
-    const uint16_t *codes16 = values;
-    for (int y = 0; y < n; y++) {
-        if (self->form.bits == 8) {
-            png_write_row(self->png, codes8 + (size_t)y * samples);
-            continue;
-        }
-        for (size_t i = 0; i < samples; i++) {
-            self->row[2 * i] = (uint8_t)(codes16[(size_t)y * samples + i] >> 8);
-            self->row[2 * i + 1] = (uint8_t)(codes16[(size_t)y * samples + i] & 255);
-        }
-        png_write_row(self->png, self->row);
-    }
+    png_write_chunk(((Writer *)self)->png, (png_const_bytep) "IDAT", bytes, n);
 }
 
 /* Of what the stream refuses, libpng says nothing more. */
@@ -314,8 +301,7 @@ static Status write_rows(void *self, const void *values, int first, int n, Err *
     Writer *writer = self;
     if (setjmp(png_jmpbuf(writer->png)))
         return failed(writer, err);
-    put_rows(writer, values, n);
-    return STATUS_OK;
+    return pngstripes_rows(writer->stripes, values, n, write_bytes, writer, err);
 }
 
 static Status end(void *self, Err *err)
@@ -323,7 +309,7 @@ static Status end(void *self, Err *err)
     Writer *writer = self;
     if (setjmp(png_jmpbuf(writer->png)))
         return failed(writer, err);
-    png_write_end(writer->png, NULL);
+    png_write_chunk(writer->png, (png_const_bytep) "IEND", NULL, 0);
     return STATUS_OK;
 }
 
@@ -334,9 +320,7 @@ static Status begin(FILE *stream, const ImageForm *form, void **self, Err *err)
     *self = writer;
     writer->stream = stream;
     writer->form = *form;
-    if (form->bits == 16)
-        TRY(mem_calloc(&writer->row, (size_t)form->width * (size_t)form->channels, 2,
-                       "bytes of a row", err));
+    TRY(pngstripes_open(&writer->stripes, form, form->height >= MANY_ROWS, err));
     TRY(mem_calloc(&writer->chunks, form->notes ? (size_t)form->notes->count : 0,
                    sizeof *writer->chunks, "PNG texts", err));
     writer->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer->complaint, png_on_error,
@@ -353,7 +337,7 @@ static void release_writer(void *self)
         return;
     png_destroy_write_struct(&writer->png, &writer->info);
     free(writer->chunks);
-    free(writer->row);
+    pngstripes_free(writer->stripes);
     free(writer);
 }
 

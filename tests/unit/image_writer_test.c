@@ -93,6 +93,8 @@ static void writes_in_parts_the_bytes_of_the_whole(void **state)
         {"build/whole.pgm", "build/parts.pgm", 19, 11, 1, 16},
         {"build/whole.png", "build/parts.png", 31, 17, 3, 16},
         {"build/whole.png", "build/parts.png", 131, 57, 1, 8},
+        {"build/whole.png", "build/parts.png", 89, 6011, 3, 8},   /* filtered, several stripes */
+        {"build/whole.png", "build/parts.png", 29001, 53, 3, 16}, /* more than is gathered */
         {"build/whole.tif", "build/parts.tif", 97, 71, 3, 8},
         {"build/whole.tiff", "build/parts.tiff", 29001, 13, 3, 16}, /* more than a strip */
     };
@@ -110,6 +112,30 @@ static void writes_in_parts_the_bytes_of_the_whole(void **state)
                              picture_code(&picture, read.channels == picture.channels ? k : k / 3));
         unlink(cases[i].whole);
         unlink(cases[i].parts);
+        picture_release(&picture);
+        picture_release(&read);
+    }
+}
+
+static void writes_a_png_of_the_same_bytes_on_any_number_of_threads(void **state)
+{
+    (void)state;
+    static const int threads[] = {1, 2, 5};
+    for (int channels = 1; channels <= 4; channels += channels == 1 ? 2 : 1) {
+        Picture picture, read;
+        make(&picture, 1193, 1307, channels, 8);
+        for (size_t i = 0; i < sizeof threads / sizeof *threads; i++) {
+            write_packed(&picture, i ? "build/threads.png" : "build/thread.png",
+                         (ImagePacking){.threads = threads[i]});
+            if (i > 0)
+                assert_same_files("build/thread.png", "build/threads.png");
+        }
+        assert_int_equal(picture_read_transparent(&read, "build/threads.png", &err), STATUS_OK);
+        for (size_t k = 0; k < (size_t)read.height * picture_stride(&read); k++)
+            assert_int_equal(picture_code(&read, k),
+                             picture_code(&picture, read.channels == picture.channels ? k : k / 3));
+        unlink("build/thread.png");
+        unlink("build/threads.png");
         picture_release(&picture);
         picture_release(&read);
     }
@@ -335,6 +361,7 @@ int main(void)
         return 1;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(writes_in_parts_the_bytes_of_the_whole),
+        cmocka_unit_test(writes_a_png_of_the_same_bytes_on_any_number_of_threads),
         cmocka_unit_test(writes_a_tiff_of_the_same_codes_however_it_is_packed),
         cmocka_unit_test(writes_a_jpeg_in_parts_the_smaller_the_worse),
         cmocka_unit_test(refuses_what_a_jpeg_cannot_hold),

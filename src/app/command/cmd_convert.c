@@ -173,7 +173,7 @@ static Status read_in_bits(const ConvertOptions *options, const char *from, cons
 }
 
 static Status convert_picture(const ConvertOptions *options, const char *from, const char *to,
-                              Err *err)
+                              int threads, Err *err)
 {
     const ImageNote note = {"Software", GENERATOR};
     const ImageNotes notes = {.notes = &note, .count = 1, .dpi = options->dpi};
@@ -182,7 +182,7 @@ static Status convert_picture(const ConvertOptions *options, const char *from, c
     TRY(read_in_bits(options, from, to, &picture, err));
     PressOptions asked = options->press;
     asked.bits = picture.bits;
-    Status status = press_open(&asked, to, &press, err);
+    Status status = press_open(&asked, to, threads, &press, err);
     if (status == STATUS_OK)
         status = picture_write_packed(&picture, to, ENCODING_SRGB, &notes, press.packing, err);
     press_release(&press);
@@ -281,8 +281,9 @@ static Status run_convert(void *options, Parsed *parsed, Err *err)
     TRY(reading_refuse(parsed, "is for trees", err));
     TRY(blood_refuse(parsed, "is for trees", err));
     TRY(check_press(own_options, to, parsed, err));
-    return kind == FILE_PICTURE ? convert_picture(own_options, from, to, err)
-                                : convert_plane(own_options, from, to, err);
+    return kind == FILE_PICTURE
+               ? convert_picture(own_options, from, to, parsed->common.threads, err)
+               : convert_plane(own_options, from, to, err);
 }
 
 const Command command_convert = {

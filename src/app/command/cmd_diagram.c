@@ -209,7 +209,7 @@ static Status run_diagram(void *options, Parsed *parsed, Err *err)
     Status status;
     Press press = {0};
     TRY(check(own_options, parsed, err));
-    TRY(press_open(&own_options->press, own_options->output, &press, err));
+    TRY(press_open(&own_options->press, own_options->output, parsed->common.threads, &press, err));
     TRY_GOTO(make_drawing(own_options, parsed, &drawing, err));
     TRY_GOTO(command_line_text(parsed, &command, err));
     if (is_svg(own_options))

@@ -367,7 +367,8 @@ static Status open_press(Figure *figure, bool in_folder, Err *err)
     if (frames_is_page(options->output) ||
         options_typed(figure->parsed, "cmyk-profile") == in_folder)
         return STATUS_OK;
-    return press_open(&options->press, options->output, &figure->press, err);
+    return press_open(&options->press, options->output, figure->parsed->common.threads,
+                      &figure->press, err);
 }
 
 static Status draw_in_folder(Figure *figure, const char *recipe, Err *err)

@@ -195,6 +195,7 @@ static Status merge(const char *output, const Tiles *tiles, const Common *common
     Progress progress;
     TRY(whole_notes(form.notes, &notes, &whole, err));
     form.notes = &whole;
+    form.packing.threads = common->threads;
     form.height = tiles->tile[0].shard.height;
     Status status = imagewriter_open(&writer, output, &form, err);
     if (status == STATUS_OK) {

@@ -206,7 +206,7 @@ static Status run_render(void *options, Parsed *parsed, Err *err)
     Status status;
     TRY(render_check(own_options, parsed, err));
     TRY(animation_read(&own_options->animation, own_options->output, &animation, err));
-    TRY(press_open(&own_options->press, own_options->output, &press, err));
+    TRY(press_open(&own_options->press, own_options->output, parsed->common.threads, &press, err));
     TRY_GOTO(plan_files(own_options, &press, &params, &form, err));
     TRY_GOTO(settle_shard(&own_options->shard, animation.kind != ANIMATION_NONE, parsed, &form,
                           &shard, err));

@@ -148,7 +148,8 @@ Status press_refuse_packing(const Parsed *parsed, const char *sentence, Err *err
     return refuse_from(OF_SIZE, parsed, sentence, err);
 }
 
-Status press_open(const PressOptions *options, const char *output, Press *press, Err *err)
+Status press_open(const PressOptions *options, const char *output, int threads, Press *press,
+                  Err *err)
 {
     bool floats = image_is_floats(output);
     Press made = {.bits = floats || options->bits == 0 ? 8 : options->bits};
@@ -156,6 +157,7 @@ Status press_open(const PressOptions *options, const char *output, Press *press,
         TRY(inks_read(&made.inks, options->cmyk_profile, (InkIntent)options->intent, made.bits,
                       err));
     made.packing = (ImagePacking){.compression = (ImageCompression)options->compression,
+                                  .threads = threads,
                                   .quality = options->quality,
                                   .half = floats && options->bits == 16,
                                   .inks = made.inks};

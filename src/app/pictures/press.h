@@ -38,9 +38,10 @@ typedef struct Press {
     Inks *inks; /* owned; in packing */
 } Press;
 
-/* Reads the profile, if there is one, and decides on what is left open. Errors as inks_read. */
-MUST_CHECK Status press_open(const PressOptions *options, const char *output, Press *press,
-                             Err *err);
+/* Reads the profile, if there is one, and decides on what is left open; `threads` as
+ * Common.threads. Errors as inks_read. */
+MUST_CHECK Status press_open(const PressOptions *options, const char *output, int threads,
+                             Press *press, Err *err);
 void press_release(Press *press);
 
 #endif

@@ -79,6 +79,7 @@ static Status write_frame(const Verification *v, const Frame *frame, const char 
     TRY(file_join(v->folder, name, &path, err));
     const FramesForm form = {.path = path,
                              .bits = v->bits,
+                             .packing = {.threads = v->common->threads},
                              .encoding = encoding,
                              .picture = true,
                              .dpi = v->picture->size.dpi,
