@@ -497,29 +497,28 @@ static Status make_sound(const Maker *maker, ZoneFineness *used, uint8_t *fates,
 }
 
 /* Where a triangle is too far off the wall, as over the bottom of a groove, which is too narrow to
- * be found by splitting, cells so much finer as it is too far are tried for as long as they help.
- */
+ * be found by splitting, cells so much finer as it is too far are tried, and the nearest kept. */
 static Status come_near(const Maker *maker, ZoneFineness *used, uint8_t *fates)
 {
-    bool sound = true;
-    double off = maker->piece->off.ratio;
+    ZoneFineness tried = *used;
+    bool sound = true, is_nearest = true;
+    double hole, off = maker->piece->off.ratio;
     for (int i = 0; i < MOST_NEARER && off > used->worst; i++) {
-        ZoneFineness tried = *used;
         int repeats = maker->piece->repeats;
-        double hole;
         make_finer(&tried, fmax(least_part, finer * used->worst / off));
         zonepiece_release(maker->piece);
         TRY(attempt(maker, &tried, fates, &sound, &hole));
         maker->piece->repeats = repeats + 1;
-        sound = sound && maker->piece->off.ratio < off;
-        if (!sound) {
-            zonepiece_release(maker->piece);
-            return attempt(maker, used, fates, &sound, &hole);
+        is_nearest = sound && maker->piece->off.ratio < off;
+        if (is_nearest) {
+            *used = tried;
+            off = maker->piece->off.ratio;
         }
-        *used = tried;
-        off = maker->piece->off.ratio;
     }
-    return STATUS_OK;
+    if (is_nearest)
+        return STATUS_OK;
+    zonepiece_release(maker->piece);
+    return attempt(maker, used, fates, &sound, &hole);
 }
 
 Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan,
