@@ -80,14 +80,19 @@ test_scales_the_whole_model() {
         'BEGIN { exit !((b / a / 2.5 ^ 3 - 1) ^ 2 < 1e-5 ^ 2) }' || fail "another volume than 2.5^3 as much"
 }
 
-test_refuses_what_the_printer_cannot_make() {
-    local said
+# refuses: each line of standard input, KEYS|PATTERN, is what --print refuses with that sentence, writing nothing.
+refuses() {
+    local print said
     while IFS='|' read -r print said; do
         run corcast export "$DATA/bifurcation.swc" --print "$print" -o m.stl --quiet
         expect_status 2
         expect_sentence "$said"
         expect_only
-    done <<'END'
+    done
+}
+
+test_refuses_what_the_printer_cannot_make() {
+    refuses <<'END'
 nozzle=7.3|the nozzle of 7.3 mm is wider than the trunk, [0-9.]* mm when printed
 scale=0.01,nozzle=0.4|the nozzle of 0.4 mm is wider than the trunk, 0.0[0-9]* mm
 nozzle=0.4,wall=0.3|the nozzle of 0.4 mm is wider than the wall, 0.3 mm at its thinnest
@@ -97,12 +102,7 @@ END
 }
 
 test_refuses_what_is_no_key_or_value() {
-    local said
-    while IFS='|' read -r print said; do
-        run corcast export "$DATA/bifurcation.swc" --print "$print" -o m.stl --quiet
-        expect_status 2
-        expect_sentence "$said"
-    done <<'END'
+    refuses <<'END'
 walls=2|--print: 'walls' is not one of scale, .*; did you mean wall
 wall=thick|--print: 'wall=thick' is wrong: wall takes a thickness in mm, or over the radius, as 0.2r
 scale=-1|--print: 'scale=-1' is wrong: scale takes a factor above 0
@@ -155,13 +155,7 @@ test_a_luer_port_has_the_size_of_the_fitting() {
 }
 
 test_refuses_blocks_that_hold_no_vessels() {
-    local said
-    while IFS='|' read -r print said; do
-        run corcast export "$DATA/bifurcation.swc" --print "$print" -o m.stl --quiet
-        expect_status 2
-        expect_sentence "$said"
-        expect_only
-    done <<'END'
+    refuses <<'END'
 block=box:20x40x30|the block of 20 x 40 x 30 mm is smaller than the vessels with a margin of 3 mm, 27.97 x 41.16 x 10.77 mm
 block=cylinder:28x41|is smaller than the vessels with a margin of 3 mm
 block=box,margin=0.01,ports=luer|no end of a vessel can be led to a face of the block

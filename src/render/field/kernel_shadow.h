@@ -286,15 +286,9 @@ LANE_FN void look_through_sum(const Departures *way, LaneMask *open, LaneMask *d
 /* Likewise through the sums of the groups that blend, one after the other. */
 LANE_FN void look_through_union(Departures *way, LaneMask *open, LaneMask *dark, LaneMask *unsure)
 {
-    Packet *packet = &way->packet;
-    LocalGroups *groups = packet->tile->groups;
-    for (size_t i = 0; i < packet->n; i++)
-        packet->segments[i] = packet->terms[i].term->segment;
-    size_t n_groups = localgroups_find(groups, packet->segments, packet->n);
+    size_t n_groups = find_groups(&way->packet);
     for (size_t group = 0; group < n_groups; group++) {
-        const uint32_t *members = localgroups_members(groups, group, &packet->n_sum);
-        for (size_t i = 0; i < packet->n_sum; i++)
-            packet->sum[i] = &packet->terms[members[i]];
+        sum_group(&way->packet, group);
         look_through_sum(way, open, dark, unsure);
     }
 }

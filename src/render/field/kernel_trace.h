@@ -449,17 +449,28 @@ LANE_FN void trace_sum(const Packet *packet, int first, TileHits *hits)
     }
 }
 
+/* Finds the groups of the packet's terms that blend, whose number it returns. */
+LANE_FN size_t find_groups(Packet *packet)
+{
+    for (size_t i = 0; i < packet->n; i++)
+        packet->segments[i] = packet->terms[i].term->segment;
+    return localgroups_find(packet->tile->groups, packet->segments, packet->n);
+}
+
+/* Makes the terms of one of the groups found those that are added up. */
+LANE_FN void sum_group(Packet *packet, size_t group)
+{
+    const uint32_t *members = localgroups_members(packet->tile->groups, group, &packet->n_sum);
+    for (size_t i = 0; i < packet->n_sum; i++)
+        packet->sum[i] = &packet->terms[members[i]];
+}
+
 /* Traces the sums of the groups of the packet's terms, one after the other. */
 LANE_FN void trace_union(Packet *packet, int first, TileHits *hits)
 {
-    LocalGroups *groups = packet->tile->groups;
-    for (size_t i = 0; i < packet->n; i++)
-        packet->segments[i] = packet->terms[i].term->segment;
-    size_t n_groups = localgroups_find(groups, packet->segments, packet->n);
+    size_t n_groups = find_groups(packet);
     for (size_t group = 0; group < n_groups; group++) {
-        const uint32_t *members = localgroups_members(groups, group, &packet->n_sum);
-        for (size_t i = 0; i < packet->n_sum; i++)
-            packet->sum[i] = &packet->terms[members[i]];
+        sum_group(packet, group);
         trace_sum(packet, first, hits);
     }
 }
