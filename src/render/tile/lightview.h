@@ -39,11 +39,13 @@ typedef struct LightViews {
     /* A queue of questions to it, for one thread; *queue is the caller's even when this fails. */
     Status (*queue_new)(const void *shadow, void **queue, Err *err);
     void (*queue_free)(void *queue);
-    /* Asks about the places whose bits are set in `wanted`, and answers all that was asked since
-     * the last answer, by up to LIGHT_BATCH calls: shadowed[answer + i] is 1 if the light is hidden
-     * from place i, else 0. */
+    /* Puts the question whether the light is hidden from place i, for each i whose bit is set in
+     * `wanted`; at most LIGHT_BATCH calls between two answers. */
     void (*ask)(void *queue, const TileKernels *kernels, const SeenPlaces *places, uint64_t wanted,
                 uint32_t answer);
+    /* Answers all questions since the last answer: sets shadowed[answer + i], `answer` being that
+     * of the call that asked about place i, to 1 if the light is hidden from the place, else to 0.
+     */
     Status (*answer)(void *queue, RenderKernels kernels, uint8_t *shadowed, Err *err);
 } LightViews;
 

@@ -47,7 +47,7 @@ typedef struct PrintReport {
     size_t openings;   /* of lumens: ends of vessels, or ports of a block */
     size_t pins;       /* between vessels and the base */
     size_t hanging;    /* places that a printer begins in the air, and no pin could be led to */
-    size_t cavities;   /* lumens of trees without any */
+    size_t cavities;   /* lumens of trees without an opening */
     NearPair closest;  /* of vessels that do not belong together, with their walls */
     bool has_closest;  /* there are such */
     uint32_t *closed;  /* segments with an end that is not open; owned, as all of it */
