@@ -8,6 +8,7 @@
 #include "base/ini.h"       // IWYU pragma: export
 #include "base/interrupt.h" // IWYU pragma: export
 #include "base/json.h"      // IWYU pragma: export
+#include "base/logcurve.h"  // IWYU pragma: export
 #include "base/memory.h"    // IWYU pragma: export
 #include "base/number.h"    // IWYU pragma: export
 #include "base/random.h"    // IWYU pragma: export

@@ -79,14 +79,15 @@ const char *derive_field_unit(size_t i);
 
 typedef struct TreeSummary {
     struct {
-        bool target, gamma, lambda;
+        bool target, lambda;
         bool terminal_pressure; /* what they need is known, and blood reaches all terminals */
     } has;
     size_t nodes, roots, segments, terminals, bifurcations;
     double total_length_mm;
     double volume_mm3;     /* sum of pi r^2 l */
     double target;         /* sum of l r^lambda [Neumann et al. 1996, eq. 2] */
-    double gamma, lambda;  /* lambda: as said, else the tree's */
+    double lambda;         /* as said, else the tree's */
+    LogCurve gamma;        /* the tree's [meta_gamma] */
     double root_radius_mm; /* the largest of the roots and of the segments that leave them */
     double min_radius_mm;  /* of all segments; NAN when there is none */
     int max_level;         /* 0 when there is no segment */

@@ -79,10 +79,9 @@ static Status sum_terminal_pressures(const Tree *tree, const TreeMeta *said,
 Status derive_summary(const Tree *tree, const TreeMeta *said, TreeSummary *summary, Err *err)
 {
     const TreeMeta *lambda = who_says(tree, said, META_LAMBDA);
-    TreeSummary made = {.gamma = meta_number(&tree->meta, META_GAMMA),
+    TreeSummary made = {.gamma = meta_gamma(&tree->meta),
                         .lambda = meta_number(lambda, META_LAMBDA),
                         .bounds = tree_bounds(tree)};
-    made.has.gamma = tree->meta.known[META_GAMMA];
     made.has.lambda = made.has.target = lambda->known[META_LAMBDA];
     sum_segments(tree, &made);
     TRY(largest(tree, said, "level", &made.max_level, err));

@@ -42,7 +42,8 @@ static Bifurcation bifurcation_of(const Network *net, const Rules *rules, int32_
                                          : (double)INFINITY,
                        .margin = margin,
                        .straight = network_is_given(net, i)};
-    Reduced whole = law_extend(&net->law, out.burden[DISTAL], segment->length, &out.below[0]);
+    const Law law = network_law(net, i);
+    Reduced whole = law_extend(&law, out.burden[DISTAL], segment->length, &out.below[0]);
     out.load_before = whole.load;
     out.cost_before = whole.cost;
     return out;
@@ -88,9 +89,10 @@ bool connection_estimate(const Network *net, const Rules *rules, int32_t segment
     if (network_kept_radius(net, segment) > 0)
         return connect_to_trunk(net, rules, segment, terminal, out);
     Bifurcation problem = bifurcation_of(net, rules, segment, terminal);
+    const Law law = network_law(net, segment);
     BifurcationState state;
     Vec3 middle = vec3_scale(vec3_add(problem.end[PROXIMAL], problem.end[DISTAL]), 0.5), place;
-    bifurcation_at(&net->law, &problem, vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25),
+    bifurcation_at(&law, &problem, vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25),
                    &state);
     if (!bifurcation_next(&problem, &state, &place))
         return false;
@@ -123,10 +125,11 @@ bool connection_optimise(const Network *net, const Rules *rules, Vec3 terminal,
     if (network_kept_radius(net, connection->segment) > 0)
         return is_long_enough(rules, connection, terminal);
     Bifurcation problem = bifurcation_of(net, rules, connection->segment, terminal);
+    const Law law = network_law(net, connection->segment);
     Vec3 place = connection->bifurcation;
     for (int round = 0; round <= ROUNDS; round++) {
         BifurcationState state;
-        bifurcation_at(&net->law, &problem, place, &state);
+        bifurcation_at(&law, &problem, place, &state);
         if (!isfinite(state.price) || !bifurcation_is_long_enough(&problem, &state))
             return round > 0;
         connection->price = state.price;
@@ -144,8 +147,9 @@ bool connection_settle(const Network *net, const Rules *rules, const Domain *dom
     if (network_is_given(net, connection->segment))
         return true;
     Bifurcation problem = bifurcation_of(net, rules, connection->segment, terminal);
+    const Law law = network_law(net, connection->segment);
     BifurcationState state;
-    bifurcation_at(&net->law, &problem, domain_settle(domain, connection->bifurcation), &state);
+    bifurcation_at(&law, &problem, domain_settle(domain, connection->bifurcation), &state);
     connection->price = state.price;
     connection->bifurcation = state.place;
     memcpy(connection->radius, state.radius, sizeof state.radius);

@@ -3,10 +3,10 @@
  * is exact to a few units in the last place for any gamma: Murray's law holds by the definition of
  * P, and the daughters of a bifurcation see one pressure by that of g.
  *
- * Where viscosity depends on the radius, radii and viscosities are computed in turn until they
+ * Where viscosity or gamma depend on the radius, both and the radii are computed in turn until they
  * agree. A radius goes with the fourth root of the viscosity, which falls by far less than the
- * fourth power of the radius in all but the thinnest vessels, so this converges; where it does not,
- * steps are shortened. */
+ * fourth power of the radius in all but the thinnest vessels, and gamma with its logarithm, so this
+ * converges; where it does not, steps are shortened. */
 #include "grow/finish.h"
 
 #include "grow/continue_tree.h"
@@ -45,9 +45,7 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
         bool fits = tree->radius_mm[i] >= DBL_MIN && isfinite(tree->radius_mm[i]);
         if (!fits && net->segment[i].parent >= 0)
             status = err_set(err, STATUS_INFEASIBLE,
-                             "the radii span more than a double can hold; move `gamma`, now %g, "
-                             "towards 3",
-                             net->law.gamma);
+                             "the radii span more than a double can hold; move `gamma` towards 3");
     }
     for (size_t k = 0; k < net->inlets; k++)
         tree->radius_mm[net->inlet[k]] = 0;
@@ -60,12 +58,12 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
     return status;
 }
 
-/* Viscosities agree with the radii to this share; rounds in which they are to. */
+/* Viscosities and exponents agree with the radii to this share; rounds in which they are to. */
 static const double agreement = 1e-13;
 enum { MAX_ROUNDS = 200 };
 
-/* Computes all radii, with the flows that the terminals' shares ask for and the viscosities at
- * these radii. `flow` has room for one a node. */
+/* Computes all radii, with the flows that the terminals' shares ask for and the viscosities and
+ * exponents at these radii. `flow` has room for one a node. */
 static Status settle_radii(Network *net, const GrowParams *params, double *flow, Tree *tree,
                            Err *err)
 {
@@ -81,8 +79,11 @@ static Status settle_radii(Network *net, const GrowParams *params, double *flow,
         network_resum(net);
     }
     return err_set(err, STATUS_INFEASIBLE,
-                   "the vessels of %zu terminals are too thin for `viscosity_law` pries: radii and "
-                   "viscosities do not settle; lower `terminals` or raise `q_perf`",
+                   params->gamma.n > 1
+                       ? "`gamma` changes too fast with the radius: the radii of %zu terminals do "
+                         "not settle; put its values at radii that are further apart"
+                       : "the vessels of %zu terminals are too thin for `viscosity_law` pries: "
+                         "radii and viscosities do not settle; lower `terminals` or raise `q_perf`",
                    net->terminals);
 }
 
@@ -115,7 +116,7 @@ static Status write_radii(Network *net, const GrowParams *params, Tree *tree, Er
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&flow, net->n, sizeof *flow, "flows", err));
     TRY_GOTO(settle_radii(net, params, flow, tree, err));
-    if (params->terminal_flow != TERMINAL_FLOW_TERRITORY)
+    if (params->terminal_flow == TERMINAL_FLOW_EQUAL)
         goto done;
     TRY_GOTO(tree_add_flow_shares(tree, err));
     for (size_t i = 0; i < net->n; i++)

@@ -139,13 +139,20 @@ static void set_toss_distance(Growth *growth, double distance)
     growth->rules.least_length = least_length_share * growth->toss_distance;
 }
 
+/* The map that says how densely terminals are to stand; NULL: evenly. */
+static const Demand *density(const GrowParams *params)
+{
+    return params->terminal_flow == TERMINAL_FLOW_DEMAND ? NULL : params->demand;
+}
+
 static Vec3 toss(Growth *growth)
 {
     const Demand *demand = growth->params->demand;
+    bool dense = density(growth->params) != NULL;
     for (;;) {
         growth->tosses++;
         Vec3 point = domain_sample(growth->domain, &growth->random);
-        if (!demand || random_uniform(&growth->random) < demand_at(demand, point))
+        if (!demand || demand_at(demand, point) > (dense ? random_uniform(&growth->random) : 0))
             return point;
     }
 }
@@ -174,7 +181,7 @@ static Status run_round(Growth *growth, size_t added, size_t *made, Err *err)
                  .domain = growth->domain,
                  .rules = &growth->rules,
                  .toss_distance = growth->toss_distance,
-                 .demand = growth->params->demand,
+                 .demand = density(growth->params),
                  .terminals_only = growth->params->toss == GROW_TOSS_TERMINAL,
                  .candidates = growth->params->candidates};
     TRY(round_run(&growth->round, &site, 2 * added < left ? 2 * added : left,
@@ -242,9 +249,9 @@ static Status check_range(const Growth *growth, Err *err)
     if (cost > 0 && isfinite(cost))
         return STATUS_OK;
     return err_set(err, STATUS_INFEASIBLE,
-                   "with `gamma` %g and `lambda` %g the radii of %zu terminals span more than a "
+                   "with this `gamma` and `lambda` %g the radii of %zu terminals span more than a "
                    "double can hold; move `gamma` towards 3, or lower `lambda`",
-                   growth->params->gamma, growth->params->lambda, growth->params->terminals);
+                   growth->params->lambda, growth->params->terminals);
 }
 
 static Status add_terminals(Growth *growth, Err *err)
@@ -324,7 +331,7 @@ static Status start(Growth *growth, Err *err)
                                    mm3_s_from_ml_min(params->q_perf_ml_min), drop);
     bool traits = params->from || params->inlets > 1 || weights_are_needed(params);
     size_t given = params->from ? params->from->n : 0;
-    TRY(network_init(&growth->net, (Law){params->gamma, params->lambda}, scale,
+    TRY(network_init(&growth->net, (Law){params->gamma.value[0], params->lambda}, scale,
                      given + 2 * params->terminals, inlets, traits, err));
     if (params->keep_radii)
         TRY(network_add_trunk(&growth->net, err));

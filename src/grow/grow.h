@@ -24,9 +24,11 @@ enum { GROW_MAX_TERMINALS = 8000000, GROW_MAX_CANDIDATES = 1000, GROW_MAX_INLETS
 
 typedef struct GrowParams {
     size_t terminals; /* in [1, GROW_MAX_TERMINALS] */
-    double gamma;     /* Murray exponent; META_GAMMA has its range, and so on */
-    double lambda;    /* exponent of the target */
-    uint64_t seed;    /* of the random points */
+    /* Murray exponent, or several by the radius, mm, of the parent; META_GAMMA has its range, and
+     * so on. */
+    LogCurve gamma;
+    double lambda; /* exponent of the target */
+    uint64_t seed; /* of the random points */
     /* The tree (borrowed) to grow on from, with its inlets; NULL: none. Its nodes keep their
      * places, ids and types, its segments stay straight; a node other than an inlet has at most two
      * children, an inlet one or two. Its radii, its flow shares and what is known of it are not
@@ -48,7 +50,8 @@ typedef struct GrowParams {
     double hematocrit;          /* by Pries's law */
     double plasma_viscosity_cp; /* by Pries's law */
     /* How densely terminals are to stand (borrowed): as many for a volume as the map says, relative
-     * to elsewhere; NULL: evenly. */
+     * to elsewhere; or by TERMINAL_FLOW_DEMAND, how they share the flow, which then stand evenly
+     * where the map asks for something. NULL: evenly. */
     const Demand *demand;
     double
         min_radius_mm; /* growth ends, complete, when the terminals' mean radius is this; 0: not */
@@ -99,10 +102,11 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
 /* Grows a tree, or a forest whose trees share all flow, into *out (release with tree_release). Node
  * 0 is the inlet; nodes are in depth-first order, tree after tree in the order of the inlets, ids
  * 1 .. 2 N in that order, and its meta says how it was made. Murray's law and the pressures hold
- * to rounding for the coordinates and radii in *out, by Pries's law with the viscosity at those
- * very radii. By territory, the flow share of a terminal is the number of points of a fine lattice
- * over the domain that are nearer to it than to any other. Centrelines do not cross. The same
- * parameters give the same tree, bit for bit. `report` may be NULL.
+ * to rounding for the coordinates and radii in *out, by Pries's law with the viscosity, and where
+ * gamma follows the radius with gamma, at those very radii. By territory, the flow share of a
+ * terminal is the number of points of a fine lattice over the domain that are nearer to it than to
+ * any other; by demand, what these ask for. Centrelines do not cross. The same parameters give the
+ * same tree, bit for bit. `report` may be NULL.
  *
  * If a tree is continued (`from`), all its nodes are in *out with their ids, types and columns, and
  * so are its remarks; new nodes take the smallest ids that are free. New segments are in the domain
@@ -115,8 +119,8 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
  * Fails with STATUS_USAGE as grow_params_check does, STATUS_INPUT when `from` is not as above or
  * leaves the plane of a domain of two dimensions, STATUS_INFEASIBLE when there is no room for all
  * terminals, when the radii span more than a double can hold, when vessels are too thin for blood
- * to pass by Pries's law, or when those that keep their radii are too narrow for their flow, and
- * STATUS_MEMORY. */
+ * to pass by Pries's law, when gamma changes too fast with the radius for both to agree, or when
+ * those that keep their radii are too narrow for their flow, and STATUS_MEMORY. */
 MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,
                             GrowReport *report, Err *err);
 

@@ -168,6 +168,7 @@ int32_t network_append(Network *net, int32_t parent, Vec3 position)
     net->segment[i] = (Segment){.child = {-1, -1}, .parent = parent};
     if (net->trait)
         net->trait[i] = (Trait){.weight = net->fresh_weight,
+                                .gamma = net->law.gamma,
                                 .tree = parent < 0 ? (int32_t)net->inlets : net->trait[parent].tree,
                                 .origin = -1};
     if (parent < 0) {
@@ -233,8 +234,10 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
     if (net->trait) {
         net->trait[proximal] = net->trait[segment];
         net->trait[proximal].origin = -1;
-        net->trait[fresh] =
-            (Trait){.weight = net->fresh_weight, .tree = net->trait[segment].tree, .origin = -1};
+        net->trait[fresh] = (Trait){.weight = net->fresh_weight,
+                                    .gamma = net->trait[segment].gamma,
+                                    .tree = net->trait[segment].tree,
+                                    .origin = -1};
     }
     if (net->trunk) {
         net->trunk->radius[proximal] = net->trunk->radius[segment];

@@ -38,12 +38,13 @@ typedef struct Sensitivity {
     double extra; /* the increase of S_root if every segment above this one had one more terminal */
 } Sensitivity;
 
-/* What segments need in addition where terminals are unequal, viscosities differ, several trees
- * grow, or a tree is continued. */
+/* What segments need in addition where terminals are unequal, viscosities or exponents differ,
+ * several trees grow, or a tree is continued. */
 typedef struct Trait {
     /* The flow through the segment relative to that of as many mean terminals, times its viscosity
      * relative to that in radius_scale; of the last weights_update, or of when it was made. */
     double weight;
+    double gamma;   /* of the fork at the distal end, likewise */
     double share;   /* of a terminal: its flow relative to the other terminals'; 0 elsewhere */
     int32_t tree;   /* the index of the inlet that it hangs on */
     int32_t origin; /* the node's index in the tree that is continued; -1: a new node */
@@ -59,7 +60,7 @@ typedef struct Trunk {
 } Trunk;
 
 typedef struct Network {
-    Law law;
+    Law law;             /* where segments have no Trait */
     double radius_scale; /* q N^(1/4), mm^(3/4), the same for any number N of terminals */
     double radius_unit;  /* q, mm^(3/4), for the present number: r = q * gauge * rho [law.h] */
     size_t n, capacity;  /* nodes, spare ones included; and how many there is room for */
@@ -121,11 +122,18 @@ static inline double network_burden(const Network *net, int32_t i, int32_t termi
     return net->trait ? terminals * net->trait[i].weight : terminals;
 }
 
+/* The law at node i. */
+static inline Law network_law(const Network *net, int32_t i)
+{
+    return net->trait ? (Law){net->trait[i].gamma, net->law.lambda} : net->law;
+}
+
 /* What hangs on the distal end of segment i. Needs its sums. */
 static inline Below network_below(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
-    return law_gather(&net->law, segment->rho_gamma[0] + segment->rho_gamma[1],
+    const Law law = network_law(net, i);
+    return law_gather(&law, segment->rho_gamma[0] + segment->rho_gamma[1],
                       segment->cost[0] + segment->cost[1]);
 }
 
@@ -134,8 +142,8 @@ static inline Reduced network_reduce(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
     const Below below = network_below(net, i);
-    return law_extend(&net->law, network_burden(net, i, segment->terminals), segment->length,
-                      &below);
+    const Law law = network_law(net, segment->parent);
+    return law_extend(&law, network_burden(net, i, segment->terminals), segment->length, &below);
 }
 
 /* Segment i as a solid. Needs its radius. */

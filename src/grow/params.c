@@ -7,7 +7,7 @@
 GrowParams grow_defaults(void)
 {
     return (GrowParams){.terminals = 1000,
-                        .gamma = 3,
+                        .gamma = logcurve_constant(3),
                         .lambda = 2,
                         .seed = 1,
                         .p_perf_mmhg = 100,
@@ -24,8 +24,7 @@ GrowParams grow_defaults(void)
 static const struct {
     MetaKey key;
     size_t offset;
-} numbers[] = {{META_GAMMA, offsetof(GrowParams, gamma)},
-               {META_LAMBDA, offsetof(GrowParams, lambda)},
+} numbers[] = {{META_LAMBDA, offsetof(GrowParams, lambda)},
                {META_P_PERF, offsetof(GrowParams, p_perf_mmhg)},
                {META_P_TERM, offsetof(GrowParams, p_term_mmhg)},
                {META_Q_PERF, offsetof(GrowParams, q_perf_ml_min)},
@@ -42,6 +41,7 @@ void grow_describe(const GrowParams *params, TreeMeta *meta)
     for (size_t i = 0; i < N_NUMBERS; i++)
         meta_set_number(meta, numbers[i].key,
                         *(const double *)((const char *)params + numbers[i].offset));
+    meta_set_gamma(meta, &params->gamma);
     meta_set_number(meta, META_VISCOSITY_LAW, params->viscosity_law);
     meta_set_number(meta, META_TERMINAL_FLOW, params->terminal_flow);
     meta->known[META_VISCOSITY] = constant;
@@ -55,6 +55,8 @@ void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_K
     for (size_t i = 0; i < N_NUMBERS; i++)
         if (meta->known[numbers[i].key] && !given[numbers[i].key])
             *(double *)((char *)params + numbers[i].offset) = meta->number[numbers[i].key];
+    if (!given[META_GAMMA] && meta_gamma(meta).n > 0)
+        params->gamma = meta_gamma(meta);
     if (!given[META_VISCOSITY_LAW] && !given[META_VISCOSITY])
         params->viscosity_law = (ViscosityLaw)meta_number(meta, META_VISCOSITY_LAW);
     if (!given[META_TERMINAL_FLOW])
@@ -132,6 +134,8 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
         return err_set(err, STATUS_USAGE, "`candidates` %d: must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);
+    if (params->terminal_flow == TERMINAL_FLOW_DEMAND && !params->demand)
+        return err_set(err, STATUS_USAGE, "`terminal_flow` demand: needs the map of it, `demand`");
     if (params->demand)
         TRY(demand_check(params->demand, domain, err));
     if (params->keep_radii && !params->from)

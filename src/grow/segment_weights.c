@@ -1,9 +1,9 @@
 /* The weight of a segment is its flow over that of as many mean terminals, times its viscosity over
  * the reference, so that terminals times weight is the burden of the law [law.h].
  *
- * Viscosity depends on the radius, and the radius on the viscosity. While a tree grows, weights are
+ * Viscosity and exponent depend on the radius, and the radius on both. While a tree grows, they are
  * computed from the radii of the last refresh: weights_refresh (set_shares, weights_flows, then
- * follow_radii) brings both nearer to agreement every time. At the end finish.c iterates until they
+ * follow_radii) brings them nearer to agreement every time. At the end finish.c iterates until they
  * agree. */
 #include "grow/segment_weights.h"
 
@@ -21,7 +21,7 @@ enum { FINE_ROUNDS = 3 };
 bool weights_are_needed(const GrowParams *params)
 {
     return params->viscosity_law != VISCOSITY_CONSTANT ||
-           params->terminal_flow != TERMINAL_FLOW_EQUAL;
+           params->terminal_flow != TERMINAL_FLOW_EQUAL || params->gamma.n > 1;
 }
 
 double weights_reference_pa_s(const GrowParams *params)
@@ -49,12 +49,12 @@ static Status set_shares(Network *net, const GrowParams *params, const Domain *d
     double points = rough_points;
     if (precision == WEIGHTS_FINE)
         points = fmin(fmax(all_points / (double)net->terminals, least_points), most_points);
-    bool territory = params->terminal_flow == TERMINAL_FLOW_TERRITORY;
-    if (territory)
-        TRY(territory_count(net, domain, points, threads_of(params), share, err));
-    for (size_t i = 0; i < net->n; i++) {
-        net->trait[i].share = territory ? share[i] : network_is_end(net, (int32_t)i);
-    }
+    bool equal = params->terminal_flow == TERMINAL_FLOW_EQUAL;
+    const Demand *demand = params->terminal_flow == TERMINAL_FLOW_DEMAND ? params->demand : NULL;
+    if (!equal)
+        TRY(territory_count(net, domain, demand, points, threads_of(params), share, err));
+    for (size_t i = 0; i < net->n; i++)
+        net->trait[i].share = equal ? network_is_end(net, (int32_t)i) : share[i];
     return STATUS_OK;
 }
 
@@ -88,10 +88,12 @@ Status weights_update(Network *net, const GrowParams *params, const double *flow
                            "with `viscosity_law` pries no blood passes a vessel %.3g um wide, and "
                            "with %zu terminals there is one; lower `terminals` or raise `q_perf`",
                            2e3 * radius[i], net->terminals);
-        double *weight = &net->trait[i].weight;
-        double ratio = flow[i] / net->segment[i].terminals * viscosity / *weight;
-        *change = fmax(*change, fabs(ratio - 1));
-        *weight *= part == 1 ? ratio : pow(ratio, part);
+        Trait *trait = &net->trait[i];
+        double ratio = flow[i] / net->segment[i].terminals * viscosity / trait->weight;
+        double gamma = logcurve_at(&params->gamma, radius[i]);
+        *change = fmax(*change, fmax(fabs(ratio - 1), fabs(gamma - trait->gamma)));
+        trait->weight *= part == 1 ? ratio : pow(ratio, part);
+        trait->gamma = part == 1 ? gamma : trait->gamma + part * (gamma - trait->gamma);
         if (net->segment[i].child[0] < 0)
             sum += viscosity;
     }

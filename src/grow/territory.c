@@ -2,7 +2,8 @@
  * lattice point goes to the nearest. A lattice counts all but the cells that a border runs
  * through exactly, so that the count of a territory with p points is off by about
  * p^(1/4), where random points would be off by p^(1/2). Threads take rows of the lattice and count
- * for themselves; whole numbers add up to the same sums in any order. */
+ * for themselves; whole numbers, in which what a point asks for is rounded to a millionth, add up
+ * to the same sums in any order. */
 #include "grow/territory.h"
 
 #include "grow/cco/grid.h"
@@ -11,16 +12,19 @@
 /* A lattice over a box that is very thin for its length has at most POINTS_PER_ASKED as many points
  * as a box of that volume asks for, and LEAST_POINTS. */
 enum { POINTS_PER_ASKED = 8, LEAST_POINTS = 16384 };
+/* What a point counts for that asks for the most. */
+enum { WHOLE = 1 << 20 };
 /* Cells of the grid a terminal. */
 static const double cells_per_terminal = 1;
 
 typedef struct Survey {
     const Domain *domain;
+    const Demand *demand; /* NULL: the same everywhere */
     Grid grid;
     Vec3 low, step;  /* of the lattice, mm */
     size_t count[3]; /* its points along each axis */
     size_t nodes;
-    uint32_t *points; /* by worker and node: lattice points nearest to it */
+    uint64_t *points; /* by worker and node: what the lattice points nearest to it count for */
 } Survey;
 
 static size_t lattice_count(double size, double spacing)
@@ -63,7 +67,7 @@ static Status enter_terminals(Survey *survey, const Network *net, Err *err)
 static void survey_row(size_t index, int worker, void *context)
 {
     const Survey *survey = context;
-    uint32_t *points = survey->points + (size_t)worker * survey->nodes;
+    uint64_t *points = survey->points + (size_t)worker * survey->nodes;
     size_t y = index % survey->count[1], z = index / survey->count[1];
     Vec3 step = survey->step;
     Vec3 at =
@@ -73,14 +77,15 @@ static void survey_row(size_t index, int worker, void *context)
         at.x = survey->low.x + ((double)x + 0.5) * step.x;
         if (domain_inside(survey->domain, at, 0) &&
             grid_nearest(&survey->grid, at, INFINITY, 1, &nearest) == 1)
-            points[nearest.segment]++;
+            points[nearest.segment] +=
+                survey->demand ? (uint64_t)(WHOLE * demand_at(survey->demand, at) + 0.5) : WHOLE;
     }
 }
 
-Status territory_count(const Network *net, const Domain *domain, double points, int threads,
-                       double *share, Err *err)
+Status territory_count(const Network *net, const Domain *domain, const Demand *demand,
+                       double points, int threads, double *share, Err *err)
 {
-    Survey survey = {.domain = domain, .nodes = net->n};
+    Survey survey = {.domain = domain, .demand = demand, .nodes = net->n};
     Status status = STATUS_OK;
     lay_lattice(&survey, points * (double)net->terminals);
     TRY_GOTO(enter_terminals(&survey, net, err));
@@ -92,7 +97,7 @@ Status territory_count(const Network *net, const Domain *domain, double points, 
         uint64_t sum = 0;
         for (int worker = 0; worker < threads; worker++)
             sum += survey.points[(size_t)worker * net->n + i];
-        share[i] = !terminal ? 0 : sum > 0 ? (double)sum : 0.5;
+        share[i] = terminal ? fmax((double)sum / WHOLE, 0.5) : 0;
     }
 done:
     free(survey.points);

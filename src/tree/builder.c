@@ -328,13 +328,11 @@ static Status fill_columns(const TreeBuilder *builder, const int32_t *place, Tre
 static Status check_rule(const TreeBuilder *builder, Err *err)
 {
     bool known = builder->meta.known[META_TERMINAL_FLOW];
-    bool territory = builder->meta.number[META_TERMINAL_FLOW] == TERMINAL_FLOW_TERRITORY;
-    if (!known || territory == (builder->n_shares > 0))
+    TerminalFlow flow = (TerminalFlow)builder->meta.number[META_TERMINAL_FLOW];
+    if (!known || (flow != TERMINAL_FLOW_EQUAL) == (builder->n_shares > 0))
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT,
-                   territory ? "%s: terminal_flow is territory, but there are no flow shares"
-                             : "%s: terminal_flow is equal, but there are flow shares",
-                   builder->name);
+    return err_set(err, STATUS_INPUT, "%s: terminal_flow is %s, but there are %sflow shares",
+                   builder->name, terminal_flow_names[flow], builder->n_shares > 0 ? "" : "no ");
 }
 
 /* A share is above 0, so a node that has one is a node that was named. */

@@ -13,8 +13,10 @@
 
 const char *const viscosity_law_names[] = {
     [VISCOSITY_CONSTANT] = "constant", [VISCOSITY_PRIES] = "pries", NULL};
-const char *const terminal_flow_names[] = {
-    [TERMINAL_FLOW_EQUAL] = "equal", [TERMINAL_FLOW_TERRITORY] = "territory", NULL};
+const char *const terminal_flow_names[] = {[TERMINAL_FLOW_EQUAL] = "equal",
+                                           [TERMINAL_FLOW_TERRITORY] = "territory",
+                                           [TERMINAL_FLOW_DEMAND] = "demand",
+                                           NULL};
 
 const MetaRow meta_rows[META_KEYS] = {
     [META_GENERATOR] = {.name = "generator",
@@ -32,6 +34,10 @@ const MetaRow meta_rows[META_KEYS] = {
                      .meaning = "tissue that the tree supplies",
                      .kind = META_TEXT},
     [META_GAMMA] = {.name = "gamma", .meaning = "Murray exponent", .range = {RANGE_ABOVE_0, 10}},
+    [META_GAMMA_BY_RADIUS] = {.name = "gamma_by_radius",
+                              .meaning = "Murray exponent by the radius of the parent, mm",
+                              .kind = META_CURVE,
+                              .range = {RANGE_ABOVE_0, 10}},
     [META_LAMBDA] = {.name = "lambda",
                      .meaning = "exponent of the target",
                      .range = {0, RANGE_NO_END}},
@@ -148,6 +154,9 @@ static void put_allowed(MetaKey key, Text *text)
             text_printf(text, "%s%s", i ? " or " : "", row->words[i]);
     else if (row->kind == META_BITS)
         text_printf(text, "a whole number from 0 to %" PRIu64, UINT64_MAX);
+    else if (row->kind == META_CURVE)
+        text_printf(text, "MM:NUMBER,..., MM above 0 and rising, each NUMBER %s",
+                    range_text(row->range, range));
     else if (*range_text(row->range, range))
         text_printf(text, "a %snumber %s", row->kind == META_WHOLE ? "whole " : "", range);
     else
@@ -164,6 +173,24 @@ void meta_set_seed(TreeMeta *meta, uint64_t seed)
 {
     meta->known[META_SEED] = true;
     meta->seed = seed;
+}
+
+LogCurve meta_gamma(const TreeMeta *meta)
+{
+    if (meta->known[META_GAMMA_BY_RADIUS])
+        return meta->gamma_by_radius;
+    return meta->known[META_GAMMA] ? logcurve_constant(meta->number[META_GAMMA])
+                                   : (LogCurve){.n = 0};
+}
+
+void meta_set_gamma(TreeMeta *meta, const LogCurve *gamma)
+{
+    meta->known[META_GAMMA] = gamma->n == 1;
+    meta->known[META_GAMMA_BY_RADIUS] = gamma->n > 1;
+    if (gamma->n == 1)
+        meta->number[META_GAMMA] = gamma->value[0];
+    else
+        meta->gamma_by_radius = *gamma;
 }
 
 static Status check_line(const char *text, Err *err)
@@ -257,6 +284,18 @@ static Status set_number(TreeMeta *meta, MetaKey key, const char *value, Err *er
     return STATUS_OK;
 }
 
+static Status set_curve(TreeMeta *meta, MetaKey key, const char *value, Err *err)
+{
+    LogCurve curve;
+    if (!logcurve_parse(value, meta_rows[key].range, &curve))
+        return refuse_value(key, value, err);
+    if (meta->known[key] && !logcurve_is_same(&curve, &meta->gamma_by_radius))
+        return contradict(key, value, err);
+    meta->gamma_by_radius = curve;
+    meta->known[key] = true;
+    return STATUS_OK;
+}
+
 static Status set_text(TreeMeta *meta, MetaKey key, const char *value, Err *err)
 {
     if (meta->known[key] && strcmp(value, meta->text[key]) != 0)
@@ -270,10 +309,11 @@ Status meta_parse(TreeMeta *meta, MetaKey key, const char *value, Err *err)
     char *copy = NULL;
     TRY(mem_strdup(&copy, value, err));
     const char *bare = text_trim(copy);
-    Status status = kind == META_LINES  ? meta_add_text(meta, key, bare, err)
-                    : kind == META_TEXT ? set_text(meta, key, bare, err)
-                    : kind == META_BITS ? set_bits(meta, key, bare, err)
-                                        : set_number(meta, key, bare, err);
+    Status status = kind == META_LINES   ? meta_add_text(meta, key, bare, err)
+                    : kind == META_TEXT  ? set_text(meta, key, bare, err)
+                    : kind == META_BITS  ? set_bits(meta, key, bare, err)
+                    : kind == META_CURVE ? set_curve(meta, key, bare, err)
+                                         : set_number(meta, key, bare, err);
     free(copy);
     if (status == STATUS_OK && kind != META_LINES)
         status = add_line(meta, (MetaLine){.key = key}, err);
@@ -287,6 +327,8 @@ void meta_put_value(const TreeMeta *meta, MetaKey key, Text *text)
         text_printf(text, "%" PRIu64, meta->seed);
     else if (row->kind == META_WORD)
         text_puts(text, row->words[(size_t)meta->number[key]]);
+    else if (row->kind == META_CURVE)
+        text_logcurve(text, &meta->gamma_by_radius);
     else if (row->kind == META_NUMBER || row->kind == META_WHOLE)
         text_number(text, meta->number[key]);
     else
@@ -350,8 +392,9 @@ static Status check_key(const TreeMeta *meta, MetaKey key, MetaSource source, Er
 
 Status meta_check_cco(const TreeMeta *meta, MetaSource source, Err *err)
 {
-    static const MetaKey always[] = {META_GAMMA, META_LAMBDA, META_P_PERF, META_P_TERM,
-                                     META_Q_PERF};
+    static const MetaKey always[] = {META_LAMBDA, META_P_PERF, META_P_TERM, META_Q_PERF};
+    if (!meta->known[META_GAMMA_BY_RADIUS])
+        TRY(check_key(meta, META_GAMMA, source, err));
     for (size_t i = 0; i < sizeof always / sizeof *always; i++)
         TRY(check_key(meta, always[i], source, err));
     if (!(meta->number[META_P_TERM] < meta->number[META_P_PERF])) {

@@ -14,8 +14,9 @@
 
 /* What the flow through each terminal was made after. */
 typedef enum TerminalFlow {
-    TERMINAL_FLOW_EQUAL,    /* the same for all; the tree has no flow shares */
-    TERMINAL_FLOW_TERRITORY /* the tissue that each supplies; the flow shares tell */
+    TERMINAL_FLOW_EQUAL,     /* the same for all; the tree has no flow shares */
+    TERMINAL_FLOW_TERRITORY, /* the tissue that each supplies; the flow shares tell */
+    TERMINAL_FLOW_DEMAND     /* what that tissue asks for by a map; likewise */
 } TerminalFlow;
 
 /* In the order in which a tree that the program makes is described. */
@@ -26,6 +27,7 @@ typedef enum MetaKey {
     META_DIMENSION,        /* 2 or 3 */
     META_DOMAIN,           /* the tissue, as domain_parse reads it */
     META_GAMMA,            /* Murray exponent */
+    META_GAMMA_BY_RADIUS,  /* the same where it follows the radius, mm, of the parent */
     META_LAMBDA,           /* exponent of the target */
     META_P_PERF,           /* mmHg, at the inlet */
     META_P_TERM,           /* mmHg, at every terminal */
@@ -43,6 +45,7 @@ typedef enum MetaKind {
     META_WHOLE,  /* a whole number in the range */
     META_BITS,   /* a whole number of 64 bits */
     META_WORD,   /* one of the words */
+    META_CURVE,  /* a curve of numbers in the range */
     META_TEXT,   /* a line of text */
     META_LINES   /* lines of text, one for each time that a file says the key */
 } MetaKind;
@@ -53,7 +56,7 @@ typedef struct MetaRow {
     const char *unit;    /* NULL for pure numbers and for what is no number */
     const char *meaning; /* "flow through the inlet" */
     MetaKind kind;
-    Range range;              /* of META_NUMBER and META_WHOLE */
+    Range range;              /* of META_NUMBER, META_WHOLE, META_CURVE */
     const char *const *words; /* of META_WORD: those of the values 0, 1, ...; ends with NULL */
 } MetaRow;
 
@@ -76,6 +79,7 @@ typedef struct TreeMeta {
     bool known[META_KEYS];
     double number[META_KEYS]; /* of META_NUMBER, META_WHOLE; of META_WORD the word's value */
     uint64_t seed;            /* of META_BITS */
+    LogCurve gamma_by_radius; /* of META_CURVE */
     char *text[META_KEYS];    /* of META_TEXT; owned, NULL when not known */
     MetaLine *line;           /* owned; in the order of the file */
     size_t n_lines, lines_capacity;
@@ -98,9 +102,15 @@ static inline double meta_number(const TreeMeta *meta, MetaKey key)
     return meta->known[key] ? meta->number[key] : 0;
 }
 
-/* Sets a number or a word, which is not checked, or the seed. */
+/* The Murray exponent by the radius, mm, of the parent, as the keys gamma_by_radius or gamma say
+ * it; without points when it is not known. */
+LogCurve meta_gamma(const TreeMeta *meta);
+
+/* Sets a number or a word, which is not checked, the seed, or the Murray exponent: the one of its
+ * two keys that it takes. */
 void meta_set_number(TreeMeta *meta, MetaKey key, double value);
 void meta_set_seed(TreeMeta *meta, uint64_t seed);
+void meta_set_gamma(TreeMeta *meta, const LogCurve *gamma);
 /* Sets a META_TEXT (copied). STATUS_INPUT when it holds a line end. */
 MUST_CHECK Status meta_set_text(TreeMeta *meta, MetaKey key, const char *text, Err *err);
 /* Appends a line (copied) of a META_LINES or, of META_KEYS, a remark. STATUS_INPUT when it holds a

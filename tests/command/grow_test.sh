@@ -10,6 +10,11 @@ test_the_checker_finds_what_is_wrong() {
     run "$CHECK_TREE" radius.swc
     expect_status 1
     expect_sentence "Murray"
+    run_ok corcast grow --terminals 50 --seed 3 --gamma 0.05:3,1:2.2 -o curve.swc
+    sed 's/^# gamma_by_radius: 0.05:3/# gamma_by_radius: 0.05000000001:3/' curve.swc >curved.swc
+    run "$CHECK_TREE" curved.swc
+    expect_status 1
+    expect_sentence "Murray"
     sed 's/^# p_term_mmHg: 60/# p_term_mmHg: 60.0000001/' tree.swc >pressure.swc
     run "$CHECK_TREE" pressure.swc
     expect_status 1
@@ -102,6 +107,51 @@ test_a_full_domain_is_said_and_partial_writes_the_tree_so_far() {
     grep -q "no room for terminal 2" stderr || fail "expected the reason on standard error"
     expect_json grow.json '.complete == false and .terminals == 1 and .rejected > 0'
     check_tree tree.swc
+}
+
+test_the_exponent_may_follow_the_radius() {
+    local options
+    for options in '--gamma 0.05:3,1:2.2 --terminals 300' \
+        '--gamma 0.1:2.2,1:2.9,2:2.4 --domain ball:30 --lambda 1 --terminals 150' \
+        '--gamma 0.05:3,1:2.2 --viscosity-law pries --terminal-flow territory --terminals 80' \
+        '--gamma 0.05:3,1:2.2 --inlet 0,50 --inlet 30,-40 --terminals 120'; do
+        # shellcheck disable=SC2086
+        run_ok corcast grow $options -o tree.swc
+        check_tree tree.swc
+    done
+    grep -qx '# gamma_by_radius: 0.05:3,1:2.2' tree.swc || fail "expected the exponents in the header"
+    ! grep -q '^# gamma:' tree.swc || fail "expected no single exponent in the header"
+    run_ok corcast info tree.swc --json
+    expect_json stdout '.gamma == null and .gamma_by_radius == [[0.05, 3], [1, 2.2]]'
+    run_ok corcast convert tree.swc tree.graphml
+    run_ok corcast info tree.graphml
+    expect_stdout 'gamma         3 at a radius of 0.05 mm of the parent'
+    run_ok corcast grow --from tree.swc --terminals 200 -o larger.swc
+    check_tree larger.swc
+    run corcast info tree.swc --stats --terminal-flow murray
+    expect_status 2
+    expect_sentence '--terminal-flow murray: the exponent of tree.swc follows the radius; give --gamma'
+}
+
+# Where all exponents are one, the tree is that of this one.
+test_exponents_that_are_all_the_same_are_one_exponent() {
+    run_ok corcast grow --terminals 80 --gamma 2.7 -o one.swc
+    run_ok corcast grow --terminals 80 --gamma 0.1:2.7,1:2.7 -o all.swc
+    expect_same <(grep -v '^#' one.swc) <(grep -v '^#' all.swc)
+}
+
+test_exponents_that_make_no_curve_are_refused() {
+    local value
+    for value in 0 11 3:1,2:2 0.05:3,1:0 0.05: 0:3,1:2.2; do
+        run corcast grow --gamma $value -o tree.swc
+        expect_status 2
+        expect_sentence "--gamma: '$value' is not a number above 0 and at most 10, or PLACE:NUMBER,... with PLACE above 0, rising"
+    done
+    run_ok corcast grow --terminals 5 --gamma 0.05:3,1:2.2 -o tree.swc
+    sed 's/^# gamma_by_radius:.*/# gamma_by_radius: 1:3,0.5:2/' tree.swc >falling.swc
+    run corcast info falling.swc
+    expect_status 2
+    expect_sentence "falling.swc:[0-9]+: gamma_by_radius is '1:3,0.5:2'; it must be MM:NUMBER,..., MM above 0 and rising"
 }
 
 test_every_gamma_and_lambda_gives_an_exact_tree() {

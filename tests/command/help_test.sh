@@ -10,7 +10,7 @@ options_of() {
 test_help_prints_headings_ranges_and_defaults() {
     run_ok corcast grow --help
     expect_stdout '^blood:$'
-    expect_stdout '--gamma NUMBER +Murray exponent; above 0 and at most 10 \(3\)$'
+    expect_stdout '--gamma NUMBER\|MM:NUMBER,\.\.\.$'
     run_ok corcast render --help
     expect_stdout '^camera:$'
     expect_stdout '--size WxH +pixels, or on paper, as 89mmx60mm; 89mm is a square \(1000x1000\)$'

@@ -23,7 +23,7 @@ test_each_level_lowers_the_target_and_keeps_the_promises_of_a_tree() {
     expect_lower topology.swc geometry.swc 1
 }
 
-test_trees_whose_viscosity_follows_the_radius_are_refined() {
+test_trees_whose_viscosity_or_exponent_follows_the_radius_are_refined() {
     local flow
     for flow in '' '--q-perf 0.5 --terminal-flow territory'; do
         # shellcheck disable=SC2086
@@ -32,6 +32,10 @@ test_trees_whose_viscosity_follows_the_radius_are_refined() {
         check_tree refined.swc
         expect_lower refined.swc plain.swc 0.98
     done
+    run_ok corcast grow --terminals 300 --seed 5 --gamma 0.05:3,1:2.2 -o curve.swc
+    run_ok corcast refine curve.swc --refine topology -o refined.swc
+    check_tree refined.swc
+    expect_lower refined.swc curve.swc 0.97
     grep -v '^# hematocrit' plain.swc >without.swc
     run corcast refine without.swc -o refused.swc
     expect_status 2

@@ -56,6 +56,7 @@ s/keep-radii = on/toss = terminal/|^corcast grow: stages.ini: \[tissue\]: gamma 
 s/p-term = 60/p-term = 90/|stages.ini: \[tissue\]: p-term 90 mmHg leaves nothing to drop beyond stage \[trunk\], whose radii are kept and whose terminals are at 88.5
 s/terminals = 600/terminals = 40/|stages.ini: \[tissue\]: .*must be above the 40 that the tree of .* has
 s/domain = ball:31.5/domain = ball:5@100,0,0/|stages.ini: \[tissue\]: .*the domain does not hold the tree
+s/^keep-radii.*//;s/gamma = 3/gamma = 0.1:3,2:2/|stages.ini: \[tissue\]: gamma 0.1:3,2:2 would change the radii of stage \[trunk\], which has 2.4
 s/gamma = 3/gama = 3/|stages.ini:12: 'gama' is no option of a stage
 s/gamma = 3/from = x.swc/|stages.ini:12: 'from' is no option of a stage
 s/gamma = 3/gamma = three/|stages.ini:12: --gamma: 'three'
@@ -117,6 +118,19 @@ test_terminals_stand_as_densely_as_the_map_demands() {
     run_ok corcast grow --stages stages.ini -o staged.swc
     run_ok corcast grow --demand demand.pgm,1 --terminals 300 -o plain.swc
     expect_same <(grep -v '^#' staged.swc) <(grep -v '^#' plain.swc)
+}
+
+test_flow_parts_as_the_map_demands() {
+    write_demand
+    run_ok corcast grow --demand demand.pgm,1 --terminal-flow demand --terminals 400 -o tree.swc
+    check_tree tree.swc
+    grep -qx '# terminal_flow: demand' tree.swc || fail "expected the header to tell the rule"
+    awk '/^# flow_share:/ { share[$3] = $4 } /^#/ { next } $1 in share { n[$3 < 0]++; sum[$3 < 0] += share[$1] }
+         END { exit !(sum[1] > 4.4 * sum[0] && sum[1] < 5.2 * sum[0] && n[1] > 0.85 * n[0] && n[1] < 1.15 * n[0]) }' tree.swc ||
+        fail "expected about five times as much blood on the left, through as many terminals"
+    run corcast grow --terminal-flow demand -o none.swc
+    expect_status 2
+    expect_sentence '--terminal-flow demand: needs the map of it, --demand'
 }
 
 test_maps_of_demand_that_say_nothing_are_refused() {

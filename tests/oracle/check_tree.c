@@ -7,8 +7,8 @@
  * with status 1 and a sentence unless
  * - ids are different, parents come before children, every root has one child, and every other node
  *   two or less;
- * - r_p^gamma = r_l^gamma + r_r^gamma at every bifurcation, to 1e-12 of r_p^gamma, and the radius
- *   stays where there is one child;
+ * - r_p^gamma = r_l^gamma + r_r^gamma at every bifurcation, to 1e-12 of r_p^gamma, with the one
+ *   gamma or, by gamma_by_radius, that at r_p, and the radius stays where there is one child;
  * - every terminal is at p_term, to 1e-9 of p_perf - p_term, when all inlets are at p_perf and the
  *   terminals share q_perf evenly, or as the flow_share lines say (Poiseuille, with the viscosity
  *   constant or by Pries 1994);
@@ -44,6 +44,8 @@ typedef struct Node {
 typedef struct Header {
     long double gamma, lambda, p_perf, p_term, q_perf, viscosity, dimension;
     long double hematocrit, plasma_viscosity;
+    int steps; /* of gamma_by_radius; 0: gamma is one */
+    long double step_radius[16], step_gamma[16];
     char domain[200], viscosity_law[20];
 } Header;
 
@@ -79,6 +81,20 @@ static void *grown(void *list, int n, size_t size)
     return list;
 }
 
+/* MM:GAMMA,MM:GAMMA,... */
+static void read_steps(Header *header, char *text)
+{
+    header->steps = 0;
+    for (char *at = text, *end = text; at == text || *end == ','; at = end + 1, header->steps++) {
+        if (header->steps == 16)
+            fail("gamma_by_radius has more than 16 steps");
+        header->step_radius[header->steps] = strtold(at, &end);
+        if (*end != ':')
+            fail("gamma_by_radius is '%s'", text);
+        header->step_gamma[header->steps] = strtold(end + 1, &end);
+    }
+}
+
 static void read_key(Header *header, Shares *shares, const char *line)
 {
     static const char *const keys[] = {"gamma",       "lambda",        "p_perf_mmHg",
@@ -101,6 +117,8 @@ static void read_key(Header *header, Shares *shares, const char *line)
         if (strcmp(key, keys[i]) == 0)
             *values[i] = strtold(text, NULL);
     }
+    if (strcmp(key, "gamma_by_radius") == 0)
+        read_steps(header, text);
     if (strcmp(key, "domain") == 0)
         snprintf(header->domain, sizeof header->domain, "%s", text);
     if (strcmp(key, "viscosity_law") == 0)
@@ -223,13 +241,30 @@ static void link_tree(Node *nodes, int n, const Shares *shares)
     }
 }
 
-static long double murray_deviation(const Node *nodes, int n, long double gamma)
+/* Linear in the logarithm of the radius, constant before the first and behind the last step. */
+static long double gamma_at(const Header *header, long double radius)
+{
+    const long double *r = header->step_radius, *gamma = header->step_gamma;
+    int last = header->steps - 1;
+    if (last < 0)
+        return header->gamma;
+    if (radius <= r[0] || radius >= r[last])
+        return gamma[radius <= r[0] ? 0 : last];
+    int k = 1;
+    while (radius > r[k])
+        k++;
+    return gamma[k - 1] + (gamma[k] - gamma[k - 1]) * (logl(radius) - logl(r[k - 1])) /
+                              (logl(r[k]) - logl(r[k - 1]));
+}
+
+static long double murray_deviation(const Node *nodes, int n, const Header *header)
 {
     long double worst = 0;
     for (int i = 0; i < n; i++) {
         const Node *node = &nodes[i];
         if (node->children == 0)
             continue;
+        long double gamma = gamma_at(header, node->radius);
         long double sum = 0; /* of shares of the parent's radius, so that no power overflows */
         for (int k = 0; k < node->children; k++)
             sum += powl(nodes[node->child[k]].radius / node->radius, gamma);
@@ -637,7 +672,7 @@ int main(int argc, char **argv)
         return 2;
     }
     const long double none = nanl("");
-    Header header = {none, none, none, none, none, none, none, none, none, "", ""};
+    Header header = {none, none, none, none, none, none, none, none, none, 0, {0}, {0}, "", ""};
     Shares shares = {0};
     Node *nodes;
     int n = read_tree(argv[1], &header, &shares, &nodes);
@@ -648,7 +683,7 @@ int main(int argc, char **argv)
         check_crossings(nodes, n);
     else if (header.dimension != 3)
         fail("the header does not say dimension 2 or 3");
-    long double murray = murray_deviation(nodes, n, header.gamma);
+    long double murray = murray_deviation(nodes, n, &header);
     if (!(murray <= 1e-12L))
         fail("Murray's law is missed by %.3Lg of r^gamma", murray);
     long double pressure = pressure_deviation(nodes, n, &header);

@@ -585,6 +585,68 @@ static void a_hash_is_sha_256(void **state)
     assert_string_not_equal(parted.hex, joined.hex);
 }
 
+static LogCurve curve_of(const char *text)
+{
+    LogCurve curve = {.n = 0};
+    assert_true(logcurve_parse(text, (Range){RANGE_ABOVE_0, 10}, &curve));
+    return curve;
+}
+
+static void a_curve_is_linear_in_the_logarithm_and_constant_outside(void **state)
+{
+    (void)state;
+    LogCurve curve = curve_of("0.05:3,0.2:2.6,3.2:2.2");
+    const double expected[][2] = {{0.001, 3}, {0.05, 3},  {0.1, 2.8}, {0.2, 2.6},
+                                  {0.8, 2.4}, {3.2, 2.2}, {77, 2.2}};
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++)
+        assert_true(fabs(logcurve_at(&curve, expected[i][0]) - expected[i][1]) <= 1e-14);
+    curve = curve_of("2.385");
+    assert_true(curve.n == 1 && logcurve_at(&curve, 1e-9) == 2.385);
+}
+
+static void a_curve_reads_back_from_its_text(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"2.385", "0.05:3,1:2.2", "1e-07:2.5,0.3:2.1,12.5:0.1"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        LogCurve curve = curve_of(texts[i]);
+        Text text = TEXT_INIT;
+        text_logcurve(&text, &curve);
+        assert_string_equal(text_chars(&text), texts[i]);
+        text_release(&text);
+    }
+    LogCurve one = curve_of("0.05:3,1:2.2"), other = curve_of("0.05:3,1.5:2.2");
+    assert_true(logcurve_is_same(&one, &one) && !logcurve_is_same(&one, &other));
+}
+
+static void text_that_is_no_curve_is_refused(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = {
+        "",
+        "three",
+        "0.05:",
+        ":3",
+        "0.05:3,",
+        "1:3,0.5:2",
+        "1:3,1:2",
+        "0:3,1:2",
+        "-1:3,1:2",
+        "1:3;2:2",
+        "1:3 2:2",
+        "1:0,2:2",
+        "1:3,2:11",
+        "1:3,2:2,nan:1",
+        "1:nan,2:2.2",
+        "1:2.5,2:3x",
+        "1:2:3",
+        "1:1,2:1,3:1,4:1,5:1,6:1,7:1,8:1,9:1,10:1,11:1,12:1,13:1,14:1,15:1,16:1,17:1"};
+    LogCurve curve = curve_of("3");
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        assert_false(logcurve_parse(wrong[i], (Range){RANGE_ABOVE_0, 10}, &curve));
+    assert_true(curve.n == 1 && curve.value[0] == 3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -615,6 +677,9 @@ int main(void)
         cmocka_unit_test(a_parallel_loop_visits_every_index_once),
         cmocka_unit_test(the_random_stream_is_the_published_one),
         cmocka_unit_test(a_closed_range_says_what_is_in_it),
+        cmocka_unit_test(a_curve_is_linear_in_the_logarithm_and_constant_outside),
+        cmocka_unit_test(a_curve_reads_back_from_its_text),
+        cmocka_unit_test(text_that_is_no_curve_is_refused),
         cmocka_unit_test(the_likeliest_name_is_suggested),
         cmocka_unit_test(a_selected_number_is_that_of_its_rank_in_the_sorted_ones),
     };

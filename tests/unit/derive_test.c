@@ -351,7 +351,7 @@ static void the_summary_of_a_bifurcation(void **state)
     assert_close(summary.volume_mm3, 655.8768346619131);
     assert_true(summary.has.target && summary.has.lambda && summary.lambda == 2);
     assert_close(summary.target, 208.77208059181845);
-    assert_true(summary.has.gamma && summary.gamma == 2.7);
+    assert_true(summary.gamma.n == 1 && summary.gamma.value[0] == 2.7);
     assert_true(summary.root_radius_mm == 2.385);
     assert_true(summary.min_radius_mm == 1.655);
     assert_int_equal(summary.max_level, 1);
@@ -385,7 +385,7 @@ static void the_summary_of_a_measured_tree_says_what_it_cannot_know(void **state
     assert_int_equal(summary.max_strahler, 2);
     assert_true(summary.root_radius_mm == 1.875);
     assert_true(summary.min_radius_mm == 0.5375);
-    assert_false(summary.has.target || summary.has.gamma || summary.has.lambda ||
+    assert_false(summary.has.target || summary.gamma.n > 0 || summary.has.lambda ||
                  summary.has.terminal_pressure);
     tree_release(&tree);
 }

@@ -40,7 +40,7 @@ static void assert_all(const GrowParams *params, const char *spec)
     GrowReport report;
     Tree tree = grown(params, spec, &report);
     assert_binary(&tree, params->terminals);
-    assert_murray(&tree, params->gamma);
+    assert_murray(&tree, params->gamma.value[0]);
     assert_pressures(&tree);
     assert_inside(&tree, spec);
     double target = 0;
@@ -72,7 +72,7 @@ static void laws_hold_for_any_gamma_and_lambda(void **state)
     params.terminals = 150;
     for (size_t i = 0; i < sizeof gammas / sizeof *gammas; i++)
         for (size_t j = 0; j < sizeof lambdas / sizeof *lambdas; j++) {
-            params.gamma = gammas[i];
+            params.gamma = logcurve_constant(gammas[i]);
             params.lambda = lambdas[j];
             params.seed++;
             assert_all(&params, params.seed % 2 ? "disc:50" : "ball:23.85");
@@ -113,7 +113,8 @@ static void segments_in_the_plane_never_cross(void **state)
     const double lambdas[] = {0, 2}, gammas[] = {3, 1};
     for (params.seed = 1; params.seed <= 8; params.seed++) {
         params.lambda = lambdas[params.seed % 2];
-        params.gamma = gammas[params.seed / 7]; /* the last are too thick for the disc */
+        params.gamma =
+            logcurve_constant(gammas[params.seed / 7]); /* the last are too thick for the disc */
         Tree tree = grown(&params, "disc:50", NULL);
         for (size_t i = 1; i < tree.n; i++)
             for (size_t j = 1; j < i; j++) {
@@ -156,7 +157,7 @@ static void vessels_without_room_count_as_thinner_by_halves_down_to_lines(void *
         params.terminals = 200;
         params.seed = 3;
         params.q_perf_ml_min = cases[k].flow;
-        params.gamma = cases[k].gamma;
+        params.gamma = logcurve_constant(cases[k].gamma);
         GrowReport report;
         Tree tree = grown(&params, "disc:50", &report);
         if (report.thickness != cases[k].thickness)
@@ -264,7 +265,7 @@ static void the_header_tells_how_the_tree_was_made(void **state)
     GrowParams params = grow_defaults();
     params.terminals = 5;
     params.seed = 12345678901234567890u;
-    params.gamma = 2.55;
+    params.gamma = logcurve_constant(2.55);
     params.lambda = 0.1;
     Tree tree = grown(&params, "disc:23.85", NULL);
     static const struct {
@@ -336,10 +337,10 @@ static void refuses_parameters_out_of_range_and_names_the_option(void **state)
     (void)state;
     REFUSES(terminals, 0, "`terminals` 0");
     REFUSES(terminals, GROW_MAX_TERMINALS + 1, "`terminals` 8000001");
-    REFUSES(gamma, 0, "`gamma` 0");
-    REFUSES(gamma, -2.5, "`gamma` -2.5");
-    REFUSES(gamma, 10.01, "`gamma` 10.01");
-    REFUSES(gamma, NAN, "`gamma` nan");
+    REFUSES(gamma.value[0], 0, "`gamma` 0");
+    REFUSES(gamma.value[0], -2.5, "`gamma` -2.5");
+    REFUSES(gamma.value[0], 10.01, "`gamma` 10.01");
+    REFUSES(gamma.value[0], NAN, "`gamma` nan");
     REFUSES(lambda, -0.5, "`lambda` -0.5");
     REFUSES(lambda, INFINITY, "`lambda` inf");
     REFUSES(p_perf_mmhg, INFINITY, "`p_perf_mmHg` inf");
@@ -379,12 +380,12 @@ static void says_what_to_change_when_the_radii_exceed_all_numbers(void **state)
 {
     (void)state;
     GrowParams params = grow_defaults();
-    params.gamma = 0.01;
-    assert_infeasible(&params, "disc:50", "`gamma` 0.01");
+    params.gamma = logcurve_constant(0.01);
+    assert_infeasible(&params, "disc:50", "with this `gamma` and");
     params.lambda = 100;
-    params.gamma = 0.05;
+    params.gamma = logcurve_constant(0.05);
     assert_infeasible(&params, "disc:50", "no room for terminal 2 of `terminals` 1000");
-    params.gamma = 3;
+    params.gamma = logcurve_constant(3);
     params.lambda = 5000;
     assert_infeasible(&params, "disc:50", "`lambda` 5000");
 }

@@ -247,7 +247,8 @@ static void rejects_a_known_key_of_bad_value(void **state)
                    ":1: viscosity_law is 'casson'; it must be constant or pries");
     assert_refused("# hematocrit: 0.951",
                    ":1: hematocrit is '0.951'; it must be a number from 0 to 0.95");
-    assert_refused("# terminal_flow:", ":1: terminal_flow is ''; it must be equal or territory");
+    assert_refused("# terminal_flow:",
+                   ":1: terminal_flow is ''; it must be equal or territory or demand");
     assert_refused("# terminal_flow: equal\n#terminal_flow: territory",
                    ":2: terminal_flow is 'territory', but an earlier line says otherwise");
     static const char seed[] = "it must be a whole number from 0 to 18446744073709551615";

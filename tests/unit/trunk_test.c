@@ -124,7 +124,7 @@ static void radii_and_points_of_a_trunk_stay_to_the_bit(void **state)
     for (int inlets = 1; inlets <= 2; inlets++) {
         Tree from = trunk(inlets), tree;
         GrowParams params = params_on(&from, 700);
-        params.gamma = inlets == 1 ? 3 : 2.7;
+        params.gamma = logcurve_constant(inlets == 1 ? 3 : 2.7);
         params.lambda = inlets == 1 ? 2 : 1.4;
         Err err = {""};
         if (grow_on(&params, &tree, &err) != STATUS_OK)

@@ -14,6 +14,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+static void print_gamma(const LogCurve *gamma)
+{
+    if (gamma->n == 1)
+        printf("  gamma         %g\n", gamma->value[0]);
+    for (size_t k = 0; gamma->n > 1 && k < gamma->n; k++)
+        printf("  %-13s %g at a radius of %g mm of the parent\n", k == 0 ? "gamma" : "",
+               gamma->value[k], gamma->place[k]);
+}
+
 static void print_summary(const char *path, const TreeSummary *summary)
 {
     const Box *box = &summary->bounds;
@@ -27,8 +36,7 @@ static void print_summary(const char *path, const TreeSummary *summary)
     if (summary->has.target)
         printf("  target        %.6g (sum of length * radius^%g)\n", summary->target,
                summary->lambda);
-    if (summary->has.gamma)
-        printf("  gamma         %g\n", summary->gamma);
+    print_gamma(&summary->gamma);
     printf("  radius        %.6g mm at the root, %.6g mm at the thinnest\n",
            summary->root_radius_mm, summary->min_radius_mm);
     printf("  orders        bifurcation level %d, Strahler %d\n", summary->max_level,

@@ -165,6 +165,16 @@ static Status read_number(const Option *option, const char *value, void *where, 
     return STATUS_OK;
 }
 
+static Status read_curve(const Option *option, const char *value, void *where, Err *err)
+{
+    char range[RANGE_TEXT_SIZE], allowed[RANGE_TEXT_SIZE + 128];
+    if (logcurve_parse(value, *option_range(option), where))
+        return STATUS_OK;
+    snprintf(allowed, sizeof allowed, "a number %s, or PLACE:NUMBER,... with PLACE above 0, rising",
+             range_text(*option_range(option), range));
+    return wrong(option, value, allowed, err);
+}
+
 static const struct {
     const char *name;
     double mm;
@@ -384,6 +394,11 @@ static void put_number(const void *where, Text *text)
     put_numbers(text, where, 1);
 }
 
+static void put_curve(const void *where, Text *text)
+{
+    text_logcurve(text, where);
+}
+
 static void put_vector(const void *where, Text *text)
 {
     const Vec3 *v = where;
@@ -450,6 +465,7 @@ static const Kind kinds[] = {
     [OPTION_SEED] = {"N", read_seed, count_one, put_seed, false},
     [OPTION_COUNT] = {"N", read_count, count_one, put_count, false},
     [OPTION_NUMBER] = {"NUMBER", read_number, count_one, put_number, false},
+    [OPTION_CURVE] = {"NUMBER|PLACE:NUMBER,...", read_curve, count_one, put_curve, false},
     [OPTION_VECTOR] = {"X,Y,Z", read_vector, count_one, put_vector, false},
     [OPTION_VECTORS] = {"X,Y,Z", read_vectors, count_vectors, put_vector, false},
     [OPTION_NUMBERS] = {"A,B,...", read_list, count_list, put_list, false},

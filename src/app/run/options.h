@@ -23,6 +23,7 @@ typedef enum OptionKind {
     OPTION_SEED,    /* uint64_t */
     OPTION_COUNT,   /* size_t, in the range */
     OPTION_NUMBER,  /* double, finite, in the range */
+    OPTION_CURVE,   /* LogCurve, its values in the range: NUMBER or PLACE:NUMBER,... */
     OPTION_VECTOR,  /* Vec3: X,Y or X,Y,Z */
     OPTION_VECTORS, /* VectorList: X,Y or X,Y,Z, given several times */
     OPTION_NUMBERS, /* NumberList: A,B,... */
@@ -107,7 +108,7 @@ typedef struct Option {
     OptionKind kind;
     OptionGroup group;
     const MetaRow *meta; /* the key of a tree that it says: range and unit are its; NULL: none */
-    const Range *range;  /* of OPTION_WHOLE, COUNT, NUMBER, SIZE; NULL: any number */
+    const Range *range;  /* of OPTION_WHOLE, COUNT, NUMBER, CURVE, SIZE; NULL: any number */
     const char *const *choices; /* of OPTION_CHOICE; ends with NULL */
     const char *unit;           /* "mm"; NULL: none */
     const char *argument;       /* "T.swc"; NULL: named after unit or kind */
@@ -164,6 +165,7 @@ static inline const char *option_unit(const Option *option)
 #define OPTION_TYPE_SEED uint64_t
 #define OPTION_TYPE_COUNT size_t
 #define OPTION_TYPE_NUMBER double
+#define OPTION_TYPE_CURVE LogCurve
 #define OPTION_TYPE_VECTOR Vec3
 #define OPTION_TYPE_VECTORS VectorList
 #define OPTION_TYPE_NUMBERS NumberList

@@ -94,6 +94,17 @@ static double gamma_of(const BloodOptions *blood, const Tree *tree)
     return source->known[META_GAMMA] ? source->number[META_GAMMA] : 3;
 }
 
+/* Refuses to take the exponent from a tree that has many. */
+static Status check_gamma(const BloodOptions *blood, const Tree *tree, const char *tree_path,
+                          Err *err)
+{
+    if (blood->said.known[META_GAMMA] || !tree->meta.known[META_GAMMA_BY_RADIUS])
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "--terminal-flow murray: the exponent of %s follows the radius; give --gamma",
+                   tree_path);
+}
+
 static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_path, Err *err)
 {
     const char *law = blood->terminal_flow;
@@ -104,6 +115,7 @@ static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_
         return STATUS_OK;
     }
     if (strcmp(law, "murray") == 0) {
+        TRY(check_gamma(blood, tree, tree_path, err));
         Status status = tree_part_flow_by_radius(tree, gamma_of(blood, tree), err);
         if (status == STATUS_INPUT)
             err_prefix(err, "%s: ", tree_path);

@@ -48,9 +48,12 @@ static const Option rows[] = {
      .group = GROUP_TREE,
      .help = "the tree of --from keeps its radii, too; what leaves it has those that follow"},
     {.name = "gamma",
-     SETS_KEY(Growing, params.gamma, given, GAMMA),
+     SETS(CURVE, Growing, params.gamma),
+     GIVEN(Growing, given[META_GAMMA]),
+     .meta = &meta_rows[META_GAMMA],
      .group = GROUP_BLOOD,
-     .help = "Murray exponent"},
+     .argument = "NUMBER|MM:NUMBER,...",
+     .help = "Murray exponent; or by the radius of the parent, in between linear in its logarithm"},
     {.name = "lambda",
      SETS_KEY(Growing, params.lambda, given, LAMBDA),
      .group = GROUP_OPTIMUM,
@@ -91,13 +94,16 @@ static const Option rows[] = {
      GIVEN(Growing, given[META_TERMINAL_FLOW]),
      .choices = terminal_flow_names,
      .group = GROUP_BLOOD,
-     .help = "the same through all terminals, or as large as the tissue nearest to each"},
+     .help =
+         "the same through all terminals, or as large as the tissue nearest to each, or as what "
+         "that tissue asks for by --demand"},
     {.name = "demand",
      SETS(TEXT, Growing, demand_spec),
      .group = GROUP_TREE,
      .argument = "FILE[,MM]",
      .otherwise = "even",
-     .help = "how densely terminals are to stand: a picture with pixels MM wide, or NIfTI"},
+     .help = "how densely terminals are to stand, or by --terminal-flow demand how much blood they "
+             "get: a picture with pixels MM wide, or NIfTI"},
     {.name = "min-radius",
      SETS(NUMBER, Growing, params.min_radius_mm),
      FROM_TO(0, 1e3),
@@ -144,7 +150,7 @@ static Status take_meta(Growing *growing, Err *err)
         return err_set(
             err, STATUS_USAGE,
             "--from: the tree has flow shares, and does not say after what new terminals "
-            "are to get theirs; give --terminal-flow equal or territory");
+            "are to get theirs; give --terminal-flow equal, territory or demand");
     return STATUS_OK;
 }
 

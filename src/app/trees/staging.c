@@ -21,7 +21,8 @@ typedef struct Staging {
     char *text;            /* that lines point into; owned */
     const char *domain;    /* the text of the domain that there is; NULL: the one prepared */
     const char *last_name; /* of the stage before; NULL: none */
-    double last_gamma, last_p_term;
+    LogCurve last_gamma;
+    double last_p_term;
 } Staging;
 
 /* The option of growth; NULL when it is none of a stage's. */
@@ -53,17 +54,33 @@ static Status take_line(void *user, const char *section, const char *name, const
     return status == STATUS_USAGE ? STATUS_INPUT : status;
 }
 
+static Status refuse_gamma(const Staging *staging, const char *name, Err *err)
+{
+    Text own = TEXT_INIT, last = TEXT_INIT;
+    text_logcurve(&own, &staging->growing->params.gamma);
+    text_logcurve(&last, &staging->last_gamma);
+    Status status = text_check(&own, err);
+    if (status == STATUS_OK)
+        status = text_check(&last, err);
+    if (status == STATUS_OK)
+        status =
+            err_set(err, STATUS_INPUT,
+                    "%s: [%s]: gamma %s would change the radii of stage [%s], which has %s; say "
+                    "keep-radii = on, or the same gamma",
+                    staging->path, name, text_chars(&own), staging->last_name, text_chars(&last));
+    text_release(&own);
+    text_release(&last);
+    return status;
+}
+
 /* What two stages must not say. */
 static Status check_stage(const Staging *staging, const char *name, Err *err)
 {
     const GrowParams *params = &staging->growing->params;
     if (!staging->last_name)
         return STATUS_OK;
-    if (!params->keep_radii && params->gamma != staging->last_gamma)
-        return err_set(err, STATUS_INPUT,
-                       "%s: [%s]: gamma %g would change the radii of stage [%s], which has %g; say "
-                       "keep-radii = on, or the same gamma",
-                       staging->path, name, params->gamma, staging->last_name, staging->last_gamma);
+    if (!params->keep_radii && !logcurve_is_same(&params->gamma, &staging->last_gamma))
+        return refuse_gamma(staging, name, err);
     if (params->keep_radii && params->p_term_mmhg >= staging->last_p_term)
         return err_set(err, STATUS_INPUT,
                        "%s: [%s]: p-term %g mmHg leaves nothing to drop beyond stage [%s], whose "

@@ -1,9 +1,19 @@
 /* The keys are a contract: they may be added to, never renamed. */
 #include "app/trees/summary_json.h"
 
+/* Pairs of radius, mm, and value. */
+static json_t *curve_json(const LogCurve *curve)
+{
+    json_t *pairs = json_array();
+    for (size_t k = 0; k < curve->n; k++)
+        pairs = json_with_item(pairs, json_pack("[f,f]", curve->place[k], curve->value[k]));
+    return pairs;
+}
+
 json_t *summary_json(const TreeSummary *summary)
 {
     const Box *box = &summary->bounds;
+    const LogCurve *gamma = &summary->gamma;
     const JsonMember members[] = {
         {"segments", json_integer((json_int_t)summary->segments)},
         {"terminals", json_integer((json_int_t)summary->terminals)},
@@ -12,7 +22,7 @@ json_t *summary_json(const TreeSummary *summary)
         {"total_length_mm", json_number(summary->total_length_mm)},
         {"volume_mm3", json_number(summary->volume_mm3)},
         {"target", summary->has.target ? json_number(summary->target) : json_null()},
-        {"gamma", summary->has.gamma ? json_number(summary->gamma) : json_null()},
+        {"gamma", gamma->n == 1 ? json_number(gamma->value[0]) : json_null()},
         {"lambda", summary->has.lambda ? json_number(summary->lambda) : json_null()},
         {"root_radius_mm", json_number(summary->root_radius_mm)},
         {"min_radius_mm", json_number(summary->min_radius_mm)},
@@ -22,6 +32,8 @@ json_t *summary_json(const TreeSummary *summary)
                               box->high.y, box->high.z)},
     };
     json_t *json = json_with_members(json_object(), members, sizeof members / sizeof *members);
+    if (gamma->n > 1)
+        json = json_with(json, "gamma_by_radius", curve_json(gamma));
     if (summary->has.terminal_pressure)
         json = json_with(json, "terminal_pressure_mmHg",
                          json_pack("{s:f, s:f, s:f}", "min", summary->terminal_pressure_min_mmhg,

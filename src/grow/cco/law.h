@@ -12,6 +12,10 @@
  *
  * - cost S = rho^lambda V*, the target but for q^lambda g^lambda.
  *
+ * Where gamma follows the radius of the parent, each fork has its own: that of G and P is the
+ * fork's at the distal end, that of X the fork's that the segment leaves. The functions are given
+ * the law at that fork; only law_gather and the rho_gamma of law_extend depend on gamma.
+ *
  * They follow from the daughters' by W = N m l + P^4 and S = rho^lambda l + (rho / P)^lambda times
  * the sum of the daughters' S.
  *
@@ -96,8 +100,8 @@ static inline double law_lambda_power(const Law *law, double x)
     return pow(x, law->lambda);
 }
 
-/* What hangs on the distal end if the daughters' rho_gamma and cost add up to these, both 0 at a
- * terminal. */
+/* What hangs on the distal end, where the law is this, if the daughters' rho_gamma and cost add up
+ * to these, both 0 at a terminal. */
 static inline Below law_gather(const Law *law, double rho_gamma, double cost)
 {
     Below out = {.rho_gamma = rho_gamma, .cost = cost};
@@ -113,7 +117,8 @@ static inline Below law_gather(const Law *law, double rho_gamma, double cost)
     return out;
 }
 
-/* The segment of `length` mm with this `burden`, together with what hangs on its distal end. */
+/* The segment of `length` mm with this `burden`, together with what hangs on its distal end; the
+ * law is that of its proximal end. */
 static inline Reduced law_extend(const Law *law, double burden, double length, const Below *below)
 {
     Reduced out = {.below = *below};

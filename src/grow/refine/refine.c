@@ -18,8 +18,9 @@
  *
  * Refinement may be stopped after any move, and then has a tree that keeps the rules: the present
  * one in descend; in a detour or while annealing, the best one before, which recall restores.
- * Viscosities that follow the radii are held fixed within a round and computed anew after it
- * (settle). If vessels meet because of that at the end, the tree that came in is kept. */
+ * What follows the radii, viscosities or exponents, is held fixed within a round and computed anew
+ * after it (settle). If vessels meet because of that at the end, the tree is the one of the last
+ * round before which none did. */
 #include "grow/grow.h"
 
 #include "grow/refine/refine_arbor.h"
@@ -61,6 +62,7 @@ typedef struct Refinement {
     LocalSearch search;
     Joints joints;
     double first_cost;
+    size_t unclear; /* segments that broke a rule at first */
     int32_t *order; /* in which subtrees move, from 1 */
     /* The tree that is remembered: */
     double best_cost;
@@ -170,17 +172,17 @@ static void remember(Refinement *refinement)
     }
 }
 
-/* Brings viscosities and reservations to the present radii. */
+/* Brings what follows the radii, and reservations, to the present radii. */
 static Status settle(LocalSearch *search, Err *err)
 {
-    TRY(arbor_update_viscosity(&search->arbor, err));
+    TRY(arbor_agree(&search->arbor, err));
     return clearance_reserve(&search->clearance, &search->arbor, err);
 }
 
-/* Reserved radii may age for some rounds, viscosities for one. */
+/* Reserved radii may age for some rounds, what follows the radii for one. */
 static Status settle_for_round(LocalSearch *search, int round, Err *err)
 {
-    bool is_due = round % ROUNDS_PER_RESERVATION == 0 || search->arbor.viscosity;
+    bool is_due = round % ROUNDS_PER_RESERVATION == 0 || search->arbor.local;
     return is_due ? settle(search, err) : STATUS_OK;
 }
 
@@ -209,6 +211,8 @@ static Status descend(Refinement *refinement, double least_gain, bool *over, Err
     for (int round = 1; !*over && cost < before * (1 - least_gain); round++) {
         before = cost;
         TRY(settle_for_round(search, round, err));
+        if (search->arbor.local && count_unclear(search) <= refinement->unclear)
+            remember(refinement);
         if (refinement->params->level != GROW_REFINE_GEOMETRY)
             TRY(shuffle(refinement, over, err));
         TRY(move_jointly(refinement, over, err));
@@ -333,15 +337,17 @@ static Status start(Refinement *refinement, const Domain *domain, const Tree *tr
     double cost = refinement->first_cost = arbor_cost(&search->arbor);
     if (!(cost > 0) || !isfinite(cost))
         return err_set(err, STATUS_INFEASIBLE,
-                       "with gamma %g and lambda %g the radii span more than a double can hold",
-                       tree->meta.number[META_GAMMA], tree->meta.number[META_LAMBDA]);
+                       "with this gamma and lambda %g the radii span more than a double can hold",
+                       tree->meta.number[META_LAMBDA]);
     TRY(clearance_init(&search->clearance, domain, &search->arbor, err));
+    refinement->unclear = count_unclear(search);
     TRY(joints_init(&refinement->joints, n, err));
+    TRY(mem_calloc(&refinement->best_parent, n, sizeof *refinement->best_parent, "nodes", err));
+    TRY(mem_calloc(&refinement->best_place, n, sizeof *refinement->best_place, "nodes", err));
+    remember(refinement);
     if (params->level == GROW_REFINE_GEOMETRY)
         return STATUS_OK;
     TRY(penalties_init(&search->penalties, n, err));
-    TRY(mem_calloc(&refinement->best_parent, n, sizeof *refinement->best_parent, "nodes", err));
-    TRY(mem_calloc(&refinement->best_place, n, sizeof *refinement->best_place, "nodes", err));
     TRY(mem_calloc(&refinement->order, n, sizeof *refinement->order, "segments", err));
     for (size_t i = 0; i < n; i++)
         refinement->order[i] = (int32_t)i;
@@ -357,11 +363,12 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
     Status status = STATUS_OK;
     TRY_GOTO(start(&refinement, domain, tree, err));
     double before = target_of(&search->arbor), after = before;
-    size_t unclear = count_unclear(search);
     TRY_GOTO(refine(&refinement, err));
-    if (search->arbor.viscosity)
+    if (search->arbor.local)
         TRY_GOTO(settle(search, err));
-    if (!search->arbor.viscosity || count_unclear(search) <= unclear) {
+    if (search->arbor.local && count_unclear(search) > refinement.unclear)
+        TRY_GOTO(recall(&refinement, err));
+    if (!search->arbor.local || count_unclear(search) <= refinement.unclear) {
         after = target_of(&search->arbor);
         TRY_GOTO(result_write(&search->arbor, tree, err));
     }

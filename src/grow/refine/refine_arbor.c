@@ -6,8 +6,8 @@
 
 #include <stdlib.h>
 
-/* A relative change of a viscosity that counts as none, and the most rounds until there is no
- * greater one. */
+/* A change of an exponent, or a relative one of a viscosity, that counts as none, and the most
+ * rounds until there is no greater one. */
 static const double settled = 1e-13;
 enum { MOST_ROUNDS = 100 };
 
@@ -18,7 +18,8 @@ Reduced arbor_reduce(const Arbor *arbor, int32_t i)
     double flow =
         child[0] < 0 ? branch->flow : arbor->branch[child[0]].flow + arbor->branch[child[1]].flow;
     Below below = arbor_below(arbor, i);
-    return law_extend(&arbor->law, flow * arbor_viscosity(arbor, i), branch->length, &below);
+    const Law law = arbor_law(arbor, branch->parent);
+    return law_extend(&law, flow * arbor_viscosity(arbor, i), branch->length, &below);
 }
 
 /* Sums up segment i from its daughters. */
@@ -69,17 +70,23 @@ static Status list_nodes(Arbor *arbor, const Tree *tree, const int32_t *children
 }
 
 /* Room for what there is of each node. */
-static Status allocate(Arbor *arbor, bool pries, Err *err)
+static Status allocate(Arbor *arbor, Err *err)
 {
     TRY(mem_calloc(&arbor->branch, arbor->n, sizeof *arbor->branch, "segments", err));
     TRY(mem_calloc(&arbor->shape, arbor->n, sizeof *arbor->shape, "segments", err));
     TRY(mem_calloc(&arbor->marginal, arbor->n, sizeof *arbor->marginal, "segments", err));
     TRY(mem_calloc(&arbor->saved_branch, arbor->n, sizeof *arbor->saved_branch, "segments", err));
-    if (pries)
-        TRY(mem_calloc(&arbor->viscosity, arbor->n, sizeof *arbor->viscosity, "segments", err));
+    if (arbor->pries || arbor->gamma.n > 1)
+        TRY(mem_calloc(&arbor->local, arbor->n, sizeof *arbor->local, "segments", err));
     if (arbor->inlets > 1)
         TRY(mem_calloc(&arbor->tree, arbor->n, sizeof *arbor->tree, "segments", err));
     return STATUS_OK;
+}
+
+static Local local_at(const Arbor *arbor, double radius)
+{
+    return (Local){arbor->pries ? viscosity_pries_pa_s(radius, arbor->hematocrit, 1) : 1,
+                   logcurve_at(&arbor->gamma, radius)};
 }
 
 /* Fills in what the tree says of each node, and sums up. */
@@ -96,13 +103,13 @@ static Status fill(Arbor *arbor, const Tree *tree, const int32_t *parent, Err *e
         size_t node = (size_t)arbor->node[i];
         place[i] = tree->position[node];
         arbor->branch[i].flow = share[node] / total * (double)arbor->terminals;
-        if (arbor->viscosity && i >= arbor->inlets)
-            arbor->viscosity[i] = viscosity_pries_pa_s(tree->radius_mm[node], arbor->hematocrit, 1);
+        if (arbor->local)
+            arbor->local[i] = local_at(arbor, tree->radius_mm[node]);
         if (arbor->tree)
             arbor->tree[i] = i < arbor->inlets ? (int32_t)i : arbor->tree[parent[i]];
     }
     arbor_arrange(arbor, parent, place);
-    status = arbor_update_viscosity(arbor, err);
+    status = arbor_agree(arbor, err);
 done:
     free(share);
     free(place);
@@ -115,7 +122,10 @@ Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
     double drop = pa_from_mmhg(number[META_P_PERF]) - pa_from_mmhg(number[META_P_TERM]);
     bool pries = meta_number(&tree->meta, META_VISCOSITY_LAW) == VISCOSITY_PRIES;
     double reference_cp = number[pries ? META_PLASMA_VISCOSITY : META_VISCOSITY];
-    Arbor made = {.law = {number[META_GAMMA], number[META_LAMBDA]},
+    LogCurve gamma = meta_gamma(&tree->meta);
+    Arbor made = {.law = {gamma.value[0], number[META_LAMBDA]},
+                  .gamma = gamma,
+                  .pries = pries,
                   .hematocrit = number[META_HEMATOCRIT]};
     int32_t *children = NULL, *parent = NULL;
     Status status = STATUS_OK;
@@ -125,7 +135,7 @@ Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
     TRY_GOTO(list_nodes(&made, tree, children, parent, err));
     double flow = mm3_s_from_ml_min(number[META_Q_PERF]) / (double)made.terminals;
     made.radius_unit = law_radius_unit(pa_s_from_cp(reference_cp), flow, drop);
-    TRY_GOTO(allocate(&made, pries, err));
+    TRY_GOTO(allocate(&made, err));
     TRY_GOTO(fill(&made, tree, parent, err));
     *arbor = made;
 done:
@@ -143,7 +153,7 @@ void arbor_release(Arbor *arbor)
     free(arbor->branch);
     free(arbor->shape);
     free(arbor->marginal);
-    free(arbor->viscosity);
+    free(arbor->local);
     free(arbor->saved_branch);
     *arbor = (Arbor){0};
 }
@@ -231,30 +241,33 @@ double arbor_radius_seen(const Arbor *arbor, int32_t i)
     return arbor->radius_unit * arbor->marginal[i].gauge * arbor_reduce(arbor, i).rho;
 }
 
-static Status too_thin(Err *err)
+static Status disagree(const Arbor *arbor, Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
-                   "vessels are too thin for the viscosity law pries: radii and viscosities do not "
-                   "settle");
+                   arbor->gamma.n > 1
+                       ? "gamma changes too fast with the radius: the radii do not settle"
+                       : "vessels are too thin for the viscosity law pries: radii and viscosities "
+                         "do not settle");
 }
 
-Status arbor_update_viscosity(Arbor *arbor, Err *err)
+Status arbor_agree(Arbor *arbor, Err *err)
 {
-    double change = arbor->viscosity ? INFINITY : 0;
+    double change = arbor->local ? INFINITY : 0;
     for (int round = 0; round < MOST_ROUNDS && change > settled; round++) {
         change = 0;
         arbor_refresh(arbor);
         for (size_t i = arbor->inlets; i < arbor->n; i++) {
-            double radius = arbor_radius_seen(arbor, (int32_t)i);
-            double viscosity = viscosity_pries_pa_s(radius, arbor->hematocrit, 1);
-            if (!isfinite(viscosity))
-                return too_thin(err);
-            change = fmax(change, fabs(viscosity / arbor->viscosity[i] - 1));
-            arbor->viscosity[i] = viscosity;
+            const Local was = arbor->local[i],
+                        now = local_at(arbor, arbor_radius_seen(arbor, (int32_t)i));
+            if (!isfinite(now.viscosity))
+                return disagree(arbor, err);
+            change = fmax(
+                change, fmax(fabs(now.viscosity / was.viscosity - 1), fabs(now.gamma - was.gamma)));
+            arbor->local[i] = now;
         }
         arbor_sum(arbor);
     }
-    return change <= settled ? STATUS_OK : too_thin(err);
+    return change <= settled ? STATUS_OK : disagree(arbor, err);
 }
 
 double arbor_radius(const Arbor *arbor, int32_t i)
@@ -337,7 +350,7 @@ void arbor_undo(Arbor *arbor)
     for (int k = 0; k < arbor->n_saved_shapes; k++)
         arbor->shape[arbor->saved_shape[k].i] = arbor->saved_shape[k].was;
     if (arbor->grafted)
-        arbor->viscosity[arbor->grafted] = arbor->saved_viscosity;
+        arbor->local[arbor->grafted] = arbor->saved_local;
     arbor->grafted = 0;
     arbor->pruned = 0;
 }
@@ -421,10 +434,10 @@ void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place)
     int32_t *child = branch_of(arbor, fork)->child;
     child[child[0] == i] = host;
     branch_of(arbor, host)->parent = fork;
-    if (arbor->viscosity) { /* the fork's segment was the first part of the host */
+    if (arbor->local) { /* the fork's segment was the first part of the host */
         arbor->grafted = fork;
-        arbor->saved_viscosity = arbor->viscosity[fork];
-        arbor->viscosity[fork] = arbor->viscosity[host];
+        arbor->saved_local = arbor->local[fork];
+        arbor->local[fork] = arbor->local[host];
     }
     pivot(arbor, fork, arbor->shape[host].from, place);
     arbor->pruned = 0;

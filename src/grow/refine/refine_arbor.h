@@ -53,11 +53,17 @@ typedef struct Marginal {
     double extra; /* the increase of S_root if all segments above carried one more unit of flow */
 } Marginal;
 
+/* What of a segment follows its radius. */
+typedef struct Local {
+    double viscosity; /* over the reference */
+    double gamma;     /* of the fork at its end */
+} Local;
+
 /* The most segments that one move may place or reserve anew. */
 enum { ARBOR_MOVE_SHAPES = 24 };
 
 typedef struct Arbor {
-    Law law;
+    Law law;       /* gamma is the first of what follows the radius */
     size_t n;      /* nodes */
     size_t inlets; /* of them, the first ones */
     size_t terminals;
@@ -67,9 +73,9 @@ typedef struct Arbor {
     Branch *branch;
     Shape *shape;
     Marginal *marginal; /* of each segment; as of the last arbor_refresh, or of its last move */
-    /* Of each segment, over the reference, as of the last arbor_update_viscosity; NULL where it is
-     * constant. */
-    double *viscosity;
+    Local *local; /* of each segment, as of the last arbor_agree; NULL where both are constant */
+    LogCurve gamma;
+    bool pries;
     double hematocrit;
     int32_t pruned; /* the segment that arbor_prune has cut off; 0: none */
     /* What the present move, the number `move`, has changed, as it was before: */
@@ -84,13 +90,13 @@ typedef struct Arbor {
         int32_t i;
     } saved_shape[ARBOR_MOVE_SHAPES];
     int n_saved_shapes;
-    int32_t grafted; /* the bifurcation that took over its host's viscosity; 0: none */
-    double saved_viscosity;
+    int32_t grafted; /* the bifurcation that took over what is local of its host; 0: none */
+    Local saved_local;
 } Arbor;
 
-/* Makes *arbor (owned; arbor_release) from a tree that refine_check accepts, with right sums and,
- * by Pries's law, viscosities that agree with the radii. STATUS_INFEASIBLE as
- * arbor_update_viscosity, STATUS_MEMORY. */
+/* Makes *arbor (owned; arbor_release) from a tree that refine_check accepts, with right sums, and
+ * what follows the radii in agreement with them. STATUS_INFEASIBLE as arbor_agree, STATUS_MEMORY.
+ */
 MUST_CHECK Status arbor_init(Arbor *arbor, const Tree *tree, Err *err);
 void arbor_release(Arbor *arbor);
 
@@ -99,9 +105,10 @@ void arbor_release(Arbor *arbor);
 void arbor_arrange(Arbor *arbor, const int32_t *parent, const Vec3 *place);
 /* Computes the sums of all segments anew, lengths included. O(n). */
 void arbor_sum(Arbor *arbor);
-/* Where viscosity follows the radius, computes both in turn until they agree to 1e-13, and sums up
- * anew. STATUS_INFEASIBLE where vessels are too narrow for that. */
-MUST_CHECK Status arbor_update_viscosity(Arbor *arbor, Err *err);
+/* Where viscosity or gamma follow the radius, computes them and the radii in turn until they agree
+ * to 1e-13, and sums up anew. STATUS_INFEASIBLE where vessels are too narrow for that, or gamma
+ * changes too fast. */
+MUST_CHECK Status arbor_agree(Arbor *arbor, Err *err);
 /* Brings the marginals of all segments up to date. Needs right sums. O(n). */
 void arbor_refresh(Arbor *arbor);
 
@@ -125,7 +132,13 @@ static inline bool arbor_is_same_tree(const Arbor *arbor, int32_t i, int32_t j)
 /* The viscosity in segment i relative to the reference. */
 static inline double arbor_viscosity(const Arbor *arbor, int32_t i)
 {
-    return arbor->viscosity ? arbor->viscosity[i] : 1;
+    return arbor->local ? arbor->local[i].viscosity : 1;
+}
+
+/* The law at node i. */
+static inline Law arbor_law(const Arbor *arbor, int32_t i)
+{
+    return arbor->local ? (Law){arbor->local[i].gamma, arbor->law.lambda} : arbor->law;
 }
 
 /* S_root; not finite, or 0, when the radii span more than a double can hold. */
@@ -151,7 +164,8 @@ static inline Below arbor_below(const Arbor *arbor, int32_t i)
     if (child[0] < 0)
         return (Below){0};
     const Branch *left = &arbor->branch[child[0]], *right = &arbor->branch[child[1]];
-    return law_gather(&arbor->law, left->rho_gamma + right->rho_gamma, left->cost + right->cost);
+    const Law law = arbor_law(arbor, i);
+    return law_gather(&law, left->rho_gamma + right->rho_gamma, left->cost + right->cost);
 }
 
 /* Segment i together with what hangs on it. */

@@ -122,11 +122,12 @@ Status move_bifurcation(LocalSearch *search, int32_t i, Err *err)
     Vec3 place = arbor->shape[i].to;
     Marginal marginal = arbor_marginal(arbor, i);
     Bifurcation problem = bifurcation_of(search, i, child[0], child[1], &marginal);
+    const Law law = arbor_law(arbor, i);
     BifurcationState now, best;
     search->tried++;
-    bifurcation_at(&arbor->law, &problem, place, &now);
+    bifurcation_at(&law, &problem, place, &now);
     best = now;
-    if (!bifurcation_optimise(&arbor->law, &problem, ROUNDS, &best))
+    if (!bifurcation_optimise(&law, &problem, ROUNDS, &best))
         return STATUS_OK;
     arbor_begin(arbor);
     double due = penalty(search, moved, 3), cost = arbor_cost(arbor);
@@ -160,8 +161,9 @@ static bool price(const LocalSearch *search, int32_t subtree, int32_t host, Cand
     out->problem = bifurcation_of(search, host, host, subtree, &marginal);
     Vec3 middle = vec3_scale(vec3_add(shape->from, shape->to), 0.5);
     Vec3 place = vec3_add_scaled(vec3_scale(middle, 0.75), arbor->shape[subtree].to, 0.25);
-    bifurcation_at(&arbor->law, &out->problem, place, &out->state);
-    if (!bifurcation_optimise(&arbor->law, &out->problem, ROUGH_ROUNDS, &out->state))
+    const Law law = arbor_law(arbor, host);
+    bifurcation_at(&law, &out->problem, place, &out->state);
+    if (!bifurcation_optimise(&law, &out->problem, ROUGH_ROUNDS, &out->state))
         return false;
     out->price = out->state.price - marginal.adjoint.load * before.load -
                  marginal.adjoint.cost * before.cost + marginal.extra * arbor->branch[subtree].flow;
@@ -238,7 +240,8 @@ static double tolerance(LocalSearch *search, double temperature)
 static bool connect(LocalSearch *search, int32_t subtree, Candidate *to, double limit)
 {
     Arbor *arbor = &search->arbor;
-    if (!bifurcation_optimise(&arbor->law, &to->problem, ROUNDS, &to->state))
+    const Law law = arbor_law(arbor, to->host);
+    if (!bifurcation_optimise(&law, &to->problem, ROUNDS, &to->state))
         return false;
     limit += penalty(search, &to->host, 1);
     arbor_graft(arbor, subtree, to->host, to->state.place);

@@ -24,9 +24,7 @@ static Status write_segment(const Tree *was, const Arbor *arbor, int32_t i, int3
     double radius = arbor->radius_unit * gauge[i] * reduced.rho;
     if (!(radius >= DBL_MIN) || !isfinite(radius))
         return err_set(err, STATUS_INFEASIBLE,
-                       "the radii span more than a double can hold; move gamma, now %g, "
-                       "towards 3",
-                       arbor->law.gamma);
+                       "the radii span more than a double can hold; move gamma towards 3");
     for (int side = 0; side < 2; side++)
         if (arbor->branch[i].child[side] >= 0)
             gauge[arbor->branch[i].child[side]] = gauge[i] * reduced.widening;

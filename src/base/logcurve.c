@@ -1,0 +1,82 @@
+/* The logarithm makes vessels of 0.1 and 1 mm as far apart as those of 1 and 10, as their places in
+ * a tree are. A curve has few points, so the one below a place is found by looking at all. */
+#include "base/logcurve.h"
+
+#include "base/number.h"
+#include <math.h>
+#include <string.h>
+
+double logcurve_at(const LogCurve *curve, double place)
+{
+    size_t k = 0;
+    while (k < curve->n && curve->n > 1 && place > curve->place[k])
+        k++;
+    if (k == 0 || k == curve->n)
+        return curve->value[k == 0 ? 0 : k - 1];
+    double low = curve->place[k - 1], part = log(place / low) / log(curve->place[k] / low);
+    return curve->value[k - 1] + part * (curve->value[k] - curve->value[k - 1]);
+}
+
+bool logcurve_is_same(const LogCurve *a, const LogCurve *b)
+{
+    bool same = a->n == b->n;
+    for (size_t k = 0; same && k < a->n; k++)
+        same = a->value[k] == b->value[k] && (a->n == 1 || a->place[k] == b->place[k]);
+    return same;
+}
+
+bool logcurve_is_within(const LogCurve *curve, Range range)
+{
+    bool within = true;
+    for (size_t k = 0; within && k < curve->n; k++)
+        within = range_has(range, curve->value[k]);
+    return within;
+}
+
+/* Takes PLACE:VALUE off the text. */
+static bool take_point(const char **at, LogCurve *curve)
+{
+    size_t k = curve->n;
+    if (k == LOGCURVE_MOST_POINTS || !number_take(at, &curve->place[k]) || *(*at)++ != ':' ||
+        !number_take(at, &curve->value[k]))
+        return false;
+    curve->n++;
+    return curve->place[k] > (k > 0 ? curve->place[k - 1] : 0);
+}
+
+static bool parse_points(const char *chars, LogCurve *curve)
+{
+    do {
+        if (!take_point(&chars, curve))
+            return false;
+    } while (*chars++ == ',');
+    return chars[-1] == '\0';
+}
+
+bool logcurve_parse(const char *chars, Range range, LogCurve *out)
+{
+    LogCurve made = {.n = 0};
+    bool read = false;
+    if (strchr(chars, ':')) {
+        read = parse_points(chars, &made);
+    } else {
+        made.n = 1;
+        read = number_parse(chars, &made.value[0]);
+    }
+    if (!read || !logcurve_is_within(&made, range))
+        return false;
+    *out = made;
+    return true;
+}
+
+void text_logcurve(Text *text, const LogCurve *curve)
+{
+    for (size_t k = 0; k < curve->n; k++) {
+        text_puts(text, k > 0 ? "," : "");
+        if (curve->n > 1) {
+            text_number(text, curve->place[k]);
+            text_puts(text, ":");
+        }
+        text_number(text, curve->value[k]);
+    }
+}
