@@ -467,13 +467,17 @@ static void make_finer(ZoneFineness *fineness, double factor)
 }
 
 /* How many steps finer the cells of the next attempt are; 0: none would help. A wide hole is there
- * for good, unless it is closed by a gap that cells are too wide for. */
-static int steps_finer(const Maker *maker, double hole, double cell, int left)
+ * for good, unless it is closed by a gap that cells are too wide for. So is any hole that finer
+ * cells have left as wide, where vessels overlap that do not blend. */
+static int steps_finer(const Maker *maker, double hole, double before, double cell, int left)
 {
     uint32_t pair[2];
-    if (hole <= wide_hole * cell || left == 0)
+    bool is_wide = hole > wide_hole * cell;
+    if (left == 0 || (!is_wide && hole <= lasting * before))
         return left > 0;
     double gap = find_gap(maker, pair);
+    if (!is_wide)
+        return gap >= 0;
     return gap >= 0 && gap < narrow_gap ? left : 0;
 }
 
@@ -487,7 +491,9 @@ static Status make_sound(const Maker *maker, ZoneFineness *used, uint8_t *fates,
         zonepiece_release(maker->piece);
         maker->piece->repeats = repeats;
         TRY(attempt(maker, used, fates, sound, &hole));
-        steps = *sound ? 0 : steps_finer(maker, hole, used->cells.ratio, MOST_REPEATS - repeats);
+        steps = *sound
+                    ? 0
+                    : steps_finer(maker, hole, before, used->cells.ratio, MOST_REPEATS - repeats);
         if (steps && is_own_tunnel(maker, hole, before))
             used->farthest = most_stopped;
         before = hole;
@@ -497,7 +503,8 @@ static Status make_sound(const Maker *maker, ZoneFineness *used, uint8_t *fates,
 }
 
 /* Where a triangle is too far off the wall, as over the bottom of a groove, which is too narrow to
- * be found by splitting, cells so much finer as it is too far are tried, and the nearest kept. */
+ * be found by splitting, cells so much finer as it is too far are tried, and the nearest kept.
+ * Triangles that are none of the wall, and that finer cells do not bring nearer, stay so. */
 static Status come_near(const Maker *maker, ZoneFineness *used, uint8_t *fates)
 {
     ZoneFineness tried = *used;
@@ -513,6 +520,8 @@ static Status come_near(const Maker *maker, ZoneFineness *used, uint8_t *fates)
         if (is_nearest) {
             *used = tried;
             off = maker->piece->off.ratio;
+        } else if (off > farthest_off) {
+            break;
         }
     }
     if (is_nearest)
