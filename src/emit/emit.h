@@ -40,6 +40,7 @@ typedef struct EmitParams {
     const char *command;   /* that makes the scene, one line */
     bool shadows;
     bool ids;         /* isosurface, blob: with the paint that the id plane needs */
+    bool planes;      /* Tachyon: colours that tell depth and segment, in the place of the look's */
     CellParams cells; /* isosurface */
 } EmitParams;
 

@@ -17,6 +17,9 @@ Status openscad_write(const EmitParams *params, Text *out, Text *second, EmitRep
 Status openscad_write_mesh(const EmitParams *params, Text *out, Text *second, EmitReport *report,
                            Err *err);
 
+Status tachyon_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
+                     Err *err);
+
 Status stl_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err);
 Status stl_write_parts(const EmitParams *params, Text *out, Text *second, EmitReport *report,
                        Err *err);

@@ -164,6 +164,22 @@ static Check check_settled(const Settled *settled)
     return check;
 }
 
+/* Of the two sides the rules of their own checks are stricter. */
+static Check check_pair(const Witness *witness, WitnessPair pair)
+{
+    const CompareResult *planes[] = {witness->pairs[pair].ids, witness->pairs[pair].depth};
+    Check check = {.title = witness->pairs[pair].title,
+                   .agrees = witness->pairs[pair].agrees,
+                   .reason = witness->sentence};
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < planes[i]->n_rules; k++)
+            check.rules[check.n_rules++] = planes[i]->rules[k];
+    add(&check, check.title, "pixels with different ids", (double)planes[0]->differing_pixels, "");
+    add(&check, check.title, "largest difference of depths", planes[1]->max, "mm");
+    add_coverage(&check, check.title, planes[1]);
+    return check;
+}
+
 int report_checks(const ReportCase *report, Check checks[CHECKS_MAX])
 {
     int n = 0;
@@ -176,6 +192,8 @@ int report_checks(const ReportCase *report, Check checks[CHECKS_MAX])
         checks[n++] = check_exact(report->exact);
     if (report->surface)
         checks[n++] = check_surface(report->surface);
+    for (int pair = 0; report->witness && pair < WITNESS_PAIRS; pair++)
+        checks[n++] = check_pair(report->witness, (WitnessPair)pair);
     return n;
 }
 

@@ -14,7 +14,8 @@ typedef struct Measure {
 
 enum { MEASURES_MAX = 40 };
 
-/* One thing that is judged: a plane, the settled pixels, or an isosurface's colours or place. */
+/* One thing that is judged: a plane, the settled pixels, an isosurface's colours or place, or two
+ * programs of which one may be the witness. */
 typedef struct Check {
     const char *title; /* "color", "settled", "exact color", "surface"; borrowed */
     bool agrees;
@@ -26,7 +27,7 @@ typedef struct Check {
     const Settled *settled; /* whose first pixels are listed; NULL in other checks. Borrowed */
 } Check;
 
-enum { CHECKS_MAX = PLANE_KINDS + 3 };
+enum { CHECKS_MAX = PLANE_KINDS + 3 + WITNESS_PAIRS };
 
 /* The check of one plane: its rules, and its measures that are known. */
 Check check_plane(const CompareResult *plane);

@@ -37,6 +37,8 @@ json_t *report_json(const ReportCase *report)
         json = json_with(json, "surface", surface_check_json(report->surface));
     if (report->exact)
         json = json_with(json, "exact", compare_json(report->exact));
+    if (report->witness)
+        json = json_with(json, "witness", witness_json(report->witness));
     return report->settled ? json_with(json, "settled", settled_json(report->settled)) : json;
 }
 

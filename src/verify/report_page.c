@@ -49,6 +49,8 @@ static void put_agreement(const ReportCase *report, int compared, Text *sentence
     text_puts(sentence, " within tolerance.");
     if (report->settled)
         put_settled(report, sentence);
+    if (report->witness)
+        text_printf(sentence, " %s.", report->witness->sentence);
     if (report->surface)
         text_puts(sentence, " What POV-Ray's root finder sees is the surface to its accuracy, and "
                             "the surface has POV-Ray's colours.");

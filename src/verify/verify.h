@@ -9,6 +9,7 @@
 #include "verify/settled.h"       // IWYU pragma: export
 #include "verify/suite.h"         // IWYU pragma: export
 #include "verify/surface_check.h" // IWYU pragma: export
+#include "verify/witness.h"       // IWYU pragma: export
 
 typedef enum PlaneKind { PLANE_COLOR, PLANE_DEPTH, PLANE_NORMAL, PLANE_ID, PLANE_KINDS } PlaneKind;
 
@@ -353,9 +354,10 @@ typedef struct ReportCase {
     const SurfaceCheck *surface;              /* of an implicit model; NULL: of no such model */
     const CompareResult *exact; /* likewise, the colours of the surface where it is against A's */
     const Settled *settled;     /* NULL: nobody was asked */
+    const Witness *witness;     /* NULL: there is none */
 } ReportCase;
 
-/* Whether every plane agrees, and the surface, and not too much is settled. */
+/* Whether every plane agrees, and the surface, not too much is settled, and no witness differs. */
 bool report_agrees(const ReportCase *report);
 /* The report as JSON, with the keys of `verify --json`. New reference, NULL when memory runs out.
  */

@@ -27,8 +27,10 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, SceneOptions, output),
      .is_told = true,
-     .argument = "S.pov|S.scad",
-     .help = "a scene for POV-Ray, its geometry in S.inc beside it, or a model for OpenSCAD"},
+     .argument = "S.pov|S.scad|S.tachyon",
+     .help =
+         "a scene for POV-Ray, its geometry in S.inc beside it, a model for OpenSCAD or a scene "
+         "for Tachyon"},
     {.name = "ids",
      SETS(SWITCH, SceneOptions, ids),
      .group = GROUP_POVRAY,
@@ -57,10 +59,11 @@ static void set_defaults(void *options)
 static Status check_format(const Emitter *emitter, const PictureOptions *picture,
                            const Parsed *parsed, Err *err)
 {
-    static const char of_view[] = "is for scenes with a camera (.pov); a solid has none";
+    static const char of_view[] = "is for scenes with a camera (.pov, .tachyon); a solid has none";
     static const char of_povray[] = "is for scenes of POV-Ray (.pov)";
     static const char of_vessels[] = "is for vessels; a polyhedron is the surface of all";
     const bool view = emitter->has_view, povray = strcmp(emitter->extension, "pov") == 0;
+    const bool scad = strcmp(emitter->extension, "scad") == 0;
     const bool vessels = !emitter->of_meshes, mesh = picture->model == SCENE_MESH;
     const bool on_paper = view && size_is_on_paper(&picture->size);
     const OptionNeed needs[] = {{"size", view, of_view},
@@ -84,7 +87,7 @@ static Status check_format(const Emitter *emitter, const PictureOptions *picture
                                 {"model", vessels || mesh, of_vessels},
                                 {"look", vessels, of_vessels},
                                 {"color-by", vessels, of_vessels},
-                                {"scad", !povray, "is for models of OpenSCAD (.scad)"},
+                                {"scad", scad, "is for models of OpenSCAD (.scad)"},
                                 {0}};
     return options_check_needs(parsed, needs, err);
 }
@@ -229,8 +232,8 @@ static Status run_scene(void *options, Parsed *parsed, Err *err)
 
 const Command command_scene = {
     .name = "scene",
-    .summary = "write a tree as a scene for POV-Ray or OpenSCAD",
-    .operands = "T.swc -o S.pov|S.scad",
+    .summary = "write a tree as a scene for POV-Ray, OpenSCAD or Tachyon",
+    .operands = "T.swc -o S.pov|S.scad|S.tachyon",
     .examples = "  corcast scene tree.swc -o tree.pov\n"
                 "  corcast scene tree.swc --model isosurface --size 2000x2000 -o tree.pov\n"
                 "  corcast scene tree.swc -o tree.scad\n",

@@ -5,6 +5,7 @@
 #include "app/pictures/verification.h"
 #include "app/run/output.h"
 #include "app/run/templates.h"
+#include "emit/emit.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -17,12 +18,13 @@
 
 /* All that a verification leaves. The verdict comes first: what is interrupted leaves none. */
 static const char *const left[] = {
-    "report.html",      "report.json",       "junit.xml",         "diff.png",
-    "scene.pov",        "scene.inc",         "ids.pov",           "ids.inc",
-    "povray.png",       "povray.depth.png",  "povray.normal.png", "povray.id.png",
-    "povray.depth.pfm", "povray.normal.pfm", "povray.id.ppm",     "native.png",
-    "native.depth.pfm", "native.normal.pfm", "native.id.ppm",     "exact.png",
-    "exact.depth.pfm",  "exact.normal.pfm",  "exact.id.ppm"};
+    "report.html",       "report.json",       "junit.xml",         "diff.png",
+    "scene.pov",         "scene.inc",         "ids.pov",           "ids.inc",
+    "povray.png",        "povray.depth.png",  "povray.normal.png", "povray.id.png",
+    "povray.depth.pfm",  "povray.normal.pfm", "povray.id.ppm",     "native.png",
+    "native.depth.pfm",  "native.normal.pfm", "native.id.ppm",     "exact.png",
+    "exact.depth.pfm",   "exact.normal.pfm",  "exact.id.ppm",      "scene.tachyon",
+    "tachyon.depth.ppm", "tachyon.id.ppm"};
 
 /* Where a verification writes to. */
 typedef struct Folder {
@@ -106,6 +108,7 @@ static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err
     report.surface = verification_takes_two_steps(v) ? &v->surface : NULL;
     report.exact = verification_takes_two_steps(v) ? &v->exact_color : NULL;
     report.settled = v->asked ? &v->settled : NULL;
+    report.witness = v->asks_witness ? &v->witness : NULL;
     *agrees = report_agrees(&report);
     char *page = NULL;
     TRY(templates_path("report", &page, err));
@@ -183,16 +186,24 @@ static Status print_verdict(const Verification *v, bool agrees, Err *err)
         print_surface(&v->surface);
     if (verification_takes_two_steps(v))
         print_exact(&v->exact_color);
+    if (v->asks_witness)
+        printf("  %-7s %-7s%s\n", "witness", v->witness.agrees ? "agree" : "differ",
+               v->witness.sentence);
     printf("%s: POV-Ray %s in %.2f s, corcast in %.2f s; %s/report.html\n",
            agrees ? "agree" : "differ", v->run.version, v->run.seconds,
            v->stats.prepare_s + v->stats.trace_s, v->folder);
     return STATUS_OK;
 }
 
+/* Who else draws the scene. */
+typedef enum WitnessChoice { NO_WITNESS, WITNESS_TACHYON } WitnessChoice;
+static const char *const witnesses[] = {[NO_WITNESS] = "none", [WITNESS_TACHYON] = "tachyon", NULL};
+
 typedef struct VerifyOptions {
     const char *folder;
     int bits;
     RenderKernels kernels;
+    WitnessChoice witness;
     bool json;
     PictureOptions picture;
 } VerifyOptions;
@@ -214,6 +225,12 @@ static const Option own[] = {
      .choices = render_kernel_names,
      .group = GROUP_RUN,
      .help = "instructions that the exact isosurface is drawn with, for tests"},
+    {.name = "witness",
+     SETS(CHOICE, VerifyOptions, witness),
+     .choices = witnesses,
+     .group = GROUP_JUDGE,
+     .help = "a third program that draws the scene: what is seen where and how far away must be "
+             "the same in all three"},
     {.name = "json", SETS(FLAG, VerifyOptions, json), .help = "the report on standard output"},
 };
 
@@ -235,6 +252,8 @@ static Status check(const VerifyOptions *options, const Parsed *parsed, Err *err
     TRY(bits_check(options->bits, err));
     TRY(picture_check_needs(picture, parsed, err));
     TRY(picture_check_povray(picture, err));
+    if (options->witness == WITNESS_TACHYON)
+        TRY(emit_check_model(emitter_find("tachyon", false), (SceneModel)picture->model, err));
     return picture_fits(picture->size.pixels[0], picture->size.pixels[1], 120, err);
 }
 
@@ -266,7 +285,8 @@ static Status run_verify(void *options, Parsed *parsed, Err *err)
                       .tree = parsed->operands[0],
                       .folder = own_options->folder,
                       .bits = own_options->bits,
-                      .kernels = own_options->kernels};
+                      .kernels = own_options->kernels,
+                      .asks_witness = own_options->witness == WITNESS_TACHYON};
     Folder folder = {own_options->folder, -1};
     TRY(check(own_options, parsed, err));
     TRY_GOTO(command_line_text(parsed, &v.commands[v.n_commands++], err));

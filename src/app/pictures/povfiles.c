@@ -141,15 +141,25 @@ done:
     return status;
 }
 
-Status povray_from_environment(OracleParams *params, Err *err)
+static Status read_patience(double *seconds, Err *err)
 {
     const char *patience = getenv("CORCAST_POVRAY_PATIENCE");
-    params->program = getenv("CORCAST_POVRAY");
-    params->patience_s = 600;
-    if (!patience || (number_parse(patience, &params->patience_s) && isfinite(params->patience_s) &&
-                      params->patience_s >= 0))
+    *seconds = 600;
+    if (!patience || (number_parse(patience, seconds) && isfinite(*seconds) && *seconds >= 0))
         return STATUS_OK;
     return err_set(err, STATUS_USAGE,
                    "CORCAST_POVRAY_PATIENCE: '%s' is not a number of seconds of at least 0",
                    patience);
+}
+
+Status povray_from_environment(OracleParams *params, Err *err)
+{
+    params->program = getenv("CORCAST_POVRAY");
+    return read_patience(&params->patience_s, err);
+}
+
+Status tachyon_from_environment(WitnessParams *params, Err *err)
+{
+    params->program = getenv("CORCAST_TACHYON");
+    return read_patience(&params->patience_s, err);
 }

@@ -28,5 +28,7 @@ MUST_CHECK Status scene_files_write(const Emitter *emitter, const EmitParams *pa
 /* Which POV-Ray to run and how long to bear its silence, as the environment says: CORCAST_POVRAY
  * (povray) and CORCAST_POVRAY_PATIENCE, in seconds (600). STATUS_USAGE when that is no number. */
 MUST_CHECK Status povray_from_environment(OracleParams *params, Err *err);
+/* Likewise which Tachyon, CORCAST_TACHYON (tachyon), by the same patience. */
+MUST_CHECK Status tachyon_from_environment(WitnessParams *params, Err *err);
 
 #endif

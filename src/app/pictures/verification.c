@@ -19,6 +19,8 @@ void verification_release(Verification *v)
     frame_release(&v->native);
     frame_release(&v->povray);
     frame_release(&v->exact);
+    frame_release(&v->tachyon);
+    witness_release(&v->witness);
     picture_release(&v->native_picture);
     picture_release(&v->povray_picture);
     picture_release(&v->native_shown);
@@ -224,6 +226,54 @@ static Status run_oracle(Verification *v, Err *err)
     return status;
 }
 
+/* ---- the witness ----------------------------------------------------------------------------- */
+
+static Status write_witness_scene(const Verification *v, const char *scene, Err *err)
+{
+    const EmitParams params = {.scene = &v->scene, .command = v->commands[0], .planes = true};
+    return scene_files_write(emitter_find("tachyon", false), &params, v->tree, scene, false, NULL,
+                             err);
+}
+
+static Status draw_witness_plane(Verification *v, const char *scene, WitnessPlane plane, Err *err)
+{
+    static const char *const names[] = {
+        [WITNESS_DEPTH] = "tachyon.depth.ppm", [WITNESS_ID] = "tachyon.id.ppm"};
+    char *path = NULL;
+    double near_mm, far_mm, seconds = 0;
+    camera_depth_range(&v->scene.view.camera, v->scene.geometry.bounds, &near_mm, &far_mm);
+    TRY(file_join(v->folder, names[plane], &path, err));
+    WitnessParams params = {.scene = scene,
+                            .output = path,
+                            .width = v->picture->size.pixels[0],
+                            .height = v->picture->size.pixels[1],
+                            .threads = v->common->threads,
+                            .plane = plane};
+    Status status = tachyon_from_environment(&params, err);
+    if (status == STATUS_OK)
+        status = witness_run(&params, &seconds, v->witness.version, err);
+    v->witness.seconds += seconds;
+    if (status == STATUS_OK)
+        status = plane == WITNESS_ID ? witness_read_ids(&v->tachyon.id, path, err)
+                                     : witness_read_depth(&v->tachyon.depth, path, &v->tachyon.id,
+                                                          near_mm, far_mm, err);
+    free(path);
+    return status;
+}
+
+static Status ask_witness(Verification *v, Err *err)
+{
+    char *scene = NULL;
+    TRY(file_join(v->folder, "scene.tachyon", &scene, err));
+    Status status = write_witness_scene(v, scene, err);
+    if (status == STATUS_OK)
+        status = draw_witness_plane(v, scene, WITNESS_ID, err);
+    if (status == STATUS_OK)
+        status = draw_witness_plane(v, scene, WITNESS_DEPTH, err);
+    free(scene);
+    return status;
+}
+
 Status verification_pick_frame(Verification *v, int frame, Err *err)
 {
     const Appearance *all = &v->scene.appearance;
@@ -242,6 +292,8 @@ Status verification_draw(Verification *v, Err *err)
 {
     v->cells = picture_cells(v->picture);
     TRY(run_oracle(v, err));
+    if (v->asks_witness)
+        TRY(ask_witness(v, err));
     TRY(render_native(v, err));
     return show_both(v, err);
 }
@@ -332,6 +384,14 @@ static Status compare_exact(Verification *v, const Rendering *povray, Err *err)
     return status;
 }
 
+static Status compare_witness(Verification *v, double depth_step_mm, Err *err)
+{
+    const Testimony three[] = {{"POV-Ray", &v->povray.id, &v->povray.depth},
+                               {"corcast", &v->native.id, &v->native.depth},
+                               {"Tachyon", &v->tachyon.id, &v->tachyon.depth}};
+    return witness_compare(three, depth_step_mm, &v->witness, err);
+}
+
 Status verification_compare(Verification *v, Err *err)
 {
     double near_mm, far_mm;
@@ -340,6 +400,8 @@ Status verification_compare(Verification *v, Err *err)
     const IdPlane *a = &v->povray.id, *b = &v->native.id;
     const Rendering view_a = {&v->povray_picture, a, &v->povray.depth, &v->povray.normal};
     const Rendering view_b = {&v->native_picture, b, &v->native.depth, &v->native.normal};
+    if (v->asks_witness)
+        TRY(compare_witness(v, (far_mm - near_mm) / 65535, err));
     TRY(settle_sides(v, &view_a, &view_b, &tolerance, err));
     TRY(compare_pictures(&view_a, &view_b, &tolerance, &v->results[PLANE_COLOR], NULL, err));
     TRY(compare_perception(verification_shown_by_povray(v), verification_shown_natively(v),

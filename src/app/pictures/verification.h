@@ -29,6 +29,9 @@ typedef struct Verification {
     bool asked; /* whether anything was settled, or nothing had to be */
     SurfaceCheck surface;
     CompareResult exact_color;
+    bool asks_witness; /* Tachyon draws the scene, too */
+    Frame tachyon;     /* depth and ids of it */
+    Witness witness;
     char *commands[8]; /* owned */
     size_t n_commands;
 } Verification;
@@ -42,13 +45,13 @@ bool verification_takes_two_steps(const Verification *v);
  * scene for POV-Ray has all. STATUS_USAGE when there is no such frame. */
 MUST_CHECK Status verification_pick_frame(Verification *v, int frame, Err *err);
 
-/* Draws the scene with POV-Ray and natively, and writes scene and planes to the folder, which is
- * there; the first of the commands is in them. Errors as oracle_run, render and frames_write have
- * them. */
+/* Draws the scene with POV-Ray and natively, asks the witness, and writes scene and planes to the
+ * folder, which is there; the first of the commands is in them. Errors as oracle_run, render and
+ * frames_write have them. */
 MUST_CHECK Status verification_draw(Verification *v, Err *err);
 
-/* Compares what is drawn: results, settled and, where there are two steps, surface and exact_color.
- */
+/* Compares what is drawn: results, settled, where there are two steps surface and exact_color, and
+ * where one is asked, witness. */
 MUST_CHECK Status verification_compare(Verification *v, Err *err);
 
 /* A side's colours as a screen shows them. */
