@@ -211,8 +211,10 @@ test_the_numbers_for_povray_are_those_of_the_source() {
 for each light with n . L >= 1e-10 @ shade.h @ #define LEAST_LIT_COSINE 1e-10
 is within 2.85 · 10⁻⁴ of it @ cellfunction.c @ return form == ERF_FAST ? 2.85e-4
 no wall by more than three times that @ cellfunction.c @ return (3 * erf_form_error(form) + 2e-5) * radius_mm;
-POV-Ray holds at most 1,048,575 different constants @ povray_joint.c @ holds 1,048,575 different constants in functions; a joint has 6.
-more than 174,000 joints @ povray_joint.c @ MOST_EXACT = 174000,
+POV-Ray holds at most 1,048,575 functions @ povray_joint.c @ POV-Ray holds 1,048,575 functions, of which a joint has three
+more than 349,000 joints @ povray_joint.c @ MOST_EXACT = 349000,
+where there are more than 8,000 @ povray_joint.c @ MANY = 8000,
+scenes of more than 3,000 segments the twelve @ povray_cells.c @ MOST_INLINE = 3000
 - `f(x) <= M d(x) / 2`, because a ray that missed @ povray_joint.c @ 2 * steepest};
 Its hits are within 10⁻⁷ radii @ joints.inc @ accuracy 1e-7 open
 for at most 65,536 segments @ povray_blob.c @ GROUP = 256, MAX_PAINTED = GROUP * GROUP,

@@ -46,7 +46,7 @@ typedef struct EmitParams {
 
 typedef struct EmitReport {
     size_t cells;    /* of an isosurface; of a blob that is cut into cells, else 0 */
-    int joint_sides; /* of a joint's mesh; 0: joints are exact, which POV-Ray can hold 174,000 of */
+    int joint_sides; /* of a joint's mesh; 0: joints are exact, which POV-Ray can hold 349,000 of */
     double openscad_s; /* about how long OpenSCAD takes to make a solid of it; else 0 */
 } EmitReport;
 

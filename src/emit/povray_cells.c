@@ -1,7 +1,13 @@
 /* Numbers are printed with the digits that read back exactly, and every expression in the order of
  * `surface`'s cellfunction.c, so that what POV-Ray evaluates is what cell_function returns. A
  * segment has one function for each part of it that a cell feels, so that cells are short to
- * read. */
+ * read.
+ *
+ * POV-Ray looks for each number in a function through all numbers of all functions so far, and for
+ * each name through one 257th of all names. So the functions stand in arrays and, in a large scene,
+ * the numbers of a segment in matrices, whose products with a point are functions, too: these take
+ * POV-Ray longer to evaluate, by a quarter of the time for a picture. They are summed in the order
+ * of a Linear, so that both ways are the same to the bit. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/values.h"
@@ -16,30 +22,53 @@ enum { TUBE = TERM_MIDDLE + 1, N_FUNCTIONS };
 /* Scales are 2^(number - SCALE_ONE). */
 enum { SCALE_ONE = 64, N_SCALES = 128 };
 
+/* In scenes of more segments numbers are in matrices; from there on that saves more time than it
+ * takes. */
+enum { MOST_INLINE = 3000 };
+
+/* A segment, as its functions are written. */
+typedef struct Term {
+    const TermForm *form;
+    uint32_t segment;
+    bool in_matrices; /* whose columns are v, w and start, of Vs, or end, of Ve */
+} Term;
+
+static void put_form(Text *text, const Term *term, const Linear *form)
+{
+    const TermForm *forms = term->form;
+    if (term->in_matrices)
+        text_printf(text, "V%c[%u](x,y,z).%c", form == &forms->end ? 'e' : 's', term->segment,
+                    form == &forms->v   ? 'x'
+                    : form == &forms->w ? 'y'
+                                        : 'z');
+    else
+        put_linear(text, form);
+}
+
 /* The factor of the axial part. */
-static void put_ends(Text *text, const TermForm *form, TermPart part)
+static void put_ends(Text *text, const Term *term, TermPart part)
 {
     if (part == TERM_MIDDLE)
         return;
     text_puts(text, part == TERM_BOTH_ENDS ? "*(Fn_Step(" : "*Fn_Step(");
-    put_linear(text, part == TERM_END ? &form->end : &form->start);
+    put_form(text, term, part == TERM_END ? &term->form->end : &term->form->start);
     if (part == TERM_BOTH_ENDS) {
         text_puts(text, ")+Fn_Step(");
-        put_linear(text, &form->end);
+        put_form(text, term, &term->form->end);
     }
     text_puts(text, part == TERM_BOTH_ENDS ? ")-1)" : ")");
 }
 
-static Status put_function(Text *text, const Tmpl *template, uint32_t segment, const TermForm *form,
-                           int function, Err *err)
+static Status put_function(Text *text, const Tmpl *template, const Term *term, int function,
+                           Err *err)
 {
     Text name = TEXT_INIT, v = TEXT_INIT, w = TEXT_INIT, ends = TEXT_INIT;
-    text_printf(&name, "%s%u", function_names[function], segment);
-    put_linear(&v, &form->v);
-    put_linear(&w, &form->w);
+    text_printf(&name, "%s[%u]", function_names[function], term->segment);
+    put_form(&v, term, &term->form->v);
+    put_form(&w, term, &term->form->w);
     bool tube = function == TUBE;
     if (!tube)
-        put_ends(&ends, form, (TermPart)function);
+        put_ends(&ends, term, (TermPart)function);
     const TmplValue values[] = {{"name", text_chars(&name)},
                                 {"v", text_chars(&v)},
                                 {"w", text_chars(&w)},
@@ -49,6 +78,27 @@ static Status put_function(Text *text, const Tmpl *template, uint32_t segment, c
     text_release(&v);
     text_release(&w);
     text_release(&ends);
+    return status;
+}
+
+/* The matrix whose columns are v, w and the third. */
+static Status put_matrix(Text *text, const Tmpl *template, const Term *term, const Linear *third,
+                         Err *err)
+{
+    Text name = TEXT_INIT, numbers = TEXT_INIT;
+    text_printf(&name, "V%c[%u]", third == &term->form->end ? 'e' : 's', term->segment);
+    for (int row = 0; row < 4; row++) {
+        text_puts(&numbers, row ? "," : "");
+        text_number(&numbers, term->form->v.k[row] + 0);
+        text_puts(&numbers, ",");
+        text_number(&numbers, term->form->w.k[row] + 0);
+        text_puts(&numbers, ",");
+        text_number(&numbers, third->k[row] + 0);
+    }
+    const TmplValue values[] = {{"name", text_chars(&name)}, {"numbers", text_chars(&numbers)}};
+    Status status = tmpl_apply(template, values, 2, text, err);
+    text_release(&name);
+    text_release(&numbers);
     return status;
 }
 
@@ -96,30 +146,69 @@ static void find_used(const CellTree *cells, uint8_t *used)
     }
 }
 
+typedef struct TermTemplates {
+    Tmpl term, tube, matrix;
+} TermTemplates;
+
+static Status load_term_templates(const EmitParams *params, TermTemplates *templates, Err *err)
+{
+    TRY(load_template(&templates->term, params, "povray/term.inc", err));
+    TRY(load_template(&templates->tube, params, "povray/tube.inc", err));
+    return load_template(&templates->matrix, params, "povray/matrix.inc", err);
+}
+
+static void release_term_templates(TermTemplates *templates)
+{
+    tmpl_release(&templates->term);
+    tmpl_release(&templates->tube);
+    tmpl_release(&templates->matrix);
+}
+
+/* The functions of a segment whose bits are set. */
+static Status put_segment(Text *out, const TermTemplates *templates, const Term *term, uint8_t used,
+                          Err *err)
+{
+    bool to_end = used & (1 << TERM_BOTH_ENDS | 1 << TERM_END);
+    if (term->in_matrices && used)
+        TRY(put_matrix(out, &templates->matrix, term, &term->form->start, err));
+    if (term->in_matrices && to_end)
+        TRY(put_matrix(out, &templates->matrix, term, &term->form->end, err));
+    for (int function = 0; function < N_FUNCTIONS; function++)
+        if (used & 1 << function)
+            TRY(put_function(out, function == TUBE ? &templates->tube : &templates->term, term,
+                             function, err));
+    return STATUS_OK;
+}
+
+static void put_arrays(Text *out, size_t n, bool in_matrices)
+{
+    for (int function = 0; function < N_FUNCTIONS; function++)
+        text_printf(out, "#declare %s=array[%zu]\n", function_names[function], n);
+    if (in_matrices)
+        text_printf(out, "#declare Vs=array[%zu]\n#declare Ve=array[%zu]\n", n, n);
+}
+
 /* A function for each segment and part that a cell uses. */
 static Status put_terms(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     size_t n = geometry->scene->geometry.n_segments;
-    Tmpl term = {0}, tube = {0};
+    bool in_matrices = n > MOST_INLINE;
+    TermTemplates templates = {0};
     uint8_t *used = NULL;
     Status status;
-    TRY_GOTO(load_template(&term, geometry->params, "povray/term.inc", err));
-    TRY_GOTO(load_template(&tube, geometry->params, "povray/tube.inc", err));
+    TRY_GOTO(load_term_templates(geometry->params, &templates, err));
     TRY_GOTO(mem_calloc(&used, n, sizeof *used, "functions", err));
     for (size_t k = 0; k < geometry->n_objects; k++)
         find_used(&geometry->cells[k], used);
+    put_arrays(out, n, in_matrices);
     for (uint32_t i = 0; i < n; i++) {
-        for (int function = 0; function < N_FUNCTIONS; function++) {
-            if (used[i] & (1 << function))
-                TRY_GOTO(put_function(out, function == TUBE ? &tube : &term, i,
-                                      &geometry->cells[0].forms[i], function, err));
-        }
+        const Term term = {&geometry->cells[0].forms[i], i, in_matrices};
+        TRY_GOTO(put_segment(out, &templates, &term, used[i], err));
     }
 done:
     free(used);
-    tmpl_release(&term);
-    tmpl_release(&tube);
+    release_term_templates(&templates);
     return status;
 }
 
@@ -184,7 +273,7 @@ static Text *cleared(Text *text)
 
 static void put_term(Text *text, const CellTerm *term)
 {
-    text_printf(text, "%s%u(x,y,z)", function_names[term->part], term->segment);
+    text_printf(text, "%s[%u](x,y,z)", function_names[term->part], term->segment);
 }
 
 /* Terms of a cell: those at `n` places, or, without any given, the first n. */
@@ -244,7 +333,7 @@ static void put_potential(Text *text, const CellTree *cells, const Cell *cell)
 static void put_cell_function(Text *text, const CellTree *cells, const Cell *cell)
 {
     if (cell_is_tube(cells, cell)) {
-        text_printf(text, "Fk%d(%s%u(x,y,z))", scale_number(cell), function_names[TUBE],
+        text_printf(text, "Fk%d(%s[%u](x,y,z))", scale_number(cell), function_names[TUBE],
                     cells->terms[cell->first].segment);
         return;
     }

@@ -19,8 +19,9 @@
 #include "emit/povray_text.h"
 #include "emit/values.h"
 
-/* POV-Ray holds 1,048,575 different constants in functions; a joint has 6. */
-enum { MOST_EXACT = 174000, SIDES_OF_MANY = 16 };
+/* POV-Ray holds 1,048,575 functions, of which a joint has three where there are many, so that its
+ * six numbers are none in a list that POV-Ray looks through for each of them. */
+enum { MANY = 8000, MOST_EXACT = 349000, SIDES_OF_MANY = 16 };
 
 /* The frame that POV-Ray's function is in: the plane of the axes, unit r_1. */
 typedef struct JointPlane {
@@ -73,21 +74,22 @@ static double largest_gradient(const JointPlane *plane)
     return gradient_margin * largest;
 }
 
-/* The sides of joints' meshes, 0 where POV-Ray holds all of the scene's exactly. */
-static int joint_sides(const Scene *scene)
+static size_t count_joints(const Scene *scene)
 {
     size_t n = 0;
     for (size_t i = 0; i < scene->geometry.n_primitives; i++)
         n += scene->geometry.primitives[i].kind == PRIMITIVE_JOINT;
-    return n > MOST_EXACT ? SIDES_OF_MANY : 0;
+    return n;
 }
 
 Status put_joint_macros(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     Values values = {0};
-    geometry->report->joint_sides = joint_sides(geometry->scene);
+    size_t n = count_joints(geometry->scene);
+    geometry->report->joint_sides = n > MOST_EXACT ? SIDES_OF_MANY : 0;
     text_printf(add_value(&values, "sides"), "%d", geometry->report->joint_sides);
+    add_flag(&values, "many_joints", n > MANY);
     return values_expand(&values, geometry->params, "povray/joints.inc", out, err);
 }
 

@@ -547,7 +547,7 @@ test_the_potential_of_the_graph_keeps_strangers_apart() {
     run_ok corcast render --exact tree.swc --look "$REPO/tests/golden/red.ini" --model isosurface --size 90x60 --potential graph -o graph.ppm
     expect_differing 420 440 paper.ppm graph.ppm
     run_ok corcast scene tree.swc --model isosurface --potential graph --color-by radius --ids on -o tree.pov
-    grep -q 'Fn_Max(Fm0(x,y,z),Fm1(x,y,z))' tree.inc || fail "expected the larger of two potentials in a cell"
+    grep -qF 'Fn_Max(Fm[0](x,y,z),Fm[1](x,y,z))' tree.inc || fail "expected the larger of two potentials in a cell"
     run corcast render tree.swc --model rounded --potential graph -o picture.ppm
     expect_status 2
     expect_sentence 'potential is for --model isosurface'

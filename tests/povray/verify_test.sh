@@ -87,6 +87,18 @@ test_isosurface_with_an_exact_erf_agrees() {
     agrees isosurface --erf exact --shadows on
 }
 
+test_an_isosurface_whose_numbers_are_in_matrices_agrees() {
+    run_ok corcast grow --terminals 1537 --seed 3 -o tree.swc --quiet
+    run_ok corcast verify tree.swc --model isosurface --erf exact --cell-beta 50 --size 60x40 -o check
+    grep -q 'Vs\[3072\](x,y,z)\.x' check/scene.inc || fail "expected the last segment to have a matrix"
+}
+
+test_joints_whose_numbers_move_a_point_agree() {
+    run_ok corcast grow --terminals 4600 --seed 3 -o tree.swc --quiet
+    run_ok corcast verify tree.swc --model joined --size 60x40 -o check
+    [ "$(grep -c '^Vessel_Joint(' check/scene.inc)" -gt 8000 ] || fail "expected more joints"
+}
+
 # More segments than fit into one of the cells that the scene is cut into, and some shorter than their radius.
 test_blobs_in_many_cells_agree() {
     run_ok corcast grow --terminals 300 --seed 3 --lambda 0 -o tree.swc

@@ -142,7 +142,7 @@ static void the_numbers_of_a_cylinder_read_back_exactly(void **state)
 static void more_joints_than_povray_holds_are_meshes(void **state)
 {
     (void)state;
-    enum { N = 174001 };
+    enum { N = 349001 };
     const Primitive one = {.kind = PRIMITIVE_JOINT,
                            .b = {0, 0, 1},
                            .radius_mm = 1,
@@ -260,10 +260,10 @@ static void every_function_of_a_cell_is_declared(void **state)
     for (const char *at = text; (at = strstr(at, "isosurface{function{")) != NULL;) {
         const char *end = strchr(at + 20, '}');
         for (at += 20; at < end; at++) {
-            char name[8];
+            char name[12];
             if (at[-1] != '{' && at[-1] != '(' && at[-1] != '+')
                 continue;
-            if (sscanf(at, "%7[A-Za-z0-9]", name) != 1 || name[0] != 'F')
+            if (sscanf(at, "%11[][A-Za-z0-9]", name) != 1 || name[0] != 'F')
                 continue;
             char declared[32];
             snprintf(declared, sizeof declared, "#declare %s=function(", name);
@@ -382,12 +382,12 @@ static void a_tree_of_a_field_is_made_of_its_own_segments(void **state)
             scene.geometry.blend = by_tree;
         Emitted out = emit(&scene, &params);
         const char *text = text_chars(&out.geometry);
-        assert_true(count_in(text, "#declare Tree_1 = union {\n", "0(x,y,z)") > 0);
-        assert_true(count_in(text, "#declare Tree_1 = union {\n", "2(x,y,z)") > 0);
-        assert_int_equal(count_in(text, "#declare Tree_1 = union {\n", "1(x,y,z)"), 0);
-        assert_true(count_in(text, "#declare Tree_3 = union {\n", "1(x,y,z)") > 0);
+        assert_true(count_in(text, "#declare Tree_1 = union {\n", "[0](x,y,z)") > 0);
+        assert_true(count_in(text, "#declare Tree_1 = union {\n", "[2](x,y,z)") > 0);
+        assert_int_equal(count_in(text, "#declare Tree_1 = union {\n", "[1](x,y,z)"), 0);
+        assert_true(count_in(text, "#declare Tree_3 = union {\n", "[1](x,y,z)") > 0);
         assert_int_equal(count_in(text, "#declare Tree_3 = union {\n", "Fn_Max("), 0);
-        assert_true(count_in(text, "#declare Tree = union {\n", "1(x,y,z)") > 0);
+        assert_true(count_in(text, "#declare Tree = union {\n", "[1](x,y,z)") > 0);
         assert_true((count_in(text, "#declare Tree = union {\n", "Fn_Max(") > 0) == grouped);
         release(&out);
     }
