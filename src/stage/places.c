@@ -16,13 +16,18 @@ bool segment_can_be_drawn(const Tree *tree, size_t i)
     return tree_is_segment(tree, i) && tree->radius_mm[i] > 0 && has_length(tree, i);
 }
 
-/* Uncovered segments in lists, by the node they begin at and the cell of space they end in, so that
- * a node may have any number of daughters. */
+/* Uncovered segments in lists, each the latest first: those that begin at one node together, or
+ * where they are more than FEW also by the cell of space they end in, so that a node may have any
+ * number of daughters. */
 typedef struct Bins {
-    int32_t *first; /* one a bin; below 0: none */
-    int32_t *next;  /* one a node */
-    size_t mask;    /* their number, a power of 2, less 1 */
+    int32_t *daughters; /* of each node, drawn or not; owned, as the next */
+    int32_t *first;     /* one a node, and then one a bin of cells; below 0: none */
+    int32_t *next;      /* one a node */
+    size_t n;           /* nodes */
+    size_t mask;        /* the number of bins of cells, a power of 2, less 1 */
 } Bins;
+
+enum { FEW = 8 };
 
 /* Of a cell: so long that most places are clear of its faces, and so short that few fit into
  * one. */
@@ -37,7 +42,7 @@ static size_t bin_of(const Bins *bins, int32_t parent, const double cell[3])
         hash = (hash ^ bits) * 0x9e3779b97f4a7c15;
         hash ^= hash >> 32;
     }
-    return (size_t)hash & bins->mask;
+    return bins->n + ((size_t)hash & bins->mask);
 }
 
 /* The cell of the point moved by `by` along all axes; zeros have one sign. */
@@ -47,10 +52,28 @@ static void find_cell(Vec3 point, double by, double cell[3])
         cell[axis] = floor((vec3_component(point, axis) + by) / cell_mm) + 0.0;
 }
 
+/* What leads to the latest of the sisters in the list of a bin that end where segment i does, if
+ * that is later than what `found` leads to; else `found`. NULL: none. */
+static int32_t *find_in(const Tree *tree, const Bins *bins, size_t bin, size_t i, int32_t *found)
+{
+    for (int32_t *link = &bins->first[bin]; *link >= 0; link = &bins->next[*link])
+        if (tree->parent[*link] == tree->parent[i] && (!found || *link > *found) &&
+            vec3_distance(tree->position[i], tree->position[*link]) <= SHORTEST_MM)
+            found = link;
+    return found;
+}
+
+static bool has_few_sisters(const Tree *tree, const Bins *bins, size_t i)
+{
+    return bins->daughters[tree->parent[i]] <= FEW;
+}
+
 /* What leads to the latest of the sisters in the lists that end where segment i does; NULL:
  * none. */
 static int32_t *find_sister(const Tree *tree, const Bins *bins, size_t i)
 {
+    if (has_few_sisters(tree, bins, i))
+        return find_in(tree, bins, (size_t)tree->parent[i], i, NULL);
     double ends[2][3], cell[3];
     int32_t *found = NULL;
     for (int end = 0; end < 2; end++)
@@ -62,15 +85,23 @@ static int32_t *find_sister(const Tree *tree, const Bins *bins, size_t i)
             cell[axis] = ends[end][axis];
             again = again || (end && ends[0][axis] == ends[1][axis]);
         }
-        if (again)
-            continue;
-        for (int32_t *link = &bins->first[bin_of(bins, tree->parent[i], cell)]; *link >= 0;
-             link = &bins->next[*link])
-            if (tree->parent[*link] == tree->parent[i] && (!found || *link > *found) &&
-                vec3_distance(tree->position[i], tree->position[*link]) <= SHORTEST_MM)
-                found = link;
+        if (!again)
+            found = find_in(tree, bins, bin_of(bins, tree->parent[i], cell), i, found);
     }
     return found;
+}
+
+/* Puts segment i into its list. */
+static void put(const Tree *tree, Bins *bins, size_t i)
+{
+    size_t bin = (size_t)tree->parent[i];
+    if (!has_few_sisters(tree, bins, i)) {
+        double cell[3];
+        find_cell(tree->position[i], 0, cell);
+        bin = bin_of(bins, tree->parent[i], cell);
+    }
+    bins->next[i] = bins->first[bin];
+    bins->first[bin] = (int32_t)i;
 }
 
 /* Compares each segment with its elder sisters. */
@@ -89,11 +120,7 @@ static void find_covers(const Tree *tree, Bins *bins, int32_t *cover)
             cover[*sister] = self;
             *sister = bins->next[*sister];
         }
-        double cell[3];
-        find_cell(tree->position[i], 0, cell);
-        int32_t *first = &bins->first[bin_of(bins, tree->parent[i], cell)];
-        bins->next[i] = *first;
-        *first = self;
+        put(tree, bins, i);
     }
 }
 
@@ -106,15 +133,19 @@ static int32_t outermost(int32_t *cover, int32_t self)
     return self;
 }
 
-static Status init_bins(Bins *bins, size_t n, Err *err)
+static Status init_bins(const Tree *tree, Bins *bins, Err *err)
 {
-    size_t count = 1;
-    while (count < n)
+    size_t many = 0, count = 1;
+    TRY(tree_child_counts(tree, &bins->daughters, err));
+    for (size_t i = 0; i < tree->n; i++)
+        many += bins->daughters[i] > FEW ? (size_t)bins->daughters[i] : 0;
+    while (count < many)
         count *= 2;
+    bins->n = tree->n;
     bins->mask = count - 1;
-    TRY(mem_calloc(&bins->first, count, sizeof *bins->first, "nodes", err));
-    memset(bins->first, 0xff, count * sizeof *bins->first);
-    return mem_calloc(&bins->next, n, sizeof *bins->next, "nodes", err);
+    TRY(mem_calloc(&bins->first, bins->n + count, sizeof *bins->first, "nodes", err));
+    memset(bins->first, 0xff, (bins->n + count) * sizeof *bins->first);
+    return mem_calloc(&bins->next, bins->n, sizeof *bins->next, "nodes", err);
 }
 
 Status places_find(const Tree *tree, Places *places, Err *err)
@@ -122,7 +153,7 @@ Status places_find(const Tree *tree, Places *places, Err *err)
     Bins bins = {0};
     Places found = {0};
     Status status = STATUS_OK;
-    TRY_GOTO(init_bins(&bins, tree->n, err));
+    TRY_GOTO(init_bins(tree, &bins, err));
     TRY_GOTO(mem_calloc(&found.cover, tree->n, sizeof *found.cover, "nodes", err));
     TRY_GOTO(mem_calloc(&found.place, tree->n, sizeof *found.place, "nodes", err));
     find_covers(tree, &bins, found.cover);
@@ -131,6 +162,7 @@ Status places_find(const Tree *tree, Places *places, Err *err)
         found.place[i] = joined ? found.place[tree->parent[i]] : outermost(found.cover, (int32_t)i);
     }
 done:
+    free(bins.daughters);
     free(bins.first);
     free(bins.next);
     if (status == STATUS_OK)
