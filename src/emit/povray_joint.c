@@ -97,7 +97,7 @@ void put_joint(Text *text, const EmitParams *params, const Primitive *joint)
 {
     JointFrame frame = primitive_joint(joint);
     Vec3 across = vec3_scale(frame.across, 1 / frame.radius);
-    JointPlane plane = joint_plane(&frame, across, joint->axis_a);
+    JointPlane plane = joint_plane(&frame, across, joint->axes[0]);
     /* The distances to the planes are not divided by the lengths of their normals, either. */
     double sides = fmax(hypot(plane.ax + 1, plane.az), hypot(plane.bx - 1, plane.bz));
     /* The function is that of the surface only where rulings do not cross. */
@@ -113,7 +113,7 @@ void put_joint(Text *text, const EmitParams *params, const Primitive *joint)
     text_puts(text, ",");
     put_vector(text, frame.side);
     text_puts(text, ",");
-    put_vector(text, joint->axis_a);
+    put_vector(text, joint->axes[0]);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         text_puts(text, ",");
         text_number(text, numbers[i]);

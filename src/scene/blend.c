@@ -165,6 +165,7 @@ Status geometry_part(const Geometry *whole, const uint32_t *indices, size_t n, G
     Geometry made = *whole;
     Status status;
     made.primitives = NULL;
+    made.axes = NULL;
     made.ids = NULL;
     made.segments = NULL;
     made.blend = (Blend){0};

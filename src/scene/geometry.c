@@ -5,8 +5,7 @@
 
 JointFrame primitive_joint(const Primitive *primitive)
 {
-    return joint_frame((const Vec3[2]){primitive->a, primitive->b},
-                       (const Vec3[2]){primitive->axis_a, primitive->axis_b},
+    return joint_frame((const Vec3[2]){primitive->a, primitive->b}, primitive->axes,
                        (const double[2]){primitive->radius_mm, primitive->radius_b_mm});
 }
 
@@ -23,10 +22,10 @@ PrimitiveFrame primitive_frame(const Primitive *primitive)
 bool primitive_joint_is_solid(const Primitive *joint)
 {
     Vec3 span = vec3_sub(joint->b, joint->a);
-    double sine = vec3_length(vec3_cross(joint->axis_a, joint->axis_b));
+    double sine = vec3_length(vec3_cross(joint->axes[0], joint->axes[1]));
     double slack = 1e-9 * (joint->radius_mm + joint->radius_b_mm);
-    return vec3_dot(span, joint->axis_a) >= joint->radius_b_mm * sine - slack &&
-           vec3_dot(span, joint->axis_b) >= joint->radius_mm * sine - slack;
+    return vec3_dot(span, joint->axes[0]) >= joint->radius_b_mm * sine - slack &&
+           vec3_dot(span, joint->axes[1]) >= joint->radius_mm * sine - slack;
 }
 
 void numberlists_release(NumberLists *lists)
@@ -58,6 +57,7 @@ bool numberlists_hold(const NumberLists *lists, size_t i, uint32_t number)
 void geometry_release(Geometry *geometry)
 {
     free(geometry->primitives);
+    free(geometry->axes);
     free(geometry->segments);
     numberlists_release(&geometry->blend.members);
     numberlists_release(&geometry->blend.groups);

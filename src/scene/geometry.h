@@ -21,15 +21,15 @@ typedef enum PrimitiveKind { PRIMITIVE_CYLINDER, PRIMITIVE_SPHERE, PRIMITIVE_JOI
 /* A closed cylinder from a to b, a sphere about a, or the ruled surface between two circles about a
  * and b [geom/joint.h]. */
 typedef struct Primitive {
-    PrimitiveKind kind;
+    PrimitiveKind kind : 8;
     bool round_a, round_b; /* of a cylinder: whether one of the geometry's ends is about a, b */
     uint32_t segment;      /* number of the segment that it stands for */
     Vec3 a, b;
     double radius_mm; /* > 0; of a joint, at a */
-    /* Of a joint alone: the radius at b, > 0, and the unit axes across which the circles lie, both
-     * leading from a on to b. */
+    /* Of a joint alone: the radius at b, > 0, and the unit axes across which the circles about a
+     * and b lie, both leading from a on to b (borrowed from the geometry). */
     double radius_b_mm;
-    Vec3 axis_a, axis_b;
+    const Vec3 *axes;
 } Primitive;
 
 /* A primitive that is a joint, prepared for many rays. */
@@ -108,6 +108,7 @@ typedef struct Geometry {
     size_t n_primitives;
     /* The last so many are spheres about an end of a cylinder, with its radius and segment. */
     size_t n_ends;
+    Vec3 *axes;             /* owned; of the primitives that are joints */
     FieldSegment *segments; /* owned; empty for a primitive model */
     size_t n_segments;
     Blend blend;

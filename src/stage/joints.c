@@ -238,18 +238,20 @@ static void add_cylinder(const Builder *builder, size_t i, Geometry *geometry)
                     .segment = (uint32_t)i};
 }
 
-static void add_joint(const Builder *builder, size_t trunk, size_t end, Geometry *geometry)
+static void add_joint(const Builder *builder, size_t trunk, size_t end, Vec3 axes[2],
+                      Geometry *geometry)
 {
     const Tree *tree = builder->tree;
     Vec3 at;
+    axes[0] = vec3_scale(end_axis(builder, trunk, &at), -1);
+    axes[1] = end_axis(builder, end, &at);
     geometry->primitives[geometry->n_primitives++] =
         (Primitive){.kind = PRIMITIVE_JOINT,
                     .a = end_center(builder, trunk),
                     .b = end_center(builder, end),
                     .radius_mm = tree->radius_mm[trunk / 2],
                     .radius_b_mm = tree->radius_mm[end / 2],
-                    .axis_a = vec3_scale(end_axis(builder, trunk, &at), -1),
-                    .axis_b = end_axis(builder, end, &at),
+                    .axes = axes,
                     .segment = (uint32_t)(end / 2)};
 }
 
@@ -289,9 +291,19 @@ static void add_place(const Builder *builder, size_t place, JointForm form, Geom
     for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
         if (builder->ends[k] == trunk)
             continue;
-        add_joint(builder, trunk, builder->ends[k], geometry);
-        report->joints++;
+        add_joint(builder, trunk, builder->ends[k], geometry->axes + 2 * report->joints++,
+                  geometry);
     }
+}
+
+/* Makes room for the axes of all joints. */
+static Status reserve_axes(const Builder *builder, JointForm form, Geometry *geometry, Err *err)
+{
+    size_t joints = 0;
+    for (size_t place = 0; place < builder->tree->n; place++)
+        if (is_joined(builder->kinds[place], form))
+            joints += builder->first[place + 1] - builder->first[place] - 1;
+    return mem_calloc(&geometry->axes, joints, 2 * sizeof *geometry->axes, "joints", err);
 }
 
 Status joints_add(const Tree *tree, const Places *places, JointForm form, Geometry *geometry,
@@ -301,6 +313,8 @@ Status joints_add(const Tree *tree, const Places *places, JointForm form, Geomet
     Status status = collect_ends(&builder, err);
     if (status == STATUS_OK)
         status = cut_places(&builder, err);
+    if (status == STATUS_OK)
+        status = reserve_axes(&builder, form, geometry, err);
     if (status == STATUS_OK) {
         trim_cuts(&builder, form);
         for (size_t i = 0; i < tree->n; i++)

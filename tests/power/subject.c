@@ -25,6 +25,7 @@ Status subject_copy(Subject *copy, const Subject *subject, Err *err)
     const Geometry *from = &scene->geometry;
     Geometry *to = &made.scene.geometry;
     to->primitives = NULL;
+    to->axes = NULL; /* the joints' stay those of the other subject, which outlives the copy */
     to->segments = NULL;
     to->ids = NULL;
     Status status = copy_array(&to->primitives, from->primitives, from->n_primitives,

@@ -27,8 +27,7 @@ static Primitive joint = {.kind = PRIMITIVE_JOINT,
                           .b = {5, -1, 0},
                           .radius_mm = 3,
                           .radius_b_mm = 1,
-                          .axis_a = {0, -1, 0},
-                          .axis_b = {1, 0, 0},
+                          .axes = (const Vec3[]){{0, -1, 0}, {1, 0, 0}},
                           .segment = 2};
 
 static uint32_t ids[] = {2, 70000, 9};
@@ -147,8 +146,7 @@ static void more_joints_than_povray_holds_are_meshes(void **state)
                            .b = {0, 0, 1},
                            .radius_mm = 1,
                            .radius_b_mm = 0.9,
-                           .axis_a = {0, 0, 1},
-                           .axis_b = {0, 0, 1}};
+                           .axes = (const Vec3[]){{0, 0, 1}, {0, 0, 1}}};
     Primitive *joints = malloc(N * sizeof *joints);
     assert_non_null(joints);
     for (size_t i = 0; i < N; i++)

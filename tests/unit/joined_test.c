@@ -80,9 +80,9 @@ static void joints_lead_from_the_rim_of_the_parent_to_those_of_the_daughters(voi
         assert_true(vec3_distance(joint->a, parent->b) == 0);
         assert_true(vec3_distance(joint->b, daughter->a) == 0);
         assert_true(joint->radius_mm == 1.5 && joint->radius_b_mm == tree.radius_mm[2 + k]);
-        assert_true(fabs(joint->axis_a.y + 1) < 1e-15);
+        assert_true(fabs(joint->axes[0].y + 1) < 1e-15);
         Vec3 along = vec3_normalized(vec3_sub(daughter->b, daughter->a));
-        assert_true(vec3_distance(joint->axis_b, along) < 1e-12);
+        assert_true(vec3_distance(joint->axes[1], along) < 1e-12);
         assert_true(vec3_distance(daughter->b, tree.position[2 + k]) == 0);
     }
     scene_release(&scene);
@@ -98,10 +98,10 @@ static void each_disc_of_a_joint_lies_on_one_side_of_the_other(void **state)
         const Primitive *joint = &scene.geometry.primitives[i];
         if (joint->kind != PRIMITIVE_JOINT)
             continue;
-        double sine = vec3_length(vec3_cross(joint->axis_a, joint->axis_b));
+        double sine = vec3_length(vec3_cross(joint->axes[0], joint->axes[1]));
         Vec3 span = vec3_sub(joint->b, joint->a);
-        assert_true(vec3_dot(span, joint->axis_a) - joint->radius_b_mm * sine > -1e-12);
-        assert_true(vec3_dot(span, joint->axis_b) - joint->radius_mm * sine > -1e-12);
+        assert_true(vec3_dot(span, joint->axes[0]) - joint->radius_b_mm * sine > -1e-12);
+        assert_true(vec3_dot(span, joint->axes[1]) - joint->radius_mm * sine > -1e-12);
     }
     scene_release(&scene);
     tree_release(&tree);

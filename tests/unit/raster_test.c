@@ -33,6 +33,7 @@ enum { MOST_PRIMITIVES = 6 * N_TUBES + 8 };
 
 typedef struct Staged {
     Primitive primitives[MOST_PRIMITIVES];
+    Vec3 axes[2 * MOST_PRIMITIVES];
     Rgb colors[MOST_PRIMITIVES];
     Scene scene;
 } Staged;
@@ -68,9 +69,11 @@ static void add_elbow(Staged *staged, Random *random)
     add(staged, PRIMITIVE_CYLINDER, vec3_add_scaled(a, in, -number(random, 0.5, 4)), a, r_in);
     add(staged, PRIMITIVE_CYLINDER, b, vec3_add_scaled(b, out, number(random, 0.5, 4)), r_out);
     Primitive *joint = add(staged, PRIMITIVE_JOINT, a, b, r_in);
+    Vec3 *axes = &staged->axes[2 * joint->segment];
     joint->radius_b_mm = r_out;
-    joint->axis_a = in;
-    joint->axis_b = out;
+    joint->axes = axes;
+    axes[0] = in;
+    axes[1] = out;
 }
 
 static void set_camera(Scene *scene, Projection projection, Vec3 direction)

@@ -187,8 +187,7 @@ static void a_straight_joint_is_a_cone(void **state)
                             .b = {0, 0, 3},
                             .radius_mm = 2.385,
                             .radius_b_mm = 1.1,
-                            .axis_a = {0, 0, 1},
-                            .axis_b = {0, 0, 1}};
+                            .axes = (const Vec3[]){{0, 0, 1}, {0, 0, 1}}};
     const PrimitiveFrame frame = primitive_frame(&cone);
     double volume = 0, step = 0.02;
     for (double y = -3 + step / 2; y < 3; y += step)

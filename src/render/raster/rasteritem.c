@@ -78,9 +78,9 @@ static RasterHull make_hull(const RasterView *view, const Primitive *primitive, 
     RasterHull hull;
     double a = primitive->radius_mm, b = primitive->radius_b_mm;
     bool tapers = fabs(a - b) < length;
-    store_plane(hull.plane[0], viewpoint_to_frame(&view->eye, primitive->axis_a),
+    store_plane(hull.plane[0], viewpoint_to_frame(&view->eye, primitive->axes[0]),
                 vec3_scale(span, -0.5), a);
-    store_plane(hull.plane[1], vec3_scale(viewpoint_to_frame(&view->eye, primitive->axis_b), -1),
+    store_plane(hull.plane[1], vec3_scale(viewpoint_to_frame(&view->eye, primitive->axes[1]), -1),
                 vec3_scale(span, 0.5), b);
     hull.middle = (float)((tapers ? (a + b) / 2 : max_of(a, b)) * 1.0005);
     hull.taper = (float)(tapers ? turn * (a - b) / length : 0);

@@ -148,6 +148,7 @@ static Status primitives_part(const Geometry *whole, const uint32_t *rest, size_
 {
     Geometry made = *whole;
     made.ids = NULL;
+    made.axes = NULL;
     TRY(mem_calloc(&made.primitives, n, sizeof *made.primitives, "primitives", err));
     size_t first_end = whole->n_primitives - whole->n_ends;
     made.n_ends = 0;

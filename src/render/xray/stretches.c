@@ -38,8 +38,8 @@ int primitive_stretches(const Primitive *primitive, const PrimitiveFrame *frame,
     for (int i = 0; i < n; i++)
         t[i] = hits[i].t;
     if (primitive->kind == PRIMITIVE_JOINT) {
-        n += cross_disc(ray, primitive->a, primitive->axis_a, primitive->radius_mm, &t[n]);
-        n += cross_disc(ray, primitive->b, primitive->axis_b, primitive->radius_b_mm, &t[n]);
+        n += cross_disc(ray, primitive->a, primitive->axes[0], primitive->radius_mm, &t[n]);
+        n += cross_disc(ray, primitive->b, primitive->axes[1], primitive->radius_b_mm, &t[n]);
     }
     sort_few(t, n);
     if (primitive->kind == PRIMITIVE_CYLINDER && n > 2) { /* through a rim */
