@@ -20,7 +20,7 @@ typedef enum GrowToss {
     GROW_TOSS_TERMINAL, /* the other terminals' end points */
 } GrowToss;
 
-enum { GROW_MAX_TERMINALS = 8000000, GROW_MAX_CANDIDATES = 1000, GROW_MAX_INLETS = 64 };
+enum { GROW_MAX_TERMINALS = 50000000, GROW_MAX_CANDIDATES = 1000, GROW_MAX_INLETS = 64 };
 
 typedef struct GrowParams {
     size_t terminals; /* in [1, GROW_MAX_TERMINALS] */

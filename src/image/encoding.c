@@ -179,7 +179,7 @@ Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err)
     TRY(picture_init(&made, ids->width, ids->height, 3, 8, err));
     size_t n = (size_t)ids->width * (size_t)ids->height;
     for (size_t i = 0; i < n; i++) {
-        assert(ids->ids[i] < 1u << 24);
+        assert(ids->ids[i] <= IMAGE_MAX_ID);
         made.codes8[3 * i] = (uint8_t)(ids->ids[i] >> 16);
         made.codes8[3 * i + 1] = (uint8_t)(ids->ids[i] >> 8 & 255);
         made.codes8[3 * i + 2] = (uint8_t)(ids->ids[i] & 255);

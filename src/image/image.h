@@ -13,7 +13,7 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 8 };
+enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 8, IMAGE_MAX_ID = 0xffffff };
 
 /* Linear floats: colour (3 channels, 0 black to 1 white), depth (1, mm, INFINITY where nothing is
  * seen), normal (3, unit vector, 0 0 0 where nothing is seen), or several of them for one file. */
@@ -32,7 +32,8 @@ typedef struct Picture {
     uint16_t *codes16;           /* owned; width * height * channels of 16 bits, else NULL */
 } Picture;
 
-/* A 24-bit number a pixel: the SWC id of the segment seen, 0 where nothing is seen. */
+/* A number a pixel: the SWC id of the segment seen, 0 where nothing is seen. Files hold ids up to
+ * IMAGE_MAX_ID. */
 typedef struct IdPlane {
     int width, height;
     uint32_t *ids; /* owned */
@@ -126,7 +127,7 @@ MUST_CHECK Status plane_from_picture(Plane *plane, const Picture *picture, Err *
 MUST_CHECK Status picture_to_srgb(Picture *srgb, const Picture *picture, int bits, Err *err);
 /* Makes codes of 8 bits codes of 16, of the same brightness. */
 MUST_CHECK Status picture_widen(Picture *picture, Err *err);
-/* Id planes as 8-bit pictures: red * 65536 + green * 256 + blue. */
+/* Id planes, of ids up to IMAGE_MAX_ID, as 8-bit pictures: red * 65536 + green * 256 + blue. */
 MUST_CHECK Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err);
 /* Leaves the picture empty: its memory becomes the ids'. STATUS_INPUT unless it has 3 channels of 8
  * bits; it is unchanged then. */

@@ -20,7 +20,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { TREE_NO_PARENT = -1, TREE_MAX_ID = 0xffffff };
+enum { TREE_NO_PARENT = -1, TREE_MAX_ID = 100000000 };
 
 /* The SWC type code of nodes whose file has none, and of grown trees: SWC has no code for arteries,
  * and 3 is what files of arterial trees use. */

@@ -59,8 +59,8 @@ typedef struct Format {
     TreeWrite *write;      /* NULL: the format is only read */
 } Format;
 
-/* As many rows of SWC as there are ids, of the longest numbers, have 3 GB. */
-#define MOST_BYTES 4e9
+/* As many rows of SWC as there are ids, of the longest numbers, have 18 GB. */
+#define MOST_BYTES 2e10
 
 static const Format formats[] = {
     {.name = "SWC",

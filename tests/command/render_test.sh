@@ -98,6 +98,20 @@ test_the_id_plane_holds_ids_of_segments() {
 }
 
 # One tube along x, seen from the front: its depth in the middle row is location z minus radius.
+test_ids_that_an_id_plane_cannot_hold_are_refused_for_it_alone() {
+    sed 's/^4 /16777216 /' "$DATA/bifurcation.swc" >tree.swc
+    for command in "render --planes id -o tree.png" "verify -o report"; do
+        # shellcheck disable=SC2086
+        run corcast $command tree.swc --size 40x30
+        expect_status 2
+        expect_sentence 'tree.swc: the id 16777216 does not fit an id plane, which holds ids up to 16777215'
+    done
+    expect_only tree.swc
+    run_ok corcast render tree.swc --planes depth --size 40x30 -o tree.png
+    corcast scene tree.swc -o tree.pov 2>said || fail "expected a scene"
+    grep -q 'the id 16777216 does not fit an id plane' said || fail "expected it to be said of the scene"
+}
+
 test_depth_and_normal_of_one_tube_are_what_geometry_says() {
     local model how
     printf '1 1 -10 0 0 2 -1\n2 3 10 0 0 2 1\n' >tube.swc

@@ -282,7 +282,7 @@ test_devices_and_ones_own_old_files_may_be_written() {
 
 test_outputs_are_checked_before_work_begins() {
     local seconds=$SECONDS
-    run corcast grow --terminals 8000000 -o tree.swc --json /nowhere/x.json
+    run corcast grow --terminals 50000000 -o tree.swc --json /nowhere/x.json
     expect_status 3
     expect_sentence '/nowhere/x.json: cannot be written: No such file'
     cp "$DATA/bifurcation.swc" tree.swc

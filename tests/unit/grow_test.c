@@ -336,7 +336,7 @@ static void refuses_parameters_out_of_range_and_names_the_option(void **state)
 {
     (void)state;
     REFUSES(terminals, 0, "`terminals` 0");
-    REFUSES(terminals, GROW_MAX_TERMINALS + 1, "`terminals` 8000001");
+    REFUSES(terminals, GROW_MAX_TERMINALS + 1, "`terminals` 50000001");
     REFUSES(gamma.value[0], 0, "`gamma` 0");
     REFUSES(gamma.value[0], -2.5, "`gamma` -2.5");
     REFUSES(gamma.value[0], 10.01, "`gamma` 10.01");

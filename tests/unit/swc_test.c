@@ -377,11 +377,11 @@ static void rejects_what_is_not_a_number(void **state)
     assert_refused("1 2 0 0 0x1p3 .5 -1\n",
                    ":1: the z coordinate is '0x1p3'; it must be a finite number");
     assert_refused("one 2 0 0 0 .5 -1\n",
-                   ":1: the id is 'one'; it must be a whole number from 1 to 16777215");
+                   ":1: the id is 'one'; it must be a whole number from 1 to 100000000");
     assert_refused("1 axon 0 0 0 .5 -1\n", ":1: the type is 'axon'; it must be a whole number from "
                                            "-2147483648 to 2147483647");
     assert_refused("1 2 0 0 0 .5 none\n",
-                   ":1: the parent is 'none'; it must be a whole number from -1 to 16777215");
+                   ":1: the parent is 'none'; it must be a whole number from -1 to 100000000");
 }
 
 static void rejects_what_is_not_finite(void **state)
@@ -410,8 +410,8 @@ static void rejects_a_negative_radius_and_takes_zero(void **state)
 static void rejects_ids_out_of_range(void **state)
 {
     (void)state;
-    static const char allowed[] = "; it must be a whole number from 1 to 16777215";
-    static const char *const ids[] = {"-3", "16777216", "1.5", "nan", "99999999999999999999"};
+    static const char allowed[] = "; it must be a whole number from 1 to 100000000";
+    static const char *const ids[] = {"-3", "100000001", "1.5", "nan", "99999999999999999999"};
     for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
         char text[80], expected[120];
         snprintf(text, sizeof text, "#\n%s 2 0 0 0 .5 -1\n", ids[i]);
@@ -419,11 +419,11 @@ static void rejects_ids_out_of_range(void **state)
         assert_refused(text, expected);
     }
     assert_refused("7 2 0 0 0 .5 -1\n0 2 0 0 1 .5 7\n",
-                   ":2: the id is '0'; it must be a whole number from 1 to 16777215");
-    assert_refused("0 2 0 0 0 .5 -1\n16777215 2 0 0 1 .5 0\n",
-                   ":2: the id is '16777215'; it must be a whole number from 0 to 16777214");
-    Tree tree = read_text("16777215 2 0 0 0 .5 -1\n1e1 2 0 0 1 .5 16777215.0\n");
-    assert_int_equal(tree.id[0], 16777215);
+                   ":2: the id is '0'; it must be a whole number from 1 to 100000000");
+    assert_refused("0 2 0 0 0 .5 -1\n100000000 2 0 0 1 .5 0\n",
+                   ":2: the id is '100000000'; it must be a whole number from 0 to 99999999");
+    Tree tree = read_text("100000000 2 0 0 0 .5 -1\n1e1 2 0 0 1 .5 100000000.0\n");
+    assert_int_equal(tree.id[0], 100000000);
     assert_int_equal(tree.id[1], 10);
     tree_release(&tree);
 }
@@ -438,7 +438,7 @@ static void rejects_a_duplicate_id_naming_both_lines(void **state)
 static void rejects_an_unknown_parent(void **state)
 {
     (void)state;
-    static const char *const parents[] = {"3", "16777215"};
+    static const char *const parents[] = {"3", "100000000"};
     for (size_t i = 0; i < sizeof parents / sizeof *parents; i++) {
         char text[80], expected[160];
         snprintf(text, sizeof text, "7 2 0 0 0 .5 -1\n8 2 0 0 1 .5 %s\n", parents[i]);
@@ -450,7 +450,7 @@ static void rejects_an_unknown_parent(void **state)
         assert_refused(text, expected);
     }
     assert_refused("7 2 0 0 0 .5 -2\n",
-                   ":1: the parent is '-2'; it must be a whole number from -1 to 16777215");
+                   ":1: the parent is '-2'; it must be a whole number from -1 to 100000000");
 }
 
 static void rejects_cycles(void **state)

@@ -329,7 +329,7 @@ static void rejects_networks_that_make_no_sense(void **state)
     (void)state;
     assert_refused("dat", TISSUE "three\n",
                    ":7: the number of segments is 'three'; it must be a whole number from 0 to "
-                   "16777215");
+                   "100000000");
     assert_refused("dat", TISSUE "1\nname\n1 5 1 2\n",
                    ":9: the row of the segments has 4 fields; it has at least 5");
     assert_refused("dat", TISSUE "1\nname\n1 5 1 2 thick\n",

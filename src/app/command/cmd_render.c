@@ -148,6 +148,8 @@ static Status draw_pictures(RenderOptions *options, Parsed *parsed, RenderParams
     TRY_GOTO(picture_read_source(&options->picture, parsed, &source, err));
     TRY_GOTO(
         render_make_scene(options, parsed, &source, sheet.fonts, &scene, &staged, animation, err));
+    if (form->id)
+        TRY_GOTO(picture_check_ids(&scene.geometry, source.of.path, err));
     TRY_GOTO(note_files(animation, form, &parsed->files, err));
     if (options->shard.commands) {
         const int tiles = options->shard.tiles;

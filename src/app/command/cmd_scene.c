@@ -107,8 +107,12 @@ static Status check(const SceneOptions *options, const Emitter *emitter, const P
 }
 
 /* What the user should know of the file besides. */
-static void say_limits(const EmitReport *report, const Scene *scene)
+static void say_limits(const Emitter *emitter, const EmitReport *report, const Scene *scene,
+                       const char *tree)
 {
+    Err misfit;
+    if (emitter->has_view && picture_check_ids(&scene->geometry, tree, &misfit) != STATUS_OK)
+        fprintf(stderr, "corcast: %s\n", misfit.text);
     if (report->joint_sides > 0)
         fprintf(stderr,
                 "corcast: more joints than POV-Ray holds exactly; they are meshes of %d sides, of "
@@ -146,7 +150,7 @@ static Status write_scene(const SceneOptions *options, const Emitter *emitter,
         status =
             scene_files_write(emitter, &params, tree, options->output, options->ini, &report, err);
     if (status == STATUS_OK && !parsed->common.quiet)
-        say_limits(&report, &scene);
+        say_limits(emitter, &report, &scene, tree);
     anatomy_release(&anatomy);
     scene_release(&scene);
     return status;

@@ -262,6 +262,7 @@ static Status verify(Verification *v, int frame, Folder *folder, Parsed *parsed,
 {
     TRY(claim_folder(folder, &parsed->files, err));
     TRY(picture_scene(v->picture, parsed, &v->scene, NULL, NULL, err));
+    TRY(picture_check_ids(&v->scene.geometry, parsed->operands[0], err));
     TRY(picture_say_effects(v->picture, &v->scene.view, "left out on both sides",
                             parsed->common.quiet, err));
     v->scene.view.effects = (Effects){0};

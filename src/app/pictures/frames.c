@@ -1,7 +1,7 @@
 /* One writer a file. The planes take their final names first and the picture last, so that a
  * picture never stands beside planes of another. OpenEXR holds planes itself: they become channels
- * of the picture, floats throughout, as few programs take whole numbers: ids, below 2^24, are exact
- * in 32 bits. */
+ * of the picture, floats throughout, as few programs take whole numbers: ids, up to IMAGE_MAX_ID,
+ * are exact in 32 bits. */
 #include "app/pictures/frames.h"
 
 #include "app/run/output.h"

@@ -604,6 +604,17 @@ Status picture_fits(int width, int height, double bytes_a_pixel, Err *err)
                    height, needed * 1e-9, memory * 1e-9);
 }
 
+Status picture_check_ids(const Geometry *geometry, const char *tree_path, Err *err)
+{
+    for (size_t i = 0; i < geometry->n_ids; i++)
+        if (geometry->ids[i] > IMAGE_MAX_ID)
+            return err_set(err, STATUS_INPUT,
+                           "%s: the id %u does not fit an id plane, which holds ids up to %d; "
+                           "`corcast convert` numbers the nodes from 1 on",
+                           tree_path, geometry->ids[i], IMAGE_MAX_ID);
+    return STATUS_OK;
+}
+
 void picture_description(const Geometry *geometry, const char *tree_path, Text *out)
 {
     text_puts(out, "arterial tree ");

@@ -127,6 +127,10 @@ MUST_CHECK Status picture_say_effects(const PictureOptions *options, const View 
  * machine. */
 MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err *err);
 
+/* STATUS_INPUT when an id of the geometry is larger than those that an id plane holds, naming the
+ * file of the tree. */
+MUST_CHECK Status picture_check_ids(const Geometry *geometry, const char *tree_path, Err *err);
+
 /* One line that says what a geometry shows. */
 void picture_description(const Geometry *geometry, const char *tree_path, Text *out);
 
