@@ -28,7 +28,7 @@ typedef struct Halo {
  * `nearest` at near_mm to `farthest` at far_mm. */
 typedef struct Fade {
     double nearest, farthest; /* in [0, 1]; both 0: vessels do not fade */
-    double near_mm, far_mm;   /* near < far */
+    double near_mm, far_mm;   /* near < far, where vessels fade */
 } Fade;
 
 /* The light that comes through the vessels [Beer and Lambert]: exp(-per_mm L) of the paper's colour

@@ -97,9 +97,10 @@ static Status check_tube(Vec3 a, Vec3 b, double radius, uint32_t id, Err *err)
     return STATUS_OK;
 }
 
+/* The ends of cylinders have their places and radii. */
 Status geometry_check(const Geometry *geometry, Err *err)
 {
-    for (size_t i = 0; i < geometry->n_primitives; i++) {
+    for (size_t i = 0; i < geometry->n_primitives - geometry->n_ends; i++) {
         const Primitive *primitive = &geometry->primitives[i];
         uint32_t id = geometry->ids[primitive->segment];
         TRY(check_tube(primitive->a, primitive->b, primitive->radius_mm, id, err));

@@ -76,13 +76,13 @@ static Status collect_ends(Builder *builder, Err *err)
     TRY(mem_calloc(&builder->kinds, tree->n, sizeof *builder->kinds, "places", err));
     size_t *first = builder->first;
     for (size_t end = 0; end < 2 * tree->n; end++)
-        if (places_draw(builder->places, tree, end / 2))
+        if (places_draw(builder->places, end / 2))
             first[place_of(builder, end) + 2]++;
     for (size_t i = 2; i < tree->n + 2; i++)
         first[i] += first[i - 1];
     /* What counts up to the end of each place's ends is then the beginning of the next one's. */
     for (size_t end = 0; end < 2 * tree->n; end++)
-        if (places_draw(builder->places, tree, end / 2))
+        if (places_draw(builder->places, end / 2))
             builder->ends[first[place_of(builder, end) + 1]++] = end;
     return STATUS_OK;
 }
@@ -318,7 +318,7 @@ Status joints_add(const Tree *tree, const Places *places, JointForm form, Geomet
     if (status == STATUS_OK) {
         trim_cuts(&builder, form);
         for (size_t i = 0; i < tree->n; i++)
-            if (places_draw(places, tree, i))
+            if (places_draw(places, i))
                 add_cylinder(&builder, i, geometry);
         for (size_t place = 0; place < tree->n; place++)
             add_place(&builder, place, form, geometry, report);

@@ -121,16 +121,16 @@ void orbit_frame_turn(ViewParams *params, const Geometry *geometry)
     double tan_x = tan(params->angle_deg * degrees_pi / 2) * used, tan_y = tan_x / aspect;
     double slant_x = sqrt(1 + tan_x * tan_x), slant_y = sqrt(1 + tan_y * tan_y);
     double height = 0, distance = 0;
-    for (size_t i = 0; i < framed_balls(&framed); i++) {
-        Ball ball;
-        if (!framed_ball(&framed, i, &ball))
-            continue;
-        Vec3 from = vec3_sub(ball.center, center);
-        double along = fabs(vec3_dot(from, up)), r = ball.radius;
-        double off = vec3_length(vec3_cross(from, up));
-        height = fmax(height, 2 * fmax(along + r, (off + r) / aspect) / used);
-        distance = fmax(distance, off + (along + r * slant_y) / tan_y);
-        distance = fmax(distance, (off + r) * slant_x / tan_x);
+    for (size_t i = 0; i < framed_segments(&framed); i++) {
+        Ball ends[2];
+        for (int k = framed_ends(&framed, i, ends); k-- > 0;) {
+            Vec3 from = vec3_sub(ends[k].center, center);
+            double along = fabs(vec3_dot(from, up)), r = ends[k].radius;
+            double off = vec3_length(vec3_cross(from, up));
+            height = fmax(height, 2 * fmax(along + r, (off + r) / aspect) / used);
+            distance = fmax(distance, off + (along + r * slant_y) / tan_y);
+            distance = fmax(distance, (off + r) * slant_x / tan_x);
+        }
     }
     if (!perspective) {
         Box all = box_union(framed.box, geometry->bounds);

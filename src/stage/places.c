@@ -108,8 +108,8 @@ static void put(const Tree *tree, Bins *bins, size_t i)
 static void find_covers(const Tree *tree, Bins *bins, int32_t *cover)
 {
     for (size_t i = 0; i < tree->n; i++) {
-        cover[i] = TREE_NO_PARENT;
-        if (!segment_can_be_drawn(tree, i))
+        cover[i] = segment_can_be_drawn(tree, i) ? PLACES_UNCOVERED : PLACES_CANNOT_DRAW;
+        if (cover[i] == PLACES_CANNOT_DRAW)
             continue;
         int32_t self = (int32_t)i, *sister = find_sister(tree, bins, i);
         if (sister && !(tree->radius_mm[i] > tree->radius_mm[*sister])) {
@@ -158,7 +158,8 @@ Status places_find(const Tree *tree, Places *places, Err *err)
     TRY_GOTO(mem_calloc(&found.place, tree->n, sizeof *found.place, "nodes", err));
     find_covers(tree, &bins, found.cover);
     for (size_t i = 0; i < tree->n; i++) {
-        bool joined = tree_is_segment(tree, i) && !has_length(tree, i);
+        bool joined =
+            !places_can_draw(&found, i) && tree_is_segment(tree, i) && !has_length(tree, i);
         found.place[i] = joined ? found.place[tree->parent[i]] : outermost(found.cover, (int32_t)i);
     }
 done:

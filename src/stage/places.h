@@ -9,9 +9,13 @@
 /* POV-Ray refuses cylinders shorter than this [docs/POVRAY.md]. */
 #define SHORTEST_MM 1e-9
 
+/* What a segment has in the place of a sister that covers it. */
+enum { PLACES_UNCOVERED = -1, PLACES_CANNOT_DRAW = -2 };
+
 typedef struct Places {
     /* For each node: the sister of its segment, a segment from the same place, that the segment
-     * lies within and is not drawn for, or TREE_NO_PARENT. Owned, as the next. */
+     * lies within and is not drawn for, or PLACES_UNCOVERED; PLACES_CANNOT_DRAW where there is no
+     * segment that can be drawn. Owned, as the next. */
     int32_t *cover;
     int32_t *place; /* for each node: the node that stands for all nodes at the same place */
 } Places;
@@ -21,10 +25,16 @@ typedef struct Places {
 MUST_CHECK Status places_find(const Tree *tree, Places *places, Err *err);
 void places_release(Places *places);
 
-/* Whether segment i can be drawn and does not lie within a sister. */
-static inline bool places_draw(const Places *places, const Tree *tree, size_t i)
+/* segment_can_be_drawn, found before. */
+static inline bool places_can_draw(const Places *places, size_t i)
 {
-    return segment_can_be_drawn(tree, i) && places->cover[i] < 0;
+    return places->cover[i] != PLACES_CANNOT_DRAW;
+}
+
+/* Whether segment i can be drawn and does not lie within a sister. */
+static inline bool places_draw(const Places *places, size_t i)
+{
+    return places->cover[i] == PLACES_UNCOVERED;
 }
 
 #endif

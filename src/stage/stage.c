@@ -2,99 +2,13 @@
  * a field. Neither knows of the other, so that a picture in other colours shares the shape.
  *
  * No two surfaces of a primitive model coincide, because which of two coincident surfaces is seen
- * is nobody's to say; hence places.c. `rounded` puts one sphere at a place, of the largest radius
- * that meets there. */
+ * is nobody's to say; hence places.c. */
 #include "stage/stage.h"
 
 #include "stage/joints.h"
 #include "stage/places.h"
+#include "stage/solids.h"
 #include <stdlib.h>
-
-/* number[i] becomes that of the cylinder of the segment that ends at node i, or -1. */
-static void add_cylinders(const Tree *tree, const Places *places, Geometry *geometry,
-                          int32_t *number)
-{
-    for (size_t i = 0; i < tree->n; i++) {
-        number[i] = -1;
-        if (!places_draw(places, tree, i))
-            continue;
-        number[i] = (int32_t)geometry->n_primitives;
-        geometry->primitives[geometry->n_primitives++] =
-            (Primitive){.kind = PRIMITIVE_CYLINDER,
-                        .a = tree->position[tree->parent[i]],
-                        .b = tree->position[i],
-                        .radius_mm = tree->radius_mm[i],
-                        .segment = (uint32_t)i};
-    }
-}
-
-/* thickest[i] becomes the thickest segment that meets at node i, if that stands for its place, or
- * -1; of equals, the one that ends there. */
-static void find_thickest(const Tree *tree, const Places *places, int32_t *thickest)
-{
-    for (size_t i = 0; i < tree->n; i++)
-        thickest[i] = segment_can_be_drawn(tree, i) ? (int32_t)i : -1;
-    for (size_t i = 0; i < tree->n; i++) {
-        if (!segment_can_be_drawn(tree, i))
-            continue;
-        int32_t *best = &thickest[places->place[tree->parent[i]]];
-        if (*best < 0 || tree->radius_mm[i] > tree->radius_mm[*best])
-            *best = (int32_t)i;
-    }
-    for (size_t i = 0; i < tree->n; i++)
-        if (places->place[i] != (int32_t)i)
-            thickest[i] = -1;
-}
-
-/* Whether the point is an end of the cylinder, which becomes round. */
-static bool round_end(Primitive *cylinder, Vec3 at)
-{
-    bool is_a = vec3_distance(cylinder->a, at) == 0, is_b = vec3_distance(cylinder->b, at) == 0;
-    cylinder->round_a |= is_a;
-    cylinder->round_b |= is_b;
-    return is_a || is_b;
-}
-
-/* The sphere of a place stands for the thickest segment there. Those that are ends of the segment's
- * cylinder come last. */
-static void add_spheres(const Tree *tree, const int32_t *thickest, const int32_t *cylinder,
-                        Geometry *geometry)
-{
-    for (int ends = 0; ends < 2; ends++)
-        for (size_t i = 0; i < tree->n; i++) {
-            if (thickest[i] < 0)
-                continue;
-            size_t segment = (size_t)thickest[i];
-            bool is_end = cylinder[segment] >= 0 &&
-                          round_end(&geometry->primitives[cylinder[segment]], tree->position[i]);
-            if (is_end != ends)
-                continue;
-            geometry->n_ends += is_end;
-            geometry->primitives[geometry->n_primitives++] =
-                (Primitive){.kind = PRIMITIVE_SPHERE,
-                            .a = tree->position[i],
-                            .b = tree->position[i],
-                            .radius_mm = tree->radius_mm[segment],
-                            .segment = (uint32_t)segment};
-        }
-}
-
-static Status add_solids(const Tree *tree, const Places *places, Geometry *geometry, Err *err)
-{
-    int32_t *cylinder = NULL, *thickest = NULL;
-    Status status;
-    TRY_GOTO(mem_calloc(&cylinder, tree->n, sizeof *cylinder, "nodes", err));
-    TRY_GOTO(mem_calloc(&thickest, tree->n, sizeof *thickest, "nodes", err));
-    add_cylinders(tree, places, geometry, cylinder);
-    if (model_has(geometry->model, MODEL_BALLS)) {
-        find_thickest(tree, places, thickest);
-        add_spheres(tree, thickest, cylinder, geometry);
-    }
-done:
-    free(cylinder);
-    free(thickest);
-    return status;
-}
 
 static Status add_field(const Tree *tree, Geometry *geometry, Err *err)
 {
@@ -168,7 +82,7 @@ static Status add_model(const Tree *tree, const GeometryParams *params, Geometry
     if (model_has(geometry->model, MODEL_JOINTS))
         status = joints_add(tree, &places, params->joints, geometry, report, err);
     else
-        status = add_solids(tree, &places, geometry, err);
+        status = solids_add(tree, &places, params->mesh.threads, geometry, err);
     places_release(&places);
     return status;
 }
@@ -184,10 +98,11 @@ static Status copy_ids(const Tree *tree, Geometry *geometry, Err *err)
     return STATUS_OK;
 }
 
+/* Of a field there are no ends; those of cylinders have the balls of these. */
 static void find_bounds(Geometry *geometry)
 {
     geometry->bounds = box_empty();
-    for (size_t i = 0; i < geometry_balls(geometry); i++) {
+    for (size_t i = 0; i < geometry_balls(geometry) - 2 * geometry->n_ends; i++) {
         Ball ball = geometry_ball(geometry, i);
         geometry->bounds = box_with_ball(geometry->bounds, ball.center, ball.radius);
     }

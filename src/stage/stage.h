@@ -100,7 +100,7 @@ typedef struct GeometryParams {
     JointForm joints; /* of a joined model */
     bool graph; /* isosurface: segments blend only where they meet [docs/METHODS.md section 2.5] */
     bool part_overlaps; /* mesh: vessels that overlap others than their own are thinned */
-    MeshParams mesh;    /* of a mesh */
+    MeshParams mesh;    /* of a mesh; its threads are those of all models */
 } GeometryParams;
 
 /* What a view is made by. Vectors are in the coordinates of the tree. */

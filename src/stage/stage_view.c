@@ -98,15 +98,15 @@ typedef struct Extent {
 static Extent extent_along(const Framed *framed, Vec3 right, Vec3 up)
 {
     Extent extent = {INFINITY, -INFINITY, INFINITY, -INFINITY};
-    for (size_t i = 0; i < framed_balls(framed); i++) {
-        Ball ball;
-        if (!framed_ball(framed, i, &ball))
-            continue;
-        double x = vec3_dot(ball.center, right), y = vec3_dot(ball.center, up);
-        extent.low_x = fmin(extent.low_x, x - ball.radius);
-        extent.high_x = fmax(extent.high_x, x + ball.radius);
-        extent.low_y = fmin(extent.low_y, y - ball.radius);
-        extent.high_y = fmax(extent.high_y, y + ball.radius);
+    for (size_t i = 0; i < framed_segments(framed); i++) {
+        Ball ends[2];
+        for (int k = framed_ends(framed, i, ends); k-- > 0;) {
+            double x = vec3_dot(ends[k].center, right), y = vec3_dot(ends[k].center, up);
+            extent.low_x = fmin(extent.low_x, x - ends[k].radius);
+            extent.high_x = fmax(extent.high_x, x + ends[k].radius);
+            extent.low_y = fmin(extent.low_y, y - ends[k].radius);
+            extent.high_y = fmax(extent.high_y, y + ends[k].radius);
+        }
     }
     return extent;
 }
@@ -119,15 +119,15 @@ static double framing_distance(const Framed *framed, const Camera *camera, doubl
     Vec3 center = box_center(framed->box);
     double slant_x = sqrt(1 + tan_x * tan_x), slant_y = sqrt(1 + tan_y * tan_y);
     double distance = 0;
-    for (size_t i = 0; i < framed_balls(framed); i++) {
-        Ball ball;
-        if (!framed_ball(framed, i, &ball))
-            continue;
-        Vec3 from = vec3_sub(ball.center, center);
-        double towards = -vec3_dot(from, camera->direction), r = ball.radius;
-        double wide = (fabs(vec3_dot(from, camera->right)) + r * slant_x) / tan_x;
-        double high = (fabs(vec3_dot(from, camera->up)) + r * slant_y) / tan_y;
-        distance = fmax(distance, towards + fmax(wide, high));
+    for (size_t i = 0; i < framed_segments(framed); i++) {
+        Ball ends[2];
+        for (int k = framed_ends(framed, i, ends); k-- > 0;) {
+            Vec3 from = vec3_sub(ends[k].center, center);
+            double towards = -vec3_dot(from, camera->direction), r = ends[k].radius;
+            double wide = (fabs(vec3_dot(from, camera->right)) + r * slant_x) / tan_x;
+            double high = (fabs(vec3_dot(from, camera->up)) + r * slant_y) / tan_y;
+            distance = fmax(distance, towards + fmax(wide, high));
+        }
     }
     return distance;
 }
@@ -201,11 +201,11 @@ static Ground place_ground(const LookGround *look, const Camera *camera, const S
                                 .brilliance = 1,
                                 .phong_size = 40,
                                 .roughness = 0.05f}};
-    for (size_t i = 0; i < subject_balls(subject); i++) {
-        Ball ball;
-        if (subject_ball(subject, i, &ball))
+    for (size_t i = 0; i < subject_segments(subject); i++) {
+        Ball ends[2];
+        for (int k = subject_ends(subject, i, ends); k-- > 0;)
             ground.offset_mm =
-                fmin(ground.offset_mm, vec3_dot(ground.normal, ball.center) - ball.radius);
+                fmin(ground.offset_mm, vec3_dot(ground.normal, ends[k].center) - ends[k].radius);
     }
     ground.offset_mm -= look->gap * vec3_distance(subject->box.low, subject->box.high) / 2;
     return ground;
@@ -249,16 +249,16 @@ static void place_fade(const Camera *camera, const Subject *subject, Fade *fade)
     double diagonal = vec3_distance(subject->box.low, subject->box.high);
     fade->near_mm = INFINITY;
     fade->far_mm = -INFINITY;
-    for (size_t i = 0; i < subject_balls(subject); i++) {
-        Ball ball;
-        if (!subject_ball(subject, i, &ball))
-            continue;
-        Vec3 from = vec3_sub(ball.center, camera->location);
-        double depth = camera->projection == PROJECTION_PERSPECTIVE
-                           ? vec3_length(from)
-                           : vec3_dot(from, camera->direction);
-        fade->near_mm = fmin(fade->near_mm, depth);
-        fade->far_mm = fmax(fade->far_mm, depth);
+    for (size_t i = 0; i < subject_segments(subject); i++) {
+        Ball ends[2];
+        for (int k = subject_ends(subject, i, ends); k-- > 0;) {
+            Vec3 from = vec3_sub(ends[k].center, camera->location);
+            double depth = camera->projection == PROJECTION_PERSPECTIVE
+                               ? vec3_length(from)
+                               : vec3_dot(from, camera->direction);
+            fade->near_mm = fmin(fade->near_mm, depth);
+            fade->far_mm = fmax(fade->far_mm, depth);
+        }
     }
     fade->far_mm = fmax(fade->far_mm, fade->near_mm + least_fade * diagonal);
 }
@@ -266,7 +266,7 @@ static void place_fade(const Camera *camera, const Subject *subject, Fade *fade)
 static double thickest_mm(const Geometry *geometry)
 {
     double radius = 0;
-    for (size_t i = 0; i < geometry->n_primitives; i++)
+    for (size_t i = 0; i < geometry->n_primitives - geometry->n_ends; i++)
         radius = fmax(radius, geometry->primitives[i].radius_mm);
     for (size_t i = 0; i < geometry->n_segments; i++)
         radius = fmax(radius, geometry->segments[i].radius_mm);
@@ -277,7 +277,8 @@ static Effects place_effects(const Look *look, const Camera *camera, const Subje
 {
     double thousandth_px = fmin(camera->width, camera->height) / 1000;
     Effects effects = look_effects(look, thousandth_px, thickest_mm(subject->geometry));
-    place_fade(camera, subject, &effects.fade);
+    if (effects.fade.nearest > 0 || effects.fade.farthest > 0)
+        place_fade(camera, subject, &effects.fade);
     return effects;
 }
 

@@ -13,32 +13,33 @@ Subject subject_of(const ViewParams *params, const Geometry *geometry)
     if (!subject.tree)
         return subject;
     subject.box = box_empty();
-    for (size_t i = 0; i < subject_balls(&subject); i++) {
-        Ball ball;
-        if (subject_ball(&subject, i, &ball))
-            subject.box = box_with_ball(subject.box, ball.center, ball.radius);
+    for (size_t i = 0; i < subject_segments(&subject); i++) {
+        Ball ends[2];
+        for (int k = subject_ends(&subject, i, ends); k-- > 0;)
+            subject.box = box_with_ball(subject.box, ends[k].center, ends[k].radius);
     }
     return subject;
 }
 
-size_t subject_balls(const Subject *subject)
+size_t subject_segments(const Subject *subject)
 {
-    return subject->tree ? 2 * subject->tree->n : geometry_balls(subject->geometry);
+    return subject->tree ? subject->tree->n : geometry_balls(subject->geometry) / 2;
 }
 
-bool subject_ball(const Subject *subject, size_t number, Ball *ball)
+int subject_ends(const Subject *subject, size_t number, Ball ends[2])
 {
     const Tree *tree = subject->tree;
-    const size_t i = number / 2;
-    if (!tree) {
-        *ball = geometry_ball(subject->geometry, number);
-        return true;
+    if (tree && !segment_can_be_drawn(tree, number))
+        return 0;
+    for (size_t k = 0; k < 2; k++) {
+        if (!tree) {
+            ends[k] = geometry_ball(subject->geometry, 2 * number + k);
+            continue;
+        }
+        Vec3 end = tree->position[k ? number : (size_t)tree->parent[number]];
+        ends[k] = (Ball){vec3_sub(end, subject->geometry->origin), tree->radius_mm[number]};
     }
-    if (!segment_can_be_drawn(tree, i))
-        return false;
-    Vec3 end = tree->position[number % 2 ? i : (size_t)tree->parent[i]];
-    *ball = (Ball){vec3_sub(end, subject->geometry->origin), tree->radius_mm[i]};
-    return true;
+    return 2;
 }
 
 /* ---- what is framed -------------------------------------------------------------------------- */
@@ -65,31 +66,35 @@ Framed framed_of(const Subject *subject, const ViewParams *params, const View *v
     for (size_t i = 0; view->ground.present && i < view->n_lights; i++)
         if (view->lights[i].casts_shadows)
             add_light(&framed, &view->lights[i]);
-    framed.box = box_empty();
-    for (size_t i = 0; i < framed_balls(&framed); i++) {
-        Ball ball;
-        if (framed_ball(&framed, i, &ball))
-            framed.box = box_with_ball(framed.box, ball.center, ball.radius);
-    }
+    framed.box = subject->box;
     if (!framed.domain && framed.n_lights == 0)
-        framed.box = subject->box;
+        return framed;
+    framed.box = box_empty();
+    for (size_t i = 0; i < framed_segments(&framed); i++) {
+        Ball ends[2];
+        for (int k = framed_ends(&framed, i, ends); k-- > 0;)
+            framed.box = box_with_ball(framed.box, ends[k].center, ends[k].radius);
+    }
     return framed;
 }
 
-static size_t own_balls(const Framed *framed)
+/* The edges of the domain along x stand for segments. */
+static size_t own_segments(const Framed *framed)
 {
-    return framed->domain ? 8 : subject_balls(framed->subject);
+    return framed->domain ? 4 : subject_segments(framed->subject);
 }
 
-static bool own_ball(const Framed *framed, size_t number, Ball *ball)
+static int own_ends(const Framed *framed, size_t number, Ball ends[2])
 {
     const Box *box = framed->domain;
     if (!box)
-        return subject_ball(framed->subject, number, ball);
-    Vec3 corner = vec3(number & 1 ? box->high.x : box->low.x, number & 2 ? box->high.y : box->low.y,
-                       number & 4 ? box->high.z : box->low.z);
-    *ball = (Ball){vec3_sub(corner, framed->subject->geometry->origin), 0};
-    return true;
+        return subject_ends(framed->subject, number, ends);
+    for (int k = 0; k < 2; k++) {
+        Vec3 corner = vec3(k ? box->high.x : box->low.x, number & 1 ? box->high.y : box->low.y,
+                           number & 2 ? box->high.z : box->low.z);
+        ends[k] = (Ball){vec3_sub(corner, framed->subject->geometry->origin), 0};
+    }
+    return 2;
 }
 
 /* Makes the ball that about its shadow; false when that is too long. */
@@ -105,14 +110,19 @@ static bool cast_shadow(const Ground *ground, const Light *light, Ball *ball)
     return true;
 }
 
-size_t framed_balls(const Framed *framed)
+size_t framed_segments(const Framed *framed)
 {
-    return own_balls(framed) * (1 + framed->n_lights);
+    return own_segments(framed) * (1 + framed->n_lights);
 }
 
-bool framed_ball(const Framed *framed, size_t number, Ball *ball)
+int framed_ends(const Framed *framed, size_t number, Ball ends[2])
 {
-    size_t n = own_balls(framed), by = number / n;
-    return own_ball(framed, number % n, ball) &&
-           (by == 0 || cast_shadow(&framed->ground, &framed->lights[by - 1], ball));
+    size_t n = own_segments(framed), by = number / n;
+    int count = own_ends(framed, number % n, ends), kept = 0;
+    if (by == 0)
+        return count;
+    for (int k = 0; k < count; k++)
+        if (cast_shadow(&framed->ground, &framed->lights[by - 1], &ends[k]))
+            ends[kept++] = ends[k];
+    return kept;
 }

@@ -18,10 +18,11 @@ typedef struct Subject {
 /* O(n) of n segments of the tree. */
 Subject subject_of(const ViewParams *params, const Geometry *geometry);
 
-/* How many balls are numbered, some of which may not be there. */
-size_t subject_balls(const Subject *subject);
-/* Ball `number`; false when it is not there. */
-bool subject_ball(const Subject *subject, size_t number, Ball *ball);
+/* How many segments are numbered. */
+size_t subject_segments(const Subject *subject);
+/* The balls about the ends of segment `number`, in ends[2], and how many: 2, or 0 when it is not
+ * drawn. */
+int subject_ends(const Subject *subject, size_t number, Ball ends[2]);
 
 enum { FRAMED_LIGHTS = 4 * VIEW_MAX_LIGHTS };
 
@@ -38,8 +39,8 @@ typedef struct Framed {
 
 /* With the shadows of the view's lights on its ground. */
 Framed framed_of(const Subject *subject, const ViewParams *params, const View *view);
-/* As those of a subject. */
-size_t framed_balls(const Framed *framed);
-bool framed_ball(const Framed *framed, size_t number, Ball *ball);
+/* As those of a subject; of a shadow that is too long to be framed there may be 1 ball. */
+size_t framed_segments(const Framed *framed);
+int framed_ends(const Framed *framed, size_t number, Ball ends[2]);
 
 #endif

@@ -32,7 +32,7 @@ Status stage_vessels(const Tree *tree, VesselTree *vessels, size_t *dropped, Err
     TRY_GOTO(reserve(tree, &made, err));
     for (size_t i = 0; i < tree->n; i++) {
         segments += tree_is_segment(tree, i);
-        if (places_draw(&places, tree, i))
+        if (places_draw(&places, i))
             add_segment(tree, &places, i, &made);
     }
     if (made.n_segments == 0)

@@ -1,0 +1,182 @@
+/* A cylinder for each segment that is drawn; in `rounded` also one sphere at each place, of the
+ * largest radius that meets there.
+ *
+ * Threads work side by side on chunks of nodes: first each chunk is counted, then filled in where
+ * the chunks before it end, so that the order is that of the nodes. A flag of a cylinder's end is
+ * set from the node at that end alone. */
+#include "stage/solids.h"
+
+#include <stdlib.h>
+
+enum { CHUNK = 1 << 15 };
+
+typedef struct Solids {
+    const Tree *tree;
+    const Places *places;
+    Geometry *geometry;
+    int threads;
+    int32_t *cylinder; /* by node: the primitive of the segment that ends there, or -1; owned */
+    /* By node: the thickest segment that meets there, if the node stands for its place, or -1; of
+     * equals, the one that ends there. Owned. */
+    int32_t *thickest;
+    size_t n_chunks;
+    size_t *first[2]; /* by chunk: where its cylinders, or its spheres and ends begin; owned */
+} Solids;
+
+static size_t chunk_end(const Solids *solids, size_t chunk)
+{
+    return (chunk + 1) * CHUNK < solids->tree->n ? (chunk + 1) * CHUNK : solids->tree->n;
+}
+
+/* Makes counts by chunk the numbers at which they begin behind `begin`; returns where the last
+ * ends. */
+static size_t begin_chunks(const Solids *solids, size_t *count, size_t begin)
+{
+    for (size_t chunk = 0; chunk < solids->n_chunks; chunk++) {
+        size_t here = count[chunk];
+        count[chunk] = begin;
+        begin += here;
+    }
+    return begin;
+}
+
+static void count_cylinders(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Solids *solids = context;
+    size_t count = 0;
+    for (size_t i = chunk * CHUNK; i < chunk_end(solids, chunk); i++)
+        count += places_draw(solids->places, i);
+    solids->first[0][chunk] = count;
+}
+
+static void fill_cylinders(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Solids *solids = context;
+    const Tree *tree = solids->tree;
+    size_t number = solids->first[0][chunk];
+    for (size_t i = chunk * CHUNK; i < chunk_end(solids, chunk); i++) {
+        solids->cylinder[i] = -1;
+        if (!places_draw(solids->places, i))
+            continue;
+        solids->cylinder[i] = (int32_t)number;
+        solids->geometry->primitives[number++] = (Primitive){.kind = PRIMITIVE_CYLINDER,
+                                                             .a = tree->position[tree->parent[i]],
+                                                             .b = tree->position[i],
+                                                             .radius_mm = tree->radius_mm[i],
+                                                             .segment = (uint32_t)i};
+    }
+}
+
+static void add_cylinders(Solids *solids)
+{
+    Geometry *geometry = solids->geometry;
+    threads_for(solids->n_chunks, solids->threads, count_cylinders, solids);
+    geometry->n_primitives = begin_chunks(solids, solids->first[0], 0);
+    threads_for(solids->n_chunks, solids->threads, fill_cylinders, solids);
+}
+
+static void find_thickest(const Solids *solids)
+{
+    const Tree *tree = solids->tree;
+    const Places *places = solids->places;
+    int32_t *thickest = solids->thickest;
+    for (size_t i = 0; i < tree->n; i++)
+        thickest[i] = places_can_draw(places, i) ? (int32_t)i : -1;
+    for (size_t i = 0; i < tree->n; i++) {
+        if (!places_can_draw(places, i))
+            continue;
+        int32_t *best = &thickest[places->place[tree->parent[i]]];
+        if (*best < 0 || tree->radius_mm[i] > tree->radius_mm[*best])
+            *best = (int32_t)i;
+    }
+    for (size_t i = 0; i < tree->n; i++)
+        if (places->place[i] != (int32_t)i)
+            thickest[i] = -1;
+}
+
+/* Whether the place of node i is an end of the cylinder of its thickest segment, which becomes
+ * round there. */
+static bool round_end(const Solids *solids, size_t i)
+{
+    int32_t number = solids->cylinder[solids->thickest[i]];
+    if (number < 0)
+        return false;
+    Primitive *cylinder = &solids->geometry->primitives[number];
+    Vec3 at = solids->tree->position[i];
+    bool is_a = vec3_distance(cylinder->a, at) == 0, is_b = vec3_distance(cylinder->b, at) == 0;
+    if (is_a)
+        cylinder->round_a = true;
+    if (is_b)
+        cylinder->round_b = true;
+    return is_a || is_b;
+}
+
+static void count_spheres(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Solids *solids = context;
+    size_t count[2] = {0};
+    for (size_t i = chunk * CHUNK; i < chunk_end(solids, chunk); i++)
+        if (solids->thickest[i] >= 0)
+            count[round_end(solids, i)]++;
+    for (int ends = 0; ends < 2; ends++)
+        solids->first[ends][chunk] = count[ends];
+}
+
+static void fill_spheres(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Solids *solids = context;
+    const Tree *tree = solids->tree;
+    size_t number[2] = {solids->first[0][chunk], solids->first[1][chunk]};
+    for (size_t i = chunk * CHUNK; i < chunk_end(solids, chunk); i++) {
+        int32_t segment = solids->thickest[i];
+        if (segment < 0)
+            continue;
+        solids->geometry->primitives[number[round_end(solids, i)]++] =
+            (Primitive){.kind = PRIMITIVE_SPHERE,
+                        .a = tree->position[i],
+                        .b = tree->position[i],
+                        .radius_mm = tree->radius_mm[segment],
+                        .segment = (uint32_t)segment};
+    }
+}
+
+/* The sphere of a place stands for the thickest segment there. Those that are ends of the segment's
+ * cylinder come last. */
+static void add_spheres(Solids *solids)
+{
+    Geometry *geometry = solids->geometry;
+    find_thickest(solids);
+    threads_for(solids->n_chunks, solids->threads, count_spheres, solids);
+    size_t first_end = begin_chunks(solids, solids->first[0], geometry->n_primitives);
+    geometry->n_primitives = begin_chunks(solids, solids->first[1], first_end);
+    geometry->n_ends = geometry->n_primitives - first_end;
+    threads_for(solids->n_chunks, solids->threads, fill_spheres, solids);
+}
+
+Status solids_add(const Tree *tree, const Places *places, int threads, Geometry *geometry, Err *err)
+{
+    Solids solids = {.tree = tree,
+                     .places = places,
+                     .geometry = geometry,
+                     .threads = threads,
+                     .n_chunks = (tree->n + CHUNK - 1) / CHUNK};
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&solids.cylinder, tree->n, sizeof *solids.cylinder, "nodes", err));
+    TRY_GOTO(mem_calloc(&solids.thickest, tree->n, sizeof *solids.thickest, "nodes", err));
+    for (int k = 0; k < 2; k++)
+        TRY_GOTO(
+            mem_calloc(&solids.first[k], solids.n_chunks, sizeof **solids.first, "nodes", err));
+    add_cylinders(&solids);
+    if (model_has(geometry->model, MODEL_BALLS))
+        add_spheres(&solids);
+done:
+    free(solids.cylinder);
+    free(solids.thickest);
+    free(solids.first[0]);
+    free(solids.first[1]);
+    return status;
+}

@@ -1,0 +1,14 @@
+/* Cylinders and spheres of a tree. */
+#ifndef CORCAST_STAGE_SOLIDS_H
+#define CORCAST_STAGE_SOLIDS_H
+
+#include "scene/scene.h"
+#include "stage/places.h"
+
+/* Fills geometry->primitives, which are empty and have room for two a node, with the cylinders and,
+ * where the model has balls, the spheres of a tree, on so many threads (0: all), which do not
+ * change the result. O(n). STATUS_MEMORY. */
+MUST_CHECK Status solids_add(const Tree *tree, const Places *places, int threads,
+                             Geometry *geometry, Err *err);
+
+#endif
