@@ -6,7 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ID_LIMIT = IMAGE_MAX_ID + 1, LEVELS_MIN_PIXELS = 64, OUTLINE_MIN_PX = 8, MISSING_MIN_PIXELS = 3 };
+enum {
+    ID_LIMIT = IMAGE_MAX_ID + 1,
+    LEVELS_MIN_PIXELS = 64,
+    OUTLINE_MIN_PX = 8,
+    MISSING_MIN_PIXELS = 3
+};
 
 Status segment_index_init(SegmentIndex *index, const IdPlane *a, const IdPlane *b, Err *err)
 {
