@@ -77,14 +77,21 @@ to within 4 · 10⁻⁶ of ln C @ kernel_trace_flat.h @ #define PLANE_CLOSE 3e-6
 of at most 2 of its own radii @ vesseltree.h @ #define BLEND_REACH 2
 1 % of the one weighing as much as 4.3° of the other @ fit_blob.c @ #define DISTANCE 0.03
 1 % of the one weighing as much as 4.3° of the other @ fit_blob.c @ #define ANGLE 13.0
+it is at most `1.05 exp(2 - 2 D^2)` @ kernel_blob.h @ #define ENVELOPE 1.05f
+nowhere below -0.0085 @ kernel_blob.h @ #define DIP 0.0085f
+line is at most 36 / r² @ kernel_blob.h @ #define CURVED_NEAR_END 36.0f
+18.5 / r² where the line stays @ kernel_blob.h @ #define CURVED_NEAR_AXIS 18.5f
+farther than 1.068 r from both ends @ kernel_blob.h @ #define NEAR_END 1.068f
+5.8 / r² where it stays farther than @ kernel_blob.h @ #define CURVED_FAR 5.8f
+farther than 1.191 r from the segment @ kernel_blob.h @ #define NEAR_AXIS 1.191f
 p from 24 to 96 @ fit_blob.c @ for (double power = 24; power <= 96; power *= 2)
 END
 }
 
 test_the_numbers_of_pictures_are_those_of_the_source() {
     agree METHODS.md <<'END'
-`Phi_i <= B = exp(-d^2) min(1, h / s)` @ kernel_trace.h @ term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
-4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ kernel_trace.h @ term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny)
+`Phi_i <= B = exp(-d^2) min(1, h / s)` @ kernel_potential.h @ term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
+4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ kernel_potential.h @ term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny)
 packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays @ lanes.h @ #define LANES 16
 A band begins at a multiple of eight rows @ render.h @ RENDER_BAND_STEP = 8 }
 in which tiles of 8 x 8 pixels @ tile.h @ TILE_SIDE = 8,

@@ -7,11 +7,12 @@
 #include "scene/scene.h"
 #include "surface/surface.h"
 
-/* How primitives are drawn. */
+/* How primitives and blobs are drawn. */
 typedef enum RenderMethod {
     RENDER_TRACE,   /* ray by ray in double precision, as POV-Ray does */
     RENDER_RASTER,  /* tile by tile in single precision: the same picture but for rounding */
-    RENDER_ZBUFFER, /* by points of the surfaces and a depth buffer, as the paper does */
+    RENDER_ZBUFFER, /* by points of the surfaces of primitives and a depth buffer, as the paper does
+                     */
     RENDER_FASTEST  /* the fastest within the bounds of tier B [verify.h], but for what samples
                      * share: RENDER_RASTER of what it takes, rays of the rest */
 } RenderMethod;
@@ -32,7 +33,7 @@ extern const char *const render_kernel_names[];
 enum { RENDER_MOST_ANTIALIAS = 9 };
 
 typedef struct RenderParams {
-    /* Of primitives alone; implicit models have engines of their own. For all of them RENDER_TRACE
+    /* Of primitives and blobs; an isosurface has an engine of its own. For all of them RENDER_TRACE
      * says that shadows and occlusion are found for every sample, by rays; else soft shadows and
      * occlusion are shared by the samples of a pixel [render/light/sharedlight.h], and hard shadows
      * are those of the lights' views. */

@@ -6,10 +6,7 @@
 
 #include <math.h>
 
-const BlobShape blob_shape = {
-    .tube = {{1.1909, 2.8305643108357454}, {1.6382, 1.9152}},
-    .bead = {{0.0641, 1.0036, 2.2312}, {0.2403, 1.4344, 0.6311}},
-};
+const BlobShape blob_shape = BLOB_SHAPE;
 
 /* (1 - d^2 / R^2)^2, of squares. */
 static double profile(double distance2, double radius2)

@@ -40,6 +40,11 @@ typedef struct BlobShape {
 } BlobShape;
 
 /* Fitted to the Gaussian line potential over e^-2 by tests/fit/fit_blob.c. */
+#define BLOB_SHAPE                                                                                 \
+    {                                                                                              \
+        .tube = {{1.1909, 2.8305643108357454}, {1.6382, 1.9152}},                                  \
+        .bead = {{0.0641, 1.0036, 2.2312}, {0.2403, 1.4344, 0.6311}},                              \
+    }
 extern const BlobShape blob_shape;
 
 /* The strength that tube[0] must have for a long vessel to have its own radius. */

@@ -47,6 +47,11 @@ test_isosurfaces_in_perspective_with_shadows() {
     expect_drawn_alike --model isosurface --projection perspective --view iso --shadows on --antialias 3
 }
 
+test_blobs_in_perspective_with_shadows() {
+    run_ok corcast grow --terminals 40 --domain ball:20 --seed 6 -o tree.swc
+    expect_drawn_alike --model blob --projection perspective --view iso --shadows on
+}
+
 test_rasterised_joints_with_shadows() {
     run_ok corcast grow --terminals 40 --domain ball:20 --seed 6 -o tree.swc
     expect_drawn_alike --method raster --model joined --projection perspective --view iso --shadows on

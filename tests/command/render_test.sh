@@ -236,7 +236,9 @@ raster --model rounded --ao 2
 raster --model joined --look print --shadows on
 trace --model rounded --method trace --ao 2
 zbuffer --model rounded --method zbuffer
-trace --model blob
+field --model blob --shadows on
+field --model blob --method raster
+trace --model blob --exact
 field --model isosurface
 trace --model isosurface --hits povray
 END
@@ -410,7 +412,7 @@ test_adaptive_antialiasing_needs_antialiasing() {
 test_tiles_agree_with_rays_to_tier_b_and_to_the_measured_floor() {
     local model projection tree method
     for tree in disc200 disc200-lambda0 ball60; do
-        for model in $(corcast models --of primitives); do
+        for model in $(corcast models --of primitives) blob; do
             for projection in orthographic perspective; do
                 for method in trace raster; do
                     run_ok corcast render "$REPO/tests/golden/$tree.swc" --model $model --projection $projection \
@@ -543,7 +545,10 @@ test_methods_say_what_they_do_not_draw() {
     grow_tree 20
     run corcast render tree.swc --method raster --model isosurface -o picture.ppm
     expect_status 2
-    expect_sentence 'raster is for cylinders, joined and rounded, not for isosurface'
+    expect_sentence 'raster is for cylinders, joined, rounded and blob, not for isosurface'
+    run corcast render tree.swc --method zbuffer --model blob -o picture.ppm
+    expect_status 2
+    expect_sentence 'zbuffer is for cylinders, joined and rounded, not for blob'
     run corcast render tree.swc --method zbuffer --shadows on -o picture.ppm
     expect_status 2
     expect_sentence 'zbuffer draws neither shadows nor antialiased pictures'

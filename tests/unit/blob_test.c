@@ -2,6 +2,7 @@
 /* The blob: its numbers (docs/METHODS.md section 2.6), and its first hits against a walk in small
  * steps over a field written down once more, from POV-Ray's definition. */
 #include "render/cast/blobcast.h"
+#include "render/field/kernel_blob.h"
 #include "stage/stage.h"
 #include "surface/surface.h"
 
@@ -24,7 +25,7 @@ static Cast cast_of(const Geometry *geometry)
 {
     Cast cast;
     assert_int_equal(blobcast_new(geometry, &cast.cast, NULL), STATUS_OK);
-    assert_int_equal(blobscratch_new(cast.cast, &cast.scratch, NULL), STATUS_OK);
+    assert_int_equal(blobscratch_new(geometry->n_segments, &cast.scratch, NULL), STATUS_OK);
     return cast;
 }
 
@@ -58,45 +59,9 @@ static double radius_towards(const Geometry *geometry, Vec3 center, Vec3 outward
 
 /* ---- the field in long double, component by component ---------------------------------------- */
 
-static long double component_at(LongVec3 a, LongVec3 b, long double radius, long double strength,
-                                LongVec3 x)
-{
-    long double sx = b.x - a.x, sy = b.y - a.y, sz = b.z - a.z;
-    long double px = x.x - a.x, py = x.y - a.y, pz = x.z - a.z;
-    long double square = sx * sx + sy * sy + sz * sz;
-    long double t = square > 0 ? (px * sx + py * sy + pz * sz) / square : 0;
-    t = t < 0 ? 0 : t > 1 ? 1 : t;
-    px -= t * sx;
-    py -= t * sy;
-    pz -= t * sz;
-    long double d2 = px * px + py * py + pz * pz, inside = 1 - d2 / (radius * radius);
-    return inside > 0 ? strength * inside * inside : 0;
-}
-
 static long double segment_at(const FieldSegment *segment, LongVec3 x)
 {
-    LongVec3 a = long_vec3(segment->a), b = long_vec3(segment->b);
-    long double r = (long double)segment->radius_mm, sum = 0;
-    long double length =
-        sqrtl((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y) + (b.z - a.z) * (b.z - a.z));
-    for (int i = 0; i < BLOB_TUBES; i++) {
-        long double radius = (long double)blob_shape.tube[i].radius * r;
-        long double strength = (long double)blob_shape.tube[i].strength;
-        sum += component_at(a, b, radius, strength, x);
-        sum += component_at(a, a, radius, -strength / 2, x);
-        sum += component_at(b, b, radius, -strength / 2, x);
-    }
-    for (int i = 0; i < BLOB_BEADS; i++)
-        for (int side = -1; side <= 1; side += 2) {
-            long double h = side * (long double)blob_shape.bead[i].offset * r / length;
-            long double radius = (long double)blob_shape.bead[i].radius * r;
-            long double strength = side * (long double)blob_shape.bead[i].strength;
-            LongVec3 at_a = {a.x + h * (b.x - a.x), a.y + h * (b.y - a.y), a.z + h * (b.z - a.z)};
-            LongVec3 at_b = {b.x - h * (b.x - a.x), b.y - h * (b.y - a.y), b.z - h * (b.z - a.z)};
-            sum += component_at(at_a, at_a, radius, strength, x);
-            sum += component_at(at_b, at_b, radius, strength, x);
-        }
-    return sum;
+    return exact_blob_term(segment, x, NULL);
 }
 
 static long double field_at(const Geometry *geometry, LongVec3 x)
@@ -341,6 +306,84 @@ static void many_segments_in_one_place_are_no_trouble(void **state)
     release(&cast);
 }
 
+/* ---- terms in tiles -------------------------------------------------------------------------- */
+
+/* A line that passes a segment of radius 1, and what kernel_blob.h says of the second derivative
+ * along it. */
+typedef struct Line {
+    Ray ray;
+    double bend;
+} Line;
+
+/* The squared distance of the line through the ray from a point, and how far along it that is. */
+static double line_distance2(Ray ray, Vec3 x)
+{
+    Vec3 from = vec3_sub(x, ray.origin);
+    Vec3 off = vec3_add_scaled(from, ray.direction, -vec3_dot(from, ray.direction));
+    return vec3_dot(off, off);
+}
+
+static double distance_to(const FieldSegment *segment, Vec3 x)
+{
+    Vec3 span = vec3_sub(segment->b, segment->a);
+    double along = vec3_dot(vec3_sub(x, segment->a), span) / vec3_dot(span, span);
+    return vec3_distance(x, vec3_add_scaled(segment->a, span, fmin(fmax(along, 0), 1)));
+}
+
+static Line random_line(Random *random, const FieldSegment *segment)
+{
+    Vec3 span = vec3_sub(segment->b, segment->a), axis = vec3_normalized(span);
+    Vec3 through = vec3_add_scaled(segment->a, span, uniform(random, -0.1, 1.1));
+    through = vec3_add_scaled(through, random_direction(random), uniform(random, 0, 1.7));
+    Line line = {.ray = {through, random_direction(random)}};
+    double end2 = fmin(line_distance2(line.ray, segment->a), line_distance2(line.ray, segment->b));
+    double distance = HUGE_VAL, sine = vec3_length(vec3_cross(axis, line.ray.direction));
+    for (double t = -12; t < 12; t += 0.01)
+        distance = fmin(distance, distance_to(segment, ray_at(line.ray, t)));
+    line.bend = end2 < pow((double)NEAR_END, 2)        ? (double)CURVED_NEAR_END
+                : distance - 0.005 < (double)NEAR_AXIS ? (double)CURVED_NEAR_AXIS
+                                                       : (double)CURVED_FAR;
+    if (end2 > pow(blob_reach(&blob_shape), 2))
+        line.bend *= sine * sine;
+    return line;
+}
+
+/* The second derivative is that of the slope between two places. */
+static void check_line(const FieldSegment *segment, const Line *line)
+{
+    const double h = 0.004;
+    double before = 0;
+    for (double t = -3.5; t < 3.5; t += h) {
+        Vec3 x = ray_at(line->ray, t), d = line->ray.direction;
+        LongVec3 gradient;
+        double term = (double)exact_blob_term(segment, long_vec3(x), &gradient);
+        double slope =
+            (double)gradient.x * d.x + (double)gradient.y * d.y + (double)gradient.z * d.z;
+        double distance = distance_to(segment, x), bend = (slope - before) / h;
+        bool beyond = vec3_dot(vec3_sub(x, segment->a), vec3_sub(segment->b, segment->a)) < 0;
+        double most = (double)ENVELOPE * exp(2 - 2 * distance * distance) * (beyond ? 0.5 : 1);
+        assert_true(term <= most && term >= -(double)DIP);
+        if (t > -3.5 && (bend > line->bend || bend < -1.25 * line->bend))
+            fail_msg("%g at %g of a segment of %g, %g away, bound %g", bend, t,
+                     vec3_distance(segment->a, segment->b), distance, line->bend);
+        before = slope;
+    }
+}
+
+static void the_bounds_of_terms_hold(void **state)
+{
+    (void)state;
+    Random random;
+    random_seed(&random, 86);
+    for (int i = 0; i < 1500; i++) {
+        double length = pow(10, uniform(&random, -1.5, 0.8));
+        FieldSegment segment = {.radius_mm = 1, .a = random_point(&random, 1)};
+        segment.b = vec3_add_scaled(segment.a, random_direction(&random), length);
+        Line line = random_line(&random, &segment);
+        check_line(&segment, &line);
+    }
+}
+
 /* ---- the witness ----------------------------------------------------------------------------- */
 
 static BlobRoots roots_of(const Geometry *geometry, Ray ray, double t_min, double t_max)
@@ -440,6 +483,7 @@ int main(void)
         cmocka_unit_test(first_hits_are_those_of_a_walk_in_small_steps),
         cmocka_unit_test(a_ray_from_within_finds_its_way_out),
         cmocka_unit_test(many_segments_in_one_place_are_no_trouble),
+        cmocka_unit_test(the_bounds_of_terms_hold),
         cmocka_unit_test(roots_of_two_vessels_are_where_their_walls_are),
         cmocka_unit_test(a_wall_is_grazed_or_missed_by_a_hair),
         cmocka_unit_test(the_witness_agrees_with_the_renderer),

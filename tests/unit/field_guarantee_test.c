@@ -55,13 +55,15 @@ static void keep_answer(const SeenTile *seen, int worker, void *context)
     }
 }
 
-static void ask(const Geometry *geometry, const Camera *camera, FieldKernel *kernel, Answer *answer)
+static void ask(const Geometry *geometry, const Camera *camera, int kernel, Answer *answer)
 {
+    const FieldKernels *kernels =
+        fieldkernels_for(geometry, (RenderKernels)(KERNELS_PORTABLE + kernel));
     const double places[] = {0, 1, 2, 3, 4, 5, 6, 7};
     const SampleGrid grid = {places, places, 8, 8, 1};
     FieldTiles *tiles;
     assert_int_equal(fieldtiles_new(geometry, camera, &grid, 1e-4, 1, &tiles, NULL), STATUS_OK);
-    fieldtiles_use_kernel(tiles, kernel);
+    fieldtiles_use_kernel(tiles, kernels->trace);
     *answer = (Answer){.eye = viewpoint_of_camera(camera)};
     assert_int_equal(fieldtiles_trace(tiles, 0, 0, NULL, keep_answer, answer, NULL), STATUS_OK);
     fieldtiles_free(tiles);
@@ -76,7 +78,7 @@ static bool describes_hit(const Walk *walk, const Geometry *geometry, const Answ
     long double largest = 0;
     for (size_t i = 0; i < walk->n; i++) {
         LongVec3 gradient;
-        long double term = exact_term(walk->near[i].segment, x, &gradient);
+        long double term = walk_term(walk->blob, walk->near[i].segment, x, &gradient);
         largest = term > largest ? term : largest;
         sum = vec3_add(sum, vec3((double)gradient.x, (double)gradient.y, (double)gradient.z));
     }
@@ -91,7 +93,7 @@ static bool describes_hit(const Walk *walk, const Geometry *geometry, const Answ
         double degrees = vec3_length(difference) * 57.3 * lone;
         tally->worst_degrees = fmax(tally->worst_degrees, degrees);
     }
-    return exact_term(named, x, NULL) >= largest - 1e-4L;
+    return walk_term(walk->blob, named, x, NULL) >= largest - 1e-4L;
 }
 
 /* How far a hit may be from where it is, mm: by the radius of its vessel and single precision's
@@ -217,7 +219,7 @@ static void try_cameras(const Geometry *geometry, int cameras, bool facing, Rand
         const Camera camera =
             aim(facing ? AIM_FACING : (Aim)(i % N_AIMS), geometry, extent, random);
         for (int k = i % 8 ? n_kernels - 1 : 0; k < n_kernels; k++) {
-            ask(geometry, &camera, fieldkernels[k], &answer);
+            ask(geometry, &camera, k, &answer);
             for (int sample = 0; sample < TILE_SAMPLES; sample++)
                 judge(geometry, &camera, &answer, sample, members, near, tally);
         }
@@ -238,9 +240,10 @@ static void finish(const Tally *tally)
     assert_true(tally->worst_degrees < 0.2);
 }
 
-static void try_tree(const Tree *tree, const char *name, bool facing, uint64_t seed)
+static void try_tree(const Tree *tree, SceneModel model, const char *name, bool facing,
+                     uint64_t seed)
 {
-    Geometry geometry = {.model = SCENE_ISOSURFACE};
+    Geometry geometry = {.model = model};
     geometry.segments = calloc(tree->n, sizeof *geometry.segments);
     assert_non_null(geometry.segments);
     for (size_t i = 0; i < tree->n; i++)
@@ -252,12 +255,14 @@ static void try_tree(const Tree *tree, const char *name, bool facing, uint64_t s
     Random random;
     random_seed(&random, seed);
     Tally tally = {.name = name};
-    try_cameras(&geometry, facing ? 80 / SHARE : 240 / SHARE, facing, &random, &tally);
+    int cameras = facing ? 80 : model == SCENE_BLOB ? 48 : 240;
+    try_cameras(&geometry, cameras / SHARE, facing, &random, &tally);
     finish(&tally);
     free(geometry.segments);
 }
 
-static void try_grown(const char *name, const char *spec, double lambda, bool facing)
+static void try_grown(const char *name, SceneModel model, const char *spec, double lambda,
+                      bool facing)
 {
     Domain domain;
     Tree tree;
@@ -266,7 +271,7 @@ static void try_grown(const char *name, const char *spec, double lambda, bool fa
     params.lambda = lambda;
     assert_int_equal(domain_parse(&domain, spec, NULL), STATUS_OK);
     assert_int_equal(grow_tree(&params, &domain, &tree, NULL, NULL), STATUS_OK);
-    try_tree(&tree, name, facing, 61);
+    try_tree(&tree, model, name, facing, 61);
     tree_release(&tree);
     domain_release(&domain);
 }
@@ -274,19 +279,19 @@ static void try_grown(const char *name, const char *spec, double lambda, bool fa
 static void holds_for_a_tree_of_least_volume(void **state)
 {
     (void)state;
-    try_grown("lambda 2", "disc:50", 2, false);
+    try_grown("lambda 2", SCENE_ISOSURFACE, "disc:50", 2, false);
 }
 
 static void holds_for_a_tree_of_least_length(void **state)
 {
     (void)state;
-    try_grown("lambda 0", "disc:50", 0, false);
+    try_grown("lambda 0", SCENE_ISOSURFACE, "disc:50", 0, false);
 }
 
 static void holds_for_a_tree_in_space(void **state)
 {
     (void)state;
-    try_grown("in space", "ball:28.794", 2, false);
+    try_grown("in space", SCENE_ISOSURFACE, "ball:28.794", 2, false);
 }
 
 static void holds_for_a_measured_tree(void **state)
@@ -301,25 +306,39 @@ static void holds_for_a_measured_tree(void **state)
     }
     Tree tree;
     assert_int_equal(tree_read(&tree, path, NULL), STATUS_OK);
-    try_tree(&tree, "measured", false, 62);
+    try_tree(&tree, SCENE_ISOSURFACE, "measured", false, 62);
     tree_release(&tree);
+}
+
+static void try_scenes(SceneModel model, int runs, uint64_t seed)
+{
+    Random random;
+    random_seed(&random, seed);
+    for (int kind = 0; kind < N_KINDS; kind++) {
+        Tally tally = {.name = kind_names[kind]};
+        for (int run = 0; run < (SHARE > 1 ? 3 : runs); run++) {
+            TestScene test;
+            make_test_scene((SceneKind)kind, &random, &test);
+            test.geometry.model = model;
+            try_cameras(&test.geometry, 8 / (SHARE > 1 ? 2 : 1), false, &random, &tally);
+        }
+        finish(&tally);
+    }
 }
 
 /* Slow: of 45,000 rays, each is walked through by brute force, in long double. */
 static void holds_for_adversarial_scenes(void **state)
 {
     (void)state;
-    Random random;
-    random_seed(&random, 63);
-    for (int kind = 0; kind < N_KINDS; kind++) {
-        Tally tally = {.name = kind_names[kind]};
-        for (int run = 0; run < (SHARE > 1 ? 3 : 10); run++) {
-            TestScene test;
-            make_test_scene((SceneKind)kind, &random, &test);
-            try_cameras(&test.geometry, 8 / (SHARE > 1 ? 2 : 1), false, &random, &tally);
-        }
-        finish(&tally);
-    }
+    try_scenes(SCENE_ISOSURFACE, 10, 63);
+}
+
+static void holds_for_blobs(void **state)
+{
+    (void)state;
+    try_grown("lambda 2", SCENE_BLOB, "disc:50", 2, false);
+    try_grown("in space", SCENE_BLOB, "ball:28.794", 2, false);
+    try_scenes(SCENE_BLOB, 1, 68);
 }
 
 /* Square to a vessel just past its end a term all but attains the bounds of its peak and of its
@@ -353,7 +372,7 @@ static void holds_for_rays_just_past_an_end(void **state)
         Answer answer;
         Near near[1];
         for (int k = 0; k < kernels_usable(); k++) {
-            ask(&test.geometry, &camera, fieldkernels[k], &answer);
+            ask(&test.geometry, &camera, k, &answer);
             for (int sample = 0; sample < TILE_SAMPLES; sample++)
                 judge(&test.geometry, &camera, &answer, sample, NULL, near, &tally);
         }
@@ -397,8 +416,8 @@ static void holds_for_the_potential_of_the_graph(void **state)
 static void holds_for_trees_in_a_disc_seen_face_on(void **state)
 {
     (void)state;
-    try_grown("lambda 2", "disc:50", 2, true);
-    try_grown("lambda 0", "disc:50", 0, true);
+    try_grown("lambda 2", SCENE_ISOSURFACE, "disc:50", 2, true);
+    try_grown("lambda 0", SCENE_ISOSURFACE, "disc:50", 0, true);
 }
 
 /* The adversarial scenes pressed into a plane. */
@@ -458,6 +477,7 @@ int main(void)
         cmocka_unit_test(holds_for_a_tree_in_space),
         cmocka_unit_test(holds_for_a_measured_tree),
         cmocka_unit_test(holds_for_adversarial_scenes),
+        cmocka_unit_test(holds_for_blobs),
         cmocka_unit_test(holds_at_every_scale),
         cmocka_unit_test(holds_for_rays_just_past_an_end),
         cmocka_unit_test(holds_for_the_potential_of_the_graph),

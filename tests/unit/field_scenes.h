@@ -4,6 +4,7 @@
 #define CORCAST_TESTS_FIELD_SCENES_H
 
 #include "scene/scene.h"
+#include "surface/surface.h"
 #include <string.h>
 
 enum { MAX_SEGMENTS = 64 };
@@ -191,6 +192,62 @@ static inline long double exact_term(const FieldSegment *segment, LongVec3 x, Lo
 static inline LongVec3 long_vec3(Vec3 x)
 {
     return (LongVec3){(long double)x.x, (long double)x.y, (long double)x.z};
+}
+
+/* Adds a component of a blob, from POV-Ray's definition: a tube from a to b, or a ball where these
+ * are the same; and its gradient unless that is NULL. */
+static inline long double add_exact_component(LongVec3 a, LongVec3 b, long double radius,
+                                              long double strength, LongVec3 x, LongVec3 *gradient)
+{
+    long double sx = b.x - a.x, sy = b.y - a.y, sz = b.z - a.z;
+    long double px = x.x - a.x, py = x.y - a.y, pz = x.z - a.z;
+    long double square = sx * sx + sy * sy + sz * sz;
+    long double t = square > 0 ? (px * sx + py * sy + pz * sz) / square : 0;
+    t = t < 0 ? 0 : t > 1 ? 1 : t;
+    px -= t * sx;
+    py -= t * sy;
+    pz -= t * sz;
+    long double inside = 1 - (px * px + py * py + pz * pz) / (radius * radius);
+    if (!(inside > 0))
+        return 0;
+    if (gradient) {
+        long double pull = -4 * strength * inside / (radius * radius);
+        gradient->x += pull * px;
+        gradient->y += pull * py;
+        gradient->z += pull * pz;
+    }
+    return strength * inside * inside;
+}
+
+/* The field at x of a segment of the blob, component by component, and its gradient unless that is
+ * NULL. */
+static inline long double exact_blob_term(const FieldSegment *segment, LongVec3 x,
+                                          LongVec3 *gradient)
+{
+    LongVec3 a = long_vec3(segment->a), b = long_vec3(segment->b);
+    long double r = (long double)segment->radius_mm, sum = 0;
+    long double length =
+        sqrtl((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y) + (b.z - a.z) * (b.z - a.z));
+    if (gradient)
+        *gradient = (LongVec3){0, 0, 0};
+    for (int i = 0; i < BLOB_TUBES; i++) {
+        long double radius = (long double)blob_shape.tube[i].radius * r;
+        long double strength = (long double)blob_shape.tube[i].strength;
+        sum += add_exact_component(a, b, radius, strength, x, gradient);
+        sum += add_exact_component(a, a, radius, -strength / 2, x, gradient);
+        sum += add_exact_component(b, b, radius, -strength / 2, x, gradient);
+    }
+    for (int i = 0; i < BLOB_BEADS; i++)
+        for (int side = -1; side <= 1; side += 2) {
+            long double h = side * (long double)blob_shape.bead[i].offset * r / length;
+            long double radius = (long double)blob_shape.bead[i].radius * r;
+            long double strength = side * (long double)blob_shape.bead[i].strength;
+            LongVec3 at_a = {a.x + h * (b.x - a.x), a.y + h * (b.y - a.y), a.z + h * (b.z - a.z)};
+            LongVec3 at_b = {b.x - h * (b.x - a.x), b.y - h * (b.y - a.y), b.z - h * (b.z - a.z)};
+            sum += add_exact_component(at_a, at_a, radius, strength, x, gradient);
+            sum += add_exact_component(at_b, at_b, radius, strength, x, gradient);
+        }
+    return sum;
 }
 
 #endif

@@ -1,4 +1,5 @@
-/* Brute force along a ray of the potential, for tests of proofs. */
+/* Brute force along a ray of the potential, for tests of proofs; or of a blob, whose field is
+ * multiplied by FIELD_LEVEL, so that it has the potential's level. */
 #ifndef CORCAST_TESTS_FIELD_WALK_H
 #define CORCAST_TESTS_FIELD_WALK_H
 
@@ -25,12 +26,13 @@ static inline long double epsilon_of(size_t n_terms)
 
 typedef struct Near {
     const FieldSegment *segment;
-    double on, off; /* along the ray; outside, the term is below e^-32 */
+    double on, off; /* along the ray; outside, the term is below e^-32, or 0 */
     double bend;    /* bound of the term's second derivative along any line, 1/mm^2 */
 } Near;
 
 typedef struct Walk {
     Ray ray;
+    bool blob;
     Near *near; /* by rising `on` */
     size_t n;
     double t;
@@ -68,19 +70,51 @@ static inline double bend_of(const FieldSegment *segment, Ray ray, double to_lin
            (0.8926 * s * s + 0.9682 * s * c + 0.4841 * c * c);
 }
 
+/* What a segment of the geometry's model adds at x, and its gradient unless that is NULL. */
+static inline long double walk_term(bool blob, const FieldSegment *segment, LongVec3 x,
+                                    LongVec3 *gradient)
+{
+    const long double level = (long double)FIELD_LEVEL;
+    if (!blob)
+        return exact_term(segment, x, gradient);
+    long double term = exact_blob_term(segment, x, gradient);
+    if (gradient)
+        *gradient = (LongVec3){gradient->x * level, gradient->y * level, gradient->z * level};
+    return term * level;
+}
+
+/* Of a component of radius R and strength S the second derivative along any line is at most
+ * 8 S / R^2, or -4 S / R^2. */
+static inline double blob_bend(const FieldSegment *segment)
+{
+    double sum = 0;
+    for (int i = 0; i < BLOB_TUBES; i++)
+        sum += 12 * blob_shape.tube[i].strength / pow(blob_shape.tube[i].radius, 2);
+    for (int i = 0; i < BLOB_BEADS; i++)
+        sum += 24 * blob_shape.bead[i].strength / pow(blob_shape.bead[i].radius, 2);
+    return FIELD_LEVEL * sum / (segment->radius_mm * segment->radius_mm);
+}
+
+/* Farther than so many radii from its segment a term is below e^-32, or 0. */
+static inline double walk_reach(bool blob)
+{
+    return blob ? blob_reach(&blob_shape) : 4;
+}
+
 static inline Walk walk_start(const Geometry *geometry, Ray ray, Near *near)
 {
-    Walk walk = {.ray = ray, .near = near};
+    Walk walk = {.ray = ray, .blob = geometry->model == SCENE_BLOB, .near = near};
     for (size_t i = 0; i < geometry->n_segments; i++) {
         const FieldSegment *segment = &geometry->segments[i];
         double r = segment->radius_mm, to_segment, to_line;
         line_distances(ray, segment, &to_segment, &to_line);
-        if (to_segment > 4 * r)
+        double reach = r * walk_reach(walk.blob);
+        if (to_segment > reach)
             continue;
         double t_a = vec3_dot(vec3_sub(segment->a, ray.origin), ray.direction);
         double t_b = vec3_dot(vec3_sub(segment->b, ray.origin), ray.direction);
-        near[walk.n++] = (Near){segment, fmin(t_a, t_b) - 4 * r, fmax(t_a, t_b) + 4 * r,
-                                bend_of(segment, ray, to_line)};
+        near[walk.n++] = (Near){segment, fmin(t_a, t_b) - reach, fmax(t_a, t_b) + reach,
+                                walk.blob ? blob_bend(segment) : bend_of(segment, ray, to_line)};
     }
     qsort(near, walk.n, sizeof *near, compare_near);
     walk.t = walk.n ? near[0].on : HUGE_VAL;
@@ -103,13 +137,12 @@ static inline long double slope_along(const Walk *walk, LongVec3 gradient)
            gradient.z * (long double)d.z;
 }
 
-/* Whether the term is below e^-32 at x. */
-static inline bool is_far(const FieldSegment *segment, Vec3 x)
+static inline bool is_far(bool blob, const FieldSegment *segment, Vec3 x)
 {
     Vec3 span = vec3_sub(segment->b, segment->a), from = vec3_sub(x, segment->a);
     double s = vec3_dot(from, span) / vec3_dot(span, span);
     Vec3 across = vec3_add_scaled(from, span, -fmin(fmax(s, 0), 1));
-    return vec3_length(across) > 4 * segment->radius_mm;
+    return vec3_length(across) > walk_reach(blob) * segment->radius_mm;
 }
 
 /* Walks on to where the potential first reaches the level; false when it never does. */
@@ -129,10 +162,10 @@ static inline bool walk_to(Walk *walk, long double level)
                 continue;
             bend += near->bend;
             smallest = fmin(smallest, near->segment->radius_mm);
-            if (is_far(near->segment, ray_at(walk->ray, walk->t)))
+            if (is_far(walk->blob, near->segment, ray_at(walk->ray, walk->t)))
                 continue;
             LongVec3 gradient;
-            lack -= exact_term(near->segment, x, &gradient);
+            lack -= walk_term(walk->blob, near->segment, x, &gradient);
             slope += slope_along(walk, gradient);
         }
         if (lack <= 1e-10L)
@@ -150,7 +183,7 @@ static inline bool walk_to(Walk *walk, long double level)
 static inline Geometry sum_of(const Geometry *geometry, size_t number, FieldSegment *members)
 {
     const NumberLists *lists = &geometry->blend.members;
-    Geometry sum = {.model = SCENE_ISOSURFACE, .segments = members};
+    Geometry sum = {.model = geometry->model, .segments = members};
     if (!geometry->blend.n_groups)
         return *geometry;
     for (uint32_t i = lists->first[number]; i < lists->first[number + 1]; i++)

@@ -303,7 +303,7 @@ static void all_kernels_agree(void **state)
         assert_int_equal(fieldtiles_new(&staged.scene.geometry, &staged.scene.view.camera, &grid, 0,
                                         1, &field, NULL),
                          STATUS_OK);
-        fieldtiles_use_kernel(field, fieldkernels[k]);
+        fieldtiles_use_kernel(field, potentialkernels[k].trace);
         for (size_t row = 0; row < fieldtiles_rows(field); row++)
             assert_int_equal(fieldtiles_trace(field, row, 0, NULL, keep_tile, &visit, NULL),
                              STATUS_OK);

@@ -34,8 +34,8 @@ static const Option own[] = {
      GIVEN(RenderOptions, has_method),
      .choices = methods,
      .group = GROUP_RUN,
-     .help = "cylinders, joined, rounded: as POV-Ray does, by tiles, as the paper does, or tiles "
-             "where they can"},
+     .help = "cylinders, joined, rounded, and but for zbuffer blob: as POV-Ray does, by tiles, as "
+             "the paper does, or tiles where they can"},
     {.name = "min-width",
      SETS(NUMBER, RenderOptions, min_width_px),
      FROM_TO(0, 64),
@@ -122,14 +122,17 @@ static bool covers_thin(const RenderOptions *options)
     return options->method == RENDER_FASTEST && options->hits == HITS_EXACT;
 }
 
-/* Only primitives are drawn but by rays. */
+/* Of an isosurface and of a mesh there is one way to be drawn. */
 static Status check_method(const RenderOptions *options, Err *err)
 {
     SceneModel model = (SceneModel)options->picture.model;
-    if (model_is_of(model, MODEL_PRIMITIVES))
+    unsigned elements = MODEL_PRIMITIVES;
+    if (options->method != RENDER_ZBUFFER)
+        elements |= MODEL_BLOB;
+    if (model_is_of(model, elements))
         return STATUS_OK;
     Text able = TEXT_INIT;
-    models_of(MODEL_PRIMITIVES, &able);
+    models_of(elements, &able);
     Status status = err_set(err, STATUS_USAGE, "--method %s is for %s, not for %s",
                             methods[options->method], text_chars(&able), models[model].name);
     text_release(&able);

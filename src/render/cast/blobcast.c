@@ -88,10 +88,9 @@ void blobcast_free(BlobCast *cast)
     free(cast);
 }
 
-Status blobscratch_new(const BlobCast *cast, BlobScratch **out, Err *err)
+Status blobscratch_new(size_t n, BlobScratch **out, Err *err)
 {
     BlobScratch *scratch = NULL;
-    size_t n = cast->geometry->n_segments;
     Status status;
     TRY_GOTO(mem_calloc(&scratch, 1, sizeof *scratch, "workspaces", err));
     TRY_GOTO(mem_calloc(&scratch->spans, n, sizeof *scratch->spans, "segments", err));
@@ -355,67 +354,88 @@ static bool first_root(BlobScratch *scratch, size_t n, double t_min, double t_ma
 
 /* ---- casting --------------------------------------------------------------------------------- */
 
-static size_t find_spans(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_max)
+/* A search along a ray, and what it finds. */
+typedef struct Search {
+    const Geometry *geometry;
+    BlobScratch *scratch;
+    Ray ray;
+    double t_min, t_max;
+    size_t n;          /* spans */
+    size_t first, end; /* those of the group that is hit */
+    double t;
+} Search;
+
+/* Adds the span of a segment, if the ray may feel it. */
+static void add_span(Search *search, uint32_t number)
 {
-    BoxWalk walk;
-    size_t n = 0;
-    double reach = blob_reach(&blob_shape);
-    boxwalk_start(&walk, &cast->boxes, ray.origin, ray.direction, 0, false);
-    for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, t_max));)
-        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
-            Span *span = &scratch->spans[n];
-            span->number = cast->boxes.items[i];
-            n += find_span(&cast->geometry->segments[span->number], ray, reach, t_max, span);
-        }
-    sort_spans(scratch->spans, n);
-    return n;
+    Span *span = &search->scratch->spans[search->n];
+    span->number = number;
+    search->n += find_span(&search->geometry->segments[number], search->ray,
+                           blob_reach(&blob_shape), search->t_max, span);
 }
 
-/* The first hit among the segments of spans[first .. end). */
-static bool group_root(const BlobCast *cast, BlobScratch *scratch, Ray ray, size_t first,
-                       size_t end, double t_min, double t_max, double *t)
+/* The first hit among the segments of the group. */
+static bool group_root(Search *search)
 {
+    BlobScratch *scratch = search->scratch;
     Piece *last = scratch->pieces;
-    for (size_t i = first; i < end; i++)
-        last = put_segment(last, &cast->geometry->segments[scratch->spans[i].number], ray);
+    for (size_t i = search->first; i < search->end; i++)
+        last =
+            put_segment(last, &search->geometry->segments[scratch->spans[i].number], search->ray);
     size_t n = (size_t)(last - scratch->pieces);
     for (size_t i = 0; i < n; i++)
         scratch->order[i] = (Span){scratch->pieces[i].t0, scratch->pieces[i].t1, (uint32_t)i};
     sort_spans(scratch->order, n);
-    return n > 0 && first_root(scratch, n, t_min, t_max, t);
+    return n > 0 && first_root(scratch, n, search->t_min, search->t_max, &search->t);
 }
 
-/* The first hit, and the group of segments in which it is: spans[*first .. *end). */
-static bool find_hit(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_min,
-                     double t_max, double *t, size_t *first, size_t *end)
+/* The first hit among the segments whose spans there are. */
+static bool find_hit(Search *search)
 {
-    size_t n = find_spans(cast, scratch, ray, t_max);
-    const Span *spans = scratch->spans;
-    for (*first = 0; *first < n; *first = *end) {
-        double until = spans[*first].t1;
-        for (*end = *first + 1; *end < n && spans[*end].t0 <= until; ++*end)
-            until = fmax(until, spans[*end].t1);
-        if (until > t_min && group_root(cast, scratch, ray, *first, *end, t_min, t_max, t))
+    const Span *spans = search->scratch->spans;
+    sort_spans(search->scratch->spans, search->n);
+    for (search->first = 0; search->first < search->n; search->first = search->end) {
+        double until = spans[search->first].t1;
+        size_t end = search->first + 1;
+        for (; end < search->n && spans[end].t0 <= until; end++)
+            until = fmax(until, spans[end].t1);
+        search->end = end;
+        if (until > search->t_min && group_root(search))
             return true;
     }
     return false;
 }
 
-bool blobcast_first_hit(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_min,
-                        double t_max, double *t, Vec3 *normal, uint32_t *segment)
+static bool search_boxes(const BlobCast *cast, Search *search)
 {
-    size_t first, end;
-    if (!find_hit(cast, scratch, ray, t_min, t_max, t, &first, &end))
-        return false;
-    Vec3 x = ray_at(ray, *t), sum = vec3(0, 0, 0);
+    BoxWalk walk;
+    boxwalk_start(&walk, &cast->boxes, search->ray.origin, search->ray.direction, 0, false);
+    for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, search->t_max));)
+        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++)
+            add_span(search, cast->boxes.items[i]);
+    return find_hit(search);
+}
+
+static bool search_list(Search *search, const uint32_t *list, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        add_span(search, list[i]);
+    return find_hit(search);
+}
+
+/* Sets what is asked of a hit. */
+static void describe(const Search *search, double *t, Vec3 *normal, uint32_t *segment)
+{
+    Vec3 x = ray_at(search->ray, search->t), sum = vec3(0, 0, 0);
     double largest = -INFINITY;
-    for (size_t i = first; i < end; i++) {
-        const Span *span = &scratch->spans[i];
+    *t = search->t;
+    for (size_t i = search->first; i < search->end; i++) {
+        const Span *span = &search->scratch->spans[i];
         if (!(span->t0 <= *t && *t <= span->t1))
             continue;
         BlobComponent components[BLOB_COMPONENTS];
         Vec3 gradient;
-        blob_components(&blob_shape, &cast->geometry->segments[span->number], components);
+        blob_components(&blob_shape, &search->geometry->segments[span->number], components);
         double term = blob_components_at(components, x, &gradient);
         sum = vec3_add(sum, gradient);
         if (term > largest || (term == largest && span->number < *segment)) {
@@ -426,13 +446,39 @@ bool blobcast_first_hit(const BlobCast *cast, BlobScratch *scratch, Ray ray, dou
     /* POV-Ray's normal where the gradient is 0. */
     bool flat = sum.x == 0 && sum.y == 0 && sum.z == 0;
     *normal = flat ? vec3(1, 0, 0) : vec3_scale(vec3_normalized(sum), -1);
+}
+
+bool blobcast_first_hit(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_min,
+                        double t_max, double *t, Vec3 *normal, uint32_t *segment)
+{
+    Search search = {cast->geometry, scratch, ray, t_min, t_max, .n = 0};
+    if (!search_boxes(cast, &search))
+        return false;
+    describe(&search, t, normal, segment);
+    return true;
+}
+
+bool blobcast_first_hit_among(const Geometry *geometry, const uint32_t *list, size_t n,
+                              BlobScratch *scratch, Ray ray, double t_min, double t_max, double *t,
+                              Vec3 *normal, uint32_t *segment)
+{
+    Search search = {geometry, scratch, ray, t_min, t_max, .n = 0};
+    if (!search_list(&search, list, n))
+        return false;
+    describe(&search, t, normal, segment);
     return true;
 }
 
 bool blobcast_any_hit(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_min,
                       double t_max)
 {
-    double t;
-    size_t first, end;
-    return find_hit(cast, scratch, ray, t_min, t_max, &t, &first, &end);
+    Search search = {cast->geometry, scratch, ray, t_min, t_max, .n = 0};
+    return search_boxes(cast, &search);
+}
+
+bool blobcast_any_hit_among(const Geometry *geometry, const uint32_t *list, size_t n,
+                            BlobScratch *scratch, Ray ray, double t_min, double t_max)
+{
+    Search search = {geometry, scratch, ray, t_min, t_max, .n = 0};
+    return search_list(&search, list, n);
 }

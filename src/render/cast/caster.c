@@ -16,9 +16,6 @@
 /* POV-Ray's limit [docs/POVRAY.md section 3]: blockers within it of the lit point or of the light
  * cast no shadow. */
 static const double shadow_slack_mm = 1e-3;
-/* Of a blob neither sees anything nearer than this. */
-static const double blob_nearest_mm = 1e-2;
-
 struct Caster {
     const Geometry *geometry;
     Bvh *bvh;                     /* of primitives, or NULL */
@@ -46,7 +43,7 @@ Status caster_new(const Geometry *geometry, const CellParams *cells, int workers
         TRY_GOTO(mem_calloc(&caster->blob_scratch, (size_t)workers, sizeof *caster->blob_scratch,
                             "workspaces", err));
         for (int i = 0; i < workers; i++)
-            TRY_GOTO(blobscratch_new(caster->blob, &caster->blob_scratch[i], err));
+            TRY_GOTO(blobscratch_new(geometry->n_segments, &caster->blob_scratch[i], err));
     } else if (model_has(geometry->model, MODEL_PRIMITIVES)) {
         TRY_GOTO(bvh_build(geometry->primitives, geometry->n_primitives, &caster->bvh, err));
     } else if (model_has(geometry->model, MODEL_TRIANGLES)) {
@@ -108,7 +105,7 @@ static bool find_first(const Caster *caster, int worker, Ray ray, Hit *hit, uint
         return povray_isosurface_first_hit(caster->isosurface, ray, NEAREST_SEEN_MM, hit, index,
                                            cell);
     if (caster->blob)
-        return blobcast_first_hit(caster->blob, caster->blob_scratch[worker], ray, blob_nearest_mm,
+        return blobcast_first_hit(caster->blob, caster->blob_scratch[worker], ray, BLOB_NEAREST_MM,
                                   INFINITY, &hit->t, &hit->normal, index);
     return field_first_hit(caster->field, caster->scratch[worker], ray, NEAREST_SEEN_MM, INFINITY,
                            &hit->t, &hit->normal, index);
@@ -155,7 +152,7 @@ bool caster_shadow(Caster *caster, int worker, const Ground *ground, Vec3 point,
     if (caster->isosurface)
         return povray_isosurface_any_hit(caster->isosurface, ray, near, far);
     if (caster->blob)
-        return blobcast_any_hit(caster->blob, caster->blob_scratch[worker], ray, blob_nearest_mm,
+        return blobcast_any_hit(caster->blob, caster->blob_scratch[worker], ray, BLOB_NEAREST_MM,
                                 far);
     return field_is_shadowed(caster->field, caster->scratch[worker], ray, near, far);
 }

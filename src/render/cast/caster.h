@@ -8,6 +8,8 @@
 
 /* POV-Ray's limit [docs/POVRAY.md section 3]: crossings nearer than this are not seen. */
 #define NEAREST_SEEN_MM 1e-4
+/* Of a blob neither is seen nor casts a shadow what is nearer than this. */
+#define BLOB_NEAREST_MM 1e-2
 
 /* Constant once built, but for the workspaces of its threads. */
 typedef struct Caster Caster;

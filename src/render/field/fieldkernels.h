@@ -1,4 +1,5 @@
-/* The first hits of a tile of the potential, in one version for each kind of processor. */
+/* The first hits of a tile of the potential or of a blob, in one version for each kind of
+ * processor. */
 #ifndef CORCAST_RENDER_FIELDKERNELS_H
 #define CORCAST_RENDER_FIELDKERNELS_H
 
@@ -28,14 +29,22 @@ typedef struct FieldPlaces {
  * the level is taken to be on a surface that it leaves, as by field_is_shadowed(). */
 typedef void ShadowKernel(const FieldTile *tile, TileWork *work, FieldPlaces *places);
 
-FieldKernel trace_portable;
-ShadowKernel shadow_portable;
+FieldKernel trace_portable, trace_blob_portable;
+ShadowKernel shadow_portable, shadow_blob_portable;
 #ifdef __x86_64__
-FieldKernel trace_avx2, trace_avx512;
-ShadowKernel shadow_avx2, shadow_avx512;
+FieldKernel trace_avx2, trace_avx512, trace_blob_avx2, trace_blob_avx512;
+ShadowKernel shadow_avx2, shadow_avx512, shadow_blob_avx2, shadow_blob_avx512;
 #endif
-/* As tilekernels. */
-extern FieldKernel *const fieldkernels[KINDS_OF_KERNELS];
-extern ShadowKernel *const shadowkernels[KINDS_OF_KERNELS];
+
+typedef struct FieldKernels {
+    FieldKernel *trace;
+    ShadowKernel *shadow;
+} FieldKernels;
+
+/* Of the potential and of the blob, as tilekernels. */
+extern const FieldKernels potentialkernels[KINDS_OF_KERNELS], blobkernels[KINDS_OF_KERNELS];
+
+/* Those of that kind for the geometry's model. */
+const FieldKernels *fieldkernels_for(const Geometry *geometry, RenderKernels kernels);
 
 #endif

@@ -377,6 +377,8 @@ static Status prepare_pass(const Drawing *drawing, int n, const double *offsets,
     const RenderParams *params = drawing->params;
     const Camera *camera = &drawing->view->camera;
     int width = camera->width * n, height = camera->height * n;
+    double nearest =
+        model_has(drawing->geometry->model, MODEL_BLOB) ? BLOB_NEAREST_MM : NEAREST_SEEN_MM;
     TRY(mem_calloc(&pass->columns, (size_t)width, sizeof *pass->columns, "columns", err));
     TRY(mem_calloc(&pass->rows, (size_t)height, sizeof *pass->rows, "rows", err));
     for (int i = 0; i < width; i++)
@@ -384,9 +386,9 @@ static Status prepare_pass(const Drawing *drawing, int n, const double *offsets,
     for (int j = 0; j < height; j++)
         pass->rows[j] = j / n + offsets[j % n];
     pass->grid = (SampleGrid){pass->columns, pass->rows, width, height, 1.0 / n};
-    TRY(fieldtiles_new(drawing->geometry, camera, &pass->grid, NEAREST_SEEN_MM, params->threads,
+    TRY(fieldtiles_new(drawing->geometry, camera, &pass->grid, nearest, params->threads,
                        &pass->tiles, err));
-    fieldtiles_use_kernel(pass->tiles, fieldkernels[kernels_kind(params->kernels)]);
+    fieldtiles_use_kernel(pass->tiles, fieldkernels_for(drawing->geometry, params->kernels)->trace);
     return STATUS_OK;
 }
 
@@ -532,7 +534,10 @@ done:
 
 static bool can_draw(const Drawing *drawing)
 {
-    return model_has(drawing->geometry->model, MODEL_POTENTIAL) && !drawing->params->povray_cells;
+    const SceneModel model = drawing->geometry->model;
+    return model_has(model, MODEL_BLOB)
+               ? drawing->params->method != RENDER_TRACE
+               : model_has(model, MODEL_POTENTIAL) && !drawing->params->povray_cells;
 }
 
 static bool needs_rays(const Drawing *drawing)

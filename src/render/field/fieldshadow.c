@@ -4,6 +4,7 @@
  * that lines of sight keep their places in the view and z rises towards the light. */
 #include "render/field/fieldshadow.h"
 
+#include "render/cast/caster.h"
 #include "render/field/fieldkernels.h"
 #include "render/field/fieldspace.h"
 #include "render/field/vessellists.h"
@@ -121,6 +122,8 @@ static Status look(const Drawing *drawing, const Light *light, const Viewpoint *
     FieldShadow *shadow = NULL;
     const RenderParams *params = drawing->params;
     double from_mm = params->shadow_from_mm > 0 ? params->shadow_from_mm : nearest_mm;
+    if (model_has(drawing->geometry->model, MODEL_BLOB))
+        from_mm = BLOB_NEAREST_MM;
     TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
     shadow->geometry = drawing->geometry;
     shadow->workers = params->threads;
@@ -220,11 +223,8 @@ static Status decide(FieldQueue *queue, const FieldTile *tile, int number, Err *
     Vec3 towards = viewpoint_to_world(eye, eye->perspective ? place : vec3(0, 0, 1));
     Ray ray = {viewpoint_point(eye, place), vec3_normalized(vec3_scale(towards, -1))};
     TRY(fieldspace_reserve_rays(&queue->space, tile->n_terms, err));
-    places->state[number] =
-        field_is_shadowed_among(shadow->geometry, queue->space.candidates, tile->n_terms,
-                                queue->space.scratch, ray, 0, HUGE_VAL)
-            ? PLACE_DARK
-            : PLACE_LIT;
+    bool dark = fieldspace_is_shadowed(&queue->space, tile->n_terms, ray);
+    places->state[number] = dark ? PLACE_DARK : PLACE_LIT;
     return STATUS_OK;
 }
 
@@ -263,7 +263,7 @@ static void visit_tile(const LightRequest *request, void *context)
 static Status answer(void *of, RenderKernels kernels, uint8_t *shadowed, Err *err)
 {
     FieldQueue *queue = of;
-    queue->kernel = shadowkernels[kernels_kind(kernels)];
+    queue->kernel = fieldkernels_for(queue->shadow->geometry, kernels)->shadow;
     queue->shadowed = shadowed;
     queue->status = STATUS_OK;
     queue->err = err;

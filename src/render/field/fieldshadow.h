@@ -1,4 +1,4 @@
-/* Shadows of the potential: whether it stands between a light and a place. */
+/* Shadows of the potential, or a blob: whether it stands between a light and a place. */
 #ifndef CORCAST_RENDER_FIELDSHADOW_H
 #define CORCAST_RENDER_FIELDSHADOW_H
 
@@ -6,8 +6,8 @@
 
 /* Looks from lights that see all of the geometry and have none of it beyond them. A place is hidden
  * where field_is_shadowed() says so, but for a slack of 0.2 % of the level about the place; nothing
- * within the params' shadow_from_mm shadows it. A look takes O(n log n) of n segments, and of the
- * tiles that they touch. */
+ * within the params' shadow_from_mm, of a blob BLOB_NEAREST_MM, shadows it. A look takes O(n log n)
+ * of n segments, and of the tiles that they touch. */
 extern const LightViews field_lights;
 
 #endif

@@ -143,7 +143,7 @@ void fieldterms_make(const FrameSegment *segments, const uint32_t *list, size_t 
 {
     tile->terms = terms;
     tile->n_terms = 0;
-    tile->plane = !tile->perspective && !tile->groups && !tile->any_depth;
+    tile->plane = !tile->perspective && !tile->groups && !tile->any_depth && !tile->blob;
     for (size_t i = 0; i < n; i++) {
         TileTerm *term = &terms[tile->n_terms];
         if (!make_term(tile, &segments[list[i]], list[i], term))

@@ -40,6 +40,7 @@ typedef struct FieldTile {
     LocalGroups *groups; /* a workspace; NULL where all segments blend */
     bool perspective;
     bool any_depth;     /* samples are places, not rays from the eye: no plane is looked for */
+    bool blob;          /* terms are those of a blob: nor is it there */
     bool plane;         /* all blend, and lie in one plane, square to all rays */
     const float *x, *y; /* of the samples, relative to the middle ray */
     double middle_x, middle_y;

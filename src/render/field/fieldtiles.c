@@ -67,7 +67,7 @@ Status fieldtiles_new(const Geometry *geometry, const Camera *camera, const Samp
     tiles->camera = *camera;
     tiles->z_min = z_min;
     tiles->workers = workers;
-    tiles->trace = fieldkernels[kernels_kind(KERNELS_FASTEST)];
+    tiles->trace = fieldkernels_for(geometry, KERNELS_FASTEST)->trace;
     TRY_GOTO(vessellists_make(geometry, camera, grid, workers, &tiles->lists, err));
     const VesselLists *lists = &tiles->lists;
     TRY_GOTO(mem_calloc(&tiles->tile_x, (size_t)lists->tile_columns, sizeof *tiles->tile_x,
@@ -134,6 +134,7 @@ static void place_row(const FieldTiles *tiles, size_t row, const Workspace *spac
     const TilePlaces *y = &tiles->tile_y[row];
     *tile = (FieldTile){.groups = space->terms.groups,
                         .perspective = tiles->lists.eye.perspective,
+                        .blob = model_has(tiles->geometry->model, MODEL_BLOB),
                         .y = y->samples,
                         .middle_y = y->middle,
                         .z_min = tiles->z_min};
@@ -171,8 +172,7 @@ static Status decide(const FieldTiles *tiles, FieldSpace *space, const FieldTile
     Vec3 normal;
     uint32_t segment = 0;
     hits->state[sample] = TILE_MISS;
-    if (!field_first_hit_among(tiles->geometry, space->candidates, tile->n_terms, space->scratch,
-                               ray, tiles->z_min, HUGE_VAL, &t, &normal, &segment))
+    if (!fieldspace_first_hit(space, tile->n_terms, ray, tiles->z_min, &t, &normal, &segment))
         return STATUS_OK;
     bool within = vec3_dot(normal, ray.direction) > 0;
     normal = viewpoint_to_frame(&tiles->lists.eye, within ? vec3_scale(normal, -1) : normal);

@@ -40,17 +40,6 @@ typedef struct Departures {
     float from, to; /* the least and the largest of these */
 } Departures;
 
-/* The lanes on which a term alone is above the level somewhere beyond z. */
-LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z)
-{
-    LaneMask near = term->e2 <= 1.9f;
-    if (!lanes_any(near))
-        return near;
-    Lanes dz = -term->w0 * inverse(term->w1);
-    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
-    return near & (lanes_min(u, v) >= 1.5f) & (dz + term->z > z);
-}
-
 /* Sets the terms beyond the places, and returns the lanes on which one of them hides the light. */
 LANE_FN LaneMask depart(Departures *way, LaneMask open)
 {
@@ -69,52 +58,11 @@ LANE_FN LaneMask depart(Departures *way, LaneMask open)
         added->z = (float)(term->z_near - way->base);
         added->on = (float)(term->on - way->base);
         added->off = (float)(term->off - way->base);
-        hidden |= term_hides(added, way->z);
+        hidden |= term_hides(added, way->z, tile->n_terms);
         if (!lanes_any(open & ~hidden))
             break;
     }
     return hidden;
-}
-
-/* No more than this is the term anywhere from z on. */
-LANE_FN Lanes most_beyond(const PacketTerm *term, Lanes z)
-{
-    const Lanes zero = lanes_set(0);
-    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
-    Lanes past = lanes_min(lanes_select(term->u1 > 0.0f, v, u), zero);
-    Lanes away = lanes_max(w, zero); /* w1 >= 0 */
-    Lanes most = lanes_exp_minus(lanes_fma(past, past, lanes_fma(away, away, term->e2)));
-    most *= lanes_select(past < 0.0f, lanes_set(0.5f), lanes_set(1));
-    return lanes_min(most, term->peak);
-}
-
-/* A term at a point, and no more than it is anywhere from there on. */
-typedef struct TermThere {
-    Lanes value, slope, most;
-} TermThere;
-
-/* The term falls for good where its computed slope says so and is right but for 2e-5 of its parts;
- * where it recedes from both the axis' line and the end that it leaves; and where exp(-w^2) is next
- * to nothing. It is complete. */
-LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
-{
-    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), w_slope = -2.0f * w * term->w1;
-    TermThere there = {gauss, gauss * w_slope, lanes_set(0)};
-    LaneMask falls = w >= 0.0f;
-    if (!term->flat) {
-        Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
-        Lanes ends, ends_slope;
-        axial_factors(u, v, &ends, &ends_slope);
-        Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
-        there.value = gauss * ends;
-        there.slope = gauss * change;
-        falls &= lanes_select(term->u1 > 0.0f, v, u) < 0.0f;
-        falls |= (w > 4.8f) | ((change < 0.0f) & (ends > 0.02f));
-    }
-    there.most = lanes_select(falls, there.value, term->peak);
-    return there;
 }
 
 /* Phi at the places. Sets the margin for it. */
@@ -134,13 +82,13 @@ LANE_FN PacketSample sample_places(const Departures *way, LaneMask open, Lanes *
             continue;
         complete_term(term, packet->tile->perspective);
         add_sample(term, way->z, &sample);
-        places = lanes_fma(term->peak, lanes_set(term->term->k), places);
+        places += steepness(term);
         extent = fmaxf(extent, fabsf(term->z));
     }
     if (packet->tile->perspective)
         width *= (float)fabs(way->base);
-    *margin = places * ((extent + width + way->to - way->from) * MARGIN_PLACE) +
-              (MARGIN_DROPPED + MARGIN_TERM * (float)packet->n);
+    *margin =
+        places * ((extent + width + way->to - way->from) * MARGIN_PLACE) + fixed_margin(packet->n);
     return sample;
 }
 
@@ -194,7 +142,7 @@ LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open)
     Lanes step =
         lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
     Lanes to = lanes_min(way->z + step, lanes_set(at.next));
-    Lanes sum = lanes_set(MARGIN_DROPPED + MARGIN_TERM * (float)packet->n);
+    Lanes sum = lanes_set(fixed_margin(packet->n));
     for (size_t i = 0; i < packet->n; i++)
         sum += most_beyond(&packet->terms[i], to);
     LaneMask lit = open & (sum < SURELY_BELOW);

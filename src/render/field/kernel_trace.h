@@ -1,23 +1,16 @@
 /* The first hits of a tile, several rays at once: included by each source that compiles it for its
- * lanes, and told by FIELD_KERNEL how to call it.
+ * lanes, and told by FIELD_KERNEL how to call it. Terms are the potential's where PLANE_KERNEL is
+ * defined, the name of the function for tiles in a plane, else the blob's.
  *
  * What fieldcast.c proves for one ray in double precision is proven here in single, for a packet of
  * neighbouring rays; lanes whose proof would need more than that are handed back as TILE_UNSURE.
- * In units of 1 / k and with E the distance of ray and axis line, a term on a ray is
- * exp(-E^2 - w^2) (erf u + erf v) / 2, where w, u and v are affine in z. Its segment lies in the
- * plane (w, u) at w = 0, 0 <= u <= u + v, and the ray is a straight line there. With d the distance
- * of ray and segment, s and a sine and cosine of the ray to the axis, and h = 1/2 when that line
- * passes the segment's axis beyond an end, else 1:
  *
- * - Peak. The term is the integral of exp(-|x - y|^2) / sqrt(pi) over the points y of the segment,
- *   and on the ray |x - y|^2 = rho^2 + q^2, where rho >= d is the distance of y from the ray:
- *   Phi_i <= B = exp(-d^2) min(1, h / s).
- * - Curvature. (exp(-q^2))'' is at most 4 exp(-3/2), and its positive part and its negative part
- *   integrate to 2 sqrt(2 / e) each: Phi_i'' <= M = k^2 exp(-d^2) min(4 exp(-3/2) h / s, 2 sqrt(2 /
- *   e) / sqrt(pi) / a). Since (exp(-q^2))'' >= -2, also Phi_i'' >= -M exp(3/2) / 2.
+ * With B no less than a term is on the ray, and M than the second derivative of it
+ * [kernel_packet.h, and the headers that it names]:
+ *
  * - Windows. Phi >= T needs a term of at least its share T B / S, S the sum of all B of the group.
  *   Where that can be is a stretch of the ray within a distance of the segment, found from
- *   exp(-E^2 - w^2) beside it and exp(-E^2 - w^2 - x^2) / 2 at x beyond an end. The march goes from
+ *   what a term is at most by its distance. The march goes from
  *   the first of them to the last. For a lone straight vessel the first begins at its surface.
  * - Steps and acceptance as in fieldcast.c, with a margin about T for what single precision, erf
  * and the terms left out amount to: nothing is stepped over that could reach T - margin, and a hit
@@ -26,150 +19,17 @@
 #error "define FIELD_KERNEL, the name of the function"
 #endif
 
+#ifdef PLANE_KERNEL
+#include "render/field/kernel_potential.h"
 #include "render/field/kernel_trace_flat.h"
+#else
+#include "render/field/kernel_blob.h"
+#endif
 #include <assert.h>
 
 /* Lack of potential at which a hit that is very certain is closed by Newton's method. */
 #define NEAR_ENOUGH (2e-2f * LEVEL)
 #define MOST_STEPS 128
-
-/* A term on the rays of a packet, in powers of dz = z - z of the term. The last four Lanes are set
- * once it is known that the packet may hit something. */
-typedef struct PacketTerm {
-    Lanes w0, w1, u0, u1, v0; /* w = w0 + w1 dz, u = u0 + u1 dz, v = v0 - u1 dz */
-    Lanes peak;               /* B */
-    Lanes gauss;              /* exp(-d^2) */
-    Lanes e2, end_y2[2];      /* E^2, and the squared distances of ray and ends, less E^2 */
-    Lanes past;               /* d^2 - E^2 */
-    Lanes share, cosine;      /* h / s, and a */
-    Lanes inverse_speed2;     /* 1 / (w1^2 + u1^2) */
-    Lanes half_gauss;         /* exp(-E^2) / 2 */
-    Lanes curvature, spare;   /* M, and -ln B - E^2 */
-    Lanes end_z[2];           /* dz nearest to the ends */
-    const TileTerm *term;
-    float z;       /* of the term, relative to the group's */
-    float on, off; /* likewise, between which it may exceed the cut-off */
-    bool flat;     /* u and v are the same all along, and their factor is in half_gauss */
-} PacketTerm;
-
-_Static_assert(sizeof(PacketTerm) + sizeof(PacketTerm *) + sizeof(uint32_t) <= TILE_WORK_BYTES,
-               "TILE_WORK_BYTES");
-
-typedef struct Packet {
-    const FieldTile *tile;
-    Lanes x, y;         /* of the samples */
-    PacketTerm *terms;  /* those of the tile's that matter, in their order */
-    PacketTerm **sum;   /* those of them that are added up */
-    uint32_t *segments; /* of the terms, where groups are looked for */
-    size_t n, n_sum;
-} Packet;
-
-/* 1 / a, finite for a near 0. */
-LANE_FN Lanes inverse(Lanes a)
-{
-    return 1.0f / lanes_select(lanes_abs(a) > 1e-20f, a, lanes_set(1e-20f));
-}
-
-/* The stretch of dz within sqrt(beside2) of the axis beside the segment or sqrt(beyond2) of an end,
- * both less E^2. Empty (low > high) when there is none. */
-LANE_FN void term_stretch(const PacketTerm *term, Lanes beside2, Lanes beyond2, Lanes *low,
-                          Lanes *high)
-{
-    const Lanes none = lanes_set(1e30f);
-    Lanes width = lanes_sqrt(lanes_max(beside2, lanes_set(0)));
-    Lanes per_w = inverse(term->w1), per_u = inverse(term->u1);
-    Lanes first = -term->u0 * per_u, last = term->v0 * per_u;
-    Lanes from = lanes_max((-width - term->w0) * per_w, lanes_min(first, last));
-    Lanes to = lanes_min((width - term->w0) * per_w, lanes_max(first, last));
-    LaneMask seen = (beside2 >= 0.0f) & (from <= to);
-    *low = lanes_select(seen, from, none);
-    *high = lanes_select(seen, to, -none);
-    for (int end = 0; end < 2; end++) {
-        Lanes chord2 = (beyond2 - term->end_y2[end]) * term->inverse_speed2;
-        seen = chord2 >= 0.0f;
-        if (!lanes_any(seen))
-            continue;
-        Lanes half = lanes_sqrt(lanes_max(chord2, lanes_set(0)));
-        *low = lanes_min(*low, lanes_select(seen, term->end_z[end] - half, none));
-        *high = lanes_max(*high, lanes_select(seen, term->end_z[end] + half, -none));
-    }
-}
-
-/* Place and direction, at dz = 0, of the rays as the term sees them. */
-typedef struct TermRays {
-    Lanes o[3], d[3];
-} TermRays;
-
-LANE_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
-{
-    const FieldTile *tile = packet->tile;
-    TermRays rays = {{packet->x + term->o[0], packet->y + term->o[1], lanes_set(term->o[2])},
-                     {lanes_set(0), lanes_set(0), lanes_set(1)}};
-    if (tile->perspective) {
-        float z = (float)term->z_near;
-        rays.o[0] = packet->x * z + term->o[0];
-        rays.o[1] = packet->y * z + term->o[1];
-        rays.d[0] = packet->x + (float)tile->middle_x;
-        rays.d[1] = packet->y + (float)tile->middle_y;
-    }
-    return rays;
-}
-
-/* The linear part of an orthographic packet's term, 1 / s and a; false, some of it not set, when
- * all rays pass the axis beyond reach. */
-LANE_FN bool place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out)
-{
-    const float k = term->k, s = term->sine, a = term->cosine, *cross = term->cross;
-    Lanes x = packet->x + term->o[0], y = packet->y + term->o[1];
-    Lanes along = lanes_fma(x, lanes_set(cross[1]), -(y * cross[0]));
-    out->e2 = square(lanes_fma(y, lanes_set(cross[1]), x * cross[0]));
-    if (!lanes_any(out->e2 < term->reach2))
-        return false;
-    out->w0 = along * -a;
-    out->w1 = lanes_set(k * s);
-    out->u0 = lanes_fma(along, lanes_set(s), lanes_set(term->u));
-    out->v0 = lanes_fma(along, lanes_set(-s), lanes_set(term->v));
-    out->u1 = lanes_set(k * a);
-    out->share = lanes_set(term->per_sine);
-    out->cosine = lanes_set(fabsf(a));
-    out->inverse_speed2 = lanes_set(term->per_k2);
-    return true;
-}
-
-LANE_FN Lanes dot(const Lanes a[3], const float b[3])
-{
-    return lanes_fma(a[0], lanes_set(b[0]), lanes_fma(a[1], lanes_set(b[1]), a[2] * b[2]));
-}
-
-/* Likewise in perspective, where they are not. The directions' common part of cross products comes
- * from the tile, in double, so that rays nearly along the axis lose nothing. */
-LANE_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTerm *out)
-{
-    const float k = term->k, *axis = term->axis;
-    TermRays rays = rays_of(packet, term);
-    Lanes cx = lanes_fma(packet->y, lanes_set(axis[2]), lanes_set(term->cross[0]));
-    Lanes cy = lanes_fma(packet->x, lanes_set(-axis[2]), lanes_set(term->cross[1]));
-    Lanes cz = packet->x * axis[1] - packet->y * axis[0] + term->cross[2];
-    Lanes crossed = lanes_sqrt(square(cx) + square(cy) + square(cz));
-    Lanes per_cross = 1.0f / lanes_max(crossed, lanes_set(1e-20f));
-    cx *= per_cross;
-    cy *= per_cross;
-    cz *= per_cross;
-    /* axis x cross: across the axis, in the plane of ray and axis */
-    Lanes nx = axis[1] * cz - axis[2] * cy, ny = axis[2] * cx - axis[0] * cz,
-          nz = axis[0] * cy - axis[1] * cx;
-    Lanes along = dot(rays.o, axis), speed = dot(rays.d, axis);
-    out->e2 = square((rays.o[0] * cx + rays.o[1] * cy + rays.o[2] * cz) * k);
-    out->w0 = (rays.o[0] * nx + rays.o[1] * ny + rays.o[2] * nz) * k;
-    out->w1 = crossed * k;
-    out->u0 = lanes_fma(along, lanes_set(k), lanes_set(term->u));
-    out->v0 = lanes_fma(along, lanes_set(-k), lanes_set(term->v));
-    out->u1 = speed * k;
-    Lanes length2 = square(crossed) + square(speed), length = lanes_sqrt(length2);
-    out->share = per_cross * length;
-    out->cosine = lanes_abs(speed) / length;
-    out->inverse_speed2 = 1.0f / (length2 * (k * k));
-}
 
 /* Appends the term unless it is below the cut-off on every ray. */
 LANE_FN void add_to_packet(Packet *packet, const TileTerm *tile_term)
@@ -185,44 +45,11 @@ LANE_FN void add_to_packet(Packet *packet, const TileTerm *tile_term)
     term->end_y2[1] = square(cross_b) * term->inverse_speed2;
     term->past = lanes_select(cross_a < 0.0f, term->end_y2[0], lanes_set(0));
     term->past = lanes_select(cross_b < 0.0f, term->end_y2[1], term->past);
-    Lanes d2 = term->e2 + term->past;
-    if (!lanes_any(d2 < tile_term->reach2))
+    if (!lanes_any(term->e2 + term->past < tile_term->reach2))
         return;
-    term->share *= lanes_select((cross_a < 0.0f) | (cross_b < 0.0f), lanes_set(0.5f), lanes_set(1));
-    term->gauss = lanes_exp_minus(d2);
-    term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
     term->term = tile_term;
+    bound_term(term, (cross_a < 0.0f) | (cross_b < 0.0f));
     packet->n++;
-}
-
-/* Sets where the ray is nearest to the ends. */
-LANE_FN void place_ends(PacketTerm *term)
-{
-    Lanes across = term->w0 * term->w1;
-    term->end_z[0] = -lanes_fma(term->u0, term->u1, across) * term->inverse_speed2;
-    term->end_z[1] = lanes_fma(term->v0, term->u1, -across) * term->inverse_speed2;
-}
-
-/* Sets what only packets need that may hit something. */
-LANE_FN void complete_term(PacketTerm *term, bool perspective)
-{
-    const Lanes one = lanes_set(1), tiny = lanes_set(1e-20f);
-    Lanes factor = lanes_min(term->share, one), speed2 = square(term->w1) + square(term->u1);
-    Lanes bend = lanes_min(term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny));
-    term->curvature = term->gauss * speed2 * bend;
-    term->spare = term->past;
-    term->half_gauss = term->gauss * 0.5f;
-    if (lanes_any(term->past > 0.0f)) {
-        term->spare -= lanes_log(factor);
-        term->half_gauss = lanes_exp_minus(term->e2) * 0.5f;
-    }
-    place_ends(term);
-    term->flat = !perspective && fabsf(term->term->cosine) < 1e-8f;
-    if (term->flat) {
-        Lanes ends, ends_slope;
-        axial_factors(term->u0, term->v0, &ends, &ends_slope);
-        term->half_gauss *= ends;
-    }
 }
 
 /* Terms that overlap along the packet. z is relative to `base`. */
@@ -234,34 +61,10 @@ typedef struct Group {
     Lanes margin;
 } Group;
 
-typedef struct PacketSample {
-    Lanes phi, slope,
-        curvature; /* curvature: M of the terms counted, and they are all until next */
-    float next;
-} PacketSample;
-
 /* Whether the term is above the cut-off on some of the rays. */
 LANE_FN bool matters(const PacketTerm *term, LaneMask rays)
 {
     return lanes_any(rays & (term->peak > (float)TILE_TERM_CUTOFF));
-}
-
-LANE_FN void add_sample(const PacketTerm *term, Lanes z, PacketSample *sample)
-{
-    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), w_slope = -2.0f * w * term->w1;
-    sample->curvature += term->curvature;
-    if (term->flat) {
-        sample->phi += gauss;
-        sample->slope = lanes_fma(gauss, w_slope, sample->slope);
-        return;
-    }
-    Lanes ends, ends_slope;
-    axial_factors(lanes_fma(term->u1, dz, term->u0), lanes_fma(-term->u1, dz, term->v0), &ends,
-                  &ends_slope);
-    sample->phi = lanes_fma(gauss, ends, sample->phi);
-    Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
-    sample->slope = lanes_fma(gauss, change, sample->slope);
 }
 
 LANE_FN PacketSample sample_at(const Group *group, Lanes z, LaneMask live)
@@ -290,10 +93,9 @@ LANE_FN bool group_window(Group *group, float extent, LaneMask *live, Lanes *sta
     for (size_t i = 0; i < group->n; i++) {
         const PacketTerm *term = group->terms[i];
         sum += term->peak;
-        places = lanes_fma(term->peak, lanes_set(term->term->k), places);
+        places += steepness(term);
     }
-    group->margin =
-        places * (extent * MARGIN_PLACE) + (MARGIN_DROPPED + MARGIN_TERM * (float)group->n);
+    group->margin = places * (extent * MARGIN_PLACE) + fixed_margin(group->n);
     Lanes low_level = lanes_max(LEVEL - group->margin, lanes_set(0.01f * LEVEL));
     *live &= sum >= low_level;
     if (!lanes_any(*live))
@@ -343,34 +145,6 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, Lanes end, LaneM
         live &= ~stuck & (to <= end);
         *z = lanes_select(live, to, *z);
     }
-}
-
-LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Lanes *phi,
-                          Gradient *sum)
-{
-    const TileTerm *tile_term = term->term;
-    const float k = tile_term->k, *axis = tile_term->axis;
-    TermRays rays = rays_of(packet, tile_term);
-    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), value = gauss, ends_slope;
-    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
-    if (term->flat) {
-        ends_slope = lanes_exp_minus(square(u)) - lanes_exp_minus(square(v));
-        gauss = lanes_exp_minus(square(w) + term->e2) * 0.5f;
-    } else {
-        Lanes ends;
-        axial_factors(u, v, &ends, &ends_slope);
-        value *= ends;
-    }
-    for (int c = 0; c < 3; c++)
-        rays.o[c] = lanes_fma(rays.d[c], dz, rays.o[c]);
-    Lanes across = value * (-2.0f * k * k);
-    Lanes along = gauss * ends_slope * (k * 1.12837917f) - across * dot(rays.o, axis);
-    *phi += value;
-    sum->x += lanes_fma(across, rays.o[0], along * axis[0]);
-    sum->y += lanes_fma(across, rays.o[1], along * axis[1]);
-    sum->z += lanes_fma(across, rays.o[2], along * axis[2]);
-    name_largest(tile_term, value, sum);
 }
 
 /* The potential and its gradient at the points z of the rays, and the index of the largest term. */
@@ -497,10 +271,12 @@ LANE_TARGET void FIELD_KERNEL(const FieldTile *tile, TileWork *work, TileHits *h
 {
     assert(tile->n_terms <= work->capacity);
     __builtin_memset(hits, 0, sizeof *hits);
+#ifdef PLANE_KERNEL
     if (tile->plane) {
         PLANE_KERNEL(tile, work->memory, hits);
         return;
     }
+#endif
     Packet packet = {.tile = tile, .terms = work->memory};
     packet.sum = (PacketTerm **)(packet.terms + tile->n_terms);
     packet.segments = (uint32_t *)(packet.sum + tile->n_terms);

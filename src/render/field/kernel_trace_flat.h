@@ -13,7 +13,7 @@
  * range of p, that is at most R v there, so v grows by exp(R |d|) at most; and v <= m R [Bhatia &
  * Davis 2000]. Where R |d| <= 1 the step thus leaves ln Phi off by less than R v |d|^3. Rays that
  * start between surface and plane, and those within the margin of the level, are handed back. */
-#include "render/field/kernel_trace_common.h"
+#include "render/field/kernel_potential.h"
 
 /* What the last step may leave ln Phi off by; 1e-6 more are for rounding. */
 #define PLANE_CLOSE 3e-6f
@@ -108,12 +108,6 @@ LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
         hopeful |= lanes_bits(nearest2 <= most2) << part * LANES;
     }
     return hopeful;
-}
-
-/* The part of the margin that `n` terms have without the rounding of places. */
-LANE_FN float fixed_margin(size_t n)
-{
-    return MARGIN_DROPPED + MARGIN_TERM * (float)n;
 }
 
 /* Leaves rays that start beyond their hits at -height to double precision, too, and returns the

@@ -68,6 +68,15 @@ static TileSpan rows_of(const VesselLists *lists, const FrameSegment *segment)
 
 enum { CHUNK = 2048 };
 
+/* How far from the segment its term counts, mm; 0: nowhere. */
+static double reach_of(const Geometry *geometry, const FieldSegment *segment)
+{
+    if (model_has(geometry->model, MODEL_BLOB))
+        return blob_reach(&blob_shape) * segment->radius_mm;
+    double reach2 = log(potential_term_peak(segment) / TILE_TERM_CUTOFF);
+    return reach2 > 0 ? sqrt(reach2) / potential_k(segment->radius_mm) : 0;
+}
+
 typedef struct SegmentsJob {
     const Geometry *geometry;
     VesselLists *lists;
@@ -90,10 +99,8 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
         out->axis = vec3_scale(viewpoint_to_frame(&lists->eye, span), 1 / out->length);
         out->sine = sqrt(out->axis.x * out->axis.x + out->axis.y * out->axis.y);
         out->per_sine = out->sine > 0 ? 1 / out->sine : 0;
-        double reach2 = log(potential_term_peak(segment) / TILE_TERM_CUTOFF);
-        if (reach2 > 0)
-            out->reach = sqrt(reach2) / out->k;
-        lists->segment_rows[i] = reach2 > 0 ? rows_of(lists, out) : NOWHERE;
+        out->reach = reach_of(job->geometry, segment);
+        lists->segment_rows[i] = out->reach > 0 ? rows_of(lists, out) : NOWHERE;
     }
 }
 

@@ -1,0 +1,202 @@
+/* The terms of a tile on the rays of a packet: how their segments lie to the rays, which is the
+ * same whatever the terms are. What these are worth is in kernel_potential.h and kernel_blob.h, of
+ * which a source has one.
+ *
+ * In units of 1 / k, and with E the distance of ray and axis line, a point of a ray is at w and u
+ * in the plane that is parallel to both, u along the axis from the segment's first end on; u + v is
+ * the length of the segment, w, u and v are affine in z. So the segment lies in that plane at w =
+ * 0, 0 <= u <= u + v, and the ray is a straight line there. d is the distance of ray and segment, s
+ * and a are sine and cosine of the ray to the axis, and h = 1/2 when that line passes the segment's
+ * axis beyond an end, else 1. */
+#ifndef CORCAST_RENDER_KERNEL_PACKET_H
+#define CORCAST_RENDER_KERNEL_PACKET_H
+
+#include "render/field/kernel_trace_common.h"
+
+/* A term on the rays of a packet, in powers of dz = z - z of the term. The last four Lanes are set
+ * once it is known that the packet may hit something. */
+typedef struct PacketTerm {
+    Lanes w0, w1, u0, u1, v0; /* w = w0 + w1 dz, u = u0 + u1 dz, v = v0 - u1 dz */
+    Lanes peak;               /* B, no less than the term is on the ray; 0 out of reach */
+    Lanes gauss;              /* exp(-d^2) */
+    Lanes e2, end_y2[2];      /* E^2, and the squared distances of ray and ends, less E^2 */
+    Lanes past;               /* d^2 - E^2 */
+    Lanes share, cosine;      /* h / s, and a */
+    Lanes inverse_speed2;     /* 1 / (w1^2 + u1^2) */
+    Lanes half_gauss;         /* exp(-E^2) / 2 */
+    Lanes curvature, spare;   /* M, and -ln B - E^2 */
+    Lanes end_z[2];           /* dz nearest to the ends */
+    const TileTerm *term;
+    float z;       /* of the term, relative to the group's */
+    float on, off; /* likewise, between which it may exceed the cut-off */
+    bool flat;     /* u and v are the same all along, and their factor is in half_gauss */
+} PacketTerm;
+
+_Static_assert(sizeof(PacketTerm) + sizeof(PacketTerm *) + sizeof(uint32_t) <= TILE_WORK_BYTES,
+               "TILE_WORK_BYTES");
+
+typedef struct Packet {
+    const FieldTile *tile;
+    Lanes x, y;         /* of the samples */
+    PacketTerm *terms;  /* those of the tile's that matter, in their order */
+    PacketTerm **sum;   /* those of them that are added up */
+    uint32_t *segments; /* of the terms, where groups are looked for */
+    size_t n, n_sum;
+} Packet;
+
+/* 1 / a, finite for a near 0. */
+LANE_FN Lanes inverse(Lanes a)
+{
+    return 1.0f / lanes_select(lanes_abs(a) > 1e-20f, a, lanes_set(1e-20f));
+}
+
+/* The stretch of dz within sqrt(beside2) of the axis beside the segment or sqrt(beyond2) of an end,
+ * both less E^2. Empty (low > high) when there is none. */
+LANE_FN void term_stretch(const PacketTerm *term, Lanes beside2, Lanes beyond2, Lanes *low,
+                          Lanes *high)
+{
+    const Lanes none = lanes_set(1e30f);
+    Lanes width = lanes_sqrt(lanes_max(beside2, lanes_set(0)));
+    Lanes per_w = inverse(term->w1), per_u = inverse(term->u1);
+    Lanes first = -term->u0 * per_u, last = term->v0 * per_u;
+    Lanes from = lanes_max((-width - term->w0) * per_w, lanes_min(first, last));
+    Lanes to = lanes_min((width - term->w0) * per_w, lanes_max(first, last));
+    LaneMask seen = (beside2 >= 0.0f) & (from <= to);
+    *low = lanes_select(seen, from, none);
+    *high = lanes_select(seen, to, -none);
+    for (int end = 0; end < 2; end++) {
+        Lanes chord2 = (beyond2 - term->end_y2[end]) * term->inverse_speed2;
+        seen = chord2 >= 0.0f;
+        if (!lanes_any(seen))
+            continue;
+        Lanes half = lanes_sqrt(lanes_max(chord2, lanes_set(0)));
+        *low = lanes_min(*low, lanes_select(seen, term->end_z[end] - half, none));
+        *high = lanes_max(*high, lanes_select(seen, term->end_z[end] + half, -none));
+    }
+}
+
+/* Place and direction, at dz = 0, of the rays as the term sees them. */
+typedef struct TermRays {
+    Lanes o[3], d[3];
+} TermRays;
+
+LANE_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
+{
+    const FieldTile *tile = packet->tile;
+    TermRays rays = {{packet->x + term->o[0], packet->y + term->o[1], lanes_set(term->o[2])},
+                     {lanes_set(0), lanes_set(0), lanes_set(1)}};
+    if (tile->perspective) {
+        float z = (float)term->z_near;
+        rays.o[0] = packet->x * z + term->o[0];
+        rays.o[1] = packet->y * z + term->o[1];
+        rays.d[0] = packet->x + (float)tile->middle_x;
+        rays.d[1] = packet->y + (float)tile->middle_y;
+    }
+    return rays;
+}
+
+/* The linear part of an orthographic packet's term, 1 / s and a; false, some of it not set, when
+ * all rays pass the axis beyond reach. */
+LANE_FN bool place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out)
+{
+    const float k = term->k, s = term->sine, a = term->cosine, *cross = term->cross;
+    Lanes x = packet->x + term->o[0], y = packet->y + term->o[1];
+    Lanes along = lanes_fma(x, lanes_set(cross[1]), -(y * cross[0]));
+    out->e2 = square(lanes_fma(y, lanes_set(cross[1]), x * cross[0]));
+    if (!lanes_any(out->e2 < term->reach2))
+        return false;
+    out->w0 = along * -a;
+    out->w1 = lanes_set(k * s);
+    out->u0 = lanes_fma(along, lanes_set(s), lanes_set(term->u));
+    out->v0 = lanes_fma(along, lanes_set(-s), lanes_set(term->v));
+    out->u1 = lanes_set(k * a);
+    out->share = lanes_set(term->per_sine);
+    out->cosine = lanes_set(fabsf(a));
+    out->inverse_speed2 = lanes_set(term->per_k2);
+    return true;
+}
+
+LANE_FN Lanes dot(const Lanes a[3], const float b[3])
+{
+    return lanes_fma(a[0], lanes_set(b[0]), lanes_fma(a[1], lanes_set(b[1]), a[2] * b[2]));
+}
+
+/* Likewise in perspective, where they are not. The directions' common part of cross products comes
+ * from the tile, in double, so that rays nearly along the axis lose nothing. */
+LANE_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTerm *out)
+{
+    const float k = term->k, *axis = term->axis;
+    TermRays rays = rays_of(packet, term);
+    Lanes cx = lanes_fma(packet->y, lanes_set(axis[2]), lanes_set(term->cross[0]));
+    Lanes cy = lanes_fma(packet->x, lanes_set(-axis[2]), lanes_set(term->cross[1]));
+    Lanes cz = packet->x * axis[1] - packet->y * axis[0] + term->cross[2];
+    Lanes crossed = lanes_sqrt(square(cx) + square(cy) + square(cz));
+    Lanes per_cross = 1.0f / lanes_max(crossed, lanes_set(1e-20f));
+    cx *= per_cross;
+    cy *= per_cross;
+    cz *= per_cross;
+    /* axis x cross: across the axis, in the plane of ray and axis */
+    Lanes nx = axis[1] * cz - axis[2] * cy, ny = axis[2] * cx - axis[0] * cz,
+          nz = axis[0] * cy - axis[1] * cx;
+    Lanes along = dot(rays.o, axis), speed = dot(rays.d, axis);
+    out->e2 = square((rays.o[0] * cx + rays.o[1] * cy + rays.o[2] * cz) * k);
+    out->w0 = (rays.o[0] * nx + rays.o[1] * ny + rays.o[2] * nz) * k;
+    out->w1 = crossed * k;
+    out->u0 = lanes_fma(along, lanes_set(k), lanes_set(term->u));
+    out->v0 = lanes_fma(along, lanes_set(-k), lanes_set(term->v));
+    out->u1 = speed * k;
+    Lanes length2 = square(crossed) + square(speed), length = lanes_sqrt(length2);
+    out->share = per_cross * length;
+    out->cosine = lanes_abs(speed) / length;
+    out->inverse_speed2 = 1.0f / (length2 * (k * k));
+}
+
+/* Sets where the ray is nearest to the ends. */
+LANE_FN void place_ends(PacketTerm *term)
+{
+    Lanes across = term->w0 * term->w1;
+    term->end_z[0] = -lanes_fma(term->u0, term->u1, across) * term->inverse_speed2;
+    term->end_z[1] = lanes_fma(term->v0, term->u1, -across) * term->inverse_speed2;
+}
+
+/* Terms added up at a place of the rays. */
+typedef struct PacketSample {
+    Lanes phi, slope;
+    Lanes curvature; /* M of the terms counted, and they are all until next */
+    float next;
+} PacketSample;
+
+/* Adds a gradient at dz of the term: `across` times the vector from the axis' line to there, and
+ * `along` times the axis. */
+LANE_FN void add_direction(const PacketTerm *term, const Packet *packet, Lanes dz, Lanes across,
+                           Lanes along, Gradient *sum)
+{
+    const float *axis = term->term->axis;
+    TermRays rays = rays_of(packet, term->term);
+    for (int c = 0; c < 3; c++)
+        rays.o[c] = lanes_fma(rays.d[c], dz, rays.o[c]);
+    along -= across * dot(rays.o, axis);
+    sum->x += lanes_fma(across, rays.o[0], along * axis[0]);
+    sum->y += lanes_fma(across, rays.o[1], along * axis[1]);
+    sum->z += lanes_fma(across, rays.o[2], along * axis[2]);
+}
+
+/* A term at a point, and no more than it is anywhere from there on. */
+typedef struct TermThere {
+    Lanes value, slope, most;
+} TermThere;
+
+/* exp(-x^2) of x the least distance of the segment from z on, or less, or half of that where an end
+ * has been left. */
+LANE_FN Lanes gauss_beyond(const PacketTerm *term, Lanes z)
+{
+    const Lanes zero = lanes_set(0);
+    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
+    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
+    Lanes past = lanes_min(lanes_select(term->u1 > 0.0f, v, u), zero);
+    Lanes away = lanes_max(w, zero); /* w1 >= 0 */
+    Lanes gauss = lanes_exp_minus(lanes_fma(past, past, lanes_fma(away, away, term->e2)));
+    return gauss * lanes_select(past < 0.0f, lanes_set(0.5f), lanes_set(1));
+}
+
+#endif

@@ -1,0 +1,138 @@
+/* Terms of the potential, exp(-E^2 - w^2) (erf u + erf v) / 2 [kernel_packet.h].
+ *
+ * - Peak. The term is the integral of exp(-|x - y|^2) / sqrt(pi) over the points y of the segment,
+ *   and on the ray |x - y|^2 = rho^2 + q^2, where rho >= d is the distance of y from the ray:
+ *   Phi_i <= B = exp(-d^2) min(1, h / s).
+ * - Curvature. (exp(-q^2))'' is at most 4 exp(-3/2), and its positive part and its negative part
+ *   integrate to 2 sqrt(2 / e) each: Phi_i'' <= M = k^2 exp(-d^2) min(4 exp(-3/2) h / s, 2 sqrt(2 /
+ *   e) / sqrt(pi) / a). Since (exp(-q^2))'' >= -2, also Phi_i'' >= -M exp(3/2) / 2.
+ * - Distance. It is at most exp(-E^2 - w^2) beside the segment, and exp(-E^2 - w^2 - x^2) / 2 at x
+ *   beyond an end. */
+#ifndef CORCAST_RENDER_KERNEL_POTENTIAL_H
+#define CORCAST_RENDER_KERNEL_POTENTIAL_H
+
+#include "render/field/kernel_packet.h"
+
+/* The part of the margin that `n` terms have without the rounding of places. */
+LANE_FN float fixed_margin(size_t n)
+{
+    return MARGIN_DROPPED + MARGIN_TERM * (float)n;
+}
+
+/* How much the term may be off where its place is off by 1 mm; MARGIN_PLACE allows for a factor. */
+LANE_FN Lanes steepness(const PacketTerm *term)
+{
+    return term->peak * term->term->k;
+}
+
+/* Sets what bounds the term, which is passed beyond an end where `beyond`. */
+LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
+{
+    term->share *= lanes_select(beyond, lanes_set(0.5f), lanes_set(1));
+    term->gauss = lanes_exp_minus(term->e2 + term->past);
+    term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
+}
+
+/* Sets what only packets need that may hit something. */
+LANE_FN void complete_term(PacketTerm *term, bool perspective)
+{
+    const Lanes one = lanes_set(1), tiny = lanes_set(1e-20f);
+    Lanes factor = lanes_min(term->share, one), speed2 = square(term->w1) + square(term->u1);
+    Lanes bend = lanes_min(term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny));
+    term->curvature = term->gauss * speed2 * bend;
+    term->spare = term->past;
+    term->half_gauss = term->gauss * 0.5f;
+    if (lanes_any(term->past > 0.0f)) {
+        term->spare -= lanes_log(factor);
+        term->half_gauss = lanes_exp_minus(term->e2) * 0.5f;
+    }
+    place_ends(term);
+    term->flat = !perspective && fabsf(term->term->cosine) < 1e-8f;
+    if (term->flat) {
+        Lanes ends, ends_slope;
+        axial_factors(term->u0, term->v0, &ends, &ends_slope);
+        term->half_gauss *= ends;
+    }
+}
+
+LANE_FN void add_sample(const PacketTerm *term, Lanes z, PacketSample *sample)
+{
+    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
+    Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), w_slope = -2.0f * w * term->w1;
+    sample->curvature += term->curvature;
+    if (term->flat) {
+        sample->phi += gauss;
+        sample->slope = lanes_fma(gauss, w_slope, sample->slope);
+        return;
+    }
+    Lanes ends, ends_slope;
+    axial_factors(lanes_fma(term->u1, dz, term->u0), lanes_fma(-term->u1, dz, term->v0), &ends,
+                  &ends_slope);
+    sample->phi = lanes_fma(gauss, ends, sample->phi);
+    Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
+    sample->slope = lanes_fma(gauss, change, sample->slope);
+}
+
+LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Lanes *phi,
+                          Gradient *sum)
+{
+    const float k = term->term->k;
+    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
+    Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), value = gauss, ends_slope;
+    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
+    if (term->flat) {
+        ends_slope = lanes_exp_minus(square(u)) - lanes_exp_minus(square(v));
+        gauss = lanes_exp_minus(square(w) + term->e2) * 0.5f;
+    } else {
+        Lanes ends;
+        axial_factors(u, v, &ends, &ends_slope);
+        value *= ends;
+    }
+    *phi += value;
+    add_direction(term, packet, dz, value * (-2.0f * k * k), gauss * ends_slope * (k * 1.12837917f),
+                  sum);
+    name_largest(term->term, value, sum);
+}
+
+/* The lanes on which a term alone is above the level somewhere beyond z, and so with any others. */
+LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
+{
+    (void)n;
+    LaneMask near = term->e2 <= 1.9f;
+    if (!lanes_any(near))
+        return near;
+    Lanes dz = -term->w0 * inverse(term->w1);
+    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
+    return near & (lanes_min(u, v) >= 1.5f) & (dz + term->z > z);
+}
+
+/* No more than this is the term anywhere from z on. */
+LANE_FN Lanes most_beyond(const PacketTerm *term, Lanes z)
+{
+    return lanes_min(gauss_beyond(term, z), term->peak);
+}
+
+/* The term falls for good where its computed slope says so and is right but for 2e-5 of its parts;
+ * where it recedes from both the axis' line and the end that it leaves; and where exp(-w^2) is next
+ * to nothing. It is complete. */
+LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
+{
+    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
+    Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), w_slope = -2.0f * w * term->w1;
+    TermThere there = {gauss, gauss * w_slope, lanes_set(0)};
+    LaneMask falls = w >= 0.0f;
+    if (!term->flat) {
+        Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
+        Lanes ends, ends_slope;
+        axial_factors(u, v, &ends, &ends_slope);
+        Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
+        there.value = gauss * ends;
+        there.slope = gauss * change;
+        falls &= lanes_select(term->u1 > 0.0f, v, u) < 0.0f;
+        falls |= (w > 4.8f) | ((change < 0.0f) & (ends > 0.02f));
+    }
+    there.most = lanes_select(falls, there.value, term->peak);
+    return there;
+}
+
+#endif
