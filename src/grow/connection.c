@@ -156,18 +156,44 @@ bool connection_settle(const Network *net, const Rules *rules, const Domain *dom
     return isfinite(state.price) && bifurcation_is_long_enough(&problem, &state);
 }
 
-GridItem connection_item(const Network *net, const Grid *grid, const Rules *rules,
-                         const Connection *connection, Vec3 terminal, int part)
+/* A segment of the connection, as wide as it will be. */
+static Capsule capsule_of(const Network *net, const Connection *connection, Vec3 terminal, int part)
 {
     int32_t host = connection->segment;
-    double radius = connection->radius[part];
-    Capsule capsule = {connection->bifurcation, terminal, entry_reach(rules, radius)};
+    Capsule capsule = {connection->bifurcation, terminal, connection->radius[part]};
     if (part == PROXIMAL)
         capsule = (Capsule){net->position[net->segment[host].parent], connection->bifurcation,
                             capsule.radius};
     else if (part == DISTAL)
         capsule.b = net->position[host];
+    return capsule;
+}
+
+GridItem connection_item(const Network *net, const Grid *grid, const Rules *rules,
+                         const Connection *connection, Vec3 terminal, int part)
+{
+    Capsule capsule = capsule_of(net, connection, terminal, part);
+    double radius = capsule.radius;
+    capsule.radius = entry_reach(rules, radius);
     return grid_item(grid, capsule, radius);
+}
+
+bool connections_are_clear(const Network *net, const Rules *rules, const Connection connection[2],
+                           const Vec3 terminal[2])
+{
+    bool are_mates = network_mate(net, connection[0].segment) == connection[1].segment;
+    for (int i = 0; i < ENDS; i++)
+        for (int j = 0; j < ENDS; j++) {
+            Capsule a = capsule_of(net, &connection[0], terminal[0], i);
+            Capsule b = capsule_of(net, &connection[1], terminal[1], j);
+            double clear = clearance_reserve * rules->thickness * (a.radius + b.radius) +
+                           rules->gap + rules->apart;
+            if (i == j && (i == FRESH || (i == DISTAL && are_mates)))
+                clear = clear_of_mate(rules, clear);
+            if (segment_distance2(a.a, a.b, b.a, b.b) < clear * clear)
+                return false;
+        }
+    return true;
 }
 
 bool connection_is_inside(const Network *net, const Domain *domain, const Connection *connection,
@@ -187,13 +213,12 @@ bool connection_is_inside(const Network *net, const Domain *domain, const Connec
 /* A new segment that is to keep clear of all others but its kin, those it shares a node with. */
 typedef struct Newcomer {
     const Network *net;
+    const Rules *rules;
     GridItem item;
     GridBoxQuery probe;
-    double radius;    /* mm */
-    double thickness; /* at which all radii count */
-    double gap;       /* mm */
-    double apart;     /* mm; more than that from other trees */
-    int32_t kin[4];   /* the first is the segment that is split */
+    double radius;  /* mm */
+    int32_t mate;   /* the terminal that the one it ends in is paired with; -1: none */
+    int32_t kin[4]; /* the first is the segment that is split */
 } Newcomer;
 
 /* The part of a connection as a newcomer: its kin are the segment that is split and all that end or
@@ -204,10 +229,9 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
     int32_t host = connection->segment;
     Newcomer out = {.net = net,
                     .item = connection_item(net, grid, rules, connection, terminal, part),
+                    .rules = rules,
                     .radius = connection->radius[part],
-                    .thickness = rules->thickness,
-                    .gap = rules->gap,
-                    .apart = rules->apart,
+                    .mate = part == DISTAL ? network_mate(net, host) : -1,
                     .kin = {host, host, host, host}};
     double per_radius = clearance_reserve * rules->thickness;
     out.probe =
@@ -227,18 +251,22 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
 static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t other)
 {
     const GridItem *item = &grid->item[other];
-    double touch = newcomer->thickness * (newcomer->radius + (double)item->radius);
-    double clear = clearance_reserve * touch + newcomer->gap;
+    const Rules *rules = newcomer->rules;
+    double touch = rules->thickness * (newcomer->radius + (double)item->radius);
+    double clear = clearance_reserve * touch + rules->gap;
     double apart2 = grid_distance2(&newcomer->item, item);
-    bool is_other_tree = newcomer->apart > 0 && network_tree(newcomer->net, other) !=
-                                                    network_tree(newcomer->net, newcomer->kin[0]);
+    bool is_mate = other == newcomer->mate;
+    bool is_other_tree = rules->apart > 0 && network_tree(newcomer->net, other) !=
+                                                 network_tree(newcomer->net, newcomer->kin[0]);
     if (is_other_tree)
-        clear += newcomer->apart;
+        clear += rules->apart;
+    if (is_mate)
+        clear = clear_of_mate(rules, clear);
     if (apart2 >= clear * clear)
         return true;
-    if (is_other_tree)
+    if (is_other_tree || is_mate)
         return false;
-    touch = newcomer->gap + (network_is_piece(newcomer->net, other) ? 0 : touch);
+    touch = rules->gap + (network_is_piece(newcomer->net, other) ? 0 : touch);
     return apart2 >= touch * touch && apart2 >= grid_distance2(&grid->item[newcomer->kin[0]], item);
 }
 

@@ -62,4 +62,9 @@ typedef enum ConnectionClearance {
 ConnectionClearance connection_clearance(const Network *net, const Grid *grid, const Rules *rules,
                                          Box zone, const Connection *connection, Vec3 terminal);
 
+/* Whether the segments of two connections, of different trees, keep clear of each other; the new
+ * ones, which end in terminal[0] and terminal[1], mm, are then those of a pair. */
+bool connections_are_clear(const Network *net, const Rules *rules, const Connection connection[2],
+                           const Vec3 terminal[2]);
+
 #endif

@@ -10,6 +10,7 @@
 #include "grow/finish.h"
 
 #include "grow/continue_tree.h"
+#include "grow/mates.h"
 #include "grow/segment_weights.h"
 #include "grow/trunk.h"
 #include <assert.h>
@@ -172,6 +173,8 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
         made.position[i] = net->position[i];
     }
     tree_renumber(&made);
+    if (params->pair_mm > 0)
+        TRY_GOTO(mates_write(net, &made, err));
     if (net->trunk)
         TRY_GOTO(check_trunk(net, params, err));
     if (params->from)

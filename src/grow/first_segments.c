@@ -5,6 +5,7 @@
 #include "grow/first_segments.h"
 
 #include "grow/connection.h"
+#include "grow/mates.h"
 
 /* Points after which less distance is asked for, by which share; and after which there is none. */
 enum { TRIES_PER_NOTCH = 3, MAX_TRIES = 20000 };
@@ -33,31 +34,54 @@ static bool is_nearest(const Network *net, size_t tree, Vec3 point)
 }
 
 /* Whether the fresh segment keeps clear of the root segments of the trees before `tree`. */
-static bool is_clear(const Network *net, size_t tree, const FirstSegment *fresh, double apart)
+static bool is_clear(const Network *net, size_t tree, const FirstSegment *fresh, const Rules *rules)
 {
     for (size_t k = 0; k < tree; k++) {
         int32_t inlet = net->inlet[k];
         FirstSegment other =
             first_segment(net, net->position[inlet], net->position[net->segment[inlet].child[0]]);
-        double clear = reserve * (fresh->radius + other.radius) + apart;
+        double clear = reserve * (fresh->radius + other.radius) + rules->apart;
+        if (rules->pair > 0)
+            clear = clear_of_mate(rules, clear);
         if (segment_distance2(fresh->from, fresh->to, other.from, other.to) < clear * clear)
             return false;
     }
     return true;
 }
 
-static Status add_first_segment(Network *net, size_t tree, const Domain *domain, double apart,
+/* A random point of the domain; for the second tree of pairs a mate of the first's terminal. */
+static Vec3 sample(const Network *net, size_t tree, const Domain *domain, const Rules *rules,
+                   Random *random)
+{
+    if (tree == 0 || rules->pair == 0)
+        return domain_sample(domain, random);
+    return mates_place(net->position[net->segment[net->inlet[0]].child[0]], rules->pair,
+                       domain->dimension, random);
+}
+
+/* Whether the segment is where that of the tree may be. */
+static bool is_allowed(const Network *net, size_t tree, const Domain *domain, const Rules *rules,
+                       const FirstSegment *fresh)
+{
+    return (rules->pair > 0 ? domain_inside(domain, fresh->to, 0)
+                            : is_nearest(net, tree, fresh->to)) &&
+           (domain_is_convex(domain) || domain_holds_segment(domain, fresh->from, fresh->to)) &&
+           is_clear(net, tree, fresh, rules);
+}
+
+static Status add_first_segment(Network *net, size_t tree, const Domain *domain, const Rules *rules,
                                 Random *random, double *distance, uint64_t *tosses, Err *err)
 {
     int32_t inlet = net->inlet[tree];
     Vec3 from = net->position[inlet];
     for (int tries = 1; tries <= MAX_TRIES; tries++) {
-        FirstSegment fresh = first_segment(net, from, domain_sample(domain, random));
+        FirstSegment fresh = first_segment(net, from, sample(net, tree, domain, rules, random));
         ++*tosses;
-        if (vec3_distance(fresh.to, from) >= *distance && is_nearest(net, tree, fresh.to) &&
-            (domain_is_convex(domain) || domain_holds_segment(domain, from, fresh.to)) &&
-            is_clear(net, tree, &fresh, apart)) {
-            network_append(net, inlet, fresh.to);
+        if (vec3_distance(fresh.to, from) >= *distance &&
+            is_allowed(net, tree, domain, rules, &fresh)) {
+            int32_t end = network_append(net, inlet, fresh.to);
+            if (tree == 1 && rules->pair > 0)
+                network_pair(net, net->segment[net->inlet[0]].child[0], end);
             return STATUS_OK;
         }
         if (tries % TRIES_PER_NOTCH == 0)
@@ -73,13 +97,13 @@ static Status add_first_segment(Network *net, size_t tree, const Domain *domain,
                    from.x, from.y, from.z);
 }
 
-Status first_segments_add(Network *net, const Domain *domain, double apart, Random *random,
+Status first_segments_add(Network *net, const Domain *domain, const Rules *rules, Random *random,
                           double *distance, uint64_t *tosses, Err *err)
 {
     double farthest = *distance;
     for (size_t k = 0; k < net->inlets; k++) {
         double own = farthest;
-        TRY(add_first_segment(net, k, domain, apart, random, &own, tosses, err));
+        TRY(add_first_segment(net, k, domain, rules, random, &own, tosses, err));
         *distance = fmin(*distance, own);
     }
     network_resum(net);

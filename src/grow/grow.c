@@ -22,6 +22,7 @@
 #include "grow/finish.h"
 #include "grow/first_segments.h"
 #include "grow/forest.h"
+#include "grow/mates.h"
 #include "grow/repair.h"
 #include "grow/round.h"
 #include "grow/segment_weights.h"
@@ -163,6 +164,7 @@ static size_t to_be_added(const Growth *growth, bool tiled)
     size_t terminals = growth->net.terminals, left = growth->params->terminals - terminals;
     size_t added = terminals / (tiled ? TERMINALS_PER_ADDED_IN_TILES : TERMINALS_PER_ADDED);
     added = added < 1 ? 1 : added;
+    added += growth->rules.pair > 0 ? added % 2 : 0;
     return added < left ? added : left;
 }
 
@@ -170,7 +172,8 @@ static size_t to_be_added(const Growth *growth, bool tiled)
 static Status run_round(Growth *growth, size_t added, size_t *made, Err *err)
 {
     size_t left = growth->params->terminals - growth->net.terminals;
-    size_t points = (size_t)(TOSSES_PER_ADDED * (double)added / (1 - fmin(growth->skipped, 0.75)));
+    double tosses = growth->rules.pair > 0 ? TOSSES_PER_ADDED / 2.0 : TOSSES_PER_ADDED;
+    size_t points = (size_t)(tosses * (double)added / (1 - fmin(growth->skipped, 0.75)));
     TRY(round_start(&growth->round, points, err));
     for (size_t i = 0; i < points; i++)
         growth->round.point[i] = toss(growth);
@@ -236,11 +239,14 @@ static Status be_patient(Growth *growth, size_t made, Err *err)
                        growth->net.terminals + 1, growth->params->terminals,
                        growth->crowded + growth->outside, outside, growth->params->from->n,
                        growth->params->from->id[farthest], mm);
-    return err_set(err, STATUS_INFEASIBLE,
-                   "no room for terminal %zu of `terminals` %zu in %zu tries: lower `terminals`, "
-                   "choose a larger `domain`, or move `gamma` and `lambda` towards 3 and 2",
-                   growth->net.terminals + 1, growth->params->terminals,
-                   growth->crowded + growth->outside);
+    bool shut_out = rules->pair > 0 && growth->domain->dimension == 2;
+    return err_set(
+        err, STATUS_INFEASIBLE, "no room for terminal %zu of `terminals` %zu in %zu tries: %s",
+        growth->net.terminals + 1, growth->params->terminals, growth->crowded + growth->outside,
+        shut_out ? "in the plane two trees that must not cross shut each other out of "
+                   "what is behind them; `pair_mm` needs a `domain` of three dimensions"
+                 : "lower `terminals`, choose a larger `domain`, or move `gamma` and "
+                   "`lambda` towards 3 and 2");
 }
 
 static Status check_range(const Growth *growth, Err *err)
@@ -275,7 +281,7 @@ static Status start_trees(Growth *growth, Err *err)
         network_append(net, -1, growth->domain->inlet);
     for (size_t k = 0; k < params->inlets; k++)
         network_append(net, -1, params->inlet[k]);
-    TRY(first_segments_add(net, growth->domain, growth->rules.apart, &growth->random, &distance,
+    TRY(first_segments_add(net, growth->domain, &growth->rules, &growth->random, &distance,
                            &growth->tosses, err));
     if (domain_settles(growth->domain)) /* where no straight vessel is longer */
         growth->size = distance;
@@ -315,6 +321,7 @@ static Status start(Growth *growth, Err *err)
     growth->rules = (Rules){.thickness = 1,
                             .gap = 1e-7 * growth->size,
                             .apart = clearance_spare * params->clearance_mm,
+                            .pair = params->pair_mm,
                             .widest = growth->size};
     set_toss_distance(growth, growth->size);
     growth->refresh_until = growth->grid_until = 1;
@@ -353,9 +360,11 @@ static Status check_apart(const GrowParams *params, const Tree *tree, double *ap
 {
     size_t pair[2];
     *apart = INFINITY;
-    if (!(params->clearance_mm > 0))
+    if (!(params->clearance_mm > 0) && !(params->pair_mm > 0))
         return STATUS_OK;
-    TRY(trees_apart(tree, 2 * params->clearance_mm, apart, pair, err));
+    if (params->pair_mm > 0)
+        TRY(mates_check(params, tree, err));
+    TRY(trees_apart(tree, fmax(2 * params->clearance_mm, params->pair_mm), apart, pair, err));
     if (*apart >= params->clearance_mm)
         return STATUS_OK;
     return err_set(err, STATUS_INFEASIBLE,

@@ -56,7 +56,10 @@ typedef struct GrowParams {
     double
         min_radius_mm; /* growth ends, complete, when the terminals' mean radius is this; 0: not */
     double clearance_mm; /* least distance of the walls of vessels of different trees, >= 0 */
-    int candidates;      /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
+    /* How far apart, mm, the ends of paired terminals are, one of each of two trees; at least the
+     * clearance; 0: terminals are no pairs. */
+    double pair_mm;
+    int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
     GrowToss toss;
     int threads;  /* 0: all processors. The tree does not depend on it */
     bool partial; /* whether the tree so far is a result when no more terminals find room */
@@ -83,7 +86,8 @@ typedef struct GrowReport {
     /* The factors by which the radii of the segments of `from` changed; 0 where there are none. */
     double median_change, least_change, greatest_change;
     /* The least distance of the walls of vessels of different trees, mm, by trees_apart, as far as
-     * it is below twice the clearance that was asked for; else INFINITY. */
+     * it is below twice the clearance that was asked for, or for pairs below their distance; else
+     * INFINITY. */
     double apart_mm;
     bool complete; /* false: a partial tree; err holds the sentence that says why */
 } GrowReport;
@@ -107,6 +111,10 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
  * terminal is the number of points of a fine lattice over the domain that are nearer to it than to
  * any other; by demand, what these ask for. Centrelines do not cross. The same parameters give the
  * same tree, bit for bit. `report` may be NULL.
+ *
+ * With `pair_mm`, every terminal of the first tree has one of the second in that distance, its own,
+ * and *out says the pairs [tree/pairs.h]. By then, and with `clearance_mm`, vessels of different
+ * trees have been proved to be as far apart as that says.
  *
  * If a tree is continued (`from`), all its nodes are in *out with their ids, types and columns, and
  * so are its remarks; new nodes take the smallest ids that are free. New segments are in the domain
@@ -164,13 +172,13 @@ typedef struct RefineReport {
  * several segments is first made one straight segment. `domain` then holds all of it; NULL: it may
  * be anywhere.
  *
- * Inlets, terminals, node types, flow shares and meta stay, columns go. Afterwards nodes are in
- * depth-first order with ids 1 .. n, and radii follow from the nodes' places by Murray's law and
- * the pressures, which hold to rounding. All segments that change stay in the domain. A segment
- * that was longer than wide and clear of those it shares no node with stays so; one that was not
- * does not get worse, and the levels above geometry try to mend it. If more than one in ten
- * segments were not, these rules are kept with vessels counted at a smaller part of their radii,
- * report->thickness.
+ * Inlets, terminals, their pairs, node types, flow shares and meta stay, other columns go.
+ * Afterwards nodes are in depth-first order with ids 1 .. n, and radii follow from the nodes'
+ * places by Murray's law and the pressures, which hold to rounding. All segments that change stay
+ * in the domain. A segment that was longer than wide and clear of those it shares no node with
+ * stays so; one that was not does not get worse, and the levels above geometry try to mend it. If
+ * more than one in ten segments were not, these rules are kept with vessels counted at a smaller
+ * part of their radii, report->thickness.
  *
  * With a budget of moves alone, the same tree and parameters give the same bits. `report` may be
  * NULL. Fails, *tree unchanged, with STATUS_USAGE for wrong parameters, STATUS_INPUT for a tree

@@ -169,6 +169,7 @@ int32_t network_append(Network *net, int32_t parent, Vec3 position)
     if (net->trait)
         net->trait[i] = (Trait){.weight = net->fresh_weight,
                                 .gamma = net->law.gamma,
+                                .mate = -1,
                                 .tree = parent < 0 ? (int32_t)net->inlets : net->trait[parent].tree,
                                 .origin = -1};
     if (parent < 0) {
@@ -233,9 +234,10 @@ void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 termina
     distal->length = vec3_distance(bifurcation, net->position[segment]);
     if (net->trait) {
         net->trait[proximal] = net->trait[segment];
-        net->trait[proximal].origin = -1;
+        net->trait[proximal].origin = net->trait[proximal].mate = -1;
         net->trait[fresh] = (Trait){.weight = net->fresh_weight,
                                     .gamma = net->trait[segment].gamma,
+                                    .mate = -1,
                                     .tree = net->trait[segment].tree,
                                     .origin = -1};
     }
@@ -466,6 +468,8 @@ Status network_reorder(Network *net, Err *err)
         for (int slot = 0; slot < 2; slot++)
             if (segment->child[slot] >= 0)
                 segment->child[slot] = place[segment->child[slot]];
+        if (network_mate(net, (int32_t)k) >= 0)
+            net->trait[k].mate = place[net->trait[k].mate];
     }
 done:
     free(order);

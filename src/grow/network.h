@@ -46,6 +46,7 @@ typedef struct Trait {
     double weight;
     double gamma;   /* of the fork at the distal end, likewise */
     double share;   /* of a terminal: its flow relative to the other terminals'; 0 elsewhere */
+    int32_t mate;   /* of a terminal: the one it is paired with; -1: none */
     int32_t tree;   /* the index of the inlet that it hangs on */
     int32_t origin; /* the node's index in the tree that is continued; -1: a new node */
     bool given;     /* a segment of that tree, which stays straight */
@@ -108,6 +109,19 @@ static inline bool network_is_piece(const Network *net, int32_t i)
 static inline double network_kept_radius(const Network *net, int32_t i)
 {
     return net->trunk ? net->trunk->radius[i] : 0;
+}
+
+/* The terminal that terminal i is paired with; -1: none. */
+static inline int32_t network_mate(const Network *net, int32_t i)
+{
+    return net->trait ? net->trait[i].mate : -1;
+}
+
+/* Makes a pair of two terminals of a network with traits. */
+static inline void network_pair(Network *net, int32_t i, int32_t j)
+{
+    net->trait[i].mate = j;
+    net->trait[j].mate = i;
 }
 
 /* Whether node i is a terminal. */

@@ -11,8 +11,18 @@ typedef struct Rules {
     double least_length; /* mm; segments are at least this long, and as long as wide */
     double gap;          /* mm; the least distance of vessels without a common node */
     double apart;        /* mm; the least distance of the walls of vessels of different trees */
+    double pair;         /* mm; the distance of the ends of paired terminals; 0: there are none */
     double widest;       /* mm; vessels count as no thicker than this */
 } Rules;
+
+/* How far apart, mm, the centrelines of two vessels have to be that should be `clear`; those of a
+ * pair of terminals no farther than their ends are, whatever their widths: they are thick while a
+ * tree has few, and thin in the end. */
+static inline double clear_of_mate(const Rules *rules, double clear)
+{
+    const double most = 0.99 * rules->pair;
+    return clear < most ? clear : most;
+}
 
 /* The radius, mm, of the capsule that stands in the grid for a vessel of `radius` mm: 1.4 times as
  * wide, so that the vessel may widen for a while before it has to be entered anew. */

@@ -119,6 +119,31 @@ static Status check_shares(const GrowParams *params, size_t trees, Err *err)
     return STATUS_OK;
 }
 
+static Status check_pairs(const GrowParams *params, Err *err)
+{
+    double mm = params->pair_mm;
+    if (!(mm >= 0) || !isfinite(mm))
+        return err_set(err, STATUS_USAGE, "`pair_mm` %g: must be a number of mm not below 0", mm);
+    if (mm == 0)
+        return STATUS_OK;
+    if (params->from)
+        return err_set(err, STATUS_USAGE,
+                       "`pair_mm`: pairs need two new trees, not those of `from`");
+    if (params->inlets != 2)
+        return err_set(err, STATUS_USAGE, "`pair_mm`: pairs need two trees, and so two of `inlet`");
+    if (params->terminals % 2 != 0 ||
+        (params->inlet_shares == 2 && params->inlet_share[0] != params->inlet_share[1]))
+        return err_set(err, STATUS_USAGE,
+                       "`pair_mm`: pairs need as many terminals of one tree as of the other: an "
+                       "even number of `terminals`, and no other `inlet_shares` than equal ones");
+    if (mm < params->clearance_mm)
+        return err_set(err, STATUS_USAGE,
+                       "`pair_mm` %g: must be at least the clearance, `clearance_mm` %g, and both "
+                       "radii",
+                       mm, params->clearance_mm);
+    return STATUS_OK;
+}
+
 Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err)
 {
     if (params->terminals < 1 || params->terminals > GROW_MAX_TERMINALS)
@@ -141,9 +166,11 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     if (params->keep_radii && !params->from)
         return err_set(err, STATUS_USAGE, "`keep_radii`: needs a tree to grow on from, `from`");
     if (params->from) {
+        TRY(check_pairs(params, err));
         TRY(continue_check(params, domain, err));
         return check_shares(params, continue_inlets(params->from), err);
     }
     TRY(check_inlets(params, domain, err));
+    TRY(check_pairs(params, err));
     return check_shares(params, params->inlets > 0 ? params->inlets : 1, err);
 }

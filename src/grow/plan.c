@@ -5,7 +5,20 @@
  * others. The first that passes is taken, so most of the dear tests are never made. */
 #include "grow/plan.h"
 
+#include "grow/mates.h"
 #include <stdlib.h>
+#include <string.h>
+
+/* Directions in which a mate is sought. */
+enum { DIRECTIONS = 8 };
+
+/* What is planned: a terminal, mm, of the tree `tree`, or of any if that is -1, and how far from
+ * the tree it has to be, mm. */
+typedef struct Wish {
+    Vec3 terminal;
+    int32_t tree;
+    double distance;
+} Wish;
 
 Status planner_init(Planner *planner, int candidates, Err *err)
 {
@@ -56,14 +69,17 @@ typedef struct Offers {
 } Offers;
 
 static Offers collect(const Site *site, Planner *planner, Box zone, const size_t *left,
-                      Vec3 terminal)
+                      const Wish *wish)
 {
     Offers out = {0};
+    Vec3 terminal = wish->terminal;
     int near = find_near(site, planner, grid_clearance(zone, terminal), terminal);
     out.beyond = near < 0;
     for (int i = 0; i < near && !out.beyond; i++) {
         int32_t segment = planner->near[i].segment, tree = network_tree(site->net, segment);
         bool spent = left[tree] == 0;
+        if (wish->tree >= 0 && tree != wish->tree)
+            continue;
         out.ahead |= spent;
         out.beyond = (spent && site->limit[tree] > 0) ||
                      !grid_zone_holds(site->grid, zone, &site->grid->item[segment]);
@@ -116,16 +132,57 @@ static double toss_distance_at(const Site *site, Vec3 point)
     return site->toss_distance * fmin(spread, most);
 }
 
+static PlanState plan(const Site *site, Planner *planner, Box zone, const size_t *left,
+                      const Wish *wish, Connection *out)
+{
+    if (!(grid_clearance(zone, wish->terminal) > wish->distance))
+        return PLAN_BEYOND;
+    GridVicinity room = grid_vicinity(site->grid, wish->terminal, wish->distance,
+                                      site->terminals_only, site->rules->thickness);
+    if (room != GRID_FREE)
+        return room == GRID_TOO_NEAR ? PLAN_TOO_NEAR : PLAN_IN_VESSEL;
+    Offers offers = collect(site, planner, zone, left, wish);
+    return offers.beyond ? PLAN_BEYOND : choose(site, planner, zone, wish->terminal, offers, out);
+}
+
 PlanState plan_make(const Site *site, Planner *planner, Box zone, const size_t *left, Vec3 terminal,
                     Connection *out)
 {
-    double distance = toss_distance_at(site, terminal);
-    if (!(grid_clearance(zone, terminal) > distance))
-        return PLAN_BEYOND;
-    GridVicinity room =
-        grid_vicinity(site->grid, terminal, distance, site->terminals_only, site->rules->thickness);
-    if (room != GRID_FREE)
-        return room == GRID_TOO_NEAR ? PLAN_TOO_NEAR : PLAN_IN_VESSEL;
-    Offers offers = collect(site, planner, zone, left, terminal);
-    return offers.beyond ? PLAN_BEYOND : choose(site, planner, zone, terminal, offers, out);
+    const Wish wish = {terminal, -1, toss_distance_at(site, terminal)};
+    return plan(site, planner, zone, left, &wish, out);
+}
+
+/* A stream of its own for every place, so that it does not depend on what was planned before. */
+static Random random_at(Vec3 place)
+{
+    uint64_t bits[3];
+    Random random;
+    memcpy(bits, &place, sizeof bits);
+    random_seed(&random,
+                bits[0] ^ (bits[1] << 21 | bits[1] >> 43) ^ (bits[2] << 42 | bits[2] >> 22));
+    return random;
+}
+
+PlanState plan_pair(const Site *site, Planner *planner, Box zone, const size_t *left, Vec3 terminal,
+                    PlanPair *out)
+{
+    const Wish first = {terminal, 0, toss_distance_at(site, terminal)};
+    PlanState state = plan(site, planner, zone, left, &first, &out->connection[0]);
+    if (state != PLAN_READY)
+        return state;
+    Random random = random_at(terminal);
+    out->terminal[0] = terminal;
+    for (int k = 0; k < DIRECTIONS; k++) {
+        const Wish second = {
+            mates_place(terminal, site->rules->pair, site->domain->dimension, &random), 1, 0};
+        if (!domain_inside(site->domain, second.terminal, 0))
+            continue;
+        out->terminal[1] = second.terminal;
+        state = plan(site, planner, zone, left, &second, &out->connection[1]);
+        if (state == PLAN_BEYOND ||
+            (state == PLAN_READY &&
+             connections_are_clear(site->net, site->rules, out->connection, out->terminal)))
+            return state;
+    }
+    return PLAN_CROWDED;
 }

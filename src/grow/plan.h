@@ -49,4 +49,15 @@ void planner_release(Planner *planner);
 PlanState plan_make(const Site *site, Planner *planner, Box zone, const size_t *left, Vec3 terminal,
                     Connection *out);
 
+/* Two terminals, of the first and of the second tree, and their connections. */
+typedef struct PlanPair {
+    Vec3 terminal[2]; /* mm */
+    Connection connection[2];
+} PlanPair;
+
+/* As plan_make, for the first tree, and with a mate of the terminal for the second, which is sought
+ * in a few directions. */
+PlanState plan_pair(const Site *site, Planner *planner, Box zone, const size_t *left, Vec3 terminal,
+                    PlanPair *out);
+
 #endif

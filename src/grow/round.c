@@ -99,6 +99,12 @@ Status round_start(Round *round, size_t points, Err *err)
     return mem_calloc(&round->order, round->capacity, sizeof *round->order, "points", err);
 }
 
+/* How many terminals a point becomes. */
+static size_t terminals_of_point(const Site *site)
+{
+    return site->rules->pair > 0 ? 2 : 1;
+}
+
 /* Connects a terminal with the two spare nodes `made`: in the network, and in the grid. */
 static Status connect(const Site *site, int worker, Box zone, const Connection *connection,
                       Vec3 terminal, const int32_t made[2], Err *err)
@@ -137,6 +143,39 @@ static void fetch(const Round *round, const Tile *tile, const Grid *grid, size_t
         grid_fetch_items(grid, round->point[round->order[k + AHEAD]]);
 }
 
+/* Connects a terminal in the tile. */
+static void add_terminal(const Running *running, int worker, Tile *tile,
+                         const Connection *connection, Vec3 terminal)
+{
+    if (tile->status != STATUS_OK)
+        return;
+    tile->left[network_tree(running->site->net, connection->segment)]--;
+    tile->status = connect(running->site, worker, tile->zone, connection, terminal,
+                           tile->spare + 2 * tile->made++, &tile->err);
+}
+
+/* Plans the point, and its mate where terminals are pairs, and connects what can be. */
+static PlanState plan_point(const Running *running, int worker, Tile *tile, Vec3 point)
+{
+    const Site *site = running->site;
+    Planner *planner = &running->round->planner[worker];
+    PlanPair pair = {.terminal = {point}};
+    PlanState state =
+        site->rules->pair > 0
+            ? plan_pair(site, planner, tile->zone, tile->left, point, &pair)
+            : plan_make(site, planner, tile->zone, tile->left, point, &pair.connection[0]);
+    if (state != PLAN_READY)
+        return state;
+    int32_t ends[2] = {tile->spare[2 * tile->made + 1], -1};
+    add_terminal(running, worker, tile, &pair.connection[0], point);
+    if (site->rules->pair > 0) {
+        ends[1] = tile->spare[2 * tile->made + 1];
+        add_terminal(running, worker, tile, &pair.connection[1], pair.terminal[1]);
+        network_pair(site->net, ends[0], ends[1]);
+    }
+    return state;
+}
+
 static PlanState run_point(const Running *running, int worker, Tile *tile, Vec3 point)
 {
     const Site *site = running->site;
@@ -145,19 +184,13 @@ static PlanState run_point(const Running *running, int worker, Tile *tile, Vec3 
         tile->tally.skipped++;
         return PLAN_STATES;
     }
-    Connection connection;
-    if (tile->made == tile->most)
+    if (tile->made + terminals_of_point(site) > tile->most)
         return PLAN_BEYOND;
-    PlanState state = plan_make(site, &running->round->planner[worker], tile->zone, tile->left,
-                                point, &connection);
+    PlanState state = plan_point(running, worker, tile, point);
     if (state == PLAN_CROWDED)
         *misses = (uint8_t)(*misses + (*misses < ROUND_FULL));
-    if (state == PLAN_READY) {
+    if (state == PLAN_READY)
         *misses = 0;
-        tile->left[network_tree(site->net, connection.segment)]--;
-        tile->status = connect(site, worker, tile->zone, &connection, point,
-                               tile->spare + 2 * tile->made++, &tile->err);
-    }
     return state;
 }
 
@@ -294,7 +327,8 @@ static void endow(Round *round, const Site *site, const Cut *cut, size_t tiles, 
         size_t points = tile->end - tile->first, part = part_of(round, tile, most);
         tile->zone = grid_zone(site->grid, box_of(cut, t, cut->edge / 2));
         tile->box = box_of(cut, t, 1);
-        tile->most = points / POINTS_PER_CONNECTED < part ? points / POINTS_PER_CONNECTED : part;
+        tile->most = terminals_of_point(site) * points / POINTS_PER_CONNECTED;
+        tile->most = tile->most < part ? tile->most : part;
         tile->left = round->left + t * round->trees;
         for (size_t k = 0; k < round->trees; k++)
             tile->left[k] = part_of(round, tile, site->limit[k]);

@@ -22,6 +22,11 @@ typedef struct BuilderShare {
     size_t record;
 } BuilderShare;
 
+typedef struct BuilderPair {
+    int32_t id[2];
+    size_t record;
+} BuilderPair;
+
 enum { NO_ROW = -1 };
 
 void builder_release(TreeBuilder *builder)
@@ -39,6 +44,7 @@ void builder_release(TreeBuilder *builder)
     free(builder->row_record);
     free(builder->column);
     free(builder->share);
+    free(builder->pair);
     meta_release(&builder->meta);
     *builder = (TreeBuilder){0};
 }
@@ -63,6 +69,12 @@ static Status unknown_parent(int64_t id, Err *err)
                    "the parent is %lld, which is no node's id; it must be the id of a node, or %d "
                    "for a root",
                    (long long)id, TREE_NO_PARENT);
+}
+
+static Status unknown_pair(int64_t id, Err *err)
+{
+    return err_set(err, STATUS_INPUT, "%s names the node %lld, which is no node's id",
+                   tree_pairs_name, (long long)id);
 }
 
 static Status unknown_share(int64_t id, Err *err)
@@ -184,6 +196,17 @@ Status builder_share(TreeBuilder *builder, int64_t id, double share, size_t reco
                     sizeof *builder->share, "flow shares", err));
     builder->share[builder->n_shares++] =
         (BuilderShare){.id = (int32_t)id, .share = share, .record = record};
+    return STATUS_OK;
+}
+
+Status builder_pair(TreeBuilder *builder, int64_t id, int64_t other, size_t record, Err *err)
+{
+    if (!is_id(id) || !is_id(other))
+        return unknown_pair(is_id(id) ? other : id, err);
+    TRY(mem_reserve(&builder->pair, &builder->pairs_capacity, builder->n_pairs + 1,
+                    sizeof *builder->pair, "pairs", err));
+    builder->pair[builder->n_pairs++] =
+        (BuilderPair){.id = {(int32_t)id, (int32_t)other}, .record = record};
     return STATUS_OK;
 }
 
@@ -357,6 +380,33 @@ static Status fill_shares(const TreeBuilder *builder, const int32_t *table, cons
     return STATUS_OK;
 }
 
+/* Finds the nodes of pair k; `number` are those of the pairs before. */
+static Status find_pair(const TreeBuilder *builder, const int32_t *table, const int32_t *place,
+                        size_t k, double *number, Err *err)
+{
+    for (int side = 0; side < 2; side++) {
+        int32_t id = builder->pair[k].id[side], row = row_of(builder, table, id);
+        if (row == NO_ROW)
+            return unknown_pair(id, err);
+        if (!isnan(number[place[row]]))
+            return err_set(err, STATUS_INPUT, "node %d is of a pair twice", id);
+        number[place[row]] = (double)(k + 1);
+    }
+    return STATUS_OK;
+}
+
+static Status fill_pairs(const TreeBuilder *builder, const int32_t *table, const int32_t *place,
+                         Tree *tree, Err *err)
+{
+    double *number = NULL;
+    if (builder->n_pairs > 0)
+        TRY(tree_set_column(tree, tree_pairs_name, "", &number, err));
+    for (size_t k = 0; k < builder->n_pairs; k++)
+        TRY(builder_blame(builder, builder->pair[k].record,
+                          find_pair(builder, table, place, k, number, err), err));
+    return STATUS_OK;
+}
+
 Status builder_build(TreeBuilder *builder, Tree *out, Err *err)
 {
     if (builder->n == 0)
@@ -374,6 +424,7 @@ Status builder_build(TreeBuilder *builder, Tree *out, Err *err)
         TRY_GOTO(copy_nodes(builder, place, &tree, err));
     TRY_GOTO(fill_columns(builder, place, &tree, err));
     TRY_GOTO(fill_shares(builder, table, place, &tree, err));
+    TRY_GOTO(fill_pairs(builder, table, place, &tree, err));
     TRY_GOTO(tree_check(&tree, err));
     tree.meta = builder->meta;
     builder->meta = (TreeMeta){0};

@@ -43,6 +43,8 @@ typedef struct TreeBuilder {
     size_t n_columns, columns_capacity;
     struct BuilderShare *share;
     size_t n_shares, shares_capacity;
+    struct BuilderPair *pair;
+    size_t n_pairs, pairs_capacity;
 } TreeBuilder;
 
 void builder_release(TreeBuilder *builder);
@@ -68,11 +70,15 @@ MUST_CHECK Status builder_value(TreeBuilder *builder, size_t column, double valu
 MUST_CHECK Status builder_share(TreeBuilder *builder, int64_t id, double share, size_t record,
                                 Err *err);
 
+/* Says a pair of nodes [pairs.h] given before or after; pairs are numbered as they are said. */
+MUST_CHECK Status builder_pair(TreeBuilder *builder, int64_t id, int64_t other, size_t record,
+                               Err *err);
+
 /* Makes the tree in *tree (owned; tree_release), which tree_check accepts: parents first and
  * otherwise in the order given, an ancestor that is given later just before its first descendant.
  * The meta moves to it. O(nodes + largest id). STATUS_INPUT when there is no node, an id is given
- * twice, a parent is no node's id, nodes are their own ancestors, a share is said of what is no
- * node, or twice, or against the key terminal_flow. */
+ * twice, a parent is no node's id, nodes are their own ancestors, a share or a pair is
+ * said of what is no node, or twice, or a share against the key terminal_flow. */
 MUST_CHECK Status builder_build(TreeBuilder *builder, Tree *tree, Err *err);
 
 #endif

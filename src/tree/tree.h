@@ -14,6 +14,7 @@
 #include "tree/graph.h"     // IWYU pragma: export
 #include "tree/meta.h"      // IWYU pragma: export
 #include "tree/outlets.h"   // IWYU pragma: export
+#include "tree/pairs.h"     // IWYU pragma: export
 #include "tree/reading.h"   // IWYU pragma: export
 #include "tree/series.h"    // IWYU pragma: export
 #include "tree/viscosity.h" // IWYU pragma: export

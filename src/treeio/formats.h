@@ -27,7 +27,7 @@ typedef Status TreeWrite(const Tree *tree, FILE *stream, Err *err);
 /* Whether a column of the tree is written, although columns as such are not. */
 typedef bool TreeKeeps(const TreeColumn *column);
 
-TreeKeeps oned_keeps;
+TreeKeeps swc_keeps, oned_keeps;
 TreeDetect amira_detect, csv_detect, opencco_detect, metaio_detect, vtk_detect, vtp_detect,
     gxl_detect, graphml_detect, amiraxml_detect, pvd_detect, csv_segments_detect, oned_detect,
     vmv_detect, vita_detect;

@@ -65,6 +65,7 @@ typedef struct Format {
 static const Format formats[] = {
     {.name = "SWC",
      .loses = LOSES_COLUMNS,
+     .keeps = swc_keeps,
      .takes = UNIT | VOXELS,
      .description = "id type x y z radius parent, a node a line, in mm",
      .extensions = {"swc"},

@@ -6,17 +6,18 @@
 #include "app/trees/growing.h"
 #include "app/trees/refining.h"
 #include "app/trees/staging.h"
+#include "app/trees/summary_json.h"
 #include "treeio/treeio.h"
 #include <stdio.h>
 #include <stdlib.h>
 
-/* The report as JSON; with the bound of the tree `bounded`, if it is not NULL. */
+/* The report as JSON; with the bound of the tree if it is asked for. */
 static Status write_report(const char *path, const GrowReport *report, const RefineReport *refined,
-                           int threads, const Tree *bounded, Err *err)
+                           int threads, const Tree *tree, bool bounded, Err *err)
 {
     json_t *bound = json_null();
     if (bounded)
-        TRY(certified_json(bounded, &bound, err));
+        TRY(certified_json(tree, &bound, err));
     double target = refined->target_before > 0 ? refined->target_after : report->target;
     json_t *json =
         json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:f, s:I, s:b, s:i}", "generator", GENERATOR,
@@ -32,14 +33,19 @@ static Status write_report(const char *path, const GrowReport *report, const Ref
     json = json_with(json, "radius_change", change);
     json_t *apart = isfinite(report->apart_mm) ? json_number(report->apart_mm) : json_null();
     json = json_with(json, "apart_mm", apart);
+    json = json_with(json, "terminal_pairs", pairs_json(tree));
     return json_write(json_with(json, "bound", bound), path, err);
 }
 
-static void print_report(const GrowReport *report, bool keeps_radii)
+static void print_report(const GrowReport *report, const GrowParams *params)
 {
     fprintf(stderr, "grew %zu terminals in %.3g s: target %.6g, root radius %.4g mm\n",
             report->terminals, report->seconds, report->target, report->root_radius_mm);
-    if (report->median_change > 0 && !keeps_radii)
+    if (params->pair_mm > 0)
+        fprintf(stderr,
+                "%zu pairs of terminals %.4g mm apart; walls of the two trees at least %.4g mm\n",
+                report->terminals / 2, params->pair_mm, report->apart_mm);
+    if (report->median_change > 0 && !params->keep_radii)
         fprintf(stderr,
                 "the radii of the tree of --from changed by a median factor of %.2g (%.2g to "
                 "%.2g)\n",
@@ -121,12 +127,11 @@ static Status finish(const GrowOptions *options, const Common *common, const Tre
     int threads = common->threads ? common->threads : threads_available();
     TRY(output_tree("grow", tree, options->output, common->quiet, err));
     if (options->json)
-        TRY(write_report(options->json, report, refined, threads, options->bound ? tree : NULL,
-                         err));
+        TRY(write_report(options->json, report, refined, threads, tree, options->bound, err));
     if (!report->complete)
         fprintf(stderr, "corcast grow: %s\n", why->text);
     if (!common->quiet)
-        print_report(report, options->growing.params.keep_radii);
+        print_report(report, &options->growing.params);
     print_warnings(report, &options->growing.domain, refined->target_before > 0);
     if (!common->quiet)
         refining_print(refined);

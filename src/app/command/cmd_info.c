@@ -148,6 +148,8 @@ static Status show(const InfoOptions *options, const char *path, const Tree *tre
         TRY(certified_json(tree, &bound, err));
     if (options->json) {
         json_t *json = summary_json(&found->summary);
+        if (tree_column(tree, tree_pairs_name))
+            json = json_with(json, "terminal_pairs", pairs_json(tree));
         if (tree->n_columns > 0)
             json = json_with(json, "columns", columns_json(tree));
         if (options->stats)

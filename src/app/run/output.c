@@ -192,12 +192,16 @@ Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err)
 
 void print_columns_left_out(const char *command, const Tree *tree, const char *why)
 {
-    if (tree->n_columns == 0)
-        return;
-    fprintf(stderr, "corcast %s: the columns ", command);
-    for (size_t k = 0; k < tree->n_columns; k++)
-        fprintf(stderr, "%s%.40s", k ? ", " : "", tree->column[k].name);
-    fprintf(stderr, " are left out: %s\n", why);
+    size_t left_out = 0;
+    for (size_t k = 0; k < tree->n_columns; k++) {
+        if (strcmp(tree->column[k].name, tree_pairs_name) == 0)
+            continue;
+        if (left_out++ == 0)
+            fprintf(stderr, "corcast %s: the columns ", command);
+        fprintf(stderr, "%s%.40s", left_out > 1 ? ", " : "", tree->column[k].name);
+    }
+    if (left_out > 0)
+        fprintf(stderr, " are left out: %s\n", why);
 }
 
 /* Nothing is allocated, which could fail: the file has been written. */

@@ -34,8 +34,8 @@ MUST_CHECK Status command_again(const Parsed *parsed, const char *const *without
 /* Adds the command line to those that a tree's file says. */
 MUST_CHECK Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err);
 
-/* Says on standard error that the tree's columns, if there are any, are not in what a command
- * writes, and why. */
+/* Says on standard error that the tree's columns but its pairs, if there are any, are not in what a
+ * command writes, and why. */
 void print_columns_left_out(const char *command, const Tree *tree, const char *why);
 /* Writes a tree [tree_write] and, unless `quiet`, says likewise what the format of the file `path`
  * has no place for. STATUS_MEMORY, too. */

@@ -49,6 +49,8 @@ Status refining_check_growing(const Refining *refining, const Growing *growing, 
     if (growing->from_path)
         return err_set(err, STATUS_USAGE,
                        "--refine: would move the tree of --from; use corcast refine afterwards");
+    if (growing->params.clearance_mm > 0)
+        return err_set(err, STATUS_USAGE, "--refine: would not keep the trees --clearance apart");
     return STATUS_OK;
 }
 

@@ -1,6 +1,8 @@
 /* The keys are a contract: they may be added to, never renamed. */
 #include "app/trees/summary_json.h"
 
+#include <stdlib.h>
+
 /* Pairs of radius, mm, and value. */
 static json_t *curve_json(const LogCurve *curve)
 {
@@ -40,4 +42,23 @@ json_t *summary_json(const TreeSummary *summary)
                                    "mean", summary->terminal_pressure_mean_mmhg, "max",
                                    summary->terminal_pressure_max_mmhg));
     return json;
+}
+
+json_t *pairs_json(const Tree *tree)
+{
+    TreePair *pair;
+    size_t n;
+    if (!tree_column(tree, tree_pairs_name))
+        return json_null();
+    if (tree_pairs(tree, &pair, &n, NULL) != STATUS_OK)
+        return NULL;
+    json_t *pairs = json_array();
+    for (size_t k = 0; k < n; k++) {
+        const int32_t *node = pair[k].node;
+        double apart = vec3_distance(tree->position[node[0]], tree->position[node[1]]);
+        pairs = json_with_item(pairs,
+                               json_pack("[i,i,f]", tree->id[node[0]], tree->id[node[1]], apart));
+    }
+    free(pair);
+    return pairs;
 }

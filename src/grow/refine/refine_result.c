@@ -61,6 +61,20 @@ static Status write_nodes(const Tree *was, const Arbor *arbor, int32_t *place, d
     return STATUS_OK;
 }
 
+/* Terminals stay, and with them their pairs. */
+static Status write_pairs(const Tree *was, const Arbor *arbor, const int32_t *place, Tree *tree,
+                          Err *err)
+{
+    const TreeColumn *column = tree_column(was, tree_pairs_name);
+    double *number;
+    if (!column)
+        return STATUS_OK;
+    TRY(tree_add_column(tree, column->name, column->unit, &number, err));
+    for (size_t i = 0; i < arbor->n; i++)
+        number[place[i]] = column->value[arbor->node[i]];
+    return STATUS_OK;
+}
+
 Status result_write(const Arbor *arbor, Tree *tree, Err *err)
 {
     Tree made = {0};
@@ -74,6 +88,7 @@ Status result_write(const Arbor *arbor, Tree *tree, Err *err)
         TRY_GOTO(tree_add_flow_shares(&made, err));
     TRY_GOTO(write_nodes(tree, arbor, place, gauge, &made, err));
     tree_renumber(&made);
+    TRY_GOTO(write_pairs(tree, arbor, place, &made, err));
     made.meta = tree->meta;
     tree->meta = (TreeMeta){0};
     tree_release(tree);

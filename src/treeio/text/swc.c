@@ -1,5 +1,5 @@
 /* SWC: lines are cut in place into fields. Flow shares travel as comments "flow_share: ID SHARE",
- * which every reader of SWC skips.
+ * pairs of terminals as "terminal_pair: ID ID", which every reader of SWC skips.
  *
  * Numbers take most of the time, so that a large file is read by all processors: blocks of whole
  * lines, of which each thread reads the plain rows, seven numbers and nothing else, without a
@@ -94,15 +94,32 @@ static bool next_word(const char **at, char *word, size_t size)
     return true;
 }
 
+/* The two words of a value, the first of which is an id. */
+static bool read_words(const char *value, long long *id, char *second, size_t size)
+{
+    char first[32];
+    return next_word(&value, first, sizeof first) && next_word(&value, second, size) &&
+           !value[strspn(value, TEXT_BLANKS)] && integer_parse(first, 1, TREE_MAX_ID, id);
+}
+
+static Status read_pair(TreeBuilder *builder, size_t line, const char *value, Err *err)
+{
+    char second[32];
+    long long id = 0, other = 0;
+    if (!read_words(value, &id, second, sizeof second) ||
+        !integer_parse(second, 1, TREE_MAX_ID, &other))
+        return err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be the ids of two nodes",
+                       tree_pairs_name, value);
+    return builder_pair(builder, id, other, line, err);
+}
+
 static Status read_share(TreeBuilder *builder, size_t line, const char *value, Err *err)
 {
-    const char *at = value;
-    char id[32], share[400];
+    char share[400];
     long long number = 0;
     double part = 0;
-    bool read = next_word(&at, id, sizeof id) && next_word(&at, share, sizeof share) &&
-                !at[strspn(at, TEXT_BLANKS)] && integer_parse(id, 1, TREE_MAX_ID, &number) &&
-                number_parse(share, &part) && isfinite(part) && part > 0;
+    bool read = read_words(value, &number, share, sizeof share) && number_parse(share, &part) &&
+                isfinite(part) && part > 0;
     if (!read)
         return err_set(err, STATUS_INPUT,
                        "flow_share is '%.40s'; it must be the id of a node and a number above 0",
@@ -131,6 +148,9 @@ static Status read_comment(Reader *reader, size_t line, const char *comment, Err
     const char *share = comment_value(comment, share_key);
     if (share)
         return read_share(reader->builder, line, share, err);
+    const char *pair = comment_value(comment, tree_pairs_name);
+    if (pair)
+        return read_pair(reader->builder, line, pair, err);
     if (names_columns(comment))
         reader->titles = comment;
     return comment_read(&reader->builder->meta, comment, err);
@@ -327,10 +347,10 @@ Status swc_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
         TRY(read_plain_rows(&reader, end, err));
     if (reader.lowest_id == 1)
         return STATUS_OK;
-    if (builder->n_shares > 0)
+    if (builder->n_shares > 0 || builder->n_pairs > 0)
         return err_set(err, STATUS_INPUT,
-                       "%s: the ids start at 0, but a flow_share names nodes by ids from 1 on",
-                       builder->name);
+                       "%s: the ids start at 0, but a %s names nodes by ids from 1 on",
+                       builder->name, builder->n_shares > 0 ? share_key : tree_pairs_name);
     return reading_note(builder->reading, err,
                         "ids start at 0 in the file, and are one higher here");
 }
@@ -418,10 +438,22 @@ done:
     return status;
 }
 
+bool swc_keeps(const TreeColumn *column)
+{
+    return strcmp(column->name, tree_pairs_name) == 0;
+}
+
 Status swc_write(const Tree *tree, FILE *stream, Err *err)
 {
     char share[NUMBER_TEXT_SIZE];
+    TreePair *pair;
+    size_t pairs;
     TRY(comments_write(&tree->meta, stream, err));
+    TRY(tree_pairs(tree, &pair, &pairs, err));
+    for (size_t k = 0; k < pairs; k++)
+        fprintf(stream, "# %s: %d %d\n", tree_pairs_name, tree->id[pair[k].node[0]],
+                tree->id[pair[k].node[1]]);
+    free(pair);
     for (size_t i = 0; tree->flow_share && i < tree->n; i++)
         if (tree->flow_share[i] > 0)
             fprintf(stream, "# %s: %d %s\n", share_key, tree->id[i],
