@@ -6,6 +6,8 @@
 #include "base/base.h"
 #include "image/image.h"
 #include "verify/oracle.h"        // IWYU pragma: export
+#include "verify/picture_fault.h" // IWYU pragma: export
+#include "verify/power.h"         // IWYU pragma: export
 #include "verify/settled.h"       // IWYU pragma: export
 #include "verify/suite.h"         // IWYU pragma: export
 #include "verify/surface_check.h" // IWYU pragma: export

@@ -330,102 +330,6 @@ static void no_gamma(Subject *subject, double unused)
     encode_again(subject, unencoded, 0.5f);
 }
 
-static void swap_channels(Subject *subject, double unused)
-{
-    (void)unused;
-    uint8_t *codes = subject->picture.codes8;
-    for (size_t i = 0; i < pixels_of(subject); i++) {
-        uint8_t red = codes[3 * i];
-        codes[3 * i] = codes[3 * i + 2];
-        codes[3 * i + 2] = red;
-    }
-}
-
-/* A picture whose pixel (x, y) is that of (u, v). */
-static void rearrange(Subject *subject, void (*from)(int width, int height, int *x, int *y))
-{
-    int width = subject->picture.width, height = subject->picture.height;
-    size_t bytes = 3 * pixels_of(subject);
-    uint8_t *old = malloc(bytes), *codes = subject->picture.codes8;
-    if (!old)
-        abort();
-    memcpy(old, codes, bytes);
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            int u = x, v = y;
-            from(width, height, &u, &v);
-            memcpy(codes + 3 * (y * width + x), old + 3 * (v * width + u), 3);
-        }
-    free(old);
-}
-
-static void from_flipped(int width, int height, int *x, int *y)
-{
-    (void)width;
-    (void)x;
-    *y = height - 1 - *y;
-}
-
-static void from_mirrored(int width, int height, int *x, int *y)
-{
-    (void)height;
-    (void)y;
-    *x = width - 1 - *x;
-}
-
-/* Rows one pixel too long. */
-static void from_stride(int width, int height, int *x, int *y)
-{
-    int at = (*y * (width + 1) + *x) % (width * height);
-    *x = at % width;
-    *y = at / width;
-}
-
-/* Width and height confused. */
-static void from_transposed_stride(int width, int height, int *x, int *y)
-{
-    int at = (*y * height + *x) % (width * height);
-    *x = at % width;
-    *y = at / width;
-}
-
-static void from_repeated_row(int width, int height, int *x, int *y)
-{
-    (void)width;
-    (void)x;
-    *y = *y == height / 2 ? *y - 1 : *y;
-}
-
-static void flip_rows(Subject *subject, double unused)
-{
-    (void)unused;
-    rearrange(subject, from_flipped);
-}
-
-static void mirror(Subject *subject, double unused)
-{
-    (void)unused;
-    rearrange(subject, from_mirrored);
-}
-
-static void wrong_stride(Subject *subject, double unused)
-{
-    (void)unused;
-    rearrange(subject, from_stride);
-}
-
-static void transposed_stride(Subject *subject, double unused)
-{
-    (void)unused;
-    rearrange(subject, from_transposed_stride);
-}
-
-static void repeat_row(Subject *subject, double unused)
-{
-    (void)unused;
-    rearrange(subject, from_repeated_row);
-}
-
 /* The first pixel of the target, or the first at all. */
 static size_t target_pixel(const Subject *subject)
 {
@@ -556,12 +460,12 @@ const Fault faults[] = {
     {"codes truncated, not rounded", OF_ALL, 1, NULL, truncate_codes, 0},
     {"gamma 2.2 instead of sRGB", OF_ALL, 1, NULL, gamma_22, 0},
     {"linear values as codes", OF_ALL, 1, NULL, no_gamma, 0},
-    {"red and blue swapped", OF_ALL, 1, NULL, swap_channels, 0},
-    {"rows upside down", OF_ALL, 1, NULL, flip_rows, 0},
-    {"mirrored", OF_ALL, 1, NULL, mirror, 0},
-    {"rows one pixel too long", OF_ALL, 1, NULL, wrong_stride, 0},
-    {"stride is the height", OF_ALL, 1, NULL, transposed_stride, 0},
-    {"a row repeated", OF_ALL, 1, NULL, repeat_row, 0},
+    {"red and blue swapped", OF_ALL, 1, NULL, NULL, 0},
+    {"rows upside down", OF_ALL, 1, NULL, NULL, 0},
+    {"mirrored", OF_ALL, 1, NULL, NULL, 0},
+    {"rows one pixel too long", OF_ALL, 1, NULL, NULL, 0},
+    {"stride is the height", OF_ALL, 1, NULL, NULL, 0},
+    {"a row repeated", OF_ALL, 1, NULL, NULL, 0},
     {"a tile of 8 x 8 pixels lost", OF_ALL, 1, NULL, lost_tile, 8},
     {"one colour is NaN", OF_ALL, 1, NULL, nan_color, 0},
     {"one depth is NaN", OF_ALL, 1, NULL, nan_depth, 0},

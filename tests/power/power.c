@@ -122,6 +122,15 @@ static void stage_subject(Lab *lab, SceneModel model, Projection projection, Nam
     must(lab, stage_view(&lab->look, &params, &scene->geometry, &scene->view, &lab->err));
 }
 
+static void plant_in_picture(Lab *lab, const char *name, Subject *faulty)
+{
+    Picture planted;
+    must(lab,
+         picture_fault_plant(picture_fault_named(name), 0, &faulty->picture, &planted, &lab->err));
+    picture_release(&faulty->picture);
+    faulty->picture = planted;
+}
+
 /* Draws a copy of `clean` with a fault planted. */
 static void draw_faulty(Lab *lab, const Subject *clean, void (*before)(Subject *, double),
                         void (*after)(Subject *, double), double amount, Subject *faulty)
@@ -146,6 +155,8 @@ static json_t *plant_faults(Lab *lab, SceneModel model, const Subject *clean, co
         const Subject *reference = fault->antialias > 1 ? smooth : clean;
         Subject faulty;
         draw_faulty(lab, reference, fault->before, fault->after, fault->amount, &faulty);
+        if (!fault->before && !fault->after)
+            plant_in_picture(lab, fault->name, &faulty);
         json_t *row = json_pack("{s:s, s:s}", "fault", fault->name, "model", models[model].name);
         for (JudgeRule rule = 0; rule < RULES; rule++)
             json_object_set_new(row, rule_names[rule],
@@ -240,6 +251,8 @@ int main(int argc, char **argv)
     for (int m = 0; m < SCENE_MODELS; m++) {
         SceneModel model = (SceneModel)m;
         Subject clean, smooth;
+        if (!(OF_ALL & 1u << m)) /* faults are planted in primitives and fields */
+            continue;
         stage_subject(&lab, model, PROJECTION_PERSPECTIVE, VIEW_ISO, true, 1, &clean);
         stage_subject(&lab, model, PROJECTION_PERSPECTIVE, VIEW_ISO, true, 3, &smooth);
         must(&lab, subject_draw(&clean, &lab.err));

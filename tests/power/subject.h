@@ -36,7 +36,7 @@ enum {
     OF_ALL = OF_PRIMITIVES | OF_FIELDS
 };
 
-/* A fault, planted before drawing or after it. */
+/* A fault, planted before drawing or after it; neither: the picture_faults of this name. */
 typedef struct Fault {
     const char *name;
     unsigned models; /* in which it can exist */

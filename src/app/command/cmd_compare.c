@@ -396,7 +396,7 @@ static Status compare(const CompareOptions *options, PlaneKind kind, const Parse
                    .color = kind == PLANE_COLOR};
     double start_s = clock_seconds();
     Status status = STATUS_OK;
-    TRY_GOTO(compare_tolerance(options, &tolerance, &tier_name, err));
+    TRY_GOTO(compare_tolerance(&options->judge, options->depth_mm, &tolerance, &tier_name, err));
     TRY_GOTO(
         compare_files(options, kind, &sides, &tolerance, parsed->common.threads, &result, err));
     if (!parsed->common.quiet)
@@ -467,6 +467,6 @@ const Command command_compare = {
     .max_operands = 2,
     .size = sizeof(CompareOptions),
     .set_defaults = compare_set_defaults,
-    .tables = {{&compare_options, 0}},
+    .tables = {{&compare_options, 0}, {&judge_options, offsetof(CompareOptions, judge)}},
     .run = run_compare,
 };

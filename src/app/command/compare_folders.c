@@ -43,7 +43,7 @@ Status compare_folders(const CompareOptions *options, const Parsed *parsed, Err 
     char *tier_name = NULL;
     double start_s = clock_seconds();
     Status status = STATUS_OK;
-    TRY_GOTO(compare_tolerance(options, &tolerance, &tier_name, err));
+    TRY_GOTO(compare_tolerance(&options->judge, options->depth_mm, &tolerance, &tier_name, err));
     TRY_GOTO(suite_judge(&suite, options->reference, folder, &tolerance, background,
                          parsed->common.threads, err));
     TRY_GOTO(

@@ -51,44 +51,12 @@ static const Option own[] = {
     {.name = "background",
      SETS(COLOR, CompareOptions, background),
      .help = "what transparent pictures are laid on"},
-    {.name = "tier",
-     SETS(CHOICE, CompareOptions, tier),
-     GIVEN(CompareOptions, has_tier),
-     .choices = tiers,
-     .group = GROUP_JUDGE,
-     .help = "what is still agreement"},
-    {.name = "tolerance",
-     SETS(INPUT, CompareOptions, tolerance),
-     .group = GROUP_JUDGE,
-     .argument = "FILE.ini",
-     .help = "limits of one's own, the others unjudged unless --tier is given"},
-    {.name = "levels",
-     SETS(NUMBER, CompareOptions, levels),
-     GIVEN(CompareOptions, has_levels),
-     FROM_TO(0, 255),
-     .group = GROUP_JUDGE,
-     .help = "8-bit levels a pixel may be off"},
-    {.name = "ppm",
-     SETS(NUMBER, CompareOptions, ppm),
-     GIVEN(CompareOptions, has_ppm),
-     FROM_TO(0, 1e6),
-     .group = GROUP_JUDGE,
-     .otherwise = "2 in tier A",
-     .help = "pixels in a million that may be off by more"},
     {.name = "depth-mm",
      SETS(NUMBER, CompareOptions, depth_mm),
      FROM_TO(0, 1e7),
      .group = GROUP_JUDGE,
      .unit = "mm",
      .help = "a depth may be off"},
-    {.name = "pixelmatch",
-     SETS(NUMBER, CompareOptions, pixelmatch),
-     GIVEN(CompareOptions, has_pixelmatch),
-     FROM_TO(0, 1),
-     .group = GROUP_JUDGE,
-     .argument = "T",
-     .otherwise = "",
-     .help = "count pixels as pixelmatch 7.2.0 does at this threshold; 0.1 is its own"},
     {.name = "metrics",
      SETS(SWITCH, CompareOptions, metrics),
      GIVEN(CompareOptions, has_metrics),
@@ -128,6 +96,43 @@ static const Option own[] = {
 
 const OptionTable compare_options = OPTION_TABLE(own);
 
+static const Option of_judge[] = {
+    {.name = "tier",
+     SETS(CHOICE, JudgeOptions, tier),
+     GIVEN(JudgeOptions, has_tier),
+     .choices = tiers,
+     .group = GROUP_JUDGE,
+     .help = "what is still agreement"},
+    {.name = "tolerance",
+     SETS(INPUT, JudgeOptions, tolerance),
+     .group = GROUP_JUDGE,
+     .argument = "FILE.ini",
+     .help = "limits of one's own, the others unjudged unless --tier is given"},
+    {.name = "levels",
+     SETS(NUMBER, JudgeOptions, levels),
+     GIVEN(JudgeOptions, has_levels),
+     FROM_TO(0, 255),
+     .group = GROUP_JUDGE,
+     .help = "8-bit levels a pixel may be off"},
+    {.name = "ppm",
+     SETS(NUMBER, JudgeOptions, ppm),
+     GIVEN(JudgeOptions, has_ppm),
+     FROM_TO(0, 1e6),
+     .group = GROUP_JUDGE,
+     .otherwise = "2 in tier A",
+     .help = "pixels in a million that may be off by more"},
+    {.name = "pixelmatch",
+     SETS(NUMBER, JudgeOptions, pixelmatch),
+     GIVEN(JudgeOptions, has_pixelmatch),
+     FROM_TO(0, 1),
+     .group = GROUP_JUDGE,
+     .argument = "T",
+     .otherwise = "",
+     .help = "count pixels as pixelmatch 7.2.0 does at this threshold; 0.1 is its own"},
+};
+
+const OptionTable judge_options = OPTION_TABLE(of_judge);
+
 void compare_set_defaults(void *options)
 {
     CompareOptions *own_options = options;
@@ -136,12 +141,13 @@ void compare_set_defaults(void *options)
     own_options->alarms = 0.01;
 }
 
-Status compare_tolerance(const CompareOptions *options, Tolerance *tolerance, char **name, Err *err)
+Status compare_tolerance(const JudgeOptions *options, double depth_mm, Tolerance *tolerance,
+                         char **name, Err *err)
 {
     Tier tier = options->tolerance && !options->has_tier ? TIER_NONE : options->tier;
-    *tolerance = tier == TIER_A         ? tolerance_identity(options->depth_mm)
-                 : tier == TIER_B       ? tolerance_tolerant(options->depth_mm)
-                 : tier == TIER_SURFACE ? tolerance_surface(options->depth_mm)
+    *tolerance = tier == TIER_A         ? tolerance_identity(depth_mm)
+                 : tier == TIER_B       ? tolerance_tolerant(depth_mm)
+                 : tier == TIER_SURFACE ? tolerance_surface(depth_mm)
                                         : tolerance_none();
     if (options->tolerance)
         TRY(tolerance_read(tolerance, name, options->tolerance, err));
@@ -158,7 +164,7 @@ Status compare_tolerance(const CompareOptions *options, Tolerance *tolerance, ch
         if (!options->has_ppm)
             tolerance->pixelmatch_ppm = 0;
     }
-    if (options->has_levels || options->has_ppm || options->depth_mm > 0 || options->has_pixelmatch)
+    if (options->has_levels || options->has_ppm || depth_mm > 0 || options->has_pixelmatch)
         tolerance->tier = "given";
     return STATUS_OK;
 }

@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# `power`: what a tolerance misses of the faults that are planted in a renderer's picture.
+. "$(dirname "$0")/../lib.sh"
+
+# A picture of 96 x 64 pixels: a disc with a gradient in it, and a highlight.
+draw_picture() {
+    awk 'BEGIN {
+        print "P3 96 64 255"
+        for (y = 0; y < 64; y++) for (x = 0; x < 96; x++) {
+            r = sqrt((x - 47.3)^2 + (y - 30.8)^2)
+            if (r > 25.6) print 231, 240, 250
+            else if (r < 3) print 252, 251, 249
+            else print int(200 - 3 * r), int(40 + 2 * x / 3), int(20 + y)
+        }
+    }' >drawn.ppm
+}
+
+# missed RULE FAULT: the sizes of a fault that a rule misses.
+missed() {
+    jq -c --arg rule "$1" --arg fault "$2" '[.faults[] | select(.fault == $fault and (.found[$rule] | not)) | .size]' power.json
+}
+
+test_says_from_which_size_on_a_tolerance_finds_each_fault() {
+    draw_picture
+    run_ok corcast power --quiet --render "pnmtopng $PWD/drawn.ppm >{}" --levels 9.5 --ppm 0
+    expect_stdout '^96 x 64 pixels of 8 bits; two drawings are the same$'
+    expect_stdout '^codes lower by 0.3 to 30 levels +10 '
+    expect_stdout '^bits lost by 1 to 4 bits +4 '
+    expect_stdout '^mirrored +found '
+    expect_stdout '^brighter by 0.1 to 30 % of light +10 +never +never +10 +3$'
+    expect_only drawn.ppm
+}
+
+test_a_wider_tolerance_misses_more() {
+    draw_picture
+    run_ok corcast power --quiet --json --render 'cp drawn.ppm {}' --extension ppm --levels 2 --ppm 0
+    cp stdout power.json
+    expect_json power.json '(.rules[0].missed < .rules[3].missed) and (.planted > 60) and .repeats
+        and ([.faults[] | select(.fault == "highlights dimmer")] | length) >= 3'
+    [ "$(missed rule 'codes lower')" = '[1]' ] || fail "expected 1 level alone to be missed: $(missed rule 'codes lower')"
+    [ "$(missed Blender 'a square lost')" = '[1,3]' ] || fail "expected squares to be missed: $(missed Blender 'a square lost')"
+}
+
+test_identity_finds_every_fault() {
+    draw_picture
+    run_ok corcast power --quiet --json --render 'cp drawn.ppm {}' --extension ppm --tier none --levels 0 --ppm 0
+    cp stdout power.json
+    expect_json power.json '.rules[0].missed == 0 and .rules[0].false_alarm == false'
+}
+
+test_a_verdict_of_another_program_is_asked_as_it_is() {
+    draw_picture
+    run_ok corcast power --quiet --json --render 'cp drawn.ppm {}' --extension ppm --verdict 'cmp -s {a} {b}'
+    expect_json stdout '.rules[0].missed == 0'
+    run_ok corcast power --quiet --json --render 'cp drawn.ppm {}' --extension ppm --verdict 'true {a} {b}'
+    expect_json stdout '.rules[0].missed == .planted'
+}
+
+test_missed_faults_are_kept_as_pictures() {
+    draw_picture
+    run_ok corcast power --quiet --render 'cp drawn.ppm {}' --extension ppm --levels 2 --ppm 0 -o missed
+    expect_file missed/codes-lower-1.png
+    run corcast compare drawn.ppm missed/codes-lower-1.png --levels 0 --json
+    expect_json stdout '.max_abs == 1'
+    [ ! -e missed/mirrored.png ] || fail "expected no picture of a fault that is found"
+}
+
+test_a_renderer_that_does_not_repeat_itself_raises_a_false_alarm() {
+    draw_picture
+    run corcast power --quiet --extension ppm --levels 0 --ppm 0 \
+        --render 'if [ -e once ]; then sed s/240/241/ drawn.ppm >{}; else touch once; cp drawn.ppm {}; fi'
+    expect_status 1
+    expect_stdout 'two drawings are not the same'
+    expect_stdout '^false alarm: yours calls two drawings of the same scene different$'
+}
+
+test_what_cannot_be_asked_is_refused() {
+    run corcast power
+    expect_status 2
+    expect_sentence '--render is a command with \{\} for the file'
+    run corcast power --render 'cp a b'
+    expect_status 2
+    expect_sentence '--render is a command with \{\} for the file'
+    run corcast power --render 'cp a {}' --verdict 'cmp {a}'
+    expect_status 2
+    expect_sentence '--verdict is a command with \{a\} and \{b\}'
+    run corcast power --render 'cp a {}' --verdict 'cmp {a} {b}' --ppm 3
+    expect_status 2
+    expect_sentence '--ppm and --verdict are two rules'
+    run corcast power --quiet --render 'exit 7 # {}'
+    expect_status 3
+    expect_sentence '--render: the command fails \(exit status 7\)'
+    run corcast power --quiet --render 'echo text >{}'
+    expect_status 3
+    expect_sentence '--render: .*is not a PPM'
+    run corcast power --quiet --render 'true {}'
+    expect_status 3
+    expect_sentence '--render: '
+    expect_only
+}
+
+run_tests
