@@ -49,10 +49,11 @@ one point in three is far enough @ grow.c @ TOSSES_PER_ADDED = 3 }
 changes the numbers of its eight nearest ancestors at once @ network.c @ LEVELS = 8 }
 whenever the tree has grown by a fifth @ grow.c @ refresh_growth = 1.2;
 ahead of its share by more than a sixteenth @ forest.c @ lead = 1.0 / 16;
-all rise by 1.1, and those of segments that break a rule by 2.2 @ refine_penalty.c @ rise = 1.1, steep_rise = 2.2;
-up to two more follow @ refine.c @ DETOURS = 3,
-each at four times the penalty @ refine.c @ rate_rise = 4;
-over nine tenths of the budget @ refine.c @ last_part = 0.1;
+all by 1.1, and those of segments that break a rule by 2.2 @ refine_penalty.c @ rise = 1.1, steep_rise = 2.2;
+Penalties rise twentyfold @ refine.c @ first_rate = 0.1, last_rate = 2;
+a tenth of the budget is left, or what 40 moves a terminal take, half of it at most @ refine.c @ last_moves = 40, least_left = 0.1, most_left = 0.5;
+the same with 2,000 moves a terminal @ refine.c @ [GROW_REFINE_ANNEAL] = 2000}
+topology has 88 @ refine.c @ [GROW_REFINE_TOPOLOGY] = 88,
 until they agree to 10⁻¹³ @ finish.c @ agreement = 1e-13;
 256 points a terminal, up to 4,096 where that makes less than two million in all @ segment_weights.c @ least_points = 256, most_points = 4096, all_points = 2e6;
 END

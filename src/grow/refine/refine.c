@@ -1,26 +1,22 @@
 /* Refinement is local search with two moves [refine_move.h]: a bifurcation moves to a better place,
- * or a subtree is cut off and connected elsewhere. A round (one turn of the loop in descend, detour
- * or anneal) tries all subtrees in random order (shuffle) and then all bifurcations one by one
+ * or a subtree is cut off and connected elsewhere. A round (one turn of the loop in descend, anneal
+ * or mend) tries all subtrees in random order (shuffle) and then all bifurcations one by one
  * (sweep), in descend after a joint move of them all [refine_joint.h]; the geometry level has no
- * shuffles. Annealing has no joint moves: they settle what heat is to stir (T 0.7 % higher).
+ * shuffles.
  *
  * Within the rules of clearance the search soon gets stuck where vessels are in each other's way:
- * better trees lie behind trees that cross. The topology level (improve_topology) therefore
- * descends, makes a detour and descends again. On a detour, breaking a rule is allowed for a
- * penalty [refine_penalty.h], low at first and rising until no segment breaks one. When little more
- * is to be gained, only segments that break a rule and their neighbours are moved (repair). A
- * detour that does not end in a better tree ends where it began (recall); the next begins with
- * higher penalties, closer to the rules. Detours bring a tree of little length (lambda 0) near the
- * shortest there is.
- *
- * Annealing lets the temperature fall geometrically over most of its budget, takes the best tree
- * and goes on as topology does.
+ * better trees lie behind trees that cross. The levels above geometry therefore anneal where rules
+ * may be broken for a penalty [refine_penalty.h]: the temperature falls geometrically, and the
+ * penalty for a mm rises, until few segments still break a rule. Then rates rise further, those of
+ * the segments at fault most, until none does (mend). When little more is to be gained meanwhile,
+ * only segments that break a rule and their neighbours are moved (repair). A last descent keeps the
+ * rules. Annealing within the rules ends 1 % higher; joint moves settle what heat is to stir.
  *
  * Refinement may be stopped after any move, and then has a tree that keeps the rules: the present
- * one in descend; in a detour or while annealing, the best one before, which recall restores.
- * What follows the radii, viscosities or exponents, is held fixed within a round and computed anew
- * after it (settle). If vessels meet because of that at the end, the tree is the one of the last
- * round before which none did. */
+ * one in descend; while annealing or mending, the one before, which recall restores. So it does if
+ * mending fails. What follows the radii, viscosities or exponents, is held fixed within a round and
+ * computed anew after it (settle). If vessels meet because of that at the end, the tree is the one
+ * of the last round before which none did. */
 #include "grow/grow.h"
 
 #include "grow/refine/refine_arbor.h"
@@ -32,18 +28,18 @@
 #include "grow/refine/refine_result.h"
 #include <stdlib.h>
 
-/* Temperatures of annealing over S_root a segment, at first and at last, and the share of the
- * budget that is left then. */
-static const double hot = 1, cold = 0.02;
-static const double last_part = 0.1;
-/* A round that gains less than this of S_root is the last: of sweeps; before a detour, on it and
- * after it. */
-static const double least_sweep_gain = 1e-4;
-static const double least_gain_before = 2e-3, least_gain_across = 2e-4, least_gain_after = 5e-5;
-/* The penalty for a mm on the first detour, relative to S_root for each mm of vessels, and by how
- * much it rises to the next. */
-static const double first_rate = 0.25, rate_rise = 4;
-enum { DETOURS = 3, ROUNDS_PER_DETOUR = 40 };
+/* Temperatures over S_root a segment: of annealing at first and at last, and of repairs. */
+static const double hot = 1, cold = 0.02, warm = 0.05;
+/* The penalty for a mm meanwhile, relative to S_root for each mm of vessels, at first and at last.
+ */
+static const double first_rate = 0.1, last_rate = 2;
+/* The share of the budget that is left then: what so many moves a terminal take, within limits. */
+static const double last_moves = 40, least_left = 0.1, most_left = 0.5;
+/* A round that gains less than this of S_root is the last: of sweeps; before annealing, of shuffles
+ * while mending, and after it. */
+static const double least_sweep_gain = 1e-4, least_joint_gain = 1e-4;
+static const double least_gain_before = 2e-3, least_gain_mending = 2e-4, least_gain_after = 5e-5;
+enum { ROUNDS_OF_MENDING = 120 };
 /* Segments that are moved around either end of one that breaks a rule. */
 enum { NEIGHBOURS = 8 };
 /* Rounds after which reserved radii are computed anew. */
@@ -61,7 +57,6 @@ typedef struct Refinement {
     bool stopped;
     LocalSearch search;
     Joints joints;
-    double first_cost;
     size_t unclear; /* segments that broke a rule at first */
     int32_t *order; /* in which subtrees move, from 1 */
     /* The tree that is remembered: */
@@ -71,13 +66,13 @@ typedef struct Refinement {
 } Refinement;
 
 /* The most moves that a level tries on a tree of so many terminals if neither moves nor seconds are
- * given. Geometry and topology end earlier when there is little left to gain. */
+ * given. Geometry ends earlier when there is little left to gain. */
 static uint64_t most_moves(GrowRefine level, size_t terminals)
 {
     const uint64_t moves_per_terminal[] = {[GROW_REFINE_NONE] = 0,
                                            [GROW_REFINE_GEOMETRY] = 100,
-                                           [GROW_REFINE_TOPOLOGY] = 200,
-                                           [GROW_REFINE_ANNEAL] = 1600};
+                                           [GROW_REFINE_TOPOLOGY] = 88,
+                                           [GROW_REFINE_ANNEAL] = 2000};
     return moves_per_terminal[level] * terminals;
 }
 
@@ -114,16 +109,19 @@ static Status sweep(Refinement *refinement, bool *over, Err *err)
     return STATUS_OK;
 }
 
-/* Moves all bifurcations at once, which counts as one move. */
-static Status move_jointly(Refinement *refinement, bool *over, Err *err)
+/* Moves all bifurcations at once, which counts as one move; *gains: whether that gains enough for
+ * another one to be worth its time. */
+static Status move_jointly(Refinement *refinement, bool *gains, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
+    double before = arbor_cost(&search->arbor);
     bool kept;
     if (*over)
         return STATUS_OK;
     TRY(joint_move(&refinement->joints, &search->arbor, &search->clearance, &kept, err));
     search->tried++;
     search->kept += kept;
+    *gains = arbor_cost(&search->arbor) < before * (1 - least_joint_gain);
     *over = is_over(refinement);
     return STATUS_OK;
 }
@@ -135,16 +133,14 @@ static bool is_large(const Refinement *refinement)
            refinement->search.arbor.terminals > LARGE;
 }
 
-static double temperature(const Refinement *refinement)
+/* S_root over the segments. */
+static double cost_of_segment(const Arbor *arbor)
 {
-    double part = refinement->fraction / (1 - last_part);
-    if (refinement->params->level != GROW_REFINE_ANNEAL || part >= 1)
-        return 0;
-    return refinement->first_cost / (double)refinement->search.arbor.n * hot *
-           pow(cold / hot, part);
+    return arbor_cost(arbor) / (double)arbor->n;
 }
 
-static Status shuffle(Refinement *refinement, bool *over, Err *err)
+/* Tries all subtrees in random order. */
+static Status shuffle(Refinement *refinement, double temperature, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
     size_t n = search->arbor.n;
@@ -156,7 +152,7 @@ static Status shuffle(Refinement *refinement, bool *over, Err *err)
         int32_t i = order[drawn];
         order[drawn] = order[k];
         order[k] = i;
-        TRY(move_subtree(search, i, temperature(refinement), err));
+        TRY(move_subtree(search, i, temperature, err));
         *over = is_over(refinement);
     }
     return STATUS_OK;
@@ -208,14 +204,16 @@ static Status descend(Refinement *refinement, double least_gain, bool *over, Err
 {
     LocalSearch *search = &refinement->search;
     double before = INFINITY, cost = arbor_cost(&search->arbor);
+    bool jointly = true;
     for (int round = 1; !*over && cost < before * (1 - least_gain); round++) {
         before = cost;
         TRY(settle_for_round(search, round, err));
         if (search->arbor.local && count_unclear(search) <= refinement->unclear)
             remember(refinement);
         if (refinement->params->level != GROW_REFINE_GEOMETRY)
-            TRY(shuffle(refinement, over, err));
-        TRY(move_jointly(refinement, over, err));
+            TRY(shuffle(refinement, 0, over, err));
+        if (jointly || refinement->params->level == GROW_REFINE_GEOMETRY)
+            TRY(move_jointly(refinement, &jointly, over, err));
         if (!is_large(refinement))
             TRY(sweep(refinement, over, err));
         cost = arbor_cost(&search->arbor);
@@ -223,11 +221,11 @@ static Status descend(Refinement *refinement, double least_gain, bool *over, Err
     return STATUS_OK;
 }
 
-/* Moves segment i in all ways. */
-static Status move(Refinement *refinement, int32_t i, bool *over, Err *err)
+/* Moves segment i in all ways, its subtree at a temperature of `heat`. */
+static Status move(Refinement *refinement, int32_t i, double heat, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
-    TRY(move_subtree(search, i, 0, err));
+    TRY(move_subtree(search, i, heat, err));
     *over = is_over(refinement);
     if (*over || search->arbor.branch[i].child[0] < 0)
         return STATUS_OK;
@@ -236,10 +234,11 @@ static Status move(Refinement *refinement, int32_t i, bool *over, Err *err)
     return STATUS_OK;
 }
 
-/* Moves all segments that break a rule, and what is near them. */
+/* Moves all segments that break a rule, and what is near them, warm enough to make room. */
 static Status repair(Refinement *refinement, bool *over, Err *err)
 {
     const LocalSearch *search = &refinement->search;
+    double heat = warm * cost_of_segment(&search->arbor);
     for (size_t k = 0; k < search->penalties.n_broken && !*over; k++) {
         int32_t i = search->penalties.broken[k];
         const Shape *shape = &search->arbor.shape[i];
@@ -247,64 +246,82 @@ static Status repair(Refinement *refinement, bool *over, Err *err)
         int count = grid_nearest(&search->clearance.grid, shape->to, INFINITY, NEIGHBOURS, near);
         count +=
             grid_nearest(&search->clearance.grid, shape->from, INFINITY, NEIGHBOURS, near + count);
-        TRY(move(refinement, i, over, err));
+        TRY(move(refinement, i, heat, over, err));
         for (int m = 0; m < count && !*over; m++)
-            TRY(move(refinement, near[m].segment, over, err));
+            TRY(move(refinement, near[m].segment, heat, over, err));
     }
     return STATUS_OK;
 }
 
-/* Rounds in which rules may be broken, at first for a penalty of `rate`. *done tells whether they
- * led to a better tree that breaks none; if not, all is as it was. */
-static Status detour(Refinement *refinement, double rate, bool *done, bool *over, Err *err)
+/* How much of annealing is done, 1: all. */
+static double part_done(const Refinement *refinement)
+{
+    const LocalSearch *search = &refinement->search;
+    double moves = last_moves * (double)search->arbor.terminals;
+    double left = search->tried > 0 ? moves * refinement->fraction / (double)search->tried : 0;
+    return refinement->fraction / (1 - fmin(fmax(left, least_left), most_left));
+}
+
+/* Has segments break rules for a penalty of `rate`; centrelines alone may not cross at any. */
+static Status allow_faults(LocalSearch *search, double rate, Err *err)
+{
+    TRY(settle(search, err));
+    if (search->clearance.level == 0)
+        return STATUS_OK;
+    penalties_begin(&search->penalties, &search->arbor, rate);
+    return penalties_reserve(&search->clearance, &search->arbor, err);
+}
+
+/* Rounds in which rules may be broken and T may rise, less and less. */
+static Status anneal(Refinement *refinement, bool *over, Err *err)
+{
+    LocalSearch *search = &refinement->search;
+    Arbor *arbor = &search->arbor;
+    double unit = cost_of_segment(arbor);
+    for (double part; (part = part_done(refinement)) < 1 && !*over;) {
+        TRY(allow_faults(search, first_rate * pow(last_rate / first_rate, part), err));
+        TRY(shuffle(refinement, unit * hot * pow(cold / hot, part), over, err));
+        TRY(sweep(refinement, over, err));
+    }
+    return STATUS_OK;
+}
+
+/* Rounds in which penalties rise. *done: whether no segment breaks a rule any more. */
+static Status mend(Refinement *refinement, bool *done, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
     Arbor *arbor = &search->arbor;
     Penalties *penalties = &search->penalties;
-    bool gains = true, clear = false;
-    remember(refinement);
-    penalties_begin(penalties, arbor, rate);
-    for (int round = 0; round < ROUNDS_PER_DETOUR && !clear && !*over; round++) {
+    bool gains = true;
+    *done = !penalties->active;
+    for (int round = 0; round < ROUNDS_OF_MENDING && !*done && !*over; round++) {
         double before = arbor_cost(arbor);
         TRY(penalties_reserve(&search->clearance, arbor, err));
         if (gains) {
-            TRY(shuffle(refinement, over, err));
+            TRY(shuffle(refinement, 0, over, err));
             TRY(sweep(refinement, over, err));
-            gains = arbor_cost(arbor) < before * (1 - least_gain_across);
         } else {
             TRY(repair(refinement, over, err));
         }
         TRY(settle(search, err));
+        gains = gains && arbor_cost(arbor) < before * (1 - least_gain_mending);
         penalties_raise(penalties, &search->clearance, arbor);
-        clear = penalties->n_broken == 0;
+        *done = penalties->n_broken == 0;
     }
-    penalties->active = false;
-    *done = clear && arbor_cost(arbor) < refinement->best_cost;
-    return *done ? STATUS_OK : recall(refinement, err);
+    return STATUS_OK;
 }
 
+/* Finds a better tree behind trees that break rules; if there is none, all is as it was. */
 static Status improve_topology(Refinement *refinement, bool *over, Err *err)
 {
-    double rate = first_rate;
-    bool done = refinement->search.clearance.level == 0; /* centrelines alone have no rules */
-    TRY(descend(refinement, least_gain_before, over, err));
-    for (int k = 0; k < DETOURS && !done && !*over; k++, rate *= rate_rise)
-        TRY(detour(refinement, rate, &done, over, err));
-    return descend(refinement, least_gain_after, over, err);
-}
-
-static Status anneal(Refinement *refinement, bool *over, Err *err)
-{
     LocalSearch *search = &refinement->search;
+    bool done;
     remember(refinement);
-    for (int round = 1; !*over && refinement->fraction < 1 - last_part; round++) {
-        TRY(settle_for_round(search, round, err));
-        TRY(shuffle(refinement, over, err));
-        TRY(sweep(refinement, over, err));
-        if (arbor_cost(&search->arbor) < refinement->best_cost)
-            remember(refinement);
-    }
-    return recall(refinement, err);
+    TRY(anneal(refinement, over, err));
+    TRY(mend(refinement, &done, over, err));
+    search->penalties.active = false;
+    return done && arbor_cost(&search->arbor) < refinement->best_cost ? STATUS_OK
+                                                                      : recall(refinement, err);
 }
 
 static Status refine(Refinement *refinement, Err *err)
@@ -313,9 +330,10 @@ static Status refine(Refinement *refinement, Err *err)
     bool over = is_over(refinement);
     if (level == GROW_REFINE_GEOMETRY)
         return descend(refinement, least_sweep_gain, &over, err);
-    if (level == GROW_REFINE_ANNEAL)
-        TRY(anneal(refinement, &over, err));
-    return improve_topology(refinement, &over, err);
+    if (level == GROW_REFINE_ANNEAL) /* so that there is something if it is stopped */
+        TRY(descend(refinement, least_gain_before, &over, err));
+    TRY(improve_topology(refinement, &over, err));
+    return descend(refinement, least_gain_after, &over, err);
 }
 
 /* The tree's target, mm^(1 + lambda). */
@@ -331,10 +349,11 @@ static Status start(Refinement *refinement, const Domain *domain, const Tree *tr
     random_seed(&search->random, params->seed);
     TRY(arbor_init(&search->arbor, tree, err));
     size_t n = search->arbor.n;
-    refinement->moves = params->moves         ? params->moves
-                        : params->seconds > 0 ? UINT64_MAX
-                                              : most_moves(params->level, search->arbor.terminals);
-    double cost = refinement->first_cost = arbor_cost(&search->arbor);
+    refinement->moves = params->moves ? params->moves
+                        : params->seconds > 0 && params->level == GROW_REFINE_ANNEAL
+                            ? UINT64_MAX
+                            : most_moves(params->level, search->arbor.terminals);
+    double cost = arbor_cost(&search->arbor);
     if (!(cost > 0) || !isfinite(cost))
         return err_set(err, STATUS_INFEASIBLE,
                        "with this gamma and lambda %g the radii span more than a double can hold",

@@ -10,6 +10,8 @@
  * rounds until there is no greater one. */
 static const double settled = 1e-13;
 enum { MOST_ROUNDS = 100 };
+/* Segments above a pruned one that are summed up at once. */
+enum { PRUNED_LEVELS = 4 };
 
 Reduced arbor_reduce(const Arbor *arbor, int32_t i)
 {
@@ -392,8 +394,25 @@ void arbor_sum_from(Arbor *arbor, int32_t i)
     }
 }
 
-/* Puts the bifurcation at the end of segment i to `place` and sums up anew. */
-static void pivot(Arbor *arbor, int32_t i, Vec3 from, Vec3 place)
+/* Sums up from segments i and j to the root. The one with less flow comes first, which is below the
+ * other if one is, until the ways meet. */
+static void sum_from_both(Arbor *arbor, int32_t i, int32_t j)
+{
+    const Branch *branch = arbor->branch;
+    while (i != j && !(arbor_is_inlet(arbor, i) && arbor_is_inlet(arbor, j))) {
+        bool first = !arbor_is_inlet(arbor, i) &&
+                     (arbor_is_inlet(arbor, j) || branch[i].flow < branch[j].flow);
+        int32_t *next = first ? &i : &j, above = branch[*next].parent;
+        branch_of(arbor, *next);
+        sum(arbor, *next);
+        *next = above;
+    }
+    arbor_sum_from(arbor, i);
+}
+
+/* Puts the bifurcation at the end of segment i to `place` and sums up from there and from segment
+ * `also`. */
+static void pivot(Arbor *arbor, int32_t i, Vec3 from, Vec3 place, int32_t also)
 {
     for (int side = 0; side < 2; side++) {
         int32_t child = arbor->branch[i].child[side];
@@ -401,12 +420,12 @@ static void pivot(Arbor *arbor, int32_t i, Vec3 from, Vec3 place)
         sum(arbor, child);
     }
     put(arbor, i, from, place);
-    arbor_sum_from(arbor, i);
+    sum_from_both(arbor, i, also);
 }
 
 void arbor_shift(Arbor *arbor, int32_t i, Vec3 place)
 {
-    pivot(arbor, i, arbor->shape[i].from, place);
+    pivot(arbor, i, arbor->shape[i].from, place, i);
 }
 
 /* Puts `with` where segment i begins. */
@@ -423,8 +442,14 @@ void arbor_prune(Arbor *arbor, int32_t i)
     int32_t fork = arbor->branch[i].parent, sibling = arbor_sibling(arbor, i);
     replace(arbor, fork, sibling);
     put(arbor, sibling, arbor->shape[fork].from, arbor->shape[sibling].to);
-    arbor_sum_from(arbor, sibling);
+    int32_t at = sibling;
+    for (int k = 0; k < PRUNED_LEVELS && !arbor_is_inlet(arbor, at); k++) {
+        branch_of(arbor, at);
+        sum(arbor, at);
+        at = arbor->branch[at].parent;
+    }
     arbor->pruned = i;
+    arbor->stale = at;
 }
 
 void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place)
@@ -439,7 +464,7 @@ void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place)
         arbor->saved_local = arbor->local[fork];
         arbor->local[fork] = arbor->local[host];
     }
-    pivot(arbor, fork, arbor->shape[host].from, place);
+    pivot(arbor, fork, arbor->shape[host].from, place, arbor->stale);
     arbor->pruned = 0;
 }
 

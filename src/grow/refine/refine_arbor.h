@@ -78,6 +78,7 @@ typedef struct Arbor {
     bool pries;
     double hematocrit;
     int32_t pruned; /* the segment that arbor_prune has cut off; 0: none */
+    int32_t stale;  /* then the lowest segment whose sums still have it, or the inlet */
     /* What the present move, the number `move`, has changed, as it was before: */
     uint32_t move;
     struct SavedBranch {

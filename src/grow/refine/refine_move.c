@@ -150,12 +150,22 @@ typedef struct Candidate {
     BifurcationState state;
 } Candidate;
 
+/* The marginal of a segment: the stored one where the present move has changed nothing beside it.
+ */
+static Marginal marginal_of(const Arbor *arbor, int32_t i)
+{
+    const Branch *branch = &arbor->branch[i];
+    bool is_near =
+        branch->saved == arbor->move || arbor->branch[branch->parent].saved == arbor->move;
+    return is_near ? arbor_marginal(arbor, i) : arbor->marginal[i];
+}
+
 /* Prices the connection of `subtree`, which is pruned, to `host`. */
 static bool price(const LocalSearch *search, int32_t subtree, int32_t host, Candidate *out)
 {
     const Arbor *arbor = &search->arbor;
     const Shape *shape = &arbor->shape[host];
-    Marginal marginal = arbor_marginal(arbor, host);
+    Marginal marginal = marginal_of(arbor, host);
     Reduced before = arbor_reduce(arbor, host);
     out->host = host;
     out->problem = bifurcation_of(search, host, host, subtree, &marginal);
@@ -184,10 +194,24 @@ static void propose(const LocalSearch *search, int32_t subtree, int32_t host, Ca
         out->count += price(search, subtree, host, &out->list[out->count]);
 }
 
+/* Finds the nearest segments; looks first as far as was enough for the last points, and a little
+ * more. */
+static int find_near(LocalSearch *search, Vec3 point, Near *near)
+{
+    const Grid *grid = &search->clearance.grid;
+    double reach = search->reach;
+    int count = NEIGHBOURS;
+    if (!grid_nearest_quick(grid, point, reach, NEIGHBOURS, near))
+        count = grid_nearest(grid, point, INFINITY, NEIGHBOURS, near);
+    if (count == NEIGHBOURS)
+        search->reach +=
+            (reach > 0 ? 0.1 : 1) * (1.25 * sqrt((double)near[NEIGHBOURS - 1].distance2) - reach);
+    return count;
+}
+
 /* Finds connections of `subtree`, which is pruned: to the segment that it came from, to those that
  * this one shares a node with, and to the nearest. None when the first has no price. */
-static void find_candidates(const LocalSearch *search, int32_t subtree, int32_t origin,
-                            Candidates *out)
+static void find_candidates(LocalSearch *search, int32_t subtree, int32_t origin, Candidates *out)
 {
     const Arbor *arbor = &search->arbor;
     int32_t fork = arbor->branch[subtree].parent, above = arbor->branch[origin].parent;
@@ -203,8 +227,7 @@ static void find_candidates(const LocalSearch *search, int32_t subtree, int32_t 
     }
     for (int side = 0; side < 2 && below[0] >= 0; side++)
         propose(search, subtree, below[side], out);
-    int found =
-        grid_nearest(&search->clearance.grid, arbor->shape[subtree].to, INFINITY, NEIGHBOURS, near);
+    int found = find_near(search, arbor->shape[subtree].to, near);
     for (int k = 0; k < found; k++)
         if (near[k].segment != fork && arbor_is_same_tree(arbor, near[k].segment, subtree) &&
             !arbor_is_below(arbor, near[k].segment, subtree))

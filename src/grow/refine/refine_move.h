@@ -12,6 +12,7 @@ typedef struct LocalSearch {
     Clearance clearance;
     Penalties penalties; /* while they are not active, no move breaks a rule of clearance */
     Random random;
+    double reach;         /* mm; within which the nearest segments were found */
     uint64_t tried, kept; /* moves */
 } LocalSearch;
 

@@ -1,9 +1,9 @@
 /* An exterior penalty in the l1 norm: at a high enough but finite rate, the best tree keeps the
  * rules exactly, wherever breaking one by a mm gains less than the rate. The tree's topology is
  * free, too, so one rising rate for all would freeze it before the rules hold. Each segment has a
- * rate of its own instead, which rises most while the segment breaks a rule ([METHODS M], the
- * breakout method): rates stay low where the rules hold, and there the tree can go on giving way to
- * where they do not. */
+ * rate of its own instead, higher where a mm of it costs more, which in the end rises most while
+ * the segment breaks a rule ([METHODS M], the breakout method): rates stay low where the rules
+ * hold, and there the tree can go on giving way to where they do not. */
 #include "grow/refine/refine_penalty.h"
 
 #include <stdlib.h>
@@ -33,8 +33,11 @@ void penalties_begin(Penalties *penalties, const Arbor *arbor, double rate)
     double length = 0;
     for (size_t i = arbor->inlets; i < arbor->n; i++)
         length += arbor->branch[i].length;
-    for (size_t i = arbor->inlets; i < arbor->n; i++)
-        penalties->rate[i] = rate * arbor_cost(arbor) / length;
+    double mean = arbor_cost(arbor) / length;
+    for (size_t i = arbor->inlets; i < arbor->n; i++) {
+        double rho = arbor_radius_seen(arbor, (int32_t)i) / arbor->radius_unit;
+        penalties->rate[i] = rate * sqrt(mean * fmax(mean, law_lambda_power(&arbor->law, rho)));
+    }
     penalties->active = true;
 }
 
@@ -63,7 +66,7 @@ static double penalty_between(const Penalties *penalties, const Clearance *clear
     double distance2 = segment_distance2(a->from, a->to, b->from, b->to);
     if (distance2 >= reach * reach || arbor_are_joined(arbor, i, j) || !arbor_has(arbor, j))
         return 0;
-    return (reach - sqrt(distance2)) * fmax(penalties->rate[i], penalties->rate[j]);
+    return (reach - sqrt(distance2)) * fmin(penalties->rate[i], penalties->rate[j]);
 }
 
 /* What segment i pays for itself and with all that this count has not come across yet. */
@@ -74,16 +77,20 @@ static double penalty_of_segment(Penalties *penalties, const Clearance *clearanc
     double sum = fmax(0, 2 * shape->reserved_radius - arbor->branch[i].length) * penalties->rate[i];
     Capsule capsule = {shape->from, shape->to, shape->reserved_radius + clearance->gap};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
+    GridBoxQuery probe = grid_box_query(&item, capsule.radius, 1);
     size_t index;
     for (GridWalk walk = grid_walk(&clearance->grid, &item); grid_walk_next(&walk, &index);) {
         const GridCell *cell = &clearance->grid.cell[index];
-        for (uint32_t k = 0; k < cell->count; k++) {
-            int32_t other = cell->tag[k] >> 1;
-            if (penalties->seen[other] == penalties->count ||
-                arbor->shape[other].saved == arbor->move)
-                continue;
-            penalties->seen[other] = penalties->count;
-            sum += penalty_between(penalties, clearance, arbor, i, other);
+        for (uint32_t k = 0; k < cell->count; k += GRID_LANES) {
+            unsigned near = grid_boxes_near(&clearance->grid, cell, k, &probe);
+            for (const int32_t *tag = cell->tag + k; near; near >>= 1, tag++) {
+                int32_t other = *tag >> 1;
+                if (!(near & 1) || penalties->seen[other] == penalties->count ||
+                    arbor->shape[other].saved == arbor->move)
+                    continue;
+                penalties->seen[other] = penalties->count;
+                sum += penalty_between(penalties, clearance, arbor, i, other);
+            }
         }
     }
     for (int k = 0; k < arbor->n_saved_shapes; k++) { /* the grid has them as they were */

@@ -1,6 +1,7 @@
-/* Penalties: the rules of clearance [refine_clearance.h] as prices, for a detour through trees that
+/* Penalties: the rules of clearance [refine_clearance.h] as prices, for a way through trees that
  * break them. A segment pays its rate for every mm that it is shorter than wide, and two segments
- * without a common node pay the higher of their rates for every mm that they overlap. */
+ * without a common node pay the lower of their rates for every mm that they overlap: so one that
+ * has long been at fault may push others aside. */
 #ifndef CORCAST_GROW_REFINE_PENALTY_H
 #define CORCAST_GROW_REFINE_PENALTY_H
 
@@ -20,8 +21,9 @@ typedef struct Penalties {
 MUST_CHECK Status penalties_init(Penalties *penalties, size_t segments, Err *err);
 void penalties_release(Penalties *penalties);
 
-/* From here on rules may be broken: a mm costs `rate` times S_root for each mm of vessels, for all
- * segments alike. The caller ends it with active = false. */
+/* From here on rules may be broken: a mm costs `rate` times the geometric mean of what a mm of the
+ * segment and a mm of all vessels cost in S_root, or the latter where that is more. Needs fresh
+ * marginals. The caller ends it with active = false. */
 void penalties_begin(Penalties *penalties, const Arbor *arbor, double rate);
 /* Brings reserved radii, by which penalties are counted, to 1.05 times the present radii, whether
  * there is room or not. O(n). STATUS_MEMORY. */
