@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/number.h"
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -20,9 +21,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MAX_TEMPORARIES = 64 };
+enum { MAX_TEMPORARIES = 64, MAX_GROUPS = 8 };
 static _Atomic(char *) temporaries[MAX_TEMPORARIES];
-static _Atomic pid_t group_to_kill; /* 0: none */
+static _Atomic pid_t groups[MAX_GROUPS]; /* to be killed; 0: none */
 
 Status file_remove_on_signal(char *name, Err *err)
 {
@@ -45,9 +46,11 @@ static void give_up(char *name)
 
 static void remove_temporaries(int signal_number)
 {
-    pid_t group = atomic_load(&group_to_kill);
-    if (group > 0 && kill(-group, SIGKILL) == 0)
-        waitpid(group, NULL, 0);
+    for (int i = 0; i < MAX_GROUPS; i++) {
+        pid_t group = atomic_load(&groups[i]);
+        if (group > 0 && kill(-group, SIGKILL) == 0)
+            waitpid(group, NULL, 0);
+    }
     for (int i = 0; i < MAX_TEMPORARIES; i++) {
         char *name = atomic_load(&temporaries[i]);
         if (name)
@@ -61,9 +64,24 @@ static void remove_temporaries(int signal_number)
     raise(signal_number); /* SA_RESETHAND: the default action ends the program */
 }
 
+/* Puts `now` in a place that holds `before`. */
+static void replace_group(pid_t before, pid_t now)
+{
+    int i = 0;
+    for (pid_t expected = before;
+         i < MAX_GROUPS && !atomic_compare_exchange_strong(&groups[i], &expected, now); i++)
+        expected = before;
+    assert(i < MAX_GROUPS);
+}
+
 void file_kill_on_signal(pid_t group)
 {
-    atomic_store(&group_to_kill, group);
+    replace_group(0, group);
+}
+
+void file_spare_on_signal(pid_t group)
+{
+    replace_group(group, 0);
 }
 
 void file_clean_up_on_signals(void)

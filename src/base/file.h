@@ -91,8 +91,9 @@ MUST_CHECK Status file_make_folder(const char *path, Err *err);
  * temporary names is a global, because a handler reaches nothing else. */
 void file_clean_up_on_signals(void);
 /* Has a signal that ends the program kill this process group first, so that it makes no more files;
- * 0: none any more. One group at a time. */
+ * at most eight at a time. The other takes it out again. */
 void file_kill_on_signal(pid_t group);
+void file_spare_on_signal(pid_t group);
 /* Occupies standard streams that the caller has closed, so that no file opened later takes their
  * place; using them fails. main calls it once, before any file is opened. */
 void file_hold_standard_streams(void);

@@ -230,7 +230,8 @@ static Status run_program(const Tool *tool, char *const *arguments, const char *
     Status status = child < 0 ? err_set(err, STATUS_TOOL, "%s cannot be started: %s", tool->name,
                                         strerror(errno))
                               : attend(tool, child, pipe_ends[0], log, &ended, err);
-    file_kill_on_signal(0);
+    if (child > 0)
+        file_spare_on_signal(child);
     close(pipe_ends[0]);
     *exit_status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
     return status;
@@ -271,10 +272,11 @@ Status tool_draw(const Tool *tool, Text *said, double *seconds, Err *err)
                          "%s is needed and '%s' cannot be started; on Debian: apt install %s",
                          tool->name, arguments.list[0], tool->package));
     TRY_GOTO(tool->judge(tool->context, &log.text, exit_status, place.picture, err));
+    text_add(said, &log.text);
+    TRY_GOTO(text_check(said, err));
     status = file_rename(place.picture, output, err);
     place.picture = NULL;
     *seconds = clock_seconds() - start_s;
-    text_add(said, &log.text);
 done:
     close_workplace(&place);
     arguments_release(&arguments);

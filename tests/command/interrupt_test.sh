@@ -77,6 +77,29 @@ test_a_stopped_povray_leaves_nothing_and_does_not_run_on() {
     done
 }
 
+test_all_of_the_povrays_of_verify_are_stopped() {
+    local pids pid
+    grow_tree 3
+    slow_povray
+    sed -i 's/>running/>>running/' povray.sh
+    hearing "$CORCAST" verify tree.swc --size 40x30 -o report >stdout 2>stderr &
+    wait_for 5 four_run || fail "expected four stand-ins to start$(said)"
+    pids=$(cat report/running)
+    kill -TERM $!
+    wait $!
+    for pid in $pids; do
+        wait_for 3 not_running "$pid" || {
+            kill "$pid"
+            fail "expected each POV-Ray to be stopped"
+        }
+    done
+    (cd report && expect_only running scene.inc scene.pov)
+}
+
+four_run() {
+    [ "$(cat report/running 2>/dev/null | wc -l)" -eq 4 ]
+}
+
 not_running() {
     ! kill -0 "$1" 2>/dev/null
 }

@@ -341,7 +341,8 @@ test_soft_shadows_agree_but_for_the_shadow_cache() {
     expect_differing 1100 1400 soft.ppm hard.ppm
 }
 
-# povray_sees COMMAND: a POV-Ray before which COMMAND changes $scene, and $geometry the first time.
+# povray_sees COMMAND: a POV-Ray before which COMMAND changes $scene, and $geometry, before the first of those that
+# run side by side.
 povray_sees() {
     cat >povray.sh <<END
 #!/bin/sh
@@ -349,10 +350,13 @@ for argument; do
     case \$argument in +I*) scene=\$(readlink -f "\${argument#+I}") ;; esac
 done
 geometry=\${scene%.pov}.inc
-[ -f "\$geometry.whole" ] || {
-    cp "\$geometry" "\$geometry.whole"
-    $1
-}
+(
+    flock 9
+    [ -f "\$geometry.whole" ] || {
+        cp "\$geometry" "\$geometry.whole"
+        $1
+    }
+) 9>"\$geometry.lock"
 exec povray "\$@"
 END
     chmod +x povray.sh
@@ -452,6 +456,27 @@ test_soft_shadows_fall_on_isosurfaces() {
     run_ok corcast render --exact tree.swc --model isosurface --look ./lights.ini --shadows on --size 160x120 \
         -o hard.png
     [ "$(differing exact.png hard.png 3)" -gt 40 ] || fail "expected soft shadows to differ from hard ones"
+}
+
+# A POV-Ray that waits until there are four.
+test_the_planes_are_drawn_side_by_side() {
+    cat >povray.sh <<END
+#!/bin/sh
+touch "$PWD/begun.\$\$"
+for moment in \$(seq 200); do
+    [ \$(ls "$PWD"/begun.* | wc -l) -ge 4 ] && exec povray "\$@"
+    sleep 0.05
+done
+echo 'rror: alone' >&2
+exit 1
+END
+    chmod +x povray.sh
+    run_ok env CORCAST_POVRAY="$PWD/povray.sh" "$CORCAST" verify "$DATA/bifurcation.swc" --size 40x30 -o report
+    rm begun.*
+    sed -i 's/seq 200/seq 2/' povray.sh
+    run env CORCAST_POVRAY="$PWD/povray.sh" "$CORCAST" verify "$DATA/bifurcation.swc" --size 40x30 --threads 1 -o one
+    expect_status 3
+    expect_sentence 'exit status 1\): rror: alone'
 }
 
 test_verify_writes_what_the_contract_names() {

@@ -9,7 +9,9 @@
 #include "app/pictures/settle.h"
 #include "app/run/progress.h"
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 void verification_release(Verification *v)
 {
@@ -143,49 +145,141 @@ static double clock_of(const Verification *v)
     return n > 1 ? (double)(v->frame - 1) / (double)(n - 1) : 0;
 }
 
-static Status run_oracle_plane(Verification *v, const char *scene, OraclePlane plane, Err *err)
-{
-    static const char *const names[] = {
-        [ORACLE_COLOR] = "povray.png",
-        [ORACLE_DEPTH] = "povray.depth.png",
-        [ORACLE_NORMAL] = "povray.normal.png",
-        [ORACLE_ID] = "povray.id.png",
-    };
-    static const char *const labels[] = {
-        [ORACLE_COLOR] = "POV-Ray, picture",
-        [ORACLE_DEPTH] = "POV-Ray, depth",
-        [ORACLE_NORMAL] = "POV-Ray, normals",
-        [ORACLE_ID] = "POV-Ray, ids",
-    };
-    char *path = NULL;
-    TRY(file_join(v->folder, names[plane], &path, err));
+/* ---- POV-Ray's runs -------------------------------------------------------------------------- */
+
+enum { PLANES = ORACLE_ID + 1 };
+
+/* The text of all scenes that are drawn side by side: POV-Ray takes up to forty times as much
+ * memory. */
+static const double most_bytes_at_once = 64e6;
+
+static const char *const oracle_names[PLANES] = {
+    [ORACLE_COLOR] = "povray.png",
+    [ORACLE_DEPTH] = "povray.depth.png",
+    [ORACLE_NORMAL] = "povray.normal.png",
+    [ORACLE_ID] = "povray.id.png",
+};
+
+/* How far all runs together are. */
+typedef struct Runs {
+    struct PlaneRun *run;
     Progress progress;
-    progress_start(&progress, labels[plane], v->common->quiet);
-    OracleParams params = {.scene = scene,
-                           .output = path,
-                           .width = v->picture->size.pixels[0],
-                           .height = v->picture->size.pixels[1],
-                           .antialias = v->picture->antialias,
-                           .threads = v->common->threads,
-                           .plane = plane,
-                           .bits = v->bits,
-                           .clock = clock_of(v),
-                           .progress = progress_report,
-                           .progress_context = &progress};
-    Status status = povray_from_environment(&params, err);
-    if (status == STATUS_OK)
-        status = oracle_command(&params, &v->commands[v->n_commands], err);
-    if (status == STATUS_OK) {
-        v->n_commands++;
-        status = oracle_run(&params, plane == ORACLE_COLOR ? &v->run : NULL, err);
-    }
-    progress_end(&progress);
-    if (status == STATUS_OK)
-        status = read_plane(v, plane, path, err);
-    if (status == STATUS_INPUT) /* of POV-Ray's making */
-        status = STATUS_TOOL;
+    pthread_mutex_t lock; /* of `progress` and the fractions */
+} Runs;
+
+typedef struct PlaneRun {
+    OracleParams params;
+    char *output; /* owned */
+    OracleRun took;
+    Status status;
+    Err err;
+    double fraction;
+    Runs *runs;
+} PlaneRun;
+
+static void report_plane(double fraction, void *context)
+{
+    PlaneRun *run = context;
+    Runs *runs = run->runs;
+    double sum = 0;
+    pthread_mutex_lock(&runs->lock);
+    run->fraction = fraction;
+    for (int plane = 0; plane < PLANES; plane++)
+        sum += runs->run[plane].fraction;
+    progress_show(&runs->progress, sum / PLANES);
+    pthread_mutex_unlock(&runs->lock);
+}
+
+/* Of a file of the folder; 0: there is none. */
+static Status file_bytes(const Verification *v, const char *name, double *bytes, Err *err)
+{
+    char *path = NULL;
+    struct stat about;
+    TRY(file_join(v->folder, name, &path, err));
+    *bytes = stat(path, &about) == 0 ? (double)about.st_size : 0;
     free(path);
-    return status;
+    return STATUS_OK;
+}
+
+/* How many run side by side, each on its share of the processors that were asked for. */
+static Status runs_at_once(const Verification *v, int *at_once, Err *err)
+{
+    double scene, ids;
+    int threads = v->common->threads, most = threads > 0 && threads < PLANES ? threads : PLANES;
+    TRY(file_bytes(v, "scene.inc", &scene, err));
+    TRY(file_bytes(v, "ids.inc", &ids, err));
+    *at_once = (int)fmax(1, fmin(most, most_bytes_at_once / fmax(1, fmax(scene, ids))));
+    return STATUS_OK;
+}
+
+static Status prepare_plane(Verification *v, const char *scene, OraclePlane plane, int at_once,
+                            PlaneRun *run, Err *err)
+{
+    int threads = v->common->threads;
+    TRY(file_join(v->folder, oracle_names[plane], &run->output, err));
+    run->params = (OracleParams){.scene = scene,
+                                 .output = run->output,
+                                 .width = v->picture->size.pixels[0],
+                                 .height = v->picture->size.pixels[1],
+                                 .antialias = v->picture->antialias,
+                                 .threads = threads > at_once ? threads / at_once
+                                            : threads > 0     ? 1
+                                                              : 0,
+                                 .plane = plane,
+                                 .bits = v->bits,
+                                 .clock = clock_of(v),
+                                 .progress = report_plane,
+                                 .progress_context = run};
+    TRY(povray_from_environment(&run->params, err));
+    TRY(oracle_command(&run->params, &v->commands[v->n_commands], err));
+    v->n_commands++;
+    return STATUS_OK;
+}
+
+static void run_plane(size_t plane, int worker, void *context)
+{
+    (void)worker;
+    PlaneRun *run = &((Runs *)context)->run[plane];
+    run->status = oracle_run(&run->params, &run->took, &run->err);
+    report_plane(1, run);
+}
+
+/* Reads what the runs have drawn, or fails as the first of them did. */
+static Status read_planes(Verification *v, const PlaneRun *run, Err *err)
+{
+    for (int plane = 0; plane < PLANES; plane++)
+        if (run[plane].status != STATUS_OK) {
+            *err = run[plane].err;
+            return run[plane].status;
+        }
+    v->run = run[ORACLE_COLOR].took;
+    for (int plane = 0; plane < PLANES; plane++)
+        TRY(read_plane(v, (OraclePlane)plane, run[plane].output, err));
+    return STATUS_OK;
+}
+
+/* Has POV-Ray draw all planes; `ids` is the scene of the ids if it is another. */
+static Status run_oracle_planes(Verification *v, const char *scene, const char *ids, Err *err)
+{
+    PlaneRun run[PLANES] = {0};
+    Runs runs = {.run = run, .lock = PTHREAD_MUTEX_INITIALIZER};
+    int at_once = 1;
+    Status status = runs_at_once(v, &at_once, err);
+    progress_start(&runs.progress, "POV-Ray", v->common->quiet);
+    for (int plane = 0; status == STATUS_OK && plane < PLANES; plane++) {
+        run[plane].runs = &runs;
+        status = prepare_plane(v, plane == ORACLE_ID && ids ? ids : scene, (OraclePlane)plane,
+                               at_once, &run[plane], err);
+    }
+    if (status == STATUS_OK) {
+        threads_for(PLANES, at_once, run_plane, &runs);
+        status = read_planes(v, run, err);
+    }
+    progress_end(&runs.progress);
+    for (int plane = 0; plane < PLANES; plane++)
+        free(run[plane].output);
+    pthread_mutex_destroy(&runs.lock);
+    return status == STATUS_INPUT ? STATUS_TOOL : status; /* of POV-Ray's making */
 }
 
 /* Writes the scene; the ids of an implicit surface are painted in a scene of their own, as they
@@ -212,9 +306,8 @@ static Status run_oracle(Verification *v, Err *err)
     Status status = write_scene(v, false, &scene, err);
     if (status == STATUS_OK && has_id_scene(v))
         status = write_scene(v, true, &ids, err);
-    for (int plane = ORACLE_COLOR; status == STATUS_OK && plane <= ORACLE_ID; plane++)
-        status =
-            run_oracle_plane(v, plane == ORACLE_ID && ids ? ids : scene, (OraclePlane)plane, err);
+    if (status == STATUS_OK)
+        status = run_oracle_planes(v, scene, ids, err);
     free(scene);
     free(ids);
     char *picture = NULL;
