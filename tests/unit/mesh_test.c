@@ -169,7 +169,6 @@ static void triangles_that_are_too_far_off_are_split(void **state)
         expect_sound(&made, 1);
         assert_int_equal(made.report.repeated, 0);
         expect_near(&sketch.tree, &made, 0.003, 0.025);
-        fprintf(stderr, "RR %g\n", made.report.off.ratio);
         assert_true(made.report.off.ratio < 0.0225);
         release(&made);
     }
@@ -450,7 +449,7 @@ static size_t crossings_of(float (*points)[3], uint32_t (*triangles)[3], size_t 
                              .labels = labels,
                              .n_triangles = n};
     size_t found = 99;
-    assert_int_equal(meshcheck_crossings(&mesh, 0x1p-10, 1, &found, NULL), STATUS_OK);
+    assert_int_equal(meshcheck_crossings(&mesh, 0x1p-10, 1, NULL, &found, NULL), STATUS_OK);
     return found;
 }
 
@@ -467,6 +466,29 @@ static double outside_round(const VesselTree *tree, Vec3 x)
         }
     }
     return least / radius;
+}
+
+/* On a grid of 0.004 mm, and so after rounding, triangles on the rim of a tube cross. */
+static void zones_in_which_triangles_cross_are_made_again(void **state)
+{
+    (void)state;
+    const MeshParams params = {.tolerance = 0.02, .threads = 1, .reach_mm = 58982.4};
+    Sketch sketch;
+    Made made;
+    sketch_begin(&sketch, vec3(0, 0, 0));
+    uint32_t fork = sketch_to(&sketch, 0, vec3(2.3, 0.4, 0.6), 0.31);
+    sketch_to(&sketch, fork, vec3(4.3, 1.65, -0.41), 0.24);
+    sketch_to(&sketch, fork, vec3(4.7, -2.5, 1.07), 0.26);
+    assert_int_equal(vesselmesh_build(&sketch.tree, &params, &made.mesh, &made.report, NULL),
+                     STATUS_OK);
+    expect_sound(&made, 1);
+    assert_int_equal(made.report.repeated, 1);
+    double volume = made.report.volume_mm3;
+    release(&made);
+    make(&sketch.tree, &made);
+    assert_int_equal(made.report.repeated, 0);
+    assert_true(fabs(volume / made.report.volume_mm3 - 1) < 0.004);
+    release(&made);
 }
 
 /* Points all over the triangles, as many for each as its area asks for. */
@@ -578,6 +600,37 @@ static void count_pair(uint32_t a, uint32_t b, int worker, void *context)
     boxes->found++;
 }
 
+/* Crossings of the triangles between a point and each two of six about it that follow each other,
+ * these angles in degrees apart and so high above it, and from the last to the first. */
+static size_t crossings_about(const double turns[6], const double heights[6])
+{
+    float points[18][3] = {{0}};
+    uint32_t triangles[6][3];
+    double angle = 0;
+    for (int i = 0; i < 6; i++) {
+        points[i + 1][0] = (float)(round(1024 * cos(angle)) / 1024);
+        points[i + 1][1] = (float)(round(1024 * sin(angle)) / 1024);
+        points[i + 1][2] = (float)heights[i];
+        angle += turns[i] / 57.29577951308232;
+        triangles[i][0] = 0;
+        triangles[i][1] = (uint32_t)i + 1;
+        triangles[i][2] = (uint32_t)(i + 1) % 6 + 1;
+    }
+    return crossings_of(points, triangles, 6);
+}
+
+static void triangles_about_a_point_may_cross_or_not(void **state)
+{
+    (void)state;
+    const double once[6] = {70, 50, 60, 65, 55, 60}, back[6] = {110, -70, 80, 110, 65, 65},
+                 twice[6] = {118, 122, 120, 119, 121, 120};
+    const double flat[6] = {0}, cone[6] = {0.375, 0.5, 0.25, 0.375, 0.25, 0.5},
+                 winding[6] = {-0.5, -0.25, 0, 0.5, 0.25, 0};
+    assert_int_equal(crossings_about(once, cone), 0);
+    assert_true(crossings_about(back, flat) > 0);
+    assert_true(crossings_about(twice, winding) > 0);
+}
+
 static void all_pairs_of_boxes_that_meet_are_found_once(void **state)
 {
     (void)state;
@@ -622,6 +675,8 @@ int main(void)
         cmocka_unit_test(the_wall_of_a_round_body_is_that_of_cylinders_and_balls),
         cmocka_unit_test(fine_steps_of_a_round_body_keep_its_volume),
         cmocka_unit_test(triangles_that_pierce_touch_or_fold_are_found),
+        cmocka_unit_test(triangles_about_a_point_may_cross_or_not),
+        cmocka_unit_test(zones_in_which_triangles_cross_are_made_again),
         cmocka_unit_test(all_pairs_of_boxes_that_meet_are_found_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

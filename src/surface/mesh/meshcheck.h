@@ -3,6 +3,7 @@
 #define CORCAST_SURFACE_MESHCHECK_H
 
 #include "surface/mesh/vesselmesh.h"
+#include <stdatomic.h>
 
 /* The trees that segments are of, each by its lowest node, in *trees (owned). */
 MUST_CHECK Status meshcheck_trees(const VesselTree *tree, uint32_t **trees, size_t *n_trees,
@@ -14,8 +15,9 @@ MUST_CHECK Status meshcheck_topology(const VesselMesh *mesh, const uint32_t *tre
                                      MeshReport *report, Err *err);
 
 /* Fills crossings: the pairs of triangles that have a point in common beyond a corner or an edge
- * that they share. Exact: coordinates are whole multiples of `grid_mm`, below 2^25 of it. */
+ * that they share; sets crossed[], one a triangle, of each of them, unless that is NULL. Exact:
+ * coordinates are whole multiples of `grid_mm`, below 2^25 of it. */
 MUST_CHECK Status meshcheck_crossings(const VesselMesh *mesh, double grid_mm, int threads,
-                                      size_t *crossings, Err *err);
+                                      atomic_bool *crossed, size_t *crossings, Err *err);
 
 #endif

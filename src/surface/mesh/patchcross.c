@@ -47,7 +47,7 @@ Status patchcross_find(const Patch *patch, size_t first_new, double grid_mm, boo
     TRY_GOTO(
         mem_calloc(&mesh.triangles, patch->n_triangles, sizeof *mesh.triangles, "triangles", err));
     copy_near(patch, near, grid_mm, &mesh);
-    TRY_GOTO(meshcheck_crossings(&mesh, grid_mm, 1, &crossings, err));
+    TRY_GOTO(meshcheck_crossings(&mesh, grid_mm, 1, NULL, &crossings, err));
     *crossing = crossings > 0;
 done:
     vesselmesh_release(&mesh);

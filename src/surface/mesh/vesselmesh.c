@@ -3,7 +3,8 @@
  * (collapse.c) and proved to be a sphere with holes (zonepiece.c); strips and caps join them
  * (assemble.c). Over a tree that gives a sphere for each: zones are spheres with k holes, strips
  * rings, caps discs. What can go wrong beyond that, vessels that meet though they do not blend, and
- * roundings, is found on the finished triangles (meshtopology.c, crossings.c).
+ * roundings, is found on the finished triangles (meshtopology.c, crossings.c). If some cross, all
+ * is made again, of finer cells in the zones about them.
  *
  * One octree for all was tried, and was not sound: cells join vessels whose gap is below a cell.
  * Swept rings alone cannot be: two junctions of five lie in zones of several nodes. */
@@ -23,6 +24,10 @@ static const double round_sagitta_part = 0.24, round_farthest_part = 1.75;
 /* With all that is made from them, so many cells of a zone take 4 GB of memory. */
 enum { MOST_CELLS = 5000000 };
 
+/* How often all is made again where triangles cross, and by how much finer then the cells are. */
+enum { MOST_ROUNDS = 4 };
+static const double finer = 0.8;
+
 /* After a zone of more terms a thread does not keep its room: it would be ten times what most need.
  */
 enum { TERMS_TO_KEEP = 100 };
@@ -36,6 +41,7 @@ typedef struct Build {
     ZonePiece *pieces;
     ZoneWorker *workers;
     uint8_t *fates; /* one a segment: SegmentFate */
+    uint8_t *finer; /* one a zone: by so many steps */
     Status *statuses;
     Err *errors;    /* of the lowest zone that has failed in each thread */
     size_t *failed; /* that zone */
@@ -152,6 +158,7 @@ static void release_build(Build *build, int n_workers)
     zones_release(&build->zones);
     free(build->pieces);
     free(build->fates);
+    free(build->finer);
     free(build->statuses);
     free(build->errors);
     free(build->failed);
@@ -169,6 +176,16 @@ static void note_failure(Build *build, size_t index, int worker, Status status, 
     build->failed[worker] = index;
 }
 
+static ZoneFineness fineness_in(const Build *build, size_t zone)
+{
+    ZoneFineness fineness = build->fineness;
+    double factor = pow(finer, build->finer[zone]);
+    fineness.cells.ratio *= factor;
+    fineness.cells.bending *= factor * factor;
+    fineness.sagitta *= factor * factor;
+    return fineness;
+}
+
 /* Zones beyond one that has failed are left out; those before it are made, so that what is said is
  * the same for any number of threads. */
 static void make_zone(size_t index, int worker, void *context)
@@ -181,7 +198,8 @@ static void make_zone(size_t index, int worker, void *context)
     Status status = zoneplan_make(build->tree, &build->incident, &build->blending, &build->zones,
                                   (uint32_t)index, &plan, &err);
     if (status == STATUS_OK) {
-        status = zonepiece_make(&build->workers[worker], build->tree, &plan, &build->fineness,
+        const ZoneFineness fineness = fineness_in(build, index);
+        status = zonepiece_make(&build->workers[worker], build->tree, &plan, &fineness,
                                 &build->pieces[index], build->fates, &err);
         if (plan.field.n_terms > TERMS_TO_KEEP)
             zoneworker_release(&build->workers[worker]);
@@ -195,16 +213,23 @@ static void make_zone(size_t index, int worker, void *context)
                                 build->params->context);
 }
 
-static Status make_zones(Build *build, int n_workers, Err *err)
+static Status reserve_build(Build *build, int n_workers, Err *err)
 {
     size_t n_zones = build->zones.n_zones, n = (size_t)n_workers;
     TRY(mem_calloc(&build->pieces, n_zones, sizeof *build->pieces, "zones", err));
-    TRY(mem_calloc(&build->workers, n, sizeof *build->workers, "threads", err));
+    TRY(mem_calloc(&build->finer, n_zones, sizeof *build->finer, "zones", err));
     TRY(mem_calloc(&build->fates, build->tree->n_segments, sizeof *build->fates, "segments", err));
     TRY(mem_calloc(&build->statuses, n, sizeof *build->statuses, "threads", err));
     TRY(mem_calloc(&build->errors, n, sizeof *build->errors, "threads", err));
-    TRY(mem_calloc(&build->failed, n, sizeof *build->failed, "threads", err));
+    return mem_calloc(&build->failed, n, sizeof *build->failed, "threads", err);
+}
+
+static Status make_zones(Build *build, int n_workers, Err *err)
+{
+    size_t n_zones = build->zones.n_zones;
+    TRY(mem_calloc(&build->workers, (size_t)n_workers, sizeof *build->workers, "threads", err));
     atomic_store(&build->lowest_failed, SIZE_MAX);
+    atomic_store(&build->done, 0);
     for (size_t i = 0; i < build->tree->n_segments; i++)
         build->fates[i] = build->zones.is_tube[i] ? SEGMENT_PRESENT : SEGMENT_MISSING;
     threads_for(n_zones, n_workers, make_zone, build);
@@ -258,7 +283,8 @@ static Status refuse_overlap(const Build *build, Err *err)
         ids[pair->segments[0]], ids[pair->segments[1]], -pair->gap_mm, build->zones.n_overlapping);
 }
 
-static Status fill_report(Build *build, const VesselMesh *mesh, MeshReport *report, Err *err)
+static Status fill_report(const Build *build, const VesselMesh *mesh, atomic_bool *crossed,
+                          MeshReport *report, Err *err)
 {
     uint32_t *trees;
     TRY(meshcheck_trees(build->tree, &trees, &report->trees, err));
@@ -266,17 +292,11 @@ static Status fill_report(Build *build, const VesselMesh *mesh, MeshReport *repo
     Status status = meshcheck_topology(mesh, trees, report, err);
     free(trees);
     TRY(status);
-    TRY(meshcheck_crossings(mesh, build->fineness.grid_mm, build->params->threads,
+    TRY(meshcheck_crossings(mesh, build->fineness.grid_mm, build->params->threads, crossed,
                             &report->crossings, err));
     TRY(list_fate(build, SEGMENT_MISSING, &report->missing, &report->n_missing, err));
     TRY(list_fate(build, SEGMENT_SWALLOWED, &report->swallowed, &report->n_swallowed, err));
-    if (build->tree->body != BODY_ROUND)
-        TRY(list_round(build, report, err));
-    report->near = build->zones.strangers;
-    report->n_near = build->zones.n_strangers;
-    report->n_overlapping = build->zones.n_overlapping;
-    build->zones.strangers = NULL;
-    return STATUS_OK;
+    return build->tree->body != BODY_ROUND ? list_round(build, report, err) : STATUS_OK;
 }
 
 static Status cut_tree(Build *build, Err *err)
@@ -288,29 +308,78 @@ static Status cut_tree(Build *build, Err *err)
     return build->zones.n_overlapping ? refuse_overlap(build, err) : STATUS_OK;
 }
 
+/* Makes all zones, and the mesh and the report of them. */
+static Status make_mesh(Build *build, int n_workers, VesselMesh *mesh, MeshReport *report, Err *err)
+{
+    const MeshParams *params = build->params;
+    TRY(make_zones(build, n_workers, err));
+    *report = (MeshReport){.tolerance = tolerance_of(params), .zones = build->zones.n_zones};
+    for (uint32_t z = 0; z < build->zones.n_zones; z++) {
+        report->repeated += build->pieces[z].repeats > 0 || build->finer[z] > 0;
+        report->off.mm = fmax(report->off.mm, build->pieces[z].off.mm);
+        report->off.ratio = fmax(report->off.ratio, build->pieces[z].off.ratio);
+    }
+    return assemble_mesh(build->tree, &build->zones, build->pieces,
+                         sides_of(cap_part * report->tolerance), params->tube_edge,
+                         build->fineness.grid_mm, mesh, &report->off, err);
+}
+
+/* Has the zones made finer that triangles which cross lie in, of tubes those at both ends; whether
+ * there are any. */
+static bool refine_crossed(Build *build, const VesselMesh *mesh, const atomic_bool *crossed,
+                           int round)
+{
+    const Zones *zones = &build->zones;
+    bool any = false;
+    for (size_t i = 0; i < mesh->n_triangles; i++)
+        for (int end = 0; end < 2 && crossed[i]; end++) {
+            uint32_t zone = zones->zone[build->tree->nodes[mesh_segment(mesh, i)][end]];
+            if (zone == NO_ZONE)
+                continue;
+            build->finer[zone] = (uint8_t)round;
+            any = true;
+        }
+    return any;
+}
+
+/* One round of vesselmesh_build; *again when another may help. */
+static Status build_once(Build *build, int n_workers, int round, VesselMesh *mesh,
+                         MeshReport *report, bool *again, Err *err)
+{
+    atomic_bool *crossed = NULL;
+    Status status;
+    vesselmesh_release(mesh);
+    meshreport_release(report);
+    TRY_GOTO(make_mesh(build, n_workers, mesh, report, err));
+    TRY_GOTO(mem_calloc(&crossed, mesh->n_triangles, sizeof *crossed, "triangles", err));
+    TRY_GOTO(fill_report(build, mesh, crossed, report, err));
+    *again = report->crossings > 0 && round < MOST_ROUNDS &&
+             refine_crossed(build, mesh, crossed, round + 1);
+done:
+    free(crossed);
+    return status;
+}
+
 Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, VesselMesh *mesh,
                         MeshReport *report, Err *err)
 {
     int n_workers = workers_of(params);
-    double tolerance = tolerance_of(params);
     Build build = {.tree = tree,
                    .params = params,
-                   .fineness = fineness_of(tree, tolerance,
+                   .fineness = fineness_of(tree, tolerance_of(params),
                                            mesh_grid(fmax(mesh_reach(tree), params->reach_mm)))};
     VesselMesh made = {0};
-    MeshReport found = {.tolerance = tolerance};
+    MeshReport found = {0};
     Status status;
     TRY_GOTO(cut_tree(&build, err));
-    TRY_GOTO(make_zones(&build, n_workers, err));
-    found.zones = build.zones.n_zones;
-    for (uint32_t z = 0; z < build.zones.n_zones; z++) {
-        found.repeated += build.pieces[z].repeats > 0;
-        found.off.mm = fmax(found.off.mm, build.pieces[z].off.mm);
-        found.off.ratio = fmax(found.off.ratio, build.pieces[z].off.ratio);
-    }
-    TRY_GOTO(assemble_mesh(tree, &build.zones, build.pieces, sides_of(cap_part * tolerance),
-                           params->tube_edge, build.fineness.grid_mm, &made, &found.off, err));
-    TRY_GOTO(fill_report(&build, &made, &found, err));
+    TRY_GOTO(reserve_build(&build, n_workers, err));
+    bool again = true;
+    for (int round = 0; again; round++)
+        TRY_GOTO(build_once(&build, n_workers, round, &made, &found, &again, err));
+    found.near = build.zones.strangers;
+    found.n_near = build.zones.n_strangers;
+    found.n_overlapping = build.zones.n_overlapping;
+    build.zones.strangers = NULL;
     *mesh = made;
     *report = found;
     made = (VesselMesh){0};

@@ -152,6 +152,6 @@ Status seams_prove(const Seams *seams, const VesselMesh *mesh, double grid_mm, i
     Status status = meshcheck_topology(mesh, none, report, err);
     free(none);
     TRY(status);
-    TRY(meshcheck_crossings(mesh, grid_mm, threads, &report->crossings, err));
+    TRY(meshcheck_crossings(mesh, grid_mm, threads, NULL, &report->crossings, err));
     return check_parts(seams, mesh, report, err);
 }
