@@ -3,11 +3,16 @@
  *
  * Temporary names stand in a fixed table because a signal handler may call nothing but
  * async-signal-safe functions: it walks the table and unlinks. A slot is claimed by storing the
- * pointer and given up by storing NULL, each one atomic store. */
+ * pointer and given up by storing NULL, each one atomic store.
+ *
+ * Of a large file the bytes that its size promises are read in slices side by side, as far as they
+ * come and have no fault; block by block, the only code that refuses anything goes on from there.
+ */
 #include "base/file.h"
 
 #include "base/memory.h"
 #include "base/number.h"
+#include "base/threads.h"
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -184,6 +189,53 @@ static Status reserve(Bytes *all, size_t n, const char *name, Err *err)
     return named(name, mem_reserve(&all->at, &all->capacity, n + BLOCK + 1, 1, "bytes", err), err);
 }
 
+enum { SLICE = 1 << 22 /* bytes at least */, MOST_SLICES = 256 };
+
+/* Bytes of a file that threads read. */
+typedef struct Slices {
+    int handle;
+    char *bytes; /* the first of them; with room for all */
+    off_t from;  /* its place in the file */
+    size_t n, slice;
+    bool is_text;
+    size_t sound[MOST_SLICES]; /* bytes of each that are read and may be what they are */
+} Slices;
+
+static void read_slice(size_t index, int worker, void *context)
+{
+    (void)worker;
+    Slices *slices = context;
+    size_t begin = index * slices->slice, left = slices->n - begin, n = 0;
+    size_t most = left < slices->slice ? left : slices->slice;
+    char *bytes = slices->bytes + begin;
+    for (ssize_t count = 1; count > 0 && n<most; n += count> 0 ? (size_t)count : 0)
+        count = pread(slices->handle, bytes + n, most - n, slices->from + (off_t)(begin + n));
+    slices->sound[index] = slices->is_text && memchr(bytes, '\0', n) ? 0 : n;
+}
+
+/* Reads on to the end of a file of `size` bytes, and moves the stream there: as far as nothing is
+ * amiss. */
+static void read_slices(FILE *stream, const FileForm *form, Bytes *all, size_t size)
+{
+    off_t from = ftello(stream);
+    if (from < 0 || (size_t)from + SLICE >= size)
+        return;
+    size_t n = size - (size_t)from, slice = n / MOST_SLICES + 1;
+    Slices slices = {.handle = fileno(stream),
+                     .bytes = all->at + all->n,
+                     .from = from,
+                     .n = n,
+                     .slice = slice < SLICE ? SLICE : slice,
+                     .is_text = form->is_text};
+    threads_for((slices.n + slices.slice - 1) / slices.slice, 0, read_slice, &slices);
+    size_t k = 0, sound = 0;
+    do
+        sound += slices.sound[k];
+    while (slices.sound[k++] == slices.slice && k < MOST_SLICES);
+    if (fseeko(stream, from + (off_t)sound, SEEK_SET) == 0)
+        all->n += sound;
+}
+
 /* What is no file of its kind is refused with the block that tells so; behind the first there is
  * room for all of the file, so that it need not be moved as it grows. */
 static Status read_blocks(FILE *stream, const char *name, const FileForm *form, Bytes *all,
@@ -196,6 +248,9 @@ static Status read_blocks(FILE *stream, const char *name, const FileForm *form, 
         if (all->n > 0 && size > all->capacity)
             TRY(mem_check((double)size, name, err));
         TRY(reserve(all, all->n > 0 && size > all->n ? size : all->n, name, err));
+        if (all->n == BLOCK && size > 0)
+            read_slices(stream, form, all, size);
+        TRY(reserve(all, all->n, name, err));
         char *block = all->at + all->n;
         count = fread(block, 1, BLOCK, stream);
         block[count] = '\0';

@@ -425,7 +425,6 @@ Status builder_build(TreeBuilder *builder, Tree *out, Err *err)
     TRY_GOTO(fill_columns(builder, place, &tree, err));
     TRY_GOTO(fill_shares(builder, table, place, &tree, err));
     TRY_GOTO(fill_pairs(builder, table, place, &tree, err));
-    TRY_GOTO(tree_check(&tree, err));
     tree.meta = builder->meta;
     builder->meta = (TreeMeta){0};
     *out = tree;

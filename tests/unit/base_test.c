@@ -390,6 +390,27 @@ static void a_text_has_one_kind_of_line_ends(void **state)
     assert_non_null(strstr(err.text, "read:3: a zero byte; a bill is plain text"));
 }
 
+static void a_file_of_many_slices_is_read_whole(void **state)
+{
+    (void)state;
+    enum { LINES = 1048583, WIDTH = 13, SIZE = LINES * WIDTH };
+    const FileForm form = {.name = "a bill", .most_bytes = 1e9, .is_text = true};
+    char *text = malloc(SIZE + 1), *bytes;
+    size_t size;
+    Err err;
+    assert_non_null(text);
+    for (size_t line = 0; line < LINES; line++)
+        snprintf(text + WIDTH * line, WIDTH + 1, "%012zu\n", line * 982451653 % 999999999989);
+    assert_int_equal(read_as(&form, text, SIZE, &bytes, &size, &err), STATUS_OK);
+    assert_int_equal(size, SIZE);
+    assert_memory_equal(bytes, text, SIZE + 1);
+    free(bytes);
+    text[WIDTH * 700001 + 4] = '\0';
+    assert_int_equal(read_as(&form, text, SIZE, &bytes, &size, &err), STATUS_INPUT);
+    assert_non_null(strstr(err.text, "read:700002: a zero byte; a bill is plain text"));
+    free(text);
+}
+
 /* A conventional millimetre of mercury is 13.5951 g/cm^3 times 9.80665 m/s^2. */
 static void units_of_users_and_of_calculation_are_related_as_defined(void **state)
 {
@@ -669,6 +690,7 @@ int main(void)
         cmocka_unit_test(a_file_in_a_missing_folder_cannot_be_opened),
         cmocka_unit_test(a_file_that_is_not_of_its_form_is_refused),
         cmocka_unit_test(a_text_has_one_kind_of_line_ends),
+        cmocka_unit_test(a_file_of_many_slices_is_read_whole),
         cmocka_unit_test(units_of_users_and_of_calculation_are_related_as_defined),
         cmocka_unit_test(units_have_names_and_ratios_to_those_of_their_kind),
         cmocka_unit_test(sizes_are_said_in_units_that_suit_them),
