@@ -2,7 +2,8 @@
  * rows placed: from each row not yet placed, the walk towards the root collects the ancestors that
  * are not placed either, and they go before it. Rows with parents first keep their order, every row
  * is walked over twice at most, and a walk that meets itself is a cycle. Rows that are in order
- * all, as those of most large files, become the tree without a copy. */
+ * all become the tree without a copy, and rows with the ids 1, 2, ... and parents first, as those
+ * of most large files, without a table of ids. */
 #include "tree/builder.h"
 
 #include "tree/tree.h"
@@ -235,10 +236,19 @@ static Status index_ids(const TreeBuilder *builder, int32_t **table, Err *err)
     return STATUS_OK;
 }
 
-/* NO_ROW where there is none. */
+/* Without a table, ids are 1, 2, ... NO_ROW where there is none. */
 static int32_t row_of(const TreeBuilder *builder, const int32_t *table, int32_t id)
 {
-    return id > builder->last_id ? NO_ROW : table[id] - 1;
+    return id > builder->last_id ? NO_ROW : (table ? table[id] : id) - 1;
+}
+
+/* Whether the rows have the ids 1, 2, ... and parents before them. */
+static bool are_numbered(const TreeBuilder *builder)
+{
+    for (size_t i = 0; i < builder->n; i++)
+        if (builder->id[i] != (int32_t)i + 1 || builder->parent[i] > (int32_t)i)
+            return false;
+    return true;
 }
 
 /* Makes the rows' parents, which are ids, indices. */
@@ -299,9 +309,15 @@ done:
     return status;
 }
 
+/* Without places, rows stay where they are. */
+static size_t place_of(const int32_t *place, size_t row)
+{
+    return place ? (size_t)place[row] : row;
+}
+
 static bool are_in_order(const TreeBuilder *builder, const int32_t *place)
 {
-    for (size_t i = 0; i < builder->n; i++)
+    for (size_t i = 0; i < builder->n && place; i++)
         if (place[i] != (int32_t)i)
             return false;
     return true;
@@ -342,7 +358,7 @@ static Status fill_columns(const TreeBuilder *builder, const int32_t *place, Tre
         TRY(fill_column(builder, column, builder->n, err));
         TRY(tree_add_column(tree, column->name, column->unit, &value, err));
         for (size_t i = 0; i < builder->n; i++)
-            value[place[i]] = column->value[i];
+            value[place_of(place, i)] = column->value[i];
     }
     return STATUS_OK;
 }
@@ -371,11 +387,11 @@ static Status fill_shares(const TreeBuilder *builder, const int32_t *table, cons
         Status status = STATUS_OK;
         if (row == NO_ROW)
             status = unknown_share(said->id, err);
-        else if (tree->flow_share[place[row]] > 0)
+        else if (tree->flow_share[place_of(place, (size_t)row)] > 0)
             status = err_set(err, STATUS_INPUT, "the flow share of node %d has been said before",
                              said->id);
         TRY(builder_blame(builder, said->record, status, err));
-        tree->flow_share[place[row]] = said->share;
+        tree->flow_share[place_of(place, (size_t)row)] = said->share;
     }
     return STATUS_OK;
 }
@@ -415,9 +431,12 @@ Status builder_build(TreeBuilder *builder, Tree *out, Err *err)
     int32_t *table = NULL, *place = NULL;
     Tree tree = {0};
     Status status = STATUS_OK;
-    TRY_GOTO(index_ids(builder, &table, err));
+    const bool numbered = are_numbered(builder);
+    if (!numbered)
+        TRY_GOTO(index_ids(builder, &table, err));
     TRY_GOTO(find_parents(builder, table, err));
-    TRY_GOTO(place_rows(builder, &place, err));
+    if (!numbered)
+        TRY_GOTO(place_rows(builder, &place, err));
     if (are_in_order(builder, place))
         move_nodes(builder, &tree);
     else
