@@ -176,6 +176,15 @@ parent and a daughter is less than 60 degrees @ joints.c @ sharp_cosine = 0.5;
 END
 }
 
+test_the_limits_of_large_trees_are_those_of_the_source() {
+    agree LARGE.md <<'END'
+grows up to 50,000,000 terminals @ grow.h @ GROW_MAX_TERMINALS = 50000000,
+ids of nodes go up to 100,000,000 @ tree.h @ TREE_MAX_ID = 100000000
+files of trees up to 20 GB @ treeio.c @ MOST_BYTES 2e10
+hold ids up to 16777215 @ image.h @ IMAGE_MAX_ID = 0xffffff
+END
+}
+
 test_the_numbers_of_formats_are_those_of_the_source() {
     agree FORMATS.md <<'END'
 trees above 20 GB @ treeio.c @ MOST_BYTES 2e10
