@@ -404,9 +404,10 @@ static Status find_pair(const TreeBuilder *builder, const int32_t *table, const 
         int32_t id = builder->pair[k].id[side], row = row_of(builder, table, id);
         if (row == NO_ROW)
             return unknown_pair(id, err);
-        if (!isnan(number[place[row]]))
+        size_t at = place_of(place, (size_t)row);
+        if (!isnan(number[at]))
             return err_set(err, STATUS_INPUT, "node %d is of a pair twice", id);
-        number[place[row]] = (double)(k + 1);
+        number[at] = (double)(k + 1);
     }
     return STATUS_OK;
 }
