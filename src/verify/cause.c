@@ -26,9 +26,11 @@ static void choose_samples(const Picture *a, const Picture *b, size_t differing,
 {
     size_t step = (differing + CAUSE_SAMPLES - 1) / CAUSE_SAMPLES, seen = 0;
     samples->n = 0;
-    for (int y = 0; y < a->height; y++)
-        for (int x = 0; x < a->width && !picture_rows_equal(a, b, y, 0, a->width); x += BLOCK)
+    for (int y = 0; y < a->height; y++) {
+        bool equal = picture_rows_equal(a, b, y, 0, a->width);
+        for (int x = 0; x < a->width && !equal; x += BLOCK)
             take_block(a, b, x, y, step, &seen, samples);
+    }
 }
 
 static int code_at(const Picture *picture, int x, int y, int c)
@@ -110,21 +112,64 @@ static bool differs_by(const Picture *a, const Picture *b, int x, int y, const S
     return true;
 }
 
+/* A sample of A, with its codes. */
+typedef struct Sample {
+    int x, y, codes[3];
+    double off; /* from B, without a shift */
+} Sample;
+
+static int most_off_first(const void *left, const void *right)
+{
+    const Sample *a = left, *b = right;
+    return (a->off < b->off) - (a->off > b->off);
+}
+
+static void take_samples(const Picture *a, const Picture *b, const Samples *samples, Sample *out)
+{
+    static const Shift none = {0};
+    for (int i = 0; i < samples->n; i++) {
+        int x = samples->at[i].x, y = samples->at[i].y;
+        out[i] = (Sample){.x = x, .y = y};
+        for (int c = 0; c < a->channels; c++)
+            out[i].codes[c] = code_at(a, x, y, c);
+        differs_by(a, b, x, y, &none, &out[i].off);
+    }
+    qsort(out, (size_t)samples->n, sizeof *out, most_off_first);
+}
+
+/* The mean over the samples that stay within the picture, infinite where fewer than three in four
+ * do, or as soon as the sum is as large as `limit`. */
+static double off_when_shifted(const Picture *b, const Sample *samples, int n, int dx, int dy,
+                               double limit)
+{
+    double sum = 0;
+    int inside = 0;
+    for (int i = 0; i < n; i++) {
+        int u = samples[i].x + dx, v = samples[i].y + dy;
+        if (u < 0 || u >= b->width || v < 0 || v >= b->height)
+            continue;
+        for (int c = 0; c < b->channels; c++)
+            sum += abs(code_at(b, u, v, c) - samples[i].codes[c]);
+        inside++;
+        if (sum > limit)
+            return (double)INFINITY;
+    }
+    return 4 * inside >= 3 * n && inside > 0 ? sum / inside : (double)INFINITY;
+}
+
+/* What differs most without a shift comes first: it tells soonest that a shift is wrong. */
 Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples)
 {
+    Sample taken[CAUSE_SAMPLES];
+    take_samples(a, b, samples, taken);
     int n = samples->n;
-    Shift best = {.off = (double)INFINITY};
+    Shift best = {.off = off_when_shifted(b, taken, n, 0, 0, (double)INFINITY)};
     for (int dy = -REACH; dy <= REACH; dy++)
         for (int dx = -REACH; dx <= REACH; dx++) {
-            Shift shift = {.dx = dx, .dy = dy};
-            double sum = 0;
-            int inside = 0;
-            for (int i = 0; i < n && sum < best.off * n; i++)
-                inside += differs_by(a, b, samples->at[i].x, samples->at[i].y, &shift, &sum);
-            shift.off = sum / (inside ? inside : 1);
+            double off = off_when_shifted(b, taken, n, dx, dy, best.off * n);
             bool nearer = dx * dx + dy * dy < best.dx * best.dx + best.dy * best.dy;
-            if (4 * inside >= 3 * n && (shift.off < best.off || (shift.off == best.off && nearer)))
-                best = shift;
+            if (off < best.off || (off == best.off && nearer))
+                best = (Shift){.dx = dx, .dy = dy, .off = off};
         }
     return best;
 }

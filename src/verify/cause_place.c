@@ -76,6 +76,9 @@ static void say_lack(const Picture *a, const Picture *b, const CompareResult *re
 {
     const Picture *const pictures[2] = {a, b};
     const Labels labels = labels_from_background(a, b);
+    const size_t alone = result->missing_pixels + result->extra_pixels + result->settled_pixels;
+    if (result->has_mask && 20 * alone < 19 * result->differing_pixels)
+        return; /* most of what differs is in both */
     for (int side = 0; side < 2 && labels.source == LABELS_BACKGROUND && !*out->text; side++) {
         Lack lack = find_lack(&labels, pictures, side);
         bool one = 20 * result->largest_region >= 19 * lack.pixels;
@@ -133,8 +136,9 @@ static void say_outlines(const Picture *a, const Picture *b, const CompareResult
     bool known = labels.source == LABELS_BACKGROUND;
     size_t at_edges = 0, off = 0, inner = 0;
     for (int inside = 0; inside < 2 && 99 * off <= at_edges; inside++)
-        for (int y = 0; y < a->height; y++)
-            for (int x = 0; x < a->width; x++) {
+        for (int y = 0; y < a->height && 99 * off <= result->differing_pixels; y++) {
+            bool skipped = !inside && picture_rows_equal(a, b, y, 0, a->width);
+            for (int x = 0; x < a->width && !skipped; x++) {
                 size_t pixel = (size_t)y * (size_t)a->width + (size_t)x;
                 bool same = largest_difference(a, b, pixel) <= slight;
                 if (same != inside || (same && known && !is_seen(&labels, a, 0, x, y)))
@@ -144,6 +148,7 @@ static void say_outlines(const Picture *a, const Picture *b, const CompareResult
                 inner += !edge && same;
                 off += !edge && !same;
             }
+        }
     if (at_edges > 0 && 99 * off <= at_edges && 4 * inner >= at_edges)
         snprintf(out->text, out->size,
                  "only outlines differ by more than %d levels, by up to %.4g on %.3g %% of the "
@@ -195,9 +200,11 @@ static Status are_highlights(const Picture *a, const Picture *b, bool *highlight
     Status status = plane_from_picture(&table, &codes, err);
     picture_release(&codes);
     TRY(status);
-    for (int y = 0; y < a->height; y++)
-        for (int x = 0; x < a->width && !picture_rows_equal(a, b, y, 0, a->width); x++)
+    for (int y = 0; y < a->height; y++) {
+        bool equal = picture_rows_equal(a, b, y, 0, a->width);
+        for (int x = 0; x < a->width && !equal; x++)
             add_light(&table, a, b, first_code(a, x, y), &light);
+    }
     plane_release(&table);
     *highlights = light.white > 0.95 * light.squares && light.own < 0.95 * light.squares;
     return STATUS_OK;

@@ -21,24 +21,22 @@ enum { RIM = 6 };
 typedef struct Patches {
     const Picture *a, *b;
     Shift start;
-    bool linear; /* of light, not of codes */
+    const float *levels; /* of each code, parts of 1: of light, or of the code itself */
     int n;
     PixelPlace at[PATCHES];            /* pixels of B; the first of each patch */
     float *before, *from, *to, *moved; /* owned; A in its place, A moved, B, work: CELLS a patch */
 } Patches;
 
 /* The mean of a pixel's channels, from 0 to 255. */
-static float level_at(const Picture *picture, int x, int y, bool linear)
+static float level_at(const Picture *picture, int x, int y, const float *levels)
 {
     x = x < 0 ? 0 : x < picture->width ? x : picture->width - 1;
     y = y < 0 ? 0 : y < picture->height ? y : picture->height - 1;
     size_t channels = (size_t)picture->channels;
     size_t i = ((size_t)y * (size_t)picture->width + (size_t)x) * channels;
-    float sum = 0, unit = picture->bits == 8 ? 255 : 65535;
-    for (size_t c = 0; c < channels; c++) {
-        float level = (float)picture_code(picture, i + c) / unit;
-        sum += linear ? srgb_decode(level) : level;
-    }
+    float sum = 0;
+    for (size_t c = 0; c < channels; c++)
+        sum += levels[picture_code(picture, i + c)];
     return 255 * sum / (float)channels;
 }
 
@@ -67,7 +65,7 @@ static void filter(const float *in, float *out, const float *taps, int first, in
             }
 }
 
-static void load(const Picture *picture, int left, int top, bool linear, float *out)
+static void load(const Picture *picture, int left, int top, const float *table, float *out)
 {
     static const float binomial[9] = {1 / 256.0F,  8 / 256.0F,  28 / 256.0F,
                                       56 / 256.0F, 70 / 256.0F, 56 / 256.0F,
@@ -75,7 +73,7 @@ static void load(const Picture *picture, int left, int top, bool linear, float *
     float levels[CELLS];
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++)
-            levels[y * SIDE + x] = level_at(picture, left + x, top + y, linear);
+            levels[y * SIDE + x] = level_at(picture, left + x, top + y, table);
     filter(levels, out, binomial, -4, 9);
 }
 
@@ -94,10 +92,9 @@ static Status patches_init(Patches *patches, const Samples *samples, Err *err)
     for (int i = 0; i < patches->n; i++) {
         int x = patches->at[i].x, y = patches->at[i].y;
         size_t first = (size_t)i * CELLS;
-        bool linear = patches->linear;
-        load(patches->a, x, y, linear, patches->before + first);
-        load(patches->a, x - start->dx, y - start->dy, linear, patches->from + first);
-        load(patches->b, x, y, linear, patches->to + first);
+        load(patches->a, x, y, patches->levels, patches->before + first);
+        load(patches->a, x - start->dx, y - start->dy, patches->levels, patches->from + first);
+        load(patches->b, x, y, patches->levels, patches->to + first);
     }
     return STATUS_OK;
 }
@@ -315,10 +312,24 @@ static void try_blur(Patches *patches, Sentence *out)
     }
 }
 
+/* Parts of 1 for every code of so many bits: of light, or of the code itself. */
+static Status list_levels(int bits, bool linear, float **levels, Err *err)
+{
+    int n = 1 << bits;
+    TRY(mem_calloc(levels, (size_t)n, sizeof **levels, "codes", err));
+    for (int i = 0; i < n; i++) {
+        float level = (float)i / (float)(n - 1);
+        (*levels)[i] = linear ? srgb_decode(level) : level;
+    }
+    return STATUS_OK;
+}
+
 static Status try_warp(const Picture *a, const Picture *b, const Samples *samples, Shift start,
                        bool linear, Sentence *out, Err *err)
 {
-    Patches patches = {.a = a, .b = b, .start = start, .linear = linear};
+    float *levels;
+    TRY(list_levels(a->bits, linear, &levels, err));
+    Patches patches = {.a = a, .b = b, .start = start, .levels = levels};
     Status status = patches_init(&patches, samples, err);
     if (status == STATUS_OK)
         try_shift(&patches, out);
@@ -326,6 +337,7 @@ static Status try_warp(const Picture *a, const Picture *b, const Samples *sample
     if (status == STATUS_OK && !*out->text)
         try_blur(&patches, out);
     free(patches.before);
+    free(levels);
     return status;
 }
 

@@ -221,7 +221,7 @@ static Status write_page(const MergedCase *cases, size_t n, const Text *power,
     const ReportFrame frame = {
         .title = differing ? "corcast: cases differ" : "corcast: all cases agree",
         .heading = text_chars(&heading),
-        .sentence = "Each case is one scene, drawn by POV-Ray (A) and by corcast (B).",
+        .sentence = "Each case is two pictures: B is judged, A is its reference.",
         .rows = &rows,
         .cases = &sections,
         .power = power,

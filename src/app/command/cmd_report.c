@@ -1,4 +1,5 @@
-/* Merges the reports that `verify` left in folders; the exit status is the worst of theirs. */
+/* Merges the reports that `verify` and `compare --report` left in folders; the exit status is the
+ * worst of theirs. */
 #include "app/commands.h"
 #include "app/run/options.h"
 #include "app/run/templates.h"
@@ -59,10 +60,11 @@ done:
 
 const Command command_report = {
     .name = "report",
-    .summary = "one page about several verifications",
+    .summary = "one page about several verifications and comparisons",
     .operands = "DIR... -o PAGE.html",
     .examples = "  corcast verify a.swc -o out/a; corcast verify b.swc -o out/b\n"
-                "  corcast report out/a out/b -o out/all.html\n",
+                "  corcast compare mine.png theirs.png --report out/c\n"
+                "  corcast report out/a out/b out/c -o out/all.html\n",
     .min_operands = 1,
     .max_operands = MAX_OPERANDS,
     .needs_output = true,
