@@ -78,28 +78,31 @@ void labels_release(Labels *labels)
     *labels = (Labels){0};
 }
 
-/* 1 where the codes of a pixel are not those of the background. */
-#define FILL_FOREGROUND(codes)                                                                     \
-    for (size_t x = 0; x < width; x++, codes += channels) {                                        \
+/* 1 where the codes of a pixel are not those of the background. The number of channels is a
+ * constant for the compiler, which then takes several pixels at once. */
+#define FILL_FOREGROUND(codes, channels)                                                           \
+    for (size_t x = 0; x < width; x++, codes += (channels)) {                                      \
         unsigned differs = 0;                                                                      \
-        for (size_t c = 0; c < channels; c++)                                                      \
+        for (size_t c = 0; c < (channels); c++)                                                    \
             differs |= (unsigned)(codes[c] ^ background[c]);                                       \
         out[x] = differs != 0;                                                                     \
     }
 
-static void fill_foreground(const Labels *labels, int side, int y, uint32_t *out)
+static void fill_foreground(const Labels *labels, int side, int y, uint32_t *restrict out)
 {
     const Picture *picture = labels->pictures[side];
     const uint16_t *background = labels->background[side];
-    size_t width = (size_t)labels->width, channels = (size_t)picture->channels;
-    size_t start = (size_t)y * picture_stride(picture);
-    if (picture->bits == 8) {
-        const uint8_t *codes = picture->codes8 + start;
-        FILL_FOREGROUND(codes)
-    } else {
-        const uint16_t *codes = picture->codes16 + start;
-        FILL_FOREGROUND(codes)
-    }
+    size_t width = (size_t)labels->width, start = (size_t)y * picture_stride(picture);
+    const uint8_t *codes8 = picture->bits == 8 ? picture->codes8 + start : NULL;
+    const uint16_t *codes16 = picture->bits == 8 ? NULL : picture->codes16 + start;
+    if (codes8 && picture->channels == 3)
+        FILL_FOREGROUND(codes8, 3)
+    else if (codes8)
+        FILL_FOREGROUND(codes8, 1)
+    else if (picture->channels == 3)
+        FILL_FOREGROUND(codes16, 3)
+    else
+        FILL_FOREGROUND(codes16, 1)
 }
 
 const uint32_t *labels_row(const Labels *labels, int side, int y, uint32_t *scratch)

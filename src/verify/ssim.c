@@ -1,7 +1,8 @@
 /* Mean structural similarity. Five moments (a, b, aa, bb, ab) are blurred, first down the columns
  * of the eleven rows about an output row, then along it. Work goes by bands of output rows, so that
- * the luma of no more than a band is held; the sums of rows are added in order. Where eleven rows
- * are equal in both pictures every window is 1 by its definition. */
+ * the luma of no more than a band is held; the sums of rows are added in order. A window that is
+ * equal in both pictures is 1 by its definition, so only stretches of a row about pixels that
+ * differ are blurred. */
 #include "verify/verify.h"
 
 #include <math.h>
@@ -16,6 +17,7 @@ typedef struct Ssim {
     double weights[TAPS];
     double *row_sums;   /* owned; one for each row of the output */
     double *workspaces; /* owned; workspace_size for each worker */
+    uint8_t *equal;     /* owned; width for each worker */
     size_t workspace_size;
 } Ssim;
 
@@ -34,15 +36,16 @@ static void fill_luma(const Picture *picture, int y, double *luma)
     }
 }
 
-/* Blurs eleven rows, from `a` and `b` on, down the columns. */
+/* Blurs eleven rows, from `a` and `b` on, down the columns from..to - 1. */
 static void blur_columns(const Ssim *ssim, const double *restrict a, const double *restrict b,
-                         double *restrict moments)
+                         size_t from, size_t to, double *restrict moments)
 {
     size_t width = (size_t)ssim->width;
-    memset(moments, 0, MOMENTS * width * sizeof *moments);
+    for (size_t i = 0; i < MOMENTS; i++)
+        memset(moments + i * width + from, 0, (to - from) * sizeof *moments);
     for (size_t k = 0; k < TAPS; k++, a += width, b += width) {
         double weight = ssim->weights[k];
-        for (size_t x = 0; x < width; x++) {
+        for (size_t x = from; x < to; x++) {
             moments[x] += weight * a[x];
             moments[width + x] += weight * b[x];
             moments[2 * width + x] += weight * a[x] * a[x];
@@ -52,11 +55,12 @@ static void blur_columns(const Ssim *ssim, const double *restrict a, const doubl
     }
 }
 
-static double row_sum(const Ssim *ssim, const double *moments)
+/* The sum over the windows from..to - 1 of a row. */
+static double sum_windows(const Ssim *ssim, const double *moments, int from, int to)
 {
     const double c1 = 0.01 * 255 * 0.01 * 255, c2 = 0.03 * 255 * 0.03 * 255;
     double sum = 0;
-    for (int x = 0; x < ssim->columns; x++) {
+    for (int x = from; x < to; x++) {
         double m[MOMENTS] = {0};
         for (int i = 0; i < MOMENTS; i++)
             for (int k = 0; k < TAPS; k++)
@@ -69,6 +73,52 @@ static double row_sum(const Ssim *ssim, const double *moments)
     return sum;
 }
 
+/* Counts for each column how many of the last rows are equal in it, TAPS at most. */
+static void count_equal(const Picture *a, const Picture *b, int y, uint8_t *equal)
+{
+    bool all = picture_rows_equal(a, b, y, 0, a->width);
+    size_t next = (size_t)y * picture_stride(a);
+    for (int x = 0; x < a->width; x++) {
+        bool same = true;
+        for (int c = 0; c < a->channels && !all; c++)
+            same &= picture_code(a, next + (size_t)c) == picture_code(b, next + (size_t)c);
+        next += (size_t)a->channels;
+        equal[x] = same ? (uint8_t)(equal[x] < TAPS ? equal[x] + 1 : TAPS) : 0;
+    }
+}
+
+/* The first window from `x` on that is equal in both pictures, or is not; the number of windows
+ * where there is none. */
+static int next_window(const Ssim *ssim, const uint8_t *equal, int x, bool is_equal)
+{
+    int run = 0; /* equal columns before the window's last */
+    for (int u = x; u < x + TAPS - 1; u++)
+        run = equal[u] == TAPS ? run + 1 : 0;
+    for (; x < ssim->columns; x++) {
+        run = equal[x + TAPS - 1] == TAPS ? run + 1 : 0;
+        if ((run >= TAPS) == is_equal)
+            break;
+    }
+    return x;
+}
+
+/* The sum over a row of windows, whose rows of luma begin at `a` and `b`. */
+static double row_sum(const Ssim *ssim, const double *a, const double *b, const uint8_t *equal,
+                      double *moments)
+{
+    double sum = 0;
+    for (int x = 0, end; x < ssim->columns; x = end) {
+        int from = next_window(ssim, equal, x, false);
+        sum += from - x;
+        end = from < ssim->columns ? next_window(ssim, equal, from, true) : from;
+        if (from == end)
+            continue;
+        blur_columns(ssim, a, b, (size_t)from, (size_t)end + TAPS - 1, moments);
+        sum += sum_windows(ssim, moments, from, end);
+    }
+    return sum;
+}
+
 static void do_band(size_t index, int worker, void *context)
 {
     Ssim *ssim = context;
@@ -76,22 +126,18 @@ static void do_band(size_t index, int worker, void *context)
     size_t width = (size_t)ssim->width;
     double *luma_a = ssim->workspaces + (size_t)worker * ssim->workspace_size;
     double *luma_b = luma_a + SPAN * width, *moments = luma_b + SPAN * width;
+    uint8_t *equal = ssim->equal + (size_t)worker * width;
     int top = (int)index * BAND;
     int rows = ssim->rows - top < BAND ? ssim->rows - top : BAND;
-    int equal = 0; /* how many of the last rows loaded are equal */
+    memset(equal, 0, width);
     for (int y = 0; y < rows + TAPS - 1; y++) {
         fill_luma(a, top + y, luma_a + (size_t)y * width);
         fill_luma(b, top + y, luma_b + (size_t)y * width);
-        equal = picture_rows_equal(a, b, top + y, 0, ssim->width) ? equal + 1 : 0;
+        count_equal(a, b, top + y, equal);
         int row = y - TAPS + 1;
-        if (row < 0)
-            continue;
-        if (equal >= TAPS) {
-            ssim->row_sums[top + row] = ssim->columns;
-            continue;
-        }
-        blur_columns(ssim, luma_a + (size_t)row * width, luma_b + (size_t)row * width, moments);
-        ssim->row_sums[top + row] = row_sum(ssim, moments);
+        if (row >= 0)
+            ssim->row_sums[top + row] = row_sum(ssim, luma_a + (size_t)row * width,
+                                                luma_b + (size_t)row * width, equal, moments);
     }
 }
 
@@ -104,6 +150,7 @@ static Status ssim_init(Ssim *ssim, int threads, Err *err)
         ssim->weights[k] /= sum;
     ssim->workspace_size = (2 * SPAN + MOMENTS) * (size_t)ssim->width;
     TRY(mem_calloc(&ssim->row_sums, (size_t)ssim->rows, sizeof(double), "row sums", err));
+    TRY(mem_calloc(&ssim->equal, (size_t)threads, (size_t)ssim->width, "equal columns", err));
     return mem_calloc(&ssim->workspaces, (size_t)threads * ssim->workspace_size, sizeof(double),
                       "luma of a band", err);
 }
@@ -129,5 +176,6 @@ Status ssim_compute(const Picture *a, const Picture *b, double *ssim, Err *err)
     }
     free(self.row_sums);
     free(self.workspaces);
+    free(self.equal);
     return status;
 }
