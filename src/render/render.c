@@ -485,12 +485,13 @@ static Status prepare_thin(Renderer *renderer, const Camera *camera, Err *err)
         return STATUS_OK;
     double start_s = clock_seconds();
     forget_thin(renderer);
-    TRY(thinvessels_find(renderer->geometry, camera, params->least_px, &renderer->thin, err));
+    TRY(thinvessels_find(renderer->geometry, camera, params->least_px, params->threads,
+                         &renderer->thin, err));
     if (renderer->thin.n > 0) {
         RenderParams of_rest = *params;
         of_rest.cover_thin = of_rest.codes_suffice = of_rest.want_normal = of_rest.want_id = false;
         of_rest.want_depth = true;
-        TRY(thinvessels_rest(&renderer->thin, camera, &renderer->rest_geometry, err));
+        TRY(thinvessels_rest(&renderer->thin, &renderer->rest_geometry, err));
         TRY(renderer_new(&renderer->rest_geometry, &of_rest, &renderer->rest, err));
         renderer->rest->occluders = renderer->geometry;
     }

@@ -1,5 +1,6 @@
 /* Vessels thinner than a pixel cover their own area of it. */
 #include "render/render.h"
+#include "render/thin/thinvessels.h"
 
 #include "test_scene.h"
 #include <math.h>
@@ -106,6 +107,37 @@ static void covers_as_much_in_pieces_as_in_one(void **state)
                                 0.45 * PIXEL_MM, k + 1);
     double length = PIECES * vec3_length(step) / PIXEL_MM;
     assert_true(fabs(ink_of(vessels, 1 + PIECES, 0) - 0.9 * length) < 0.01 * length);
+}
+
+/* One run of 50,000 vessels behind the trunk, and a vessel apart from it. */
+static void vessels_end_to_end_are_one_run_however_many_they_are(void **state)
+{
+    (void)state;
+    enum { PIECES = 50000, N = PIECES + 2 };
+    Primitive *vessels = calloc(N, sizeof *vessels);
+    assert_non_null(vessels);
+    vessels[0] = trunk();
+    for (uint32_t k = 0; k < PIECES; k++)
+        vessels[1 + k] =
+            vessel(vec3(k * 1e-4, 0, 0), vec3((k + 1) * 1e-4, 0, 0), 0.1 * PIXEL_MM, k + 1);
+    vessels[N - 1] = vessel(vec3(-2, -3, 0), vec3(-1, -3, 0), 0.1 * PIXEL_MM, N - 1);
+    Scene scene;
+    look_at_paper(&scene, vessels, N, SIDE);
+    for (int threads = 1; threads <= 3; threads += 2) {
+        ThinVessels thin;
+        assert_int_equal(
+            thinvessels_find(&scene.geometry, &scene.view.camera, 0, threads, &thin, &err),
+            STATUS_OK);
+        assert_int_equal(thin.n, PIECES + 1);
+        for (size_t i = 0; i < PIECES; i++) {
+            assert_int_equal(thin.strips[i].vessel, i + 1);
+            assert_int_equal(thin.strips[i].run, 1);
+        }
+        assert_int_equal(thin.strips[PIECES].run, N - 1);
+        assert_false(thin.is_thin[0]);
+        thinvessels_release(&thin);
+    }
+    free(vessels);
 }
 
 static void hides_behind_what_is_thicker(void **state)
@@ -227,6 +259,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(covers_its_length_times_its_width_wherever_it_lies),
         cmocka_unit_test(covers_as_much_in_pieces_as_in_one),
+        cmocka_unit_test(vessels_end_to_end_are_one_run_however_many_they_are),
         cmocka_unit_test(hides_behind_what_is_thicker),
         cmocka_unit_test(is_drawn_as_wide_as_is_asked_for),
         cmocka_unit_test(is_nearer_to_the_mean_of_many_samples_than_ten_samples_are),

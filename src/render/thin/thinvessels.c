@@ -73,72 +73,161 @@ static double limit_px(double least_px)
     return least_px > 1 ? least_px : 1;
 }
 
-static double thin_below(const Geometry *whole, const Camera *camera, double least_px)
+/* Vessels in chunks, which threads work on side by side. */
+enum { CHUNK = 1 << 14 };
+
+typedef struct Search {
+    ThinVessels *thin;
+    const Camera *camera;
+    size_t n, n_chunks; /* vessels */
+    double *most;       /* by chunk: the greatest width; owned */
+    size_t *first;      /* by chunk: its number of strips, and then where they begin; owned */
+} Search;
+
+static size_t chunk_end(const Search *search, size_t chunk)
 {
-    double most = 0;
-    for (size_t i = 0; i < count_vessels(whole); i++)
-        most = fmax(most, width_of(whole, camera, i));
-    return fmin(most, limit_px(least_px));
+    return (chunk + 1) * CHUNK < search->n ? (chunk + 1) * CHUNK : search->n;
 }
 
-static void take(ThinVessels *thin, const Camera *camera)
+static void measure_chunk(size_t chunk, int worker, void *context)
 {
+    (void)worker;
+    const Search *search = context;
+    double most = 0;
+    for (size_t i = chunk * CHUNK; i < chunk_end(search, chunk); i++)
+        most = fmax(most, width_of(search->thin->whole, search->camera, i));
+    search->most[chunk] = most;
+}
+
+static void mark_chunk(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Search *search = context;
+    const ThinVessels *thin = search->thin;
+    size_t count = 0;
+    for (size_t i = chunk * CHUNK; i < chunk_end(search, chunk); i++) {
+        thin->is_thin[i] = width_of(thin->whole, search->camera, i) < thin->below_px;
+        count += thin->is_thin[i] && vessel_at(thin->whole, i).has_length;
+    }
+    search->first[chunk] = count;
+}
+
+static ThinStrip strip_of(const Vessel *vessel, const Camera *camera, uint32_t number)
+{
+    const CameraPoint a = camera_point(camera, vessel->a), b = camera_point(camera, vessel->b);
+    return (ThinStrip){
+        .x = {(float)a.x, (float)b.x},
+        .y = {(float)a.y, (float)b.y},
+        .depth_mm = {(float)(a.depth_mm - vessel->radius_a),
+                     (float)(b.depth_mm - vessel->radius_b)},
+        .width = (float)(vessel->radius_a * a.per_mm + vessel->radius_b * b.per_mm),
+        .vessel = number,
+        .run = number,
+    };
+}
+
+static void take_chunk(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Search *search = context;
+    const ThinVessels *thin = search->thin;
+    ThinStrip *first = thin->strips + search->first[chunk], *strip = first;
     Vec3 end = {0};
-    for (size_t i = 0; i < count_vessels(thin->whole); i++) {
+    for (size_t i = chunk * CHUNK; i < chunk_end(search, chunk); i++) {
         const Vessel vessel = vessel_at(thin->whole, i);
-        const CameraPoint a = camera_point(camera, vessel.a), b = camera_point(camera, vessel.b);
-        if (!vessel.has_length || widest(&vessel, &a, &b) >= thin->below_px)
+        if (!thin->is_thin[i] || !vessel.has_length)
             continue;
-        bool follows = thin->n > 0 && vec3_distance(end, vessel.a) == 0;
-        double width = vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm;
-        thin->strips[thin->n] = (ThinStrip){
-            .x = {(float)a.x, (float)b.x},
-            .y = {(float)a.y, (float)b.y},
-            .depth_mm = {(float)(a.depth_mm - vessel.radius_a),
-                         (float)(b.depth_mm - vessel.radius_b)},
-            .width = (float)width,
-            .vessel = (uint32_t)i,
-            .run = follows ? thin->strips[thin->n - 1].run : (uint32_t)i,
-        };
-        thin->n++;
+        *strip = strip_of(&vessel, search->camera, (uint32_t)i);
+        if (strip > first && vec3_distance(end, vessel.a) == 0)
+            strip->run = strip[-1].run;
+        strip++;
         end = vessel.b;
     }
 }
 
+/* Runs that go on in the next chunk are one. */
+static void join_runs(const Search *search)
+{
+    const ThinVessels *thin = search->thin;
+    for (size_t chunk = 1; chunk < search->n_chunks; chunk++) {
+        size_t at = search->first[chunk];
+        if (at == 0 || at == thin->n)
+            continue;
+        const ThinStrip *before = &thin->strips[at - 1], first = thin->strips[at];
+        if (vec3_distance(vessel_at(thin->whole, before->vessel).b,
+                          vessel_at(thin->whole, first.vessel).a) > 0)
+            continue;
+        for (; at < thin->n && thin->strips[at].run == first.run; at++)
+            thin->strips[at].run = before->run;
+    }
+}
+
+/* Sets below_px, and marks what is thin. */
+static Status mark(Search *search, int threads, Err *err)
+{
+    ThinVessels *thin = search->thin;
+    double most = 0;
+    TRY(mem_calloc(&search->most, search->n_chunks, sizeof *search->most, "vessels", err));
+    TRY(mem_calloc(&search->first, search->n_chunks, sizeof *search->first, "vessels", err));
+    TRY(mem_calloc(&thin->is_thin, search->n, sizeof *thin->is_thin, "vessels", err));
+    threads_for(search->n_chunks, threads, measure_chunk, search);
+    for (size_t chunk = 0; chunk < search->n_chunks; chunk++)
+        most = fmax(most, search->most[chunk]);
+    thin->below_px = fmin(most, limit_px(thin->least_px));
+    threads_for(search->n_chunks, threads, mark_chunk, search);
+    return STATUS_OK;
+}
+
+/* Makes strips of what is marked. */
+static Status take(Search *search, int threads, Err *err)
+{
+    ThinVessels *thin = search->thin;
+    for (size_t chunk = 0; chunk < search->n_chunks; chunk++) {
+        size_t count = search->first[chunk];
+        search->first[chunk] = thin->n;
+        thin->n += count;
+    }
+    TRY(mem_calloc(&thin->strips, thin->n, sizeof *thin->strips, "thin vessels", err));
+    threads_for(search->n_chunks, threads, take_chunk, search);
+    join_runs(search);
+    return STATUS_OK;
+}
+
 void thinvessels_release(ThinVessels *thin)
 {
+    free(thin->is_thin);
     free(thin->strips);
     *thin = (ThinVessels){0};
 }
 
-Status thinvessels_find(const Geometry *whole, const Camera *camera, double least_px,
+Status thinvessels_find(const Geometry *whole, const Camera *camera, double least_px, int threads,
                         ThinVessels *thin, Err *err)
 {
     ThinVessels made = {.whole = whole, .least_px = least_px};
-    size_t n = 0;
-    if (!model_has(whole->model, MODEL_TRIANGLES))
-        made.below_px = thin_below(whole, camera, least_px);
-    for (size_t i = 0; i < count_vessels(whole) && made.below_px > 0; i++)
-        n += width_of(whole, camera, i) < made.below_px;
-    if (n > 0) {
-        TRY(mem_calloc(&made.strips, n, sizeof *made.strips, "thin vessels", err));
-        take(&made, camera);
-    }
-    *thin = made;
-    return STATUS_OK;
+    size_t n = model_has(whole->model, MODEL_TRIANGLES) ? 0 : count_vessels(whole);
+    Search search = {.thin = &made, .camera = camera, .n = n, .n_chunks = (n + CHUNK - 1) / CHUNK};
+    Status status = mark(&search, threads, err);
+    if (status == STATUS_OK)
+        status = take(&search, threads, err);
+    free(search.most);
+    free(search.first);
+    if (status == STATUS_OK)
+        *thin = made;
+    else
+        thinvessels_release(&made);
+    return status;
 }
 
 /* ---- the others ------------------------------------------------------------------------------ */
 
 /* Numbers of the vessels that are not thin, by rising number, in *rest (owned). */
-static Status list_rest(const ThinVessels *thin, const Camera *camera, uint32_t **rest, size_t *n,
-                        Err *err)
+static Status list_rest(const ThinVessels *thin, uint32_t **rest, size_t *n, Err *err)
 {
     const Geometry *whole = thin->whole;
     TRY(mem_calloc(rest, count_vessels(whole), sizeof **rest, "vessels", err));
     *n = 0;
     for (size_t i = 0; i < count_vessels(whole); i++)
-        if (width_of(whole, camera, i) >= thin->below_px)
+        if (!thin->is_thin[i])
             (*rest)[(*n)++] = (uint32_t)i;
     return STATUS_OK;
 }
@@ -169,13 +258,13 @@ static Status copy_ids(const Geometry *whole, Geometry *part, Err *err)
     return STATUS_OK;
 }
 
-Status thinvessels_rest(const ThinVessels *thin, const Camera *camera, Geometry *thick, Err *err)
+Status thinvessels_rest(const ThinVessels *thin, Geometry *thick, Err *err)
 {
     const Geometry *whole = thin->whole;
     uint32_t *rest = NULL;
     size_t n = 0;
     Geometry made = {0};
-    TRY(list_rest(thin, camera, &rest, &n, err));
+    TRY(list_rest(thin, &rest, &n, err));
     Status status = whole->n_primitives ? primitives_part(whole, rest, n, &made, err)
                                         : geometry_part(whole, rest, n, &made, err);
     if (status == STATUS_OK)

@@ -18,6 +18,7 @@ typedef struct ThinStrip {
 /* The thin vessels of a geometry in one view. */
 typedef struct ThinVessels {
     const Geometry *whole; /* borrowed */
+    bool *is_thin;         /* owned; by vessel, as strips have it */
     ThinStrip *strips;     /* owned; by rising vessel */
     size_t n;
     double least_px; /* strips are drawn at least so wide; 0: as wide as they are */
@@ -28,15 +29,14 @@ void thinvessels_release(ThinVessels *thin);
 
 /* The vessels of `whole` that the camera sees in front of it narrower than a pixel, or than
  * `least_px` if that is more, in *thin (owned); `whole` is borrowed. At least the widest of all
- * vessels is not among them. Triangles are never thin. Of a `least_px` from 0 to 64. O(n).
- * STATUS_MEMORY. */
+ * vessels is not among them. Triangles are never thin. Of a `least_px` from 0 to 64. O(n), on so
+ * many threads, which do not change the result. STATUS_MEMORY. */
 MUST_CHECK Status thinvessels_find(const Geometry *whole, const Camera *camera, double least_px,
-                                   ThinVessels *thin, Err *err);
+                                   int threads, ThinVessels *thin, Err *err);
 
 /* The geometry without the thin vessels, and without balls as thin as they, in *thick (owned):
  * with the ids and the bounds of the whole. O(n log n). STATUS_MEMORY. */
-MUST_CHECK Status thinvessels_rest(const ThinVessels *thin, const Camera *camera, Geometry *thick,
-                                   Err *err);
+MUST_CHECK Status thinvessels_rest(const ThinVessels *thin, Geometry *thick, Err *err);
 
 /* Draws the thin vessels over the band's colours, where they lie in front of its depths.
  * `drawing` is of the rest: its caster says what casts shadows on them if shadows are wanted; it
