@@ -6,6 +6,7 @@
 #include "verify/report.h"
 #include "verify/rounded.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,10 +70,11 @@ static void put_sentence(const ReportCase *report, Text *sentence)
         put_agreement(report, compared, sentence);
         return;
     }
-    if (differing)
+    bool alone = compared == 1 || !differing;
+    if (!alone)
         text_printf(sentence, "%d of %d planes differ%s. First, ", differing, compared,
                     differing == 1 ? "s" : "");
-    text_printf(sentence, "%s.", reason);
+    text_printf(sentence, "%c%s.", alone ? toupper((unsigned char)*reason) : *reason, reason + 1);
     if (!color->agrees)
         text_printf(sentence, " The pictures: %s.", *color->cause ? color->cause : "cause unknown");
 }
