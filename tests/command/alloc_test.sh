@@ -55,6 +55,11 @@ test_failed_allocations_in_certify() {
     fail_each 1 one certify ../tree.swc --parts
 }
 
+test_failed_allocations_in_power() {
+    inputs
+    fail_each 29 one power --quiet --render 'cp ../a.png {}' --levels 3
+}
+
 test_failed_allocations_in_help() {
     inputs
     fail_each 9 one help grow
@@ -104,6 +109,7 @@ test_failed_allocations_in_scene() {
     fail_each 3 many scene ../tree.swc --size 21x15 --model cylinders -o o.pov
     fail_each 3 many scene ../tree.swc --size 21x15 --model joined -o o.pov
     fail_each 3 many scene ../tree.swc --size 21x15 --model rounded --look print --shadows on -o o.pov
+    fail_each 3 one scene ../tree.swc --size 21x15 --model rounded --color-by radius -o o.tachyon
     fail_each 3 many scene ../tree.swc --size 21x15 --model blob --ids on --color-by radius -o o.pov
     fail_each 3 many scene "$DATA/bifurcation.swc" --size 21x15 --model isosurface --ids on -o o.pov
     fail_each 5 many scene "$DATA/bifurcation.swc" --size 21x15 --model mesh --tolerance 0.2 --part-overlaps -o o.pov
