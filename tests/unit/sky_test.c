@@ -212,6 +212,20 @@ static void shared_light_does_not_depend_on_threads_or_bands(void **state)
     }
 }
 
+/* One vessel, of a few pixels: sets of pixels that nobody is in ask nothing. */
+static void a_vessel_of_a_few_pixels_has_its_sky(void **state)
+{
+    (void)state;
+    Scene scene = ball_over_ground(SCENE_ROUNDED, 9);
+    scene.view.ground.present = false;
+    scene.view.n_lights = 0;
+    scene.appearance.finish = (Finish){.ambient = 1, .brilliance = 1};
+    Frame frame = drawn(&scene, params_of(3));
+    /* A ball alone sees all of it: the middle has its own colour. */
+    assert_float_equal(frame.color.values[3 * (4 * 9 + 4)], 0.6f, 1e-4f);
+    frame_release(&frame);
+}
+
 /* The kernels fuse nothing where beams are found; shading is within 2e-5 of the light. */
 static void kernels_find_the_same_sky(void **state)
 {
@@ -304,6 +318,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shared_light_does_not_depend_on_threads_or_bands),
+        cmocka_unit_test(a_vessel_of_a_few_pixels_has_its_sky),
         cmocka_unit_test(kernels_find_the_same_sky),
         cmocka_unit_test(the_ground_of_tiles_is_that_of_rays),
         cmocka_unit_test(soft_shadows_are_the_mean_over_all_points),

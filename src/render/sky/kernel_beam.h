@@ -1,5 +1,10 @@
-/* Beams, sixteen capsules at a time: included by each source that compiles it for its lanes. Loops
- * over capsules have no branches, for compilers to make vectors of. */
+/* Beams, several at a time: included by each source that compiles it for its lanes. Loops over
+ * lanes have no branches, for compilers to make vectors of.
+ *
+ * Beams of one direction are sorted into a grid across it, where they begin, and each capsule in
+ * turn takes what it covers from those in the cells that it can touch: those of a row stand one
+ * after another, to be taken many at once. The other way about, capsules in tiles for beams to ask,
+ * beams that lie side by side seldom touch the same ones. */
 #ifndef BEAM_KERNEL
 #error "define BEAM_KERNEL(name), the name of a function"
 #endif
@@ -7,102 +12,316 @@
 #include "render/sky/beamkernels.h"
 #include "render/tile/lanes.h"
 
-/* Beams side by side are one; this is what a tile's capsules, LANES at a time, leave of it. */
-typedef struct Beam {
-    Lanes x, y, z;  /* where it begins */
-    Lanes widening; /* of half its width with length */
-    Lanes wide;     /* the most of that */
-} Beam;
+/* Of a ball far away, that is drawn as a square. */
+static const float quarter_turn = 0.7853982f;
 
-/* Multiplies free[LANES] by what capsules leave of the beam, which is a square, as wide as where it
- * passes the axis: a capsule covers a strip of it between its ends. */
-LANE_FN void pass_capsules(const CapsuleBlock *block, int first, const Beam *beam, float *free)
+static inline float least_of(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static inline float most_of(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+/* ---- capsules -------------------------------------------------------------------------------- */
+
+LANE_FN Lanes along_axis(const float axis[3], const float point[3][BEAM_BLOCK], int first)
+{
+    return axis[0] * lanes_load(&point[0][first]) + axis[1] * lanes_load(&point[1][first]) +
+           axis[2] * lanes_load(&point[2][first]);
+}
+
+/* Sees LANES of a block's capsules. */
+LANE_FN void see_lanes(const BeamDirection *direction, const CapsuleBlock *block, int i,
+                       SeenBlock *seen)
 {
     const Lanes zero = lanes_set(0);
-    Lanes qx = beam->x - lanes_load(&block->x[first]), qy = beam->y - lanes_load(&block->y[first]);
-    Lanes ux = lanes_load(&block->ux[first]), uy = lanes_load(&block->uy[first]);
-    Lanes radius = lanes_load(&block->radius[first]), whole = lanes_load(&block->length[first]);
-    Lanes along = qx * ux + qy * uy, off = lanes_abs(qy * ux - qx * uy);
-    Lanes on = lanes_max(lanes_min(along, whole), zero);
-    Lanes height = lanes_load(&block->z[first]) + on * lanes_load(&block->slope[first]) - beam->z;
-    Lanes half = lanes_max(lanes_min(height * beam->widening, beam->wide), lanes_set(1e-6f));
-    Lanes chord = lanes_sqrt(lanes_max(radius * radius - off * off, zero));
-    Lanes end = lanes_select(half < radius, chord, lanes_load(&block->round[first]));
-    Lanes across = lanes_min(off + radius, half) - lanes_max(off - radius, -half);
-    Lanes length = lanes_min(whole - along + end, half) - lanes_max(-along - end, -half);
-    Lanes covered = lanes_max(across, zero) * lanes_max(length, zero) / (4.0f * half * half);
-    Lanes left = lanes_load(free) * (1.0f - covered);
-    lanes_store(free, lanes_select(height > 0.0f, left, lanes_load(free)));
+    Lanes radius = lanes_load(&block->radius[i]);
+    Lanes ax = along_axis(direction->axes[0], block->a, i);
+    Lanes ay = along_axis(direction->axes[1], block->a, i);
+    Lanes az = along_axis(direction->axes[2], block->a, i);
+    Lanes bx = along_axis(direction->axes[0], block->b, i);
+    Lanes by = along_axis(direction->axes[1], block->b, i);
+    Lanes bz = along_axis(direction->axes[2], block->b, i);
+    LaneMask falls = az > bz;
+    Lanes x = lanes_select(falls, ax - bx, bx - ax), y = lanes_select(falls, ay - by, by - ay);
+    Lanes length = lanes_sqrt(x * x + y * y);
+    /* One that points to the sky is a ball at its upper end. */
+    LaneMask stands = length < 1e-3f * radius, from_b = falls ^ stands;
+    lanes_store(&seen->x[i], lanes_select(from_b, bx, ax));
+    lanes_store(&seen->y[i], lanes_select(from_b, by, ay));
+    lanes_store(&seen->z[i], lanes_select(from_b, bz, az));
+    lanes_store(&seen->ux[i], lanes_select(stands, lanes_set(1), x / length));
+    lanes_store(&seen->uy[i], lanes_select(stands, zero, y / length));
+    lanes_store(&seen->length[i], lanes_select(stands, zero, length));
+    lanes_store(&seen->slope[i], lanes_select(stands, zero, lanes_abs(bz - az) / length));
+    lanes_store(&seen->radius[i], radius);
+    lanes_store(&seen->round[i], lanes_select(stands, quarter_turn * radius, zero));
 }
 
-/* The part of a beam that the blocks [first, end) leave free. */
-LANE_FN float pass_blocks(const BeamView *view, uint32_t first, uint32_t end, const Beam *beam)
+/* ---- beams ----------------------------------------------------------------------------------- */
+
+/* Sets a grid of squares over all places, a few beams a cell. */
+LANE_FN void set_grid(const BeamDirection *direction, const BeamPlaces *places, float wide,
+                      BeamWork *work)
 {
-    float free[CAPSULES], all = 1;
-    for (int i = 0; i < CAPSULES; i++)
-        free[i] = 1;
-    for (uint32_t block = first; block < end; block++)
-        for (int i = 0; i < CAPSULES; i += LANES)
-            pass_capsules(&view->blocks[block], i, beam, &free[i]);
-    for (int i = 0; i < CAPSULES; i++)
-        all *= free[i];
-    return all;
+    const float a_cell = 12;
+    float middle[2], half[2];
+    for (int i = 0; i < 2; i++) {
+        middle[i] = half[i] = 0;
+        for (int c = 0; c < 3; c++) {
+            middle[i] += direction->axes[i][c] * (places->high[c] + places->low[c]) / 2;
+            half[i] += fabsf(direction->axes[i][c]) * (places->high[c] - places->low[c]) / 2;
+        }
+    }
+    float longest = 2 * most_of(half[0], half[1]);
+    float side = most_of(wide, sqrtf(a_cell * 4 * half[0] * half[1] / (float)(places->n + 1)));
+    side = most_of(most_of(side, longest / (BEAM_MOST_CELLS - 1)), 1e-6f);
+    work->per_cell = 1 / side;
+    work->left = middle[0] - half[0];
+    work->top = middle[1] - half[1];
+    work->columns = (int)(2 * half[0] / side) + 1;
+    work->rows = (int)(2 * half[1] / side) + 1;
 }
 
-LANE_FN int32_t beam_tile(float at, float first, float per_tile, int32_t count)
+LANE_FN int cell_along(float at, float first, float per_cell, int n)
 {
-    float tile = (at - first) * per_tile;
-    return tile >= 0 && tile < (float)count ? (int32_t)tile : -1;
+    float cell = (at - first) * per_cell;
+    return cell < 0 ? 0 : cell < (float)n ? (int)cell : n - 1;
 }
 
-LANE_TARGET static void BEAM_KERNEL(open)(const BeamView *view, float wide, BeamQueries *queries)
+/* Lists the places whose surface faces the direction, and counts those of each cell; those that the
+ * ground hides it from get their answers, as do the others. */
+LANE_FN void list_beams(const BeamDirection *direction, const BeamPlaces *places, BeamWork *work,
+                        uint8_t *answers)
 {
-    for (int i = 0; i < queries->n; i++) {
-        float at[3];
+    BeamList *listed = &work->listed;
+    float x[LANES], y[LANES], z[LANES], widening[LANES];
+    uint32_t n = 0;
+    for (uint32_t first = 0; first < places->n; first += LANES) {
+        const float(*axes)[3] = direction->axes;
+        Lanes at[3], facing = lanes_set(0);
+        for (int i = 0; i < 3; i++)
+            at[i] = axes[i][0] * lanes_load(&places->at[0][first]) +
+                    axes[i][1] * lanes_load(&places->at[1][first]) +
+                    axes[i][2] * lanes_load(&places->at[2][first]);
         for (int c = 0; c < 3; c++)
-            at[c] = view->axes[c][0] * queries->at[0][i] + view->axes[c][1] * queries->at[1][i] +
-                    view->axes[c][2] * queries->at[2][i];
-        int32_t column = beam_tile(at[0], view->left, view->per_tile, view->columns);
-        int32_t row = beam_tile(at[1], view->top, view->per_tile, view->rows);
-        queries->open[i] = 1;
-        if (column < 0 || row < 0)
+            facing = facing + axes[2][c] * lanes_load(&places->normal[c][first]);
+        LaneMask faces = facing > 0.0f;
+        LaneMask hidden = faces & (lanes_load(&places->above[first]) * direction->ground < 0.0f);
+        uint32_t grounded = lanes_bits(hidden);
+        lanes_store(x, at[0]);
+        lanes_store(y, at[1]);
+        lanes_store(z, at[2]);
+        lanes_store(widening, lanes_min(facing, lanes_set(direction->widening)));
+        for (uint32_t i = 0; i < LANES && first + i < places->n; i++)
+            answers[first + i] = grounded >> i & 1 ? 0 : BEAM_UNASKED;
+        for (uint32_t asks = lanes_bits(faces & ~hidden); asks; asks &= asks - 1, n++) {
+            int i = __builtin_ctz(asks);
+            int column = cell_along(x[i], work->left, work->per_cell, work->columns);
+            int row = cell_along(y[i], work->top, work->per_cell, work->rows);
+            listed->x[n] = x[i];
+            listed->y[n] = y[i];
+            listed->z[n] = z[i];
+            listed->widening[n] = widening[i];
+            listed->place[n] = first + (uint32_t)i;
+            listed->cell[n] = (uint32_t)(row * work->columns + column);
+            work->first[listed->cell[n] + 1]++;
+        }
+    }
+    work->n = n;
+}
+
+/* Sorts what is listed into cells. */
+LANE_FN void sort_beams(BeamWork *work)
+{
+    const BeamList *listed = &work->listed;
+    BeamList *sorted = &work->sorted;
+    uint32_t n_cells = (uint32_t)(work->columns * work->rows);
+    for (uint32_t cell = 0; cell < n_cells; cell++)
+        work->first[cell + 1] += work->first[cell];
+    for (uint32_t i = 0; i < work->n; i++) {
+        uint32_t to = work->first[listed->cell[i]]++;
+        sorted->x[to] = listed->x[i];
+        sorted->y[to] = listed->y[i];
+        sorted->z[to] = listed->z[i];
+        sorted->widening[to] = listed->widening[i];
+        sorted->place[to] = listed->place[i];
+        work->free[to] = 1;
+    }
+    /* Each cell's first is now the one behind its last. */
+    for (uint32_t cell = n_cells; cell > 0; cell--)
+        work->first[cell] = work->first[cell - 1];
+    work->first[0] = 0;
+}
+
+/* ---- what capsules cover --------------------------------------------------------------------- */
+
+/* One capsule, and the rectangle about it, turned as it is, in which the beams begin that it
+ * touches. */
+typedef struct Cover {
+    float x, y, z, ux, uy, length, slope, radius, round;
+    float wide;  /* the most of half a beam's width */
+    float reach; /* beyond its axis and its ends */
+    float top;   /* above which no beam begins that it touches */
+} Cover;
+
+/* Takes what the capsule covers of the beams [first, end). A beam is a square, as wide as where it
+ * passes the axis: the capsule covers a strip of it between its ends. */
+LANE_FN void cover_beams(const Cover *cover, uint32_t first, uint32_t end, BeamWork *work)
+{
+    static const int32_t numbers[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const Lanes zero = lanes_set(0), radius = lanes_set(cover->radius);
+    const BeamList *beams = &work->sorted;
+    LaneMask number;
+    __builtin_memcpy(&number, numbers, sizeof number);
+    for (uint32_t i = first; i < end; i += LANES) {
+        Lanes qx = lanes_load(&beams->x[i]) - cover->x, qy = lanes_load(&beams->y[i]) - cover->y;
+        Lanes z = lanes_load(&beams->z[i]);
+        Lanes off = lanes_abs(qy * cover->ux - qx * cover->uy);
+        LaneMask touches = (off < cover->reach) & (z < cover->top) & (number < (int32_t)(end - i));
+        if (!lanes_any(touches))
             continue;
-        const uint32_t *first = &view->first[row * view->columns + column];
-        const Beam beam = {.x = lanes_set(at[0]),
-                           .y = lanes_set(at[1]),
-                           .z = lanes_set(at[2]),
-                           .widening = lanes_set(queries->widening[i]),
-                           .wide = lanes_set(wide)};
-        queries->open[i] = pass_blocks(view, first[0], first[1], &beam);
+        Lanes along = qx * cover->ux + qy * cover->uy;
+        Lanes on = lanes_max(lanes_min(along, lanes_set(cover->length)), zero);
+        Lanes height = cover->z + on * cover->slope - z;
+        touches &= height > 0.0f;
+        Lanes half = lanes_min(height * lanes_load(&beams->widening[i]), lanes_set(cover->wide));
+        half = lanes_max(half, lanes_set(1e-6f));
+        Lanes rounded = lanes_set(cover->round);
+        LaneMask narrow = half < radius;
+        if (lanes_any(narrow & touches)) {
+            Lanes chord = lanes_sqrt(lanes_max(radius * radius - off * off, zero));
+            rounded = lanes_select(narrow, chord, rounded);
+        }
+        Lanes across = lanes_min(off + radius, half) - lanes_max(off - radius, -half);
+        Lanes length =
+            lanes_min(cover->length - along + rounded, half) - lanes_max(-along - rounded, -half);
+        Lanes covered = lanes_max(across, zero) * lanes_max(length, zero) / (4.0f * half * half);
+        Lanes free = lanes_load(&work->free[i]);
+        lanes_store(&work->free[i], lanes_select(touches, free * (1.0f - covered), free));
     }
 }
 
-LANE_TARGET static void BEAM_KERNEL(sum)(const float *cosines, const uint8_t *answers, int n,
-                                         float part, float sums[2])
+static inline Cover cover_of(const Beams *beams, const SeenBlock *seen, int i)
+{
+    return (Cover){.x = seen->x[i],
+                   .y = seen->y[i],
+                   .z = seen->z[i],
+                   .ux = seen->ux[i],
+                   .uy = seen->uy[i],
+                   .length = seen->length[i],
+                   .slope = seen->slope[i],
+                   .radius = seen->radius[i],
+                   .round = seen->round[i],
+                   .wide = beams->wide,
+                   .reach = seen->radius[i] + beams->wide + beams->slack,
+                   .top = seen->z[i] + seen->length[i] * seen->slope[i]};
+}
+
+/* Takes what a capsule covers of all beams. A row of cells from y on cuts its rectangle, the
+ * product of two strips, in part of each strip's stretch of x. */
+LANE_FN void cover_rows(const Cover *cover, BeamWork *work)
+{
+    const float across = fabsf(cover->ux), up = fabsf(cover->uy), side = 1 / work->per_cell;
+    const float reach = cover->reach, reach_x = reach * (across + up);
+    const float low_x = least_of(cover->ux * cover->length, 0) - reach_x;
+    const float high_x = most_of(cover->ux * cover->length, 0) + reach_x;
+    const float low_y = least_of(cover->uy * cover->length, 0) - reach_x;
+    const float high_y = most_of(cover->uy * cover->length, 0) + reach_x;
+    /* x of the middle of either strip changes with y by so much. */
+    const float lean = up > 1e-3f ? cover->ux / cover->uy : 0;
+    const float lean_ends = across > 1e-3f ? -cover->uy / cover->ux : 0;
+    const float half = up > 1e-3f ? reach / up + fabsf(lean) * side / 2 : HUGE_VALF;
+    const float middle_ends = across > 1e-3f ? cover->length / 2 / cover->ux : 0;
+    const float half_ends = across > 1e-3f
+                                ? (cover->length / 2 + reach) / across + fabsf(lean_ends) * side / 2
+                                : HUGE_VALF;
+    int first = cell_along(cover->y + low_y, work->top, work->per_cell, work->rows);
+    int last = cell_along(cover->y + high_y, work->top, work->per_cell, work->rows);
+    for (int row = first; row <= last; row++) {
+        float y = work->top + ((float)row + 0.5f) * side - cover->y;
+        float from =
+            most_of(most_of(lean * y - half, middle_ends + lean_ends * y - half_ends), low_x);
+        float to =
+            least_of(least_of(lean * y + half, middle_ends + lean_ends * y + half_ends), high_x);
+        if (!(from < to))
+            continue;
+        int low = cell_along(cover->x + from, work->left, work->per_cell, work->columns);
+        int high = cell_along(cover->x + to, work->left, work->per_cell, work->columns);
+        const uint32_t *begins = &work->first[row * work->columns];
+        cover_beams(cover, begins[low], begins[high + 1], work);
+    }
+}
+
+LANE_TARGET static void BEAM_KERNEL(ask)(const Beams *beams, const BeamDirection *direction,
+                                         const BeamPlaces *places, BeamWork *work, uint8_t *answers)
+{
+    set_grid(direction, places, beams->wide, work);
+    __builtin_memset(work->first, 0,
+                     ((size_t)(work->columns * work->rows) + 1) * sizeof *work->first);
+    list_beams(direction, places, work, answers);
+    sort_beams(work);
+    for (size_t block = 0; block < beams->n_blocks; block++) {
+        for (int i = 0; i < BEAM_BLOCK; i += LANES)
+            see_lanes(direction, &beams->capsules[block], i, &work->seen);
+        for (int i = 0; i < BEAM_BLOCK && beams->capsules[block].radius[i] >= 0; i++) {
+            const Cover cover = cover_of(beams, &work->seen, i);
+            cover_rows(&cover, work);
+        }
+    }
+    for (uint32_t i = 0; i < work->n; i++)
+        answers[work->sorted.place[i]] = (uint8_t)((float)BEAM_FREE * work->free[i] + 0.5f);
+}
+
+/* ---- sums ------------------------------------------------------------------------------------ */
+
+/* What neighbours answer, of several directions, by the weights of those who do. */
+LANE_TARGET static void BEAM_KERNEL(add)(const uint8_t *answers, int n, int weight, uint16_t *free,
+                                         uint16_t *asked)
+{
+    for (int k = 0; k < n; k++) {
+        uint16_t part = (uint16_t)(answers[k] == BEAM_UNASKED ? 0 : weight);
+        free[k] = (uint16_t)(free[k] + part * answers[k]);
+        asked[k] = (uint16_t)(asked[k] + part);
+    }
+}
+
+typedef uint16_t LaneWords __attribute__((vector_size(2 * LANES)));
+
+LANE_FN Lanes load_words(const uint16_t *words)
+{
+    LaneWords lanes;
+    __builtin_memcpy(&lanes, words, sizeof lanes);
+    return __builtin_convertvector(lanes, Lanes);
+}
+
+LANE_TARGET static float BEAM_KERNEL(mean)(const float *const directions[3], const float normal[3],
+                                           const uint16_t *free, const uint16_t *asked, int n)
 {
     float open[SUMMED] = {0}, all[SUMMED] = {0};
-    for (int k = 0; k < n; k += SUMMED)
-        for (int i = 0; i < SUMMED; i++) {
-            float cosine = cosines[k + i];
-            cosine *= (float)((cosine > 0) & (answers[k + i] != BEAM_UNASKED));
-            open[i] += cosine * (float)answers[k + i];
-            all[i] += cosine;
+    for (int first = 0; first < SUMMED; first += LANES) {
+        Lanes open_lanes = lanes_set(0), all_lanes = lanes_set(0);
+        for (int k = first; k < n; k += SUMMED) {
+            Lanes cosine = normal[0] * lanes_load(&directions[0][k]) +
+                           normal[1] * lanes_load(&directions[1][k]) +
+                           normal[2] * lanes_load(&directions[2][k]);
+            Lanes by = load_words(&asked[k]);
+            cosine = lanes_select(by > 0.0f, lanes_max(cosine, lanes_set(0)), lanes_set(0));
+            open_lanes += cosine * (load_words(&free[k]) / lanes_max(by, lanes_set(1)));
+            all_lanes += cosine;
         }
+        lanes_store(&open[first], open_lanes);
+        lanes_store(&all[first], all_lanes);
+    }
     for (int i = 1; i < SUMMED; i++) {
         open[0] += open[i];
         all[0] += all[i];
     }
-    sums[0] += part * open[0];
-    sums[1] += part * all[0];
-}
-
-LANE_TARGET static void BEAM_KERNEL(cosines)(const float *const directions[3],
-                                             const float normal[3], int n, float *cosines)
-{
-    const float x = normal[0], y = normal[1], z = normal[2];
-    for (int k = 0; k < n; k++)
-        cosines[k] = x * directions[0][k] + y * directions[1][k] + z * directions[2][k];
+    return all[0] > 0 ? open[0] / (BEAM_FREE * all[0]) : 1;
 }
 
 const BeamKernels BEAM_KERNEL(beamkernels) = {
-    .open = BEAM_KERNEL(open), .cosines = BEAM_KERNEL(cosines), .sum = BEAM_KERNEL(sum)};
+    .ask = BEAM_KERNEL(ask), .add = BEAM_KERNEL(add), .mean = BEAM_KERNEL(mean)};

@@ -1,42 +1,29 @@
-/* Pixels are of four sets, as they lie in squares of two by two. A pixel asks a quarter of the
- * beams [beams.c], and of the points of an area light, that of its set, and takes the answers of
- * the pixels around it that lie on the same surface: in the proportions 1 : 2 : 1 across and down,
- * by which each set has the same weight, so that a plane has the mean of all four, without grain.
- * Beams of a neighbour count by their cosine to the surface here: that is what light changes most
- * by on a thin vessel.
+/* Occlusion is found for all places at once [skylight.c].
  *
- * The points of an area light are looked from, those of one set after those of another, as lights
- * are that cast hard shadows.
- *
- * Views of some directions at a time are made, and asked by runs of pixels of one set. Answers are
- * bytes, so that a picture's need little memory, and are summed in one order. */
+ * Of the points of an area light a pixel asks a quarter, that of its set: pixels are of four sets,
+ * as they lie in squares of two by two. It takes the answers of the pixels around it that lie on
+ * the same surface, in the proportions 1 : 2 : 1 across and down, by which each set has the same
+ * weight, so that a plane has the mean of all four, without grain. The points are looked from,
+ * those of one set after those of another, as lights are that cast hard shadows. */
 #include "render/sky/share.h"
 
 #include "render/cast/caster.h"
 #include "render/light/shade.h"
-#include "render/sky/beamkernels.h"
+#include "render/sky/skylight.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SETS = 4, SQUARE = 32, MOST_A_SET = 256 };
+enum { SETS = 4, SQUARE = 32, PLACES_AT_ONCE = 512 };
 
 /* Places are numbered set by set, and in a set square by square of SQUARE x SQUARE pixels, so that
- * those that follow one another ask about the same few tiles of a view. */
+ * those that follow one another ask about the same few tiles of a light. */
 typedef struct Share {
     const Drawing *drawing;
     SharedLight *light;
-    const BeamKernels *kernels;
     const LightViews *views; /* NULL: lights are asked by rays */
-    Beams *beams;
     uint32_t *pixels;        /* owned; of each number */
     size_t first[SETS + 1];  /* numbers of set i are [first[i], first[i + 1]) */
-    int asked, stride;       /* beams of a set, and bytes of answers to a pixel */
-    uint8_t *answers;        /* owned; of each number */
-    float *directions[3];    /* owned; of set i [i * stride, i * stride + asked) */
-    int first_view, n_views; /* directions that beams->views are of */
-    float *cosines;          /* owned; one row of SETS * stride a worker */
-    BeamQueries *queries;    /* owned; one a worker */
     int number;              /* of the light at hand */
     uint16_t *reach;         /* owned; of each number, how many points of that it sees */
 } Share;
@@ -53,94 +40,86 @@ static int set_of(int column, int row)
 
 /* ---- places ---------------------------------------------------------------------------------- */
 
-/* What the centre of a pixel sees. */
-typedef struct CenterSight {
-    Ray ray;
-    double t;
-    bool on_ground;
-} CenterSight;
-
 typedef struct PlaceJob {
     const Share *share;
-    const Frame *planes;
+    Frame *planes;
     uint32_t (*next)[SETS]; /* of each square, the next number of each set */
 } PlaceJob;
 
-/* False where it sees nothing. */
-static bool look(const PlaceJob *job, int column, int row, CenterSight *sight)
+/* The pixels of a square, in the band. */
+typedef struct Square {
+    int first_column, end_column, first_row, end_row;
+} Square;
+
+static Square square_of(const SharedLight *light, size_t number)
 {
-    const SharedLight *light = job->share->light;
-    const View *view = job->share->drawing->view;
-    size_t pixel = (size_t)row * (size_t)light->width + (size_t)column;
-    sight->t = (double)job->planes->depth.values[pixel];
-    sight->on_ground = false;
-    if (!view->ground.present && !isfinite(sight->t))
-        return false;
-    sight->ray = camera_ray(&view->camera, column, light->first + row);
-    sight->on_ground = ground_hit(&view->ground, sight->ray, NEAREST_SEEN_MM, sight->t, &sight->t);
-    return isfinite(sight->t);
+    size_t across = squares_in(light->width);
+    int column = (int)(number % across) * SQUARE, row = (int)(number / across) * SQUARE;
+    int end_column = column + SQUARE, end_row = row + SQUARE;
+    return (Square){column, end_column < light->width ? end_column : light->width, row,
+                    end_row < light->rows ? end_row : light->rows};
 }
 
-static PixelPlace place_of(const PlaceJob *job, int column, int row, const CenterSight *sight)
+/* Marks the pixels of the square that see something in SharedLight.numbers by their PlaceKind, adds
+ * the depth of the ground where it is nearest, and counts them. */
+static void count_places(size_t number, int worker, void *context)
+{
+    (void)worker;
+    const PlaceJob *job = context;
+    const SharedLight *light = job->share->light;
+    const View *view = job->share->drawing->view;
+    const Square square = square_of(light, number);
+    for (int row = square.first_row; row < square.end_row; row++)
+        for (int column = square.first_column; column < square.end_column; column++) {
+            size_t pixel = (size_t)row * (size_t)light->width + (size_t)column;
+            float *depth = &job->planes->depth.values[pixel];
+            double t = (double)*depth;
+            bool on_ground =
+                view->ground.present &&
+                ground_hit(&view->ground, camera_ray(&view->camera, column, light->first + row),
+                           NEAREST_SEEN_MM, t, &t);
+            if (!isfinite(t))
+                continue;
+            *depth = (float)t;
+            light->numbers[pixel] = on_ground ? PLACE_GROUND : PLACE_VESSEL;
+            job->next[number][set_of(column, light->first + row)]++;
+        }
+}
+
+static PixelPlace place_of(const PlaceJob *job, int column, int row)
 {
     const SharedLight *light = job->share->light;
     const View *view = job->share->drawing->view;
     size_t pixel = (size_t)row * (size_t)light->width + (size_t)column;
     const float *of_vessel = &job->planes->normal.values[3 * pixel];
+    PlaceKind kind = (PlaceKind)light->numbers[pixel];
+    double t = (double)job->planes->depth.values[pixel];
+    Ray ray = camera_ray(&view->camera, column, light->first + row);
     Vec3 normal = view->ground.normal;
-    if (!sight->on_ground)
+    if (kind == PLACE_VESSEL)
         normal = vec3((double)of_vessel[0], (double)of_vessel[1], (double)of_vessel[2]);
-    else if (vec3_dot(normal, sight->ray.direction) > 0)
+    else if (vec3_dot(normal, ray.direction) > 0)
         normal = vec3_scale(normal, -1);
-    return sharedlight_place(light, sight->on_ground ? PLACE_GROUND : PLACE_VESSEL,
-                             ray_at(sight->ray, sight->t), normal,
-                             sharedlight_pixel_mm(&view->camera, sight->t));
+    return sharedlight_place(light, kind, ray_at(ray, t), normal,
+                             sharedlight_pixel_mm(&view->camera, t));
 }
 
-/* Calls visit for the places of a square of pixels, row by row. */
-static void visit_places(const PlaceJob *job, size_t square,
-                         void (*visit)(const PlaceJob *job, int column, int row, size_t square,
-                                       const CenterSight *sight))
-{
-    const SharedLight *light = job->share->light;
-    size_t across = squares_in(light->width);
-    int first_column = (int)(square % across) * SQUARE, first_row = (int)(square / across) * SQUARE;
-    CenterSight sight;
-    for (int row = first_row; row < first_row + SQUARE && row < light->rows; row++)
-        for (int column = first_column; column < first_column + SQUARE && column < light->width;
-             column++)
-            if (look(job, column, row, &sight))
-                visit(job, column, row, square, &sight);
-}
-
-static void count_place(const PlaceJob *job, int column, int row, size_t square,
-                        const CenterSight *sight)
-{
-    (void)sight;
-    job->next[square][set_of(column, job->share->light->first + row)]++;
-}
-
-static void set_place(const PlaceJob *job, int column, int row, size_t square,
-                      const CenterSight *sight)
-{
-    const SharedLight *light = job->share->light;
-    size_t pixel = (size_t)row * (size_t)light->width + (size_t)column;
-    uint32_t number = job->next[square][set_of(column, light->first + row)]++;
-    light->numbers[pixel] = number;
-    light->places[number] = place_of(job, column, row, sight);
-    job->share->pixels[number] = (uint32_t)pixel;
-}
-
-static void count_places(size_t square, int worker, void *context)
+static void set_places(size_t number, int worker, void *context)
 {
     (void)worker;
-    visit_places(context, square, count_place);
-}
-
-static void set_places(size_t square, int worker, void *context)
-{
-    (void)worker;
-    visit_places(context, square, set_place);
+    const PlaceJob *job = context;
+    const SharedLight *light = job->share->light;
+    const Square square = square_of(light, number);
+    for (int row = square.first_row; row < square.end_row; row++)
+        for (int column = square.first_column; column < square.end_column; column++) {
+            size_t pixel = (size_t)row * (size_t)light->width + (size_t)column;
+            if (light->numbers[pixel] == PLACE_NONE)
+                continue;
+            uint32_t to = job->next[number][set_of(column, light->first + row)]++;
+            light->places[to] = place_of(job, column, row);
+            light->numbers[pixel] = to;
+            job->share->pixels[to] = (uint32_t)pixel;
+        }
 }
 
 /* Turns counts into first numbers: set by set, square by square. */
@@ -158,74 +137,34 @@ static void number_squares(Share *share, size_t n, uint32_t (*next)[SETS])
     share->first[SETS] = taken;
 }
 
-static Status make_places(Share *share, const Frame *planes, Err *err)
+static Status make_places(Share *share, Frame *planes, Err *err)
 {
     SharedLight *light = share->light;
     size_t pixels = (size_t)light->width * (size_t)light->rows;
     size_t squares = squares_in(light->width) * squares_in(light->rows);
     int threads = share->drawing->params->threads;
     PlaceJob job = {share, planes, NULL};
+    Status status;
     TRY(mem_calloc(&light->numbers, pixels, sizeof *light->numbers, "places", err));
     memset(light->numbers, 0xff, pixels * sizeof *light->numbers); /* PLACE_NONE */
-    TRY(mem_calloc(&job.next, squares, sizeof *job.next, "places", err));
+    TRY_GOTO(mem_calloc(&job.next, squares, sizeof *job.next, "places", err));
     threads_for(squares, threads, count_places, &job);
     number_squares(share, squares, job.next);
     size_t n = share->first[SETS];
-    Status status = mem_calloc(&light->places, n, sizeof *light->places, "places", err);
-    if (status == STATUS_OK)
-        status = mem_calloc(&share->pixels, n, sizeof *share->pixels, "places", err);
-    if (status == STATUS_OK)
-        threads_for(squares, threads, set_places, &job);
+    TRY_GOTO(mem_calloc(&light->places, n, sizeof *light->places, "places", err));
+    TRY_GOTO(mem_calloc(&share->pixels, n, sizeof *share->pixels, "places", err));
+    threads_for(squares, threads, set_places, &job);
+done:
     free(job.next);
     return status;
 }
 
-/* ---- the sky --------------------------------------------------------------------------------- */
-
-/* Whether the ground hides the direction from a place that is not of it. */
-static bool is_grounded(const Share *share, const PixelPlace *place, Vec3 direction)
-{
-    const Ground *ground = &share->drawing->view->ground;
-    if (!ground->present || place->kind == PLACE_GROUND)
-        return false;
-    Vec3 point = vec3_add(share->light->origin,
-                          vec3((double)place->at[0], (double)place->at[1], (double)place->at[2]));
-    double above = vec3_dot(ground->normal, point) - ground->offset_mm;
-    return above * vec3_dot(ground->normal, direction) < 0;
-}
-
-/* Asks one view about a run of numbers. */
-static void ask_view(const Share *share, const BeamView *view, int column, size_t from, size_t to,
-                     BeamQueries *queries)
-{
-    const float widest = sqrtf(3.14159265f / (float)(SETS * share->asked));
-    const float *d = view->axes[2];
-    const Vec3 towards = {(double)d[0], (double)d[1], (double)d[2]};
-    size_t numbers[BEAMS_AT_ONCE];
-    queries->n = 0;
-    for (size_t number = from; number < to; number++) {
-        const PixelPlace *place = &share->light->places[number];
-        uint8_t *answer = &share->answers[number * (size_t)share->stride + (size_t)column];
-        float cosine = d[0] * place->normal[0] + d[1] * place->normal[1] + d[2] * place->normal[2];
-        *answer = cosine > 0 ? 0 : BEAM_UNASKED;
-        if (!(cosine > 0) || is_grounded(share, place, towards))
-            continue;
-        int i = queries->n++;
-        numbers[i] = number;
-        for (int c = 0; c < 3; c++)
-            queries->at[c][i] = place->at[c];
-        queries->widening[i] = cosine < widest ? cosine : widest;
-    }
-    share->kernels->open(view, share->beams->wide, queries);
-    for (int i = 0; i < queries->n; i++)
-        share->answers[numbers[i] * (size_t)share->stride + (size_t)column] =
-            (uint8_t)(BEAM_FREE * queries->open[i] + 0.5f);
-}
+/* ---- what neighbours share ------------------------------------------------------------------- */
 
 /* Runs of numbers: those of a set are in as many as it takes. */
 static size_t runs_of(const Share *share, int set)
 {
-    return (share->first[set + 1] - share->first[set] + BEAMS_AT_ONCE - 1) / BEAMS_AT_ONCE;
+    return (share->first[set + 1] - share->first[set] + PLACES_AT_ONCE - 1) / PLACES_AT_ONCE;
 }
 
 static size_t all_runs(const Share *share)
@@ -240,70 +179,15 @@ static void find_run(const Share *share, size_t index, int *set, size_t *from, s
 {
     for (*set = 0; index >= runs_of(share, *set); ++*set)
         index -= runs_of(share, *set);
-    *from = share->first[*set] + index * BEAMS_AT_ONCE;
+    *from = share->first[*set] + index * PLACES_AT_ONCE;
     *to = share->first[*set + 1];
-    *to = *to - *from > BEAMS_AT_ONCE ? *from + BEAMS_AT_ONCE : *to;
+    *to = *to - *from > PLACES_AT_ONCE ? *from + PLACES_AT_ONCE : *to;
 }
-
-static void ask_run(size_t index, int worker, void *context)
-{
-    const Share *share = context;
-    int set;
-    size_t from, to;
-    find_run(share, index, &set, &from, &to);
-    for (int i = 0; i < share->n_views; i++) {
-        int direction = share->first_view + i;
-        if (direction % SETS == set)
-            ask_view(share, &share->beams->views[i], direction / SETS, from, to,
-                     &share->queries[worker]);
-    }
-}
-
-static void make_view(size_t index, int worker, void *context)
-{
-    (void)worker;
-    const Share *share = context;
-    int direction = share->first_view + (int)index, n = SETS * share->asked;
-    BeamView *view = &share->beams->views[index];
-    view->status = beamview_make(share->beams, beams_direction(n, direction), view, NULL);
-}
-
-/* Makes the views of the next directions, as many as there is room for, unless they are kept. */
-static Status make_views(Share *share, int room, Err *err)
-{
-    Beams *beams = share->beams;
-    int n = SETS * share->asked, left = n - share->first_view;
-    share->n_views = left < room ? left : room;
-    if (beams->kept == n)
-        return STATUS_OK;
-    threads_for((size_t)share->n_views, share->drawing->params->threads, make_view, share);
-    beams->kept = share->n_views == n ? n : 0;
-    for (int i = 0; i < share->n_views; i++)
-        if (beams->views[i].status != STATUS_OK) {
-            beams->kept = 0;
-            return err_set(err, beams->views[i].status, "out of memory: no room for occlusion");
-        }
-    return STATUS_OK;
-}
-
-static Status ask_sky(Share *share, Err *err)
-{
-    int threads = share->drawing->params->threads, n = SETS * share->asked, room;
-    TRY(beams_make_room(share->beams, n, threads, &room, err));
-    for (share->first_view = 0; share->first_view < n; share->first_view += room) {
-        TRY(make_views(share, room, err));
-        threads_for(all_runs(share), threads, ask_run, share);
-    }
-    return STATUS_OK;
-}
-
-/* ---- what neighbours share ------------------------------------------------------------------- */
 
 /* The place of one of the three by three pixels about another's, on its surface, and its weight. */
 typedef struct Neighbour {
     uint32_t number;
-    int set;
-    float part;
+    int set, part;
 } Neighbour;
 
 static int neighbours_of(const Share *share, uint32_t number, Neighbour found[9])
@@ -320,67 +204,9 @@ static int neighbours_of(const Share *share, uint32_t number, Neighbour found[9]
             if (other != PLACE_NONE &&
                 places_are_of_one(&light->places[number], &light->places[other]))
                 found[n++] = (Neighbour){other, set_of(i, light->first + j),
-                                         (float)((i == column ? 2 : 1) * (j == row ? 2 : 1))};
+                                         (i == column ? 2 : 1) * (j == row ? 2 : 1)};
         }
     return n;
-}
-
-static void gather_open(const Share *share, uint32_t number, float *cosines)
-{
-    const float *const directions[3] = {share->directions[0], share->directions[1],
-                                        share->directions[2]};
-    Neighbour found[9];
-    int n = neighbours_of(share, number, found);
-    float sums[2] = {0, 0};
-    share->kernels->cosines(directions, share->light->places[number].normal, SETS * share->stride,
-                            cosines);
-    for (int i = 0; i < n; i++)
-        share->kernels->sum(cosines + found[i].set * share->stride,
-                            share->answers + (size_t)found[i].number * (size_t)share->stride,
-                            share->stride, found[i].part, sums);
-    share->light->open[number] = sums[1] > 0 ? sums[0] / (BEAM_FREE * sums[1]) : 1;
-}
-
-static void gather_run(size_t index, int worker, void *context)
-{
-    const Share *share = context;
-    size_t end = share->first[SETS], from = index * BEAMS_AT_ONCE;
-    for (size_t number = from; number < end && number < from + BEAMS_AT_ONCE; number++)
-        gather_open(share, (uint32_t)number,
-                    share->cosines + (size_t)worker * SETS * (size_t)share->stride);
-}
-
-static Status prepare_sky(Share *share, Err *err)
-{
-    int rays = share->drawing->params->occlusion, workers = share->drawing->params->threads;
-    share->asked = 2 * rays < MOST_A_SET ? 2 * rays : MOST_A_SET;
-    share->stride = (share->asked + SUMMED - 1) / SUMMED * SUMMED;
-    size_t stride = (size_t)share->stride, n = share->first[SETS];
-    TRY(mem_calloc(&share->answers, n, stride, "occlusion", err));
-    memset(share->answers, BEAM_UNASKED, n * stride);
-    for (int c = 0; c < 3; c++)
-        TRY(mem_calloc(&share->directions[c], SETS * stride, sizeof(float), "occlusion", err));
-    for (int k = 0; k < SETS * share->asked; k++) {
-        Vec3 direction = beams_direction(SETS * share->asked, k);
-        size_t place = (size_t)(k % SETS) * stride + (size_t)(k / SETS);
-        share->directions[0][place] = (float)direction.x;
-        share->directions[1][place] = (float)direction.y;
-        share->directions[2][place] = (float)direction.z;
-    }
-    TRY(mem_calloc(&share->cosines, (size_t)workers * SETS * stride, sizeof(float), "occlusion",
-                   err));
-    return mem_calloc(&share->queries, (size_t)workers, sizeof *share->queries, "occlusion", err);
-}
-
-static Status share_sky(Share *share, Err *err)
-{
-    SharedLight *light = share->light;
-    TRY(mem_calloc(&light->open, share->first[SETS], sizeof *light->open, "occlusion", err));
-    TRY(prepare_sky(share, err));
-    TRY(ask_sky(share, err));
-    threads_for((share->first[SETS] + BEAMS_AT_ONCE - 1) / BEAMS_AT_ONCE,
-                share->drawing->params->threads, gather_run, share);
-    return STATUS_OK;
 }
 
 /* ---- area lights ----------------------------------------------------------------------------- */
@@ -590,12 +416,12 @@ static float gather_part(const Share *share, uint32_t number, int points)
     if (is_even(share, number))
         return (float)(share->reach[number] * SETS) / (float)points;
     int n = neighbours_of(share, number, found);
-    float sum = 0, all = 0;
+    int sum = 0, all = 0;
     for (int i = 0; i < n; i++) {
-        sum += found[i].part * (float)share->reach[found[i].number];
+        sum += found[i].part * share->reach[found[i].number];
         all += found[i].part;
     }
-    return sum * SETS / (all * (float)points);
+    return (float)(sum * SETS) / (float)(all * points);
 }
 
 static void gather_reach(size_t index, int worker, void *context)
@@ -604,8 +430,8 @@ static void gather_reach(size_t index, int worker, void *context)
     const Share *share = context;
     int points = light_points(&share->drawing->view->lights[share->number]);
     float *parts = share->light->parts[share->number];
-    size_t end = share->first[SETS], from = index * BEAMS_AT_ONCE;
-    for (size_t number = from; number < end && number < from + BEAMS_AT_ONCE; number++)
+    size_t end = share->first[SETS], from = index * PLACES_AT_ONCE;
+    for (size_t number = from; number < end && number < from + PLACES_AT_ONCE; number++)
         parts[number] = gather_part(share, (uint32_t)number, points);
 }
 
@@ -622,7 +448,7 @@ static Status share_lights(Share *share, Err *err)
         TRY(mem_calloc(&light->parts[i], n, sizeof *light->parts[i], "lights", err));
         share->number = (int)i;
         TRY(find_reach(share, err));
-        threads_for((n + BEAMS_AT_ONCE - 1) / BEAMS_AT_ONCE, threads, gather_reach, share);
+        threads_for((n + PLACES_AT_ONCE - 1) / PLACES_AT_ONCE, threads, gather_reach, share);
     }
     return STATUS_OK;
 }
@@ -638,25 +464,11 @@ bool share_is_wanted(const View *view, const RenderParams *params)
            !(view->effects.xray.per_mm > 0) && (params->occlusion > 0 || (params->shadows && soft));
 }
 
-static void release(Share *share)
-{
-    free(share->pixels);
-    free(share->answers);
-    for (int c = 0; c < 3; c++)
-        free(share->directions[c]);
-    free(share->cosines);
-    free(share->queries);
-    free(share->reach);
-}
-
-Status share_light(const Drawing *drawing, const LightViews *views, const Frame *planes,
-                   Beams *beams, SharedLight **out, Err *err)
+Status share_light(const Drawing *drawing, const LightViews *views, Frame *planes,
+                   const Beams *beams, SharedLight **out, Err *err)
 {
     const RenderParams *params = drawing->params;
-    Share share = {.drawing = drawing,
-                   .views = views,
-                   .beams = beams,
-                   .kernels = beamkernels[kernels_kind(params->kernels)]};
+    Share share = {.drawing = drawing, .views = views};
     Status status;
     TRY(mem_calloc(&share.light, 1, sizeof *share.light, "places", err));
     share.light->side = 1;
@@ -667,13 +479,14 @@ Status share_light(const Drawing *drawing, const LightViews *views, const Frame 
         params->occlusion > 0 ? beams->origin : box_center(drawing->geometry->bounds);
     TRY_GOTO(make_places(&share, planes, err));
     if (params->occlusion > 0)
-        TRY_GOTO(share_sky(&share, err));
+        TRY_GOTO(skylight_find(drawing, beams, share.pixels, share.first[SETS], share.light, err));
     if (params->shadows)
         TRY_GOTO(share_lights(&share, err));
     *out = share.light;
     share.light = NULL;
 done:
     sharedlight_free(share.light);
-    release(&share);
+    free(share.pixels);
+    free(share.reach);
     return status;
 }

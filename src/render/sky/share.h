@@ -17,12 +17,11 @@ bool share_is_wanted(const View *view, const RenderParams *params);
 enum { SHARE_MARGIN = 3 };
 
 /* Finds it for the drawing's band, whose centre rays have seen what `planes` has, depth and normal
- * of vessels. `beams` is of what hides the sky, and needed for occlusion alone; it keeps
- * views for the next band where they take little memory; area lights are looked from
- * by `views`, or by rays of the drawing's caster where those cannot or are NULL. *out is owned. The
- * rows at the band's edges are right where they are the picture's too, or SHARE_MARGIN away.
- * STATUS_MEMORY. */
-MUST_CHECK Status share_light(const Drawing *drawing, const LightViews *views, const Frame *planes,
-                              Beams *beams, SharedLight **out, Err *err);
+ * of vessels. `beams` is of what hides the sky, and needed for occlusion alone; area lights
+ * are looked from by `views`, or by rays of the drawing's caster where those cannot or are NULL.
+ * *out is owned. The rows at the band's edges are right where they are the picture's too, or
+ * SHARE_MARGIN away. STATUS_MEMORY. */
+MUST_CHECK Status share_light(const Drawing *drawing, const LightViews *views, Frame *planes,
+                              const Beams *beams, SharedLight **out, Err *err);
 
 #endif

@@ -1,0 +1,14 @@
+/* Ambient occlusion: the part of the sky that the places of a picture see. */
+#ifndef CORCAST_RENDER_SKYLIGHT_H
+#define CORCAST_RENDER_SKYLIGHT_H
+
+#include "render/light/sharedlight.h"
+#include "render/sky/beams.h"
+
+/* Sets light->open (owned by *light even when this fails) of n places, which lie in `pixels`, by
+ * `drawing->params->occlusion` beams. `light` has places and numbers. What a place sees depends on
+ * those of the row above it and of the row below. STATUS_MEMORY. */
+MUST_CHECK Status skylight_find(const Drawing *drawing, const Beams *beams, const uint32_t *pixels,
+                                size_t n, SharedLight *light, Err *err);
+
+#endif
