@@ -279,6 +279,17 @@ Status thinvessels_rest(const ThinVessels *thin, Geometry *thick, Err *err)
 
 /* ---- coverage -------------------------------------------------------------------------------- */
 
+/* In place of fminf and fmaxf, which are calls: nothing here is NaN. */
+static float least(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static float greatest(float a, float b)
+{
+    return a > b ? a : b;
+}
+
 /* What has been drawn over a pixel. */
 typedef struct Cover {
     float clear;    /* the part that other runs than the last have left free */
@@ -379,7 +390,7 @@ static void cover(Brush *brush, int column, int row, float length, float depth_m
         at->run_part = 0;
         at->run = brush->strip->run;
     }
-    at->run_part = fminf(1, at->run_part + area);
+    at->run_part = least(1, at->run_part + area);
     at->area += area;
     at->color[0] += area * brush->color.r;
     at->color[1] += area * brush->color.g;
@@ -392,8 +403,8 @@ static bool clip(float start, float step, float low, float high, float *from, fl
     if (step == 0)
         return start >= low && start < high;
     float a = (low - start) / step, b = (high - start) / step;
-    *from = fmaxf(*from, fminf(a, b));
-    *to = fminf(*to, fmaxf(a, b));
+    *from = greatest(*from, least(a, b));
+    *to = least(*to, greatest(a, b));
     return *from < *to;
 }
 
@@ -411,14 +422,15 @@ static int cell_of(float at, int first, int end)
     return cell < first ? first : cell >= end ? end - 1 : cell;
 }
 
-/* One line of a strip, beside its axis by (aside_x, aside_y), from pixel to pixel. */
-static void draw_line(Brush *brush, float aside_x, float aside_y)
+/* One line of a strip of this length, beside its axis by (aside_x, aside_y), from pixel to pixel.
+ */
+static void draw_line(Brush *brush, float length, float aside_x, float aside_y)
 {
     const ThinStrip *strip = brush->strip;
     int width = brush->picture->drawing->view->camera.width;
     float x = strip->x[0] + aside_x, y = strip->y[0] + aside_y;
     float step_x = strip->x[1] - strip->x[0], step_y = strip->y[1] - strip->y[0];
-    float length = hypotf(step_x, step_y), t = 0, end = 1;
+    float t = 0, end = 1;
     if (!clip(x, step_x, 0, (float)width, &t, &end) ||
         !clip(y, step_y, (float)brush->first_row, (float)brush->end_row, &t, &end))
         return;
@@ -427,12 +439,12 @@ static void draw_line(Brush *brush, float aside_x, float aside_y)
     while (t < end && column >= 0 && column < width && row >= brush->first_row &&
            row < brush->end_row) {
         float out_x = leaves(x, step_x, column), out_y = leaves(y, step_y, row);
-        float next = fminf(end, fminf(out_x, out_y));
+        float next = least(end, least(out_x, out_y));
         float middle = (t + next) / 2;
         if (next > t)
             cover(brush, column, row, (next - t) * length,
                   strip->depth_mm[0] + middle * (strip->depth_mm[1] - strip->depth_mm[0]));
-        t = fmaxf(t, next);
+        t = greatest(t, next);
         if (out_x <= out_y)
             column += step_x > 0 ? 1 : -1;
         else
@@ -443,7 +455,7 @@ static void draw_line(Brush *brush, float aside_x, float aside_y)
 /* The width that a strip is drawn with, pixels. */
 static float drawn_width(const ThinVessels *thin, const ThinStrip *strip)
 {
-    return fmaxf(strip->width, (float)thin->least_px);
+    return greatest(strip->width, (float)thin->least_px);
 }
 
 static void draw_strip(Brush *brush)
@@ -458,7 +470,7 @@ static void draw_strip(Brush *brush)
     brush->line_width = wide / (float)lines;
     for (int k = 0; k < lines; k++) {
         float aside = ((float)k + 0.5f) / (float)lines - 0.5f;
-        draw_line(brush, -step_y / length * aside * wide, step_x / length * aside * wide);
+        draw_line(brush, length, -step_y / length * aside * wide, step_x / length * aside * wide);
     }
 }
 
@@ -495,7 +507,7 @@ static void draw_block(size_t index, int worker, void *context)
 static size_t block_of(const ThinPicture *picture, float y)
 {
     const Band *band = &picture->drawing->band;
-    float within = fminf(fmaxf(y - (float)band->first, 0), (float)(band->rows - 1));
+    float within = least(greatest(y - (float)band->first, 0), (float)(band->rows - 1));
     return (size_t)within / ROWS;
 }
 
@@ -505,8 +517,8 @@ static bool blocks_of(const ThinPicture *picture, const ThinStrip *strip, size_t
 {
     const Band *band = &picture->drawing->band;
     float reach = drawn_width(picture->thin, strip);
-    float top = fminf(strip->y[0], strip->y[1]) - reach;
-    float bottom = fmaxf(strip->y[0], strip->y[1]) + reach;
+    float top = least(strip->y[0], strip->y[1]) - reach;
+    float bottom = greatest(strip->y[0], strip->y[1]) + reach;
     *first = block_of(picture, top);
     *last = block_of(picture, bottom);
     return bottom > (float)band->first && top < (float)(band->first + band->rows);
