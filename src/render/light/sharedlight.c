@@ -16,13 +16,6 @@ static float distance2(const PixelPlace *a, const PixelPlace *b)
     return sum;
 }
 
-static uint32_t number_at(const SharedLight *shared, int column, int row)
-{
-    if (column < 0 || column >= shared->width || row < 0 || row >= shared->rows)
-        return PLACE_NONE;
-    return shared->numbers[(size_t)row * (size_t)shared->width + (size_t)column];
-}
-
 /* That of the window about (column, row) that is nearest to what is seen. */
 static uint32_t nearest_number(const SharedLight *shared, int column, int row,
                                const PixelPlace *seen)
@@ -31,7 +24,7 @@ static uint32_t nearest_number(const SharedLight *shared, int column, int row,
     float least = HUGE_VALF;
     for (int j = row - SEARCHED; j <= row + SEARCHED; j++)
         for (int i = column - SEARCHED; i <= column + SEARCHED; i++) {
-            uint32_t number = number_at(shared, i, j);
+            uint32_t number = sharedlight_at(shared, i, j);
             if (number == PLACE_NONE || shared->places[number].kind != seen->kind)
                 continue;
             float far = distance2(&shared->places[number], seen);
@@ -46,8 +39,8 @@ static uint32_t nearest_number(const SharedLight *shared, int column, int row,
 uint32_t sharedlight_number(const SharedLight *shared, double i, double j, const PixelPlace *seen)
 {
     int column = (int)floor((i + 0.5) / shared->side);
-    int row = (int)floor((j + 0.5) / shared->side) - shared->first;
-    uint32_t own = number_at(shared, column, row);
+    int row = (int)floor((j + 0.5) / shared->side);
+    uint32_t own = sharedlight_at(shared, column, row);
     if (own != PLACE_NONE && places_are_of_one(&shared->places[own], seen))
         return own;
     return nearest_number(shared, column, row, seen);

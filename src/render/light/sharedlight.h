@@ -44,6 +44,16 @@ static inline bool places_are_of_one(const PixelPlace *a, const PixelPlace *b)
     return a->kind == b->kind && off_a < most && off_a > -most && off_b < most && off_b > -most;
 }
 
+/* The number of what the centre of a pixel sees, counted in the picture; PLACE_NONE, also outside
+ * the rows that there are. */
+static inline uint32_t sharedlight_at(const SharedLight *shared, int column, int row)
+{
+    row -= shared->first;
+    if (column < 0 || column >= shared->width || row < 0 || row >= shared->rows)
+        return PLACE_NONE;
+    return shared->numbers[(size_t)row * (size_t)shared->width + (size_t)column];
+}
+
 /* The number of the place whose light the sample at (i, j) of the drawing has, which sees `seen`:
  * that of the pixel that it lies in if that is of its surface, else the one nearest to it in space
  * of those no farther than two pixels, of one kind with it; PLACE_NONE if there is none. */

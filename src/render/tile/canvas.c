@@ -190,25 +190,42 @@ static void set_places(const SeenTile *seen, TileSurface *surface)
     }
 }
 
-/* The parts of light that samples share with their pixels. */
+/* The number of the place that a sample shares the light of. `per` are pixels across and down per
+ * unit of the view's plane. */
+static uint32_t shared_number(const Canvas *canvas, const SeenTile *seen, int sample,
+                              const double per[2])
+{
+    const SharedLight *shared = canvas->drawing->shared;
+    const Camera *camera = &canvas->drawing->view->camera;
+    Vec3 line = seen_line(seen, sample), normal = load_vec3(seen->hits->normal, sample);
+    double away = seen->perspective ? vec3_dot(normal, line) : normal.z;
+    PixelPlace place = sharedlight_place(
+        shared, seen->ground >> sample & 1 ? PLACE_GROUND : PLACE_VESSEL,
+        viewpoint_point(&canvas->eye, seen_place(seen, sample)),
+        viewpoint_to_world(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
+        sharedlight_pixel_mm(camera, seen->hits->z[sample]));
+    return sharedlight_number(shared, line.x * per[0] + (camera->width - 1) / 2.0,
+                              (camera->height - 1) / 2.0 - line.y * per[1], &place);
+}
+
+/* The parts of light that samples share with their pixels, whose centres they are where there is
+ * one a pixel. */
 static void set_shared(const Canvas *canvas, const SeenTile *seen, CanvasWorker *own)
 {
     const SharedLight *shared = canvas->drawing->shared;
     const Camera *camera = &canvas->drawing->view->camera;
-    double per_x = camera->width / vec3_length(camera->right);
-    double per_y = camera->height / vec3_length(camera->up);
+    const double per[2] = {camera->width / vec3_length(camera->right),
+                           camera->height / vec3_length(camera->up)};
+    bool centers = canvas->more.side == 0 && shared->side == 1;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (seen->hits->state[sample] != TILE_HIT)
             continue;
-        Vec3 line = seen_line(seen, sample), normal = load_vec3(seen->hits->normal, sample);
-        double away = seen->perspective ? vec3_dot(normal, line) : normal.z;
-        PixelPlace place = sharedlight_place(
-            shared, seen->ground >> sample & 1 ? PLACE_GROUND : PLACE_VESSEL,
-            viewpoint_point(&canvas->eye, seen_place(seen, sample)),
-            viewpoint_to_world(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
-            sharedlight_pixel_mm(camera, seen->hits->z[sample]));
-        uint32_t number = sharedlight_number(shared, line.x * per_x + (camera->width - 1) / 2.0,
-                                             (camera->height - 1) / 2.0 - line.y * per_y, &place);
+        uint32_t number = PLACE_NONE;
+        if (centers)
+            number = sharedlight_at(shared, seen->column + tile_sample_x(sample),
+                                    seen->row + tile_sample_y(sample));
+        if (number == PLACE_NONE)
+            number = shared_number(canvas, seen, sample, per);
         own->open[sample] = sharedlight_open(shared, number);
         for (size_t i = 0; i < canvas->look.n_lights; i++)
             if (shared->parts[i])
