@@ -131,7 +131,9 @@ const Command command_povray = {
                 "environment, here and for verify:\n"
                 "  CORCAST_POVRAY           the program, or a script that stands for it (povray)\n"
                 "  CORCAST_POVRAY_PATIENCE  seconds without a word after which it is ended (600; "
-                "0: never)\n",
+                "0: never)\n"
+                "  CORCAST_TACHYON          likewise the witness of verify, with the same patience "
+                "(tachyon)\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
