@@ -188,7 +188,30 @@ static void put_arrays(Text *out, size_t n, bool in_matrices)
         text_printf(out, "#declare Vs=array[%zu]\n#declare Ve=array[%zu]\n", n, n);
 }
 
-/* A function for each segment and part that a cell uses. */
+/* Whether segments differ in what they are painted with. */
+static bool is_painted(const PovrayGeometry *geometry)
+{
+    return geometry->params->ids || geometry->scene->appearance.colors;
+}
+
+/* The paint of each segment that a cell uses, by the arguments of Term_Paint. */
+static void put_paints(Text *out, const PovrayGeometry *geometry, const uint8_t *used)
+{
+    const Geometry *all = &geometry->scene->geometry;
+    text_printf(out, "#if (Tree_Painted)\n#declare Paints=array[%zu]\n", all->n_segments);
+    for (uint32_t i = 0; i < all->n_segments; i++) {
+        if (!used[i])
+            continue;
+        text_printf(out, "Term_Paint(%u,", i);
+        text_number(out, all->segments[i].radius_mm);
+        text_puts(out, ",");
+        put_paint(out, geometry->params, all->segments[i].segment);
+        text_puts(out, ")\n");
+    }
+    text_puts(out, "#end\n");
+}
+
+/* A function for each segment and part that a cell uses, and its paint. */
 static Status put_terms(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
@@ -206,6 +229,8 @@ static Status put_terms(Text *out, void *context, Err *err)
         const Term term = {&geometry->cells[0].forms[i], i, in_matrices};
         TRY_GOTO(put_segment(out, &templates, &term, used[i], err));
     }
+    if (is_painted(geometry))
+        put_paints(out, geometry, used);
 done:
     free(used);
     release_term_templates(&templates);
@@ -215,14 +240,13 @@ done:
 Status put_cell_macros(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    const Scene *scene = geometry->scene;
     ErfForm erf = geometry->cells[0].erf;
     Values values = {0};
     static const char *const names[ERF_TERMS] = {"erf1", "erf3", "erf5", "erf7", "erf9"};
     for (int i = 0; i < ERF_TERMS; i++)
         add_number(&values, names[i], erf_forms[erf][i]);
     add_flag(&values, "exact_erf", erf == ERF_EXACT);
-    add_flag(&values, "painted", scene->appearance.colors || geometry->params->ids);
+    add_flag(&values, "painted", is_painted(geometry));
     add_part(&values, "scales", put_scales, context);
     add_part(&values, "terms", put_terms, context);
     return values_expand(&values, geometry->params, "povray/isosurface.inc", out, err);
@@ -385,25 +409,14 @@ static void put_pick(Text *text, const CellTree *cells, const Cell *cell)
     close_calls(text, cell->count - 1);
 }
 
-/* The last arguments of Cell_One_Paint and Cell_Paint. */
-static void put_segment_paint(Text *text, const EmitParams *params, uint32_t number)
-{
-    const FieldSegment *segment = &params->scene->geometry.segments[number];
-    text_number(text, segment->radius_mm);
-    text_puts(text, ",");
-    put_paint(text, params, segment->segment);
-}
-
 /* Appends the paint of a cell: that of the term that is largest all over it, or of each. */
-static Status put_cell_paint(Text *text, const CellTemplates *templates, const EmitParams *params,
-                             const CellTree *cells, const Cell *cell, CellText *part, Err *err)
+static Status put_cell_paint(Text *text, const CellTemplates *templates, const CellTree *cells,
+                             const Cell *cell, CellText *part, Err *err)
 {
     const CellTerm *terms = cells->terms + cell->first;
     bool grouped = cell->n_groups > 0;
     if (cell->largest != CELL_MIXED) {
-        text_puts(text, " Cell_One_Paint(");
-        put_segment_paint(text, params, cell->largest);
-        text_puts(text, ")");
+        text_printf(text, " Cell_One_Paint(%u)", cell->largest);
         return STATUS_OK;
     }
     if (grouped) {
@@ -415,11 +428,9 @@ static Status put_cell_paint(Text *text, const CellTemplates *templates, const E
     put_pick(cleared(&part->pick), cells, cell);
     snprintf(part->count, sizeof part->count, "%u", cell->count);
     cleared(&part->paints);
-    for (uint32_t k = 0; k < cell->count; k++) {
-        text_printf(&part->paints, "Cell_Paint(%u,%u,", k, cell->count);
-        put_segment_paint(&part->paints, params, terms[k].segment);
-        text_puts(&part->paints, ")");
-    }
+    for (uint32_t k = 0; k < cell->count; k++)
+        text_printf(&part->paints, "[%u/%u Paints[%u]][%u/%u Paints[%u]]", k, cell->count,
+                    terms[k].segment, k + 1, cell->count, terms[k].segment);
     const TmplValue values[] = {{"largest", text_chars(&part->largest)},
                                 {"pick", text_chars(&part->pick)},
                                 {"paints", text_chars(&part->paints)},
@@ -532,9 +543,8 @@ static Status put_cell(Text *text, const Tmpl *template, const CellTree *cells, 
 static Status put_isosurfaces(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    const Scene *scene = geometry->scene;
     const CellTree *cells = &geometry->cells[geometry->object];
-    bool painted = geometry->params->ids || scene->appearance.colors;
+    bool painted = is_painted(geometry);
     CellTemplates templates = {0};
     CellText part = {0};
     Status status;
@@ -546,8 +556,8 @@ static Status put_isosurfaces(Text *out, void *context, Err *err)
         cleared(&part.paint);
         cleared(&part.by_segment);
         if (painted)
-            TRY_GOTO(put_cell_paint(blended ? &part.by_segment : &part.paint, &templates,
-                                    geometry->params, cells, cell, &part, err));
+            TRY_GOTO(put_cell_paint(blended ? &part.by_segment : &part.paint, &templates, cells,
+                                    cell, &part, err));
         if (blended)
             TRY_GOTO(
                 put_cell_blend(&part.paint, &templates, geometry->params, cells, cell, &part, err));

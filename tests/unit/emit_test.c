@@ -287,14 +287,13 @@ static void ids_are_painted_only_when_asked_for(void **state)
     size_t many = count(painted.geometry.chars, "\nCell_Top() ");
     assert_true(one > 0 && many > 0);
     assert_int_equal(one + many, painted.report.cells);
-    assert_non_null(strstr(painted.geometry.chars, "Cell_One_Paint(1.5,2,0,0,0)"));
+    assert_non_null(strstr(painted.geometry.chars, "Term_Paint(0,1.5,2,0,0,0)"));
     release(&plain);
     scene.appearance.colors = segment_colors;
     scene.appearance.values = values;
     scene.appearance.scale = scale;
     plain = emit(&scene, &two_files);
-    assert_non_null(
-        strstr(plain.geometry.chars, "Cell_One_Paint(1.2,3,0,Value_None,<0.1,0.5,0.1>)"));
+    assert_non_null(strstr(plain.geometry.chars, "Term_Paint(1,1.2,3,0,Value_None,<0.1,0.5,0.1>)"));
     release(&plain);
     release(&painted);
 }
