@@ -66,7 +66,7 @@ LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 VIEWER := build/viewer/viewer.js
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo figures gallery validate bench bench-grow bench-render bench-compare bench-mesh export-all verify-all power power-program fit-blob optima check check-all check-quick program unit \
+.PHONY: all deps demo figures gallery validate bench bench-grow bench-render bench-compare bench-mesh export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
 .DELETE_ON_ERROR:
@@ -137,6 +137,11 @@ verify-all: ## verify models x trees x projections x shadows x antialiasing; rep
 	$(Q).ci/deps build run
 	$(Q)$(AGAIN) all
 	$(Q)JOBS=$(JOBS) tests/verify-all
+
+coronary: ## a coronary artery on a measured heart, in stages, beside published morphometry; results in out/coronary/
+	$(Q).ci/deps build run
+	$(Q)$(AGAIN) all
+	$(Q)docs/coronary/run
 
 power: ## plant faults and see what the judge finds, and the tests; writes its parts of docs/VALIDATION.md
 	$(Q).ci/deps build run check

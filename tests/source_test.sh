@@ -75,7 +75,7 @@ test_every_fault_of_make_power_changes_its_file() {
 test_make_help_names_every_public_target() {
     local target
     run_ok make -C "$REPO" --no-print-directory help
-    for target in all deps demo bench-compare verify-all power check check-all unit layers format format-check asan tsan fuzz golden-update \
+    for target in all deps demo bench-compare verify-all coronary power check check-all unit layers format format-check asan tsan fuzz golden-update \
         install uninstall dist check-quick clean help; do
         expect_stdout "^  $target "
     done

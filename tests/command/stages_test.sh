@@ -150,4 +150,20 @@ a pixel must be from 1e-06 to 1e.06 mm wide|--demand demand.pgm,0
 END
 }
 
+test_the_coronary_artery_says_when_there_is_no_heart() {
+    CORCAST_SHARED=$PWD/nowhere run_ok "$REPO/docs/coronary/run"
+    grep -q 'coronary: SKIPPED, nothing was grown: there is no heart' stderr || fail "expected that to be said"
+}
+
+# The stages of the coronary artery, of a few terminals, on a box in the heart's place.
+test_the_coronary_artery_grows_in_its_stages() {
+    cp "$REPO"/docs/coronary/{trunk.swc,stages.ini} .
+    awk '/^#/ { next } { $6 = 32; print }' trunk.swc >territory.swc
+    run_ok corcast export territory.swc -o lad.nii.gz --voxel 4
+    sed -i -e 's/^domain = .*/domain = hull:20/' -e 's/^terminals = \([0-9]*\)000/terminals = \1/' stages.ini
+    run_ok corcast grow --from trunk.swc --domain hull:20 --stages stages.ini --seed 2 -o tree.swc
+    run_ok corcast info tree.swc --json
+    expect_json stdout '.terminals == 100 and .gamma_by_radius == [[0.013, 3], [0.04, 2.1]]'
+}
+
 run_tests "$@"

@@ -99,7 +99,9 @@ static Status change_domain(Staging *staging, const Tree *from, Err *err)
         (staging->domain && strcmp(growing->domain_spec, staging->domain) == 0))
         return STATUS_OK;
     Domain domain;
-    TRY(tree_domain_parse(growing->domain_spec, from, staging->last_name, &domain, err));
+    TRY(tree_domain_parse(growing->domain_spec, from,
+                          staging->last_name ? staging->last_name : growing->from_path, &domain,
+                          err));
     domain_release(&growing->domain);
     growing->domain = domain;
     staging->domain = growing->domain_spec;
