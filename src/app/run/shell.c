@@ -42,7 +42,7 @@ Status shell_run(const char *command, bool heard, int *exit_status, Err *err)
     file_kill_on_signal(child);
     while (waitpid(child, &ended, 0) < 0 && errno == EINTR)
         ;
-    file_kill_on_signal(0);
+    file_spare_on_signal(child);
     *exit_status = WIFEXITED(ended) ? WEXITSTATUS(ended) : 127;
     if (*exit_status < 126)
         return STATUS_OK;
