@@ -40,6 +40,8 @@ static const double last_moves = 40, least_left = 0.1, most_left = 0.5;
 static const double least_sweep_gain = 1e-4, least_joint_gain = 1e-4;
 static const double least_gain_before = 2e-3, least_gain_mending = 2e-4, least_gain_after = 5e-5;
 enum { ROUNDS_OF_MENDING = 120 };
+/* The moves of a cycle over the square of the number of terminals. */
+static const double moves_per_square = 20;
 /* Segments that are moved around either end of one that breaks a rule. */
 enum { NEIGHBOURS = 8 };
 /* Rounds after which reserved radii are computed anew. */
@@ -64,6 +66,12 @@ typedef struct Refinement {
     int32_t *best_parent;
     Vec3 *best_place;
 } Refinement;
+
+/* Where a cycle began. */
+typedef struct Cycle {
+    uint64_t first_move;
+    double first_fraction; /* of the budget */
+} Cycle;
 
 /* The most moves that a level tries on a tree of so many terminals if neither moves nor seconds are
  * given. Geometry ends earlier when there is little left to gain. */
@@ -208,7 +216,8 @@ static Status descend(Refinement *refinement, double least_gain, bool *over, Err
     for (int round = 1; !*over && cost < before * (1 - least_gain); round++) {
         before = cost;
         TRY(settle_for_round(search, round, err));
-        if (search->arbor.local && count_unclear(search) <= refinement->unclear)
+        if (search->arbor.local && arbor_cost(&search->arbor) < refinement->best_cost &&
+            count_unclear(search) <= refinement->unclear)
             remember(refinement);
         if (refinement->params->level != GROW_REFINE_GEOMETRY)
             TRY(shuffle(refinement, 0, over, err));
@@ -253,13 +262,25 @@ static Status repair(Refinement *refinement, bool *over, Err *err)
     return STATUS_OK;
 }
 
-/* How much of annealing is done, 1: all. */
-static double part_done(const Refinement *refinement)
+/* The moves of a cycle: of annealing, mending and the descent after it. Several cycles find more in
+ * a small tree than one long one: where bifurcations would merge, T is right only after a descent.
+ */
+static double cycle_moves(const Refinement *refinement)
+{
+    double terminals = (double)refinement->search.arbor.terminals;
+    return moves_per_square * terminals * terminals;
+}
+
+/* How much of a cycle's annealing is done, 1: all. */
+static double part_done(const Refinement *refinement, const Cycle *cycle)
 {
     const LocalSearch *search = &refinement->search;
-    double moves = last_moves * (double)search->arbor.terminals;
-    double left = search->tried > 0 ? moves * refinement->fraction / (double)search->tried : 0;
-    return refinement->fraction / (1 - fmin(fmax(left, least_left), most_left));
+    double moves = (double)(search->tried - cycle->first_move);
+    double done =
+        fmax(moves / cycle_moves(refinement),
+             (refinement->fraction - cycle->first_fraction) / (1 - cycle->first_fraction));
+    double left = moves > 0 ? last_moves * (double)search->arbor.terminals * done / moves : 0;
+    return done / (1 - fmin(fmax(left, least_left), most_left));
 }
 
 /* Has segments break rules for a penalty of `rate`; centrelines alone may not cross at any. */
@@ -277,8 +298,9 @@ static Status anneal(Refinement *refinement, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
     Arbor *arbor = &search->arbor;
+    const Cycle cycle = {search->tried, refinement->fraction};
     double unit = cost_of_segment(arbor);
-    for (double part; (part = part_done(refinement)) < 1 && !*over;) {
+    for (double part; (part = part_done(refinement, &cycle)) < 1 && !*over;) {
         TRY(allow_faults(search, first_rate * pow(last_rate / first_rate, part), err));
         TRY(shuffle(refinement, unit * hot * pow(cold / hot, part), over, err));
         TRY(sweep(refinement, over, err));
@@ -320,20 +342,27 @@ static Status improve_topology(Refinement *refinement, bool *over, Err *err)
     TRY(anneal(refinement, over, err));
     TRY(mend(refinement, &done, over, err));
     search->penalties.active = false;
-    return done && arbor_cost(&search->arbor) < refinement->best_cost ? STATUS_OK
-                                                                      : recall(refinement, err);
+    if (!done)
+        TRY(recall(refinement, err));
+    double best = refinement->best_cost;
+    TRY(descend(refinement, least_gain_after, over, err));
+    return arbor_cost(&search->arbor) < best ? STATUS_OK : recall(refinement, err);
 }
 
 static Status refine(Refinement *refinement, Err *err)
 {
     GrowRefine level = refinement->params->level;
     bool over = is_over(refinement);
+    double left;
     if (level == GROW_REFINE_GEOMETRY)
         return descend(refinement, least_sweep_gain, &over, err);
     if (level == GROW_REFINE_ANNEAL) /* so that there is something if it is stopped */
         TRY(descend(refinement, least_gain_before, &over, err));
-    TRY(improve_topology(refinement, &over, err));
-    return descend(refinement, least_gain_after, &over, err);
+    do {
+        TRY(improve_topology(refinement, &over, err));
+        left = (double)refinement->search.tried * (1 / refinement->fraction - 1);
+    } while (!over && left > cycle_moves(refinement));
+    return STATUS_OK;
 }
 
 /* The tree's target, mm^(1 + lambda). */
