@@ -50,6 +50,7 @@ changes the numbers of its eight nearest ancestors at once @ network.c @ LEVELS 
 whenever the tree has grown by a fifth @ grow.c @ refresh_growth = 1.2;
 ahead of its share by more than a sixteenth @ forest.c @ lead = 1.0 / 16;
 all by 1.1, and those of segments that break a rule by 2.2 @ refine_penalty.c @ rise = 1.1, steep_rise = 2.2;
+as far as the rules are kept with 0.15 of the radii to spare @ repair.c @ relaxed_spare = 0.15,
 Penalties rise twentyfold @ refine.c @ first_rate = 0.1, last_rate = 2;
 a tenth of the budget is left, or what 40 moves a terminal take, half of it at most @ refine.c @ last_moves = 40, least_left = 0.1, most_left = 0.5;
 the same with 2,000 moves a terminal @ refine.c @ [GROW_REFINE_ANNEAL] = 2000}

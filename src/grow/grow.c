@@ -118,6 +118,17 @@ static double mean_end_radius(const Network *net)
     return sum / (double)net->terminals;
 }
 
+/* Moves all bifurcations to better places while the tree is as small as asked for. */
+static Status relax(Growth *growth, Err *err)
+{
+    Network *net = &growth->net;
+    if (net->terminals > growth->params->relax || !growth->grid.item || net->trunk)
+        return STATUS_OK;
+    TRY(relax_network(net, &growth->grid, growth->domain, &growth->rules, err));
+    network_refresh(net, growth->round.threads);
+    return entries_widen(&growth->grid, &growth->rules, net, err);
+}
+
 /* Brings what ages with growth up to date when it is due. */
 static Status keep_up(Growth *growth, Err *err)
 {
@@ -127,6 +138,7 @@ static Status keep_up(Growth *growth, Err *err)
         TRY(refresh(growth, WEIGHTS_ROUGH, err));
         if (growth->grid.item)
             TRY(entries_widen(&growth->grid, &growth->rules, net, err));
+        TRY(relax(growth, err));
         if (growth->params->min_radius_mm > 0)
             growth->end_radius = mean_end_radius(net);
         growth->refresh_until = (size_t)(growth_until_refresh(growth) * (double)terminals) + 1;
@@ -420,6 +432,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     size_t broken = 0;
     TRY_GOTO(refresh(&growth, WEIGHTS_FINE, err));
     TRY_GOTO(check_range(&growth, err));
+    TRY_GOTO(relax(&growth, err));
     if (growth.grid.item)
         TRY_GOTO(repair_network(&growth.net, &growth.grid, domain, &growth.rules,
                                 growth.round.threads, &broken, err));

@@ -6,8 +6,13 @@
  *
  * A move changes the radii by much less than the `spare` that moved segments keep. So all segments
  * are tested once (look_at_chunk), and in later rounds only those that were within `spare` of
- * breaking a rule. */
+ * breaking a rule.
+ *
+ * Relaxing (relax) moves bifurcations likewise, but to where the tree's target is less
+ * [bifurcation.h], or a part of the way there that keeps the rules with room for growth. */
 #include "grow/repair.h"
+
+#include "grow/cco/bifurcation.h"
 
 #include <float.h>
 #include <math.h>
@@ -20,6 +25,14 @@ enum { FEW = 20 };
 static const double spare = 2e-3;
 /* How far bifurcations are moved, over the radius of the segment that ends there. */
 static const double steps[] = {0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
+
+/* Relaxed segments keep to them with this to spare, as radii grow; bifurcations are kept so many
+ * times the least length off the ends; and tries of ever shorter steps. */
+static const double relaxed_spare = 0.15, off_ends = 1.02;
+enum { TRIES = 3 };
+/* Rounds in which the best place is found, and a gain over the target that is none. */
+enum { PLACE_ROUNDS = 2 };
+static const double least_gain = 1e-9;
 
 typedef struct Repair {
     Network *net;
@@ -107,15 +120,15 @@ static double fault(const Repair *repair, int32_t i, double margin, int32_t belo
     return worst;
 }
 
-/* The faults of the three segments that meet at a bifurcation; anything from `enough` on when they
- * are that much. */
-static double fault_at(const Repair *repair, int32_t node, double enough)
+/* The faults of the three segments that meet at a bifurcation, their radii widened by `margin` of
+ * them; anything from `enough` on when they are that much. */
+static double fault_at(const Repair *repair, int32_t node, double margin, double enough)
 {
     const int32_t *child = repair->net->segment[node].child;
     int32_t with;
-    double sum = fault(repair, node, spare, INT32_MAX, &with);
+    double sum = fault(repair, node, margin, INT32_MAX, &with);
     for (int slot = 0; slot < 2 && sum < enough; slot++)
-        sum += fault(repair, child[slot], spare, INT32_MAX, &with);
+        sum += fault(repair, child[slot], margin, INT32_MAX, &with);
     return sum;
 }
 
@@ -143,7 +156,8 @@ static void try_step(const Repair *repair, int32_t node, Vec3 from, double step,
                 if ((x == 0 && y == 0 && z == 0) || *least == 0)
                     continue;
                 net->position[node] = vec3_add_scaled(from, vec3_normalized(vec3(x, y, z)), step);
-                double there = is_inside(repair, node) ? fault_at(repair, node, *least) : *least;
+                double there =
+                    is_inside(repair, node) ? fault_at(repair, node, spare, *least) : *least;
                 if (there < *least) {
                     *least = there;
                     *best = net->position[node];
@@ -157,30 +171,33 @@ static Vec3 best_place(const Repair *repair, int32_t node)
     Network *net = repair->net;
     const Vec3 from = net->position[node];
     Vec3 best = from;
-    double least = fault_at(repair, node, INFINITY);
+    double least = fault_at(repair, node, spare, INFINITY);
     for (size_t s = 0; s < sizeof steps / sizeof *steps && least > 0; s++)
         try_step(repair, node, from, steps[s] * width(repair, node), &best, &least);
     net->position[node] = from;
     return best;
 }
 
+/* Moves a bifurcation, in the grid too. */
+static Status put(const Repair *repair, int32_t node, Vec3 place, Err *err)
+{
+    Network *net = repair->net;
+    const int32_t *child = net->segment[node].child;
+    network_move(net, node, place);
+    for (int k = 0; k < 3; k++)
+        TRY(entry_renew(repair->grid, repair->rules, net, k < 2 ? child[k] : node, err));
+    return STATUS_OK;
+}
+
 static Status move(const Repair *repair, int32_t node, Err *err)
 {
     Network *net = repair->net;
-    Grid *grid = repair->grid;
     if (net->segment[node].parent < 0 || net->segment[node].child[0] < 0 ||
-        network_is_given(net, node) || !(fault_at(repair, node, DBL_MIN) > 0))
+        network_is_given(net, node) || !(fault_at(repair, node, spare, DBL_MIN) > 0))
         return STATUS_OK;
     Vec3 place = best_place(repair, node);
-    if (vec3_distance(place, net->position[node]) > 0) {
-        const int32_t *child = net->segment[node].child;
-        network_move(net, node, place);
-        for (int k = 0; k < 3; k++) {
-            int32_t i = k < 2 ? child[k] : node;
-            TRY(entry_renew(grid, repair->rules, net, i, err));
-        }
-    }
-    return STATUS_OK;
+    return vec3_distance(place, net->position[node]) > 0 ? put(repair, node, place, err)
+                                                         : STATUS_OK;
 }
 
 /* Marks the segments that break the rules or are next to doing so. Of a pair the later finds it. */
@@ -248,4 +265,76 @@ done:
     free(repair.close);
     free(broken);
     return status;
+}
+
+/* The bifurcation at a node as it is. */
+static Bifurcation bifurcation_at_node(const Repair *repair, int32_t node)
+{
+    const Network *net = repair->net;
+    const Segment *segment = &net->segment[node];
+    int32_t left = segment->child[0], right = segment->child[1];
+    double gauge = (double)segment->gauge;
+    return (Bifurcation){
+        .end = {proximal(net, node), net->position[left], net->position[right]},
+        .burden = {network_burden(net, node, segment->terminals),
+                   network_burden(net, left, net->segment[left].terminals),
+                   network_burden(net, right, net->segment[right].terminals)},
+        .below = {network_below(net, left), network_below(net, right)},
+        .adjoint = {net->sensitivity[node].load, law_lambda_power(&net->law, gauge)},
+        .radius_unit = net->radius_unit * gauge,
+        .least_length = repair->rules->least_length,
+        .least_widths = (1 + relaxed_spare) * repair->rules->thickness,
+        .least_part = INFINITY,
+        .margin = off_ends};
+}
+
+/* Finds the place where the target is least; false when that is no less than here. */
+static bool find_better_place(const Repair *repair, int32_t node, Vec3 *place)
+{
+    const Network *net = repair->net;
+    Bifurcation problem = bifurcation_at_node(repair, node);
+    const Law law = network_law(net, node);
+    BifurcationState now, best;
+    bifurcation_at(&law, &problem, net->position[node], &now);
+    best = now;
+    bool found = bifurcation_optimise(&law, &problem, PLACE_ROUNDS, &best);
+    *place = best.place;
+    return found && best.price < now.price - least_gain * network_cost(net);
+}
+
+/* Given segments stay. */
+static bool may_relax(const Network *net, int32_t node)
+{
+    const Segment *segment = &net->segment[node];
+    return segment->parent >= 0 && segment->child[1] >= 0 && !network_is_given(net, node) &&
+           !network_is_given(net, segment->child[0]) && !network_is_given(net, segment->child[1]);
+}
+
+static Status relax(const Repair *repair, int32_t node, Err *err)
+{
+    Network *net = repair->net;
+    Vec3 from = net->position[node], goal;
+    if (!may_relax(net, node) || !find_better_place(repair, node, &goal))
+        return STATUS_OK;
+    Vec3 step = vec3_sub(goal, from);
+    for (int k = 0; k < TRIES; k++, step = vec3_scale(step, 0.5)) {
+        Vec3 place = vec3_add(from, step);
+        if (domain_settles(repair->domain) && domain_inside(repair->domain, place, 0))
+            place = domain_settle(repair->domain, place);
+        net->position[node] = place;
+        bool is_allowed =
+            is_inside(repair, node) && !(fault_at(repair, node, relaxed_spare, DBL_MIN) > 0);
+        net->position[node] = from;
+        if (is_allowed)
+            return put(repair, node, place, err);
+    }
+    return STATUS_OK;
+}
+
+Status relax_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules, Err *err)
+{
+    const Repair repair = {net, grid, domain, rules, NULL};
+    for (size_t i = 0; i < net->n; i++)
+        TRY(relax(&repair, (int32_t)i, err));
+    return STATUS_OK;
 }

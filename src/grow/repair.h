@@ -15,4 +15,11 @@
 MUST_CHECK Status repair_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules,
                                  int threads, size_t *left, Err *err);
 
+/* Moves every bifurcation once to where the target is less, or a part of the way there, if the
+ * rules are then kept with 0.15 of the radii to spare. Given segments stay. Needs a network just
+ * refreshed, and its segments in `grid`; leaves right sums, and radii as they were. O(depth) a
+ * bifurcation. STATUS_MEMORY. */
+MUST_CHECK Status relax_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules,
+                                Err *err);
+
 #endif

@@ -128,6 +128,12 @@ static const Option rows[] = {
      .group = GROUP_OPTIMUM,
      .argument = "K",
      .help = "nearest segments tried for each terminal"},
+    {.name = "relax",
+     SETS(COUNT, Growing, params.relax),
+     FROM_TO(0, GROW_MAX_TERMINALS),
+     .group = GROUP_OPTIMUM,
+     .help = "move all bifurcations to better places after every fifth of growth, up to so many "
+             "terminals; 0: never"},
     {.name = "toss",
      SETS(CHOICE, Growing, params.toss),
      .choices = tosses,
