@@ -3,7 +3,9 @@
  * behind the other they are one zlib stream, as pigz makes it, which every reader takes; the
  * stream's checksum is put together of the stripes'. How many rows are a stripe follows from the
  * picture's width alone, and nothing is handed over before its turn: the bytes depend neither on
- * the threads nor on how many rows come at a time. zlib can end a part so, libdeflate cannot. */
+ * the threads nor on how many rows come at a time. zlib can end a part so; libdeflate, which would
+ * take half the time, cannot. The 32 KiB before a stripe as its window make files 1 to 8 % smaller
+ * and take a tenth more time. */
 #define ZLIB_CONST
 #include "image/png_stripes.h"
 
