@@ -117,11 +117,9 @@ static Status build(Meshing *made, const MeshParams *params, bool part_overlaps,
     if (made->print)
         return print_vessels(made, params, part_overlaps, err);
     if (part_overlaps)
-        TRY(vesseltree_part(&made->vessels, params->threads, &made->thinned, &made->n_thinned,
-                            err));
+        TRY(vesseltree_part(&made->vessels, params, &made->thinned, &made->n_thinned, err));
     if (parts && made->vessels.body == BODY_POTENTIAL)
-        TRY(vesseltree_free_ends(&made->vessels, params->threads, &made->longer, &made->n_longer,
-                                 err));
+        TRY(vesseltree_free_ends(&made->vessels, params, &made->longer, &made->n_longer, err));
     return vesselmesh_build(&made->vessels, params, &made->mesh, &made->report, err);
 }
 

@@ -141,13 +141,14 @@ static double turned_angle(const double *angles, uint32_t n, uint32_t i)
     return angles[i % n] + full_turn * (i / n);
 }
 
-/* A chord is farthest off its circle half way. */
+/* A chord is farthest off its circle half way; and that from the wall, where others move it. */
 static void measure_rim(const Assembly *assembly, const double *angles, uint32_t n, double radius)
 {
     double widest = 0;
     for (uint32_t i = 0; i < n; i++)
         widest = fmax(widest, turned_angle(angles, n, i + 1) - angles[i]);
-    meshoff_add(assembly->off, radius * (1 - cos(widest / 2)), radius);
+    double off = 1 - cos(widest / 2) + assembly->zones->moved;
+    meshoff_add(assembly->off, radius * off, radius);
 }
 
 static Status add_strip(Assembly *assembly, uint32_t segment, RimPlace a, RimPlace b, Err *err)

@@ -79,7 +79,7 @@ static double search_wall(const Refining *refining, Vec3 x, bool inside, Vec3 ou
  * searched for along the field's slope and the triangle's normal. */
 static double measure_at(const Refining *refining, Vec3 x, Vec3 normal, double radius_mm)
 {
-    static const double near = 0.01, steep = FIELD_LEVEL;
+    static const double near = 0.02, steep = FIELD_LEVEL;
     const ZoneTree *tree = refining->tree;
     const ZoneCell *cell = zonetree_leaf(tree, x);
     Vec3 gradient;

@@ -1,5 +1,5 @@
 /* From each end of a segment, those that it blends with on that side of it are felt up to the last
- * place where, on the circle of the wall, they add more than `disturbance` to the potential.
+ * place where, on the circle of the wall, they add more than they may to the potential.
  * Nearer to the end the segment's own term ceases, and the others make up for it: of a straight
  * chain the sum is the cylinder's all along. So the wall is even where the sum of both is nearly
  * that of the segment alone, if it went on.
@@ -11,13 +11,14 @@
 #include "surface/mesh/zonefield.h"
 #include <stdlib.h>
 
-/* The wall moves by a quarter of these parts of the level, in radii. */
-static const double disturbance = 5e-3 * FIELD_LEVEL, unevenness = 5e-2 * FIELD_LEVEL;
+/* The wall moves by a quarter of these parts of the level, in radii: what others may add where it
+ * is a cylinder, which the tolerance decides between bounds, and where it is nearly one. */
+static const double least_part = 5e-3, most_part = 2e-2, uneven_part = 5e-2;
 /* Of the radius: the step of the search, and how far it goes beyond the other end, as the arms of
  * zones do; how often a step is halved. */
 static const double search_step = 0.15, run_on = 1;
 enum { CIRCLE_POINTS = 12, HALVINGS = 3 };
-/* Beyond so many of its radii from its axis a vessel adds less than a tenth of `disturbance`:
+/* Beyond so many of its radii from its axis a vessel adds less than a tenth of the least:
  * e^(-2 x^2) = 5e-4 e^-2. */
 static const double field_reach = 2.2;
 
@@ -31,6 +32,7 @@ typedef struct FreeSearch {
     const VesselTree *tree;
     const NumberLists *incident, *blending;
     const TreeOrder *order;
+    double disturbance; /* what others may add where the wall is a cylinder */
     FreeEnd (*ends)[2];
     Status *statuses; /* one a segment */
 } FreeSearch;
@@ -44,6 +46,7 @@ typedef struct Step {
 /* One end of a segment, and who may be felt there. */
 typedef struct EndSearch {
     const VesselTree *tree;
+    double disturbance;
     const FieldSegment *self;
     int end;
     double length_mm; /* that is searched */
@@ -58,17 +61,18 @@ typedef struct EndSearch {
 
 /* Tells whether the sum of others on the wall, where the segment's own term lacks `ceased`, is
  * more than it may be. */
-typedef bool TooMuch(double others, double ceased);
+typedef bool TooMuch(const EndSearch *search, double others, double ceased);
 
-static bool is_disturbed(double others, double ceased)
+static bool is_disturbed(const EndSearch *search, double others, double ceased)
 {
     (void)ceased;
-    return others > disturbance;
+    return others > search->disturbance;
 }
 
-static bool is_uneven(double others, double ceased)
+static bool is_uneven(const EndSearch *search, double others, double ceased)
 {
-    return fabs(others - ceased) > unevenness;
+    (void)search;
+    return fabs(others - ceased) > uneven_part * FIELD_LEVEL;
 }
 
 static Vec3 place_at(const EndSearch *search, double mm)
@@ -112,7 +116,7 @@ static bool is_too_much(const EndSearch *search, size_t near, double mm, TooMuch
         }
         Vec3 x = vec3_add_scaled(center, u, radius * cos(angle));
         x = vec3_add_scaled(x, v, radius * sin(angle));
-        if (too_much(sum_at(search->terms, near, x), ceased))
+        if (too_much(search, sum_at(search->terms, near, x), ceased))
             return true;
     }
     return false;
@@ -284,7 +288,11 @@ static Status find_free(const FreeSearch *all, uint32_t segment, int end)
     const VesselTree *tree = all->tree;
     const FieldSegment *self = &tree->segments[segment];
     double length = vec3_distance(self->a, self->b), radius = self->radius_mm;
-    EndSearch search = {tree, self, end, .length_mm = length + run_on * radius,
+    EndSearch search = {.tree = tree,
+                        .disturbance = all->disturbance,
+                        .self = self,
+                        .end = end,
+                        .length_mm = length + run_on * radius,
                         .axis = vec3_normalized(vec3_sub(self->b, self->a))};
     Status status;
     TRY_GOTO(list_others(&search, all, segment));
@@ -312,14 +320,20 @@ static void find_both_free(size_t index, int worker, void *context)
         search->statuses[index] = find_free(search, (uint32_t)index, end);
 }
 
+double freeends_moved(const MeshParams *params)
+{
+    return 0.25 * fmin(fmax(params->tolerance, least_part), most_part);
+}
+
 Status freeends_find(const VesselTree *tree, const NumberLists *incident,
-                     const NumberLists *blending, const TreeOrder *order, int threads,
+                     const NumberLists *blending, const TreeOrder *order, const MeshParams *params,
                      FreeEnd (*ends)[2], Err *err)
 {
     size_t n = tree->n_segments;
-    FreeSearch search = {tree, incident, blending, order, ends, NULL};
+    double disturbance = 4 * freeends_moved(params) * FIELD_LEVEL;
+    FreeSearch search = {tree, incident, blending, order, disturbance, ends, NULL};
     TRY(mem_calloc(&search.statuses, n, sizeof *search.statuses, "segments", err));
-    threads_for(n, threads, find_both_free, &search);
+    threads_for(n, params->threads, find_both_free, &search);
     Status status = STATUS_OK;
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
         if (search.statuses[i] != STATUS_OK)

@@ -3,6 +3,7 @@
 #define CORCAST_SURFACE_FREEENDS_H
 
 #include "surface/mesh/treeorder.h"
+#include "surface/mesh/vesselmesh.h"
 
 /* What the vessels that meet at one end of a segment do to its wall. */
 typedef struct FreeEnd {
@@ -11,10 +12,14 @@ typedef struct FreeEnd {
                       * beyond the other end */
 } FreeEnd;
 
+/* How far others may move the wall of a tube at most, in radii: a quarter of the tolerance, within
+ * bounds. */
+double freeends_moved(const MeshParams *params);
+
 /* Fills ends[], one pair a segment, zeroed before; `blending` lists the segments that blend at each
  * node. */
 MUST_CHECK Status freeends_find(const VesselTree *tree, const NumberLists *incident,
-                                const NumberLists *blending, const TreeOrder *order, int threads,
-                                FreeEnd (*ends)[2], Err *err);
+                                const NumberLists *blending, const TreeOrder *order,
+                                const MeshParams *params, FreeEnd (*ends)[2], Err *err);
 
 #endif

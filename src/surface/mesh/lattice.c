@@ -20,7 +20,7 @@ static const double clearance = 0.1;
 static const double nearly = 0.3;
 /* Of an edge: the longest step towards a crossing whose end is not looked at. The crossings stay on
  * the edges: moved off them, triangles may run into each other. */
-static const double last_step = 1e-4;
+static const double last_step = 1e-3;
 enum { MOST_STEPS = 40 };
 /* So many are all looked at away from active cells. */
 enum { FEW_TERMS = 512 };

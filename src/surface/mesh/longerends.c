@@ -49,12 +49,12 @@ static Status list_tips(Lengthening *all, Err *err)
     return STATUS_OK;
 }
 
-static Status find_zones(Lengthening *all, int threads, Err *err)
+static Status find_zones(Lengthening *all, const MeshParams *params, Err *err)
 {
     zones_release(&all->zones);
     numberlists_release(&all->blending);
     TRY(vesseltree_blending(all->tree, &all->incident, &all->blending, err));
-    return zones_find(all->tree, &all->incident, &all->blending, threads, &all->zones, err);
+    return zones_find(all->tree, &all->incident, &all->blending, params, &all->zones, err);
 }
 
 static bool is_flat(const Lengthening *all, const FreeTip *tip)
@@ -117,15 +117,15 @@ static Status list_longer(const Lengthening *all, uint32_t **list, size_t *n, Er
     return STATUS_OK;
 }
 
-Status vesseltree_free_ends(VesselTree *tree, int threads, uint32_t **lengthened, size_t *n,
-                            Err *err)
+Status vesseltree_free_ends(VesselTree *tree, const MeshParams *params, uint32_t **lengthened,
+                            size_t *n, Err *err)
 {
     Lengthening all = {.tree = tree};
     Status status;
     TRY_GOTO(vesseltree_incident(tree, &all.incident, err));
     TRY_GOTO(list_tips(&all, err));
     do {
-        TRY_GOTO(find_zones(&all, threads, err));
+        TRY_GOTO(find_zones(&all, params, err));
     } while (put_back_overlapping(&all) || lengthen(&all));
     TRY_GOTO(list_longer(&all, lengthened, n, err));
 done:

@@ -64,12 +64,12 @@ static void release_round(Parting *parting)
     zones_release(&parting->zones);
 }
 
-static Status find_overlaps(Parting *parting, int threads, Err *err)
+static Status find_overlaps(Parting *parting, const MeshParams *params, Err *err)
 {
     release_round(parting);
     TRY(vesseltree_incident(parting->tree, &parting->incident, err));
     TRY(vesseltree_blending(parting->tree, &parting->incident, &parting->blending, err));
-    return zones_find(parting->tree, &parting->incident, &parting->blending, threads,
+    return zones_find(parting->tree, &parting->incident, &parting->blending, params,
                       &parting->zones, err);
 }
 
@@ -84,7 +84,8 @@ static Status list_thinned(const Parting *parting, uint32_t **list, size_t *n, E
     return STATUS_OK;
 }
 
-Status vesseltree_part(VesselTree *tree, int threads, uint32_t **thinned, size_t *n, Err *err)
+Status vesseltree_part(VesselTree *tree, const MeshParams *params, uint32_t **thinned, size_t *n,
+                       Err *err)
 {
     Parting parting = {.tree = tree};
     Status status;
@@ -92,10 +93,10 @@ Status vesseltree_part(VesselTree *tree, int threads, uint32_t **thinned, size_t
     TRY_GOTO(mem_calloc(&parting.radii, tree->n_segments, sizeof *parting.radii, "segments", err));
     for (size_t i = 0; i < tree->n_segments; i++)
         parting.radii[i] = tree->segments[i].radius_mm;
-    TRY_GOTO(find_overlaps(&parting, threads, err));
+    TRY_GOTO(find_overlaps(&parting, params, err));
     for (int round = 0; round < MOST_ROUNDS && parting.zones.n_overlapping; round++) {
         TRY_GOTO(thin_pairs(&parting, err));
-        TRY_GOTO(find_overlaps(&parting, threads, err));
+        TRY_GOTO(find_overlaps(&parting, params, err));
     }
     TRY_GOTO(list_thinned(&parting, thinned, n, err));
 done:

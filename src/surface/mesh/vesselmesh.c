@@ -16,7 +16,7 @@
 
 /* What the tolerance means for cells and edges, measured so that the mean distance to the surface
  * stays below 0.15 of it, and one sample of a thousand is beyond it. */
-static const double cells_at = 0.02, cell_ratio = 0.54, bending_ratio = 0.25, sagitta_part = 0.35,
+static const double cells_at = 0.02, cell_ratio = 0.54, bending_ratio = 0.25, sagitta_part = 0.325,
                     split_part = 0.65, cap_part = 0.2, farthest_part = 1.4, worst_part = 2.25;
 /* Of a round body: its balls bend both ways, and its creases are cut off. */
 static const double round_sagitta_part = 0.24, round_farthest_part = 1.75;
@@ -303,8 +303,8 @@ static Status cut_tree(Build *build, Err *err)
 {
     TRY(vesseltree_incident(build->tree, &build->incident, err));
     TRY(vesseltree_blending(build->tree, &build->incident, &build->blending, err));
-    TRY(zones_find(build->tree, &build->incident, &build->blending, build->params->threads,
-                   &build->zones, err));
+    TRY(zones_find(build->tree, &build->incident, &build->blending, build->params, &build->zones,
+                   err));
     return build->zones.n_overlapping ? refuse_overlap(build, err) : STATUS_OK;
 }
 

@@ -78,15 +78,15 @@ MUST_CHECK Status meshreport_check(const MeshReport *report, const VesselTree *t
 /* Thins vessels that do not belong together and overlap, and what blends with them, until they are
  * apart; *thinned (owned) lists their indices, rising. STATUS_INPUT when that would leave less than
  * a twentieth of a radius. */
-MUST_CHECK Status vesseltree_part(VesselTree *tree, int threads, uint32_t **thinned, size_t *n,
-                                  Err *err);
+MUST_CHECK Status vesseltree_part(VesselTree *tree, const MeshParams *params, uint32_t **thinned,
+                                  size_t *n, Err *err);
 
 /* Lengthens ends that could not be cut off flat because of what meets nearby, along their axes by
  * at most LENGTHENED_MOST of their radii and not into other vessels, until they can; *lengthened
  * (owned) lists the indices of their segments, rising. */
 #define LENGTHENED_MOST 3
-MUST_CHECK Status vesseltree_free_ends(VesselTree *tree, int threads, uint32_t **lengthened,
-                                       size_t *n, Err *err);
+MUST_CHECK Status vesseltree_free_ends(VesselTree *tree, const MeshParams *params,
+                                       uint32_t **lengthened, size_t *n, Err *err);
 
 /* What the mesh of a tree takes, within a factor of 2 as a rule. */
 typedef struct MeshEstimate {

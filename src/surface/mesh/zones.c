@@ -394,9 +394,9 @@ static void keep_strangers(const Divider *divider, NearPair *pairs, size_t n, Zo
 }
 
 Status zones_find(const VesselTree *tree, const NumberLists *incident, const NumberLists *blending,
-                  int threads, Zones *out, Err *err)
+                  const MeshParams *params, Zones *out, Err *err)
 {
-    Zones zones = {0};
+    Zones zones = {.moved = freeends_moved(params)};
     NearPair *pairs = NULL;
     size_t n_pairs = 0;
     Divider divider = {.tree = tree, .incident = incident, .blending = blending};
@@ -416,9 +416,9 @@ Status zones_find(const VesselTree *tree, const NumberLists *incident, const Num
     divider.is_tube = zones.is_tube;
     divider.is_close = zones.is_close;
     TRY_GOTO(treeorder_make(tree, incident, &divider.order, err));
-    TRY_GOTO(freeends_find(tree, incident, blending, &divider.order, threads, divider.ends, err));
+    TRY_GOTO(freeends_find(tree, incident, blending, &divider.order, params, divider.ends, err));
     keep_off_ends(&divider);
-    TRY_GOTO(nearpairs_find(tree, threads, &pairs, &n_pairs, err));
+    TRY_GOTO(nearpairs_find(tree, params->threads, &pairs, &n_pairs, err));
     TRY_GOTO(divide(&divider, pairs, n_pairs, err));
     TRY_GOTO(number_zones(&divider, &zones, err));
     keep_strangers(&divider, pairs, n_pairs, &zones);

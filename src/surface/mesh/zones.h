@@ -17,13 +17,15 @@ typedef struct Zones {
     bool *is_tube;       /* one a segment; else it lies in one zone, whole */
     bool *is_close;      /* one a segment: its planes are so near its ends that their rims are no
                           * circles */
+    double moved;        /* how far others move the wall of a tube at most, in radii */
     NearPair *strangers; /* near pairs without a common zone; those that overlap first */
     size_t n_strangers, n_overlapping;
 } Zones;
 
 /* Cuts the tree. */
 MUST_CHECK Status zones_find(const VesselTree *tree, const NumberLists *incident,
-                             const NumberLists *blending, int threads, Zones *out, Err *err);
+                             const NumberLists *blending, const MeshParams *params, Zones *out,
+                             Err *err);
 void zones_release(Zones *zones);
 
 /* A tube that leaves a zone: to be cut across at `at`, where `outward` (unit) leads out of the zone

@@ -262,7 +262,7 @@ static size_t take_spoilt(Standing *standing, const Zones *zones)
 }
 
 /* Leaves the pins that are cut off flat. */
-static Status keep_flat(Standing *standing, int threads)
+static Status keep_flat(Standing *standing, const MeshParams *params)
 {
     bool done = false;
     while (!done) {
@@ -272,7 +272,7 @@ static Status keep_flat(Standing *standing, int threads)
         Err *err = standing->err;
         TRY_GOTO(vesseltree_incident(standing->tree, &incident, err));
         TRY_GOTO(vesseltree_blending(standing->tree, &incident, &blending, err));
-        TRY_GOTO(zones_find(standing->tree, &incident, &blending, threads, &zones, err));
+        TRY_GOTO(zones_find(standing->tree, &incident, &blending, params, &zones, err));
         done = take_spoilt(standing, &zones) == 0;
     done:
         numberlists_release(&incident);
@@ -283,8 +283,8 @@ static Status keep_flat(Standing *standing, int threads)
     return STATUS_OK;
 }
 
-Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, int threads, Pins *out,
-                Err *err)
+Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, const MeshParams *params,
+                Pins *out, Err *err)
 {
     size_t n = tree->n_segments;
     Standing standing = {.tree = tree,
@@ -299,7 +299,7 @@ Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, int thr
     standing.pins.top_mm = top_of(&standing);
     for (size_t i = 0; i < standing.n_feet; i++)
         TRY_GOTO(add_pin(&standing, standing.feet[i], open_ends));
-    TRY_GOTO(keep_flat(&standing, threads));
+    TRY_GOTO(keep_flat(&standing, params));
     *out = standing.pins;
     standing.pins = (Pins){0};
 done:

@@ -22,8 +22,8 @@ void pins_release(Pins *pins);
 /* Adds pins to a tree whose arrays are its own, from each node that has nothing below it: a printer
  * would begin it in the air; but for pins that cannot be cut off flat. Where vessels are open at
  * their ends, a pin begins beside the end. O(pins segments). */
-MUST_CHECK Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, int threads,
-                           Pins *out, Err *err);
+MUST_CHECK Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends,
+                           const MeshParams *params, Pins *out, Err *err);
 
 /* The plate below the pins. */
 Casing pins_plate(const VesselTree *tree, const PrintBase *base, const Pins *pins);

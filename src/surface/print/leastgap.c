@@ -100,7 +100,8 @@ static Status search_wider(GapSearch *search, int threads, NearPair *pair, bool 
     return STATUS_OK;
 }
 
-Status leastgap_find(const VesselTree *tree, int threads, NearPair *pair, bool *found, Err *err)
+Status leastgap_find(const VesselTree *tree, const MeshParams *params, NearPair *pair, bool *found,
+                     Err *err)
 {
     NumberLists incident = {0}, blending = {0};
     Zones zones = {0};
@@ -108,11 +109,11 @@ Status leastgap_find(const VesselTree *tree, int threads, NearPair *pair, bool *
     Status status;
     TRY_GOTO(vesseltree_incident(tree, &incident, err));
     TRY_GOTO(vesseltree_blending(tree, &incident, &blending, err));
-    TRY_GOTO(zones_find(tree, &incident, &blending, threads, &zones, err));
+    TRY_GOTO(zones_find(tree, &incident, &blending, params, &zones, err));
     TRY_GOTO(mem_calloc(&search, 1, sizeof *search, "near vessels", err));
     search->tree = tree;
     search->zones = &zones;
-    TRY_GOTO(search_wider(search, threads, pair, found, err));
+    TRY_GOTO(search_wider(search, params->threads, pair, found, err));
 done:
     numberlists_release(&incident);
     numberlists_release(&blending);

@@ -6,7 +6,7 @@
 
 /* Finds the two segments without a common junction zone whose walls are the nearest to each other;
  * false when there are none. Expected O(n log n) for vessels that fill a space evenly. */
-MUST_CHECK Status leastgap_find(const VesselTree *tree, int threads, NearPair *pair, bool *found,
-                                Err *err);
+MUST_CHECK Status leastgap_find(const VesselTree *tree, const MeshParams *params, NearPair *pair,
+                                bool *found, Err *err);
 
 #endif

@@ -116,17 +116,16 @@ static Status prepare(Making *making, Err *err)
     PrintReport *report = &making->report;
     TRY(take_outer(making, err));
     if (params->part_overlaps)
-        TRY(vesseltree_part(&making->outer, params->mesh.threads, &report->thinned,
-                            &report->n_thinned, err));
+        TRY(vesseltree_part(&making->outer, &params->mesh, &report->thinned, &report->n_thinned,
+                            err));
     if (print_is_hollow(params))
-        TRY(vesseltree_free_ends(&making->outer, params->mesh.threads, &report->longer,
-                                 &report->n_longer, err));
+        TRY(vesseltree_free_ends(&making->outer, &params->mesh, &report->longer, &report->n_longer,
+                                 err));
     TRY(take_changes(making, err));
-    TRY(leastgap_find(&making->outer, params->mesh.threads, &report->closest, &report->has_closest,
-                      err));
+    TRY(leastgap_find(&making->outer, &params->mesh, &report->closest, &report->has_closest, err));
     if (!params->base.is_there)
         return STATUS_OK;
-    TRY(pins_add(&making->outer, &params->base, print_has_wall(params), params->mesh.threads,
+    TRY(pins_add(&making->outer, &params->base, print_has_wall(params), &params->mesh,
                  &making->pins, err));
     report->pins = making->pins.n_pins;
     report->hanging = making->pins.n_hanging;
