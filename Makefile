@@ -66,7 +66,7 @@ LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 VIEWER := build/viewer/viewer.js
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo figures gallery validate bench bench-grow bench-render bench-compare bench-mesh export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
+.PHONY: all deps demo figures gallery validate bench bench-grow bench-render bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
 .DELETE_ON_ERROR:
@@ -101,7 +101,7 @@ validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
 	$(Q)tests/validate
 
 bench: ## the benchmarks, one after another
-	$(Q)for part in grow render compare mesh trees; do $(MAKE) --no-print-directory bench-$$part || exit; done
+	$(Q)for part in grow render compare mesh trees large; do $(MAKE) --no-print-directory bench-$$part || exit; done
 
 bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
 	$(Q).ci/deps build bench
@@ -132,6 +132,11 @@ bench-trees: ## time reading and writing a tree, beside numpy and VTK; BENCH=ful
 	$(Q).ci/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tests/bench/trees
+
+bench-large: ## time growing, reading and drawing 10^6 terminals; BENCH=full for 10^7, too
+	$(Q).ci/deps build check
+	$(Q)$(AGAIN) all
+	$(Q)tests/bench/large
 
 verify-all: ## verify models x trees x projections x shadows x antialiasing; report in out/verify/
 	$(Q).ci/deps build run
