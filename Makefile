@@ -66,7 +66,7 @@ LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
 VIEWER := build/viewer/viewer.js
 LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo figures gallery validate bench bench-grow bench-render bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
+.PHONY: all deps demo figures gallery validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
 .DELETE_ON_ERROR:
@@ -101,7 +101,7 @@ validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
 	$(Q)tests/validate
 
 bench: ## the benchmarks, one after another
-	$(Q)for part in grow render compare mesh trees large; do $(MAKE) --no-print-directory bench-$$part || exit; done
+	$(Q)for part in grow render view compare mesh trees large; do $(MAKE) --no-print-directory bench-$$part || exit; done
 
 bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
 	$(Q).ci/deps build bench
@@ -112,6 +112,11 @@ bench-render: ## how fast pictures are drawn, beside POV-Ray and others; BENCH=f
 	$(Q).ci/deps build run bench
 	$(Q)$(AGAIN) all $(EMBREE) $(FRAMES)
 	$(Q)tests/bench/render
+
+bench-view: ## how many pictures a second a window is turned at; BENCH=full for 10^6 terminals, too
+	$(Q).ci/deps build run check
+	$(Q)$(AGAIN) all
+	$(Q)tests/bench/view
 
 bench-compare: ## time `compare` on large pictures, beside idiff and odiff
 	$(Q).ci/deps build check

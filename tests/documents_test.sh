@@ -66,7 +66,7 @@ test_the_numbers_of_the_potential_are_those_of_the_source() {
 With eps = 10⁻⁶ (`CELL_TERM_CUTOFF`) that is 1.85 · 10⁻⁶ n r @ surface.h @ #define CELL_TERM_CUTOFF 1e-6
 with Phi clamped to [10⁻⁵, 0.2] @ surface.h @ #define LOG_FORM_FLOOR 1e-5
 with Phi clamped to [10⁻⁵, 0.2] @ surface.h @ #define LOG_FORM_CEILING 0.2
-`Phi'^2 >= 4.6 M lack` @ kernel_trace.h @ lanes_select(lack <= CLOSE_ENOUGH, lanes_set(4.6f), lanes_set(46))
+`Phi'^2 >= 4.6 M lack` @ kernel_potential.h @ #define SURE 4.6f
 Within 2 % of C and with ten times that certainty @ kernel_trace.h @ #define NEAR_ENOUGH (2e-2f * LEVEL)
 or within 0.1 %, Newton's method closes it @ kernel_trace_common.h @ #define CLOSE_ENOUGH (1e-3f * LEVEL)
 groups whose margin exceeds 10⁻³ C @ kernel_trace.h @ group.margin > CLOSE_ENOUGH

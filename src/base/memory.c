@@ -70,6 +70,12 @@ Status mem_grow(void *items, size_t *capacity, size_t needed, size_t size, const
     return STATUS_OK;
 }
 
+void mem_keep(void)
+{
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, -1);
+}
+
 void mem_trim(void)
 {
     (void)malloc_trim(0);

@@ -32,6 +32,10 @@ MUST_CHECK static inline Status mem_reserve(void *items, size_t *capacity, size_
  * blocks lie about it. Milliseconds. */
 void mem_trim(void);
 
+/* From now on the C library keeps all memory that is freed, large blocks too: what is asked for
+ * anew picture by picture is not handed back in between, to be cleared page by page. */
+void mem_keep(void);
+
 /* STATUS_MEMORY with the sentence "out of memory: no room `purpose` `subject`", as in "to read", a
  * file. For what a library allocates: one that fails without telling why leaves ENOMEM in errno
  * where that was it. */

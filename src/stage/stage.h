@@ -110,6 +110,7 @@ typedef struct ViewParams {
     /* What ground and lights are placed about, and what is framed: the ends of the tree's segments,
      * so that all models of it have one view; NULL: those of what is drawn. Borrowed. */
     const Tree *tree;
+    const Box *box;    /* what stage_box gave for tree and geometry, or NULL; borrowed */
     const Box *domain; /* framed in its place, if not NULL; borrowed */
     UpAxis up_axis;
     NamedView view; /* used when has_location is false, and the next two, which turn the camera
@@ -173,6 +174,10 @@ MUST_CHECK Status stage_appearance(const Look *look, const Field *field, const C
  * mean of their places on the scale, weighted by their terms [surface/termmean.h]. STATUS_MEMORY.
  */
 MUST_CHECK Status stage_blend(Appearance *appearance, Err *err);
+
+/* The smallest box that holds the balls that views of the geometry are made about, in its
+ * coordinates. stage_view takes as much less time where it is in ViewParams. O(n). */
+Box stage_box(const ViewParams *params, const Geometry *geometry);
 
 /* The camera that `params` asks for, with lights, ground and background of the look. A camera whose
  * place or height is left open shows all that is framed, with the shadows that lights more than 10

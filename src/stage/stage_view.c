@@ -139,7 +139,8 @@ static void place_orthographic(const ViewParams *params, const Framed *framed, C
     Vec3 right = camera->right, up = camera->up, direction = camera->direction;
     Vec3 center = box_center(framed->box);
     Box all = box_union(framed->box, framed->subject->box);
-    Extent extent = extent_along(framed, right, up);
+    bool placed = params->has_look_at && params->height_mm > 0; /* without framing anything */
+    Extent extent = placed ? (Extent){0} : extent_along(framed, right, up);
     double wide = extent.high_x - extent.low_x, high = extent.high_y - extent.low_y;
     double room_x = (double)params->room[0] / params->width;
     double room_y = (double)params->room[1] / params->height;
@@ -166,11 +167,13 @@ static void place_perspective(const ViewParams *params, const Framed *framed, Ca
     double tan_x = tan(params->angle_deg * degrees_pi / 2), tan_y = tan_x / aspect;
     double room_x = (double)params->room[0] / params->width;
     double room_y = (double)params->room[1] / params->height;
-    double distance = framing_distance(framed, camera, tan_x * used * (1 - 2 * room_x),
-                                       tan_y * used * (1 - 2 * room_y));
     Vec3 target = params->has_look_at ? params->look_at : box_center(framed->box);
-    camera->location = params->has_location ? params->location
-                                            : vec3_add_scaled(target, camera->direction, -distance);
+    camera->location = params->location;
+    if (!params->has_location) {
+        double distance = framing_distance(framed, camera, tan_x * used * (1 - 2 * room_x),
+                                           tan_y * used * (1 - 2 * room_y));
+        camera->location = vec3_add_scaled(target, camera->direction, -distance);
+    }
     camera->right = vec3_scale(camera->right, 2 * tan_x);
     camera->up = vec3_scale(camera->up, 2 * tan_y);
 }
@@ -276,7 +279,8 @@ static double thickest_mm(const Geometry *geometry)
 static Effects place_effects(const Look *look, const Camera *camera, const Subject *subject)
 {
     double thousandth_px = fmin(camera->width, camera->height) / 1000;
-    Effects effects = look_effects(look, thousandth_px, thickest_mm(subject->geometry));
+    double diameter = look->effects.xray_per_diameter > 0 ? thickest_mm(subject->geometry) : 0;
+    Effects effects = look_effects(look, thousandth_px, diameter);
     if (effects.fade.nearest > 0 || effects.fade.farthest > 0)
         place_fade(camera, subject, &effects.fade);
     return effects;
@@ -291,6 +295,13 @@ static void place_surroundings(const Look *look, const ViewParams *params, const
     for (size_t i = 0; i < view->n_lights; i++)
         view->lights[i] =
             place_light(&look->lights[i], &view->camera, subject->box, params->shadows);
+}
+
+Box stage_box(const ViewParams *params, const Geometry *geometry)
+{
+    ViewParams unknown = *params;
+    unknown.box = NULL;
+    return subject_of(&unknown, geometry).box;
 }
 
 Status stage_view(const Look *look, const ViewParams *params, const Geometry *geometry, View *view,

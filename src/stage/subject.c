@@ -10,7 +10,9 @@ static const double least_slope = 0.17;
 Subject subject_of(const ViewParams *params, const Geometry *geometry)
 {
     Subject subject = {.geometry = geometry, .tree = params->tree, .box = geometry->bounds};
-    if (!subject.tree)
+    if (params->box)
+        subject.box = *params->box;
+    if (params->box || !subject.tree)
         return subject;
     subject.box = box_empty();
     for (size_t i = 0; i < subject_segments(&subject); i++) {

@@ -15,7 +15,7 @@ typedef struct Subject {
     Box box;          /* the smallest that holds them */
 } Subject;
 
-/* O(n) of n segments of the tree. */
+/* O(n) of n segments of the tree, where their box is not known. */
 Subject subject_of(const ViewParams *params, const Geometry *geometry);
 
 /* How many segments are numbered. */

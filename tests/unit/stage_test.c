@@ -280,17 +280,22 @@ static void a_framed_picture_has_its_margin_on_each_side(void **state)
 /* A vessel along the view, 11 mm long: its nearer ball, of radius 2.385, touches the sides of the
  * picture, upright or lying, that are nearer. Their half angle has the tangent 0.9 tan 15 degrees,
  * less by the aspect. */
+static void tree_of_two(Tree *tree)
+{
+    assert_int_equal(tree_init(tree, 2, NULL), STATUS_OK);
+    for (int i = 0; i < 2; i++) {
+        tree->id[i] = i + 1;
+        tree->parent[i] = i - 1;
+        tree->radius_mm[i] = 2.385;
+        tree->position[i] = vec3(3.5, -2, i ? 5.5 : -5.5);
+    }
+}
+
 static void a_perspective_camera_stands_where_the_nearest_ball_just_fits(void **state)
 {
     (void)state;
     Tree tree;
-    assert_int_equal(tree_init(&tree, 2, NULL), STATUS_OK);
-    for (int i = 0; i < 2; i++) {
-        tree.id[i] = i + 1;
-        tree.parent[i] = i - 1;
-        tree.radius_mm[i] = 2.385;
-        tree.position[i] = vec3(3.5, -2, i ? 5.5 : -5.5);
-    }
+    tree_of_two(&tree);
     StageParams params = stage_defaults();
     params.view.projection = PROJECTION_PERSPECTIVE;
     for (int lying = 0; lying < 2; lying++) {
@@ -303,6 +308,29 @@ static void a_perspective_camera_stands_where_the_nearest_ball_just_fits(void **
         scene_release(&scene);
     }
     tree_release(&tree);
+}
+
+static void a_view_is_the_same_where_the_box_is_known(void **state)
+{
+    (void)state;
+    StageParams params = stage_defaults();
+    for (int projection = 0; projection < 2; projection++) {
+        Scene scene;
+        Tree tree;
+        View again;
+        tree_of_two(&tree);
+        params.view.tree = &tree;
+        params.view.projection = (Projection)projection;
+        params.view.box = NULL;
+        assert_int_equal(stage_all(&tree, &look, &params, &scene, NULL, NULL), STATUS_OK);
+        Box box = stage_box(&params.view, &scene.geometry);
+        params.view.box = &box;
+        assert_int_equal(stage_view(&look, &params.view, &scene.geometry, &again, NULL), STATUS_OK);
+        assert_memory_equal(&again.camera, &scene.view.camera, sizeof again.camera);
+        assert_memory_equal(again.lights, scene.view.lights, again.n_lights * sizeof *again.lights);
+        scene_release(&scene);
+        tree_release(&tree);
+    }
 }
 
 static const double degrees = 3.14159265358979323846 / 180;
@@ -1037,6 +1065,7 @@ int main(void)
         cmocka_unit_test(the_front_view_has_x_to_the_right_and_y_up),
         cmocka_unit_test(a_framed_picture_has_its_margin_on_each_side),
         cmocka_unit_test(a_perspective_camera_stands_where_the_nearest_ball_just_fits),
+        cmocka_unit_test(a_view_is_the_same_where_the_box_is_known),
         cmocka_unit_test(views_look_where_their_names_say),
         cmocka_unit_test(where_z_is_up_the_front_looks_along_y),
         cmocka_unit_test(a_camera_turns_about_the_upright_and_then_rises),

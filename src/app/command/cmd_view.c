@@ -18,6 +18,7 @@ typedef struct Viewer {
     const char *tree, *recipe;
     PictureSource source;
     ViewParams home; /* the camera that the options asked for */
+    Box box;         /* of the scene's geometry, for its views */
     Scene scene;
     Display *display;
     Window *window;
@@ -60,6 +61,9 @@ static Status make_geometry(Viewer *viewer, Err *err)
     TRY(picture_geometry(viewer->options, &viewer->source, viewer->common, &made, NULL, err));
     geometry_release(&viewer->scene.geometry);
     viewer->scene.geometry = made;
+    const ViewParams params = picture_view_params(viewer->options, &viewer->source);
+    viewer->box = stage_box(&params, &made);
+    viewer->options->stage.box = &viewer->box;
     TRY(aim(viewer, err));
     return make_display(viewer, err);
 }
@@ -370,12 +374,12 @@ static Status run(Viewer *viewer, Err *err)
     return STATUS_OK;
 }
 
-/* Once around in so many pictures, as fast as they come. */
+/* Once around in so many pictures of every pixel, as fast as they come. */
 static Status turn_around(Viewer *viewer, int pictures, Err *err)
 {
     const double full_turn = 6.283185307179586;
     bool done;
-    double start_s = clock_seconds(), coarseness = 0;
+    double start_s = clock_seconds(), start_cpu_s = clock_cpu_seconds();
     for (int i = 0; i < pictures && !viewer->quit; i++) {
         WindowEvent event = window_event(viewer->window, false);
         if (event.kind == WINDOW_QUIT)
@@ -384,11 +388,12 @@ static Status turn_around(Viewer *viewer, int pictures, Err *err)
         orbit_turn(&stage, full_turn / pictures, 0);
         viewer->options->stage = stage;
         TRY(aim(viewer, err));
-        coarseness += display_coarseness(viewer->display);
+        display_set_coarseness(viewer->display, 1);
         TRY(draw(viewer, &done, err));
     }
-    printf("%.1f pictures a second, each pixel %.2f x %.2f of the window's\n",
-           pictures / (clock_seconds() - start_s), coarseness / pictures, coarseness / pictures);
+    printf("%.1f pictures a second, %.1f ms of a processor each\n",
+           pictures / (clock_seconds() - start_s),
+           1e3 * (clock_cpu_seconds() - start_cpu_s) / pictures);
     return STATUS_OK;
 }
 
@@ -428,7 +433,7 @@ static const Option own[] = {
      .group = GROUP_RUN,
      .aside = true,
      .otherwise = "",
-     .help = "turn once around in N pictures, say how many a second, and quit"},
+     .help = "turn once around in N pictures of every pixel, say how many a second, and quit"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -449,6 +454,7 @@ static Status run_view(void *options, Parsed *parsed, Err *err)
                      .common = &parsed->common,
                      .tree = parsed->operands[0],
                      .recipe = own_options->recipe};
+    mem_keep();
     Status status = open_viewer(&viewer, err);
     if (status == STATUS_OK)
         status =

@@ -29,6 +29,10 @@
 #define IN_UNITS2(length) (2 * (length) * (length))
 #define PER_UNITS2(curvature) (0.5f * LEVEL * (curvature))
 
+/* Where the squared slope is so many times curvature times lack, a crossing lies ahead. */
+#define SURE 2.6f
+
+_Static_assert(BLOB_TUBES == 2 && BLOB_BEADS == 2, "the sums below name them one by one");
 static const BlobShape blob_numbers = BLOB_SHAPE;
 
 /* The part of the margin that `n` terms have without the rounding of places. A component is off by
@@ -76,54 +80,73 @@ typedef struct BlobSum {
     Lanes value, across, along;
 } BlobSum;
 
-/* Adds a component at the squared distance d2 from it, x of which lies along the axis. */
-LANE_FN void add_component(double strength, double radius, Lanes d2, Lanes x, BlobSum *sum)
+/* Its numbers are known where it is called, and so everything that follows from them. */
+#define FOLDED_FN LANE_FN __attribute__((always_inline))
+
+/* Adds a tube, of so much of its strength, at a squared distance. */
+FOLDED_FN void add_tube(const BlobTube *tube, double part, Lanes distance2, BlobSum *sum)
 {
-    const float per_radius2 = (float)(1 / IN_UNITS2(radius));
-    Lanes inside = lanes_max(1.0f - d2 * per_radius2, lanes_set(0));
-    Lanes value = inside * (float)(strength * FIELD_LEVEL), pull = value * (2 * per_radius2);
-    sum->value = lanes_fma(value, inside, sum->value);
-    sum->across += pull;
-    sum->along = lanes_fma(pull, x, sum->along);
+    const double strength = part * tube->strength * FIELD_LEVEL, per = 1 / IN_UNITS2(tube->radius);
+    Lanes inside =
+        lanes_max(lanes_fma(distance2, lanes_set((float)-per), lanes_set(1)), lanes_set(0));
+    sum->value = lanes_fma(inside * (float)strength, inside, sum->value);
+    sum->across = lanes_fma(inside, lanes_set((float)(2 * strength * per)), sum->across);
 }
 
-/* Adds what stands at an end, at x inwards from it and at the squared distance rho2 from the axis;
- * its derivative `along` runs inwards, too. */
-LANE_FN void add_end(Lanes rho2, Lanes x, BlobSum *sum)
+/* Adds two opposite beads, offset within an end and beyond it, at x inwards from it and at a
+ * squared distance; of what they add `along` is less by x times what they add `across`. */
+FOLDED_FN void add_beads(const BlobBead *bead, Lanes distance2, Lanes x, BlobSum *sum)
 {
-    Lanes d2 = lanes_fma(x, x, rho2);
-    for (int i = 0; i < BLOB_TUBES; i++)
-        add_component(-0.5 * blob_numbers.tube[i].strength, blob_numbers.tube[i].radius, d2, x,
-                      sum);
-    for (int i = 0; i < BLOB_BEADS; i++) {
-        const float offset = (float)(sqrt(2) * blob_numbers.bead[i].offset);
-        Lanes in = x - offset, out = x + offset;
-        add_component(blob_numbers.bead[i].strength, blob_numbers.bead[i].radius,
-                      lanes_fma(in, in, rho2), in, sum);
-        add_component(-blob_numbers.bead[i].strength, blob_numbers.bead[i].radius,
-                      lanes_fma(out, out, rho2), out, sum);
-    }
+    const double offset = sqrt(2) * bead->offset, per = 1 / IN_UNITS2(bead->radius);
+    const double strength = bead->strength * FIELD_LEVEL;
+    Lanes middle =
+        lanes_fma(distance2, lanes_set((float)-per), lanes_set((float)(1 - offset * offset * per)));
+    Lanes side = x * (float)(2 * offset * per);
+    Lanes in = lanes_max(middle + side, lanes_set(0)), out = lanes_max(middle - side, lanes_set(0));
+    Lanes more = in - out, both = in + out;
+    sum->value = lanes_fma(more * (float)strength, both, sum->value);
+    sum->across = lanes_fma(more, lanes_set((float)(2 * strength * per)), sum->across);
+    sum->along = lanes_fma(both, lanes_set((float)(-2 * strength * per * offset)), sum->along);
 }
 
-/* Where the term is at dz. */
+/* What stands at an end, at x inwards from it and at the squared distance rho2 from the axis; its
+ * derivative `along` runs inwards, too. */
+LANE_FN BlobSum sum_end(Lanes rho2, Lanes x)
+{
+    BlobSum sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
+    Lanes distance2 = lanes_fma(x, x, rho2);
+    add_tube(&blob_numbers.tube[0], -0.5, distance2, &sum);
+    add_tube(&blob_numbers.tube[1], -0.5, distance2, &sum);
+    add_beads(&blob_numbers.bead[0], distance2, x, &sum);
+    add_beads(&blob_numbers.bead[1], distance2, x, &sum);
+    sum.along = lanes_fma(sum.across, x, sum.along);
+    return sum;
+}
+
+/* The term at dz, where its ray is at w. */
 LANE_FN BlobSum blob_sum(const PacketTerm *term, Lanes dz, Lanes w)
 {
     const Lanes zero = lanes_set(0);
     const float reach =
         (float)(sqrt(2) * (blob_numbers.bead[1].offset + blob_numbers.bead[1].radius));
-    BlobSum sum = {zero, zero, zero}, last = sum;
+    BlobSum sum = {zero, zero, zero};
     Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
     Lanes rho2 = lanes_fma(w, w, term->e2), x = lanes_min(u, zero) - lanes_min(v, zero);
-    Lanes d2 = lanes_fma(x, x, rho2);
-    for (int i = 0; i < BLOB_TUBES; i++)
-        add_component(blob_numbers.tube[i].strength, blob_numbers.tube[i].radius, d2, x, &sum);
-    if (lanes_any(u < reach))
-        add_end(rho2, u, &sum);
+    Lanes distance2 = lanes_fma(x, x, rho2);
+    add_tube(&blob_numbers.tube[0], 1, distance2, &sum);
+    add_tube(&blob_numbers.tube[1], 1, distance2, &sum);
+    sum.along = sum.across * x;
+    if (lanes_any(u < reach)) {
+        BlobSum end = sum_end(rho2, u);
+        sum.value += end.value;
+        sum.across += end.across;
+        sum.along += end.along;
+    }
     if (lanes_any(v < reach)) {
-        add_end(rho2, v, &last);
-        sum.value += last.value;
-        sum.across += last.across;
-        sum.along -= last.along;
+        BlobSum end = sum_end(rho2, v);
+        sum.value += end.value;
+        sum.across += end.across;
+        sum.along -= end.along;
     }
     return sum;
 }

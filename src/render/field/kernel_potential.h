@@ -13,6 +13,9 @@
 
 #include "render/field/kernel_packet.h"
 
+/* Where the squared slope is so many times curvature times lack, a crossing lies ahead. */
+#define SURE 4.6f
+
 /* The part of the margin that `n` terms have without the rounding of places. */
 LANE_FN float fixed_margin(size_t n)
 {

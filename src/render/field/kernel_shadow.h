@@ -189,7 +189,7 @@ LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving,
         Lanes level = lanes_select(leaving, lanes_set(SKIN * LEVEL), lanes_set(LEVEL));
         Lanes lack = level - at.phi, safe = lack - group->margin, slope = at.slope;
         Lanes curvature = lanes_max(at.curvature, lanes_set(1e-30f)), slope2 = square(slope);
-        LaneMask rises = (slope > 0.0f) & (slope2 >= 4.6f * curvature * (lack + group->margin));
+        LaneMask rises = (slope > 0.0f) & (slope2 >= SURE * curvature * (lack + group->margin));
         LaneMask met = live & ~leaving & ((lack <= -group->margin) | rises);
         *dark |= met;
         live &= ~met;

@@ -127,7 +127,7 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, Lanes end, LaneM
         Lanes lack = LEVEL - sample.phi, safe = lack - group->margin, slope = sample.slope;
         Lanes curvature = lanes_max(sample.curvature, lanes_set(1e-30f));
         Lanes slope2 = square(slope);
-        Lanes safety = lanes_select(lack <= CLOSE_ENOUGH, lanes_set(4.6f), lanes_set(46));
+        Lanes safety = lanes_select(lack <= CLOSE_ENOUGH, lanes_set(SURE), lanes_set(10 * SURE));
         LaneMask sure = (slope > 0.0f) & (lack >= -group->margin) & (lack <= NEAR_ENOUGH) &
                         (slope2 >= safety * curvature * (lack + group->margin));
         LaneMask met = live & sure;
