@@ -54,7 +54,7 @@ as far as the rules are kept with 0.15 of the radii to spare @ repair.c @ relaxe
 Penalties rise twentyfold @ refine.c @ first_rate = 0.1, last_rate = 2;
 a tenth of the budget is left, or what 40 moves a terminal take, half of it at most @ refine.c @ last_moves = 40, least_left = 0.1, most_left = 0.5;
 the same with 2,000 moves a terminal @ refine.c @ [GROW_REFINE_ANNEAL] = 2000}
-20 moves times the square of the number of terminals @ refine.c @ moves_per_square = 20;
+20 moves times the square of the number of terminals, or 2,000 times the number if that is less, @ refine.c @ moves_per_square = 20, most_per_terminal = 2000;
 topology has 88 @ refine.c @ [GROW_REFINE_TOPOLOGY] = 88,
 until they agree to 10⁻¹³ @ finish.c @ agreement = 1e-13;
 256 points a terminal, up to 4,096 where that makes less than two million in all @ segment_weights.c @ least_points = 256, most_points = 4096, all_points = 2e6;

@@ -40,8 +40,10 @@ static const double last_moves = 40, least_left = 0.1, most_left = 0.5;
 static const double least_sweep_gain = 1e-4, least_joint_gain = 1e-4;
 static const double least_gain_before = 2e-3, least_gain_mending = 2e-4, least_gain_after = 5e-5;
 enum { ROUNDS_OF_MENDING = 120 };
-/* The moves of a cycle over the square of the number of terminals. */
-static const double moves_per_square = 20;
+/* The moves of a cycle over the square of the number of terminals, and over the number at most:
+ * where it cools more slowly, segments lean on broken rules, and mending costs more than was
+ * gained. */
+static const double moves_per_square = 20, most_per_terminal = 2000;
 /* Segments that are moved around either end of one that breaks a rule. */
 enum { NEIGHBOURS = 8 };
 /* Rounds after which reserved radii are computed anew. */
@@ -268,7 +270,7 @@ static Status repair(Refinement *refinement, bool *over, Err *err)
 static double cycle_moves(const Refinement *refinement)
 {
     double terminals = (double)refinement->search.arbor.terminals;
-    return moves_per_square * terminals * terminals;
+    return terminals * fmin(moves_per_square * terminals, most_per_terminal);
 }
 
 /* How much of a cycle's annealing is done, 1: all. */
