@@ -118,6 +118,23 @@ static Status fill_sheet(const RenderOptions *options, const char *tree, const S
     return annotation_put(&options->annotation, scene, whole, page, err);
 }
 
+/* Whether a band of so many rows, and the page that keeps all of them, find memory. */
+static Status check_size(const FramesForm *form, int step, Err *err)
+{
+    TRY(picture_fits(form->width, step, 40, err));
+    return frames_is_page(form->path) ? picture_fits(form->width, form->height, 12, err)
+                                      : STATUS_OK;
+}
+
+/* A command for each tile, or for each picture of the animation. */
+static Status print_commands(const ShardOptions *options, const Parsed *parsed, const char *path,
+                             const Animation *animation, Err *err)
+{
+    int tiles = options->tiles;
+    return shard_print_commands(options, parsed, path, tiles ? 1 : animation->first,
+                                tiles ? tiles : animation->last, err);
+}
+
 static Status draw_pictures(RenderOptions *options, Parsed *parsed, RenderParams *params,
                             FramesForm *form, Animation *animation, const Shard *shard, Err *err)
 {
@@ -140,9 +157,7 @@ static Status draw_pictures(RenderOptions *options, Parsed *parsed, RenderParams
                        .shard = *shard,
                        .step =
                            film_band_rows(form, options->picture.occlusion, options->memory_mb)};
-    TRY_GOTO(picture_fits(form->width, film.step, 40, err));
-    if (frames_is_page(form->path))
-        TRY_GOTO(picture_fits(form->width, form->height, 12, err));
+    TRY_GOTO(check_size(form, film.step, err));
     if (is_on_sheet(options))
         TRY_GOTO(sheet_open(&sheet, err));
     TRY_GOTO(picture_read_source(&options->picture, parsed, &source, err));
@@ -152,10 +167,7 @@ static Status draw_pictures(RenderOptions *options, Parsed *parsed, RenderParams
         TRY_GOTO(picture_check_ids(&scene.geometry, source.of.path, err));
     TRY_GOTO(note_files(animation, form, &parsed->files, err));
     if (options->shard.commands) {
-        const int tiles = options->shard.tiles;
-        status =
-            shard_print_commands(&options->shard, parsed, form->path, tiles ? 1 : animation->first,
-                                 tiles ? tiles : animation->last, err);
+        status = print_commands(&options->shard, parsed, form->path, animation, err);
         goto done;
     }
     TRY_GOTO(command_line_text(parsed, &line, err));
