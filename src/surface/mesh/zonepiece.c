@@ -447,8 +447,8 @@ static Status refuse(const Maker *maker, Err *err)
                        "so that their wall is no tube",
                        ids[pair[0]], ids[pair[1]]);
     return err_set(err, STATUS_INFEASIBLE,
-                   "the vessels about segment %u run into each other so that their wall is no "
-                   "tube; they make a loop",
+                   "the vessels about segment %u run into each other: they make a loop, or cells "
+                   "as fine as are tried do not show their wall to be without one",
                    ids[maker->plan->field.terms[0].segment]);
 }
 
