@@ -123,17 +123,18 @@ test_pixelmatch_in_a_tolerance_is_from_0_to_1() {
     run_ok corcast compare p.ppm p.ppm --tolerance t.ini
 }
 
-# 10 GB that no disk holds.
+# 10 GB and 30 GB that no disk holds.
 test_files_that_cannot_be_of_their_kind_are_refused_before_they_are_read() {
     local name
-    for name in t.swc p.png m.stl m.obj r.ini ring.txt m.nii s.pov; do
+    truncate -s 30G t.swc
+    for name in p.png m.stl m.obj r.ini ring.txt m.nii s.pov; do
         truncate -s 10G $name
     done
     (
         ulimit -v 1000000
         run timeout 5 "$CORCAST" info t.swc
         expect_status 2
-        expect_sentence 't\.swc: is larger than 4\.0 GB, the most that an SWC file may have'
+        expect_sentence 't\.swc: is larger than 20\.0 GB, the most that an SWC file may have'
         run timeout 5 "$CORCAST" compare p.png p.png
         expect_status 2
         expect_sentence 'p\.png: is not a PPM'

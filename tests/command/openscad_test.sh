@@ -248,7 +248,7 @@ test_what_a_solid_cannot_have_is_refused() {
     expect_sentence '--scad is for models of OpenSCAD'
     run corcast scene fork.swc -o x.stl
     expect_status 2
-    expect_sentence "'x.stl' does not end in .pov or .scad"
+    expect_sentence "'x.stl' does not end in .pov, .scad or .tachyon"
     [ ! -e x.scad ] || fail "expected no file"
 }
 
