@@ -9,12 +9,13 @@
  * [kernel_packet.h, and the headers that it names]:
  *
  * - Windows. Phi >= T needs a term of at least its share T B / S, S the sum of all B of the group.
- *   Where that can be is a stretch of the ray within a distance of the segment, found from
- *   what a term is at most by its distance. The march goes from
- *   the first of them to the last. For a lone straight vessel the first begins at its surface.
+ *   Where that can be is a stretch of the ray within a distance of the segment, found from what a
+ *   term is at most by its distance. The march goes from the first of them to the last. For a lone
+ *   straight vessel the first begins at its surface.
  * - Steps and acceptance as in fieldcast.c, with a margin about T for what single precision, erf
- * and the terms left out amount to: nothing is stepped over that could reach T - margin, and a hit
- * is one that rises through T + margin. */
+ *   and the terms left out amount to: nothing is stepped over that could reach T - margin, and a
+ *   hit is one that rises through T + margin.
+ */
 #ifndef FIELD_KERNEL
 #error "define FIELD_KERNEL, the name of the function"
 #endif
