@@ -21,7 +21,7 @@ const state = {
   field: null, map: null, log: null, moment: 0, grown: 1, haze: true, shade: true, panels: true,
   hovered: -1, pinned: -1, // numbers of segments, or -1
 };
-let scale = null, wanted = false, playing = 0, written = 0;
+let scale = null, wanted = false, playing = 0, written = 0, known = location.hash;
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const canvas = find("stage");
@@ -194,7 +194,9 @@ function viewOptions() {
     ["height", rounded(height)]];
 }
 
+// Not where somebody has set another address, which is about to be read.
 function writeAddress() {
+  if (location.hash !== known) return;
   const parts = viewOptions();
   if (state.field) parts.push(["field", state.field], ["map", scale.map.name], ["log", scale.log ? "on" : "off"]);
   else if (start) parts.push(["field", "none"]);
@@ -204,6 +206,7 @@ function writeAddress() {
   if (state.pinned >= 0) parts.push(["segment", tree.id[state.pinned]]);
   const text = parts.map(([key, value]) => `${key}=${encodeURIComponent(value).replaceAll("%2C", ",")}`).join("&");
   history.replaceState(null, "", "#" + text);
+  known = location.hash;
 }
 
 function wantAddress() {
@@ -222,6 +225,7 @@ function within(text, low, high, otherwise) {
 }
 
 function readAddress() {
+  known = location.hash;
   const get = new URLSearchParams(location.hash.slice(1));
   const field = get.get("field") ?? (start && start.field);
   view.project(get.get("projection") === "orthographic");
