@@ -325,18 +325,20 @@ const char *file_extension(const char *path)
     return dot && dot != name ? dot + 1 : "";
 }
 
+double file_bytes(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0 ? (double)about.st_size : 0;
+}
+
 static Status format_owned(char **out, Err *err, const char *format, ...) PRINTF_LIKE(3, 4);
 static Status format_owned(char **out, Err *err, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    char *text = NULL;
-    int length = vasprintf(&text, format, arguments);
+    Status status = mem_vprintf(out, "a file's name", err, format, arguments);
     va_end(arguments);
-    if (length < 0)
-        return mem_out_of("for", "a file's name", err);
-    *out = text;
-    return STATUS_OK;
+    return status;
 }
 
 Status file_with_suffix(const char *path, const char *suffix, char **out, Err *err)

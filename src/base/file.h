@@ -106,5 +106,7 @@ MUST_CHECK Status file_with_suffix(const char *path, const char *suffix, char **
 MUST_CHECK Status file_join(const char *folder, const char *name, char **out, Err *err);
 /* The last component of `path`. Borrowed. */
 const char *file_name(const char *path);
+/* The size of the file in bytes; 0 when there is none. */
+double file_bytes(const char *path);
 
 #endif

@@ -6,6 +6,7 @@
 #include <malloc.h>
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -91,5 +92,14 @@ Status mem_strdup(char **out, const char *text, Err *err)
     size_t size = strlen(text) + 1;
     TRY(mem_calloc(out, size, 1, "bytes of text", err));
     memcpy(*out, text, size);
+    return STATUS_OK;
+}
+
+Status mem_vprintf(char **out, const char *subject, Err *err, const char *format, va_list values)
+{
+    char *text = NULL;
+    if (vasprintf(&text, format, values) < 0)
+        return mem_out_of("for", subject, err);
+    *out = text;
     return STATUS_OK;
 }

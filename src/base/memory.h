@@ -3,6 +3,7 @@
 #define CORCAST_BASE_MEMORY_H
 
 #include "base/status.h"
+#include <stdarg.h>
 #include <stddef.h>
 
 /* Allocates `count` zeroed items of `size` bytes into *out (owned; free with free()). A count of
@@ -43,5 +44,9 @@ MUST_CHECK Status mem_out_of(const char *purpose, const char *subject, Err *err)
 
 /* A copy of `text` in *out (owned). */
 MUST_CHECK Status mem_strdup(char **out, const char *text, Err *err);
+
+/* What vprintf would print, in *out (owned); `subject` is what it is for, as "a file's name". */
+MUST_CHECK Status mem_vprintf(char **out, const char *subject, Err *err, const char *format,
+                              va_list values) PRINTF_LIKE(4, 0);
 
 #endif

@@ -9,7 +9,6 @@
 #include <nifti2_io.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 static Status check_count(const char *path, const int64_t n[3], Err *err)
@@ -113,9 +112,7 @@ static Status check_size(const char *path, const nifti_image *image, Err *err)
 {
     enum { DEFLATE_MAX_RATIO = 1032 };
     double needed = (double)image->nvox * image->nbyper;
-    struct stat about;
-    double found = stat(path, &about) == 0 ? (double)about.st_size : 0;
-    if (needed > found * (nifti_is_gzfile(path) ? DEFLATE_MAX_RATIO : 1))
+    if (needed > file_bytes(path) * (nifti_is_gzfile(path) ? DEFLATE_MAX_RATIO : 1))
         return ends_early(path, image, err);
     return mem_check(needed, path, err);
 }

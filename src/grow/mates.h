@@ -11,9 +11,9 @@ Vec3 mates_place(Vec3 terminal, double mm, int dimension, Random *random);
 /* Says the network's pairs in the tree, which has the same nodes. STATUS_MEMORY. */
 MUST_CHECK Status mates_write(const Network *net, Tree *tree, Err *err);
 
-/* Proves of a tree alone that every terminal has its own mate, in the other tree and in the
- * distance `pair_mm`, and that their walls keep the clearance. STATUS_INFEASIBLE where vessels are
- * too wide for that; then the sentence says which distance would do. */
+/* Checks that the ends of pairs, which stand `pair_mm` apart, leave the clearance between the walls
+ * of their vessels. STATUS_INFEASIBLE where vessels are too wide for that; then the sentence says
+ * which distance would do. */
 MUST_CHECK Status mates_check(const GrowParams *params, const Tree *tree, Err *err);
 
 #endif

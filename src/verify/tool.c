@@ -38,13 +38,11 @@ Status arguments_add(Arguments *arguments, Err *err, const char *format, ...)
 {
     va_list values;
     va_start(values, format);
-    char *text = NULL;
-    int length = vasprintf(&text, format, values);
+    Status status =
+        mem_vprintf(&arguments->list[arguments->n], "a program's arguments", err, format, values);
     va_end(values);
-    if (length < 0)
-        return err_set(err, STATUS_MEMORY, "out of memory: no room for a program's arguments");
-    arguments->list[arguments->n++] = text;
-    return STATUS_OK;
+    arguments->n += status == STATUS_OK;
+    return status;
 }
 
 /* The folder of `path`, where a program finds what the scene includes; in *out (owned). */

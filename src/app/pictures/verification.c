@@ -11,7 +11,6 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
-#include <sys/stat.h>
 
 void verification_release(Verification *v)
 {
@@ -191,12 +190,11 @@ static void report_plane(double fraction, void *context)
 }
 
 /* Of a file of the folder; 0: there is none. */
-static Status file_bytes(const Verification *v, const char *name, double *bytes, Err *err)
+static Status bytes_in_folder(const Verification *v, const char *name, double *bytes, Err *err)
 {
     char *path = NULL;
-    struct stat about;
     TRY(file_join(v->folder, name, &path, err));
-    *bytes = stat(path, &about) == 0 ? (double)about.st_size : 0;
+    *bytes = file_bytes(path);
     free(path);
     return STATUS_OK;
 }
@@ -206,8 +204,8 @@ static Status runs_at_once(const Verification *v, int *at_once, Err *err)
 {
     double scene, ids;
     int threads = v->common->threads, most = threads > 0 && threads < PLANES ? threads : PLANES;
-    TRY(file_bytes(v, "scene.inc", &scene, err));
-    TRY(file_bytes(v, "ids.inc", &ids, err));
+    TRY(bytes_in_folder(v, "scene.inc", &scene, err));
+    TRY(bytes_in_folder(v, "ids.inc", &ids, err));
     *at_once = (int)fmax(1, fmin(most, most_bytes_at_once / fmax(1, fmax(scene, ids))));
     return STATUS_OK;
 }
