@@ -14,8 +14,7 @@
  *   straight vessel the first begins at its surface.
  * - Steps and acceptance as in fieldcast.c, with a margin about T for what single precision, erf
  *   and the terms left out amount to: nothing is stepped over that could reach T - margin, and a
- *   hit is one that rises through T + margin.
- */
+ *   hit is one that rises through T + margin. */
 #ifndef FIELD_KERNEL
 #error "define FIELD_KERNEL, the name of the function"
 #endif

@@ -1,19 +1,21 @@
-/* Pixels are taken in pairs along a row, and of each surface that a pair sees one place asks for
- * both: what lies at another depth beside it asks for itself. Pairs are of four sets, in a square
- * of four by four pairs that each row, each column and each two by two of has all four of, and ask
- * the beams [beams.c] of their set.
+/* Pixels are taken in pairs along a row. Of each surface that a pair of pixels shows, one place
+ * asks beams [beams.c] for both pixels; where the two show different surfaces, both places ask. The
+ * directions of beams are parted into four sets, and a pair asks those of one set: in a square of
+ * four by four pairs each row, each column and each quarter has all four sets.
  *
- * The answers of three by three pairs about a place, so far as they are of its surface, make the
- * part of the sky that it sees: of each direction their mean, by weights that fall with the
- * distance from the place, and of all directions the mean by the cosine to the normal at the place
- * itself: that is what light changes most by on a thin vessel. So there is neither grain nor a seam
- * between pairs.
+ * What part of the sky a place sees is found from what three by three pairs about it were answered,
+ * as far as they asked from the same surface. For each direction that is the mean of the answers,
+ * by weights that fall with the distance from the place; over all directions, the mean weighted by
+ * the cosine to the normal at the place itself, because on a thin vessel that cosine changes most
+ * from pixel to pixel. As neighbours have all four sets, there is neither grain nor a seam between
+ * pairs.
  *
- * Why pairs: a beam is wider than some pixels but where it begins. If each pixel asks, the error is
- * 0.034 in a ball for 0.035 of pairs, and if one asks for four 0.040; pairs take half the beams.
+ * Why pairs: a beam is wider than a pixel except near its beginning, so that two pixels can share
+ * one. The error in a ball is 0.034 if each pixel asks, 0.035 with pairs and 0.040 if one pixel
+ * asks for four; pairs take half the beams.
  *
- * Answers are bytes, so that a picture's need little memory. A thread takes a direction at a time,
- * with all who ask about it. */
+ * Answers are bytes, so that those of a whole picture need little memory. A thread takes one
+ * direction at a time, with all places that ask about it. */
 #include "render/sky/skylight.h"
 
 #include "render/sky/beamkernels.h"
