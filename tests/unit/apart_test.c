@@ -1,13 +1,9 @@
 /* The distance of the trees of a forest, held against all pairs of segments by another formula. */
 #include "grow/grow.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "tree_promises.h"
 
@@ -23,8 +19,7 @@ static Tree forest(const char *spec, double clearance, Err *err)
     params.q_perf_ml_min = 90;
     params.clearance_mm = clearance;
     assert_int_equal(domain_parse(&domain, spec, NULL), STATUS_OK);
-    if (grow_tree(&params, &domain, &tree, NULL, err) != STATUS_OK)
-        fail_msg("%s", err->text);
+    must(grow_tree(&params, &domain, &tree, NULL, err), err);
     return tree;
 }
 

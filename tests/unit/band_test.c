@@ -1,17 +1,14 @@
 /* Bands have the very bytes of the whole picture. */
 #include "render/render.h"
+#include "unit.h"
 
 #include "stage/stage.h"
 #include "treeio/treeio.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "test_stage.h"
-#include <cmocka.h>
 #include <stdio.h>
 
 enum { WIDTH = 83, HEIGHT = 61 };

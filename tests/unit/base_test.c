@@ -1,15 +1,13 @@
 #include "any_file.h"
 #include "base/base.h"
+#include "scratch.h"
+#include "unit.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -262,20 +260,6 @@ static void a_prefix_says_where_an_error_happened(void **state)
 }
 
 /* Files. */
-
-static char folder[] = "/tmp/corcast-base-XXXXXX";
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    return rmdir(folder);
-}
 
 static void a_discarded_file_leaves_the_old_one_alone(void **state)
 {

@@ -5,16 +5,13 @@
 #include "render/field/kernel_blob.h"
 #include "stage/stage.h"
 #include "surface/surface.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "../fit/blob_deviation.h"
 #include "field_scenes.h"
-#include <cmocka.h>
 
 typedef struct Cast {
     BlobCast *cast;

@@ -1,14 +1,10 @@
 /* The bound of a tree's target: below all that was tried, reached by what is found. */
 #include "grow/bound/bound_newton.h"
 #include "grow/grow.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static Tree grown(size_t terminals, double lambda, const char *spec, TerminalFlow flow)
 {
@@ -43,8 +39,7 @@ static Bound bounded(const Tree *tree, double lambda)
 {
     Bound bound;
     Err err = {""};
-    if (bound_tree(tree, lambda, &bound, &err) != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(bound_tree(tree, lambda, &bound, &err), &err);
     return bound;
 }
 

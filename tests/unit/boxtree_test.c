@@ -1,14 +1,10 @@
 /* The tree of boxes against every box by itself. */
 #include "geom/geom.h"
+#include "unit.h"
 
 #include "base/base.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { N = 500 };
 

@@ -1,15 +1,11 @@
 /* How near and how far rays see, in every kind of geometry: POV-Ray's limits [docs/POVRAY.md,
  * sections 3, 4 and 9]. */
 #include "render/cast/caster.h"
+#include "unit.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* Something so thin, square to the ray (0, 0, 1) from the origin, that it is met at about `at` mm
  * only. */

@@ -1,16 +1,12 @@
 /* What made B of A, of faults planted in a picture of seven shaded balls before a background of one
  * colour, drawn by a formula wherever the camera is: the right words for each, and none for faults
  * that no sentence is about, for two at once, and for chance. */
+#include "unit.h"
 #include "verify/verify.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { W = 173, H = 139, BALLS = 7 };
 

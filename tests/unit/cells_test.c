@@ -1,15 +1,12 @@
 /* Slow: holds every cell against brute force. */
 #include "surface/surface.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "field_scenes.h"
-#include <cmocka.h>
 #include <stdio.h>
 
 static CellTree cells_of(const TestScene *test, double beta, ErfForm erf)

@@ -1,14 +1,10 @@
 /* The colours of a value, against the published tables (matplotlib's; Crameri's as GMT has them, in
  * 8 bits) and the sRGB standard (IEC 61966-2-1), worked out by hand. */
 #include "image/image.h"
+#include "unit.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static Err err;
 

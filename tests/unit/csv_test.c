@@ -1,15 +1,11 @@
 #include "any_file.h"
 #include "derive/derive.h"
 #include "treeio/treeio.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static char folder[] = "/tmp/corcast-csv-XXXXXX";
 static char input[64], output[64];
@@ -30,12 +26,6 @@ static int remove_folder(void **state)
     unlink(input);
     unlink(output);
     return rmdir(folder);
-}
-
-static void must(Status status, const Err *err)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", err->text);
 }
 
 static Tree read_text(const char *text)

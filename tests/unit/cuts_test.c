@@ -1,13 +1,9 @@
 #include "stage/cuts.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static VesselEnd end_at(double degrees, double radius)
 {

@@ -1,23 +1,13 @@
 #include "derive/derive.h"
+#include "unit.h"
 
 #include "treeio/treeio.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const TreeMeta no_options;
 
 #define SAYS(key, value) .known[META_##key] = true, .number[META_##key] = (value)
-
-static void must(Status status, const Err *err)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", err->text);
-}
 
 static Tree read_tree(const char *path)
 {

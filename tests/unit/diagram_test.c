@@ -1,19 +1,9 @@
 #include "diagram/diagram.h"
+#include "unit.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
-
-static void must(Status status, const Err *err)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", err->text);
-}
 
 /* A forest of `roots` trees whose nodes hang on any earlier one of their own tree. */
 static Tree random_forest(uint64_t seed, size_t n, size_t roots)

@@ -1,22 +1,13 @@
 /* How domains are read: what the texts and files may look like, and the sentence each bad one gets.
  * Runs in a folder of its own; the NIfTI headers are laid out by hand. */
 #include "domain/domain.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <znzlib.h>
-
-static void must(Status status, const Err *err)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", err->text);
-}
 
 static void write_bytes(const char *name, const void *bytes, size_t size)
 {

@@ -2,16 +2,12 @@
  * text. The cells of the sampling tests are cut here by formulas of their own, and segments are
  * held against points all along them. The files are written to a folder of the test's own. */
 #include "domain/domain.h"
+#include "unit.h"
 
 #include <limits.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -30,12 +26,6 @@ static const char picture_text[] = "P2 8 5 255\n"
                                    "0 255 255 255 255 255  90   0\n"
                                    "0   0   0   0 255   0   0   0\n"
                                    "0   0   0 255 255   0   0 255\n";
-
-static void must(Status status, const Err *err)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", err->text);
-}
 
 static void write_text(const char *name, const char *text)
 {

@@ -1,17 +1,14 @@
 /* Outlines, halos and fading, against what geometry says of them. */
 #include "render/effect/effect.h"
+#include "unit.h"
 
 #include "render/render.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "test_stage.h"
-#include <cmocka.h>
 
 static Err err;
 

@@ -1,15 +1,12 @@
 #include "emit/emit.h"
+#include "unit.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <stdio.h>
 
 static Primitive primitives[] = {
@@ -96,8 +93,7 @@ static Emitted emit(const Scene *scene, const EmitParams *params)
 {
     Emitted out = {.scene = TEXT_INIT};
     Err err = {{0}};
-    if (write_povray(scene, params, &out, &err) != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(write_povray(scene, params, &out, &err), &err);
     return out;
 }
 

@@ -7,20 +7,17 @@
  * none; the hit must lie between the two, widened by the tolerance. Rays for which the two are
  * farther apart than the tolerance graze, and are counted. */
 #include "render/field/fieldtiles.h"
+#include "unit.h"
 
 #include "grow/grow.h"
 #include "stage/stage.h"
 #include "treeio/treeio.h"
 #include <float.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include "field_walk.h"
-#include <cmocka.h>
 #include <stdio.h>
 
 typedef struct Tally {

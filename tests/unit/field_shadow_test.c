@@ -5,19 +5,16 @@
  * and before did not reach 1.002 C + e; of others, which are counted, nothing is said. e is what
  * single precision and the terms left out amount to. */
 #include "render/field/fieldshadow.h"
+#include "unit.h"
 
 #include "grow/grow.h"
 #include "render/cast/caster.h"
 #include "render/field/fieldtiles.h"
 #include "stage/stage.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 
 #include "field_walk.h"
-#include <cmocka.h>
 
 /* Nothing nearer shadows a place, in radii of the smallest vessel. */
 static const double from_radii = 1e-3;

@@ -1,14 +1,11 @@
 /* Slow: holds the potential against brute force. */
 #include "render/cast/fieldcast.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "field_scenes.h"
-#include <cmocka.h>
 #include <stdio.h>
 
 /* A scene with its index and one workspace. */

@@ -1,21 +1,18 @@
 /* Pictures of the potential: the same whatever the threads, the same as ray by ray in double
  * precision whatever the kernel, and right for scenes that are wrong. */
 #include "render/render.h"
+#include "unit.h"
 
 #include "render/cast/caster.h"
 #include "render/field/fieldtiles.h"
 #include "render/light/resample.h"
 #include "render/light/shade.h"
 #include "render/tile/canvas.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "field_scenes.h"
 #include "test_scene.h"
-#include <cmocka.h>
 #include <stdio.h>
 
 enum { WIDTH = 101, HEIGHT = 67 };

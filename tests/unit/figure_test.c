@@ -1,13 +1,10 @@
 /* Pages: round numbers, legends, letters, and pixels that do not depend on the part drawn. */
 #include "figure/figure.h"
+#include "unit.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static FigureFonts *fonts;
 

@@ -1,14 +1,11 @@
 #include "any_file.h"
 #include "base/base.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <limits.h>
 #include <signal.h>
 #include <stdio.h>
@@ -36,8 +33,7 @@ static int remove_folder(void **state)
 static void write_file(const char *path, const char *text)
 {
     Err err = {{0}};
-    if (file_write(path, text, strlen(text), &err) != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(file_write(path, text, strlen(text), &err), &err);
 }
 
 static void expect_text(const char *path, const char *text)

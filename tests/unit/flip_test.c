@@ -1,17 +1,13 @@
 /* The pairs and the values of NVIDIA's FLIP 1.6 come with the shared data; without it those tests
  * are skipped. */
+#include "unit.h"
 #include "verify/verify.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static Err err;
 

@@ -1,20 +1,10 @@
 #include "tree/tree.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #define NONE ((double)NAN)
-
-static void must(Status status, const Err *err)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", err->text);
-}
 
 /* Points and lines as tests write them; records are 100 + number and 200 + number. */
 typedef struct Net {

@@ -1,15 +1,11 @@
 /* Growth in domains that are not convex: every segment stays in the tissue, not only its ends. */
 #include "grow/grow.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static Tree grow_in(const Domain *domain, size_t terminals, GrowReport *report)
 {
@@ -19,8 +15,7 @@ static Tree grow_in(const Domain *domain, size_t terminals, GrowReport *report)
     params.q_perf_ml_min = 60;
     Tree tree;
     Err err = {{0}};
-    if (grow_tree(&params, domain, &tree, report, &err) != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(grow_tree(&params, domain, &tree, report, &err), &err);
     return tree;
 }
 
@@ -29,8 +24,7 @@ static void expect_whole_segments_inside(const char *spec, size_t terminals)
 {
     Domain domain = {0};
     Err err = {{0}};
-    if (domain_parse(&domain, spec, &err) != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(domain_parse(&domain, spec, &err), &err);
     assert_false(domain_is_convex(&domain));
     GrowReport report;
     Tree tree = grow_in(&domain, terminals, &report);

@@ -3,13 +3,9 @@
 #include "grow/cco/fermat.h"
 #include "grow/forest.h"
 #include "grow/territory.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 static double sum_at(const Vec3 corner[3], const double weight[3], double t)
 {

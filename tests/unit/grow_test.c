@@ -1,13 +1,9 @@
 /* Grown trees, held to their promises [tree_promises.h]. */
 #include "grow/grow.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "tree_promises.h"
 
@@ -23,8 +19,7 @@ static Tree grown(const GrowParams *params, const char *spec, GrowReport *report
     Domain domain = domain_of(spec);
     Tree tree;
     Err err = {""};
-    if (grow_tree(params, &domain, &tree, report, &err) != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(grow_tree(params, &domain, &tree, report, &err), &err);
     return tree;
 }
 

@@ -2,17 +2,13 @@
  * damage. */
 #include "any_file.h"
 #include "image/image.h"
+#include "unit.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static Err err;
 
@@ -94,8 +90,7 @@ static Image read_image(const char *name)
     char path[128];
     Image image;
     path_of(name, path);
-    if (image_read(&image, path, &err) != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(image_read(&image, path, &err), &err);
     return image;
 }
 

@@ -1,16 +1,12 @@
 /* Vessels as lines on paper. */
 #include "render/render.h"
+#include "unit.h"
 
 #include "test_scene.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #define PI 3.141592653589793
 /* A millimetre of the tree is so many on paper. */

@@ -1,15 +1,12 @@
 #include "stage/stage.h"
+#include "unit.h"
 
 #include "render/cast/bvh.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "test_stage.h"
-#include <cmocka.h>
 
 static const Look look = {.color = {0.5f, 0.1f, 0.2f},
                           .finish = {.ambient = 0.1f, .diffuse = 0.6f, .brilliance = 1},
@@ -41,8 +38,7 @@ static Scene stage(const Tree *tree, JointForm joints, StageReport *report)
     params.geometry.joints = joints;
     Scene scene;
     Err err = {{0}};
-    if (stage_all(tree, &look, &params, &scene, report, &err) != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(stage_all(tree, &look, &params, &scene, report, &err), &err);
     return scene;
 }
 

@@ -1,14 +1,10 @@
 #include "geom/geom.h"
+#include "unit.h"
 
 #include "base/base.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static double number(Random *random, double low, double high)
 {

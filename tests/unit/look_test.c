@@ -1,17 +1,14 @@
 /* The looks of templates/looks: what their light does to vessels of all directions. */
 #include "stage/stage.h"
+#include "unit.h"
 
 #include "render/render.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "test_stage.h"
-#include <cmocka.h>
 
 static Err err;
 

@@ -6,14 +6,11 @@
 #include "surface/mesh/nearpairs.h"
 #include "surface/mesh/zonetree.h"
 #include "treeio/treeio.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #include "mesh_distance.h"
-#include <cmocka.h>
 
 enum { MOST = 128 };
 
@@ -58,8 +55,7 @@ static void make(const VesselTree *tree, Made *made)
     const MeshParams params = {.tolerance = 0.02, .threads = 1};
     Err err = {""};
     Status status = vesselmesh_build(tree, &params, &made->mesh, &made->report, &err);
-    if (status != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(status, &err);
 }
 
 static void release(Made *made)

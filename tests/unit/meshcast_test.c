@@ -1,14 +1,10 @@
 /* Rays and triangles: which is met first, where, and the normal that is seen there. */
 #include "render/cast/meshcast.h"
+#include "unit.h"
 
 #include "base/base.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 /* A triangle in the plane z = 2.385, its right angle at the origin of x and y, and normals that
  * lean outwards. */

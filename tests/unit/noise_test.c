@@ -1,14 +1,10 @@
 /* The test of noisy pictures: how often it is wrong, and what it finds. */
+#include "unit.h"
 #include "verify/verify.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { W = 97, H = 61, N = W * H * 3 };
 

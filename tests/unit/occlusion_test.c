@@ -1,16 +1,13 @@
 /* How much of the sky is seen, against what geometry says. */
 #include "render/light/occlusion.h"
+#include "unit.h"
 
 #include "render/render.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "test_scene.h"
-#include <cmocka.h>
 
 static Err err;
 

@@ -3,16 +3,13 @@
 #include "render/cast/fieldcast.h"
 #include "render/render.h"
 #include "stage/stage.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "field_scenes.h"
 #include "test_stage.h"
-#include <cmocka.h>
 
 static TestScene empty_scene(void)
 {

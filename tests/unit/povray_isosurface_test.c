@@ -1,15 +1,12 @@
 #include "render/render.h"
+#include "unit.h"
 
 #include "render/cast/fieldcast.h"
 #include "render/cast/povray_isosurface.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "field_scenes.h"
-#include <cmocka.h>
 #include <stdio.h>
 
 static const CellParams cells = {.beta = 3};

@@ -1,13 +1,9 @@
 /* Faults that are planted in pictures, and three programs of which one may stand alone. */
+#include "unit.h"
 #include "verify/verify.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { W = 61, H = 43, N = W * H };
 

@@ -1,13 +1,9 @@
 #include "app/run/progress.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 /* What is said in a log of something that began so many seconds ago. */
 static void said_at(double fraction, double seconds_ago, double since_last_s, bool quiet,

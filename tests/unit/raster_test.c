@@ -2,19 +2,16 @@
  * precision but for rounding, whatever the kernel, the same whatever the threads, and right
  * where single precision is not. */
 #include "render/render.h"
+#include "unit.h"
 
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "test_scene.h"
-#include <cmocka.h>
 
 enum { WIDTH = 203, HEIGHT = 141, PIXELS = WIDTH * HEIGHT, N_TUBES = 60 };
 

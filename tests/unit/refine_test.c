@@ -1,14 +1,10 @@
 /* Slow: refines whole trees at every level. */
 /* Refined trees: lower targets, and every promise of a tree kept [tree_promises.h]. */
 #include "grow/grow.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "tree_promises.h"
 
@@ -21,8 +17,7 @@ static Tree grown(size_t terminals, double lambda, uint64_t seed, const char *sp
     Tree tree;
     Err err = {""};
     assert_int_equal(domain_parse(domain, spec, NULL), STATUS_OK);
-    if (grow_tree(&params, domain, &tree, NULL, &err) != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(grow_tree(&params, domain, &tree, NULL, &err), &err);
     return tree;
 }
 
@@ -31,8 +26,7 @@ static RefineReport refine(Tree *tree, const Domain *domain, GrowRefine level, u
     RefineParams params = {.level = level, .moves = moves, .seed = 3};
     RefineReport report;
     Err err = {""};
-    if (refine_tree(&params, domain, tree, &report, &err) != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(refine_tree(&params, domain, tree, &report, &err), &err);
     return report;
 }
 

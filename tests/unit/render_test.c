@@ -1,16 +1,12 @@
 #include "render/render.h"
+#include "unit.h"
 
 #include "render/cast/bvh.h"
 #include "render/light/resample.h"
 #include "render/light/shade.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static double number(Random *random, double low, double high)
 {

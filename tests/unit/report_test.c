@@ -1,16 +1,12 @@
 #include "any_file.h"
+#include "unit.h"
 #include "verify/check.h"
 #include "verify/result.h"
 #include "verify/verify.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static Err err;
 static const char *const folder = "build/report_test";

@@ -1,13 +1,9 @@
 #include "scene/scene.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const Camera cameras[] = {
     {.projection = PROJECTION_ORTHOGRAPHIC,

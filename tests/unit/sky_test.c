@@ -1,19 +1,16 @@
 /* Slow: holds occlusion against a thousand rays a place, in trees of 20,000 segments. */
 #include "render/render.h"
+#include "unit.h"
 
 #include "grow/grow.h"
 #include "render/light/occlusion.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "test_scene.h"
 #include "test_stage.h"
-#include <cmocka.h>
 
 static Err err;
 

@@ -1,16 +1,13 @@
 #include "stage/stage.h"
+#include "unit.h"
 
 #include "stage/places.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "test_stage.h"
-#include <cmocka.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -50,8 +47,7 @@ static Scene stage(const StageParams *params, StageReport *report)
     Tree tree = make_tree();
     Scene scene;
     Err err = {{0}};
-    if (stage_all(&tree, &look, params, &scene, report, &err) != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(stage_all(&tree, &look, params, &scene, report, &err), &err);
     tree_release(&tree);
     return scene;
 }

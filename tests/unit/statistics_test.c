@@ -1,24 +1,14 @@
 #include "derive/derive.h"
+#include "unit.h"
 
 #include "treeio/treeio.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 static const TreeMeta no_options;
-
-static void must(Status status, const Err *err)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", err->text);
-}
 
 static void assert_close(double value, double expected)
 {

@@ -1,13 +1,10 @@
 #include "surface/surface.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "field_scenes.h"
-#include <cmocka.h>
 #include <stdio.h>
 
 static FieldSegment random_segment(Random *random)

@@ -1,14 +1,10 @@
 #include "any_file.h"
 #include "treeio/treeio.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static char folder[] = "/tmp/corcast-swc-XXXXXX";
 static char input[64], output[64], again[64];
@@ -31,12 +27,6 @@ static int remove_folder(void **state)
     unlink(output);
     unlink(again);
     return rmdir(folder);
-}
-
-static void must(Status status, const Err *err)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", err->text);
 }
 
 static Tree read_path(const char *path)

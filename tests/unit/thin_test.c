@@ -1,17 +1,13 @@
 /* Vessels thinner than a pixel cover their own area of it. */
 #include "render/render.h"
 #include "render/thin/thinvessels.h"
+#include "unit.h"
 
 #include "test_scene.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { SIDE = 64, FINER = 16 };
 /* One pixel is so wide: the picture is 16 mm. */

@@ -1,12 +1,8 @@
 #include "tmpl/tmpl.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
+#include "unit.h"
 #include <stdint.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static const char *const path = "build/tmpl_test.txt";
 

@@ -3,37 +3,13 @@
 #define CORCAST_TESTS_TREE_FILES_H
 
 #include "any_file.h"
+#include "scratch.h"
 #include "treeio/treeio.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include <cmocka.h>
-
-static char folder[] = "/tmp/corcast-texts-XXXXXX";
 static char path[64];
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    return rmdir(folder);
-}
-
-static void must(Status status, const Err *err)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", err->text);
-}
 
 /* Writes the bytes to a file with this extension, whose name is then in `path`. */
 static void put_file(const char *extension, const void *bytes, size_t size)

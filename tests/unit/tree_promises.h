@@ -1,9 +1,11 @@
 /* What every grown or refined tree promises, held against coordinates and radii alone: nothing here
- * uses growth's own bookkeeping. Include after cmocka.h. */
+ * uses growth's own bookkeeping. */
 #ifndef CORCAST_TESTS_TREE_PROMISES_H
 #define CORCAST_TESTS_TREE_PROMISES_H
 
 #include "tree/tree.h"
+#include "unit.h"
+
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,18 +1,8 @@
 #include "tree/tree.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
-
-static void must(Status status, const Err *err)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", err->text);
-}
 
 /* 12 -> 7 -> { 30, 9 -> 41 }, and a root 5 of its own. */
 static Tree small_tree(void)

@@ -1,13 +1,9 @@
 /* Growth on a trunk whose radii stay: held to Poiseuille's law by a walk of its own. */
 #include "grow/grow.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "tree_promises.h"
 
@@ -127,8 +123,7 @@ static void radii_and_points_of_a_trunk_stay_to_the_bit(void **state)
         params.gamma = logcurve_constant(inlets == 1 ? 3 : 2.7);
         params.lambda = inlets == 1 ? 2 : 1.4;
         Err err = {""};
-        if (grow_on(&params, &tree, &err) != STATUS_OK)
-            fail_msg("%s", err.text);
+        must(grow_on(&params, &tree, &err), &err);
         bool *kept = assert_kept(&from, &tree);
         assert_laws(&tree, kept);
         assert_true(tree.radius_mm[0] == from.radius_mm[1]);
@@ -163,8 +158,7 @@ static void a_trunk_by_pries_and_territory_keeps_its_radii(void **state)
     params.viscosity_law = VISCOSITY_PRIES;
     params.terminal_flow = TERMINAL_FLOW_TERRITORY;
     Err err = {""};
-    if (grow_on(&params, &tree, &err) != STATUS_OK)
-        fail_msg("%s", err.text);
+    must(grow_on(&params, &tree, &err), &err);
     free(assert_kept(&from, &tree));
     assert_non_null(tree.flow_share);
     tree_release(&tree);

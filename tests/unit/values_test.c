@@ -1,14 +1,10 @@
 #include "derive/derive.h"
 #include "treeio/treeio.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static char folder[] = "/tmp/corcast-values-XXXXXX";
 static char input[64];
@@ -27,12 +23,6 @@ static int remove_folder(void **state)
     (void)state;
     unlink(input);
     return rmdir(folder);
-}
-
-static void must(Status status, const Err *err)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", err->text);
 }
 
 /* A root and four segments: 12 - 7 - 30, 7 - 8, 12 - 5, of which 30, 8 and 5 are terminals. */

@@ -1,12 +1,8 @@
 #include "tree/tree.h"
+#include "unit.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static void assert_close(double value, double expected, double tolerance)
 {

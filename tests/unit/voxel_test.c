@@ -1,16 +1,12 @@
+#include "unit.h"
 #include "voxel/cover.h"
 #include "voxel/voxel.h"
 
 #include "base/base.h"
 #include "test_scene.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static double number(Random *random, double low, double high)
 {

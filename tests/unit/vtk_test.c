@@ -1,41 +1,17 @@
 /* Networks in VTK's two kinds of files, each a few bytes long. VTK's own files, and files of other
  * programs, are read in tests/command/vtk_test.sh. */
+#include "scratch.h"
 #include "treeio/treeio.h"
+#include "unit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include <cmocka.h>
-
-static char folder[] = "/tmp/corcast-vtk-XXXXXX";
 static char path[64];
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    return rmdir(folder);
-}
-
-static void must(Status status, const Err *err)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", err->text);
-}
 
 static Status read_bytes(Tree *tree, TreeReading *reading, const char *extension, const void *bytes,
                          size_t size, const ReadOptions *options, Err *err)
 {
-    snprintf(path, sizeof path, "%s/n.%s", folder, extension);
+    snprintf(path, sizeof path, "%s/tree.%s", folder, extension);
     must(file_write(path, bytes, size, err), err);
     Status status = tree_read_as(tree, path, options, reading, err);
     unlink(path);

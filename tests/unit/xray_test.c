@@ -1,17 +1,14 @@
 /* The length of vessel along rays, against places taken one by one, and against volumes. */
 #include "render/xray/xray.h"
+#include "unit.h"
 
 #include "render/render.h"
 #include "surface/surface.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "test_stage.h"
-#include <cmocka.h>
 
 static Err err;
 
