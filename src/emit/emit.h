@@ -42,6 +42,8 @@ typedef struct EmitParams {
     bool ids;         /* isosurface, blob: with the paint that the id plane needs */
     bool planes;      /* Tachyon: colours that tell depth and segment, in the place of the look's */
     CellParams cells; /* isosurface */
+    const PixelRect *part; /* POV-Ray, without an anatomy: only what the rays of this part of the
+                            * picture can meet, each piece as the whole scene has it; NULL: all */
 } EmitParams;
 
 typedef struct EmitReport {
@@ -99,6 +101,11 @@ MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err
  * does. `report` may be NULL. As emit_check_model, and all that `write` returns. */
 MUST_CHECK Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
                              const char *second_path, EmitReport *report, Err *err);
+
+/* How much a scene is for POV-Ray, by its pieces: one of 1 POV-Ray reads in about ten seconds, in
+ * less than 2 GB; beyond some 2, there are models of which it cannot read it. STATUS_INFEASIBLE
+ * when an isosurface has too many cells, STATUS_MEMORY. */
+MUST_CHECK Status povray_load(const EmitParams *params, double *load, Err *err);
 
 /* How much of a box vessels fill, in a density file for POV-Ray. */
 typedef struct DensityBox {

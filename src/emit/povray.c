@@ -25,12 +25,13 @@ static const struct {
     ModelElement element;
     Status (*put_macros)(Text *out, void *geometry, Err *err);
     Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err);
+    double pieces; /* that make a load of 1 */
 } geometries[] = {
-    {MODEL_POTENTIAL, put_cell_macros, put_cells},
-    {MODEL_BLOB, put_blob_macros, put_blob},
-    {MODEL_TRIANGLES, put_mesh_macros, put_mesh},
-    {MODEL_JOINTS, put_joined_macros, put_primitives},
-    {MODEL_CYLINDERS, put_primitive_macros, put_primitives},
+    {MODEL_POTENTIAL, put_cell_macros, put_cells, 200000},
+    {MODEL_BLOB, put_blob_macros, put_blob, 32768},
+    {MODEL_TRIANGLES, put_mesh_macros, put_mesh, 20000},
+    {MODEL_JOINTS, put_joined_macros, put_primitives, 200000},
+    {MODEL_CYLINDERS, put_primitive_macros, put_primitives, 400000},
 };
 
 static size_t row_of(const Scene *scene)
@@ -332,6 +333,16 @@ Status povray_write(const EmitParams *params, Text *out, Text *second, EmitRepor
         TRY_GOTO(put_geometry(second, &geometry, err));
     TRY_GOTO(put_scene(out, &geometry, err));
 done:
+    povray_objects_release(&geometry);
+    return status;
+}
+
+Status povray_load(const EmitParams *params, double *load, Err *err)
+{
+    PovrayGeometry geometry = {.params = params, .scene = params->scene};
+    Status status = povray_objects_find(&geometry, err);
+    if (status == STATUS_OK)
+        *load = (double)povray_pieces(&geometry) / geometries[row_of(params->scene)].pieces;
     povray_objects_release(&geometry);
     return status;
 }

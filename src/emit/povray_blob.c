@@ -38,7 +38,9 @@ static Box reach_of(const FieldSegment *segment)
 
 typedef struct Cells {
     const Scene *scene;
-    Text *text;
+    const Sight *sight;
+    Text *text;   /* NULL: nothing is written, but */
+    bool *is_met; /* the segments of cells that rays of the part can meet are marked; or NULL */
     uint32_t
         *lists; /* a stack: the segments of a cell follow those of the cell that it is part of */
     size_t room;
@@ -155,9 +157,13 @@ static Status put_cells_of(Cells *cells, size_t first, size_t n, Box box, bool w
 {
     Box half[2];
     bool is_cut;
+    if (!whole && !sight_meets(cells->sight, box_padded(box, overlap_mm)))
+        return STATUS_OK;
     TRY(halve(cells, first, n, box, half, &is_cut, err));
+    for (size_t i = 0; !is_cut && cells->is_met && i < n; i++)
+        cells->is_met[cells->lists[first + i]] = true;
     if (!is_cut)
-        return put_cell(cells, first, n, whole ? NULL : &box, err);
+        return cells->text ? put_cell(cells, first, n, whole ? NULL : &box, err) : STATUS_OK;
     for (int i = 0; i < 2; i++) {
         size_t count = take_those_in(cells, first, n, half[i]);
         if (count)
@@ -172,7 +178,8 @@ static Status cells_begin(const PovrayGeometry *geometry, Text *text, Cells *cel
 {
     const Geometry *all = &geometry->scene->geometry;
     const PovrayItems *items = &geometry->objects[geometry->object];
-    *cells = (Cells){.scene = geometry->scene, .text = text, .room = items->n};
+    *cells =
+        (Cells){.scene = geometry->scene, .sight = geometry->sight, .text = text, .room = items->n};
     TRY(mem_calloc(&cells->lists, cells->room, sizeof *cells->lists, "cells", err));
     *box = box_empty();
     for (size_t i = 0; i < items->n; i++) {
@@ -215,21 +222,52 @@ Status put_blob(Text *out, PovrayGeometry *geometry, Err *err)
     return put_declaration(out, geometry, whole ? "blob" : "union", put_blobs, err);
 }
 
+Status find_painted(PovrayGeometry *geometry, Err *err)
+{
+    const PovrayItems all = geometry->objects[0];
+    uint32_t *index = geometry->indices + all.n;
+    Cells cells = {0};
+    Box box;
+    size_t n = 0;
+    Status status;
+    geometry->painted = all;
+    if (!geometry->sight)
+        return STATUS_OK;
+    TRY_GOTO(cells_begin(geometry, NULL, &cells, &box, err));
+    TRY_GOTO(mem_calloc(&cells.is_met, all.n, sizeof *cells.is_met, "segments", err));
+    TRY_GOTO(put_cells_of(&cells, 0, all.n, box, true, err));
+    for (size_t i = 0; i < all.n; i++)
+        if (cells.is_met[i])
+            index[n++] = (uint32_t)i;
+    geometry->nothing = n == 0;
+    geometry->painted = n ? (PovrayItems){index, n} : (PovrayItems){all.index, 1};
+done:
+    free(cells.is_met);
+    free(cells.lists);
+    return status;
+}
+
 /* ---- which term is largest ------------------------------------------------------------------- */
 
 typedef struct Item {
     double key;
-    uint32_t segment;
+    uint32_t segment; /* by its number among those that are painted */
 } Item;
 
 typedef struct Paints {
     const Scene *scene;
+    PovrayItems painted;  /* numbered anew, in their order */
     const double *places; /* of sums for colours that blend; NULL: the largest term is found */
     const Tmpl *node;     /* the function of a box */
     Item *items;
     Text *text;
     unsigned nodes;
 } Paints;
+
+static const FieldSegment *painted_segment(const Paints *paints, uint32_t number)
+{
+    return &paints->scene->geometry.segments[paints->painted.index[number]];
+}
 
 static int by_key(const void *a, const void *b)
 {
@@ -241,7 +279,7 @@ static int by_key(const void *a, const void *b)
 
 static void put_term(Text *text, const Paints *paints, uint32_t number)
 {
-    const FieldSegment *segment = &paints->scene->geometry.segments[number];
+    const FieldSegment *segment = painted_segment(paints, number);
     TermForm form = term_form(segment);
     const Linear *const parts[] = {&form.v, &form.w, &form.start, &form.end};
     text_puts(text, paints->places ? "+Fn_Blob_Weight(" : ",Fn_Blob_Term(");
@@ -286,7 +324,7 @@ static Status put_function(Paints *paints, Box box, const Text *list, Err *err)
 static void sort_along(Paints *paints, Item *items, size_t n, int axis)
 {
     for (size_t i = 0; i < n; i++) {
-        const FieldSegment *segment = &paints->scene->geometry.segments[items[i].segment];
+        const FieldSegment *segment = painted_segment(paints, items[i].segment);
         items[i].key = vec3_component(vec3_add(segment->a, segment->b), axis);
     }
     qsort(items, n, sizeof *items, by_key);
@@ -299,7 +337,7 @@ static Status put_node(Paints *paints, size_t first, size_t n, Err *err)
     Text list = TEXT_INIT;
     Box box = box_empty();
     for (size_t i = 0; i < n; i++)
-        box = box_union(box, reach_of(&paints->scene->geometry.segments[items[i].segment]));
+        box = box_union(box, reach_of(painted_segment(paints, items[i].segment)));
     if (n > LEAF) {
         sort_along(paints, items, n, box_longest_axis(box));
         for (int half = 0; half < 2; half++) {
@@ -326,8 +364,12 @@ static Status put_hierarchy(Text *out, const PovrayGeometry *geometry, const dou
                             Err *err)
 {
     Tmpl node = {0};
-    Paints paints = {.scene = geometry->scene, .places = places, .node = &node, .text = out};
-    size_t n = paints.scene->geometry.n_segments;
+    Paints paints = {.scene = geometry->scene,
+                     .painted = geometry->painted,
+                     .places = places,
+                     .node = &node,
+                     .text = out};
+    size_t n = geometry->painted.n;
     Status status;
     TRY(load_template(&node, geometry->params,
                       places ? "povray/blob_weight.inc" : "povray/blob_node.inc", err));
@@ -359,8 +401,7 @@ static Status put_blend(Text *out, void *context, Err *err)
     Values values = {0};
     if (!povray_blends(geometry))
         return text_check(out, err);
-    text_printf(add_value(&values, "top"), "Fw%zu",
-                count_nodes(geometry->scene->geometry.n_segments) - 1);
+    text_printf(add_value(&values, "top"), "Fw%zu", count_nodes(geometry->painted.n) - 1);
     add_part(&values, "nodes", put_weights, context);
     return values_expand(&values, geometry->params, "povray/blob_blend.inc", out, err);
 }
@@ -369,9 +410,9 @@ static Status put_blend(Text *out, void *context, Err *err)
 static Status put_groups(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    const Scene *scene = geometry->scene;
-    for (size_t i = 0; i < scene->geometry.n_segments; i++) {
-        const FieldSegment *segment = &scene->geometry.segments[i];
+    const PovrayItems painted = geometry->painted;
+    for (size_t i = 0; i < painted.n; i++) {
+        const FieldSegment *segment = &geometry->scene->geometry.segments[painted.index[i]];
         if (i % GROUP == 0)
             text_printf(out, "Blob_Group(%zu)\n", i / GROUP);
         text_printf(out, "Blob_Color(%zu,", i);
@@ -379,7 +420,7 @@ static Status put_groups(Text *out, void *context, Err *err)
         text_puts(out, ",");
         put_paint(out, geometry->params, segment->segment);
         text_puts(out, ")\n");
-        if (i % GROUP == GROUP - 1 || i + 1 == scene->geometry.n_segments)
+        if (i % GROUP == GROUP - 1 || i + 1 == painted.n)
             text_printf(out, "Blob_Group_End(%zu)\n", i / GROUP);
     }
     return text_check(out, err);
@@ -410,9 +451,8 @@ static void add_shape(Values *values)
 Status put_blob_macros(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    const Scene *scene = geometry->scene;
-    size_t n = scene->geometry.n_segments;
-    bool painted = scene->appearance.colors || geometry->params->ids;
+    size_t n = geometry->painted.n;
+    bool painted = geometry->scene->appearance.colors || geometry->params->ids;
     Values values = {0};
     if (painted && n > MAX_PAINTED)
         return err_set(err, STATUS_INFEASIBLE,

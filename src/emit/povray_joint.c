@@ -74,22 +74,27 @@ static double largest_gradient(const JointPlane *plane)
     return gradient_margin * largest;
 }
 
-static size_t count_joints(const Scene *scene)
+/* How many primitives are joints, of all, and of those that are written. */
+static void count_joints(const PovrayGeometry *geometry, size_t *all, size_t *written)
 {
-    size_t n = 0;
-    for (size_t i = 0; i < scene->geometry.n_primitives; i++)
-        n += scene->geometry.primitives[i].kind == PRIMITIVE_JOINT;
-    return n;
+    const Geometry *whole = &geometry->scene->geometry;
+    const PovrayItems items = geometry->objects[0];
+    *all = *written = 0;
+    for (size_t i = 0; i < whole->n_primitives; i++)
+        *all += whole->primitives[i].kind == PRIMITIVE_JOINT;
+    for (size_t i = 0; i < items.n; i++)
+        *written += whole->primitives[items.index[i]].kind == PRIMITIVE_JOINT;
 }
 
 Status put_joint_macros(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     Values values = {0};
-    size_t n = count_joints(geometry->scene);
-    geometry->report->joint_sides = n > MOST_EXACT ? SIDES_OF_MANY : 0;
+    size_t all, written;
+    count_joints(geometry, &all, &written);
+    geometry->report->joint_sides = written > MOST_EXACT ? SIDES_OF_MANY : 0;
     text_printf(add_value(&values, "sides"), "%d", geometry->report->joint_sides);
-    add_flag(&values, "many_joints", n > MANY);
+    add_flag(&values, "many_joints", all > MANY);
     return values_expand(&values, geometry->params, "povray/joints.inc", out, err);
 }
 

@@ -17,16 +17,24 @@ typedef struct PovrayGeometry {
     const EmitParams *params;
     const Scene *scene;
     EmitReport *report;
-    PovrayItems *objects; /* owned, as all that follows; povray_objects_release */
+    Sight *sight; /* of params->part, or NULL; owned, as all that follows; povray_objects_release */
+    PovrayItems *objects;
     size_t n_objects;
-    uint32_t *indices; /* of all objects */
-    CellTree *cells;   /* of each object of an isosurface; its terms have the scene's indices */
-    size_t object;     /* that is being declared */
+    uint32_t *indices;   /* of all objects */
+    bool nothing;        /* no ray of the part can meet anything */
+    PovrayItems painted; /* of a blob: the segments that may be seen; borrowed from the indices */
+    CellTree *cells;     /* of each object of an isosurface; its terms have the scene's indices */
+    size_t object;       /* that is being declared */
 } PovrayGeometry;
 
 /* Finds the objects, and the cells of each. */
 MUST_CHECK Status povray_objects_find(PovrayGeometry *geometry, Err *err);
 void povray_objects_release(PovrayGeometry *geometry);
+/* Of how many pieces the whole is: primitives, cells, or segments of a blob or a mesh. */
+size_t povray_pieces(const PovrayGeometry *geometry);
+/* Finds the segments of the blobs that rays of the part can meet: all where there is no part, and
+ * one, to paint something, where there is nothing. */
+MUST_CHECK Status find_painted(PovrayGeometry *geometry, Err *err);
 
 /* Each appends to *out what its name says; `geometry` is a PovrayGeometry, so that it may be a part
  * of a template. */

@@ -107,7 +107,8 @@ static Status put_lists(Text *out, void *context, Err *err)
     const VesselMesh *whole = &geometry->scene->geometry.mesh;
     MeshObject object = {.geometry = geometry, .mesh = *whole};
     Values values = {0};
-    if (geometry->object > 0)
+    bool is_part = items->n < geometry->scene->geometry.n_segments;
+    if (is_part)
         TRY(vesselmesh_part(whole, items->index, items->n, &object.mesh, err));
     text_printf(add_value(&values, "triangles"), "%zu", object.mesh.n_triangles);
     text_printf(add_value(&values, "n_points"), "%zu", object.mesh.n_points);
@@ -120,7 +121,7 @@ static Status put_lists(Text *out, void *context, Err *err)
     add_part(&values, "painted_faces", put_painted_faces, &object.mesh);
     add_part(&values, "faces", put_faces, &object.mesh);
     Status status = values_expand(&values, geometry->params, "povray/mesh_lists.inc", out, err);
-    if (geometry->object > 0)
+    if (is_part)
         vesselmesh_release(&object.mesh);
     return status;
 }

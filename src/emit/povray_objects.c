@@ -4,10 +4,16 @@
  * Trees of primitives and of triangles are members of the whole. Those of a field cannot be: where
  * trees come near, the whole is the level set of the sum over all of them, so that each tree is a
  * field of its own segments, beside it. The cells of an isosurface are found anew for each, with
- * the whole's numbers, so that all call the same functions. */
+ * the whole's numbers, so that all call the same functions.
+ *
+ * Of a part of the picture the items are those that its rays can meet; of a field, whose numbers
+ * are sums over segments that may stand elsewhere, so are the cells that space is cut into, each
+ * with all that it has in the whole. So POV-Ray meets in a part the very pieces that it meets in
+ * the whole. */
 #include "emit/povray_members.h"
 #include "emit/values.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 static bool is_field(const PovrayGeometry *geometry)
@@ -45,6 +51,47 @@ static void sort_items(PovrayGeometry *geometry, uint32_t *index)
     }
 }
 
+/* Marks the segments of which rays of the part can meet a triangle. */
+static void mark_triangles(const PovrayGeometry *geometry, bool *is_met)
+{
+    const VesselMesh *mesh = &geometry->scene->geometry.mesh;
+    for (size_t i = 0; i < mesh->n_triangles; i++) {
+        Box box = box_empty();
+        for (int k = 0; k < 3; k++)
+            box = box_with_ball(box, mesh_point(mesh, mesh->triangles[i][k]), 0);
+        bool *met = &is_met[mesh_segment(mesh, i)];
+        *met = *met || sight_meets(geometry->sight, box);
+    }
+}
+
+static bool meets_primitive(const PovrayGeometry *geometry, size_t item)
+{
+    Box box = box_empty();
+    for (size_t end = 0; end < 2; end++) {
+        Ball ball = geometry_ball(&geometry->scene->geometry, 2 * item + end);
+        box = box_with_ball(box, ball.center, ball.radius);
+    }
+    return sight_meets(geometry->sight, box);
+}
+
+/* Keeps of all items those that rays of the part can meet. */
+static Status choose_items(PovrayGeometry *geometry, Err *err)
+{
+    PovrayItems *all = &geometry->objects[0];
+    bool *is_met, primitives = items_are_primitives(&geometry->scene->geometry);
+    size_t n = 0;
+    TRY(mem_calloc(&is_met, all->n, sizeof *is_met, "pieces", err));
+    if (!primitives)
+        mark_triangles(geometry, is_met);
+    for (size_t i = 0; i < all->n; i++)
+        if (primitives ? meets_primitive(geometry, i) : is_met[i])
+            geometry->indices[n++] = (uint32_t)i;
+    all->n = n;
+    geometry->nothing = n == 0;
+    free(is_met);
+    return STATUS_OK;
+}
+
 static Status find_items(PovrayGeometry *geometry, Err *err)
 {
     const Anatomy *anatomy = geometry->params->anatomy;
@@ -57,9 +104,18 @@ static Status find_items(PovrayGeometry *geometry, Err *err)
     for (size_t i = 0; i < n; i++)
         geometry->indices[i] = (uint32_t)i;
     geometry->objects[0] = (PovrayItems){geometry->indices, n};
+    if (geometry->sight && !is_field(geometry))
+        TRY(choose_items(geometry, err));
     if (geometry->n_objects > 1)
         sort_items(geometry, geometry->indices + n);
     return STATUS_OK;
+}
+
+static CellParams cell_params(const PovrayGeometry *geometry)
+{
+    CellParams params = geometry->params->cells;
+    params.sight = geometry->sight;
+    return params;
 }
 
 /* The cells of a part of the geometry, with the numbers of the whole. */
@@ -67,8 +123,9 @@ static Status part_cells(const PovrayGeometry *geometry, PovrayItems items, Cell
                          Err *err)
 {
     Geometry part = {0};
+    const CellParams params = cell_params(geometry);
     TRY(geometry_part(&geometry->scene->geometry, items.index, items.n, &part, err));
-    Status status = celltree_build(&part, &geometry->params->cells, cells, err);
+    Status status = celltree_build(&part, &params, cells, err);
     geometry_release(&part);
     for (size_t i = 0; i < cells->n_terms; i++)
         cells->terms[i].segment = items.index[cells->terms[i].segment];
@@ -80,12 +137,20 @@ static Status part_cells(const PovrayGeometry *geometry, PovrayItems items, Cell
 
 Status povray_objects_find(PovrayGeometry *geometry, Err *err)
 {
-    const Geometry *all = &geometry->scene->geometry;
+    const EmitParams *params = geometry->params;
+    const Scene *scene = geometry->scene;
+    assert(!params->part || !params->anatomy);
+    if (params->part)
+        TRY(sight_new(&scene->view, scene->geometry.bounds, *params->part, params->shadows,
+                      &geometry->sight, err));
     TRY(find_items(geometry, err));
-    if (!model_has(all->model, MODEL_POTENTIAL))
+    if (model_has(scene->geometry.model, MODEL_BLOB))
+        return find_painted(geometry, err);
+    if (!model_has(scene->geometry.model, MODEL_POTENTIAL))
         return STATUS_OK;
+    const CellParams cells = cell_params(geometry);
     TRY(mem_calloc(&geometry->cells, geometry->n_objects, sizeof *geometry->cells, "cells", err));
-    TRY(celltree_build(all, &geometry->params->cells, &geometry->cells[0], err));
+    TRY(celltree_build(&scene->geometry, &cells, &geometry->cells[0], err));
     for (size_t k = 1; k < geometry->n_objects; k++)
         if (geometry->objects[k].n)
             TRY(part_cells(geometry, geometry->objects[k], &geometry->cells[k], err));
@@ -99,6 +164,14 @@ void povray_objects_release(PovrayGeometry *geometry)
     free(geometry->cells);
     free(geometry->objects);
     free(geometry->indices);
+    sight_free(geometry->sight);
+}
+
+size_t povray_pieces(const PovrayGeometry *geometry)
+{
+    if (geometry->cells)
+        return geometry->cells[0].n_cells;
+    return is_field(geometry) ? geometry->painted.n : geometry->objects[0].n;
 }
 
 Status put_declaration(Text *out, PovrayGeometry *geometry, const char *kind,
@@ -147,6 +220,8 @@ Status put_objects(Text *out, PovrayGeometry *geometry,
         else
             TRY(put_declaration(out, geometry, "object", put_nothing, err));
     geometry->object = 0;
+    if (geometry->nothing)
+        return put_declaration(out, geometry, "object", put_nothing, err);
     if (geometry->n_objects > 1 && !is_field(geometry))
         return put_declaration(out, geometry, "Tree_Of()", put_trees, err);
     return put_object(out, geometry, err);

@@ -15,6 +15,11 @@
 
 enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 8, IMAGE_MAX_ID = 0xffffff };
 
+/* Some pixels of a picture: so many from `left` and `top` on, counted from 0. */
+typedef struct PixelRect {
+    int left, top, width, height;
+} PixelRect;
+
 /* Linear floats: colour (3 channels, 0 black to 1 white), depth (1, mm, INFINITY where nothing is
  * seen), normal (3, unit vector, 0 0 0 where nothing is seen), or several of them for one file. */
 typedef struct Plane {

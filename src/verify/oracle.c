@@ -17,6 +17,15 @@ static int bits_of(const OracleParams *params)
     return params->plane == ORACLE_ID ? 8 : 16;
 }
 
+/* Rows and columns are counted from 1; a number of 1 or less that ends them is a part of all. */
+static Status add_part(const PixelRect *part, Arguments *arguments, Err *err)
+{
+    TRY(arguments_add(arguments, err, "+SC%d", part->left + 1));
+    TRY(arguments_add(arguments, err, "+EC%d", part->left + part->width));
+    TRY(arguments_add(arguments, err, "+SR%d", part->top + 1));
+    return arguments_add(arguments, err, "+ER%d", part->top + part->height);
+}
+
 /* Every switch that a user's povray.ini could have set otherwise is given. */
 static Status add_arguments(const void *context, const char *scene, const char *output,
                             Arguments *arguments, Err *err)
@@ -28,6 +37,8 @@ static Status add_arguments(const void *context, const char *scene, const char *
     TRY(arguments_add(arguments, err, "+O%s", output));
     TRY(arguments_add(arguments, err, "+W%d", params->width));
     TRY(arguments_add(arguments, err, "+H%d", params->height));
+    if (params->part.width > 0)
+        TRY(add_part(&params->part, arguments, err));
     TRY(arguments_add(arguments, err, "+FN%d", deep ? 16 : 8));
     TRY(arguments_add(arguments, err, "File_Gamma=%s", color && !deep ? "srgb" : "1.0"));
     TRY(arguments_add(arguments, err, "Declare=Corcast_Plane=%d", (int)params->plane));

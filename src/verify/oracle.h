@@ -13,6 +13,7 @@ typedef struct OracleParams {
     const char *scene;   /* .pov file, under any name */
     const char *output;  /* .png file, likewise */
     int width, height;   /* pixels */
+    PixelRect part;      /* of the picture that is drawn, the rest is black; width 0: all of it */
     int antialias;       /* of the colour plane: 1, or N for +A0.0 +AM1 +RN -J */
     int threads;         /* 0: POV-Ray's own choice */
     OraclePlane plane;   /* depth and normal are 16-bit linear, id 8-bit linear */

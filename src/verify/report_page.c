@@ -155,8 +155,11 @@ static void side_words(const ReportSide *side, Text *alt, Text *sides)
     bool timed = !isnan(side->seconds);
     text_printf(alt, "%s %s", timed ? "The scene as rendered by" : "The picture", side->name);
     if (timed)
-        text_printf(sides, "%s %s took %.2f s for the picture. ", side->name, side->version,
+        text_printf(sides, "%s %s took %.2f s for the picture", side->name, side->version,
                     side->seconds);
+    if (timed && side->tiles > 1)
+        text_printf(sides, ", which it drew in %zu tiles", side->tiles);
+    text_puts(sides, timed ? ". " : "");
 }
 
 /* When, by what and where the case was made. */

@@ -9,7 +9,7 @@
 #define TOOL_FOLDER "/proc/self/fd/3/"
 #define TOOL_SCENE "scene.pov"
 
-enum { MAX_ARGUMENTS = 24 };
+enum { MAX_ARGUMENTS = 28 };
 
 /* Zeroed: none. The program is the first. */
 typedef struct Arguments {

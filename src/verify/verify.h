@@ -339,7 +339,8 @@ typedef struct ReportSide {
     const char *name;    /* "POV-Ray" */
     const char *key;     /* in JSON: "povray", "native" */
     const char *version; /* "3.7.0.10" */
-    double seconds;      /* wall-clock time of the colour picture */
+    double seconds;      /* wall-clock time of the colour picture; of its tiles, all together */
+    size_t tiles;        /* that it was drawn in; 0: not said */
     const Picture *picture;
     const IdPlane *ids;          /* or NULL, then in both */
     const Plane *depth, *normal; /* likewise */

@@ -6,6 +6,7 @@
 #include "app/run/output.h"
 #include "app/run/templates.h"
 #include "emit/emit.h"
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -25,6 +26,11 @@ static const char *const left[] = {
     "native.depth.pfm",  "native.normal.pfm", "native.id.ppm",     "exact.png",
     "exact.depth.pfm",   "exact.normal.pfm",  "exact.id.ppm",      "scene.tachyon",
     "tachyon.depth.ppm", "tachyon.id.ppm"};
+
+/* Likewise those of tiles, by the beginnings of their names. */
+static const char *const left_of_tiles[] = {"scene.tile-",         "ids.tile-",
+                                            "povray.tile-",        "povray.depth.tile-",
+                                            "povray.normal.tile-", "povray.id.tile-"};
 
 /* Where a verification writes to. */
 typedef struct Folder {
@@ -59,6 +65,34 @@ static Status remove_file(Files *files, const char *path, Err *err)
     return err_set(err, STATUS_IO, "%s: cannot be removed: %s", path, strerror(errno));
 }
 
+static bool is_of_tile(const char *name)
+{
+    for (size_t i = 0; i < sizeof left_of_tiles / sizeof *left_of_tiles; i++)
+        if (strncmp(name, left_of_tiles[i], strlen(left_of_tiles[i])) == 0)
+            return true;
+    return false;
+}
+
+/* Removes what tiles have left. */
+static Status remove_tiles(const Folder *folder, Err *err)
+{
+    DIR *entries = opendir(folder->path);
+    Status status = STATUS_OK;
+    if (!entries)
+        return err_set(err, STATUS_IO, "%s: cannot be read: %s", folder->path, strerror(errno));
+    for (const struct dirent *entry; status == STATUS_OK && (entry = readdir(entries));) {
+        char *path = NULL;
+        if (!is_of_tile(entry->d_name))
+            continue;
+        status = file_join(folder->path, entry->d_name, &path, err);
+        if (status == STATUS_OK)
+            status = remove_file(NULL, path, err);
+        free(path);
+    }
+    closedir(entries);
+    return status;
+}
+
 /* Where the folder is there, keeps other verifications out of it until the end of the process, and
  * removes what an earlier one has left: an old verdict is none about this tree. A file system
  * without locks has none. */
@@ -75,7 +109,8 @@ static Status claim_folder(Folder *folder, Files *files, Err *err)
         return err_set(err, STATUS_IO, "%s: another verification is writing to this folder",
                        folder->path);
     TRY(for_all_files(folder, files, note_file, err));
-    return for_all_files(folder, files, remove_file, err);
+    TRY(for_all_files(folder, files, remove_file, err));
+    return remove_tiles(folder, err);
 }
 
 /* ---- the verdict ------------------------------------------------------------------------------
@@ -89,6 +124,7 @@ static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err
                                .key = "povray",
                                .version = v->run.version,
                                .seconds = v->run.seconds,
+                               .tiles = v->n_tiles,
                                .picture = verification_shown_by_povray(v),
                                .ids = &v->povray.id,
                                .depth = &v->povray.depth,
@@ -189,8 +225,11 @@ static Status print_verdict(const Verification *v, bool agrees, Err *err)
     if (v->asks_witness)
         printf("  %-7s %-7s%s\n", "witness", v->witness.agrees ? "agree" : "differ",
                v->witness.sentence);
-    printf("%s: POV-Ray %s in %.2f s, corcast in %.2f s; %s/report.html\n",
-           agrees ? "agree" : "differ", v->run.version, v->run.seconds,
+    char tiles[40] = "";
+    if (v->n_tiles > 1)
+        snprintf(tiles, sizeof tiles, " of %zu tiles", v->n_tiles);
+    printf("%s: POV-Ray %s in %.2f s%s, corcast in %.2f s; %s/report.html\n",
+           agrees ? "agree" : "differ", v->run.version, v->run.seconds, tiles,
            v->stats.prepare_s + v->stats.trace_s, v->folder);
     return STATUS_OK;
 }
@@ -204,6 +243,7 @@ typedef struct VerifyOptions {
     int bits;
     RenderKernels kernels;
     WitnessChoice witness;
+    int tiles;
     bool json;
     PictureOptions picture;
 } VerifyOptions;
@@ -231,6 +271,12 @@ static const Option own[] = {
      .group = GROUP_JUDGE,
      .help = "a third program that draws the scene: what is seen where and how far away must be "
              "the same in all three"},
+    {.name = "tiles",
+     SETS(WHOLE, VerifyOptions, tiles),
+     FROM_TO(1, 10000),
+     .group = GROUP_RUN,
+     .help = "POV-Ray draws the picture in so many parts at least, each from a scene of what its "
+             "rays can meet; in more where it can hold no more"},
     {.name = "json", SETS(FLAG, VerifyOptions, json), .help = "the report on standard output"},
 };
 
@@ -241,6 +287,7 @@ static void set_defaults(void *options)
     VerifyOptions *own_options = options;
     picture_set_defaults(&own_options->picture);
     own_options->bits = 8;
+    own_options->tiles = 1;
     own_options->kernels = KERNELS_FASTEST;
 }
 
@@ -280,17 +327,20 @@ static Status run_verify(void *options, Parsed *parsed, Err *err)
     VerifyOptions *own_options = options;
     Status status = STATUS_OK;
     bool agrees = false;
+    char **command;
     const int frame = own_options->picture.coloring.frame;
     Verification v = {.picture = &own_options->picture,
                       .common = &parsed->common,
                       .tree = parsed->operands[0],
                       .folder = own_options->folder,
                       .bits = own_options->bits,
+                      .least_tiles = own_options->tiles,
                       .kernels = own_options->kernels,
                       .asks_witness = own_options->witness == WITNESS_TACHYON};
     Folder folder = {own_options->folder, -1};
     TRY(check(own_options, parsed, err));
-    TRY_GOTO(command_line_text(parsed, &v.commands[v.n_commands++], err));
+    TRY_GOTO(verification_add_command(&v, &command, err));
+    TRY_GOTO(command_line_text(parsed, command, err));
     own_options->picture.coloring.frame = 0; /* the scene for POV-Ray has all */
     TRY_GOTO(verify(&v, frame, &folder, parsed, err));
     TRY_GOTO(write_report(&v, own_options->json, &agrees, err));

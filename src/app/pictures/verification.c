@@ -1,15 +1,15 @@
-/* One scene, two renderers: the scene is written for POV-Ray and rendered natively from memory;
- * then all four planes of both are held against each other. An implicit surface takes two steps:
+/* One scene, two renderers: POV-Ray draws it from files (povray_side.c), corcast from memory; then
+ * all four planes of both are held against each other. An implicit surface takes two steps:
  * corcast repeats POV-Ray's root finder, whose picture must be POV-Ray's, and where that sees the
  * surface is held against where it is. */
 #include "app/pictures/verification.h"
 
 #include "app/pictures/frames.h"
 #include "app/pictures/povfiles.h"
+#include "app/pictures/povray_side.h"
 #include "app/pictures/settle.h"
 #include "app/run/progress.h"
 #include <math.h>
-#include <pthread.h>
 #include <stdlib.h>
 
 void verification_release(Verification *v)
@@ -29,7 +29,17 @@ void verification_release(Verification *v)
     picture_release(&v->povray_shown);
     for (size_t i = 0; i < v->n_commands; i++)
         free(v->commands[i]);
+    free(v->commands);
     free(v->name);
+}
+
+Status verification_add_command(Verification *v, char ***command, Err *err)
+{
+    TRY(mem_reserve(&v->commands, &v->command_room, v->n_commands + 1, sizeof *v->commands,
+                    "commands", err));
+    *command = &v->commands[v->n_commands++];
+    **command = NULL;
+    return STATUS_OK;
 }
 
 /* ---- the two sides --------------------------------------------------------------------------- */
@@ -37,12 +47,6 @@ void verification_release(Verification *v)
 bool verification_takes_two_steps(const Verification *v)
 {
     return models[v->scene.geometry.model].proof == PROOF_STEPS;
-}
-
-/* Whether POV-Ray needs a scene of its own to paint ids. */
-static bool has_id_scene(const Verification *v)
-{
-    return model_has(v->scene.geometry.model, MODEL_FIELD);
 }
 
 static RenderParams render_params(const Verification *v, const CellParams *povray_cells)
@@ -120,203 +124,6 @@ static Status show_both(Verification *v, Err *err)
     return picture_to_srgb(&v->native_shown, &v->native_picture, 8, err);
 }
 
-static Status read_plane(Verification *v, OraclePlane plane, const char *path, Err *err)
-{
-    double near_mm, far_mm;
-    camera_depth_range(&v->scene.view.camera, v->scene.geometry.bounds, &near_mm, &far_mm);
-    switch (plane) {
-    case ORACLE_COLOR:
-        return picture_read(&v->povray_picture, path, err);
-    case ORACLE_DEPTH:
-        return oracle_read_depth(&v->povray.depth, path, near_mm, far_mm, err);
-    case ORACLE_NORMAL:
-        return oracle_read_normal(&v->povray.normal, path, err);
-    case ORACLE_ID:
-        return oracle_read_ids(&v->povray.id, path, err);
-    }
-    return STATUS_OK;
-}
-
-/* At which the scene is in the frame that is verified. */
-static double clock_of(const Verification *v)
-{
-    size_t n = v->frames.n_frames;
-    return n > 1 ? (double)(v->frame - 1) / (double)(n - 1) : 0;
-}
-
-/* ---- POV-Ray's runs -------------------------------------------------------------------------- */
-
-enum { PLANES = ORACLE_ID + 1 };
-
-/* The text of all scenes that are drawn side by side: POV-Ray takes up to forty times as much
- * memory. */
-static const double most_bytes_at_once = 64e6;
-
-static const char *const oracle_names[PLANES] = {
-    [ORACLE_COLOR] = "povray.png",
-    [ORACLE_DEPTH] = "povray.depth.png",
-    [ORACLE_NORMAL] = "povray.normal.png",
-    [ORACLE_ID] = "povray.id.png",
-};
-
-/* How far all runs together are. */
-typedef struct Runs {
-    struct PlaneRun *run;
-    Progress progress;
-    pthread_mutex_t lock; /* of `progress` and the fractions */
-} Runs;
-
-typedef struct PlaneRun {
-    OracleParams params;
-    char *output; /* owned */
-    OracleRun took;
-    Status status;
-    Err err;
-    double fraction;
-    Runs *runs;
-} PlaneRun;
-
-static void report_plane(double fraction, void *context)
-{
-    PlaneRun *run = context;
-    Runs *runs = run->runs;
-    double sum = 0;
-    pthread_mutex_lock(&runs->lock);
-    run->fraction = fraction;
-    for (int plane = 0; plane < PLANES; plane++)
-        sum += runs->run[plane].fraction;
-    progress_show(&runs->progress, sum / PLANES);
-    pthread_mutex_unlock(&runs->lock);
-}
-
-/* Of a file of the folder; 0: there is none. */
-static Status bytes_in_folder(const Verification *v, const char *name, double *bytes, Err *err)
-{
-    char *path = NULL;
-    TRY(file_join(v->folder, name, &path, err));
-    *bytes = file_bytes(path);
-    free(path);
-    return STATUS_OK;
-}
-
-/* How many run side by side, each on its share of the processors that were asked for. */
-static Status runs_at_once(const Verification *v, int *at_once, Err *err)
-{
-    double scene, ids;
-    int threads = v->common->threads, most = threads > 0 && threads < PLANES ? threads : PLANES;
-    TRY(bytes_in_folder(v, "scene.inc", &scene, err));
-    TRY(bytes_in_folder(v, "ids.inc", &ids, err));
-    *at_once = (int)fmax(1, fmin(most, most_bytes_at_once / fmax(1, fmax(scene, ids))));
-    return STATUS_OK;
-}
-
-static Status prepare_plane(Verification *v, const char *scene, OraclePlane plane, int at_once,
-                            PlaneRun *run, Err *err)
-{
-    int threads = v->common->threads;
-    TRY(file_join(v->folder, oracle_names[plane], &run->output, err));
-    run->params = (OracleParams){.scene = scene,
-                                 .output = run->output,
-                                 .width = v->picture->size.pixels[0],
-                                 .height = v->picture->size.pixels[1],
-                                 .antialias = v->picture->antialias,
-                                 .threads = threads > at_once ? threads / at_once
-                                            : threads > 0     ? 1
-                                                              : 0,
-                                 .plane = plane,
-                                 .bits = v->bits,
-                                 .clock = clock_of(v),
-                                 .progress = report_plane,
-                                 .progress_context = run};
-    TRY(povray_from_environment(&run->params, err));
-    TRY(oracle_command(&run->params, &v->commands[v->n_commands], err));
-    v->n_commands++;
-    return STATUS_OK;
-}
-
-static void run_plane(size_t plane, int worker, void *context)
-{
-    (void)worker;
-    PlaneRun *run = &((Runs *)context)->run[plane];
-    run->status = oracle_run(&run->params, &run->took, &run->err);
-    report_plane(1, run);
-}
-
-/* Reads what the runs have drawn, or fails as the first of them did. */
-static Status read_planes(Verification *v, const PlaneRun *run, Err *err)
-{
-    for (int plane = 0; plane < PLANES; plane++)
-        if (run[plane].status != STATUS_OK) {
-            *err = run[plane].err;
-            return run[plane].status;
-        }
-    v->run = run[ORACLE_COLOR].took;
-    for (int plane = 0; plane < PLANES; plane++)
-        TRY(read_plane(v, (OraclePlane)plane, run[plane].output, err));
-    return STATUS_OK;
-}
-
-/* Has POV-Ray draw all planes; `ids` is the scene of the ids if it is another. */
-static Status run_oracle_planes(Verification *v, const char *scene, const char *ids, Err *err)
-{
-    PlaneRun run[PLANES] = {0};
-    Runs runs = {.run = run, .lock = PTHREAD_MUTEX_INITIALIZER};
-    int at_once = 1;
-    Status status = runs_at_once(v, &at_once, err);
-    progress_start(&runs.progress, "POV-Ray", v->common->quiet);
-    for (int plane = 0; status == STATUS_OK && plane < PLANES; plane++) {
-        run[plane].runs = &runs;
-        status = prepare_plane(v, plane == ORACLE_ID && ids ? ids : scene, (OraclePlane)plane,
-                               at_once, &run[plane], err);
-    }
-    if (status == STATUS_OK) {
-        threads_for(PLANES, at_once, run_plane, &runs);
-        status = read_planes(v, run, err);
-    }
-    progress_end(&runs.progress);
-    for (int plane = 0; plane < PLANES; plane++)
-        free(run[plane].output);
-    pthread_mutex_destroy(&runs.lock);
-    return status == STATUS_INPUT ? STATUS_TOOL : status; /* of POV-Ray's making */
-}
-
-/* Writes the scene; the ids of an implicit surface are painted in a scene of their own, as they
- * take most of it. It has no anatomy, which changes no picture and has POV-Ray read each tree of a
- * field twice. */
-static Status write_scene(Verification *v, bool ids, char **scene, Err *err)
-{
-    TRY(file_join(v->folder, ids ? "ids.pov" : "scene.pov", scene, err));
-    Scene whole = v->scene;
-    if (v->frames.n_frames > 0)
-        whole.appearance = v->frames;
-    const EmitParams params = {.scene = &whole,
-                               .command = v->commands[0],
-                               .shadows = v->picture->stage.shadows,
-                               .ids = ids,
-                               .cells = v->cells};
-    return scene_files_write(emitter_find("pov", false), &params, v->tree, *scene, false, NULL,
-                             err);
-}
-
-static Status run_oracle(Verification *v, Err *err)
-{
-    char *scene = NULL, *ids = NULL;
-    Status status = write_scene(v, false, &scene, err);
-    if (status == STATUS_OK && has_id_scene(v))
-        status = write_scene(v, true, &ids, err);
-    if (status == STATUS_OK)
-        status = run_oracle_planes(v, scene, ids, err);
-    free(scene);
-    free(ids);
-    char *picture = NULL;
-    if (status == STATUS_OK)
-        status = file_join(v->folder, "povray.png", &picture, err);
-    if (status == STATUS_OK)
-        status = frames_write(&v->povray, &(FramesForm){.path = picture}, err);
-    free(picture);
-    return status;
-}
-
 /* ---- the witness ----------------------------------------------------------------------------- */
 
 static Status write_witness_scene(const Verification *v, const char *scene, Err *err)
@@ -382,7 +189,7 @@ Status verification_pick_frame(Verification *v, int frame, Err *err)
 Status verification_draw(Verification *v, Err *err)
 {
     v->cells = picture_cells(v->picture);
-    TRY(run_oracle(v, err));
+    TRY(povray_side_draw(v, err));
     if (v->asks_witness)
         TRY(ask_witness(v, err));
     TRY(render_native(v, err));

@@ -23,7 +23,9 @@ typedef struct Verification {
     Picture native_picture, povray_picture; /* sRGB of 8 bits, or linear of 16 */
     Picture native_shown, povray_shown;     /* of 16 bits, in sRGB of 8 bits */
     RenderStats stats;                      /* of the exact frame, where there is one */
-    OracleRun run;                          /* of the colour plane */
+    OracleRun run;                          /* of the colour plane; of its tiles, all together */
+    int least_tiles;                        /* that POV-Ray draws the picture in */
+    size_t n_tiles;                         /* that it did: 1 is the whole picture */
     CompareResult results[PLANE_KINDS];
     Settled settled;
     bool asked; /* whether anything was settled, or nothing had to be */
@@ -32,11 +34,14 @@ typedef struct Verification {
     bool asks_witness; /* Tachyon draws the scene, too */
     Frame tachyon;     /* depth and ids of it */
     Witness witness;
-    char *commands[8]; /* owned */
-    size_t n_commands;
+    char **commands; /* how to repeat it; owned */
+    size_t n_commands, command_room;
 } Verification;
 
 void verification_release(Verification *v);
+
+/* Room for one command more, at the end: *command. */
+MUST_CHECK Status verification_add_command(Verification *v, char ***command, Err *err);
 
 /* Whether the model is an implicit surface, of which `exact` and `surface` are, too. */
 bool verification_takes_two_steps(const Verification *v);

@@ -1,0 +1,442 @@
+/* POV-Ray reads a scene once for each plane, and several of these runs go on side by side.
+ *
+ * A scene that is more than POV-Ray holds is drawn in tiles: the picture is halved, across its
+ * longer side, and the heaviest tile again, until each has a scene of what its own rays can meet
+ * that POV-Ray reads in good time [emit.h, povray_load]. POV-Ray is asked for the tile's rows and
+ * columns of the whole picture, so that its rays are the whole picture's to the last bit, and what
+ * they meet is the same piece for piece: so are the pixels, which are put together. What a tile
+ * leaves out is chosen by where vessels lie, never by what corcast has drawn. */
+#include "app/pictures/povray_side.h"
+
+#include "app/pictures/frames.h"
+#include "app/pictures/povfiles.h"
+#include "app/run/progress.h"
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PLANES = ORACLE_ID + 1, LEAST_SIDE = 8 };
+
+/* The text of all scenes that are drawn side by side: POV-Ray takes up to forty times as much
+ * memory. */
+static const double most_bytes_at_once = 64e6;
+
+static const char *const plane_names[PLANES] = {
+    [ORACLE_COLOR] = "povray",
+    [ORACLE_DEPTH] = "povray.depth",
+    [ORACLE_NORMAL] = "povray.normal",
+    [ORACLE_ID] = "povray.id",
+};
+
+/* ---- tiles ----------------------------------------------------------------------------------- */
+
+/* A part of the picture, or all of it, with its scenes. */
+typedef struct Tile {
+    PixelRect rect;
+    double load;
+    char *scene, *ids; /* paths; `ids` is NULL where the scene has them; owned */
+} Tile;
+
+typedef struct Tiles {
+    Tile *tile; /* owned; from the top and the left */
+    size_t n, room;
+} Tiles;
+
+static void tiles_release(Tiles *tiles)
+{
+    for (size_t i = 0; i < tiles->n; i++) {
+        free(tiles->tile[i].scene);
+        free(tiles->tile[i].ids);
+    }
+    free(tiles->tile);
+}
+
+/* Whether POV-Ray needs a scene of its own to paint ids. */
+static bool has_id_scene(const Verification *v)
+{
+    return model_has(v->scene.geometry.model, MODEL_FIELD);
+}
+
+/* The scene for POV-Ray. It has no anatomy, which changes no picture and has POV-Ray read each tree
+ * of a field twice. */
+static EmitParams emit_params(const Verification *v, const Scene *scene, bool ids,
+                              const PixelRect *part)
+{
+    return (EmitParams){.scene = scene,
+                        .command = v->commands[0],
+                        .shadows = v->picture->stage.shadows,
+                        .ids = ids,
+                        .cells = v->cells,
+                        .part = part};
+}
+
+static Status weigh(const Verification *v, Tile *tile, Err *err)
+{
+    const EmitParams params = emit_params(v, &v->scene, has_id_scene(v), &tile->rect);
+    return povray_load(&params, &tile->load, err);
+}
+
+static bool can_be_halved(const Tile *tile)
+{
+    return tile->rect.width >= 2 * LEAST_SIDE || tile->rect.height >= 2 * LEAST_SIDE;
+}
+
+/* The tile of the largest load, of those that can be halved, of equals the one of most pixels; NULL
+ * when there is none. */
+static Tile *heaviest(const Tiles *tiles)
+{
+    Tile *found = NULL;
+    for (size_t i = 0; i < tiles->n; i++) {
+        Tile *tile = &tiles->tile[i];
+        int pixels = tile->rect.width * tile->rect.height;
+        if (can_be_halved(tile) &&
+            (!found || tile->load > found->load ||
+             (tile->load == found->load && pixels > found->rect.width * found->rect.height)))
+            found = tile;
+    }
+    return found;
+}
+
+/* Puts the halves of a tile in its place. */
+static Status halve(const Verification *v, Tiles *tiles, size_t place, Err *err)
+{
+    TRY(mem_reserve(&tiles->tile, &tiles->room, tiles->n + 1, sizeof *tiles->tile, "tiles", err));
+    Tile *first = &tiles->tile[place], *second = first + 1;
+    memmove(second, first, (tiles->n - place) * sizeof *first);
+    tiles->n++;
+    if (first->rect.width > first->rect.height) {
+        first->rect.width /= 2;
+        second->rect.left += first->rect.width;
+        second->rect.width -= first->rect.width;
+    } else {
+        first->rect.height /= 2;
+        second->rect.top += first->rect.height;
+        second->rect.height -= first->rect.height;
+    }
+    TRY(weigh(v, first, err));
+    return weigh(v, second, err);
+}
+
+static Status check_tiles(const Verification *v, const Tiles *tiles, Err *err)
+{
+    for (size_t i = 0; i < tiles->n; i++) {
+        const Tile *tile = &tiles->tile[i];
+        if (tile->load > 1)
+            return err_set(err, STATUS_INFEASIBLE,
+                           "POV-Ray cannot prove this picture: what may be seen in %d x %d pixels "
+                           "at (%d, %d) is %.2g times what it holds; draw a larger picture, or "
+                           "leave out thin vessels (`prune_radius`)",
+                           tile->rect.width, tile->rect.height, tile->rect.left, tile->rect.top,
+                           tile->load);
+    }
+    if (tiles->n < (size_t)v->least_tiles)
+        return err_set(err, STATUS_USAGE,
+                       "--tiles: a picture of %d x %d pixels has at most %zu tiles, none of them "
+                       "narrower than %d pixels; not %d",
+                       v->picture->size.pixels[0], v->picture->size.pixels[1], tiles->n, LEAST_SIDE,
+                       v->least_tiles);
+    return STATUS_OK;
+}
+
+static Status find_tiles(const Verification *v, Tiles *tiles, Err *err)
+{
+    const int *pixels = v->picture->size.pixels;
+    TRY(mem_reserve(&tiles->tile, &tiles->room, 1, sizeof *tiles->tile, "tiles", err));
+    tiles->tile[tiles->n++] = (Tile){.rect = {0, 0, pixels[0], pixels[1]}};
+    TRY(weigh(v, &tiles->tile[0], err));
+    for (;;) {
+        Tile *next = heaviest(tiles);
+        if (!next || (next->load <= 1 && tiles->n >= (size_t)v->least_tiles))
+            return check_tiles(v, tiles, err);
+        TRY(halve(v, tiles, (size_t)(next - tiles->tile), err));
+    }
+}
+
+/* "scene.pov" in the folder, or of many tiles "scene.tile-07.pov", in *path (owned). */
+static Status tile_path(const Verification *v, const Tiles *tiles, size_t number, const char *name,
+                        const char *extension, char **path, Err *err)
+{
+    char file[80];
+    int digits = snprintf(NULL, 0, "%zu", tiles->n);
+    if (tiles->n == 1)
+        snprintf(file, sizeof file, "%s.%s", name, extension);
+    else
+        snprintf(file, sizeof file, "%s.tile-%0*zu.%s", name, digits, number + 1, extension);
+    return file_join(v->folder, file, path, err);
+}
+
+/* ---- scenes ---------------------------------------------------------------------------------- */
+
+/* The ids of an implicit surface are painted in a scene of their own, as they take most of it. */
+static Status write_scene(const Verification *v, const Tiles *tiles, size_t number, bool ids,
+                          Err *err)
+{
+    Tile *tile = &tiles->tile[number];
+    char **path = ids ? &tile->ids : &tile->scene;
+    Scene whole = v->scene;
+    if (v->frames.n_frames > 0)
+        whole.appearance = v->frames;
+    TRY(tile_path(v, tiles, number, ids ? "ids" : "scene", "pov", path, err));
+    const EmitParams params = emit_params(v, &whole, ids, tiles->n > 1 ? &tile->rect : NULL);
+    return scene_files_write(emitter_find("pov", false), &params, v->tree, *path, false, NULL, err);
+}
+
+static Status write_scenes(const Verification *v, const Tiles *tiles, Err *err)
+{
+    for (size_t i = 0; i < tiles->n; i++) {
+        TRY(write_scene(v, tiles, i, false, err));
+        if (has_id_scene(v))
+            TRY(write_scene(v, tiles, i, true, err));
+    }
+    return STATUS_OK;
+}
+
+/* ---- runs ------------------------------------------------------------------------------------ */
+
+/* How far all runs together are. */
+typedef struct Runs {
+    struct PlaneRun *run; /* owned; the planes of the first tile, of the second, ... */
+    size_t n;
+    bool failed;
+    Progress progress;
+    pthread_mutex_t lock; /* of `progress`, `failed` and the fractions */
+} Runs;
+
+/* A plane of a tile. */
+typedef struct PlaneRun {
+    OracleParams params;
+    char *output; /* owned */
+    OracleRun took;
+    Status status;
+    Err err;
+    double fraction;
+    Runs *runs;
+} PlaneRun;
+
+static void report_plane(double fraction, void *context)
+{
+    PlaneRun *run = context;
+    Runs *runs = run->runs;
+    double sum = 0;
+    pthread_mutex_lock(&runs->lock);
+    run->fraction = fraction;
+    for (size_t i = 0; i < runs->n; i++)
+        sum += runs->run[i].fraction;
+    progress_show(&runs->progress, sum / (double)runs->n);
+    pthread_mutex_unlock(&runs->lock);
+}
+
+/* Of the geometry beside a scene; 0: there is none. */
+static Status bytes_beside(const char *scene, double *bytes, Err *err)
+{
+    char *path = NULL;
+    if (!scene)
+        return STATUS_OK;
+    TRY(file_with_suffix(scene, ".inc", &path, err));
+    *bytes = fmax(*bytes, file_bytes(path));
+    free(path);
+    return STATUS_OK;
+}
+
+/* How many run side by side, each on its share of the processors that were asked for. */
+static Status runs_at_once(const Verification *v, const Tiles *tiles, int *at_once, Err *err)
+{
+    double largest = 1;
+    int threads = v->common->threads, most = threads > 0 && threads < PLANES ? threads : PLANES;
+    for (size_t i = 0; i < tiles->n; i++) {
+        TRY(bytes_beside(tiles->tile[i].scene, &largest, err));
+        TRY(bytes_beside(tiles->tile[i].ids, &largest, err));
+    }
+    *at_once = (int)fmax(1, fmin(most, most_bytes_at_once / largest));
+    return STATUS_OK;
+}
+
+/* At which the scene is in the frame that is verified. */
+static double clock_of(const Verification *v)
+{
+    size_t n = v->frames.n_frames;
+    return n > 1 ? (double)(v->frame - 1) / (double)(n - 1) : 0;
+}
+
+static Status prepare_run(Verification *v, const Tiles *tiles, size_t number, OraclePlane plane,
+                          int at_once, PlaneRun *run, Err *err)
+{
+    int threads = v->common->threads;
+    const Tile *tile = &tiles->tile[number];
+    char **command;
+    TRY(tile_path(v, tiles, number, plane_names[plane], "png", &run->output, err));
+    run->params = (OracleParams){.scene = plane == ORACLE_ID && tile->ids ? tile->ids : tile->scene,
+                                 .output = run->output,
+                                 .width = v->picture->size.pixels[0],
+                                 .height = v->picture->size.pixels[1],
+                                 .part = tiles->n > 1 ? tile->rect : (PixelRect){0},
+                                 .antialias = v->picture->antialias,
+                                 .threads = threads > at_once ? threads / at_once
+                                            : threads > 0     ? 1
+                                                              : 0,
+                                 .plane = plane,
+                                 .bits = v->bits,
+                                 .clock = clock_of(v),
+                                 .progress = report_plane,
+                                 .progress_context = run};
+    TRY(povray_from_environment(&run->params, err));
+    TRY(verification_add_command(v, &command, err));
+    return oracle_command(&run->params, command, err);
+}
+
+static Status prepare_runs(Verification *v, const Tiles *tiles, int at_once, Runs *runs, Err *err)
+{
+    runs->n = tiles->n * PLANES;
+    TRY(mem_calloc(&runs->run, runs->n, sizeof *runs->run, "runs", err));
+    for (size_t i = 0; i < runs->n; i++) {
+        runs->run[i].runs = runs;
+        TRY(prepare_run(v, tiles, i / PLANES, (OraclePlane)(i % PLANES), at_once, &runs->run[i],
+                        err));
+    }
+    return STATUS_OK;
+}
+
+/* After one that failed no other begins. */
+static void run_one(size_t number, int worker, void *context)
+{
+    (void)worker;
+    Runs *runs = context;
+    PlaneRun *run = &runs->run[number];
+    pthread_mutex_lock(&runs->lock);
+    bool failed = runs->failed;
+    pthread_mutex_unlock(&runs->lock);
+    if (failed)
+        return;
+    run->status = oracle_run(&run->params, &run->took, &run->err);
+    report_plane(1, run);
+    pthread_mutex_lock(&runs->lock);
+    runs->failed = runs->failed || run->status != STATUS_OK;
+    pthread_mutex_unlock(&runs->lock);
+}
+
+/* Fails as the first run did that failed. */
+static Status check_runs(Verification *v, const Runs *runs, Err *err)
+{
+    for (size_t i = 0; i < runs->n; i++)
+        if (runs->run[i].status != STATUS_OK) {
+            *err = runs->run[i].err;
+            return runs->run[i].status;
+        }
+    v->run = runs->run[ORACLE_COLOR].took;
+    for (size_t i = PLANES; i < runs->n; i += PLANES)
+        v->run.seconds += runs->run[i + ORACLE_COLOR].took.seconds;
+    return STATUS_OK;
+}
+
+/* ---- planes ---------------------------------------------------------------------------------- */
+
+static void copy_pixels(const Picture *from, const PixelRect *rect, Picture *to)
+{
+    size_t pixel = (size_t)to->channels * (size_t)to->bits / 8;
+    for (int y = rect->top; y < rect->top + rect->height; y++) {
+        size_t at = ((size_t)y * (size_t)to->width + (size_t)rect->left) * pixel;
+        const void *row = to->bits == 8 ? (void *)from->codes8 : (void *)from->codes16;
+        void *out = to->bits == 8 ? (void *)to->codes8 : (void *)to->codes16;
+        memcpy((char *)out + at, (const char *)row + at, (size_t)rect->width * pixel);
+    }
+}
+
+/* Adds a tile's picture to that of the plane, of which the first one is the rest. */
+static Status add_tile(const char *path, const PixelRect *rect, Picture *plane, Err *err)
+{
+    Picture tile;
+    if (!plane->width)
+        return picture_read(plane, path, err);
+    TRY(picture_read(&tile, path, err));
+    copy_pixels(&tile, rect, plane);
+    picture_release(&tile);
+    return STATUS_OK;
+}
+
+/* Puts a plane together at `path`, and removes its tiles. */
+static Status join_plane(const Verification *v, const Tiles *tiles, const PlaneRun *runs,
+                         OraclePlane plane, const char *path, Err *err)
+{
+    bool srgb = plane == ORACLE_COLOR && v->bits == 8;
+    Picture joined = {0};
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < tiles->n && status == STATUS_OK; i++)
+        status = add_tile(runs[i * PLANES + plane].output, &tiles->tile[i].rect, &joined, err);
+    if (status == STATUS_OK)
+        status = picture_write(&joined, path, srgb ? ENCODING_SRGB : ENCODING_LINEAR, NULL, err);
+    for (size_t i = 0; i < tiles->n; i++)
+        unlink(runs[i * PLANES + plane].output);
+    picture_release(&joined);
+    return status;
+}
+
+static Status read_plane(Verification *v, OraclePlane plane, const char *path, Err *err)
+{
+    double near_mm, far_mm;
+    camera_depth_range(&v->scene.view.camera, v->scene.geometry.bounds, &near_mm, &far_mm);
+    switch (plane) {
+    case ORACLE_COLOR:
+        return picture_read(&v->povray_picture, path, err);
+    case ORACLE_DEPTH:
+        return oracle_read_depth(&v->povray.depth, path, near_mm, far_mm, err);
+    case ORACLE_NORMAL:
+        return oracle_read_normal(&v->povray.normal, path, err);
+    case ORACLE_ID:
+        return oracle_read_ids(&v->povray.id, path, err);
+    }
+    return STATUS_OK;
+}
+
+static Status take_plane(Verification *v, const Tiles *tiles, const PlaneRun *runs,
+                         OraclePlane plane, Err *err)
+{
+    char file[40], *path = NULL;
+    snprintf(file, sizeof file, "%s.png", plane_names[plane]);
+    TRY(file_join(v->folder, file, &path, err));
+    Status status = tiles->n > 1 ? join_plane(v, tiles, runs, plane, path, err) : STATUS_OK;
+    if (status == STATUS_OK)
+        status = read_plane(v, plane, path, err);
+    free(path);
+    return status;
+}
+
+/* Has POV-Ray draw all planes. */
+static Status draw_planes(Verification *v, const Tiles *tiles, Err *err)
+{
+    Runs runs = {.lock = PTHREAD_MUTEX_INITIALIZER};
+    int at_once = 1;
+    Status status;
+    progress_start(&runs.progress, "POV-Ray", v->common->quiet);
+    TRY_GOTO(runs_at_once(v, tiles, &at_once, err));
+    TRY_GOTO(prepare_runs(v, tiles, at_once, &runs, err));
+    threads_for(runs.n, at_once, run_one, &runs);
+    TRY_GOTO(check_runs(v, &runs, err));
+    for (int plane = 0; plane < PLANES; plane++)
+        TRY_GOTO(take_plane(v, tiles, runs.run, (OraclePlane)plane, err));
+done:
+    progress_end(&runs.progress);
+    for (size_t i = 0; runs.run && i < runs.n; i++)
+        free(runs.run[i].output);
+    free(runs.run);
+    pthread_mutex_destroy(&runs.lock);
+    return status == STATUS_INPUT ? STATUS_TOOL : status; /* of POV-Ray's making */
+}
+
+Status povray_side_draw(Verification *v, Err *err)
+{
+    Tiles tiles = {0};
+    char *picture = NULL;
+    Status status;
+    TRY_GOTO(find_tiles(v, &tiles, err));
+    v->n_tiles = tiles.n;
+    TRY_GOTO(write_scenes(v, &tiles, err));
+    TRY_GOTO(draw_planes(v, &tiles, err));
+    TRY_GOTO(file_join(v->folder, "povray.png", &picture, err));
+    status = frames_write(&v->povray, &(FramesForm){.path = picture}, err);
+done:
+    free(picture);
+    tiles_release(&tiles);
+    return status;
+}

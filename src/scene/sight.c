@@ -1,0 +1,212 @@
+/* Rays that are seen through a rectangle fill a frustum, cut off where the vessels begin and end.
+ * What may stand between it and a light lies in the convex hull of the frustum and the light. Each
+ * such hull is kept as half-spaces that hold all its corners, whatever their normals: a box that
+ * lies outside of one half-space is not in the hull. Taken are the normals of the faces of the hull
+ * of a frustum and a point, which are those of the frustum and of planes through one of its edges
+ * and the point, so that few boxes are kept that lie outside of it.
+ *
+ * What is seen on the ground may lie far away from the vessels. It is a quadrangle, a frustum
+ * without depth, or, where the horizon is in sight, anywhere on the way there. */
+#include "scene/sight.h"
+
+#include "scene/geometry.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { CORNERS = 8, FACES = 6, LIGHT_CORNERS = 4 };
+enum { MOST_POINTS = 2 * CORNERS, MOST_PLANES = 2 * (3 + FACES + 12 * LIGHT_CORNERS) };
+
+/* How far half-spaces are moved outwards, of the largest coordinate, for rounding. */
+static const double slack = 1e-9;
+
+typedef struct Hull {
+    Vec3 point[MOST_POINTS]; /* it is their convex hull */
+    int n_points;
+    Vec3 normal[MOST_PLANES]; /* unit; all points have normal . x <= end */
+    double end[MOST_PLANES];
+    int n_planes;
+} Hull;
+
+struct Sight {
+    size_t n;
+    Hull hulls[]; /* of the pixels' rays; of the rays from vessels to each light, and from ground */
+};
+
+/* ---- half-spaces ----------------------------------------------------------------------------- */
+
+static double largest_coordinate(const Hull *hull)
+{
+    double largest = 0;
+    for (int i = 0; i < hull->n_points; i++)
+        for (int axis = 0; axis < 3; axis++)
+            largest = fmax(largest, fabs(vec3_component(hull->point[i], axis)));
+    return largest;
+}
+
+/* The two half-spaces square to a direction; none where it is 0. */
+static void add_slab(Hull *hull, Vec3 across)
+{
+    double length = vec3_length(across), room = slack * largest_coordinate(hull);
+    for (int sign = -1; length > 0 && sign <= 1; sign += 2) {
+        Vec3 normal = vec3_scale(across, sign / length);
+        double end = -HUGE_VAL;
+        for (int i = 0; i < hull->n_points; i++)
+            end = fmax(end, vec3_dot(normal, hull->point[i]));
+        hull->normal[hull->n_planes] = normal;
+        hull->end[hull->n_planes++] = end + room;
+    }
+}
+
+/* Those along the axes and of the faces of the frustum whose corners the first points are. */
+static void add_faces(Hull *hull)
+{
+    add_slab(hull, vec3(1, 0, 0));
+    add_slab(hull, vec3(0, 1, 0));
+    add_slab(hull, vec3(0, 0, 1));
+    for (int face = 0; face < FACES; face++) {
+        int axis = face / 2, first = face % 2 << axis;
+        int b = 1 << (axis + 1) % 3, c = 1 << (axis + 2) % 3;
+        const Vec3 *p = hull->point;
+        add_slab(hull, vec3_cross(vec3_sub(p[first | b | c], p[first]),
+                                  vec3_sub(p[first | c], p[first | b])));
+    }
+}
+
+/* Those of the planes through an edge of the frustum and along a way from there. */
+static void add_edge(Hull *hull, int from, int to, Vec3 way)
+{
+    add_slab(hull, vec3_cross(vec3_sub(hull->point[to], hull->point[from]), way));
+}
+
+static void add_edges(Hull *hull, Vec3 light, bool parallel)
+{
+    for (int from = 0; from < CORNERS; from++)
+        for (int axis = 0; axis < 3; axis++)
+            if (!(from & 1 << axis))
+                add_edge(hull, from, from | 1 << axis,
+                         parallel ? light : vec3_sub(light, hull->point[from]));
+}
+
+static bool hull_meets(const Hull *hull, Box box)
+{
+    for (int i = 0; i < hull->n_planes; i++) {
+        Vec3 n = hull->normal[i];
+        double least = n.x * (n.x > 0 ? box.low.x : box.high.x) +
+                       n.y * (n.y > 0 ? box.low.y : box.high.y) +
+                       n.z * (n.z > 0 ? box.low.z : box.high.z);
+        if (least > hull->end[i])
+            return false;
+    }
+    return true;
+}
+
+/* ---- rays ------------------------------------------------------------------------------------ */
+
+/* The rays through the corners of a rectangle that is a pixel larger on each side. */
+static void corner_rays(const Camera *camera, PixelRect part, Ray rays[4])
+{
+    for (int corner = 0; corner < 4; corner++)
+        rays[corner] =
+            camera_ray(camera, corner & 1 ? part.left + part.width + 0.5 : part.left - 1.5,
+                       corner & 2 ? part.top + part.height + 0.5 : part.top - 1.5);
+}
+
+/* The part of the rays between two depths along the direction of view. */
+static Hull frustum_between(const Camera *camera, const Ray rays[4], double near_mm, double far_mm)
+{
+    Hull frustum = {.n_points = CORNERS};
+    for (int i = 0; i < CORNERS; i++) {
+        const Ray *ray = &rays[i & 3];
+        double along = vec3_dot(ray->direction, camera->direction);
+        frustum.point[i] = ray_at(*ray, (i & 4 ? far_mm : near_mm) / along);
+    }
+    return frustum;
+}
+
+/* The part of the rays that lies within the depths of the box. */
+static Hull frustum_of_box(const Camera *camera, const Ray rays[4], Box box)
+{
+    double near_mm = HUGE_VAL, far_mm = 0;
+    for (int i = 0; i < CORNERS; i++) {
+        Vec3 corner = vec3(i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y,
+                           i & 4 ? box.high.z : box.low.z);
+        double depth = vec3_dot(vec3_sub(corner, camera->location), camera->direction);
+        near_mm = fmin(near_mm, depth);
+        far_mm = fmax(far_mm, depth);
+    }
+    return frustum_between(camera, rays, fmax(0, near_mm), far_mm);
+}
+
+/* What the rays see of the ground. */
+static Hull frustum_of_ground(const Camera *camera, const Ray rays[4], const Ground *ground)
+{
+    Hull quadrangle = {.n_points = CORNERS};
+    for (int i = 0; i < CORNERS; i++) {
+        double t;
+        if (!ground_hit(ground, rays[i & 3], 0, SCENE_FARTHEST_MM, &t))
+            return frustum_between(camera, rays, 0, SCENE_FARTHEST_MM);
+        quadrangle.point[i] = ray_at(rays[i & 3], t);
+    }
+    return quadrangle;
+}
+
+/* The hull of a frustum and a light: of parallel light, of the frustum and itself, moved towards
+ * the light beyond the bounds. */
+static void reach_to_light(Hull *hull, const Light *light, Box bounds)
+{
+    Vec3 towards = vec3_normalized(vec3_sub(light->location, light->target));
+    double beyond = largest_coordinate(hull) + vec3_length(bounds.low) + vec3_length(bounds.high);
+    if (light->parallel) {
+        for (int i = 0; i < CORNERS; i++)
+            hull->point[hull->n_points++] = vec3_add_scaled(hull->point[i], towards, 2 * beyond);
+        add_faces(hull);
+        add_edges(hull, towards, true);
+        return;
+    }
+    int n = light->samples > 1 ? LIGHT_CORNERS : 1;
+    for (int k = 0; k < n; k++) {
+        Vec3 at = light->location;
+        for (int side = 0; n > 1 && side < 2; side++)
+            at = vec3_add_scaled(at, light->sides[side], k & 1 << side ? 0.5 : -0.5);
+        hull->point[hull->n_points++] = at;
+    }
+    add_faces(hull);
+    for (int k = 0; k < n; k++)
+        add_edges(hull, hull->point[CORNERS + k], false);
+}
+
+Status sight_new(const View *view, Box bounds, PixelRect part, bool shadows, Sight **sight,
+                 Err *err)
+{
+    Ray rays[4];
+    size_t most = shadows ? 1 + 2 * view->n_lights : 1;
+    Sight *made;
+    TRY(mem_calloc(&made, 1, sizeof *made + most * sizeof *made->hulls, "part", err));
+    corner_rays(&view->camera, part, rays);
+    Hull seen = frustum_of_box(&view->camera, rays, bounds);
+    for (size_t i = 0; shadows && i < view->n_lights; i++) {
+        made->hulls[made->n] = seen;
+        reach_to_light(&made->hulls[made->n++], &view->lights[i], bounds);
+        if (!view->ground.present)
+            continue;
+        made->hulls[made->n] = frustum_of_ground(&view->camera, rays, &view->ground);
+        reach_to_light(&made->hulls[made->n++], &view->lights[i], bounds);
+    }
+    add_faces(&seen);
+    made->hulls[made->n++] = seen;
+    *sight = made;
+    return STATUS_OK;
+}
+
+void sight_free(Sight *sight)
+{
+    free(sight);
+}
+
+bool sight_meets(const Sight *sight, Box box)
+{
+    bool meets = !sight;
+    for (size_t i = sight ? sight->n : 0; i-- > 0 && !meets;)
+        meets = hull_meets(&sight->hulls[i], box);
+    return meets;
+}

@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# verify where POV-Ray draws tiles, each from a scene of what its own rays can meet: the pixels are those of the whole scene.
+. "$(dirname "$0")/../lib.sh"
+
+command -v "${CORCAST_POVRAY:-povray}" >/dev/null || {
+    echo "povray is not installed: run make deps" >&2
+    exit 3
+}
+
+# as_one TILES OPTIONS ...: tree.swc in tiles has the codes of POV-Ray, plane by plane, and the verdict of one scene.
+as_one() {
+    local tiles=$1 plane
+    shift
+    run corcast verify tree.swc "$@" -o one
+    run corcast verify tree.swc "$@" --tiles "$tiles" -o tiled
+    expect_json one/report.json '.povray.tiles == 1'
+    expect_json tiled/report.json ".povray.tiles == $tiles and (.native | has(\"tiles\") | not)"
+    expect_same <(jq '[.verdict, .reason, .planes, .settled]' one/report.json) \
+        <(jq '[.verdict, .reason, .planes, .settled]' tiled/report.json)
+    for plane in '' .depth .normal .id; do
+        cmp -s <(pngtopnm "one/povray$plane.png" 2>/dev/null) <(pngtopnm "tiled/povray$plane.png" 2>/dev/null) ||
+            fail "povray$plane.png of $tiles tiles differs: $*"
+    done
+}
+
+# Slow: each of the models is drawn with shadows and without, by 32 runs of POV-Ray.
+test_tiles_have_the_pixels_of_the_whole_in_every_model() {
+    local model
+    run_ok corcast grow --terminals 60 --seed 5 --gamma 2.7 -o tree.swc
+    for model in $(corcast models); do
+        as_one 4 --model "$model" --shadows on --size 64x48
+        as_one 2 --model "$model" --shadows off --size 48x40
+    done
+}
+
+test_tiles_of_a_ball_in_perspective_over_a_ground_have_the_pixels_of_the_whole() {
+    run_ok corcast grow --terminals 60 --seed 6 --domain ball:28.794 -o tree.swc
+    as_one 7 --model joined --look print --shadows on --view iso --projection perspective --size 67x53
+    [ "$(wc -c <tiled/scene.tile-1.inc)" -lt "$(wc -c <one/scene.inc)" ] || fail "expected fewer joints in a tile"
+}
+
+# A blob of 128 segments or more is cut into cells, which tiles share.
+test_tiles_of_a_blob_in_many_cells_have_the_pixels_of_the_whole() {
+    run_ok corcast grow --terminals 150 --seed 6 --domain ball:28.794 -o tree.swc
+    as_one 5 --model blob --color-by pressure --shadows on --antialias 2 --size 48x64
+    grep -q Blob_Cell_End tiled/scene.tile-1.inc || fail "expected cells"
+}
+
+test_a_verification_leaves_the_scenes_of_its_tiles_and_no_others() {
+    run_ok corcast grow --terminals 12 --seed 5 -o tree.swc
+    run_ok corcast verify tree.swc --model blob --size 40x30 --tiles 3 -o report
+    expect_same <(cd report && printf '%s\n' *tile*) <(printf '%s\n' ids.tile-{1,2,3}.{inc,pov} scene.tile-{1,2,3}.{inc,pov})
+    expect_stdout 'POV-Ray 3\.7.* s of 3 tiles, corcast'
+    expect_json report/report.json '.commands | length == 13 and (.[12] | contains("+Iids.tile-3.pov") and contains("+SR"))'
+    grep -q 'which it drew in 3 tiles' report/report.html || fail "expected the page to tell of tiles"
+    run_ok corcast verify tree.swc --size 40x30 -o report
+    expect_same <(cd report && printf '%s\n' scene*) <(printf '%s\n' scene.inc scene.pov)
+    [ -z "$(find report -name '*tile*')" ] || fail "expected no tiles, got $(ls report)"
+}
+
+test_more_tiles_than_a_picture_has_are_refused() {
+    run_ok corcast grow --terminals 12 --seed 5 -o tree.swc
+    run corcast verify tree.swc --size 40x30 --tiles 100 -o report
+    expect_status 2
+    expect_sentence '--tiles: a picture of 40 x 30 pixels has at most 8 tiles, none of them narrower than 8 pixels; not 100$'
+}
+
+run_tests "$@"
