@@ -5,6 +5,7 @@
 #include "derive/morphometry.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,14 +60,31 @@ static Status take_row(Morphometry *table, size_t *capacity, const char *line, E
     return STATUS_OK;
 }
 
+/* Whether the text is an order for each ratio, which are then the table's. */
+static bool take_fitted_from(Morphometry *table, const char *text)
+{
+    double order[RATIO_NUMBERS];
+    if (!numbers_parse(text, RATIO_NUMBERS, order))
+        return false;
+    for (int k = 0; k < RATIO_NUMBERS; k++)
+        if (!(order[k] >= 1 && order[k] <= INT16_MAX && order[k] == floor(order[k])))
+            return false;
+    for (int k = 0; k < RATIO_NUMBERS; k++)
+        table->fitted_from[k] = (int)order[k];
+    return true;
+}
+
 static Status take_line(Morphometry *table, size_t *capacity, const char *line, Err *err)
 {
     const char *source = after_word(line, "source"), *ratios = after_word(line, "ratios");
+    const char *from = after_word(line, "fitted-from");
     double ratio[RATIO_NUMBERS];
     if (*line == '#' || *line == '\0')
         return STATUS_OK;
     if (source && !table->source)
         return mem_strdup(&table->source, source, err);
+    if (from && take_fitted_from(table, from))
+        return STATUS_OK;
     if (!ratios || !numbers_parse(ratios, RATIO_NUMBERS, ratio))
         return take_row(table, capacity, line, err);
     table->ratios = (OrderRatios){ratio[0], ratio[1], ratio[2]};
@@ -78,7 +96,7 @@ Status morphometry_read(Morphometry *table, const char *path, Err *err)
     static const FileForm form = {
         .name = "a table of morphometry", .most_bytes = 1e6, .is_text = true};
     const double none = (double)NAN;
-    Morphometry read = {.ratios = {none, none, none}};
+    Morphometry read = {.ratios = {none, none, none}, .fitted_from = {1, 1, 1}};
     char *text = NULL;
     size_t size, capacity = 0, number = 1;
     TRY(file_read(path, &form, &text, &size, err));
@@ -151,6 +169,17 @@ static int best_shift(const TreeStatistics *statistics, const Morphometry *table
     return best;
 }
 
+/* The tree's ratios, each over the orders that gave the published one. */
+static OrderRatios ratios_beside(const TreeStatistics *statistics, const Morphometry *table,
+                                 int shift)
+{
+    OrderRatios over[RATIO_NUMBERS];
+    for (int k = 0; k < RATIO_NUMBERS; k++)
+        over[k] = statistics_ratios(&statistics->by_diameter_strahler,
+                                    table->fitted_from[k] - shift, (int)table->n - shift);
+    return (OrderRatios){over[0].number, over[1].diameter, over[2].length};
+}
+
 /* Appends a pair, which there is room for, when both have a value. */
 static void add_pair(MorphometryComparison *comparison, MorphometryPair pair)
 {
@@ -198,7 +227,8 @@ Status morphometry_compare(const TreeStatistics *statistics, const Morphometry *
                                        .published = row_value(&table->row[k + shift],
                                                               (MorphometryMeasure)measure)});
         }
-    add_ratios(&made, &statistics->diameter_strahler_ratios, &table->ratios);
+    OrderRatios own = ratios_beside(statistics, table, shift);
+    add_ratios(&made, &own, &table->ratios);
     *comparison = made;
     return STATUS_OK;
 }

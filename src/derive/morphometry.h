@@ -23,13 +23,15 @@ typedef struct MorphometryRow {
 typedef struct Morphometry {
     char *source; /* owned; author, journal, year */
     OrderRatios ratios;
+    int fitted_from[3];  /* the order from which on numbers, diameters and lengths gave them */
     MorphometryRow *row; /* owned */
     size_t n;            /* at least 1 */
 } Morphometry;
 
-/* Reads a file of templates/morphometry: "source TEXT", "ratios NUMBER DIAMETER LENGTH", and a line
- * of 11 numbers for each order from 1 on (micrometres, millimetres; "nan" where nothing is
- * published); '#' starts a comment line. In *table (owned; morphometry_release). STATUS_INPUT
+/* Reads a file of templates/morphometry: "source TEXT", "ratios NUMBER DIAMETER LENGTH",
+ * "fitted-from NUMBER DIAMETER LENGTH" (1 each where there is no such line), and a line of 11
+ * numbers for each order from 1 on (micrometres, millimetres; "nan" where nothing is published);
+ * '#' starts a comment line. In *table (owned; morphometry_release). STATUS_INPUT
  * naming file and line on anything else. */
 MUST_CHECK Status morphometry_read(Morphometry *table, const char *path, Err *err);
 void morphometry_release(Morphometry *table);
@@ -77,8 +79,9 @@ typedef struct MorphometryComparison {
 /* Compares a tree's diameter-defined orders with a table. A tree is rarely a whole organ's, so its
  * order k stands beside the published order k + shift, with the shift for which the squared
  * logarithms of the ratios of their mean diameters have the least mean over the orders that both
- * have, of which there are to be as many as can be. Numbers agree within the published standard
- * deviation, or where there is none within MORPHOMETRY_ROOM of the published value. */
+ * have, of which there are to be as many as can be. Ratios are those of the orders that both have
+ * and that gave the published ones. Numbers agree within the published standard deviation, or where
+ * there is none within MORPHOMETRY_ROOM of the published value. */
 MUST_CHECK Status morphometry_compare(const TreeStatistics *statistics, const Morphometry *table,
                                       MorphometryComparison *comparison, Err *err);
 

@@ -4,6 +4,7 @@
 #include "derive/derive.h"
 #include "derive/vessels.h"
 
+#include <limits.h>
 #include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
@@ -129,34 +130,42 @@ static double element_length(const StatisticsRow *row)
 }
 
 /* exp of the slope of the straight line through log(quantity) against the order. */
-static double growth_ratio(const StatisticsTable *table,
+static double growth_ratio(const StatisticsRow *row, size_t rows,
                            double (*quantity)(const StatisticsRow *row))
 {
     double n = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0;
-    for (size_t i = 0; i < table->n; i++) {
-        if (!(quantity(&table->row[i]) > 0))
+    for (size_t i = 0; i < rows; i++) {
+        if (!(quantity(&row[i]) > 0))
             continue;
         n++;
-        mean_x += table->row[i].number;
-        mean_y += log(quantity(&table->row[i]));
+        mean_x += row[i].number;
+        mean_y += log(quantity(&row[i]));
     }
     mean_x /= n;
     mean_y /= n;
-    for (size_t i = 0; i < table->n; i++) {
-        if (!(quantity(&table->row[i]) > 0))
+    for (size_t i = 0; i < rows; i++) {
+        if (!(quantity(&row[i]) > 0))
             continue;
-        double x = table->row[i].number - mean_x;
+        double x = row[i].number - mean_x;
         xx += x * x;
-        xy += x * (log(quantity(&table->row[i])) - mean_y);
+        xy += x * (log(quantity(&row[i])) - mean_y);
     }
     return n >= 2 ? exp(xy / xx) : (double)NAN;
 }
 
-static OrderRatios order_ratios(const StatisticsTable *table)
+OrderRatios statistics_ratios(const StatisticsTable *table, int first, int last)
 {
-    return (OrderRatios){1 / growth_ratio(table, element_number),
-                         growth_ratio(table, element_diameter),
-                         growth_ratio(table, element_length)};
+    const StatisticsRow *row = table->row;
+    size_t rows = table->n;
+    while (rows > 0 && row->number < first) {
+        row++;
+        rows--;
+    }
+    while (rows > 0 && row[rows - 1].number > last)
+        rows--;
+    return (OrderRatios){1 / growth_ratio(row, rows, element_number),
+                         growth_ratio(row, rows, element_diameter),
+                         growth_ratio(row, rows, element_length)};
 }
 
 /* Sorts `value`. */
@@ -234,7 +243,7 @@ static Status make_order_table(const Vessels *vessels, const int32_t *order, Sta
     Status status = make_table(vessels, order, heir, table, daughters, err);
     free(heir);
     if (status == STATUS_OK)
-        *ratios = order_ratios(table);
+        *ratios = statistics_ratios(table, 0, INT_MAX);
     return status;
 }
 

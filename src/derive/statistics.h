@@ -64,4 +64,7 @@ typedef struct TreeStatistics {
 MUST_CHECK Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err);
 void statistics_release(TreeStatistics *statistics);
 
+/* The ratios over the rows numbered `first` to `last` alone. */
+OrderRatios statistics_ratios(const StatisticsTable *table, int first, int last);
+
 #endif

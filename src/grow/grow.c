@@ -370,20 +370,14 @@ static bool is_fine_enough(const Growth *growth)
 /* Holds the clearance of different trees against what was asked for. */
 static Status check_apart(const GrowParams *params, const Tree *tree, double *apart, Err *err)
 {
-    size_t pair[2];
     *apart = INFINITY;
     if (!(params->clearance_mm > 0) && !(params->pair_mm > 0))
         return STATUS_OK;
     if (params->pair_mm > 0)
         TRY(mates_check(params, tree, err));
-    TRY(trees_apart(tree, fmax(2 * params->clearance_mm, params->pair_mm), apart, pair, err));
-    if (*apart >= params->clearance_mm)
-        return STATUS_OK;
-    return err_set(err, STATUS_INFEASIBLE,
-                   "`clearance_mm` %g cannot be kept: the vessels that end in nodes %d and %d, of "
-                   "different trees, are %.4g mm apart; lower it, lower `terminals`, or choose a "
-                   "larger `domain`",
-                   params->clearance_mm, tree->id[pair[0]], tree->id[pair[1]], *apart);
+    return trees_prove_apart(
+        tree, params->clearance_mm, fmax(2 * params->clearance_mm, params->pair_mm),
+        "; lower `terminals` or `q_perf`, or choose a larger `domain`", apart, err);
 }
 
 static void report_progress(const Growth *growth, size_t before)

@@ -141,6 +141,12 @@ MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree
 MUST_CHECK Status trees_apart(const Tree *tree, double within, double *apart, size_t pair[2],
                               Err *err);
 
+/* Proves that vessels of different trees are at least `clearance` mm apart: *apart as above.
+ * STATUS_INFEASIBLE when they are nearer, with a sentence that says where and ends with `advice`.
+ */
+MUST_CHECK Status trees_prove_apart(const Tree *tree, double clearance, double within,
+                                    const char *advice, double *apart, Err *err);
+
 /* How a whole tree is optimised after growth. */
 typedef enum GrowRefine {
     GROW_REFINE_NONE,
@@ -165,6 +171,7 @@ typedef struct RefineReport {
     double target_before, target_after; /* sum of l r^lambda, mm^(1 + lambda) */
     uint64_t moves_tried, moves_kept;
     double thickness; /* the share of their radii at which vessels that moved were kept clear */
+    double apart_mm;  /* as in a GrowReport, by what the tree's meta says, and its pairs */
     bool stopped;     /* by the callback */
 } RefineReport;
 
@@ -180,7 +187,8 @@ typedef struct RefineReport {
  * in the domain. A segment that was longer than wide and clear of those it shares no node with
  * stays so; one that was not does not get worse, and the levels above geometry try to mend it. If
  * more than one in ten segments were not, these rules are kept with vessels counted at a smaller
- * part of their radii, report->thickness.
+ * part of their radii, report->thickness. Trees whose meta says a clearance keep it, which is
+ * proved at the end; they have to keep it before, too, at the real thickness of their vessels.
  *
  * With a budget of moves alone, the same tree and parameters give the same bits. `report` may be
  * NULL. Fails, *tree unchanged, with STATUS_USAGE for wrong parameters, STATUS_INPUT for a tree

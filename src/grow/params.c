@@ -30,7 +30,8 @@ static const struct {
                {META_Q_PERF, offsetof(GrowParams, q_perf_ml_min)},
                {META_VISCOSITY, offsetof(GrowParams, viscosity_cp)},
                {META_HEMATOCRIT, offsetof(GrowParams, hematocrit)},
-               {META_PLASMA_VISCOSITY, offsetof(GrowParams, plasma_viscosity_cp)}};
+               {META_PLASMA_VISCOSITY, offsetof(GrowParams, plasma_viscosity_cp)},
+               {META_CLEARANCE, offsetof(GrowParams, clearance_mm)}};
 
 enum { N_NUMBERS = sizeof numbers / sizeof *numbers };
 
@@ -48,6 +49,7 @@ void grow_describe(const GrowParams *params, TreeMeta *meta)
     meta->known[META_VISCOSITY_LAW] = meta->known[META_HEMATOCRIT] =
         meta->known[META_PLASMA_VISCOSITY] = !constant;
     meta->known[META_TERMINAL_FLOW] = params->terminal_flow != TERMINAL_FLOW_EQUAL;
+    meta->known[META_CLEARANCE] = params->clearance_mm > 0;
 }
 
 void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_KEYS])

@@ -90,3 +90,23 @@ done:
     free(root);
     return status;
 }
+
+Status trees_prove_apart(const Tree *tree, double clearance, double within, const char *advice,
+                         double *apart, Err *err)
+{
+    size_t pair[2];
+    TRY(trees_apart(tree, within, apart, pair, err));
+    if (*apart >= clearance)
+        return STATUS_OK;
+    int32_t ids[] = {tree->id[pair[0]], tree->id[pair[1]]};
+    if (clearance > 0)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "`clearance_mm` %g cannot be kept: the vessels that end in nodes %d and %d, "
+                       "of different trees, are %.4g mm apart%s",
+                       clearance, ids[0], ids[1], *apart, advice);
+    return err_set(
+        err, STATUS_INFEASIBLE,
+        "the trees cannot be kept apart: the vessels that end in nodes %d and %d overlap "
+        "by %.4g mm%s",
+        ids[0], ids[1], -*apart, advice);
+}

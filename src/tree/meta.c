@@ -72,6 +72,10 @@ const MetaRow meta_rows[META_KEYS] = {
                             .meaning = "what the flow through the terminals was made after",
                             .kind = META_WORD,
                             .words = terminal_flow_names},
+    [META_CLEARANCE] = {.name = "clearance_mm",
+                        .unit = "mm",
+                        .meaning = "least distance of the walls of vessels of different trees",
+                        .range = {0, RANGE_NO_END}},
 };
 
 void meta_release(TreeMeta *meta)

@@ -37,6 +37,7 @@ typedef enum MetaKey {
     META_HEMATOCRIT,       /* discharge hematocrit, by Pries's law */
     META_PLASMA_VISCOSITY, /* cP, by Pries's law */
     META_TERMINAL_FLOW,    /* a TerminalFlow */
+    META_CLEARANCE,        /* mm, least distance of the walls of vessels of different trees */
     META_KEYS              /* how many there are; also: no key */
 } MetaKey;
 

@@ -136,4 +136,24 @@ END
     expect_sentence 'the vessel that ends in node 7 leaves the domain when it is straight'
 }
 
+test_forests_keep_the_clearance_of_their_header_or_of_the_option() {
+    run_ok corcast grow --terminals 120 --inlet 0,50 --inlet 4.5,-49 --q-perf 200 --clearance 3.25 -o apart.swc
+    grep -qx '# clearance_mm: 3.25' apart.swc || fail "expected the header to say the clearance"
+    run_ok corcast refine apart.swc --refine-moves 4000 -o kept.swc --json kept.json
+    expect_json kept.json '.apart_mm >= 3.25 and .target < 0.97 * .target_before'
+    grep -q 'walls of different trees are at least [34]\.[0-9]* mm apart' stderr || fail "expected the distance to be said"
+    grep -qx '# clearance_mm: 3.25' kept.swc || fail "expected the header to say the clearance still"
+    run_ok corcast refine apart.swc --clearance 0 --refine-moves 4000 -o free.swc --json free.json
+    expect_json free.json '.apart_mm == null'
+    run_ok corcast refine free.swc --clearance 0.125 --refine-moves 200 -o again.swc --json again.json
+    grep -qx '# clearance_mm: 0.125' again.swc || fail "expected the header to say the option's clearance"
+    run corcast refine apart.swc --clearance 30.5 -o none.swc
+    expect_status 2
+    expect_sentence 'as the trees are, --clearance 30.5 cannot be kept: the vessels that end in nodes [0-9]+ and [0-9]+, of different trees, are [0-9.]+ mm apart'
+    [ ! -e none.swc ] || fail "expected no file"
+    run_ok corcast grow --terminals 120 --inlet 0,50 --inlet 4.5,-49 --q-perf 200 --clearance 3.25 \
+        --refine topology --refine-moves 4000 -o at_once.swc --json at_once.json
+    expect_json at_once.json '.apart_mm >= 3.25'
+}
+
 run_tests "$@"

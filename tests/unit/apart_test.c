@@ -60,6 +60,42 @@ static void trees_are_as_far_apart_as_their_nearest_pair(void **state)
     }
 }
 
+/* The clearance asked for is nearly all that the trees have, so that moves run into it. */
+static void refined_trees_keep_their_clearance(void **state)
+{
+    (void)state;
+    const GrowRefine level[] = {GROW_REFINE_GEOMETRY, GROW_REFINE_TOPOLOGY};
+    const char *const spec[] = {"ball:30", "disc:30"};
+    for (int k = 0; k < 2; k++) {
+        Err err = {""};
+        Tree tree = forest(spec[k], 1.25, &err);
+        double clearance = apart_by_pairs(&tree) - 1e-3;
+        meta_set_number(&tree.meta, META_CLEARANCE, clearance);
+        RefineParams params = {.level = level[k], .moves = 4000, .seed = 5};
+        RefineReport report;
+        if (refine_tree(&params, NULL, &tree, &report, &err) != STATUS_OK)
+            fail_msg("%s", err.text);
+        assert_true(report.target_after < 0.99 * report.target_before);
+        assert_true(report.apart_mm >= clearance);
+        assert_true(apart_by_pairs(&tree) >= clearance - 1e-6);
+        tree_release(&tree);
+    }
+}
+
+static void trees_that_are_too_near_are_not_refined(void **state)
+{
+    (void)state;
+    Err err = {""};
+    Tree tree = forest("disc:30", 1.25, &err);
+    Vec3 last = tree.position[tree.n - 1];
+    meta_set_number(&tree.meta, META_CLEARANCE, apart_by_pairs(&tree) + 1e-3);
+    RefineParams params = {.level = GROW_REFINE_GEOMETRY};
+    assert_int_equal(refine_tree(&params, NULL, &tree, NULL, &err), STATUS_INFEASIBLE);
+    assert_non_null(strstr(err.text, "as the trees are, `clearance_mm` "));
+    assert_true(vec3_distance(last, tree.position[tree.n - 1]) == 0);
+    tree_release(&tree);
+}
+
 static void vessels_that_overlap_are_less_than_nothing_apart(void **state)
 {
     (void)state;
@@ -85,6 +121,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(trees_are_as_far_apart_as_their_nearest_pair),
+        cmocka_unit_test(refined_trees_keep_their_clearance),
+        cmocka_unit_test(trees_that_are_too_near_are_not_refined),
         cmocka_unit_test(vessels_that_overlap_are_less_than_nothing_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

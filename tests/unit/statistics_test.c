@@ -217,7 +217,7 @@ static const MorphometryPair *find_pair(const MorphometryComparison *comparison,
 static void a_tree_stands_beside_the_published_orders_of_its_diameters(void **state)
 {
     (void)state;
-    write_table("# the head\nsource Nobody (1999)\nratios 2.44 nan 2.1\n"
+    write_table("# the head\nsource Nobody (1999)\nratios 2.44 nan 1.3\nfitted-from 1 1 3\n"
                 "1 1000 100 1.1 .1 80 2 .1 nan nan nan\n"
                 "2 1900 80 1.3 .7 24 1.2 .2 2.2 nan nan\n"
                 "3 4100 90 7.9 3 8 1.9 nan 2.4 .4 nan\n"
@@ -244,28 +244,33 @@ static void a_tree_stands_beside_the_published_orders_of_its_diameters(void **st
         {COMPARED_DAUGHTERS, 1, 2, 1.0 / 6, 0.2, 0.05},
         {COMPARED_DAUGHTERS_1_LESS, 2, 3, 2.5, 2.4, 0.6},
         {COMPARED_DAUGHTERS_2_LESS, 3, 4, 0, 0.1, 0.025},
-        {COMPARED_NUMBER_RATIO, 0, 0, statistics.diameter_strahler_ratios.number, 2.44, 0.61}};
-    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
-        const MorphometryPair *pair = find_pair(&beside, pairs[i].measure, pairs[i].order);
-        assert_non_null(pair);
-        assert_int_equal(pair->published_order, pairs[i].published);
-        assert_true(fabs(pair->value - pairs[i].value) < 1e-12);
-        assert_close(pair->published.mean, pairs[i].mean);
-        assert_close(pair->room, pairs[i].room);
-        assert_true(pair->agrees == (pairs[i].measure != COMPARED_DAUGHTERS_2_LESS));
-    }
-    /* not published, or not of a tree of three orders */
-    assert_null(find_pair(&beside, COMPARED_DIAMETER_RATIO, 0));
-    assert_null(find_pair(&beside, COMPARED_DAUGHTERS, 2));
-    assert_null(find_pair(&beside, COMPARED_DAUGHTERS_3_LESS, 3));
-    size_t agreeing = 0;
-    for (size_t i = 0; i < beside.n; i++)
-        agreeing += beside.pair[i].agrees;
-    assert_int_equal(beside.agreeing, agreeing);
-    free(beside.pair);
-    morphometry_release(&table);
-    statistics_release(&statistics);
-    tree_release(&tree);
+        {COMPARED_NUMBER_RATIO, 0, 0, statistics.diameter_strahler_ratios.number, 2.44, 0.61},
+        {COMPARED_LENGTH_RATIO, 0, 0, 9 / 7.5, 1.3, 0.325}};
+    2.1, 0.525
+}
+}
+;
+for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+    const MorphometryPair *pair = find_pair(&beside, pairs[i].measure, pairs[i].order);
+    assert_non_null(pair);
+    assert_int_equal(pair->published_order, pairs[i].published);
+    assert_true(fabs(pair->value - pairs[i].value) < 1e-12);
+    assert_close(pair->published.mean, pairs[i].mean);
+    assert_close(pair->room, pairs[i].room);
+    assert_true(pair->agrees == (pairs[i].measure != COMPARED_DAUGHTERS_2_LESS));
+}
+/* not published, or not of a tree of three orders */
+assert_null(find_pair(&beside, COMPARED_DIAMETER_RATIO, 0));
+assert_null(find_pair(&beside, COMPARED_DAUGHTERS, 2));
+assert_null(find_pair(&beside, COMPARED_DAUGHTERS_3_LESS, 3));
+size_t agreeing = 0;
+for (size_t i = 0; i < beside.n; i++)
+    agreeing += beside.pair[i].agrees;
+assert_int_equal(beside.agreeing, agreeing);
+free(beside.pair);
+morphometry_release(&table);
+statistics_release(&statistics);
+tree_release(&tree);
 }
 
 static void rejects_a_table_of_morphometry_that_is_none(void **state)
@@ -279,6 +284,8 @@ static void rejects_a_table_of_morphometry_that_is_none(void **state)
          "diameter above 0"},
         {"source X\n1 0 1 1 1 9 2 .1 nan nan nan\n", ":2: the row begins with order 1"},
         {"source X\nratios 2 3\n", ":2: 'ratios 2 3' is neither a source, nor ratios"},
+        {"source X\nfitted-from 1 1 2.5\n", ":2: 'fitted-from 1 1 2.5' is neither"},
+        {"source X\nfitted-from 1 nan 1\n", ":2: 'fitted-from 1 nan 1' is neither"},
         {"source X\nsource Y\n", ":2: 'source Y' is neither"}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         Morphometry table;

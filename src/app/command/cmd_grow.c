@@ -163,8 +163,10 @@ static Status run_grow(void *options, Parsed *parsed, Err *err)
         TRY_GOTO(growing_run(growing, parsed->common.quiet, &tree, &report, &why, err));
     options_name_fields(parsed, &why);
     TRY_GOTO(refining_apply(refining, &parsed->common, &growing->domain, &tree, &refined, err));
-    if (refined.target_before > 0)
+    if (refined.target_before > 0) {
         report.root_radius_mm = tree.radius_mm[0];
+        report.apart_mm = refined.apart_mm;
+    }
     TRY_GOTO(command_describe(parsed, &tree.meta, err));
     TRY_GOTO(refining_describe(refining, &refined, &tree.meta, err));
     status = finish(own_options, &parsed->common, &tree, &report, &refined, &why, err);

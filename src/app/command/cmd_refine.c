@@ -6,10 +6,13 @@
 #include "app/trees/refining.h"
 #include "app/trees/tree_domain.h"
 #include "treeio/treeio.h"
+#include <math.h>
 #include <stdio.h>
 
 typedef struct RefineOptions {
     const char *output, *domain, *json;
+    double clearance_mm;
+    bool has_clearance;
     Refining refining;
 } RefineOptions;
 
@@ -28,6 +31,13 @@ static const Option own[] = {
      .argument = "SHAPE",
      .otherwise = "the tree's",
      .help = "tissue to stay in; a tree without one may go anywhere"},
+    {.name = "clearance",
+     SETS(NUMBER, RefineOptions, clearance_mm),
+     GIVEN(RefineOptions, has_clearance),
+     .meta = &meta_rows[META_CLEARANCE],
+     .group = GROUP_TREE,
+     .otherwise = "the tree's",
+     .help = "least distance of the walls of vessels of different trees, kept and proved"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -46,6 +56,12 @@ static Status find_domain(const char *spec, const Tree *tree, Domain *domain, bo
     return tree_domain_parse(spec, NULL, NULL, domain, err);
 }
 
+static void set_clearance(double mm, TreeMeta *meta)
+{
+    meta_set_number(meta, META_CLEARANCE, mm);
+    meta->known[META_CLEARANCE] = mm > 0;
+}
+
 static Status write_report(const char *path, const RefineReport *report, const Tree *tree, Err *err)
 {
     json_t *bound;
@@ -58,6 +74,7 @@ static Status write_report(const char *path, const RefineReport *report, const T
         {"moves_tried", json_integer((json_int_t)report->moves_tried)},
         {"moves_kept", json_integer((json_int_t)report->moves_kept)},
         {"thickness", json_number(report->thickness)},
+        {"apart_mm", isfinite(report->apart_mm) ? json_number(report->apart_mm) : json_null()},
         {"stopped", json_boolean(report->stopped)},
         {"bound", bound},
     };
@@ -80,6 +97,8 @@ static Status run_refine(void *options, Parsed *parsed, Err *err)
     TRY_GOTO(find_domain(own_options->domain, &tree, &domain, &has_domain, err));
     if (domain.file)
         TRY_GOTO(files_read(&parsed->files, "--domain", domain.file, err));
+    if (own_options->has_clearance)
+        set_clearance(own_options->clearance_mm, &tree.meta);
     if (!parsed->common.quiet)
         print_columns_left_out("refine", &tree, "their segments move");
     TRY_GOTO(refining_apply(refining, &parsed->common, has_domain ? &domain : NULL, &tree, &report,

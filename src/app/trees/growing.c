@@ -6,6 +6,7 @@
 #include "app/run/reading.h"
 #include "app/trees/blood.h"
 #include "app/trees/tree_domain.h"
+#include <stdio.h>
 
 static const char *const tosses[] = {
     [GROW_TOSS_SEGMENT] = "segment", [GROW_TOSS_TERMINAL] = "terminal", NULL};
@@ -111,10 +112,8 @@ static const Option rows[] = {
      .unit = "mm",
      .help = "growth ends when the terminals' mean radius is this; 0: with --terminals"},
     {.name = "clearance",
-     SETS(NUMBER, Growing, params.clearance_mm),
-     FROM_TO(0, 1e3),
+     SETS_KEY(Growing, params.clearance_mm, given, CLEARANCE),
      .group = GROUP_TREE,
-     .unit = "mm",
      .help = "least distance of the walls of vessels of different trees, proved at the end"},
     {.name = "pair",
      SETS(NUMBER, Growing, params.pair_mm),
@@ -227,6 +226,10 @@ Status growing_read_demand(Growing *growing, Err *err)
 Status growing_run(Growing *growing, bool quiet, Tree *tree, GrowReport *report, Err *why, Err *err)
 {
     Progress progress;
+    if (!quiet && growing->params.pair_mm > 0 && growing->domain.dimension == 2)
+        fprintf(stderr, "corcast: two trees that must not cross soon shut each other out in the "
+                        "plane: as a rule some 20 terminals in pairs find room, and any number "
+                        "in a domain of three dimensions\n");
     growing->params.progress = progress_report;
     growing->params.progress_context = &progress;
     progress_start(&progress, "growing", quiet);

@@ -49,8 +49,6 @@ Status refining_check_growing(const Refining *refining, const Growing *growing, 
     if (growing->from_path)
         return err_set(err, STATUS_USAGE,
                        "--refine: would move the tree of --from; use corcast refine afterwards");
-    if (growing->params.clearance_mm > 0)
-        return err_set(err, STATUS_USAGE, "--refine: would not keep the trees --clearance apart");
     return STATUS_OK;
 }
 
@@ -84,6 +82,8 @@ void refining_print(const RefineReport *report)
                 report->seconds, report->stopped ? ", stopped" : "", report->target_before,
                 report->target_after, 100 * (report->target_after / report->target_before - 1),
                 (unsigned long long)report->moves_kept, (unsigned long long)report->moves_tried);
+    if (report->target_before > 0 && isfinite(report->apart_mm))
+        fprintf(stderr, "walls of different trees are at least %.4g mm apart\n", report->apart_mm);
 }
 
 Status refining_describe(const Refining *refining, const RefineReport *report, TreeMeta *meta,

@@ -17,8 +17,7 @@ extern const OptionTable refining_table; /* sets a Refining; a zeroed one is no 
 /* STATUS_USAGE for bounds of a refinement that nobody asks for. */
 MUST_CHECK Status refining_check(const Refining *refining, const Parsed *parsed, Err *err);
 
-/* STATUS_USAGE for growth whose tree cannot be refined: refinement moves all nodes of
- * a tree, and knows of no clearance of trees. */
+/* STATUS_USAGE for growth whose tree cannot be refined: refinement moves all nodes of a tree. */
 MUST_CHECK Status refining_check_growing(const Refining *refining, const Growing *growing,
                                          Err *err);
 

@@ -367,6 +367,49 @@ static Status refine(Refinement *refinement, Err *err)
     return STATUS_OK;
 }
 
+/* How far apart the terminals of a pair are, mm, where terminals are pairs; else 0. */
+static Status pair_distance(const Tree *tree, double *mm, Err *err)
+{
+    TreePair *pair = NULL;
+    size_t n = 0;
+    *mm = 0;
+    if (!tree_column(tree, tree_pairs_name))
+        return STATUS_OK;
+    TRY(tree_pairs(tree, &pair, &n, err));
+    if (n > 0)
+        *mm = vec3_distance(tree->position[pair[0].node[0]], tree->position[pair[0].node[1]]);
+    free(pair);
+    return STATUS_OK;
+}
+
+/* Proves that the arbor's trees keep their clearance, if they have one. */
+static Status prove_apart(const Arbor *arbor, const Tree *was, double *apart, Err *err)
+{
+    double clearance = meta_number(&was->meta, META_CLEARANCE), pair_mm;
+    Tree tree = {0};
+    *apart = INFINITY;
+    TRY(pair_distance(was, &pair_mm, err));
+    if (!(clearance > 0) && !(pair_mm > 0))
+        return STATUS_OK;
+    TRY(result_make(arbor, was, &tree, err));
+    Status status = trees_prove_apart(&tree, clearance > 0 ? clearance : -HUGE_VAL,
+                                      fmax(2 * clearance, pair_mm), "", apart, err);
+    tree_release(&tree);
+    return status;
+}
+
+/* Gives *tree what was made of the arbor. */
+static Status write_result(const Arbor *arbor, Tree *tree, Err *err)
+{
+    Tree made;
+    TRY(result_make(arbor, tree, &made, err));
+    made.meta = tree->meta;
+    tree->meta = (TreeMeta){0};
+    tree_release(tree);
+    *tree = made;
+    return STATUS_OK;
+}
+
 /* The tree's target, mm^(1 + lambda). */
 static double target_of(const Arbor *arbor)
 {
@@ -389,7 +432,13 @@ static Status start(Refinement *refinement, const Domain *domain, const Tree *tr
         return err_set(err, STATUS_INFEASIBLE,
                        "with this gamma and lambda %g the radii span more than a double can hold",
                        tree->meta.number[META_LAMBDA]);
-    TRY(clearance_init(&search->clearance, domain, &search->arbor, err));
+    double apart;
+    Status status = prove_apart(&search->arbor, tree, &apart, err);
+    if (status == STATUS_INFEASIBLE)
+        err_prefix(err, "as the trees are, ");
+    TRY(status);
+    TRY(clearance_init(&search->clearance, domain, meta_number(&tree->meta, META_CLEARANCE),
+                       &search->arbor, err));
     refinement->unclear = count_unclear(search);
     TRY(joints_init(&refinement->joints, n, err));
     TRY(mem_calloc(&refinement->best_parent, n, sizeof *refinement->best_parent, "nodes", err));
@@ -412,15 +461,16 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
     LocalSearch *search = &refinement.search;
     Status status = STATUS_OK;
     TRY_GOTO(start(&refinement, domain, tree, err));
-    double before = target_of(&search->arbor), after = before;
+    double before = target_of(&search->arbor), after = before, apart;
     TRY_GOTO(refine(&refinement, err));
     if (search->arbor.local)
         TRY_GOTO(settle(search, err));
     if (search->arbor.local && count_unclear(search) > refinement.unclear)
         TRY_GOTO(recall(&refinement, err));
+    TRY_GOTO(prove_apart(&search->arbor, tree, &apart, err));
     if (!search->arbor.local || count_unclear(search) <= refinement.unclear) {
         after = target_of(&search->arbor);
-        TRY_GOTO(result_write(&search->arbor, tree, err));
+        TRY_GOTO(write_result(&search->arbor, tree, err));
     }
     if (report)
         *report = (RefineReport){.seconds = clock_seconds() - refinement.begun,
@@ -429,6 +479,7 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
                                  .moves_tried = search->tried,
                                  .moves_kept = search->kept,
                                  .thickness = search->clearance.level,
+                                 .apart_mm = apart,
                                  .stopped = refinement.stopped};
 done:
     joints_release(&refinement.joints);

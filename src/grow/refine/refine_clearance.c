@@ -44,7 +44,8 @@ static Box box_of(const Domain *domain, const Arbor *arbor)
 static Status enter(Clearance *clearance, const Arbor *arbor, int32_t i, Err *err)
 {
     const Shape *shape = &arbor->shape[i];
-    Capsule capsule = {shape->from, shape->to, shape->reserved_radius};
+    double wide = clearance->apart > 0 ? clearance->radius[i] : 0;
+    Capsule capsule = {shape->from, shape->to, fmax(shape->reserved_radius, wide)};
     return grid_add(&clearance->grid, 0, i, arbor->branch[i].child[0] < 0,
                     grid_item(&clearance->grid, capsule, shape->reserved_radius), err);
 }
@@ -59,6 +60,13 @@ static double distance_of(const Shape *a, const Shape *b)
     return sqrt(segment_distance2(a->from, a->to, b->from, b->to));
 }
 
+/* How far off its axis segment i, when it reserves that radius, may meet what others reserve. */
+static double reach_of(const Clearance *clearance, int32_t i, double reserved_radius)
+{
+    double wide = clearance->apart > 0 ? clearance->radius[i] : 0;
+    return fmax(reserved_radius, wide) + clearance->gap + clearance->apart;
+}
+
 /* What a segment of `radius` reserves when it is given this share of its wish: at 0 the radius, at
  * 1 the reserve as well, at -1 nothing. Never more than its length allows. */
 static double reservation(const Clearance *clearance, const Branch *branch, double radius,
@@ -70,13 +78,13 @@ static double reservation(const Clearance *clearance, const Branch *branch, doub
     return least + (fmin(reserve * clearance->level * radius, longest) - least) * share;
 }
 
-/* The greatest share that two segments so far apart can both be given. */
+/* The greatest share that two segments can both be given that are so far apart, less what has to be
+ * between what they reserve. */
 static double common_share(const Clearance *clearance, const Branch *a, double radius_a,
                            const Branch *b, double radius_b, double apart)
 {
     double least = reservation(clearance, a, radius_a, 0) + reservation(clearance, b, radius_b, 0);
     double most = reservation(clearance, a, radius_a, 1) + reservation(clearance, b, radius_b, 1);
-    apart -= clearance->gap;
     if (apart >= most)
         return 1;
     return apart >= least ? (apart - least) / (most - least) : fmax(apart, 0) / least - 1;
@@ -88,7 +96,7 @@ static double fair_share(const Clearance *clearance, const Arbor *arbor, const d
 {
     const Shape *shape = &arbor->shape[i];
     const Branch *branch = arbor->branch;
-    Capsule capsule = {shape->from, shape->to, shape->reserved_radius + clearance->gap};
+    Capsule capsule = {shape->from, shape->to, reach_of(clearance, i, shape->reserved_radius)};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
     double share = 1;
     size_t index;
@@ -97,9 +105,11 @@ static double fair_share(const Clearance *clearance, const Arbor *arbor, const d
         for (uint32_t k = 0; k < cell->count; k++) {
             int32_t other = cell->tag[k] >> 1;
             if (other != i && !arbor_are_joined(arbor, i, other))
-                share = fmin(share,
-                             common_share(clearance, &branch[i], radius[i], &branch[other],
-                                          radius[other], distance_of(shape, &arbor->shape[other])));
+                share =
+                    fmin(share, common_share(clearance, &branch[i], radius[i], &branch[other],
+                                             radius[other],
+                                             distance_of(shape, &arbor->shape[other]) -
+                                                 clearance_between(clearance, arbor, i, other)));
         }
     }
     return share;
@@ -143,7 +153,8 @@ static Status reserve_all(Clearance *clearance, Arbor *arbor, double *clear, Err
     return STATUS_OK;
 }
 
-Status clearance_init(Clearance *clearance, const Domain *domain, Arbor *arbor, Err *err)
+Status clearance_init(Clearance *clearance, const Domain *domain, double apart, Arbor *arbor,
+                      Err *err)
 {
     double total = 0, clear;
     for (size_t i = arbor->inlets; i < arbor->n; i++)
@@ -153,7 +164,8 @@ Status clearance_init(Clearance *clearance, const Domain *domain, Arbor *arbor, 
                              .box = box,
                              .level = 1,
                              .least_length = 1e-3 * total / (double)(arbor->n - arbor->inlets),
-                             .gap = 1e-7 * vec3_distance(box.low, box.high)};
+                             .gap = 1e-7 * vec3_distance(box.low, box.high),
+                             .apart = apart};
     TRY(mem_calloc(&clearance->radius, arbor->n, sizeof *clearance->radius, "radii", err));
     TRY(mem_calloc(&clearance->share, arbor->n, sizeof *clearance->share, "reservations", err));
     TRY(reserve_all(clearance, arbor, &clear, err));
@@ -161,6 +173,12 @@ Status clearance_init(Clearance *clearance, const Domain *domain, Arbor *arbor, 
         clearance->level = clearance->level > least_level ? clearance->level / 2 : 0;
         TRY(reserve_all(clearance, arbor, &clear, err));
     }
+    if (apart > 0 && clearance->level < 1)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "more than one vessel in ten is shorter than wide or touches another, so "
+                       "that all would count at %g of their radii, and `clearance_mm` %g would not "
+                       "be kept; refine it with a clearance of 0",
+                       clearance->level, apart);
     return STATUS_OK;
 }
 
@@ -196,7 +214,7 @@ static double most_room(const Clearance *clearance, const Arbor *arbor, int32_t 
     const Shape *shape = &arbor->shape[i];
     double most = fmin(wish, most_reservation(&arbor->branch[i]));
     size_t index;
-    Capsule capsule = {shape->from, shape->to, most + clearance->gap};
+    Capsule capsule = {shape->from, shape->to, reach_of(clearance, i, most)};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
     for (GridWalk walk = grid_walk(&clearance->grid, &item); grid_walk_next(&walk, &index);) {
         const GridCell *cell = &clearance->grid.cell[index];
@@ -204,15 +222,16 @@ static double most_room(const Clearance *clearance, const Arbor *arbor, int32_t 
             int32_t other = cell->tag[k] >> 1;
             const Shape *there = &arbor->shape[other];
             if (there->saved != arbor->move && !arbor_are_joined(arbor, i, other))
-                most =
-                    fmin(most, distance_of(shape, there) - there->reserved_radius - clearance->gap);
+                most = fmin(most, distance_of(shape, there) - there->reserved_radius -
+                                      clearance_between(clearance, arbor, i, other));
         }
     }
     for (int k = 0; k < arbor->n_saved_shapes; k++) { /* the grid has them as they were */
         int32_t other = arbor->saved_shape[k].i;
         const Shape *there = &arbor->shape[other];
         if (other != i && !arbor_are_joined(arbor, i, other))
-            most = fmin(most, distance_of(shape, there) - there->reserved_radius - clearance->gap);
+            most = fmin(most, distance_of(shape, there) - there->reserved_radius -
+                                  clearance_between(clearance, arbor, i, other));
     }
     return most;
 }

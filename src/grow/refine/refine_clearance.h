@@ -12,6 +12,7 @@
 #include "domain/domain.h"
 #include "grow/cco/grid.h"
 #include "grow/refine/refine_arbor.h"
+#include <math.h>
 
 typedef struct Clearance {
     const Domain *domain; /* NULL: all of space */
@@ -19,21 +20,35 @@ typedef struct Clearance {
     double level;        /* vessels count at their radii times this */
     double least_length; /* mm; no segment is made shorter */
     double gap;          /* mm; least distance beyond the radii */
+    double apart;        /* mm; as much more between vessels of different trees; level is 1 then */
     Grid grid;
     double *radius; /* of each segment, mm, as of the last clearance_reserve or clearance_waive */
     double *share;  /* workspace of clearance_reserve */
 } Clearance;
 
 /* Finds the greatest level (1, 1/2, ... 1/64, 0) at which nine in ten segments of the tree keep the
- * rules, and reserves radii at it. `domain` is borrowed; NULL: anywhere. Start from (Clearance){0};
- * ends with clearance_release, also on failure, STATUS_MEMORY. */
-MUST_CHECK Status clearance_init(Clearance *clearance, const Domain *domain, Arbor *arbor,
-                                 Err *err);
+ * rules, and reserves radii at it; `apart` mm is as above. `domain` is borrowed; NULL: anywhere.
+ * Start from (Clearance){0}; ends with clearance_release, also on failure: STATUS_INFEASIBLE when
+ * the level is below 1 and `apart` above 0, and STATUS_MEMORY. */
+MUST_CHECK Status clearance_init(Clearance *clearance, const Domain *domain, double apart,
+                                 Arbor *arbor, Err *err);
 void clearance_release(Clearance *clearance);
 
 /* Reserves radii for all segments anew, a tenth above the present ones where there is room, and
  * sums up the arbor. O(n). STATUS_MEMORY. */
 MUST_CHECK Status clearance_reserve(Clearance *clearance, Arbor *arbor, Err *err);
+
+/* How far apart segments i and j have to be beyond what both reserve: if they are of different
+ * trees by as much, too, as they are wider than they can reserve, so that their walls are apart. */
+static inline double clearance_between(const Clearance *clearance, const Arbor *arbor, int32_t i,
+                                       int32_t j)
+{
+    if (!(clearance->apart > 0) || arbor_is_same_tree(arbor, i, j))
+        return clearance->gap;
+    double spare = fmax(0, clearance->radius[i] - arbor->shape[i].reserved_radius) +
+                   fmax(0, clearance->radius[j] - arbor->shape[j].reserved_radius);
+    return clearance->gap + clearance->apart + spare;
+}
 
 /* Whether segment i keeps the rules, as of the last clearance_reserve. */
 static inline bool clearance_is_kept(const Clearance *clearance, const Arbor *arbor, int32_t i)

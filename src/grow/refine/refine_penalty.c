@@ -62,7 +62,8 @@ static double penalty_between(const Penalties *penalties, const Clearance *clear
                               const Arbor *arbor, int32_t i, int32_t j)
 {
     const Shape *a = &arbor->shape[i], *b = &arbor->shape[j];
-    double reach = a->reserved_radius + b->reserved_radius + clearance->gap;
+    double reach =
+        a->reserved_radius + b->reserved_radius + clearance_between(clearance, arbor, i, j);
     double distance2 = segment_distance2(a->from, a->to, b->from, b->to);
     if (distance2 >= reach * reach || arbor_are_joined(arbor, i, j) || !arbor_has(arbor, j))
         return 0;
@@ -75,7 +76,8 @@ static double penalty_of_segment(Penalties *penalties, const Clearance *clearanc
 {
     const Shape *shape = &arbor->shape[i];
     double sum = fmax(0, 2 * shape->reserved_radius - arbor->branch[i].length) * penalties->rate[i];
-    Capsule capsule = {shape->from, shape->to, shape->reserved_radius + clearance->gap};
+    Capsule capsule = {shape->from, shape->to,
+                       shape->reserved_radius + clearance->gap + clearance->apart};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
     GridBoxQuery probe = grid_box_query(&item, capsule.radius, 1);
     size_t index;

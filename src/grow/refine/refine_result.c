@@ -75,7 +75,7 @@ static Status write_pairs(const Tree *was, const Arbor *arbor, const int32_t *pl
     return STATUS_OK;
 }
 
-Status result_write(const Arbor *arbor, Tree *tree, Err *err)
+Status result_make(const Arbor *arbor, const Tree *was, Tree *tree, Err *err)
 {
     Tree made = {0};
     int32_t *place = NULL;
@@ -84,14 +84,11 @@ Status result_write(const Arbor *arbor, Tree *tree, Err *err)
     TRY_GOTO(mem_calloc(&place, arbor->n, sizeof *place, "nodes to renumber", err));
     TRY_GOTO(mem_calloc(&gauge, arbor->n, sizeof *gauge, "gauges", err));
     TRY_GOTO(tree_init(&made, arbor->n, err));
-    if (tree->flow_share)
+    if (was->flow_share)
         TRY_GOTO(tree_add_flow_shares(&made, err));
-    TRY_GOTO(write_nodes(tree, arbor, place, gauge, &made, err));
+    TRY_GOTO(write_nodes(was, arbor, place, gauge, &made, err));
     tree_renumber(&made);
-    TRY_GOTO(write_pairs(tree, arbor, place, &made, err));
-    made.meta = tree->meta;
-    tree->meta = (TreeMeta){0};
-    tree_release(tree);
+    TRY_GOTO(write_pairs(was, arbor, place, &made, err));
     *tree = made;
     made = (Tree){0};
 done:

@@ -5,9 +5,9 @@
 #include "grow/refine/refine_arbor.h"
 #include "tree/tree.h"
 
-/* Gives *tree, from which the arbor was made, the arbor's places and connections and the radii that
- * follow. STATUS_INFEASIBLE when a radius is beyond the range of a double; *tree is then
- * unchanged. */
-MUST_CHECK Status result_write(const Arbor *arbor, Tree *tree, Err *err);
+/* Makes *tree (owned) of the arbor, with all that stays of the tree `was` from which the arbor was
+ * made, but the meta, and with the radii that follow. STATUS_INFEASIBLE when a radius is beyond the
+ * range of a double. */
+MUST_CHECK Status result_make(const Arbor *arbor, const Tree *was, Tree *tree, Err *err);
 
 #endif
