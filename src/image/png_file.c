@@ -301,7 +301,8 @@ static Status write_rows(void *self, const void *values, int first, int n, Err *
     Writer *writer = self;
     if (setjmp(png_jmpbuf(writer->png)))
         return failed(writer, err);
-    return pngstripes_rows(writer->stripes, values, n, write_bytes, writer, err);
+    pngstripes_rows(writer->stripes, values, n, write_bytes, writer);
+    return STATUS_OK;
 }
 
 static Status end(void *self, Err *err)

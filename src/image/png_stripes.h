@@ -10,15 +10,14 @@ typedef struct PngStripes PngStripes;
 typedef void PngTakeBytes(void *context, const uint8_t *bytes, size_t n);
 
 /* For the rows of a picture of codes, of form->packing.threads. `up`: each row is filtered by the
- * one above (PNG's filter Up), otherwise none is. Holds some 17 MB, or as much as the picture or
- * two rows need. *out is owned by the caller, who releases it, also on failure, which is
- * STATUS_MEMORY. */
+ * one above (PNG's filter Up), otherwise none is. Holds up to 3 MB a thread, or ten rows where that
+ * is more. *out is owned by the caller, who releases it, also on failure, which is STATUS_MEMORY.
+ */
 MUST_CHECK Status pngstripes_open(PngStripes **out, const ImageForm *form, bool up, Err *err);
 /* Takes the next `n` rows, as RowEncoder has them. What is compressed by then is handed to `take`;
- * with the last row that is all of the stream. STATUS_MEMORY. `take` may leave by longjmp, after
- * which only pngstripes_free may follow. */
-MUST_CHECK Status pngstripes_rows(PngStripes *self, const void *codes, int n, PngTakeBytes *take,
-                                  void *context, Err *err);
+ * with the last row that is all of the stream. `take` may leave by longjmp, after which only
+ * pngstripes_free may follow. */
+void pngstripes_rows(PngStripes *self, const void *codes, int n, PngTakeBytes *take, void *context);
 void pngstripes_free(PngStripes *self); /* NULL is allowed */
 
 #endif

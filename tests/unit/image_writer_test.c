@@ -77,6 +77,17 @@ static void assert_same_files(const char *a, const char *b)
     free(bytes_b);
 }
 
+static void assert_reads_back(const char *path, const Picture *picture)
+{
+    Picture read;
+    assert_int_equal(picture_read_transparent(&read, path, &err), STATUS_OK);
+    assert_int_equal(read.bits, picture->bits);
+    bool grey = read.channels != picture->channels;
+    for (size_t k = 0; k < (size_t)read.height * picture_stride(&read); k++)
+        assert_int_equal(picture_code(&read, k), picture_code(picture, grey ? k / 3 : k));
+    picture_release(&read);
+}
+
 static void writes_in_parts_the_bytes_of_the_whole(void **state)
 {
     (void)state;
@@ -95,21 +106,16 @@ static void writes_in_parts_the_bytes_of_the_whole(void **state)
         {"build/whole.tiff", "build/parts.tiff", 29001, 13, 3, 16}, /* more than a strip */
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Picture picture, read;
+        Picture picture;
         make(&picture, cases[i].width, cases[i].height, cases[i].channels, cases[i].bits);
         assert_int_equal(picture_write(&picture, cases[i].whole, ENCODING_SRGB, &notes, &err),
                          STATUS_OK);
         write_in_parts(&picture, cases[i].parts);
         assert_same_files(cases[i].whole, cases[i].parts);
-        assert_int_equal(picture_read(&read, cases[i].parts, &err), STATUS_OK);
-        assert_int_equal(read.bits, cases[i].bits);
-        for (size_t k = 0; k < (size_t)read.height * picture_stride(&read); k++)
-            assert_int_equal(picture_code(&read, k),
-                             picture_code(&picture, read.channels == picture.channels ? k : k / 3));
+        assert_reads_back(cases[i].parts, &picture);
         unlink(cases[i].whole);
         unlink(cases[i].parts);
         picture_release(&picture);
-        picture_release(&read);
     }
 }
 
@@ -118,7 +124,7 @@ static void writes_a_png_of_the_same_bytes_on_any_number_of_threads(void **state
     (void)state;
     static const int threads[] = {1, 2, 5};
     for (int channels = 1; channels <= 4; channels += channels == 1 ? 2 : 1) {
-        Picture picture, read;
+        Picture picture;
         make(&picture, 1193, 1307, channels, 8);
         for (size_t i = 0; i < sizeof threads / sizeof *threads; i++) {
             write_packed(&picture, i ? "build/threads.png" : "build/thread.png",
@@ -126,15 +132,61 @@ static void writes_a_png_of_the_same_bytes_on_any_number_of_threads(void **state
             if (i > 0)
                 assert_same_files("build/thread.png", "build/threads.png");
         }
-        assert_int_equal(picture_read_transparent(&read, "build/threads.png", &err), STATUS_OK);
-        for (size_t k = 0; k < (size_t)read.height * picture_stride(&read); k++)
-            assert_int_equal(picture_code(&read, k),
-                             picture_code(&picture, read.channels == picture.channels ? k : k / 3));
+        assert_reads_back("build/threads.png", &picture);
         unlink("build/thread.png");
         unlink("build/threads.png");
         picture_release(&picture);
-        picture_release(&read);
     }
+}
+
+static unsigned one_value(size_t i, Random *random)
+{
+    (void)i;
+    (void)random;
+    return 238;
+}
+
+static unsigned longer_and_longer_runs(size_t i, Random *random)
+{
+    (void)random;
+    return (unsigned)(sqrt((double)i) * 23.85);
+}
+
+static unsigned noise(size_t i, Random *random)
+{
+    (void)i;
+    return (unsigned)(random_bits(random) & 65535);
+}
+
+/* Each value as often as the next two together: its best code would have more bits than deflate
+ * allows. */
+static unsigned rarer_and_rarer_values(size_t i, Random *random)
+{
+    (void)i;
+    return (unsigned)(-log(1 - random_uniform(random)) / log(1.618));
+}
+
+static void reads_back_a_png_whatever_is_in_it(void **state)
+{
+    (void)state;
+    static unsigned (*const values[])(size_t, Random *) = {one_value, longer_and_longer_runs, noise,
+                                                           rarer_and_rarer_values};
+    for (int form = 0; form < 6; form++) {
+        for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+            int channels = (int[]){1, 3, 4}[form % 3], bits = form < 3 ? 8 : 16;
+            Random random;
+            random_seed(&random, 2385);
+            Picture picture;
+            make(&picture, 389, 571, channels, bits);
+            for (size_t k = 0; k < 571 * picture_stride(&picture); k++)
+                picture_set(&picture, k,
+                            (uint16_t)(values[i](k, &random) & (bits == 8 ? 255 : 65535)));
+            write_in_parts(&picture, "build/any.png");
+            assert_reads_back("build/any.png", &picture);
+            picture_release(&picture);
+        }
+    }
+    unlink("build/any.png");
 }
 
 static void writes_a_tiff_of_the_same_codes_however_it_is_packed(void **state)
@@ -358,6 +410,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(writes_in_parts_the_bytes_of_the_whole),
         cmocka_unit_test(writes_a_png_of_the_same_bytes_on_any_number_of_threads),
+        cmocka_unit_test(reads_back_a_png_whatever_is_in_it),
         cmocka_unit_test(writes_a_tiff_of_the_same_codes_however_it_is_packed),
         cmocka_unit_test(writes_a_jpeg_in_parts_the_smaller_the_worse),
         cmocka_unit_test(refuses_what_a_jpeg_cannot_hold),
