@@ -222,5 +222,5 @@ Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, 
         TRY(cause_tone(a, b, &samples, &out, err));
     if (!*out.text)
         TRY(cause_warp(a, b, &samples, &shift, &out, err));
-    return *out.text ? STATUS_OK : cause_place(a, b, result, &out, err);
+    return *out.text ? STATUS_OK : cause_place(a, b, &samples, result, &out, err);
 }

@@ -41,7 +41,7 @@ MUST_CHECK Status cause_tone(const Picture *a, const Picture *b, const Samples *
                              Sentence *out, Err *err);
 /* Where the differences are: one thing missing or extra, outlines only, highlights only, shading
  * only. */
-MUST_CHECK Status cause_place(const Picture *a, const Picture *b, const CompareResult *result,
-                              Sentence *out, Err *err);
+MUST_CHECK Status cause_place(const Picture *a, const Picture *b, const Samples *samples,
+                              const CompareResult *result, Sentence *out, Err *err);
 
 #endif

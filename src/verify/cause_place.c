@@ -127,33 +127,105 @@ static int contrast(const Picture *picture, int x, int y)
     return picture->bits == 8 ? largest : largest / 257;
 }
 
-static void say_outlines(const Picture *a, const Picture *b, const CompareResult *result,
-                         Sentence *out)
+enum { EDGE_LEVELS = 32, SLIGHT_LEVELS = 2, BLOCK = 64 };
+
+/* Pixels of a row that differ by more than SLIGHT_LEVELS, at edges and off them, and others off
+ * edges and the background. */
+typedef struct RowOutlines {
+    size_t at_edges, off, inner;
+} RowOutlines;
+
+typedef struct Outlines {
+    const Picture *a, *b;
+    Labels labels;
+    int slight;        /* codes */
+    size_t enough;     /* when a row has so many inner pixels the rest of it is not asked */
+    RowOutlines *rows; /* owned */
+} Outlines;
+
+static bool is_edge(const Outlines *self, int x, int y)
 {
-    enum { LEVELS = 32, SLIGHT = 2 };
-    const int slight = a->bits == 8 ? SLIGHT : 257 * SLIGHT;
-    const Labels labels = labels_from_background(a, b);
-    bool known = labels.source == LABELS_BACKGROUND;
-    size_t at_edges = 0, off = 0, inner = 0;
-    for (int inside = 0; inside < 2 && 99 * off <= at_edges; inside++)
-        for (int y = 0; y < a->height && 99 * off <= result->differing_pixels; y++) {
-            bool skipped = !inside && picture_rows_equal(a, b, y, 0, a->width);
-            for (int x = 0; x < a->width && !skipped; x++) {
-                size_t pixel = (size_t)y * (size_t)a->width + (size_t)x;
-                bool same = largest_difference(a, b, pixel) <= slight;
-                if (same != inside || (same && known && !is_seen(&labels, a, 0, x, y)))
-                    continue;
-                bool edge = contrast(a, x, y) >= LEVELS && contrast(b, x, y) >= LEVELS;
-                at_edges += edge && !same;
-                inner += !edge && same;
-                off += !edge && !same;
-            }
-        }
-    if (at_edges > 0 && 99 * off <= at_edges && 4 * inner >= at_edges)
+    return contrast(self->a, x, y) >= EDGE_LEVELS && contrast(self->b, x, y) >= EDGE_LEVELS;
+}
+
+static bool is_slight(const Outlines *self, int x, int y)
+{
+    size_t pixel = (size_t)y * (size_t)self->a->width + (size_t)x;
+    return largest_difference(self->a, self->b, pixel) <= self->slight;
+}
+
+static void count_differing(size_t row, int worker, void *context)
+{
+    (void)worker;
+    const Outlines *self = context;
+    int width = self->a->width, y = (int)row;
+    for (int from = 0; from < width; from += BLOCK) {
+        int to = from + BLOCK < width ? from + BLOCK : width;
+        if (picture_rows_equal(self->a, self->b, y, from, to - from))
+            continue;
+        for (int x = from; x < to; x++)
+            if (!is_slight(self, x, y))
+                ++*(is_edge(self, x, y) ? &self->rows[y].at_edges : &self->rows[y].off);
+    }
+}
+
+static void count_inner(size_t row, int worker, void *context)
+{
+    (void)worker;
+    const Outlines *self = context;
+    bool known = self->labels.source == LABELS_BACKGROUND;
+    int y = (int)row;
+    for (int x = 0; x < self->a->width && self->rows[y].inner < self->enough; x++)
+        self->rows[y].inner += (!known || is_seen(&self->labels, self->a, 0, x, y)) &&
+                               is_slight(self, x, y) && !is_edge(self, x, y);
+}
+
+/* Whether it is worth while to ask all pixels. */
+static bool may_be_outlines(const Outlines *self, const Samples *samples)
+{
+    int at_edges = 0, off = 0;
+    for (int i = 0; i < samples->n; i++)
+        if (!is_slight(self, samples->at[i].x, samples->at[i].y))
+            ++*(is_edge(self, samples->at[i].x, samples->at[i].y) ? &at_edges : &off);
+    return at_edges > 0 && (off < 8 || 10 * off < at_edges);
+}
+
+static RowOutlines sum_rows(const Outlines *self)
+{
+    RowOutlines sum = {0};
+    for (int y = 0; y < self->a->height; y++) {
+        sum.at_edges += self->rows[y].at_edges;
+        sum.off += self->rows[y].off;
+        sum.inner += self->rows[y].inner;
+    }
+    return sum;
+}
+
+static Status say_outlines(const Picture *a, const Picture *b, const Samples *samples,
+                           const CompareResult *result, Sentence *out, Err *err)
+{
+    Outlines self = {.a = a,
+                     .b = b,
+                     .labels = labels_from_background(a, b),
+                     .slight = a->bits == 8 ? SLIGHT_LEVELS : 257 * SLIGHT_LEVELS};
+    size_t height = (size_t)a->height;
+    if (!may_be_outlines(&self, samples))
+        return STATUS_OK;
+    TRY(mem_calloc(&self.rows, height, sizeof *self.rows, "counts of rows", err));
+    threads_for(height, 0, count_differing, &self);
+    RowOutlines sum = sum_rows(&self);
+    self.enough = (sum.at_edges + 3) / 4;
+    if (99 * sum.off <= sum.at_edges)
+        threads_for(height, 0, count_inner, &self);
+    sum = sum_rows(&self);
+    if (99 * sum.off <= sum.at_edges && sum.inner >= self.enough)
         snprintf(out->text, out->size,
                  "only outlines differ by more than %d levels, by up to %.4g on %.3g %% of the "
                  "pixels",
-                 SLIGHT, result->max_abs, 100.0 * (double)at_edges / (double)result->pixels);
+                 SLIGHT_LEVELS, result->max_abs,
+                 100.0 * (double)sum.at_edges / (double)result->pixels);
+    free(self.rows);
+    return STATUS_OK;
 }
 
 /* ---- shading --------------------------------------------------------------------------------- */
@@ -184,30 +256,57 @@ static void add_light(const Plane *table, const Picture *a, const Picture *b, si
     light->own += norm > 0 ? along * along / norm : 0;
 }
 
+typedef struct Lights {
+    const Picture *a, *b;
+    Plane table;   /* owned; the light of each code */
+    Light *lights; /* owned; of each row */
+} Lights;
+
+static void add_row_light(size_t y, int worker, void *context)
+{
+    (void)worker;
+    const Lights *self = context;
+    if (picture_rows_equal(self->a, self->b, (int)y, 0, self->a->width))
+        return;
+    for (int x = 0; x < self->a->width; x++)
+        add_light(&self->table, self->a, self->b, first_code(self->a, x, (int)y), &self->lights[y]);
+}
+
+/* The light of each code of a picture. */
+static Status light_of_codes(const Picture *picture, Plane *table, Err *err)
+{
+    Picture codes;
+    TRY(picture_init(&codes, 1 << picture->bits, 1, 1, picture->bits, err));
+    codes.gamma = picture->gamma;
+    for (int i = 0; i < codes.width; i++)
+        picture_set(&codes, (size_t)i, (uint16_t)i);
+    Status status = plane_from_picture(table, &codes, err);
+    picture_release(&codes);
+    return status;
+}
+
 /* White light explains the differences, and more light of the surfaces' own colours does not. */
 static Status are_highlights(const Picture *a, const Picture *b, bool *highlights, Err *err)
 {
-    Picture codes;
-    Plane table;
-    Light light = {0};
+    Lights self = {.a = a, .b = b};
+    Light all = {0};
+    size_t height = (size_t)a->height;
     *highlights = false;
     if (a->channels != 3)
         return STATUS_OK;
-    TRY(picture_init(&codes, 1 << a->bits, 1, 1, a->bits, err));
-    codes.gamma = a->gamma;
-    for (int i = 0; i < codes.width; i++)
-        picture_set(&codes, (size_t)i, (uint16_t)i);
-    Status status = plane_from_picture(&table, &codes, err);
-    picture_release(&codes);
-    TRY(status);
-    for (int y = 0; y < a->height; y++) {
-        bool equal = picture_rows_equal(a, b, y, 0, a->width);
-        for (int x = 0; x < a->width && !equal; x++)
-            add_light(&table, a, b, first_code(a, x, y), &light);
+    TRY(light_of_codes(a, &self.table, err));
+    Status status = mem_calloc(&self.lights, height, sizeof *self.lights, "light of rows", err);
+    if (status == STATUS_OK)
+        threads_for(height, 0, add_row_light, &self);
+    for (size_t y = 0; y < height && status == STATUS_OK; y++) {
+        all.squares += self.lights[y].squares;
+        all.white += self.lights[y].white;
+        all.own += self.lights[y].own;
     }
-    plane_release(&table);
-    *highlights = light.white > 0.95 * light.squares && light.own < 0.95 * light.squares;
-    return STATUS_OK;
+    plane_release(&self.table);
+    free(self.lights);
+    *highlights = all.white > 0.95 * all.squares && all.own < 0.95 * all.squares;
+    return status;
 }
 
 static bool has_equal_outlines(const CompareResult *result)
@@ -229,14 +328,14 @@ static void say_shading(const CompareResult *result, bool highlights, Sentence *
              result->has_ids ? "of all segments are equal" : "against the background are equal");
 }
 
-Status cause_place(const Picture *a, const Picture *b, const CompareResult *result, Sentence *out,
-                   Err *err)
+Status cause_place(const Picture *a, const Picture *b, const Samples *samples,
+                   const CompareResult *result, Sentence *out, Err *err)
 {
     say_missing_segment(result, out);
     if (!*out->text && !result->has_ids)
         say_lack(a, b, result, out);
     if (!*out->text)
-        say_outlines(a, b, result, out);
+        TRY(say_outlines(a, b, samples, result, out, err));
     if (*out->text || !has_equal_outlines(result))
         return STATUS_OK;
     bool highlights;

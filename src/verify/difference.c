@@ -15,19 +15,33 @@ static const HeatStep *heat_of(double level)
     return &heat_steps[step == 0 && level > 0 ? 1 : step];
 }
 
+typedef struct HeatRows {
+    const Picture *a, *b;
+    Picture *heat;
+} HeatRows;
+
+static void fill_heat(size_t y, int worker, void *context)
+{
+    (void)worker;
+    const HeatRows *rows = context;
+    size_t width = (size_t)rows->a->width;
+    uint8_t *out = rows->heat->codes8 + 3 * y * width;
+    double code_levels = rows->a->bits == 8 ? 1 : 1 / 257.0;
+    bool equal = picture_rows_equal(rows->a, rows->b, (int)y, 0, rows->a->width);
+    for (size_t x = 0; x < width; x++, out += 3) {
+        int codes = equal ? 0 : largest_difference(rows->a, rows->b, y * width + x);
+        const HeatStep *heat = heat_of(codes * code_levels);
+        out[0] = heat->red;
+        out[1] = heat->green;
+        out[2] = heat->blue;
+    }
+}
+
 Status heat_picture(Picture *out, const Picture *a, const Picture *b, Err *err)
 {
-    Picture made;
-    TRY(picture_init(&made, a->width, a->height, 3, 8, err));
-    size_t n = (size_t)a->width * (size_t)a->height;
-    double code_levels = a->bits == 8 ? 1 : 1 / 257.0;
-    for (size_t i = 0; i < n; i++) {
-        const HeatStep *heat = heat_of(largest_difference(a, b, i) * code_levels);
-        made.codes8[3 * i] = heat->red;
-        made.codes8[3 * i + 1] = heat->green;
-        made.codes8[3 * i + 2] = heat->blue;
-    }
-    *out = made;
+    TRY(picture_init(out, a->width, a->height, 3, 8, err));
+    HeatRows rows = {a, b, out};
+    threads_for((size_t)a->height, 0, fill_heat, &rows);
     return STATUS_OK;
 }
 

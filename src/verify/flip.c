@@ -12,7 +12,7 @@
  * metric is local. Sums are kept by tile and added in order. */
 #include "verify/flip.h"
 
-#include "verify/flip_math.h"
+#include "verify/wide.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -181,13 +181,14 @@ static void load_inputs(const Flip *flip, int side, int exposure, int x, int y, 
 }
 
 /* Filters TILE values; `in` is the value under the first tap of the first of them, `step` the
- * distance to that under the next tap. `odd` is for antisymmetric kernels. */
+ * distance to that under the next tap. No weight beyond `radius` counts; `odd` is for antisymmetric
+ * kernels. */
 static inline void convolve(float *restrict out, const float *restrict in, size_t step,
-                            const float *weights, bool odd)
+                            const float *weights, int radius, bool odd)
 {
     for (int i = 0; i < TILE; i++) {
         float sum = odd ? 0 : weights[FLIP_RADIUS] * in[i + FLIP_RADIUS * step];
-        for (size_t k = 0; k < FLIP_RADIUS; k++) {
+        for (size_t k = (size_t)(FLIP_RADIUS - radius); k < FLIP_RADIUS; k++) {
             float before = in[i + k * step], after = in[i + (FLIP_TAPS - 1 - k) * step];
             sum += weights[k] * (odd ? before - after : before + after);
         }
@@ -195,17 +196,19 @@ static inline void convolve(float *restrict out, const float *restrict in, size_
     }
 }
 
-static void filter(float *out, const float *in, size_t step, const Flip *flip, FlipFilter which)
+/* What is constant in each case lets the compiler make a loop of its own for it. */
+static inline void filter(float *out, const float *in, size_t step, const Flip *flip,
+                          FlipFilter which)
 {
     const float *weights = flip->kernels[which].weights;
-    if (step == 1 && which == F_EDGE)
-        convolve(out, in, 1, weights, true);
-    else if (step == 1)
-        convolve(out, in, 1, weights, false);
+    if (which == F_Y || which == F_CX)
+        convolve(out, in, step, weights, FLIP_RADIUS_LUMA, false);
+    else if (which == F_CZ1 || which == F_CZ2)
+        convolve(out, in, step, weights, FLIP_RADIUS, false);
     else if (which == F_EDGE)
-        convolve(out, in, TILE, weights, true);
+        convolve(out, in, step, weights, FLIP_RADIUS_FEATURE, true);
     else
-        convolve(out, in, TILE, weights, false);
+        convolve(out, in, step, weights, FLIP_RADIUS_FEATURE, false);
 }
 
 /* Filters a tile and its halo horizontally. */
@@ -276,6 +279,11 @@ static void do_tile(size_t index, int worker, void *context)
                largest[row], (size_t)columns * sizeof(float));
 }
 
+WIDE static void do_tile_wide(size_t index, int worker, void *context)
+{
+    do_tile(index, worker, context);
+}
+
 static Status flip_init(Flip *flip, size_t tiles, int threads, bool with_map, Err *err)
 {
     if (with_map)
@@ -296,7 +304,7 @@ Status flip_run(const FlipPair *pair, Plane *map, FlipSummary *summary, Err *err
     int threads = threads_available();
     Status status = flip_init(&flip, tiles, threads, map != NULL, err);
     if (status == STATUS_OK) {
-        threads_for(tiles, threads, do_tile, &flip);
+        threads_for(tiles, threads, wide_usable() ? do_tile_wide : do_tile, &flip);
         double sum = 0, max = 0;
         for (size_t i = 0; i < tiles; i++) {
             sum += flip.sums[i];

@@ -6,6 +6,9 @@
 
 /* ceil(3 sqrt(0.04 / (2 pi^2)) ppd) */
 enum { FLIP_RADIUS = 10, FLIP_TAPS = 2 * FLIP_RADIUS + 1 };
+/* Beyond the first the weights of F_Y and F_CX are less than 1e-11 of the largest; the features'
+ * filters end at the second, ceil(3 * 0.5 * 0.082 ppd). */
+enum { FLIP_RADIUS_LUMA = 7, FLIP_RADIUS_FEATURE = 9 };
 
 /* The seven one-dimensional filters; each also names the plane that it gives horizontally. */
 typedef enum FlipFilter {

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { FEATURE_RADIUS = 9 }; /* ceil(3 * 0.5 * 0.082 ppd) */
-
 static const float pixels_per_degree = 67.0206451f; /* a 0.7 m wide 4K screen seen from 0.7 m */
 
 /* a sqrt(pi / b) exp(-pi^2 x^2 / b) with x in degrees; of a sum of two such, each is applied along
@@ -60,7 +58,7 @@ static void kernel_balance(FlipKernel *kernel)
 static void feature_kernels(FlipKernel kernels[FLIP_FILTERS])
 {
     const float sigma = 0.5f * 0.082f * pixels_per_degree;
-    for (int i = -FEATURE_RADIUS; i <= FEATURE_RADIUS; i++) {
+    for (int i = -FLIP_RADIUS_FEATURE; i <= FLIP_RADIUS_FEATURE; i++) {
         float x = (float)i;
         float gauss = expf(-(x * x) / (2 * sigma * sigma));
         kernels[F_GAUSS].weights[i + FLIP_RADIUS] = gauss;

@@ -4,24 +4,38 @@
 
 enum { THUMBNAIL_WIDTH = 96 };
 
-/* A picture of at most THUMBNAIL_WIDTH pixels across, each the mean of a box. */
+typedef struct Thumbnail {
+    const Picture *from;
+    Picture *to;
+    int factor;
+} Thumbnail;
+
+/* Each code of a row is the mean of a square of codes. */
+static void fill_row(size_t y, int worker, void *context)
+{
+    (void)worker;
+    const Thumbnail *self = context;
+    const Picture *from = self->from;
+    const size_t channels = (size_t)from->channels, factor = (size_t)self->factor;
+    const size_t top = y * factor, height = (size_t)from->height;
+    const size_t bottom = top + factor < height ? top + factor : height;
+    for (size_t i = 0; i < picture_stride(self->to); i++) {
+        size_t first = i / channels * factor * channels + i % channels, sum = 0;
+        for (size_t v = top; v < bottom; v++)
+            for (size_t u = 0; u < factor; u++)
+                sum += picture_code(from, v * picture_stride(from) + first + u * channels);
+        size_t count = (bottom - top) * factor, mean = (sum + count / 2) / count;
+        picture_set(self->to, y * picture_stride(self->to) + i,
+                    (uint16_t)(from->bits == 8 ? mean : mean / 257));
+    }
+}
+
 Status report_thumbnail(Picture *out, const Picture *picture, Err *err)
 {
     int factor = (picture->width + THUMBNAIL_WIDTH - 1) / THUMBNAIL_WIDTH;
     int width = picture->width / factor, height = picture->height / factor;
-    height = height ? height : 1;
-    size_t channels = (size_t)picture->channels;
-    TRY(picture_init(out, width, height, picture->channels, 8, err));
-    for (int y = 0; y < height; y++)
-        for (size_t i = 0; i < (size_t)width * channels; i++) {
-            size_t x = i / channels * (size_t)factor, sum = 0, count = 0;
-            for (int v = y * factor; v < (y + 1) * factor && v < picture->height; v++)
-                for (size_t u = x; u < x + (size_t)factor; u++, count++)
-                    sum += picture_code(picture, (size_t)v * picture_stride(picture) +
-                                                     u * channels + i % channels);
-            size_t mean = (sum + count / 2) / count;
-            picture_set(out, (size_t)y * picture_stride(out) + i,
-                        (uint16_t)(picture->bits == 8 ? mean : mean / 257));
-        }
+    TRY(picture_init(out, width, height ? height : 1, picture->channels, 8, err));
+    Thumbnail thumbnail = {picture, out, factor};
+    threads_for((size_t)out->height, 0, fill_row, &thumbnail);
     return STATUS_OK;
 }

@@ -105,7 +105,7 @@ static Status put_legend(const char *templates, Text *out, Err *err)
     return STATUS_OK;
 }
 
-static Status class_part(const ReportCase *report, Text *part, Err *err)
+static Status class_map(const ReportCase *report, Picture *classes, Err *err)
 {
     const ReportSide *a = &report->a, *b = &report->b;
     bool geometry = a->depth && a->normal && b->depth && b->normal;
@@ -113,11 +113,38 @@ static Status class_part(const ReportCase *report, Text *part, Err *err)
                             geometry ? a->normal : NULL};
     const Rendering in_b = {b->picture, b->ids, geometry ? b->depth : NULL,
                             geometry ? b->normal : NULL};
+    return class_picture(classes, &in_a, &in_b, &report->planes[PLANE_COLOR]->tolerance, err);
+}
+
+/* The large pictures of a case, each encoded by a thread. */
+enum { SHOWN = 4 };
+typedef struct Shown {
+    const Picture *pictures[SHOWN];
+    Text *parts[SHOWN];
+    Status status[SHOWN];
+    Err err[SHOWN];
+} Shown;
+
+static void put_shown(size_t i, int worker, void *context)
+{
+    (void)worker;
+    Shown *shown = context;
+    shown->status[i] = picture_put_uri(shown->pictures[i], shown->parts[i], &shown->err[i]);
+}
+
+static Status picture_parts(const ReportCase *report, const Picture *heat, Markup *parts, Err *err)
+{
     Picture classes;
-    TRY(class_picture(&classes, &in_a, &in_b, &report->planes[PLANE_COLOR]->tolerance, err));
-    Status status = picture_put_uri(&classes, part, err);
+    Shown shown = {.pictures = {report->a.picture, report->b.picture, heat, &classes},
+                   .parts = {markup_raw(parts, "image_a"), markup_raw(parts, "image_b"),
+                             markup_raw(parts, "image_heat"), markup_raw(parts, "classes")}};
+    TRY(class_map(report, &classes, err));
+    threads_for(SHOWN, 0, put_shown, &shown);
     picture_release(&classes);
-    return status;
+    for (int i = 0; i < SHOWN; i++)
+        if (shown.status[i] != STATUS_OK)
+            return err_set(err, shown.status[i], "%s", shown.err[i].text);
+    return STATUS_OK;
 }
 
 static Status plane_parts(const ReportCase *report, Markup *parts, Err *err)
@@ -133,7 +160,7 @@ static Status plane_parts(const ReportCase *report, Markup *parts, Err *err)
         planes[i] = markup_raw(parts, names[i]);
     TRY(report_planes(&report->a, &report->b, planes, range_mm, err));
     text_printf(markup_text(parts, "depth_range"), "%.9g %.9g", range_mm[0], range_mm[1]);
-    return class_part(report, markup_raw(parts, "classes"), err);
+    return STATUS_OK;
 }
 
 /* "data:," is an empty document: the viewer then knows no ids. */
@@ -226,9 +253,7 @@ static Status put_case(const ReportCase *report, const Picture *heat, const char
     Text *rules = markup_raw(&parts, "rules"), *measures = markup_raw(&parts, "measures");
     TRY_GOTO(report_tables(report, templates, rules, measures, err));
     TRY_GOTO(put_legend(templates, markup_raw(&parts, "legend"), err));
-    TRY_GOTO(picture_put_uri(report->a.picture, markup_raw(&parts, "image_a"), err));
-    TRY_GOTO(picture_put_uri(report->b.picture, markup_raw(&parts, "image_b"), err));
-    TRY_GOTO(picture_put_uri(heat, markup_raw(&parts, "image_heat"), err));
+    TRY_GOTO(picture_parts(report, heat, &parts, err));
     TRY_GOTO(ids_part(markup_raw(&parts, "ids_a"), report->a.ids, err));
     TRY_GOTO(ids_part(markup_raw(&parts, "ids_b"), report->b.ids, err));
     TRY_GOTO(plane_parts(report, &parts, err));

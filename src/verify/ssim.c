@@ -5,11 +5,13 @@
  * differ are blurred. */
 #include "verify/verify.h"
 
+#include "verify/wide.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { RADIUS = 5, TAPS = 2 * RADIUS + 1, MOMENTS = 5, BAND = 32, SPAN = BAND + TAPS - 1 };
+enum { STRETCH = 32 };
 
 typedef struct Ssim {
     const Picture *pictures[2];
@@ -55,20 +57,35 @@ static void blur_columns(const Ssim *ssim, const double *restrict a, const doubl
     }
 }
 
-/* The sum over the windows from..to - 1 of a row. */
-static double sum_windows(const Ssim *ssim, const double *moments, int from, int to)
+/* The similarities of the windows that begin in STRETCH columns from `moments` on. */
+static void compare_windows(const Ssim *ssim, const double *restrict moments,
+                            double *restrict similarities)
 {
     const double c1 = 0.01 * 255 * 0.01 * 255, c2 = 0.03 * 255 * 0.03 * 255;
-    double sum = 0;
-    for (int x = from; x < to; x++) {
-        double m[MOMENTS] = {0};
-        for (int i = 0; i < MOMENTS; i++)
-            for (int k = 0; k < TAPS; k++)
-                m[i] += ssim->weights[k] * moments[i * ssim->width + x + k];
-        double variance_a = m[2] - m[0] * m[0], variance_b = m[3] - m[1] * m[1];
-        double covariance = m[4] - m[0] * m[1];
-        sum += (2 * m[0] * m[1] + c1) * (2 * covariance + c2) /
-               ((m[0] * m[0] + m[1] * m[1] + c1) * (variance_a + variance_b + c2));
+    double m[MOMENTS][STRETCH];
+    for (int i = 0; i < MOMENTS; i++)
+        for (int x = 0; x < STRETCH; x++) {
+            const double *in = moments + i * ssim->width + x;
+            double sum = ssim->weights[RADIUS] * in[RADIUS];
+            for (int k = 0; k < RADIUS; k++)
+                sum += ssim->weights[k] * (in[k] + in[TAPS - 1 - k]);
+            m[i][x] = sum;
+        }
+    for (int x = 0; x < STRETCH; x++) {
+        double a = m[0][x], b = m[1][x], variance_a = m[2][x] - a * a, variance_b = m[3][x] - b * b;
+        similarities[x] = (2 * a * b + c1) * (2 * (m[4][x] - a * b) + c2) /
+                          ((a * a + b * b + c1) * (variance_a + variance_b + c2));
+    }
+}
+
+/* The sum over the windows from..to - 1 of a row. The last stretch may go on behind them. */
+static double sum_windows(const Ssim *ssim, const double *moments, int from, int to)
+{
+    double sum = 0, similarities[STRETCH];
+    for (int x = from; x < to; x += STRETCH) {
+        compare_windows(ssim, moments + x, similarities);
+        for (int i = 0; i < STRETCH && x + i < to; i++)
+            sum += similarities[i];
     }
     return sum;
 }
@@ -141,6 +158,11 @@ static void do_band(size_t index, int worker, void *context)
     }
 }
 
+WIDE static void do_band_wide(size_t index, int worker, void *context)
+{
+    do_band(index, worker, context);
+}
+
 static Status ssim_init(Ssim *ssim, int threads, Err *err)
 {
     double sum = 0;
@@ -148,7 +170,7 @@ static Status ssim_init(Ssim *ssim, int threads, Err *err)
         sum += ssim->weights[k] = exp(-(k - RADIUS) * (k - RADIUS) / (2 * 1.5 * 1.5));
     for (int k = 0; k < TAPS; k++)
         ssim->weights[k] /= sum;
-    ssim->workspace_size = (2 * SPAN + MOMENTS) * (size_t)ssim->width;
+    ssim->workspace_size = (2 * SPAN + MOMENTS) * (size_t)ssim->width + STRETCH;
     TRY(mem_calloc(&ssim->row_sums, (size_t)ssim->rows, sizeof(double), "row sums", err));
     TRY(mem_calloc(&ssim->equal, (size_t)threads, (size_t)ssim->width, "equal columns", err));
     return mem_calloc(&ssim->workspaces, (size_t)threads * ssim->workspace_size, sizeof(double),
@@ -168,7 +190,8 @@ Status ssim_compute(const Picture *a, const Picture *b, double *ssim, Err *err)
     int threads = threads_available();
     Status status = ssim_init(&self, threads, err);
     if (status == STATUS_OK) {
-        threads_for(((size_t)self.rows + BAND - 1) / BAND, threads, do_band, &self);
+        threads_for(((size_t)self.rows + BAND - 1) / BAND, threads,
+                    wide_usable() ? do_band_wide : do_band, &self);
         double sum = 0;
         for (int row = 0; row < self.rows; row++)
             sum += self.row_sums[row];
