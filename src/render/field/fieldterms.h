@@ -54,7 +54,7 @@ typedef struct FieldTile {
 void fieldterms_make(const FrameSegment *segments, const uint32_t *list, size_t n, FieldTile *tile,
                      TileTerm *terms, uint32_t *kept);
 
-enum { TILE_WORK_BYTES = 1344 }; /* of one term in a kernel's workspace */
+enum { TILE_WORK_BYTES = 1600 }; /* of one term in a kernel's workspace */
 
 /* The workspace of a kernel, for up to `capacity` terms. */
 typedef struct TileWork {

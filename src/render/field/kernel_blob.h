@@ -157,13 +157,11 @@ LANE_FN Lanes slope_of(const PacketTerm *term, Lanes w, const BlobSum *sum)
     return -2.0f * lanes_fma(sum->across, w * term->w1, sum->along * term->u1);
 }
 
-LANE_FN void add_sample(const PacketTerm *term, Lanes z, PacketSample *sample)
+LANE_FN TermSample sample_term(const PacketTerm *term, Lanes z)
 {
     Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
     BlobSum sum = blob_sum(term, dz, w);
-    sample->phi += sum.value;
-    sample->slope += slope_of(term, w, &sum);
-    sample->curvature += term->curvature;
+    return (TermSample){sum.value, slope_of(term, w, &sum)};
 }
 
 LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Lanes *phi,
@@ -202,7 +200,7 @@ LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
 {
     Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
     BlobSum sum = blob_sum(term, dz, w);
-    return (TermThere){sum.value, slope_of(term, w, &sum), most_beyond(term, z)};
+    return (TermThere){{sum.value, slope_of(term, w, &sum)}, most_beyond(term, z)};
 }
 
 #endif

@@ -13,8 +13,8 @@
 
 #include "render/field/kernel_trace_common.h"
 
-/* A term on the rays of a packet, in powers of dz = z - z of the term. The last four Lanes are set
- * once it is known that the packet may hit something. */
+/* A term on the rays of a packet, in powers of dz = z - z of the term. All from `half_gauss` on are
+ * set once it is known that the packet may hit something. */
 typedef struct PacketTerm {
     Lanes w0, w1, u0, u1, v0; /* w = w0 + w1 dz, u = u0 + u1 dz, v = v0 - u1 dz */
     Lanes peak;               /* B, no less than the term is on the ray; 0 out of reach */
@@ -26,6 +26,8 @@ typedef struct PacketTerm {
     Lanes half_gauss;         /* exp(-E^2) / 2 */
     Lanes curvature, spare;   /* M, and -ln B - E^2 */
     Lanes end_z[2];           /* dz nearest to the ends */
+    Lanes window[2];          /* z between which it may be as large as its share of the level */
+    Lanes reach[2];           /* z between which it may exceed the cut-off */
     const TileTerm *term;
     float z;       /* of the term, relative to the group's */
     float on, off; /* likewise, between which it may exceed the cut-off */
@@ -159,12 +161,25 @@ LANE_FN void place_ends(PacketTerm *term)
     term->end_z[1] = lanes_fma(term->v0, term->u1, -across) * term->inverse_speed2;
 }
 
+/* A term at a place of the rays. */
+typedef struct TermSample {
+    Lanes value, slope;
+} TermSample;
+
 /* Terms added up at a place of the rays. */
 typedef struct PacketSample {
     Lanes phi, slope;
-    Lanes curvature; /* M of the terms counted, and they are all until next */
-    float next;
+    Lanes curvature; /* M of the terms within reach, and they are all until next */
+    Lanes next;
 } PacketSample;
+
+LANE_FN void add_sample(const TermSample *one, LaneMask here, Lanes curvature, PacketSample *sum)
+{
+    const Lanes zero = lanes_set(0);
+    sum->phi += lanes_select(here, one->value, zero);
+    sum->slope += lanes_select(here, one->slope, zero);
+    sum->curvature += lanes_select(here, curvature, zero);
+}
 
 /* Adds a gradient at dz of the term: `across` times the vector from the axis' line to there, and
  * `along` times the axis. */
@@ -183,7 +198,8 @@ LANE_FN void add_direction(const PacketTerm *term, const Packet *packet, Lanes d
 
 /* A term at a point, and no more than it is anywhere from there on. */
 typedef struct TermThere {
-    Lanes value, slope, most;
+    TermSample at;
+    Lanes most;
 } TermThere;
 
 /* exp(-x^2) of x the least distance of the segment from z on, or less, or half of that where an end

@@ -58,22 +58,17 @@ LANE_FN void complete_term(PacketTerm *term, bool perspective)
     }
 }
 
-LANE_FN void add_sample(const PacketTerm *term, Lanes z, PacketSample *sample)
+LANE_FN TermSample sample_term(const PacketTerm *term, Lanes z)
 {
     Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
     Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), w_slope = -2.0f * w * term->w1;
-    sample->curvature += term->curvature;
-    if (term->flat) {
-        sample->phi += gauss;
-        sample->slope = lanes_fma(gauss, w_slope, sample->slope);
-        return;
-    }
+    if (term->flat)
+        return (TermSample){gauss, gauss * w_slope};
     Lanes ends, ends_slope;
     axial_factors(lanes_fma(term->u1, dz, term->u0), lanes_fma(-term->u1, dz, term->v0), &ends,
                   &ends_slope);
-    sample->phi = lanes_fma(gauss, ends, sample->phi);
     Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
-    sample->slope = lanes_fma(gauss, change, sample->slope);
+    return (TermSample){gauss * ends, gauss * change};
 }
 
 LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Lanes *phi,
@@ -122,19 +117,19 @@ LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
 {
     Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
     Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), w_slope = -2.0f * w * term->w1;
-    TermThere there = {gauss, gauss * w_slope, lanes_set(0)};
+    TermThere there = {{gauss, gauss * w_slope}, lanes_set(0)};
     LaneMask falls = w >= 0.0f;
     if (!term->flat) {
         Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
         Lanes ends, ends_slope;
         axial_factors(u, v, &ends, &ends_slope);
         Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
-        there.value = gauss * ends;
-        there.slope = gauss * change;
+        there.at.value = gauss * ends;
+        there.at.slope = gauss * change;
         falls &= lanes_select(term->u1 > 0.0f, v, u) < 0.0f;
         falls |= (w > 4.8f) | ((change < 0.0f) & (ends > 0.02f));
     }
-    there.most = lanes_select(falls, there.value, term->peak);
+    there.most = lanes_select(falls, there.at.value, term->peak);
     return there;
 }
 

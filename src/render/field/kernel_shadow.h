@@ -69,19 +69,20 @@ LANE_FN LaneMask depart(Departures *way, LaneMask open)
 LANE_FN PacketSample sample_places(const Departures *way, LaneMask open, Lanes *margin)
 {
     const Packet *packet = &way->packet;
-    PacketSample sample = {lanes_set(0), lanes_set(0), lanes_set(0), 1e30f};
+    PacketSample sample = {lanes_set(0), lanes_set(0), lanes_set(0), lanes_set(1e30f)};
     Lanes places = lanes_set(0);
     float extent = 0, width = packet->tile->half_size;
     for (size_t i = 0; i < packet->n; i++) {
         PacketTerm *term = &packet->terms[i];
         if (term->on > way->to) {
-            sample.next = term->on;
+            sample.next = lanes_set(term->on);
             break;
         }
         if (term->off < way->from || !matters(term, open))
             continue;
         complete_term(term, packet->tile->perspective);
-        add_sample(term, way->z, &sample);
+        TermSample one = sample_term(term, way->z);
+        add_sample(&one, open, term->curvature, &sample);
         places += steepness(term);
         extent = fmaxf(extent, fabsf(term->z));
     }
@@ -141,7 +142,7 @@ LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open)
         lanes_sqrt(lanes_fma(slope, slope, 2.0f * curvature * lanes_max(safe, lanes_set(0))));
     Lanes step =
         lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
-    Lanes to = lanes_min(way->z + step, lanes_set(at.next));
+    Lanes to = lanes_min(way->z + step, at.next);
     Lanes sum = lanes_set(fixed_margin(packet->n));
     for (size_t i = 0; i < packet->n; i++)
         sum += most_beyond(&packet->terms[i], to);
@@ -153,32 +154,25 @@ LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open)
 /* As sample_at, and the most that Phi is from z on. */
 LANE_FN PacketSample sample_departing(const Group *group, Lanes z, LaneMask live, Lanes *beyond)
 {
-    const Lanes far = lanes_set(1e30f);
-    float first = lanes_least(lanes_select(live, z, far));
-    float last = lanes_largest(lanes_select(live, z, -far));
-    PacketSample sample = {lanes_set(0), lanes_set(0), lanes_set(0), 1e30f};
-    *beyond = lanes_set(0);
+    const Lanes zero = lanes_set(0);
+    PacketSample sample = {zero, zero, zero, lanes_set(1e30f)};
+    *beyond = zero;
     for (size_t i = 0; i < group->n; i++) {
         const PacketTerm *term = group->terms[i];
-        if (term->off < first || !matters(term, live))
+        LaneMask here = lanes_reached(term, z, live, &sample.next);
+        *beyond += lanes_select(z < term->reach[0], term->peak, zero);
+        if (!lanes_any(here))
             continue;
-        if (term->on > last) {
-            sample.next = fminf(sample.next, term->on);
-            *beyond += term->peak;
-            continue;
-        }
         TermThere there = term_at(term, z);
-        sample.phi += there.value;
-        sample.slope += there.slope;
-        sample.curvature += term->curvature;
-        *beyond += there.most;
+        add_sample(&there.at, here, term->curvature, &sample);
+        *beyond += lanes_select(here, there.most, zero);
     }
     return sample;
 }
 
-/* Marches the live lanes from z to `end`, or until they are proven dark or undecided; `leaving` are
- * those that start where they left the surface. */
-LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving, Lanes z, Lanes end,
+/* Marches the live lanes on from z, until they are proven dark, or undecided; `leaving` are those
+ * that start where they left the surface. */
+LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving, Lanes z,
                             LaneMask *dark, LaneMask *unsure)
 {
     for (int steps = 0; lanes_any(live); steps++) {
@@ -196,12 +190,13 @@ LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving,
         Lanes root = lanes_sqrt(lanes_max(slope2 + 2.0f * curvature * safe, lanes_set(0)));
         Lanes step =
             lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
-        Lanes to = lanes_min(z + step, lanes_set(at.next));
+        Lanes to = lanes_min(z + step, at.next);
         LaneMask stuck = live & ~((safe > 0.0f) & (to > z));
         if (steps == MOST_STEPS)
             stuck = live;
         *unsure |= stuck;
-        live &= ~stuck & (to <= end);
+        to = lanes_select(leaving, to, next_window(group, to));
+        live &= ~stuck & (to < 1e30f);
         z = lanes_select(live, to, z);
     }
 }
@@ -214,18 +209,18 @@ LANE_FN void look_through_sum(const Departures *way, LaneMask *open, LaneMask *d
     const double nearest = way->base + (double)way->from;
     for (size_t i = 0; i < packet->n_sum && lanes_any(*open);) {
         Group group;
-        Lanes start, end;
         float extent;
         i = next_group(packet, i, nearest, &group, &extent);
         extent += way->to - way->from;
         LaneMask live = *open, stuck = {0};
-        if (!group_window(&group, extent, &live, &start, &end))
+        if (!group_window(&group, extent, &live))
             continue;
         Lanes from = way->z + (float)(way->base - group.base);
-        live &= end >= from;
+        Lanes start = next_window(&group, lanes_set(-1e30f));
+        live &= next_window(&group, from) < 1e30f;
         stuck = live & (group.margin > CLOSE_ENOUGH);
         live &= ~stuck;
-        march_to_light(&group, live, start <= from, lanes_max(start, from), end, dark, &stuck);
+        march_to_light(&group, live, start <= from, lanes_max(start, from), dark, &stuck);
         *unsure |= stuck;
         *open &= ~*dark;
     }

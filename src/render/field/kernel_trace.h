@@ -10,8 +10,10 @@
  *
  * - Windows. Phi >= T needs a term of at least its share T B / S, S the sum of all B of the group.
  *   Where that can be is a stretch of the ray within a distance of the segment, found from what a
- *   term is at most by its distance. The march goes from the first of them to the last. For a lone
- *   straight vessel the first begins at its surface.
+ *   term is at most by its distance. The march goes through these stretches and leaps what lies
+ *   between them. For a lone straight vessel the first begins at its surface.
+ * - Reach. Likewise a term exceeds the cut-off on a stretch of each ray, and does not count outside
+ *   it: no step goes past the beginning of one, and only terms within reach bend the potential.
  * - Steps and acceptance as in fieldcast.c, with a margin about T for what single precision, erf
  *   and the terms left out amount to: nothing is stepped over that could reach T - margin, and a
  *   hit is one that rises through T + margin. */
@@ -67,27 +69,56 @@ LANE_FN bool matters(const PacketTerm *term, LaneMask rays)
     return lanes_any(rays & (term->peak > (float)TILE_TERM_CUTOFF));
 }
 
-LANE_FN PacketSample sample_at(const Group *group, Lanes z, LaneMask live)
+/* Where the term is within reach, of the lanes `live`, which are at z; what of the others begins
+ * beyond z may lower *next. */
+LANE_FN LaneMask lanes_reached(const PacketTerm *term, Lanes z, LaneMask live, Lanes *next)
 {
     const Lanes far = lanes_set(1e30f);
-    float first = lanes_least(lanes_select(live, z, far));
-    float last = lanes_largest(lanes_select(live, z, -far));
-    PacketSample sample = {lanes_set(0), lanes_set(0), lanes_set(0), 1e30f};
+    *next = lanes_min(*next, lanes_select(z < term->reach[0], term->reach[0], far));
+    return live & (z >= term->reach[0]) & (z <= term->reach[1]);
+}
+
+LANE_FN PacketSample sample_at(const Group *group, Lanes z, LaneMask live)
+{
+    PacketSample sample = {lanes_set(0), lanes_set(0), lanes_set(0), lanes_set(1e30f)};
     for (size_t i = 0; i < group->n; i++) {
         const PacketTerm *term = group->terms[i];
-        if (term->on > last) {
-            sample.next = term->on;
-            break;
-        }
-        if (term->off >= first && matters(term, live))
-            add_sample(term, z, &sample);
+        LaneMask here = lanes_reached(term, z, live, &sample.next);
+        if (!lanes_any(here))
+            continue;
+        TermSample one = sample_term(term, z);
+        add_sample(&one, here, term->curvature, &sample);
     }
     return sample;
 }
 
-/* Sets the margins and the stretch [*start, *end] outside which the group's potential is below
- * LEVEL - margin; false when there is no ray with any. */
-LANE_FN bool group_window(Group *group, float extent, LaneMask *live, Lanes *start, Lanes *end)
+/* The place from z on, or beyond all, where the group's potential may reach LEVEL - margin. */
+LANE_FN Lanes next_window(const Group *group, Lanes z)
+{
+    Lanes next = lanes_set(1e30f);
+    for (size_t i = 0; i < group->n; i++) {
+        const PacketTerm *term = group->terms[i];
+        next = lanes_min(next, lanes_select(z <= term->window[1], lanes_max(term->window[0], z),
+                                            lanes_set(1e30f)));
+    }
+    return next;
+}
+
+/* Sets what the march needs of a term that is at most exp(excess) times its share. */
+LANE_FN void place_windows(PacketTerm *term, Lanes excess)
+{
+    Lanes beside2 = excess + term->spare, reach2 = term->term->reach2 - term->e2;
+    term_stretch(term, beside2, beside2 - 0.69314718f, &term->window[0], &term->window[1]);
+    term_stretch(term, reach2, reach2, &term->reach[0], &term->reach[1]);
+    for (int i = 0; i < 2; i++) {
+        term->window[i] += term->z;
+        term->reach[i] += term->z;
+    }
+}
+
+/* Sets the margins, and the windows and the reaches of the terms; false when there is no ray on
+ * which the potential may reach LEVEL - margin. */
+LANE_FN bool group_window(Group *group, float extent, LaneMask *live)
 {
     Lanes sum = lanes_set(0), places = lanes_set(0);
     for (size_t i = 0; i < group->n; i++) {
@@ -101,26 +132,22 @@ LANE_FN bool group_window(Group *group, float extent, LaneMask *live, Lanes *sta
     if (!lanes_any(*live))
         return false;
     Lanes excess = lanes_log(lanes_max(sum / low_level, lanes_set(1)));
-    *start = lanes_set(1e30f);
-    *end = lanes_set(-1e30f);
+    size_t n = 0;
     for (size_t i = 0; i < group->n; i++) {
         PacketTerm *term = group->terms[i];
         if (!matters(term, *live))
             continue;
         complete_term(term, group->packet->tile->perspective);
-        Lanes low, high, beside2 = excess + term->spare;
-        term_stretch(term, beside2, beside2 - 0.69314718f, &low, &high);
-        *start = lanes_min(*start, low + term->z);
-        *end = lanes_max(*end, high + term->z);
+        place_windows(term, excess);
+        group->terms[n++] = term;
     }
-    *live &= *start <= *end;
-    return lanes_any(*live);
+    group->n = n;
+    return true;
 }
 
-/* Marches the live rays from z to `end`. Those that hit are in *hit, with their place in *z; those
- * that are not decided in *unsure. */
-LANE_FN void march(const Group *group, LaneMask live, Lanes *z, Lanes end, LaneMask *hit,
-                   LaneMask *unsure)
+/* Marches the live rays on from z. Those that hit are in *hit, with their place in *z; those that
+ * are not decided in *unsure. */
+LANE_FN void march(const Group *group, LaneMask live, Lanes *z, LaneMask *hit, LaneMask *unsure)
 {
     for (int steps = 0; lanes_any(live); steps++) {
         PacketSample sample = sample_at(group, *z, live);
@@ -137,12 +164,13 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, Lanes end, LaneM
         Lanes root = lanes_sqrt(lanes_max(slope2 + 2.0f * curvature * safe, lanes_set(0)));
         Lanes step =
             lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
-        Lanes to = lanes_min(*z + step, lanes_set(sample.next));
+        Lanes to = lanes_min(*z + step, sample.next);
         LaneMask stuck = live & ~((safe > 0.0f) & (to > *z));
         if (steps == MOST_STEPS)
             stuck = live;
         *unsure |= stuck;
-        live &= ~stuck & (to <= end);
+        to = next_window(group, to);
+        live &= ~stuck & (to < 1e30f);
         *z = lanes_select(live, to, *z);
     }
 }
@@ -152,9 +180,11 @@ LANE_FN Gradient gradient_at(const Group *group, Lanes z, LaneMask rays, Lanes *
 {
     Gradient sum = {.largest = lanes_set(-1)};
     *phi = lanes_set(0);
-    for (size_t i = 0; i < group->n; i++)
-        if (matters(group->terms[i], rays))
-            add_gradient(group->terms[i], group->packet, z, phi, &sum);
+    for (size_t i = 0; i < group->n; i++) {
+        const PacketTerm *term = group->terms[i];
+        if (lanes_any(rays & (z >= term->reach[0]) & (z <= term->reach[1])))
+            add_gradient(term, group->packet, z, phi, &sum);
+    }
     return sum;
 }
 
@@ -204,20 +234,20 @@ LANE_FN void trace_sum(const Packet *packet, int first, TileHits *hits)
     LaneMask open = (LaneMask){0} - 1;
     for (size_t i = 0; i < packet->n_sum && lanes_any(open);) {
         Group group;
-        Lanes start, end;
         float extent;
         i = next_group(packet, i, -HUGE_VAL, &group, &extent);
         LaneMask live = open, hit = {0}, unsure = {0};
-        if (!group_window(&group, extent, &live, &start, &end))
+        if (!group_window(&group, extent, &live))
             continue;
-        float z_min = (float)(packet->tile->z_min - group.base);
-        live &= end >= z_min;
-        unsure = live & ((start <= z_min) | (group.margin > CLOSE_ENOUGH));
+        Lanes z = next_window(&group, lanes_set(-1e30f));
+        Lanes z_min = lanes_set((float)(packet->tile->z_min - group.base));
+        live &= next_window(&group, z_min) < 1e30f;
+        unsure = live & ((z <= z_min) | (group.margin > CLOSE_ENOUGH));
         live &= ~unsure;
-        march(&group, live, &start, end, &hit, &unsure);
+        march(&group, live, &z, &hit, &unsure);
         open &= ~(hit | unsure);
         if (lanes_any(hit))
-            describe_hits(&group, first, hit, start, hits);
+            describe_hits(&group, first, hit, z, hits);
         if (lanes_any(unsure))
             give_up(first, unsure, hits);
     }
