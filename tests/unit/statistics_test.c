@@ -246,31 +246,27 @@ static void a_tree_stands_beside_the_published_orders_of_its_diameters(void **st
         {COMPARED_DAUGHTERS_2_LESS, 3, 4, 0, 0.1, 0.025},
         {COMPARED_NUMBER_RATIO, 0, 0, statistics.diameter_strahler_ratios.number, 2.44, 0.61},
         {COMPARED_LENGTH_RATIO, 0, 0, 9 / 7.5, 1.3, 0.325}};
-    2.1, 0.525
-}
-}
-;
-for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
-    const MorphometryPair *pair = find_pair(&beside, pairs[i].measure, pairs[i].order);
-    assert_non_null(pair);
-    assert_int_equal(pair->published_order, pairs[i].published);
-    assert_true(fabs(pair->value - pairs[i].value) < 1e-12);
-    assert_close(pair->published.mean, pairs[i].mean);
-    assert_close(pair->room, pairs[i].room);
-    assert_true(pair->agrees == (pairs[i].measure != COMPARED_DAUGHTERS_2_LESS));
-}
-/* not published, or not of a tree of three orders */
-assert_null(find_pair(&beside, COMPARED_DIAMETER_RATIO, 0));
-assert_null(find_pair(&beside, COMPARED_DAUGHTERS, 2));
-assert_null(find_pair(&beside, COMPARED_DAUGHTERS_3_LESS, 3));
-size_t agreeing = 0;
-for (size_t i = 0; i < beside.n; i++)
-    agreeing += beside.pair[i].agrees;
-assert_int_equal(beside.agreeing, agreeing);
-free(beside.pair);
-morphometry_release(&table);
-statistics_release(&statistics);
-tree_release(&tree);
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        const MorphometryPair *pair = find_pair(&beside, pairs[i].measure, pairs[i].order);
+        assert_non_null(pair);
+        assert_int_equal(pair->published_order, pairs[i].published);
+        assert_true(fabs(pair->value - pairs[i].value) < 1e-12);
+        assert_close(pair->published.mean, pairs[i].mean);
+        assert_close(pair->room, pairs[i].room);
+        assert_true(pair->agrees == (pairs[i].measure != COMPARED_DAUGHTERS_2_LESS));
+    }
+    /* not published, or not of a tree of three orders */
+    assert_null(find_pair(&beside, COMPARED_DIAMETER_RATIO, 0));
+    assert_null(find_pair(&beside, COMPARED_DAUGHTERS, 2));
+    assert_null(find_pair(&beside, COMPARED_DAUGHTERS_3_LESS, 3));
+    size_t agreeing = 0;
+    for (size_t i = 0; i < beside.n; i++)
+        agreeing += beside.pair[i].agrees;
+    assert_int_equal(beside.agreeing, agreeing);
+    free(beside.pair);
+    morphometry_release(&table);
+    statistics_release(&statistics);
+    tree_release(&tree);
 }
 
 static void rejects_a_table_of_morphometry_that_is_none(void **state)
