@@ -1,8 +1,9 @@
 /* Terminals are added in rounds [METHODS 1.2] until there are enough (add_terminals). A round calls
  *
  * - check_range, which ends growth when radii span more than a double can hold;
- * - keep_up, which refreshes sums, radii and weights after every fifth of growth, and makes a new
- * grid whenever the number of terminals doubled;
+ * - keep_up, which refreshes sums, radii and weights after every fifth of growth, and whenever the
+ * number of terminals doubled makes a new grid and, in small trees, relaxes bifurcations
+ * [repair.c];
  * - run_round, which tosses points and connects those that can be [round.c], each to that of the
  * nearest segments where it is cheapest, if there is room [plan.c];
  * - adapt_toss_distance, which steers the toss distance so that one point in three is far enough
@@ -59,8 +60,9 @@ typedef struct Growth {
     Forest forest;
     Grid grid;
     Random random;
-    size_t grid_until, refresh_until; /* the terminals for which the grid and the radii serve */
-    double toss_distance;             /* mm */
+    /* The terminals for which the grid, the radii, and the places of bifurcations serve. */
+    size_t grid_until, refresh_until, relax_until;
+    double toss_distance; /* mm */
     Rules rules;
     Round round;
     double skipped; /* the share of the last round's points that lay in full cells */
@@ -124,6 +126,7 @@ static Status relax(Growth *growth, Err *err)
     Network *net = &growth->net;
     if (net->terminals > growth->params->relax || !growth->grid.item || net->trunk)
         return STATUS_OK;
+    growth->relax_until = 2 * net->terminals;
     TRY(relax_network(net, &growth->grid, growth->domain, &growth->rules, err));
     network_refresh(net, growth->round.threads);
     return entries_widen(&growth->grid, &growth->rules, net, err);
@@ -138,7 +141,8 @@ static Status keep_up(Growth *growth, Err *err)
         TRY(refresh(growth, WEIGHTS_ROUGH, err));
         if (growth->grid.item)
             TRY(entries_widen(&growth->grid, &growth->rules, net, err));
-        TRY(relax(growth, err));
+        if (terminals >= growth->relax_until)
+            TRY(relax(growth, err));
         if (growth->params->min_radius_mm > 0)
             growth->end_radius = mean_end_radius(net);
         growth->refresh_until = (size_t)(growth_until_refresh(growth) * (double)terminals) + 1;

@@ -60,8 +60,8 @@ typedef struct GrowParams {
      * clearance; 0: terminals are no pairs. */
     double pair_mm;
     int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
-    size_t relax; /* all bifurcations move to better places whenever the tree has grown by a fifth,
-                     while it has so many terminals at most; 0: they stay */
+    size_t relax; /* all bifurcations move to better places whenever the terminals have doubled, and
+                     at the end, while there are so many at most; 0, or radii are kept: they stay */
     GrowToss toss;
     int threads;  /* 0: all processors. The tree does not depend on it */
     bool partial; /* whether the tree so far is a result when no more terminals find room */

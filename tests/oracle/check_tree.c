@@ -432,9 +432,9 @@ static bool check_hollow_domain(const Node *nodes, int n, const Header *header)
     Corner *corners = NULL;
     int count = polygon ? read_polygon(file, mm, &corners) : 0;
     Bitmap map = mask ? read_bitmap(file, mm) : (Bitmap){0};
-    long double slack = mask      ? 1e-6L * mm * (map.width + map.height)
-                        : polygon ? 0
-                                  : 2e-6L * size[1];
+    long double slack = mask ? 1e-6L * mm * (map.width + map.height) : 0;
+    if (!mask && !polygon) /* of the diagonal of its box */
+        slack = 1e-6L * hypotl(hypotl(2 * size[0], 2 * size[2]), size[1] + size[4]);
     for (int i = 0; i < count; i++)
         slack = fmaxl(slack, 3e-6L * fmaxl(fabsl(corners[i].x), fabsl(corners[i].y)));
     enum { PLACES = 64 };

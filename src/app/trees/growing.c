@@ -131,8 +131,8 @@ static const Option rows[] = {
      SETS(COUNT, Growing, params.relax),
      FROM_TO(0, GROW_MAX_TERMINALS),
      .group = GROUP_OPTIMUM,
-     .help = "move all bifurcations to better places after every fifth of growth, up to so many "
-             "terminals; 0: never"},
+     .help = "move all bifurcations to better places whenever the terminals have doubled, up to so "
+             "many; 0: never"},
     {.name = "toss",
      SETS(CHOICE, Growing, params.toss),
      .choices = tosses,
