@@ -4,10 +4,11 @@
  * the stream's checksum is put together of the stripes'. How many rows are a stripe follows from
  * the picture's width alone, and nothing is handed over before its turn: the bytes depend neither
  * on the threads nor on how many rows come at a time. Few stripes are gathered, since the system
- * takes longer to hand out memory than threads to compress it. */
+ * takes longer to hand out memory than threads to compress it. ISA-L deflates them, five times as
+ * fast as zlib and for files a tenth larger. */
 #include "image/png_stripes.h"
-#include "image/png_deflate.h"
 
+#include <isa-l/igzip_lib.h>
 #include <libdeflate.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,9 @@
  * KiB. */
 enum { STRIPE_BYTES = 1 << 18, STRIPES_A_THREAD = 4, GATHERED_BYTES = 1 << 23 };
 enum { FILTER_NONE = 0, FILTER_UP = 2 };
+/* Level 1 makes files 1 to 4 % larger in nearly the same time; level 3 takes twice the time, and
+ * its bytes depend on the processor. */
+enum { LEVEL = 2, LEVEL_BYTES = ISAL_DEF_LVL2_DEFAULT };
 
 /* RFC 1950: a window of 32 KiB, made by a fast algorithm. */
 static const uint8_t zlib_header[] = {0x78, 0x5e};
@@ -32,7 +36,7 @@ typedef struct Stripe {
 
 typedef struct Worker {
     uint8_t *filtered; /* owned; the rows of a stripe, each behind its filter byte */
-    PngDeflate *deflate;
+    uint8_t *level;    /* owned; what ISA-L works in: LEVEL_BYTES */
 } Worker;
 
 struct PngStripes {
@@ -65,6 +69,13 @@ static int count_stripes(const PngStripes *self, int rows)
     return (rows + self->stripe_rows - 1) / self->stripe_rows;
 }
 
+/* For a stripe in deflate's format: 5 bytes for each 65,535 that are stored as they are, and the
+ * flush. */
+static size_t deflated_room(size_t n)
+{
+    return n + n / 65535 * 5 + 64;
+}
+
 /* A stripe of whole rows, as many stripes as are gathered, and no more than the picture has. */
 static void measure(PngStripes *self, const ImageForm *form)
 {
@@ -74,19 +85,18 @@ static void measure(PngStripes *self, const ImageForm *form)
         least((int)(GATHERED_BYTES / stripe_size(self)), self->threads * STRIPES_A_THREAD);
     self->room_rows = least(self->stripe_rows * (stripes < 1 ? 1 : stripes), form->height);
     self->stripe_rows = least(self->stripe_rows, self->room_rows);
-    self->room = HEADER_SIZE + pngdeflate_room(stripe_size(self)) + END_SIZE;
+    self->room = HEADER_SIZE + deflated_room(stripe_size(self)) + END_SIZE;
     self->threads = least(self->threads, count_stripes(self, self->room_rows));
 }
 
-static Status open_workers(PngStripes *self, size_t unit, Err *err)
+static Status open_workers(PngStripes *self, Err *err)
 {
     TRY(mem_calloc(&self->workers, (size_t)self->threads, sizeof *self->workers,
                    "threads for a PNG", err));
     for (int i = 0; i < self->threads; i++) {
         Worker *worker = &self->workers[i];
-        TRY(mem_calloc(&worker->filtered, 1, stripe_size(self) + PNG_DEFLATE_SLACK, "rows of a PNG",
-                       err));
-        TRY(pngdeflate_open(&worker->deflate, stripe_size(self), self->line, unit, err));
+        TRY(mem_calloc(&worker->filtered, 1, stripe_size(self), "rows of a PNG", err));
+        TRY(mem_calloc(&worker->level, 1, LEVEL_BYTES, "stripes of a PNG", err));
     }
     return STATUS_OK;
 }
@@ -96,11 +106,10 @@ Status pngstripes_open(PngStripes **out, const ImageForm *form, bool up, Err *er
     PngStripes *self;
     TRY(mem_calloc(&self, 1, sizeof *self, "stripes of a PNG", err));
     *out = self;
-    size_t unit = (size_t)form->channels * (size_t)(form->bits / 8);
     self->bits = form->bits;
     self->threads = form->packing.threads ? form->packing.threads : threads_available();
     self->up = up;
-    self->line = 1 + (size_t)form->width * unit;
+    self->line = 1 + (size_t)form->width * (size_t)form->channels * (size_t)(form->bits / 8);
     self->left = form->height;
     self->adler = libdeflate_adler32(0, NULL, 0);
     measure(self, form);
@@ -108,7 +117,7 @@ Status pngstripes_open(PngStripes **out, const ImageForm *form, bool up, Err *er
     TRY(mem_calloc(&self->rows, (size_t)self->room_rows + 1, self->line - 1, "rows of a PNG", err));
     TRY(mem_calloc(&self->stripes, n, sizeof *self->stripes, "stripes of a PNG", err));
     TRY(mem_calloc(&self->packed, n, self->room, "stripes of a PNG", err));
-    return open_workers(self, unit, err);
+    return open_workers(self, err);
 }
 
 void pngstripes_free(PngStripes *self)
@@ -117,7 +126,7 @@ void pngstripes_free(PngStripes *self)
         return;
     for (int i = 0; self->workers && i < self->threads; i++) {
         free(self->workers[i].filtered);
-        pngdeflate_free(self->workers[i].deflate);
+        free(self->workers[i].level);
     }
     free(self->workers);
     free(self->rows);
@@ -171,18 +180,37 @@ static int rows_of(const PngStripes *self, size_t i)
     return least(self->stripe_rows, self->n_rows - (int)i * self->stripe_rows);
 }
 
+/* isal_deflate_stateless fails only for want of room, of which there is enough. */
+static size_t deflate_rows(const PngStripes *self, const Worker *worker, size_t n, uint8_t *out)
+{
+    struct isal_zstream stream;
+    isal_deflate_stateless_init(&stream);
+    stream.level = LEVEL;
+    stream.level_buf = worker->level;
+    stream.level_buf_size = LEVEL_BYTES;
+    stream.flush = FULL_FLUSH;
+    stream.next_in = worker->filtered;
+    stream.avail_in = (uint32_t)n;
+    stream.next_out = out;
+    stream.avail_out = (uint32_t)(self->room - HEADER_SIZE - END_SIZE);
+    if (isal_deflate_stateless(&stream) != COMP_OK)
+        abort();
+    return stream.total_out;
+}
+
 static void deflate_stripe(size_t i, int worker, void *context)
 {
     PngStripes *self = context;
-    uint8_t *filtered = self->workers[worker].filtered;
+    const Worker *work = &self->workers[worker];
     int n = rows_of(self, i);
     for (int row = 0; row < n; row++)
-        filter_row(self, (int)i * self->stripe_rows + row, filtered + (size_t)row * self->line);
+        filter_row(self, (int)i * self->stripe_rows + row,
+                   work->filtered + (size_t)row * self->line);
     Stripe *stripe = &self->stripes[i];
     size_t size = (size_t)n * self->line;
     stripe->bytes = self->packed + i * self->room + HEADER_SIZE;
-    stripe->n = pngdeflate_rows(self->workers[worker].deflate, filtered, size, stripe->bytes);
-    stripe->adler = libdeflate_adler32(libdeflate_adler32(0, NULL, 0), filtered, size);
+    stripe->n = deflate_rows(self, work, size, stripe->bytes);
+    stripe->adler = libdeflate_adler32(libdeflate_adler32(0, NULL, 0), work->filtered, size);
 }
 
 static void put_header(PngStripes *self, Stripe *stripe)
