@@ -157,21 +157,34 @@ static double off_when_shifted(const Picture *b, const Sample *samples, int n, i
     return 4 * inside >= 3 * n && inside > 0 ? sum / inside : (double)INFINITY;
 }
 
-/* What differs most without a shift comes first: it tells soonest that a shift is wrong. */
-Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples)
+static Shift search_shifts(const Picture *b, const Sample *samples, int n)
 {
-    Sample taken[CAUSE_SAMPLES];
-    take_samples(a, b, samples, taken);
-    int n = samples->n;
-    Shift best = {.off = off_when_shifted(b, taken, n, 0, 0, (double)INFINITY)};
+    Shift best = {.off = off_when_shifted(b, samples, n, 0, 0, (double)INFINITY)};
     for (int dy = -REACH; dy <= REACH; dy++)
         for (int dx = -REACH; dx <= REACH; dx++) {
-            double off = off_when_shifted(b, taken, n, dx, dy, best.off * n);
+            double off = off_when_shifted(b, samples, n, dx, dy, best.off * n);
             bool nearer = dx * dx + dy * dy < best.dx * best.dx + best.dy * best.dy;
             if (off < best.off || (off == best.off && nearer))
                 best = (Shift){.dx = dx, .dy = dy, .off = off};
         }
     return best;
+}
+
+/* What differs most without a shift comes first: it tells soonest that a shift is wrong. A few
+ * samples are asked before all, since most pictures are not moved. */
+Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples)
+{
+    enum { FEW = 64 };
+    Sample taken[CAUSE_SAMPLES], few[FEW];
+    take_samples(a, b, samples, taken);
+    const Shift none = {.off = off_when_shifted(b, taken, samples->n, 0, 0, (double)INFINITY)};
+    if (samples->n <= FEW)
+        return search_shifts(b, taken, samples->n);
+    for (int i = 0; i < FEW; i++)
+        few[i] = taken[i * samples->n / FEW];
+    double before = off_when_shifted(b, few, FEW, 0, 0, (double)INFINITY);
+    bool moved = leaves(before, search_shifts(b, few, FEW).off, 0.7);
+    return moved ? search_shifts(b, taken, samples->n) : none;
 }
 
 static double off_by(const Picture *a, const Picture *b, const Shift *shift, const Shift *common)
@@ -213,6 +226,8 @@ Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, 
     Samples samples;
     choose_samples(a, b, result->differing_pixels, &samples);
     find_turn(a, b, &samples, &out);
+    if (!*out.text)
+        TRY(cause_background(a, b, &samples, &out, err));
     const Shift shift = *out.text ? (Shift){0} : cause_best_shift(a, b, &samples);
     if (!*out.text)
         cause_shift(a, b, &samples, &shift, &out);

@@ -27,7 +27,7 @@ typedef struct Shift {
 } Shift;
 
 /* The shift with the smallest mean difference of the samples that stay within the picture, three in
- * four of which have to. */
+ * four of which have to; none where no shift makes the difference much smaller. */
 Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples);
 /* Moved by whole pixels: the shift leaves less than a fiftieth of the differences where both
  * pictures have pixels. O(pixels) where the samples say so, else O(1). */
@@ -39,6 +39,9 @@ MUST_CHECK Status cause_warp(const Picture *a, const Picture *b, const Samples *
 /* Each code of A became one of B: a gain, an offset, a gamma, one encoding too many or missing. */
 MUST_CHECK Status cause_tone(const Picture *a, const Picture *b, const Samples *samples,
                              Sentence *out, Err *err);
+/* Only the background is of another colour. */
+MUST_CHECK Status cause_background(const Picture *a, const Picture *b, const Samples *samples,
+                                   Sentence *out, Err *err);
 /* Where the differences are: one thing missing or extra, outlines only, highlights only, shading
  * only. */
 MUST_CHECK Status cause_place(const Picture *a, const Picture *b, const Samples *samples,

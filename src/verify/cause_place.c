@@ -1,6 +1,8 @@
-/* Where two pictures differ, when no map of one onto the other explains it: one thing missing or
- * extra, outlines only, highlights only, shading only. What is said is what the pixels show:
+/* Where two pictures differ, when no map of one onto the other explains it: another background,
+ * one thing missing or extra, outlines only, highlights only, shading only. What is said is what
+ * the pixels show:
  *
+ * - The background differs when nothing else does but outlines against it, with which it is mixed.
  * - One thing is missing when the background took its place: the pixels seen in A only are one
  *   region, which in A borders on background for three quarters of its rim (a cut end does, a worn
  *   outline borders on what is left), and next to nothing else differs.
@@ -17,19 +19,12 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static size_t first_code(const Picture *picture, int x, int y)
 {
     return ((size_t)y * (size_t)picture->width + (size_t)x) * (size_t)picture->channels;
 }
-
-/* ---- one thing missing ----------------------------------------------------------------------- */
-
-/* Pixels seen on one side only, and what side-neighbours that are not such pixels show there. */
-typedef struct Lack {
-    size_t pixels, rim, background;
-    int left, top, right, bottom;
-} Lack;
 
 static bool is_seen(const Labels *labels, const Picture *picture, int side, int x, int y)
 {
@@ -39,6 +34,118 @@ static bool is_seen(const Labels *labels, const Picture *picture, int side, int 
             return true;
     return false;
 }
+
+/* ---- another background ---------------------------------------------------------------------- */
+
+/* Pixels of a row that are not background on both sides: those that are equal, those that differ
+ * beside background, which are mixed with it, and others that differ. */
+typedef struct RowBackground {
+    size_t equal, rims, others;
+} RowBackground;
+
+typedef struct Backgrounds {
+    const Picture *pictures[2];
+    Labels labels;
+    RowBackground *rows; /* owned */
+} Backgrounds;
+
+static bool touches_background(const Backgrounds *self, int x, int y)
+{
+    int right = x + 1 < self->labels.width ? x + 1 : x;
+    int bottom = y + 1 < self->labels.height ? y + 1 : y;
+    for (int v = y > 0 ? y - 1 : 0; v <= bottom; v++)
+        for (int u = x > 0 ? x - 1 : 0; u <= right; u++)
+            for (int side = 0; side < 2; side++)
+                if (!is_seen(&self->labels, self->pictures[side], side, u, v))
+                    return true;
+    return false;
+}
+
+static void count_background_at(const Backgrounds *self, int x, int y, RowBackground *count)
+{
+    const Picture *a = self->pictures[0], *b = self->pictures[1];
+    if (!is_seen(&self->labels, a, 0, x, y) && !is_seen(&self->labels, b, 1, x, y))
+        return;
+    if (picture_rows_equal(a, b, y, x, 1))
+        count->equal++;
+    else
+        ++*(touches_background(self, x, y) ? &count->rims : &count->others);
+}
+
+static void count_background(size_t y, int worker, void *context)
+{
+    (void)worker;
+    const Backgrounds *self = context;
+    for (int x = 0; x < self->labels.width; x++)
+        count_background_at(self, x, (int)y, &self->rows[y]);
+}
+
+/* Whether it is worth while to ask all pixels. */
+static bool may_be_background(const Backgrounds *self, const Samples *samples)
+{
+    RowBackground count = {0};
+    for (int i = 0; i < samples->n; i++)
+        count_background_at(self, samples->at[i].x, samples->at[i].y, &count);
+    return count.others <= 2 + (size_t)samples->n / 50;
+}
+
+/* "(12, 30, 41)" */
+static void describe_background(const Labels *labels, int side, int channels, char out[32])
+{
+    const uint16_t *codes = labels->background[side];
+    if (channels == 1)
+        snprintf(out, 32, "%u", codes[0]);
+    else
+        snprintf(out, 32, "(%u, %u, %u)", codes[0], codes[1], codes[2]);
+}
+
+static void say_background(const Backgrounds *self, Sentence *out)
+{
+    RowBackground sum = {0};
+    char colors[2][32];
+    for (int y = 0; y < self->labels.height; y++) {
+        sum.equal += self->rows[y].equal;
+        sum.rims += self->rows[y].rims;
+        sum.others += self->rows[y].others;
+    }
+    if (sum.equal == 0 || 4 * sum.equal < sum.rims || 50 * sum.others > sum.equal)
+        return;
+    for (int side = 0; side < 2; side++)
+        describe_background(&self->labels, side, self->pictures[side]->channels, colors[side]);
+    snprintf(out->text, out->size,
+             "only the background differs, and what is mixed with it at outlines: it is %s in A "
+             "and %s in B",
+             colors[0], colors[1]);
+}
+
+static bool have_backgrounds_unlike(const Labels *labels, int channels)
+{
+    size_t size = (size_t)channels * sizeof labels->background[0][0];
+    return labels->source == LABELS_BACKGROUND &&
+           memcmp(labels->background[0], labels->background[1], size) != 0;
+}
+
+Status cause_background(const Picture *a, const Picture *b, const Samples *samples, Sentence *out,
+                        Err *err)
+{
+    Backgrounds self = {.pictures = {a, b}, .labels = labels_from_background(a, b)};
+    size_t height = (size_t)a->height;
+    if (!have_backgrounds_unlike(&self.labels, a->channels) || !may_be_background(&self, samples))
+        return STATUS_OK;
+    TRY(mem_calloc(&self.rows, height, sizeof *self.rows, "counts of rows", err));
+    threads_for(height, 0, count_background, &self);
+    say_background(&self, out);
+    free(self.rows);
+    return STATUS_OK;
+}
+
+/* ---- one thing missing ----------------------------------------------------------------------- */
+
+/* Pixels seen on one side only, and what side-neighbours that are not such pixels show there. */
+typedef struct Lack {
+    size_t pixels, rim, background;
+    int left, top, right, bottom;
+} Lack;
 
 static void add_lack(const Labels *labels, const Picture *const pictures[2], int side, int x, int y,
                      Lack *lack)
@@ -127,9 +234,9 @@ static int contrast(const Picture *picture, int x, int y)
     return picture->bits == 8 ? largest : largest / 257;
 }
 
-enum { EDGE_LEVELS = 32, SLIGHT_LEVELS = 2, BLOCK = 64 };
+enum { LEVELS = 32, SLIGHT = 2, BLOCK = 64 };
 
-/* Pixels of a row that differ by more than SLIGHT_LEVELS, at edges and off them, and others off
+/* Pixels of a row that differ by more than SLIGHT, at edges and off them, and others off
  * edges and the background. */
 typedef struct RowOutlines {
     size_t at_edges, off, inner;
@@ -145,7 +252,7 @@ typedef struct Outlines {
 
 static bool is_edge(const Outlines *self, int x, int y)
 {
-    return contrast(self->a, x, y) >= EDGE_LEVELS && contrast(self->b, x, y) >= EDGE_LEVELS;
+    return contrast(self->a, x, y) >= LEVELS && contrast(self->b, x, y) >= LEVELS;
 }
 
 static bool is_slight(const Outlines *self, int x, int y)
@@ -207,7 +314,7 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
     Outlines self = {.a = a,
                      .b = b,
                      .labels = labels_from_background(a, b),
-                     .slight = a->bits == 8 ? SLIGHT_LEVELS : 257 * SLIGHT_LEVELS};
+                     .slight = a->bits == 8 ? SLIGHT : 257 * SLIGHT};
     size_t height = (size_t)a->height;
     if (!may_be_outlines(&self, samples))
         return STATUS_OK;
@@ -222,8 +329,7 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
         snprintf(out->text, out->size,
                  "only outlines differ by more than %d levels, by up to %.4g on %.3g %% of the "
                  "pixels",
-                 SLIGHT_LEVELS, result->max_abs,
-                 100.0 * (double)sum.at_edges / (double)result->pixels);
+                 SLIGHT, result->max_abs, 100.0 * (double)sum.at_edges / (double)result->pixels);
     free(self.rows);
     return STATUS_OK;
 }
@@ -336,7 +442,9 @@ Status cause_place(const Picture *a, const Picture *b, const Samples *samples,
         say_lack(a, b, result, out);
     if (!*out->text)
         TRY(say_outlines(a, b, samples, result, out, err));
-    if (*out->text || !has_equal_outlines(result))
+    const Labels labels = labels_from_background(a, b);
+    bool other = have_backgrounds_unlike(&labels, a->channels);
+    if (*out->text || other || !has_equal_outlines(result))
         return STATUS_OK;
     bool highlights;
     TRY(are_highlights(a, b, &highlights, err));

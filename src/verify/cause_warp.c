@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { PATCHES = 64, CORE = 32, MARGIN = 12, SIDE = CORE + 2 * MARGIN, CELLS = SIDE * SIDE };
 /* Pixels so near to an edge of the picture are mixed with what was made up beyond it. */
@@ -23,6 +24,7 @@ typedef struct Patches {
     Shift start;
     const float *levels; /* of each code, parts of 1: of light, or of the code itself */
     int n;
+    double left;                       /* the least part of the squares that a guess has left */
     PixelPlace at[PATCHES];            /* pixels of B; the first of each patch */
     float *before, *from, *to, *moved; /* owned; A in its place, A moved, B, work: CELLS a patch */
 } Patches;
@@ -93,7 +95,10 @@ static Status patches_init(Patches *patches, const Samples *samples, Err *err)
         int x = patches->at[i].x, y = patches->at[i].y;
         size_t first = (size_t)i * CELLS;
         load(patches->a, x, y, patches->levels, patches->before + first);
-        load(patches->a, x - start->dx, y - start->dy, patches->levels, patches->from + first);
+        if (start->dx || start->dy)
+            load(patches->a, x - start->dx, y - start->dy, patches->levels, patches->from + first);
+        else
+            memcpy(patches->from + first, patches->before + first, CELLS * sizeof(float));
         load(patches->b, x, y, patches->levels, patches->to + first);
     }
     return STATUS_OK;
@@ -187,8 +192,9 @@ static bool improve(const Patches *patches, double d[2])
     return fabs(d[0]) < MARGIN / 4.0 && fabs(d[1]) < MARGIN / 4.0;
 }
 
-static bool explains(double before, double after)
+static bool explains(Patches *patches, double before, double after)
 {
+    patches->left = before > 0 ? fmin(patches->left, after / before) : patches->left;
     return before > 0 && 25 * after < before;
 }
 
@@ -234,8 +240,8 @@ static void try_shift(Patches *patches, Sentence *out)
     int digits = fmax(fabs(dx), fabs(dy)) < 0.25 ? 2 : 1;
     double unit = digits == 2 ? 100 : 10;
     double after = squares(patches, patches->moved, patches->to);
-    bool alone = explains(before, after);
-    if (alone || (2 * after < before && explains(before, left_by_blur(patches, &blurred))))
+    bool alone = explains(patches, before, after);
+    if (alone || (2 * after < before && explains(patches, before, left_by_blur(patches, &blurred))))
         snprintf(out->text, out->size,
                  "B is nearly A moved by (%.*f, %.*f) pixels%s, right and down being positive",
                  digits, round_to(dx, unit), digits, round_to(dy, unit),
@@ -304,7 +310,7 @@ static void try_blur(Patches *patches, Sentence *out)
         if (!is_blurrier(patches, sides[sharper], sides[!sharper], before))
             continue;
         double sigma = best_sigma(patches, sides[sharper], sides[!sharper], &after);
-        if (sigma < 0.98 * most_sigma && explains(before, after))
+        if (sigma < 0.98 * most_sigma && explains(patches, before, after))
             snprintf(out->text, out->size,
                      "%s is nearly %s blurred, by as much as a Gaussian of standard deviation "
                      "%.2g pixels",
@@ -325,26 +331,30 @@ static Status list_levels(int bits, bool linear, float **levels, Err *err)
 }
 
 static Status try_warp(const Picture *a, const Picture *b, const Samples *samples, Shift start,
-                       bool linear, Sentence *out, Err *err)
+                       bool linear, double *left, Sentence *out, Err *err)
 {
     float *levels;
     TRY(list_levels(a->bits, linear, &levels, err));
-    Patches patches = {.a = a, .b = b, .start = start, .levels = levels};
+    Patches patches = {.a = a, .b = b, .start = start, .levels = levels, .left = 1};
     Status status = patches_init(&patches, samples, err);
     if (status == STATUS_OK)
         try_shift(&patches, out);
     patches.start = (Shift){0};
     if (status == STATUS_OK && !*out->text)
         try_blur(&patches, out);
+    *left = patches.left;
     free(patches.before);
     free(levels);
     return status;
 }
 
+/* In light only where the same in codes leaves no more than half: the two are not so different. */
 Status cause_warp(const Picture *a, const Picture *b, const Samples *samples, const Shift *start,
                   Sentence *out, Err *err)
 {
-    TRY(try_warp(a, b, samples, *start, false, out, err));
-    return *out->text || a->gamma != 0 ? STATUS_OK
-                                       : try_warp(a, b, samples, *start, true, out, err);
+    double left;
+    TRY(try_warp(a, b, samples, *start, false, &left, out, err));
+    return *out->text || a->gamma != 0 || left > 0.5
+               ? STATUS_OK
+               : try_warp(a, b, samples, *start, true, &left, out, err);
 }

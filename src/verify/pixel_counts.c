@@ -4,6 +4,7 @@
 #include "verify/pixel_counts.h"
 
 #include "verify/result.h"
+#include "verify/wide.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -114,13 +115,102 @@ static void count_equal(const LabelWindow *window, int from, int to, Sums *sums)
     sums->classes[PIXEL_IDENTICAL] += (size_t)(to - from);
 }
 
-static bool block_equal(const Row *row, int from, int to, int channels)
+/* The largest difference over the channels and the sum of all, of each pixel of a block. */
+typedef struct Differences {
+    int largest[BLOCK], sum[BLOCK];
+} Differences;
+
+/* Of n pixels; adds to the sums. No sum of a block exceeds 64 bits, and but squares 32. */
+static inline void take_differences(const uint16_t *a, const uint16_t *b, int n, int channels,
+                                    Differences *out, Sums *sums)
+{
+    uint64_t squares = 0;
+    uint32_t total = 0;
+    int signed_codes[3] = {0};
+    for (int x = 0; x < n; x++) {
+        int largest = 0, sum = 0;
+        for (int c = 0; c < channels; c++) {
+            int difference = b[x * channels + c] - a[x * channels + c], size = abs(difference);
+            signed_codes[c] += difference;
+            total += (uint32_t)size;
+            squares += (uint32_t)size * (uint32_t)size;
+            largest = size > largest ? size : largest;
+            sum += difference;
+        }
+        out->largest[x] = largest;
+        out->sum[x] = sum;
+    }
+    sums->squares += squares;
+    sums->abs += total;
+    for (int c = 0; c < channels; c++)
+        sums->signed_codes[c] += signed_codes[c];
+}
+
+static void note_worst(const Differences *differences, int from, int n, int y, Sums *sums)
+{
+    for (int x = 0; x < n; x++)
+        if (differences->largest[x] > sums->max) {
+            sums->max = differences->largest[x];
+            sums->worst = (PixelPlace){.x = from + x, .y = y};
+        }
+}
+
+/* Pixels [from, to) of a row whose labels agree, of which nobody asks more than their colours: as
+ * count_pixel counts them. */
+static void count_colors(const Counting *counting, const Row *row, int from, int to, Sums *sums)
+{
+    const uint32_t *label = row->window->rows[0][1] + from;
+    const uint8_t *band = row->window->band + from;
+    const int n = to - from, channels = counting->a->picture->channels;
+    const uint16_t *a = row->a + from * channels, *b = row->b + from * channels;
+    Differences differences;
+    unsigned rounding = 0, shading = 0, common = 0, in_band = 0, brighter = 0, darker = 0;
+    unsigned beyond = 0, band_beyond = 0, interior_beyond = 0;
+    int interior_max = sums->interior_max;
+    if (channels == 3)
+        take_differences(a, b, n, 3, &differences, sums);
+    else
+        take_differences(a, b, n, 1, &differences, sums);
+    for (int x = 0; x < n; x++) {
+        int difference = differences.largest[x], off_band = band[x] ? 0 : difference;
+        unsigned is_beyond = difference > counting->beyond, is_common = label[x] != 0;
+        rounding += difference == 1;
+        shading += difference > 1;
+        brighter += differences.sum[x] > 0;
+        darker += differences.sum[x] < 0;
+        common += is_common;
+        in_band += band[x];
+        beyond += is_beyond & (is_common | !counting->common_only);
+        band_beyond += is_beyond & band[x];
+        interior_beyond += is_beyond & !band[x];
+        interior_max = off_band > interior_max ? off_band : interior_max;
+    }
+    sums->classes[PIXEL_ROUNDING] += rounding;
+    sums->classes[PIXEL_SHADING] += shading;
+    sums->classes[PIXEL_IDENTICAL] += (unsigned)n - rounding - shading;
+    sums->differing += rounding + shading;
+    sums->brighter += brighter;
+    sums->darker += darker;
+    sums->common += common;
+    sums->band += in_band;
+    sums->beyond += beyond;
+    sums->band_beyond += band_beyond;
+    sums->interior_beyond += interior_beyond;
+    sums->interior_max = interior_max;
+    note_worst(&differences, from, n, row->y, sums);
+}
+
+static bool labels_equal(const Row *row, int from, int to)
 {
     const uint32_t *in_a = row->window->rows[0][1], *in_b = row->window->rows[1][1];
-    size_t start = (size_t)from * (size_t)channels, n = (size_t)(to - from);
-    return (in_a == in_b || memcmp(in_a + from, in_b + from, n * sizeof *in_a) == 0) &&
-           (row->a == row->b ||
-            memcmp(row->a + start, row->b + start, n * (size_t)channels * sizeof *row->a) == 0);
+    size_t n = (size_t)(to - from);
+    return in_a == in_b || memcmp(in_a + from, in_b + from, n * sizeof *in_a) == 0;
+}
+
+static bool codes_equal(const Row *row, int from, int to, int channels)
+{
+    size_t start = (size_t)from * (size_t)channels, n = (size_t)(to - from) * (size_t)channels;
+    return row->a == row->b || memcmp(row->a + start, row->b + start, n * sizeof *row->a) == 0;
 }
 
 /* Counts a row by blocks, most of which are equal even in rows that are not. */
@@ -128,14 +218,17 @@ static void count_blocks(const Counting *counting, const Row *row, Sums *sums)
 {
     int width = counting->labels->width, channels = counting->a->picture->channels;
     bool geometry = counting->a->depth && counting->a->normal;
+    bool colors = !counting->settled && !counting->classes;
     for (int from = 0, to; from < width; from = to) {
         to = from + BLOCK < width ? from + BLOCK : width;
-        if (!geometry && block_equal(row, from, to, channels)) {
+        bool plain = !geometry && labels_equal(row, from, to);
+        if (plain && codes_equal(row, from, to, channels))
             count_equal(row->window, from, to, sums);
-            continue;
-        }
-        for (int x = from; x < to; x++)
-            count_pixel(counting, row, x, sums);
+        else if (plain && colors)
+            count_colors(counting, row, from, to, sums);
+        else
+            for (int x = from; x < to; x++)
+                count_pixel(counting, row, x, sums);
     }
 }
 
@@ -208,6 +301,11 @@ static void count_band(size_t index, int worker, void *context)
     }
 }
 
+WIDE static void count_band_wide(size_t index, int worker, void *context)
+{
+    count_band(index, worker, context);
+}
+
 static void add_sums(Sums *to, const Sums *from)
 {
     to->abs += from->abs;
@@ -258,7 +356,7 @@ Status count_pixels(Counting *counting, Err *err)
                    err));
     TRY(mem_calloc(&counting->scratch, (size_t)threads, counting->scratch_size, "rows", err));
     segment_sums_clear(counting->segments, segments);
-    threads_for((size_t)bands, threads, count_band, counting);
+    threads_for((size_t)bands, threads, wide_usable() ? count_band_wide : count_band, counting);
     for (int i = 1; i < bands; i++)
         add_sums(&counting->sums[0], &counting->sums[i]);
     for (int t = 1; t < threads && counting->index; t++)

@@ -15,7 +15,7 @@ typedef struct PublishedRule {
     double most_levels; /* ... and none by more than this */
 } PublishedRule;
 
-enum { PUBLISHED_RULES = 4, POWER_RULES = 1 + PUBLISHED_RULES };
+enum { PUBLISHED_RULES = 5, POWER_RULES = 1 + PUBLISHED_RULES };
 extern const PublishedRule published_rules[PUBLISHED_RULES];
 
 /* The rule that is asked first: whether it calls a picture different from the reference. Threads

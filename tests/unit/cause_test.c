@@ -367,6 +367,29 @@ static void names_the_side_that_lacks_a_thing_and_its_place(void **state)
     picture_release(&b);
 }
 
+/* The picture but for its background, which has other codes. */
+static void recolour_background(Picture *picture, double by)
+{
+    const uint8_t code = picture->codes8[0];
+    for (int i = 0; i < 3 * W * H; i += 3)
+        if (picture->codes8[i] == code && picture->codes8[i + 1] == code &&
+            picture->codes8[i + 2] == code) {
+            picture->codes8[i] = 17;
+            picture->codes8[i + 1] = (uint8_t)by;
+            picture->codes8[i + 2] = 43;
+        }
+}
+
+static void names_another_background(void **state)
+{
+    (void)state;
+    Shot shot = spoilt(recolour_background, 29);
+    expect_cause(&shot, "only the background differs, and what is mixed with it at outlines: it is "
+                        "(235, 235, 235) in A and (17, 29, 43) in B");
+    shot.diffuse = 1.2;
+    expect_cause(&shot, NULL);
+}
+
 static void names_nothing_where_two_faults_meet(void **state)
 {
     (void)state;
@@ -414,6 +437,7 @@ int main(void)
         cmocka_unit_test(names_rows_and_channels_that_are_exchanged),
         cmocka_unit_test(tells_highlights_from_other_shading),
         cmocka_unit_test(names_outlines_that_are_sampled_otherwise),
+        cmocka_unit_test(names_another_background),
         cmocka_unit_test(names_the_side_that_lacks_a_thing_and_its_place),
         cmocka_unit_test(names_nothing_where_two_faults_meet),
         cmocka_unit_test(names_nothing_that_no_sentence_is_about),
