@@ -54,7 +54,7 @@ static Vec3 size_vector(const Domain *domain)
 static void set_centered(Domain *domain, int dimension, Vec3 half, double volume)
 {
     domain->dimension = dimension;
-    domain->bounds = (Box){vec3(-half.x, -half.y, -half.z), half};
+    domain->bounds = (Box){vec3_sub(vec3(0, 0, 0), half), half};
     domain->volume = volume;
     domain->inlet = vec3(0, half.y, 0);
 }

@@ -137,6 +137,12 @@ test_reports_in_json_carry_the_bound() {
     expect_json grow.json '.bound.above > 0.005 and .bound.bound < .target'
     run_ok corcast info tree.swc --json --bound
     expect_json stdout "(.bound.bound / $(jq .bound certified.json) - 1 | fabs) < 1e-9"
+    run_ok corcast certify "$DATA/coronary.swc" --lambda 2 --json
+    cp stdout certified.json
+    run_ok corcast info "$DATA/coronary.swc" --json --bound --lambda 2
+    expect_json stdout "(.bound.bound / $(jq .bound certified.json) - 1 | fabs) < 1e-9"
+    run_ok corcast info "$DATA/coronary.swc" --json --bound
+    expect_json stdout '.bound == null'
     run_ok corcast refine tree.swc --json refined.json -o refined.swc
     expect_json refined.json '.bound.target == .target or (.bound.target / .target - 1 | fabs) < 1e-9'
     expect_json refined.json '.target < .target_before and .bound.above > 0 and .moves_kept <= .moves_tried and .stopped == false'

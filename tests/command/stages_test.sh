@@ -54,7 +54,11 @@ test_stages_that_contradict_each_other_are_refused_with_their_names() {
     done <<'END'
 s/keep-radii = on/toss = terminal/|^corcast grow: stages.ini: \[tissue\]: gamma 3 would change the radii of stage \[trunk\], which has 2.4; say keep-radii = on, or the same gamma$
 s/p-term = 60/p-term = 90/|stages.ini: \[tissue\]: p-term 90 mmHg leaves nothing to drop beyond stage \[trunk\], whose radii are kept and whose terminals are at 88.5
-s/terminals = 600/terminals = 40/|stages.ini: \[tissue\]: .*must be above the 40 that the tree of .* has
+s/terminals = 600/terminals = 40/|stages.ini: \[tissue\]: terminals 40: must be above the 40 of stage \[trunk\]$
+s/^gamma = 3/gamma = 3\ngamma = 2.9/|stages.ini:13: stage \[tissue\] says 'gamma' twice
+s/.tissue./[trunk]/|stages.ini:8: there is a stage \[trunk\] already
+s/keep-radii = on/inlet = 0,0,30/|stages.ini:11: 'inlet' is for the first stage; the others grow on its trees
+s/keep-radii = on/inlet-shares = 2,1/|stages.ini:11: 'inlet-shares' is for the first stage
 s/domain = ball:31.5/domain = ball:5@100,0,0/|stages.ini: \[tissue\]: .*the domain does not hold the tree
 s/^keep-radii.*//;s/gamma = 3/gamma = 0.1:3,2:2/|stages.ini: \[tissue\]: gamma 0.1:3,2:2 would change the radii of stage \[trunk\], which has 2.4
 s/gamma = 3/gama = 3/|stages.ini:12: 'gama' is no option of a stage

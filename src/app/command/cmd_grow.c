@@ -17,7 +17,7 @@ static Status write_report(const char *path, const GrowReport *report, const Ref
 {
     json_t *bound = json_null();
     if (bounded)
-        TRY(certified_json(tree, &bound, err));
+        TRY(certified_json(tree, &tree->meta, &bound, err));
     double target = refined->target_before > 0 ? refined->target_after : report->target;
     json_t *json =
         json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:f, s:I, s:b, s:i}", "generator", GENERATOR,

@@ -144,8 +144,9 @@ static Status show(const InfoOptions *options, const char *path, const Tree *tre
                    const Findings *found, Err *err)
 {
     json_t *bound = NULL;
+    const TreeMeta said = blood_said(&options->blood);
     if (options->bound)
-        TRY(certified_json(tree, &bound, err));
+        TRY(certified_json(tree, &said, &bound, err));
     if (options->json) {
         json_t *json = summary_json(&found->summary);
         if (tree_column(tree, tree_pairs_name))

@@ -65,7 +65,7 @@ static void set_clearance(double mm, TreeMeta *meta)
 static Status write_report(const char *path, const RefineReport *report, const Tree *tree, Err *err)
 {
     json_t *bound;
-    TRY(certified_json(tree, &bound, err));
+    TRY(certified_json(tree, &tree->meta, &bound, err));
     const JsonMember members[] = {
         {"generator", json_text(GENERATOR)},
         {"seconds", json_number(report->seconds)},

@@ -148,12 +148,13 @@ Status certifying_apply(const Certifying *certifying, const Parsed *parsed, Tree
     return STATUS_OK;
 }
 
-Status certified_json(const Tree *tree, json_t **out, Err *err)
+Status certified_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err)
 {
-    double lambda = meta_number(&tree->meta, META_LAMBDA);
-    bool pries = meta_number(&tree->meta, META_VISCOSITY_LAW) == VISCOSITY_PRIES;
+    const TreeMeta *knows = said->known[META_LAMBDA] ? said : &tree->meta;
+    double lambda = meta_number(knows, META_LAMBDA);
     *out = json_null();
-    if (pries || !tree->meta.known[META_LAMBDA] || !range_has(BOUND_LAMBDA_RANGE, lambda))
+    if (derive_viscosity_law(tree, said) != VISCOSITY_CONSTANT || !knows->known[META_LAMBDA] ||
+        !range_has(BOUND_LAMBDA_RANGE, lambda))
         return STATUS_OK;
     Bound bound;
     TRY(bound_tree(tree, lambda, &bound, err));

@@ -36,9 +36,9 @@ typedef struct Certified {
 MUST_CHECK Status certifying_apply(const Certifying *certifying, const Parsed *parsed, Tree *tree,
                                    Certified *found, Err *err);
 
-/* The bound of the target of a tree that was made here, for JSON: an object of `target`, `bound`
- * and `above` (the distance over the bound); null where its viscosity follows the radius or its
- * lambda is out of range. Errors as bound_tree. */
-MUST_CHECK Status certified_json(const Tree *tree, json_t **out, Err *err);
+/* The bound of the target of a tree for JSON: an object of `target`, `bound` and `above` (the
+ * distance over the bound); null where its viscosity follows the radius, or where lambda is out of
+ * range or not known. What `said` knows counts before what the tree does. Errors as bound_tree. */
+MUST_CHECK Status certified_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err);
 
 #endif

@@ -1,6 +1,6 @@
 /* The file is read line by line, each value through its option, so that what is wrong is said with
- * its line before anything grows. Then the options are put back, and each stage's lines applied
- * again, in turn, before it grows. */
+ * its line before anything grows. Then each stage's lines are applied again, in turn, twice, with
+ * the options put back before: to hold every stage against the one before it, and to grow it. */
 #include "app/trees/staging.h"
 
 #include "app/trees/tree_domain.h"
@@ -23,6 +23,7 @@ typedef struct Staging {
     const char *last_name; /* of the stage before; NULL: none */
     LogCurve last_gamma;
     double last_p_term;
+    size_t last_terminals; /* 0 where a radius may have ended its growth */
 } Staging;
 
 /* The option of growth; NULL when it is none of a stage's. */
@@ -36,6 +37,28 @@ static const Setting *find_option(const Staging *staging, const char *name)
     return is_growth ? setting : NULL;
 }
 
+/* What a stage cannot say. */
+static Status check_line(const Staging *staging, const StageLine *line, Err *err)
+{
+    static const char *const of_first[] = {"inlet", "inlet-shares", NULL};
+    bool is_first = staging->n == 0 || strcmp(line->stage, staging->line[0].stage) == 0;
+    for (size_t i = 0; i < staging->n; i++) {
+        const StageLine *other = &staging->line[i];
+        if (strcmp(other->stage, line->stage) != 0)
+            continue;
+        if (!line->name)
+            return err_set(err, STATUS_INPUT, "there is a stage [%s] already", line->stage);
+        if (other->name && strcmp(other->name, line->name) == 0)
+            return err_set(err, STATUS_INPUT, "stage [%s] says '%s' twice", line->stage,
+                           line->name);
+    }
+    for (int k = 0; line->name && !is_first && of_first[k]; k++)
+        if (strcmp(line->name, of_first[k]) == 0)
+            return err_set(err, STATUS_INPUT,
+                           "'%s' is for the first stage; the others grow on its trees", line->name);
+    return STATUS_OK;
+}
+
 static Status take_line(void *user, const char *section, const char *name, const char *value,
                         Err *err)
 {
@@ -44,12 +67,14 @@ static Status take_line(void *user, const char *section, const char *name, const
         return err_set(err, STATUS_INPUT, "'%s' stands above the first stage, [NAME]", name);
     TRY(mem_reserve(&staging->line, &staging->capacity, staging->n + 1, sizeof *staging->line,
                     "lines", err));
-    staging->line[staging->n++] = (StageLine){section, name, value};
+    const StageLine line = {section, name, value};
+    const Setting *setting = name ? find_option(staging, name) : NULL;
+    if (name && !setting)
+        return err_set(err, STATUS_INPUT, "'%s' is no option of a stage", name);
+    TRY(check_line(staging, &line, err));
+    staging->line[staging->n++] = line;
     if (!name)
         return STATUS_OK;
-    const Setting *setting = find_option(staging, name);
-    if (!setting)
-        return err_set(err, STATUS_INPUT, "'%s' is no option of a stage", name);
     Status status = setting_read(setting, value, err);
     return status == STATUS_USAGE ? STATUS_INPUT : status;
 }
@@ -88,7 +113,21 @@ static Status check_stage(const Staging *staging, const char *name, Err *err)
                        "stage",
                        staging->path, name, params->p_term_mmhg, staging->last_name,
                        staging->last_p_term);
+    if (params->terminals <= staging->last_terminals)
+        return err_set(
+            err, STATUS_INPUT, "%s: [%s]: terminals %zu: must be above the %zu of stage [%s]",
+            staging->path, name, params->terminals, staging->last_terminals, staging->last_name);
     return STATUS_OK;
+}
+
+/* Remembers what the next stage is held against. */
+static void take_note(Staging *staging, const char *name)
+{
+    const GrowParams *params = &staging->growing->params;
+    staging->last_name = name;
+    staging->last_gamma = params->gamma;
+    staging->last_p_term = params->p_term_mmhg;
+    staging->last_terminals = params->min_radius_mm > 0 ? 0 : params->terminals;
 }
 
 /* Makes the domain that the stage names, if it is another. */
@@ -115,7 +154,6 @@ static Status grow_stage(Staging *staging, const char *name, Tree *tree, GrowRep
     Growing *growing = staging->growing;
     GrowReport own;
     Tree made = {0};
-    TRY(check_stage(staging, name, err));
     if (staging->last_name) {
         growing->params.from = tree;
         growing->params.inlets = growing->params.inlet_shares = 0;
@@ -142,9 +180,7 @@ static Status grow_stage(Staging *staging, const char *name, Tree *tree, GrowRep
     *report = own;
     tree_release(tree);
     *tree = made;
-    staging->last_name = name;
-    staging->last_gamma = growing->params.gamma;
-    staging->last_p_term = growing->params.p_term_mmhg;
+    take_note(staging, name);
     return STATUS_OK;
 }
 
@@ -159,11 +195,26 @@ static size_t apply(const Staging *staging, size_t at)
     return at;
 }
 
+/* Holds all stages against each other; the options are afterwards as they were. */
+static Status check_all(Staging *staging, Err *err)
+{
+    Growing before = *staging->growing;
+    if (staging->n == 0)
+        return err_set(err, STATUS_INPUT, "%s: has no stage, [NAME]", staging->path);
+    for (size_t at = 0; at < staging->n;) {
+        const char *name = staging->line[at].stage;
+        at = apply(staging, at);
+        TRY(check_stage(staging, name, err));
+        take_note(staging, name);
+    }
+    staging->last_name = NULL;
+    *staging->growing = before;
+    return STATUS_OK;
+}
+
 static Status grow_all(Staging *staging, Tree *tree, GrowReport *report, Err *why, Err *err)
 {
     *report = (GrowReport){.complete = true};
-    if (staging->n == 0)
-        return err_set(err, STATUS_INPUT, "%s: has no stage, [NAME]", staging->path);
     for (size_t at = 0; at < staging->n && report->complete;) {
         const char *name = staging->line[at].stage;
         at = apply(staging, at);
@@ -180,6 +231,7 @@ Status staging_grow(const char *path, Growing *growing, const Parsed *parsed, Tr
     Growing before = *growing;
     TRY_GOTO(ini_read(path, "a file of stages", take_line, &staging, &staging.text, err));
     *growing = before;
+    TRY_GOTO(check_all(&staging, err));
     TRY_GOTO(grow_all(&staging, tree, report, why, err));
 done:
     before.demand = growing->demand;
