@@ -151,7 +151,7 @@ moved by up to 48 whole pixels (less than 1/50 of the differences remain @ cause
 49 of 50 codes that are off by more than a level @ cause_tone.c @ 50 * fit->misfits <= fit->beyond
 a twenty-fifth of the squares @ cause_warp.c @ 25 * after < before
 three quarters of its rim @ cause_place.c @ 4 * lack.background >= 3 * lack.rim
-by more than 2 levels off an outline @ cause_place.c @ SLIGHT_LEVELS = 2
+by more than 2 levels off an outline @ cause_place.c @ SLIGHT = 2
 POV-Ray sees a later root, to 0.02 r @ settle.c @ same_root_radii = 0.02;
 (cosine to the normal below 0.1) @ settle.c @ grazing_cosine = 0.1;
 shadows that count from 10⁻³ on, which is corcast's, and from 10⁻⁴ on @ settle.c @ first_slack_mm = 1e-3, cached_slack_mm = 1e-4;

@@ -11,7 +11,9 @@
  *   can be said.
  * - Highlights differ when the light in which the pictures differ is nearly white (a highlight has
  *   the lamp's colour, all else the surface's) on surfaces that are not. Of grey surfaces nothing
- *   can be said. */
+ *   can be said. * - Shading differs when nine tenths of that light are made of the surface's own
+ * colour and white.
+ */
 #include "verify/cause.h"
 #include "verify/labels.h"
 #include "verify/result.h"
@@ -336,30 +338,45 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
 
 /* ---- shading --------------------------------------------------------------------------------- */
 
-/* Of the light that B has more of than A, pixel by pixel: the squares, and the part of them that
- * lies along white and along the colour of the pixel in A. */
+/* Of the light that B has more of than A, pixel by pixel: the squares, the part of them that lies
+ * along white and along the colour of the pixel in A, and what no sum of white and the pixel's own
+ * colour makes. */
 typedef struct Light {
-    double squares, white, own;
+    double squares, white, own, rest;
 } Light;
+
+/* The square of what is left of `more` beside white and `color`. */
+static double rest_of(const double more[3], const double color[3], double squares, double white)
+{
+    const double normal[3] = {color[1] - color[2], color[2] - color[0], color[0] - color[1]};
+    double length = 0, along = 0;
+    for (int c = 0; c < 3; c++) {
+        length += normal[c] * normal[c];
+        along += normal[c] * more[c];
+    }
+    return length > 0 ? along * along / length : squares - white;
+}
 
 static void add_light(const Plane *table, const Picture *a, const Picture *b, size_t at,
                       Light *light)
 {
-    double sum = 0, squares = 0, along = 0, norm = 0;
+    double sum = 0, squares = 0, along = 0, norm = 0, more[3], color[3];
     for (int c = 0; c < 3; c++) {
         int code_a = picture_code(a, at + (size_t)c), code_b = picture_code(b, at + (size_t)c);
         if (code_a == table->width - 1 || code_b == table->width - 1)
             return;
-        double in_a = (double)table->values[code_a];
-        double more = (double)table->values[code_b] - in_a;
-        sum += more;
-        squares += more * more;
-        along += more * in_a;
+        double in_a = (double)table->values[code_a], in_b = (double)table->values[code_b];
+        more[c] = in_b - in_a;
+        color[c] = in_a + in_b;
+        sum += more[c];
+        squares += more[c] * more[c];
+        along += more[c] * in_a;
         norm += in_a * in_a;
     }
     light->squares += squares;
     light->white += sum * sum / 3;
     light->own += norm > 0 ? along * along / norm : 0;
+    light->rest += rest_of(more, color, squares, sum * sum / 3);
 }
 
 typedef struct Lights {
@@ -391,13 +408,11 @@ static Status light_of_codes(const Picture *picture, Plane *table, Err *err)
     return status;
 }
 
-/* White light explains the differences, and more light of the surfaces' own colours does not. */
-static Status are_highlights(const Picture *a, const Picture *b, bool *highlights, Err *err)
+static Status sum_light(const Picture *a, const Picture *b, Light *all, Err *err)
 {
     Lights self = {.a = a, .b = b};
-    Light all = {0};
     size_t height = (size_t)a->height;
-    *highlights = false;
+    *all = (Light){0};
     if (a->channels != 3)
         return STATUS_OK;
     TRY(light_of_codes(a, &self.table, err));
@@ -405,13 +420,13 @@ static Status are_highlights(const Picture *a, const Picture *b, bool *highlight
     if (status == STATUS_OK)
         threads_for(height, 0, add_row_light, &self);
     for (size_t y = 0; y < height && status == STATUS_OK; y++) {
-        all.squares += self.lights[y].squares;
-        all.white += self.lights[y].white;
-        all.own += self.lights[y].own;
+        all->squares += self.lights[y].squares;
+        all->white += self.lights[y].white;
+        all->own += self.lights[y].own;
+        all->rest += self.lights[y].rest;
     }
     plane_release(&self.table);
     free(self.lights);
-    *highlights = all.white > 0.95 * all.squares && all.own < 0.95 * all.squares;
     return status;
 }
 
@@ -421,8 +436,11 @@ static bool has_equal_outlines(const CompareResult *result)
            !(result->edge_mismatch_fraction > 0) && result->classes[PIXEL_WRONG_SEGMENT] == 0;
 }
 
-static void say_shading(const CompareResult *result, bool highlights, Sentence *out)
+/* Highlights are what white light explains, and more light of the surfaces' own colours does not.
+ */
+static void say_shading(const CompareResult *result, const Light *light, Sentence *out)
 {
+    bool highlights = light->white > 0.95 * light->squares && light->own < 0.95 * light->squares;
     double all = sqrt((double)result->differing_pixels); /* sigmas, if all go one way */
     snprintf(out->text, out->size,
              "only %s, by up to %.4g levels on %.3g %% of the pixels, B %s; the outlines %s",
@@ -446,8 +464,9 @@ Status cause_place(const Picture *a, const Picture *b, const Samples *samples,
     bool other = have_backgrounds_unlike(&labels, a->channels);
     if (*out->text || other || !has_equal_outlines(result))
         return STATUS_OK;
-    bool highlights;
-    TRY(are_highlights(a, b, &highlights, err));
-    say_shading(result, highlights, out);
+    Light light;
+    TRY(sum_light(a, b, &light, err));
+    if (light.rest <= 0.1 * light.squares)
+        say_shading(result, &light, out);
     return STATUS_OK;
 }

@@ -1,15 +1,15 @@
 /* Brighter, darker, of another gamma: one curve that takes every code of A to the code of B,
- * whatever its pixel. Each curve has at most one number, which sums over the pixels give; of those
- * that fit the samples the best is named, if it fits all pixels: 49 of 50 codes that are off by
- * more than a level come within one, and no more are driven away. What is white in either picture
- * may be clipped, and is not asked. */
+ * whatever its pixel. Each curve but the last, which is measured, has at most one number, which
+ * sums over the pixels give; of those that fit the samples the best is named, if it fits all
+ * pixels: 49 of 50 codes that are off by more than a level come within one, and no more are driven
+ * away. What is white in either picture may be clipped, and is not asked. */
 #include "verify/cause.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { KINDS = 8 };
+enum { KINDS = 11 };
 
 /* Of codes that are neither black nor white, where they may be clipped, in either picture. Levels
  * are parts of 1 here. */
@@ -88,6 +88,12 @@ static double no_number(const Sums *sums)
     return 1;
 }
 
+static double gamma_of_screens(const Sums *sums)
+{
+    (void)sums;
+    return 2.2;
+}
+
 static float times_light(float linear, float level, float p)
 {
     (void)level;
@@ -132,6 +138,18 @@ static float not_encoded(float linear, float level, float p)
     return linear;
 }
 
+static float encoded_by_power(float linear, float level, float p)
+{
+    (void)level;
+    return powf(linear, 1 / p);
+}
+
+static float encoded_as_srgb(float linear, float level, float p)
+{
+    (void)linear;
+    return srgb_encode(powf(level, p));
+}
+
 static float negative(float linear, float level, float p)
 {
     (void)linear;
@@ -153,13 +171,19 @@ typedef struct Curve {
 static const Curve curves[KINDS] = {
     {no_number, encoded_again, ALONE, "encoded as sRGB twice, and so too bright", NULL, 1},
     {no_number, not_encoded, ALONE, "not encoded as sRGB, and so too dark", NULL, 1},
+    {gamma_of_screens, encoded_by_power, ALONE, "encoded by a gamma of 2.2 and not as sRGB", NULL,
+     1},
+    {gamma_of_screens, encoded_as_srgb, ALONE, "encoded as sRGB and not by a gamma of 2.2", NULL,
+     1},
     {no_number, negative, ALONE, "as a negative", NULL, 1},
     {gain_of_light, times_light, TIMES, "made", "linear colours", 1},
     {offset_of_light, plus_light, PLUS, "made", "linear colours, from 0 to 1,", 1},
     {gain_of_codes, times_code, TIMES, "made", "sRGB codes", 1},
     {offset_of_codes, plus_code, PLUS, "made", "sRGB codes, from 0 to 255,", 255},
     {gamma_of_codes, power_of_code, POWER, "of another gamma,", "sRGB codes, from 0 to 1,", 1},
+    {no_number, NULL, ALONE, "under some other curve of tones, the same everywhere", NULL, 1},
 };
+enum { ANY_CURVE = KINDS - 1 };
 
 static void say(const Curve *curve, double number, Sentence *out)
 {
@@ -188,13 +212,14 @@ typedef struct Codes {
     const Picture *a, *b;
     const Samples *samples; /* NULL: all */
     size_t n;
+    int skipped[3]; /* a code of A of each channel that is not asked; -1: none */
 } Codes;
 
 static Codes codes_of(const Picture *a, const Picture *b, const Samples *samples)
 {
     size_t n =
         samples ? (size_t)samples->n * (size_t)a->channels : picture_stride(a) * (size_t)a->height;
-    return (Codes){a, b, samples, n};
+    return (Codes){a, b, samples, n, {-1, -1, -1}};
 }
 
 static void take(const Codes *codes, size_t i, int *in_a, int *in_b)
@@ -252,7 +277,8 @@ static Fit fit_of(const Meaning *meaning, const Codes *codes, int kind)
     for (size_t i = 0; i < codes->n; i++) {
         int a, b;
         take(codes, i, &a, &b);
-        if (a == meaning->n - 1 || b == meaning->n - 1)
+        if (a == meaning->n - 1 || b == meaning->n - 1 ||
+            a == codes->skipped[i % (size_t)codes->a->channels])
             continue;
         float rest = predicted[a] - meaning->level[b];
         fit.beyond += fabsf(meaning->level[a] - meaning->level[b]) > level;
@@ -273,8 +299,9 @@ static int best_curve(Meaning *meaning, const Codes *samples)
     const Sums sums = sum_codes(meaning, samples);
     Fit least = {0};
     int best = -1;
-    for (int kind = 0; kind < KINDS; kind++) {
-        predict(meaning, kind, &sums);
+    for (int kind = 0; kind < ANY_CURVE; kind++) {
+        if (!isfinite(predict(meaning, kind, &sums)))
+            continue;
         Fit fit = fit_of(meaning, samples, kind);
         if (!fits(&fit) || (best >= 0 && fit.squares >= least.squares))
             continue;
@@ -284,12 +311,63 @@ static int best_curve(Meaning *meaning, const Codes *samples)
     return best;
 }
 
+/* The curve of the means that codes of A have in B. */
+static Status measure_curve(Meaning *meaning, const Codes *all, Err *err)
+{
+    double *sum;
+    size_t n = (size_t)meaning->n;
+    TRY(mem_calloc(&sum, 2 * n, sizeof *sum, "codes", err));
+    for (size_t i = 0; i < all->n; i++) {
+        int a, b;
+        take(all, i, &a, &b);
+        sum[a] += (double)meaning->level[b];
+        sum[n + (size_t)a]++;
+    }
+    for (size_t i = 0; i < n; i++)
+        meaning->predicted[ANY_CURVE][i] = sum[n + i] > 0 ? (float)(sum[i] / sum[n + i]) : 0;
+    free(sum);
+    return STATUS_OK;
+}
+
+/* Whether one curve can be told from surfaces that are lit otherwise: those of other colours then
+ * have other curves in each channel. */
+static bool has_colors(const Picture *picture, const Samples *samples)
+{
+    enum { LEVELS = 32, ENOUGH = 12 };
+    int colored = 0;
+    for (int i = 0; i < samples->n && picture->channels == 3; i++) {
+        const PixelPlace *at = &samples->at[i];
+        size_t first = 3 * ((size_t)at->y * (size_t)picture->width + (size_t)at->x);
+        int red = picture_code(picture, first), green = picture_code(picture, first + 1);
+        int blue = picture_code(picture, first + 2);
+        colored += abs(red - green) >= LEVELS || abs(green - blue) >= LEVELS;
+    }
+    return colored >= ENOUGH;
+}
+
+/* Any curve, of codes of 8 bits, of which a picture has enough of each; the first pixel's, as of a
+ * background, which would outvote all others, are left out. */
+static Status find_any_curve(Meaning *meaning, Codes *few, Codes *all, Sentence *out, Err *err)
+{
+    if (meaning->n > 256 || !has_colors(all->a, few->samples) || !has_colors(all->b, few->samples))
+        return STATUS_OK;
+    TRY(measure_curve(meaning, all, err));
+    for (size_t c = 0; c < 3; c++)
+        few->skipped[c] = all->skipped[c] = picture_code(all->a, c);
+    Fit fit = fit_of(meaning, few, ANY_CURVE);
+    if (fits(&fit))
+        fit = fit_of(meaning, all, ANY_CURVE);
+    if (fits(&fit))
+        say(&curves[ANY_CURVE], 1, out);
+    return STATUS_OK;
+}
+
 Status cause_tone(const Picture *a, const Picture *b, const Samples *samples, Sentence *out,
                   Err *err)
 {
     Meaning meaning = {0};
     TRY(meaning_init(&meaning, a, err));
-    const Codes few = codes_of(a, b, samples), all = codes_of(a, b, NULL);
+    Codes few = codes_of(a, b, samples), all = codes_of(a, b, NULL);
     int kind = best_curve(&meaning, &few);
     if (kind >= 0) {
         const Sums sums = sum_codes(&meaning, &all);
@@ -298,6 +376,9 @@ Status cause_tone(const Picture *a, const Picture *b, const Samples *samples, Se
         if (fits(&fit))
             say(&curves[kind], number, out);
     }
+    Status status = STATUS_OK;
+    if (!*out->text)
+        status = find_any_curve(&meaning, &few, &all, out, err);
     free(meaning.linear);
-    return STATUS_OK;
+    return status;
 }

@@ -443,6 +443,18 @@ END
     expect_json both.json '(.de2000_max - .other.max | fabs) < 1e-3'
 }
 
+# Slow: forty pictures are made and compared.
+test_no_cause_is_named_that_was_not_planted() {
+    /usr/bin/python3 -c 'import scipy' 2>import.log || skip "python3-scipy is not installed"
+    run_ok corcast render "$REPO/tests/golden/ball60.swc" --view iso --size 201x160 --antialias 2 --background black \
+        --quiet -o tree.ppm
+    run_ok /usr/bin/python3 "$REPO/tests/oracle/planted_causes.py" "$CORCAST" tree.ppm
+    expect_stdout '^\| turned or mirrored .* 3 \|  \|$'
+    expect_stdout '^\| gamma or encoding .* 6 \|'
+    expect_stdout '^\| some other curve .* 2 \|'
+    expect_stdout '^\| unknown \|( +\|)+ 9 \|$'
+}
+
 test_idiff_measures_the_same() {
     command -v idiff >idiff.path || skip "openimageio-tools is not installed"
     noisy_pair
