@@ -51,6 +51,8 @@ enum { LEAST_WITH_FULL_CELLS = 1000 };
  * the least thickness as lines; after LAST_PATIENCE points without one the domain is full. */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
 static const double least_thickness = 1.0 / 64;
+/* What growth holds at its end for each terminal, as measured with 10^6 and with 10^7. */
+static const double bytes_per_terminal = 340;
 
 typedef struct Growth {
     const GrowParams *params;
@@ -414,6 +416,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
                  Err *err)
 {
     TRY(grow_params_check(params, domain, err));
+    TRY(mem_check(bytes_per_terminal * (double)params->terminals, "the tree", err));
     double begun = clock_seconds();
     Growth growth = {.params = params, .domain = domain};
     Status status = STATUS_OK;

@@ -2,6 +2,7 @@
 #include "scene/geometry.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 JointFrame primitive_joint(const Primitive *primitive)
 {
@@ -82,6 +83,33 @@ Ball geometry_ball(const Geometry *geometry, size_t number)
     }
     const FieldSegment *segment = &geometry->segments[i - geometry->n_primitives];
     return (Ball){is_b ? segment->b : segment->a, 2 * segment->radius_mm};
+}
+
+static Primitive end_of(const Primitive *cylinder, Vec3 at)
+{
+    return (Primitive){.kind = PRIMITIVE_SPHERE,
+                       .a = at,
+                       .b = at,
+                       .radius_mm = cylinder->radius_mm,
+                       .segment = cylinder->segment};
+}
+
+Status geometry_with_ends(const Geometry *geometry, Primitive **all, size_t *n, Err *err)
+{
+    size_t count = geometry->n_primitives;
+    for (size_t i = 0; i < geometry->n_primitives; i++)
+        count += geometry->primitives[i].round_a + geometry->primitives[i].round_b;
+    TRY(mem_calloc(all, count, sizeof **all, "primitives", err));
+    *n = geometry->n_primitives;
+    memcpy(*all, geometry->primitives, *n * sizeof **all);
+    for (size_t i = 0; i < geometry->n_primitives; i++) {
+        const Primitive *cylinder = &geometry->primitives[i];
+        if (cylinder->round_a)
+            (*all)[(*n)++] = end_of(cylinder, cylinder->a);
+        if (cylinder->round_b)
+            (*all)[(*n)++] = end_of(cylinder, cylinder->b);
+    }
+    return STATUS_OK;
 }
 
 static Status check_tube(Vec3 a, Vec3 b, double radius, uint32_t id, Err *err)

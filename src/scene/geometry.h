@@ -22,7 +22,7 @@ typedef enum PrimitiveKind { PRIMITIVE_CYLINDER, PRIMITIVE_SPHERE, PRIMITIVE_JOI
  * and b [geom/joint.h]. */
 typedef struct Primitive {
     PrimitiveKind kind : 8;
-    bool round_a, round_b; /* of a cylinder: whether one of the geometry's ends is about a, b */
+    bool round_a, round_b; /* of a cylinder: whether it has a round end about a, b */
     uint32_t segment;      /* number of the segment that it stands for */
     Vec3 a, b;
     double radius_mm; /* > 0; of a joint, at a */
@@ -108,6 +108,7 @@ typedef struct Geometry {
     size_t n_primitives;
     /* The last so many are spheres about an end of a cylinder, with its radius and segment. */
     size_t n_ends;
+    bool implied_ends;      /* there is none, and round_a and round_b alone tell of them */
     Vec3 *axes;             /* owned; of the primitives that are joints */
     FieldSegment *segments; /* owned; empty for a primitive model */
     size_t n_segments;
@@ -123,6 +124,10 @@ typedef struct Geometry {
 } Geometry;
 
 void geometry_release(Geometry *geometry);
+
+/* All primitives of a geometry with implied ends, those, too, in *all (owned), *n of them. */
+MUST_CHECK Status geometry_with_ends(const Geometry *geometry, Primitive **all, size_t *n,
+                                     Err *err);
 
 /* Some field segments of a geometry, by rising index, as one of their own: *part (owned) has them,
  * numbered anew, and the groups that they blend in, without the segments that are not in the part;

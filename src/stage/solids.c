@@ -15,6 +15,7 @@ typedef struct Solids {
     const Places *places;
     Geometry *geometry;
     int threads;
+    bool implied_ends;
     int32_t *cylinder; /* by node: the primitive of the segment that ends there, or -1; owned */
     /* By node: the thickest segment that meets there, if the node stands for its place, or -1; of
      * equals, the one that ends there. Owned. */
@@ -133,9 +134,10 @@ static void fill_spheres(size_t chunk, int worker, void *context)
     size_t number[2] = {solids->first[0][chunk], solids->first[1][chunk]};
     for (size_t i = chunk * CHUNK; i < chunk_end(solids, chunk); i++) {
         int32_t segment = solids->thickest[i];
-        if (segment < 0)
+        bool is_end = segment >= 0 && round_end(solids, i);
+        if (segment < 0 || (is_end && solids->implied_ends))
             continue;
-        solids->geometry->primitives[number[round_end(solids, i)]++] =
+        solids->geometry->primitives[number[is_end]++] =
             (Primitive){.kind = PRIMITIVE_SPHERE,
                         .a = tree->position[i],
                         .b = tree->position[i],
@@ -152,17 +154,21 @@ static void add_spheres(Solids *solids)
     find_thickest(solids);
     threads_for(solids->n_chunks, solids->threads, count_spheres, solids);
     size_t first_end = begin_chunks(solids, solids->first[0], geometry->n_primitives);
-    geometry->n_primitives = begin_chunks(solids, solids->first[1], first_end);
+    size_t end = begin_chunks(solids, solids->first[1], first_end);
+    geometry->implied_ends = solids->implied_ends;
+    geometry->n_primitives = solids->implied_ends ? first_end : end;
     geometry->n_ends = geometry->n_primitives - first_end;
     threads_for(solids->n_chunks, solids->threads, fill_spheres, solids);
 }
 
-Status solids_add(const Tree *tree, const Places *places, int threads, Geometry *geometry, Err *err)
+Status solids_add(const Tree *tree, const Places *places, const GeometryParams *params,
+                  Geometry *geometry, Err *err)
 {
     Solids solids = {.tree = tree,
                      .places = places,
                      .geometry = geometry,
-                     .threads = threads,
+                     .threads = params->mesh.threads,
+                     .implied_ends = params->implied_ends,
                      .n_chunks = (tree->n + CHUNK - 1) / CHUNK};
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&solids.cylinder, tree->n, sizeof *solids.cylinder, "nodes", err));

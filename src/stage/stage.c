@@ -82,7 +82,7 @@ static Status add_model(const Tree *tree, const GeometryParams *params, Geometry
     if (model_has(geometry->model, MODEL_JOINTS))
         status = joints_add(tree, &places, params->joints, geometry, report, err);
     else
-        status = solids_add(tree, &places, params->mesh.threads, geometry, err);
+        status = solids_add(tree, &places, params, geometry, err);
     places_release(&places);
     return status;
 }

@@ -97,7 +97,9 @@ typedef enum JointForm {
 /* What a geometry is made by. */
 typedef struct GeometryParams {
     SceneModel model;
-    JointForm joints; /* of a joined model */
+    JointForm joints;  /* of a joined model */
+    bool implied_ends; /* of a rounded model, as in Geometry: for pictures tile by tile, which take
+                        * half the memory so */
     bool graph; /* isosurface: segments blend only where they meet [docs/METHODS.md section 2.5] */
     bool part_overlaps; /* mesh: vessels that overlap others than their own are thinned */
     MeshParams mesh;    /* of a mesh; its threads are those of all models */

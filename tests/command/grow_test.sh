@@ -373,4 +373,17 @@ test_relaxed_trees_have_a_lower_target_and_keep_the_rules() {
     ! cmp -s earlier.swc relaxed.swc || fail 'expected --relax 200 to end before 237 terminals'
 }
 
+# A machine of 400 MB, as a library tells it that is loaded before the C library.
+test_refuses_at_once_what_needs_more_memory_than_the_machine_has() {
+    printf '%s\n' '#include <unistd.h>' \
+        'long sysconf(int n) { return n == _SC_PAGESIZE ? 4096 : n == _SC_PHYS_PAGES ? 97656 : 2; }' >small.c
+    cc -shared -fPIC -o small.so small.c
+    run timeout 20 env LD_PRELOAD="$PWD/small.so" "$CORCAST" grow --terminals 2385000 -o t.swc --quiet
+    expect_status 3
+    expect_sentence 'the tree: out of memory: needs 810.9 MB, and this machine has 400.0 MB$'
+    expect_only small.c small.so
+    run env LD_PRELOAD="$PWD/small.so" "$CORCAST" grow --terminals 23 -o t.swc --quiet
+    expect_status 0
+}
+
 run_tests "$@"

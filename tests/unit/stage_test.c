@@ -171,6 +171,35 @@ static void a_sphere_has_the_largest_radius_that_meets(void **state)
     scene_release(&scene);
 }
 
+static void ends_that_are_implied_are_those_that_are_left_out(void **state)
+{
+    (void)state;
+    StageParams params = stage_defaults();
+    params.geometry.model = SCENE_ROUNDED;
+    Scene scene = stage(&params, NULL);
+    params.geometry.implied_ends = true;
+    Scene implied = stage(&params, NULL);
+    Err err = {{0}};
+    Primitive *all;
+    size_t n;
+    assert_true(implied.geometry.implied_ends);
+    assert_int_equal(implied.geometry.n_primitives, 3);
+    assert_int_equal(implied.geometry.n_ends, 0);
+    must(geometry_with_ends(&implied.geometry, &all, &n, &err), &err);
+    assert_int_equal(n, scene.geometry.n_primitives);
+    for (size_t i = 0; i < n; i++) {
+        const Primitive *whole = &scene.geometry.primitives[i];
+        assert_int_equal(all[i].kind, whole->kind);
+        assert_near(all[i].a, whole->a, 0);
+        assert_near(all[i].b, whole->b, 0);
+        assert_true(all[i].radius_mm == whole->radius_mm);
+        assert_int_equal(all[i].segment, whole->segment);
+    }
+    free(all);
+    scene_release(&implied);
+    scene_release(&scene);
+}
+
 static void every_model_has_the_segments_at_their_radii(void **state)
 {
     (void)state;
@@ -1055,6 +1084,7 @@ int main(void)
         cmocka_unit_test(the_thickest_of_the_sisters_that_end_together_is_drawn),
         cmocka_unit_test(a_segment_inside_its_sister_is_left_out),
         cmocka_unit_test(a_sphere_has_the_largest_radius_that_meets),
+        cmocka_unit_test(ends_that_are_implied_are_those_that_are_left_out),
         cmocka_unit_test(every_model_has_the_segments_at_their_radii),
         cmocka_unit_test(of_equals_the_segment_that_ends_at_a_place_gives_its_sphere),
         cmocka_unit_test(every_view_frames_the_whole_tree),

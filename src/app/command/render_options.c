@@ -258,6 +258,8 @@ Status render_make_scene(RenderOptions *options, Parsed *parsed, const PictureSo
                          Animation *animation, Err *err)
 {
     PictureOptions *picture = &options->picture;
+    picture->by_tiles = options->ink_mm == 0 &&
+                        (options->method == RENDER_FASTEST || options->method == RENDER_RASTER);
     TRY(picture_scene_of(picture, source, parsed, scene, NULL, staged, err));
     TRY(animation_count(animation, &scene->appearance, err));
     TRY(pick_only(options->shard.only, animation, err));

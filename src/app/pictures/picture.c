@@ -344,10 +344,15 @@ static Status warn_of_losses(const Geometry *geometry, const StageReport *report
     return STATUS_OK;
 }
 
+static bool is_xray(const Look *look)
+{
+    return look_effects(look, 1, 1).xray.per_mm > 0;
+}
+
 static Status read_look(const PictureOptions *options, Look *look, Err *err)
 {
     TRY(coloring_read_look(options->look, look, err));
-    if (look_effects(look, 1, 1).xray.per_mm > 0 && options->coloring.field)
+    if (is_xray(look) && options->coloring.field)
         return err_set(err, STATUS_USAGE,
                        "--look %s has two colours of its own; --color-by has no effect",
                        options->look);
@@ -476,6 +481,7 @@ Status picture_geometry(const PictureOptions *options, const PictureSource *sour
     Progress progress;
     const GeometryParams params = {.model = model,
                                    .joints = (JointForm)options->joints,
+                                   .implied_ends = options->by_tiles && !is_xray(&source->look),
                                    .graph =
                                        options->potential != 0 && model_has(model, MODEL_POTENTIAL),
                                    .part_overlaps = options->part_overlaps,

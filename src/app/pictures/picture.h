@@ -20,6 +20,7 @@ typedef struct PictureOptions {
     double tolerance; /* of a mesh, over the local radius */
     bool
         part_overlaps; /* likewise: thin vessels that overlap others that they do not belong with */
+    bool by_tiles;     /* nothing but pictures tile by tile is made of the geometry */
     double prune_radius_mm;
     const char *look;
     Vec3 background; /* sRGB in [0, 1] */

@@ -19,6 +19,8 @@ static const double shadow_slack_mm = 1e-3;
 struct Caster {
     const Geometry *geometry;
     Bvh *bvh;                     /* of primitives, or NULL */
+    const Primitive *primitives;  /* those */
+    Primitive *with_ends;         /* owned; they, where the geometry implies some */
     MeshCast *mesh;               /* or NULL */
     PovrayIsosurface *isosurface; /* an implicit model as POV-Ray finds it, or NULL */
     FieldIndex *field;            /* an implicit model by proof, or NULL */
@@ -28,6 +30,18 @@ struct Caster {
     int workers;
     double shadow_from_mm;
 };
+
+static Status build_bvh(Caster *caster, Err *err)
+{
+    const Geometry *geometry = caster->geometry;
+    size_t n = geometry->n_primitives;
+    caster->primitives = geometry->primitives;
+    if (geometry->implied_ends) {
+        TRY(geometry_with_ends(geometry, &caster->with_ends, &n, err));
+        caster->primitives = caster->with_ends;
+    }
+    return bvh_build(caster->primitives, n, &caster->bvh, err);
+}
 
 Status caster_new(const Geometry *geometry, const CellParams *cells, int workers, Caster **out,
                   Err *err)
@@ -45,7 +59,7 @@ Status caster_new(const Geometry *geometry, const CellParams *cells, int workers
         for (int i = 0; i < workers; i++)
             TRY_GOTO(blobscratch_new(geometry->n_segments, &caster->blob_scratch[i], err));
     } else if (model_has(geometry->model, MODEL_PRIMITIVES)) {
-        TRY_GOTO(bvh_build(geometry->primitives, geometry->n_primitives, &caster->bvh, err));
+        TRY_GOTO(build_bvh(caster, err));
     } else if (model_has(geometry->model, MODEL_TRIANGLES)) {
         TRY_GOTO(meshcast_new(&geometry->mesh, &caster->mesh, err));
     } else if (cells) {
@@ -85,6 +99,7 @@ void caster_free(Caster *caster)
     povray_isosurface_free(caster->isosurface);
     meshcast_free(caster->mesh);
     bvh_free(caster->bvh);
+    free(caster->with_ends);
     free(caster);
 }
 
@@ -122,7 +137,7 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
     bool inwards = vec3_dot(hit.normal, ray.direction) > 0;
     *surfel = (Surfel){.t = hit.t,
                        .normal = inwards ? vec3_scale(hit.normal, -1) : hit.normal,
-                       .segment = caster->bvh ? geometry->primitives[index].segment
+                       .segment = caster->bvh ? caster->primitives[index].segment
                                               : geometry->segments[index].segment,
                        .leaves = caster->mesh ? leaves : inwards,
                        .cell = cell};
