@@ -17,12 +17,15 @@ typedef enum PlaceState {
     PLACE_UNSURE /* within the margin of the arithmetic */
 } PlaceState;
 
-/* Places in a tile of a light's view, whose lines of sight lead to the light. */
+enum { PLACES_ROOM = LIGHT_MOST_PLACES + 15 };
+
+/* Places in a tile of a light's view, whose lines of sight lead to the light. Another 15 behind the
+ * last are the same as the last. */
 typedef struct FieldPlaces {
     int n;
-    float x[LIGHT_MOST_PLACES], y[LIGHT_MOST_PLACES]; /* as those of a FieldTile */
-    double z[LIGHT_MOST_PLACES];                      /* from where on something is in the way */
-    uint8_t state[LIGHT_MOST_PLACES];                 /* PlaceState, the answer */
+    float x[PLACES_ROOM], y[PLACES_ROOM]; /* as those of a FieldTile */
+    double z[PLACES_ROOM];                /* from where on something is in the way */
+    uint8_t state[LIGHT_MOST_PLACES];     /* PlaceState, the answer */
 } FieldPlaces;
 
 /* Says of places what state they are in; x and y of the tile are not read. A place within 0.2 % of

@@ -187,27 +187,30 @@ static FieldTile tile_of(const FieldShadow *shadow, int number, LocalGroups *gro
 }
 
 /* Sets the places of a request, and from where on vessels matter, but for those outside the tile,
- * and so outside the view: these see the light. Moves the numbers of those that are set to the
- * front of `kept`. */
+ * and so outside the view: these see the light. Sets where the answers about them go. */
 static void set_places(FieldQueue *queue, const LightRequest *request, FieldTile *tile,
-                       uint32_t *kept)
+                       uint32_t *answers)
 {
     FieldPlaces *places = &queue->places;
     const LightAim *aim = &queue->shadow->aim;
-    places->n = 0;
+    int n = 0;
     for (int i = 0; i < request->n; i++) {
-        uint32_t place = request->places[i] % TILE_SAMPLES;
-        const AimedPlaces *aimed = &request->aimed[request->places[i] / TILE_SAMPLES];
-        double x = aimed->x[place] - tile->middle_x, y = aimed->y[place] - tile->middle_y;
-        int n = places->n;
+        const AskedPlace *asked = &request->places[i];
+        double x = asked->x - tile->middle_x, y = asked->y - tile->middle_y;
         if (!(fabs(x * aim->per_x) <= 0.50005 && fabs(y * aim->per_y) <= 0.50005))
             continue;
-        kept[n] = request->places[i];
+        answers[n] = queue->answer[asked->call] + asked->sample;
         places->x[n] = (float)x;
         places->y[n] = (float)y;
-        places->z[n] = -(aimed->z[place] + aim->z_middle);
+        places->z[n] = -(asked->z + aim->z_middle);
         tile->z_min = min_of(tile->z_min, places->z[n]);
-        places->n++;
+        n++;
+    }
+    places->n = n;
+    for (int i = n; n > 0 && i < n + 15; i++) {
+        places->x[i] = places->x[n - 1];
+        places->y[i] = places->y[n - 1];
+        places->z[i] = places->z[n - 1];
     }
 }
 
@@ -228,27 +231,35 @@ static Status decide(FieldQueue *queue, const FieldTile *tile, int number, Err *
     return STATUS_OK;
 }
 
+/* Where the list of a tile begins in its row's items, and where that of the next does. */
+static const size_t *list_of(const FieldShadow *shadow, int tile)
+{
+    return &shadow->rows[tile / shadow->view.tiles].offsets[tile % shadow->view.tiles];
+}
+
 static Status answer_tile(FieldQueue *queue, const LightRequest *request, Err *err)
 {
     const FieldShadow *shadow = queue->shadow;
     FieldPlaces *places = &queue->places;
     FieldSpace *space = &queue->space;
-    uint32_t kept[LIGHT_MOST_PLACES];
+    uint32_t answers[LIGHT_MOST_PLACES];
     FieldTile tile = tile_of(shadow, request->tile, space->groups);
-    const BinLists *row = &shadow->rows[request->tile / shadow->view.tiles];
-    const size_t *list = &row->offsets[request->tile % shadow->view.tiles];
-    set_places(queue, request, &tile, kept);
+    const size_t *list = list_of(shadow, request->tile);
+    const uint32_t *segments = shadow->rows[request->tile / shadow->view.tiles].items + list[0];
+    if (request->next >= 0)
+        __builtin_prefetch(list_of(shadow, request->next));
+    fieldterms_fetch(shadow->lists.segments, segments, list[1] - list[0]);
+    set_places(queue, request, &tile, answers);
     if (list[0] == list[1] || places->n == 0)
         return STATUS_OK;
     TRY(fieldspace_reserve(space, list[1] - list[0], err));
-    fieldterms_make(shadow->lists.segments, row->items + list[0], list[1] - list[0], &tile,
-                    space->terms, space->candidates);
+    fieldterms_make(shadow->lists.segments, segments, list[1] - list[0], &tile, space->terms,
+                    space->candidates);
     queue->kernel(&tile, &space->work, places);
     for (int i = 0; i < places->n; i++) {
         if (places->state[i] == PLACE_UNSURE)
             TRY(decide(queue, &tile, i, err));
-        queue->shadowed[queue->answer[kept[i] / TILE_SAMPLES] + kept[i] % TILE_SAMPLES] =
-            places->state[i] == PLACE_DARK;
+        queue->shadowed[answers[i]] = places->state[i] == PLACE_DARK;
     }
     return STATUS_OK;
 }

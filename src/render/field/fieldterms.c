@@ -138,6 +138,15 @@ static bool is_in_plane(const TileTerm *first, const TileTerm *term)
            fabs(term->z_near - first->z_near) * (double)term->k <= 1e-7;
 }
 
+void fieldterms_fetch(const FrameSegment *segments, const uint32_t *list, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        const FrameSegment *segment = &segments[list[i]];
+        __builtin_prefetch(segment);
+        __builtin_prefetch(&segment->length);
+    }
+}
+
 void fieldterms_make(const FrameSegment *segments, const uint32_t *list, size_t n, FieldTile *tile,
                      TileTerm *terms, uint32_t *kept)
 {

@@ -236,22 +236,42 @@ LANE_FN void look_through_union(Departures *way, LaneMask *open, LaneMask *dark,
     }
 }
 
-/* Loads LANES places, by number; the last stands for those that are missing. Returns which are
- * there. */
-LANE_FN LaneMask load_places(const FieldPlaces *places, const uint16_t *numbers, int n,
+/* Some of a tile's places, and their numbers there. */
+typedef struct Places {
+    float x[LANES], y[LANES];
+    double z[LANES];
+    uint16_t numbers[LANES];
+    int n;
+} Places;
+
+/* Takes LANES places, the first n of which count. Returns the lanes of those. */
+LANE_FN LaneMask load_places(const float *x, const float *y, const double *z, int n,
                              Departures *way)
 {
-    LaneMask open = {0};
-    way->base = places->z[numbers[0]];
-    for (int lane = 0; lane < LANES; lane++) {
-        int number = numbers[lane < n ? lane : n - 1];
-        way->packet.x[lane] = places->x[number];
-        way->packet.y[lane] = places->y[number];
-        way->z[lane] = (float)(places->z[number] - way->base);
-        open[lane] = -(lane < n);
-    }
+    LaneMask open;
+    for (int lane = 0; lane < LANES; lane++)
+        open[lane] = lane;
+    way->base = z[0];
+    way->packet.x = lanes_load(x);
+    way->packet.y = lanes_load(y);
+    way->z = lanes_of_doubles(z, -way->base);
     way->from = lanes_least(way->z);
     way->to = lanes_largest(way->z);
+    return open < n;
+}
+
+/* Decides what is decided fast of the places from `first` on, and returns the lanes that are left.
+ */
+LANE_FN LaneMask decide_at_once(FieldPlaces *places, int first, Departures *way)
+{
+    LaneMask open = load_places(&places->x[first], &places->y[first], &places->z[first],
+                                places->n - first, way);
+    LaneMask dark = open & depart(way, open);
+    for (uint32_t left = lanes_bits(dark); left; left &= left - 1)
+        places->state[first + __builtin_ctz(left)] = PLACE_DARK;
+    open &= ~dark;
+    if (lanes_any(open))
+        open &= ~lit_at_once(way, open);
     return open;
 }
 
@@ -262,22 +282,16 @@ LANE_FN void set_states(FieldPlaces *places, const uint16_t *numbers, LaneMask w
         places->state[numbers[__builtin_ctz(left)]] = (uint8_t)state;
 }
 
-/* Decides what is decided fast, and returns the lanes that are left. */
-LANE_FN LaneMask decide_at_once(FieldPlaces *places, const uint16_t *numbers, int n,
-                                Departures *way)
+/* Decides the places that have been put off, and forgets them. */
+LANE_FN void decide_by_march(FieldPlaces *places, Places *later, Departures *way)
 {
-    LaneMask open = load_places(places, numbers, n, way);
-    LaneMask dark = open & depart(way, open);
-    set_states(places, numbers, dark, PLACE_DARK);
-    open &= ~dark;
-    if (lanes_any(open))
-        open &= ~lit_at_once(way, open);
-    return open;
-}
-
-LANE_FN void decide_by_march(FieldPlaces *places, const uint16_t *numbers, int n, Departures *way)
-{
-    LaneMask open = load_places(places, numbers, n, way), dark = {0}, unsure = {0};
+    for (int lane = later->n; lane < LANES; lane++) {
+        later->x[lane] = later->x[later->n - 1];
+        later->y[lane] = later->y[later->n - 1];
+        later->z[lane] = later->z[later->n - 1];
+    }
+    LaneMask open = load_places(later->x, later->y, later->z, later->n, way), dark = {0},
+             unsure = {0};
     depart(way, open);
     if (way->packet.tile->groups) {
         look_through_union(way, &open, &dark, &unsure);
@@ -287,29 +301,35 @@ LANE_FN void decide_by_march(FieldPlaces *places, const uint16_t *numbers, int n
             way->packet.sum[i] = &way->packet.terms[i];
         look_through_sum(way, &open, &dark, &unsure);
     }
-    set_states(places, numbers, unsure, PLACE_UNSURE);
-    set_states(places, numbers, dark, PLACE_DARK);
+    set_states(places, later->numbers, unsure, PLACE_UNSURE);
+    set_states(places, later->numbers, dark, PLACE_DARK);
+    later->n = 0;
+}
+
+LANE_FN void put_off(const FieldPlaces *places, int number, Places *later)
+{
+    int n = later->n++;
+    later->x[n] = places->x[number];
+    later->y[n] = places->y[number];
+    later->z[n] = places->z[number];
+    later->numbers[n] = (uint16_t)number;
 }
 
 LANE_TARGET void SHADOW_KERNEL(const FieldTile *tile, TileWork *work, FieldPlaces *places)
 {
-    uint16_t numbers[LIGHT_MOST_PLACES];
-    int left = 0;
+    Places later = {.n = 0};
     assert(tile->n_terms <= work->capacity);
     Departures way = {.packet = {.tile = tile, .terms = work->memory}};
     way.packet.sum = (PacketTerm **)(way.packet.terms + tile->n_terms);
     way.packet.segments = (uint32_t *)(way.packet.sum + tile->n_terms);
     __builtin_memset(places->state, PLACE_LIT, (size_t)places->n);
-    for (int first = 0; first < places->n; first += LANES) {
-        uint16_t own[LANES];
-        int n = places->n - first < LANES ? places->n - first : LANES;
-        for (int i = 0; i < n; i++)
-            own[i] = (uint16_t)(first + i);
-        for (uint32_t open = lanes_bits(decide_at_once(places, own, n, &way)); open;
-             open &= open - 1)
-            numbers[left++] = own[__builtin_ctz(open)];
-    }
-
-    for (int first = 0; first < left; first += LANES)
-        decide_by_march(places, numbers + first, left - first < LANES ? left - first : LANES, &way);
+    for (int first = 0; first < places->n; first += LANES)
+        for (uint32_t open = lanes_bits(decide_at_once(places, first, &way)); open;
+             open &= open - 1) {
+            put_off(places, first + __builtin_ctz(open), &later);
+            if (later.n == LANES)
+                decide_by_march(places, &later, &way);
+        }
+    if (later.n)
+        decide_by_march(places, &later, &way);
 }

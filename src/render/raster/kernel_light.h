@@ -42,9 +42,8 @@ typedef struct QueryBlock {
 LANE_TARGET static bool decide_query(const NearItem *near, const RasterTile *tile,
                                      const ShadowQueries *queries, int query)
 {
-    uint32_t place = queries->place[query], sample = place % TILE_SAMPLES;
-    const AimedPlaces *aimed = &queries->aimed[place / TILE_SAMPLES];
-    double z = raster_decide(tile->bins, near->number, aimed->x[sample], aimed->y[sample], NULL);
+    const AskedPlace *place = &queries->places[query];
+    double z = raster_decide(tile->bins, near->number, place->x, place->y, NULL);
     return z - tile->z_middle < (double)queries->z[query];
 }
 

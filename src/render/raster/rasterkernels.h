@@ -10,9 +10,7 @@
 /* Lines of sight of a light through places, all in one tile of its view, and depths on them. */
 typedef struct ShadowQueries {
     int n;
-    const AimedPlaces *aimed;
-    uint32_t
-        place[LIGHT_MOST_PLACES]; /* TILE_SAMPLES times the number in `aimed`, and the sample's */
+    const AskedPlace *places;
     float x[LIGHT_MOST_PLACES],
         y[LIGHT_MOST_PLACES];   /* in the plane of the view, less the tile's middle */
     float z[LIGHT_MOST_PLACES]; /* less z_middle */

@@ -280,17 +280,14 @@ static void fetch_list(const RasterShadow *shadow, int number)
 static void set_queries(RasterQueue *queue, const RasterTile *tile, const LightRequest *request)
 {
     ShadowQueries *queries = &queue->queries;
-    queries->aimed = request->aimed;
+    queries->places = request->places;
     queries->n = request->n;
     for (int i = 0; i < request->n; i++) {
-        uint32_t call = request->places[i] / TILE_SAMPLES,
-                 place = request->places[i] % TILE_SAMPLES;
-        const AimedPlaces *aimed = &request->aimed[call];
-        queries->place[i] = request->places[i];
-        queries->x[i] = (float)(aimed->x[place] - tile->x);
-        queries->y[i] = (float)(aimed->y[place] - tile->y);
-        queries->z[i] = (float)aimed->z[place];
-        queries->item[i] = queue->items[call][place];
+        const AskedPlace *place = &request->places[i];
+        queries->x[i] = (float)(place->x - tile->x);
+        queries->y[i] = (float)(place->y - tile->y);
+        queries->z[i] = (float)place->z;
+        queries->item[i] = queue->items[place->call][place->sample];
     }
 }
 
@@ -304,9 +301,8 @@ static void test_tile(const LightRequest *request, void *context)
     set_queries(queue, &tile, request);
     queue->kernels->cover(&tile, queries);
     for (int i = 0; i < queries->n; i++) {
-        uint32_t place = queries->place[i];
-        queue->shadowed[queue->answer[place / TILE_SAMPLES] + place % TILE_SAMPLES] =
-            queries->covered[i];
+        const AskedPlace *place = &request->places[i];
+        queue->shadowed[queue->answer[place->call] + place->sample] = queries->covered[i];
     }
 }
 

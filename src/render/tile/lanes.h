@@ -194,6 +194,23 @@ LANE_FN bool lanes_any(LaneMask mask)
 
 #endif
 
+/* The sums, in double precision, of `values` and a number. */
+LANE_FN Lanes lanes_of_doubles(const double *values, double more)
+{
+    enum { HALF = LANES / 2 };
+    typedef double Doubles __attribute__((vector_size(8 * HALF)));
+    typedef float Floats __attribute__((vector_size(4 * HALF)));
+    Floats halves[2];
+    for (int half = 0; half < 2; half++) {
+        Doubles wide;
+        __builtin_memcpy(&wide, values + half * HALF, sizeof wide);
+        halves[half] = __builtin_convertvector(wide + more, Floats);
+    }
+    Lanes lanes;
+    __builtin_memcpy(&lanes, halves, sizeof lanes);
+    return lanes;
+}
+
 typedef uint8_t LaneBytes __attribute__((vector_size(LANES)));
 
 /* Bytes that are 1 where true and 0 where false. */

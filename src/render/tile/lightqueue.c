@@ -1,5 +1,7 @@
 /* Each tile of the light has a chain of requests, each for those places of one tile of the picture
- * that lie in it: few, as neighbours in the picture mostly are neighbours in the light's view. */
+ * that lie in it: few, as neighbours in the picture mostly are neighbours in the light's view. The
+ * places of a request lie side by side in memory, and nothing else is kept of the picture's tile:
+ * a batch stays in the cache. */
 #include "render/tile/lightqueue.h"
 
 #include <stdlib.h>
@@ -7,20 +9,19 @@
 
 /* Places of one tile of the picture that lie in one tile of the light. */
 typedef struct Request {
-    uint64_t places; /* as bits */
-    int call;
-    int before; /* the request before it in the tile of the light, or -1 */
+    int first, n; /* of those asked */
+    int before;   /* the request before it in the tile of the light, or -1 */
 } Request;
 
 struct LightQueue {
     LightAim aim;
-    int n_calls, n_requests, n_tiles;
-    AimedPlaces aimed[LIGHT_BATCH];
+    int n_calls, n_requests, n_tiles, n_asked;
     Request requests[LIGHT_MOST_PLACES];
     int tiles[LIGHT_MOST_PLACES]; /* of the light, that are asked, in the order of their first
                                    * request */
-    uint32_t places[LIGHT_MOST_PLACES];
-    int *last; /* of each tile of the light, the last request there, or -1 */
+    AskedPlace asked[LIGHT_MOST_PLACES];
+    AskedPlace taken[LIGHT_MOST_PLACES]; /* of the tile that is shown */
+    int *last;                           /* of each tile of the light, the last request there, or -1 */
 };
 
 Status lightqueue_new(const LightAim *aim, LightQueue **out, Err *err)
@@ -43,18 +44,33 @@ void lightqueue_free(LightQueue *queue)
     free(queue);
 }
 
+/* Asks about the places whose bits are set, and returns how many they are. */
+static int append_places(LightQueue *queue, const AimedPlaces *aimed, int call, uint64_t places)
+{
+    int first = queue->n_asked;
+    for (; places; places &= places - 1) {
+        int sample = __builtin_ctzll(places);
+        queue->asked[queue->n_asked++] =
+            (AskedPlace){aimed->x[sample], aimed->y[sample], aimed->z[sample], (uint32_t)call,
+                         (uint32_t)sample};
+    }
+    return queue->n_asked - first;
+}
+
 int lightqueue_ask(LightQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
                    uint64_t wanted)
 {
     int call = queue->n_calls++;
-    AimedPlaces *aimed = &queue->aimed[call];
-    kernels->aim(&queue->aim, places, aimed);
+    AimedPlaces aimed;
+    kernels->aim(&queue->aim, places, &aimed);
     while (wanted) {
-        int tile = aimed->tile[__builtin_ctzll(wanted)], n = queue->n_requests++;
-        uint64_t within = wanted & kernels->within(aimed, tile);
+        int tile = aimed.tile[__builtin_ctzll(wanted)], n = queue->n_requests++;
+        uint64_t within = wanted & kernels->within(&aimed, tile);
         if (queue->last[tile] < 0)
             queue->tiles[queue->n_tiles++] = tile;
-        queue->requests[n] = (Request){within, call, queue->last[tile]};
+        Request *request = &queue->requests[n];
+        *request = (Request){.first = queue->n_asked, .before = queue->last[tile]};
+        request->n = append_places(queue, &aimed, call, within);
         queue->last[tile] = n;
         wanted &= ~within;
     }
@@ -67,8 +83,9 @@ static int take_places(LightQueue *queue, int tile)
     int n = 0;
     for (int i = queue->last[tile]; i >= 0; i = queue->requests[i].before) {
         const Request *request = &queue->requests[i];
-        for (uint64_t left = request->places; left; left &= left - 1)
-            queue->places[n++] = (uint32_t)(request->call * TILE_SAMPLES + __builtin_ctzll(left));
+        memcpy(&queue->taken[n], &queue->asked[request->first],
+               (size_t)request->n * sizeof *queue->taken);
+        n += request->n;
     }
     queue->last[tile] = -1;
     return n;
@@ -79,10 +96,9 @@ void lightqueue_visit(LightQueue *queue, LightVisitor *visit, void *context)
     for (int i = 0; i < queue->n_tiles; i++) {
         LightRequest request = {.tile = queue->tiles[i],
                                 .next = i + 1 < queue->n_tiles ? queue->tiles[i + 1] : -1,
-                                .places = queue->places,
-                                .n = take_places(queue, queue->tiles[i]),
-                                .aimed = queue->aimed};
+                                .places = queue->taken,
+                                .n = take_places(queue, queue->tiles[i])};
         visit(&request, context);
     }
-    queue->n_calls = queue->n_requests = queue->n_tiles = 0;
+    queue->n_calls = queue->n_requests = queue->n_tiles = queue->n_asked = 0;
 }

@@ -21,13 +21,17 @@ void lightqueue_free(LightQueue *queue);
 int lightqueue_ask(LightQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
                    uint64_t wanted);
 
-/* What one tile of the light is asked: places[n], TILE_SAMPLES times the number of the call that
- * asked, and the sample's. `next` is the tile that comes after it, or -1. */
+/* A place as the light sees it, as AimedPlaces have it, and which of whose call it is. */
+typedef struct AskedPlace {
+    double x, y, z;
+    uint32_t call, sample; /* calls are counted since the last lightqueue_visit */
+} AskedPlace;
+
+/* What one tile of the light is asked: places[n]. `next` is the tile that comes after it, or -1. */
 typedef struct LightRequest {
     int tile, next; /* row by row */
-    const uint32_t *places;
+    const AskedPlace *places;
     int n;
-    const AimedPlaces *aimed; /* of each call */
 } LightRequest;
 
 /* Shows what is asked of each tile of the light to `visit`, in the order in which tiles were first
