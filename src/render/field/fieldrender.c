@@ -86,27 +86,28 @@ static Vec3 world_normal(const FieldPicture *picture, const SeenTile *seen, int 
 }
 
 /* Where the hits of a tile are. */
-static void locate(const SeenTile *seen, SeenPlaces *places)
+static void locate(const SeenTile *seen, SeenPlaces *restrict places)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        double z = seen->hits->z[sample], scale = seen->perspective ? z : 1;
-        places->x[sample] = (seen->middle_x + (double)seen->x[sample]) * scale;
-        places->y[sample] = (seen->middle_y + (double)seen->y[sample]) * scale;
-        places->z[sample] = z;
+        places->x[sample] = seen->middle_x + (double)seen->x[sample];
+        places->y[sample] = seen->middle_y + (double)seen->y[sample];
+        places->z[sample] = seen->hits->z[sample];
+    }
+    for (int sample = 0; seen->perspective && sample < TILE_SAMPLES; sample++) {
+        places->x[sample] *= places->z[sample];
+        places->y[sample] *= places->z[sample];
     }
 }
 
-/* Of the hits, as bits, those whose surface faces the light. */
-static uint64_t find_facing(const FieldPicture *picture, const SeenTile *seen,
-                            const SeenPlaces *places, const TileLight *light)
+/* The samples inside the picture that see something, as bits. */
+static uint64_t find_hits(const SeenTile *seen)
 {
-    uint8_t facing[TILE_SAMPLES];
-    uint64_t wanted = 0;
-    picture->canvas.kernels->face(seen, places, seen->hits->normal, light, facing);
+    const bool whole = seen->n_columns == TILE_SIDE && seen->n_rows == TILE_SIDE;
+    uint64_t hits = 0;
     for (int sample = 0; sample < TILE_SAMPLES; sample++)
-        if (seen->hits->state[sample] == TILE_HIT && is_inside(seen, sample))
-            wanted |= (uint64_t)facing[sample] << sample;
-    return wanted;
+        if (seen->hits->state[sample] == TILE_HIT && (whole || is_inside(seen, sample)))
+            hits |= (uint64_t)1 << sample;
+    return hits;
 }
 
 /* One light, ray by ray. */
@@ -129,6 +130,7 @@ static void ask_lights(const FieldPicture *picture, int worker, const BatchTile 
 {
     const View *view = picture->canvas.drawing->view;
     const Batch *batch = &picture->batches[worker];
+    const uint64_t hits = find_hits(&tile->seen);
     SeenPlaces places;
     locate(&tile->seen, &places);
     for (size_t i = 0; i < view->n_lights; i++) {
@@ -136,7 +138,8 @@ static void ask_lights(const FieldPicture *picture, int worker, const BatchTile 
         if (!light->casts_shadows || light->samples > 1)
             continue;
         uint64_t wanted =
-            find_facing(picture, &tile->seen, &places, &picture->canvas.look.lights[i]);
+            hits & picture->canvas.kernels->face(&tile->seen, &places, tile->seen.hits->normal,
+                                                 &picture->canvas.look.lights[i]);
         size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
         if (batch->queues[i])
             field_lights.ask(batch->queues[i], picture->canvas.kernels, &places, wanted,

@@ -84,20 +84,6 @@ static void face_viewer(BatchTile *tile)
     }
 }
 
-/* Of the samples that see something, as bits, those whose surface faces the light. */
-static uint64_t find_facing(const RasterPicture *picture, const BatchTile *tile,
-                            const TileLight *light, const SeenPlaces *places)
-{
-    uint8_t facing[TILE_SAMPLES];
-    uint64_t wanted = 0;
-    picture->canvas.kernels->face(&tile->seen, places, tile->surfels.normal, light, facing);
-    for (uint64_t left = tile->visible; left; left &= left - 1) {
-        int sample = __builtin_ctzll(left);
-        wanted |= (uint64_t)facing[sample] << sample;
-    }
-    return wanted;
-}
-
 /* One light, ray by ray. */
 static void cast_shadows(const RasterPicture *picture, const Light *light, int worker,
                          const SeenPlaces *places, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
@@ -123,7 +109,10 @@ static void ask_lights(const RasterPicture *picture, const BatchTile *tile, int 
         const Light *light = &view->lights[i];
         if (!light->casts_shadows || light->samples > 1)
             continue;
-        uint64_t wanted = find_facing(picture, tile, &picture->canvas.look.lights[i], &places);
+        uint64_t wanted =
+            tile->visible & picture->canvas.kernels->face(&tile->seen, &places,
+                                                          tile->surfels.normal,
+                                                          &picture->canvas.look.lights[i]);
         size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
         if (batch->queues[i])
             rasterqueue_ask(batch->queues[i], picture->canvas.kernels, &places, tile->hits.item,

@@ -233,35 +233,37 @@ LANE_TARGET static void TILE_KERNEL(clear)(const uint8_t *state, const float bac
 /* ---- lights ---------------------------------------------------------------------------------- */
 
 /* `near`: the light is not parallel; `slanted`: the camera's view is not. */
-LANE_FN void face_samples(const SeenTile *seen, const SeenPlaces *places,
-                          const float normal[3][TILE_SAMPLES], const TileLight *light, bool near,
-                          bool slanted, uint8_t facing[TILE_SAMPLES])
+LANE_FN uint64_t face_samples(const SeenTile *seen, const SeenPlaces *places,
+                              const float normal[3][TILE_SAMPLES], const TileLight *light,
+                              bool near, bool slanted)
 {
-    const float to_x = light->towards[0], to_y = light->towards[1], to_z = light->towards[2];
-    float middle_x = (float)seen->middle_x, middle_y = (float)seen->middle_y;
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        float nx = normal[0][sample], ny = normal[1][sample], nz = normal[2][sample];
-        float x = to_x, y = to_y, z = to_z, away = nz;
+    uint64_t facing = 0;
+    for (int first = 0; first < TILE_SAMPLES; first += LANES) {
+        Lanes nx = lanes_load(&normal[0][first]), ny = lanes_load(&normal[1][first]);
+        Lanes nz = lanes_load(&normal[2][first]), away = nz, x = lanes_set(light->towards[0]);
+        Lanes y = lanes_set(light->towards[1]), z = lanes_set(light->towards[2]);
         if (near) {
-            x -= (float)places->x[sample];
-            y -= (float)places->y[sample];
-            z -= (float)places->z[sample];
+            x -= lanes_of_doubles(&places->x[first], 0);
+            y -= lanes_of_doubles(&places->y[first], 0);
+            z -= lanes_of_doubles(&places->z[first], 0);
         }
         if (slanted)
-            away += nx * (middle_x + seen->x[sample]) + ny * (middle_y + seen->y[sample]);
-        float along = nx * x + ny * y + nz * z;
-        facing[sample] = (uint8_t)((away > 0 ? -along : along) > 0);
+            away += nx * (lanes_load(&seen->x[first]) + (float)seen->middle_x) +
+                    ny * (lanes_load(&seen->y[first]) + (float)seen->middle_y);
+        Lanes along = nx * x + ny * y + nz * z;
+        LaneMask faces = lanes_select(away > 0.0f, -along, along) > 0.0f;
+        facing |= (uint64_t)lanes_bits(faces) << first;
     }
+    return facing;
 }
 
-LANE_TARGET static void TILE_KERNEL(face)(const SeenTile *seen, const SeenPlaces *places,
-                                          const float normal[3][TILE_SAMPLES],
-                                          const TileLight *light, uint8_t facing[TILE_SAMPLES])
+LANE_TARGET static uint64_t TILE_KERNEL(face)(const SeenTile *seen, const SeenPlaces *places,
+                                              const float normal[3][TILE_SAMPLES],
+                                              const TileLight *light)
 {
     if (light->parallel && !seen->perspective)
-        face_samples(seen, places, normal, light, false, false, facing);
-    else
-        face_samples(seen, places, normal, light, !light->parallel, seen->perspective, facing);
+        return face_samples(seen, places, normal, light, false, false);
+    return face_samples(seen, places, normal, light, !light->parallel, seen->perspective);
 }
 
 /* The tile, of `count`, that a place in tiles lies in. */

@@ -72,10 +72,10 @@ typedef struct TileKernels {
      * Colours that are not a number have code 0. */
     void (*encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES], const uint8_t *state,
                    const uint8_t background[3], uint8_t *pixels, size_t stride);
-    /* facing[i] is 1 where the visible side of the surface at a place faces the light, else 0. */
-    void (*face)(const SeenTile *seen, const SeenPlaces *places,
-                 const float normal[3][TILE_SAMPLES], const TileLight *light,
-                 uint8_t facing[TILE_SAMPLES]);
+    /* Bit i: the visible side of the surface at place i faces the light; anything where nothing is
+     * seen. */
+    uint64_t (*face)(const SeenTile *seen, const SeenPlaces *places,
+                     const float normal[3][TILE_SAMPLES], const TileLight *light);
     /* Sets the places as the light sees them; where a sample sees nothing, to a tile of the light
      * all the same. */
     void (*aim)(const LightAim *aim, const SeenPlaces *places, AimedPlaces *aimed);
