@@ -142,8 +142,9 @@ void fieldterms_fetch(const FrameSegment *segments, const uint32_t *list, size_t
 {
     for (size_t i = 0; i < n; i++) {
         const FrameSegment *segment = &segments[list[i]];
-        __builtin_prefetch(segment);
-        __builtin_prefetch(&segment->length);
+        __builtin_prefetch(segment); /* it may lie across three lines of the cache */
+        __builtin_prefetch(&segment->axis);
+        __builtin_prefetch(&segment->reach);
     }
 }
 

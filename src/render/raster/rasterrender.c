@@ -109,10 +109,9 @@ static void ask_lights(const RasterPicture *picture, const BatchTile *tile, int 
         const Light *light = &view->lights[i];
         if (!light->casts_shadows || light->samples > 1)
             continue;
-        uint64_t wanted =
-            tile->visible & picture->canvas.kernels->face(&tile->seen, &places,
-                                                          tile->surfels.normal,
-                                                          &picture->canvas.look.lights[i]);
+        uint64_t wanted = tile->visible &
+                          picture->canvas.kernels->face(&tile->seen, &places, tile->surfels.normal,
+                                                        &picture->canvas.look.lights[i]);
         size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
         if (batch->queues[i])
             rasterqueue_ask(batch->queues[i], picture->canvas.kernels, &places, tile->hits.item,

@@ -21,7 +21,7 @@ struct LightQueue {
                                    * request */
     AskedPlace asked[LIGHT_MOST_PLACES];
     AskedPlace taken[LIGHT_MOST_PLACES]; /* of the tile that is shown */
-    int *last;                           /* of each tile of the light, the last request there, or -1 */
+    int *last; /* of each tile of the light, the last request there, or -1 */
 };
 
 Status lightqueue_new(const LightAim *aim, LightQueue **out, Err *err)
@@ -50,9 +50,8 @@ static int append_places(LightQueue *queue, const AimedPlaces *aimed, int call, 
     int first = queue->n_asked;
     for (; places; places &= places - 1) {
         int sample = __builtin_ctzll(places);
-        queue->asked[queue->n_asked++] =
-            (AskedPlace){aimed->x[sample], aimed->y[sample], aimed->z[sample], (uint32_t)call,
-                         (uint32_t)sample};
+        queue->asked[queue->n_asked++] = (AskedPlace){
+            aimed->x[sample], aimed->y[sample], aimed->z[sample], (uint32_t)call, (uint32_t)sample};
     }
     return queue->n_asked - first;
 }
