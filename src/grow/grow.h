@@ -70,7 +70,8 @@ typedef struct GrowParams {
 } GrowParams;
 
 /* 1,000 terminals of equal flow, gamma 3, lambda 2, seed 1, 100 to 60 mmHg, 500 ml/min, constant
- * viscosity, 3.6 cP (of plasma 1.2, hematocrit 0.45), 8 candidates, tossed by segment. */
+ * viscosity, 3.6 cP (of plasma 1.2, hematocrit 0.45), 8 candidates, relaxed up to 300 terminals,
+ * tossed by segment. */
 GrowParams grow_defaults(void);
 
 typedef struct GrowReport {

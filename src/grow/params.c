@@ -17,6 +17,7 @@ GrowParams grow_defaults(void)
                         .hematocrit = 0.45,
                         .plasma_viscosity_cp = 1.2,
                         .candidates = 8,
+                        .relax = 300,
                         .toss = GROW_TOSS_SEGMENT};
 }
 
