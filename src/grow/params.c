@@ -156,6 +156,11 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     if (!(params->clearance_mm >= 0) || !isfinite(params->clearance_mm))
         return err_set(err, STATUS_USAGE, "`clearance_mm` %g: must be a number of mm not below 0",
                        params->clearance_mm);
+    if (params->clearance_mm > 0 && !params->from && params->inlets <= 1)
+        return err_set(err, STATUS_USAGE,
+                       "`clearance_mm` %g: is between trees, and there is one; several of `inlet` "
+                       "grow several",
+                       params->clearance_mm);
     if (!(params->min_radius_mm >= 0) || !isfinite(params->min_radius_mm))
         return err_set(err, STATUS_USAGE, "`min_radius_mm` %g: must be a number of mm not below 0",
                        params->min_radius_mm);

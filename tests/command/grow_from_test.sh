@@ -270,6 +270,9 @@ test_domains_stand_where_they_are_placed() {
     expect_json stdout '.bbox_mm[0][0] > 87 and .bbox_mm[1][0] < 113 and .bbox_mm[1][2] < 41 and .bbox_mm[0][2] > 25'
     grep -qx '# domain: ellipsoid:12,9,7@100,-20.5,33' placed.swc || fail "expected the place in the header"
     run_ok corcast refine placed.swc --refine geometry -o refined.swc
+    run corcast grow --domain hull:placed.swc,5@30,0,0 -o hull.swc
+    expect_status 2
+    expect_sentence 'hull:placed.swc,5@30,0,0: a hull lies about its tree and has no other place$'
     run corcast grow --domain hull:5 -o hull.swc
     expect_status 2
     expect_sentence "is about the tree of --from, and there is none"

@@ -101,6 +101,9 @@ test_trees_keep_the_clearance_that_was_asked_for() {
     run corcast grow --terminals 160 --inlet 0,50 --inlet 4.5,-49 --clearance -1 -o none.swc
     expect_status 2
     expect_sentence "clearance.*-1"
+    run corcast grow --terminals 160 --clearance 1.5 -o none.swc
+    expect_status 2
+    expect_sentence '^corcast grow: --clearance 1.5: is between trees, and there is one; several of --inlet grow several$'
     run corcast grow --terminals 160 --inlet 0,50 --inlet 4.5,49 --clearance 30.5 -o none.swc
     expect_status 2
     expect_sentence 'no straight vessel leads from --inlet 4.5,49,0 into the domain, clear of those of the other inlets'

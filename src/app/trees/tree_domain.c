@@ -33,6 +33,17 @@ static Status hull_of_file(const char *path, double mm, Domain *domain, Err *err
     return status;
 }
 
+/* Whether a place, @X,Y or @X,Y,Z, ends the text. */
+static bool has_place(const char *text)
+{
+    const char *at = strrchr(text, '@');
+    double x;
+    if (!at)
+        return false;
+    at++;
+    return number_take(&at, &x) && *at == ',';
+}
+
 Status tree_domain_parse(const char *spec, const Tree *from, const char *from_path, Domain *domain,
                          Err *err)
 {
@@ -41,6 +52,9 @@ Status tree_domain_parse(const char *spec, const Tree *from, const char *from_pa
         return domain_parse(domain, spec, err);
     const char *values = spec + skip, *comma = strrchr(values, ',');
     double mm;
+    if (has_place(values))
+        return err_set(err, STATUS_USAGE,
+                       "--domain %s: a hull lies about its tree and has no other place", spec);
     if (!number_parse(comma ? comma + 1 : values, &mm) || comma == values)
         return err_set(err, STATUS_USAGE,
                        "--domain %s: a hull is hull:MM, what lies within MM of the tree of --from, "
