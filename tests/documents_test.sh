@@ -236,6 +236,10 @@ where there are more than 8,000 @ povray_joint.c @ MANY = 8000,
 scenes of more than 3,000 segments the twelve @ povray_cells.c @ MOST_INLINE = 3000
 - `f(x) <= M d(x) / 2`, because a ray that missed @ povray_joint.c @ 2 * steepest};
 Its hits are within 10⁻⁷ radii @ joints.inc @ accuracy 1e-7 open
+no tile has more than 400,000 cylinders @ povray.c @ {MODEL_CYLINDERS, put_primitive_macros, put_primitives, 400000},
+200,000 pieces of a joined tree, 8,192 segments of a blob @ povray.c @ {MODEL_BLOB, put_blob_macros, put_blob, 8192},
+of a mesh, or 100,000 cells @ povray.c @ {MODEL_POTENTIAL, put_cell_macros, put_cells, 100000},
+tile is narrower than 8 pixels @ povray_side.c @ LEAST_SIDE = 8 };
 for at most 65,536 segments @ povray_blob.c @ GROUP = 256, MAX_PAINTED = GROUP * GROUP,
 END
     # The polynomial in tanh is half of what stands in the source.

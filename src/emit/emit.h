@@ -42,8 +42,10 @@ typedef struct EmitParams {
     bool ids;         /* isosurface, blob: with the paint that the id plane needs */
     bool planes;      /* Tachyon: colours that tell depth and segment, in the place of the look's */
     CellParams cells; /* isosurface */
-    const PixelRect *part; /* POV-Ray, without an anatomy: only what the rays of this part of the
-                            * picture can meet, each piece as the whole scene has it; NULL: all */
+    const CellTree *built; /* likewise, or NULL: its cells, that need not be found anew */
+    const PixelRect *part; /* POV-Ray, without an anatomy, with cells that are built: only what the
+                            * rays of this part of the picture can meet, each piece as the whole
+                            * scene has it; NULL: all */
 } EmitParams;
 
 typedef struct EmitReport {
@@ -102,9 +104,10 @@ MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err
 MUST_CHECK Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
                              const char *second_path, EmitReport *report, Err *err);
 
-/* How much a scene is for POV-Ray, by its pieces: one of 1 POV-Ray reads in about ten seconds, in
- * less than 2 GB; beyond some 2, there are models of which it cannot read it. STATUS_INFEASIBLE
- * when an isosurface has too many cells, STATUS_MEMORY. */
+/* How much the scene is for POV-Ray, by the number of its pieces: of a load of 1 it reads each
+ * plane in some ten seconds and 1 GB at most, where vessels lie as in grown trees; it holds twice
+ * that of any model. STATUS_MEMORY. O(pieces); of an isosurface without cells that are built, as
+ * celltree_build. */
 MUST_CHECK Status povray_load(const EmitParams *params, double *load, Err *err);
 
 /* How much of a box vessels fill, in a density file for POV-Ray. */

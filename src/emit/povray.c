@@ -25,11 +25,11 @@ static const struct {
     ModelElement element;
     Status (*put_macros)(Text *out, void *geometry, Err *err);
     Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err);
-    double pieces; /* that make a load of 1 */
+    double pieces; /* that are a load of 1, as measured; of a blob and an isosurface, with ids */
 } geometries[] = {
-    {MODEL_POTENTIAL, put_cell_macros, put_cells, 200000},
-    {MODEL_BLOB, put_blob_macros, put_blob, 32768},
-    {MODEL_TRIANGLES, put_mesh_macros, put_mesh, 20000},
+    {MODEL_POTENTIAL, put_cell_macros, put_cells, 100000},
+    {MODEL_BLOB, put_blob_macros, put_blob, 8192},
+    {MODEL_TRIANGLES, put_mesh_macros, put_mesh, 4000},
     {MODEL_JOINTS, put_joined_macros, put_primitives, 200000},
     {MODEL_CYLINDERS, put_primitive_macros, put_primitives, 400000},
 };

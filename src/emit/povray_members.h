@@ -24,6 +24,7 @@ typedef struct PovrayGeometry {
     bool nothing;        /* no ray of the part can meet anything */
     PovrayItems painted; /* of a blob: the segments that may be seen; borrowed from the indices */
     CellTree *cells;     /* of each object of an isosurface; its terms have the scene's indices */
+    Cell *met;           /* of the cells that are built, those that rays of the part can meet */
     size_t object;       /* that is being declared */
 } PovrayGeometry;
 

@@ -111,21 +111,13 @@ static Status find_items(PovrayGeometry *geometry, Err *err)
     return STATUS_OK;
 }
 
-static CellParams cell_params(const PovrayGeometry *geometry)
-{
-    CellParams params = geometry->params->cells;
-    params.sight = geometry->sight;
-    return params;
-}
-
 /* The cells of a part of the geometry, with the numbers of the whole. */
 static Status part_cells(const PovrayGeometry *geometry, PovrayItems items, CellTree *cells,
                          Err *err)
 {
     Geometry part = {0};
-    const CellParams params = cell_params(geometry);
     TRY(geometry_part(&geometry->scene->geometry, items.index, items.n, &part, err));
-    Status status = celltree_build(&part, &params, cells, err);
+    Status status = celltree_build(&part, &geometry->params->cells, cells, err);
     geometry_release(&part);
     for (size_t i = 0; i < cells->n_terms; i++)
         cells->terms[i].segment = items.index[cells->terms[i].segment];
@@ -135,22 +127,42 @@ static Status part_cells(const PovrayGeometry *geometry, PovrayItems items, Cell
     return status;
 }
 
+/* Those of the cells that are built that rays of the part can meet. */
+static Status take_cells(PovrayGeometry *geometry, Err *err)
+{
+    const CellTree *built = geometry->params->built;
+    TRY(mem_calloc(&geometry->met, built->n_cells, sizeof *geometry->met, "cells", err));
+    size_t n = 0;
+    for (size_t i = 0; i < built->n_cells; i++) {
+        const Cell *cell = &built->cells[i];
+        if (sight_meets(geometry->sight, (Box){cell->low, cell->high}))
+            geometry->met[n++] = *cell;
+    }
+    geometry->cells[0] = *built;
+    geometry->cells[0].cells = geometry->met;
+    geometry->cells[0].n_cells = n;
+    return STATUS_OK;
+}
+
 Status povray_objects_find(PovrayGeometry *geometry, Err *err)
 {
     const EmitParams *params = geometry->params;
     const Scene *scene = geometry->scene;
-    assert(!params->part || !params->anatomy);
+    const bool cut = model_has(scene->geometry.model, MODEL_POTENTIAL);
+    assert(!params->part || (!params->anatomy && (!cut || params->built)));
     if (params->part)
         TRY(sight_new(&scene->view, scene->geometry.bounds, *params->part, params->shadows,
                       &geometry->sight, err));
     TRY(find_items(geometry, err));
     if (model_has(scene->geometry.model, MODEL_BLOB))
         return find_painted(geometry, err);
-    if (!model_has(scene->geometry.model, MODEL_POTENTIAL))
+    if (!cut)
         return STATUS_OK;
-    const CellParams cells = cell_params(geometry);
     TRY(mem_calloc(&geometry->cells, geometry->n_objects, sizeof *geometry->cells, "cells", err));
-    TRY(celltree_build(&scene->geometry, &cells, &geometry->cells[0], err));
+    if (params->built)
+        TRY(take_cells(geometry, err));
+    else
+        TRY(celltree_build(&scene->geometry, &params->cells, &geometry->cells[0], err));
     for (size_t k = 1; k < geometry->n_objects; k++)
         if (geometry->objects[k].n)
             TRY(part_cells(geometry, geometry->objects[k], &geometry->cells[k], err));
@@ -159,9 +171,11 @@ Status povray_objects_find(PovrayGeometry *geometry, Err *err)
 
 void povray_objects_release(PovrayGeometry *geometry)
 {
-    for (size_t k = 0; geometry->cells && k < geometry->n_objects; k++)
+    for (size_t k = geometry->params->built ? 1 : 0; geometry->cells && k < geometry->n_objects;
+         k++)
         celltree_release(&geometry->cells[k]);
     free(geometry->cells);
+    free(geometry->met);
     free(geometry->objects);
     free(geometry->indices);
     sight_free(geometry->sight);

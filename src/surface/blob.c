@@ -34,6 +34,13 @@ double blob_reach(const BlobShape *shape)
     return reach;
 }
 
+Ball blob_ball(const FieldSegment *segment)
+{
+    Vec3 middle = vec3_scale(vec3_add(segment->a, segment->b), 0.5);
+    double reach = blob_reach(&blob_shape) * segment->radius_mm;
+    return (Ball){middle, 1.000001 * (vec3_distance(middle, segment->a) + reach)};
+}
+
 void blob_components(const BlobShape *shape, const FieldSegment *segment,
                      BlobComponent components[BLOB_COMPONENTS])
 {

@@ -52,6 +52,8 @@ double blob_first_strength(const BlobShape *shape);
 
 /* The field of a segment is 0 beyond this many of its radii from it. */
 double blob_reach(const BlobShape *shape);
+/* A ball that holds all of the field of a segment by blob_shape. */
+Ball blob_ball(const FieldSegment *segment);
 
 typedef struct BlobComponent {
     Vec3 a, b;        /* ends of a tube's axis; of a sphere, both its centre */

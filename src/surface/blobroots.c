@@ -136,6 +136,13 @@ static void search_between(Search *search, size_t n, long double low, long doubl
     search_between(search, n, middle, high, f_middle, f_high);
 }
 
+static bool meets_ball(Ray ray, Ball ball)
+{
+    Vec3 from = vec3_sub(ball.center, ray.origin);
+    Vec3 off = vec3_add_scaled(from, ray.direction, -vec3_dot(from, ray.direction));
+    return vec3_length(off) <= ball.radius;
+}
+
 Status blob_roots(const FieldSegment *segments, size_t n, Ray ray, double t_min, double t_max,
                   BlobRoots *roots, Err *err)
 {
@@ -146,6 +153,8 @@ Status blob_roots(const FieldSegment *segments, size_t n, Ray ray, double t_min,
     *roots = (BlobRoots){.sure = true};
     for (size_t i = 0; i < n; i++) {
         BlobComponent components[BLOB_COMPONENTS];
+        if (!meets_ball(ray, blob_ball(&segments[i])))
+            continue;
         blob_components(&blob_shape, &segments[i], components);
         if (felt + BLOB_COMPONENTS > room) {
             Status status = mem_reserve(&search.felt, &room, felt + BLOB_COMPONENTS,

@@ -81,7 +81,6 @@ typedef struct CellParams {
     double beta; /* > 0: cubes are split while longer than this times the smallest radius that
                   * matters in them; 0: chosen from the number of segments */
     ErfForm erf;
-    const Sight *sight; /* NULL, or of all cells only those that it meets are found */
 } CellParams;
 
 /* The accuracy of a cell, mm, by the smallest radius that matters in it: 1/300 of that, but at

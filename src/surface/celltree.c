@@ -57,7 +57,6 @@ typedef struct Builder {
     const FieldSegment *segments;
     Support *supports; /* one a segment */
     double beta;
-    const Sight *sight;
     double root_side;
     double rounding; /* mm: what single precision may take from a box */
     uint32_t *stack; /* the lists of the cubes from the first down to the current one */
@@ -322,8 +321,6 @@ static Status add_cell(Builder *builder, const TermList *candidates, const Cube 
     double margin = overlap_of(builder, cube, accuracy);
     Box box = box_rounded(cube_box(cube, margin), accuracy);
     TermList terms;
-    if (!sight_meets(builder->sight, box))
-        return STATUS_OK;
     TRY(filter_terms(builder, candidates, box, &terms, err));
     if (terms.bound_sum < empty_below || misses_surface(builder, &terms, cube, 2 * margin))
         return STATUS_OK;
@@ -358,8 +355,6 @@ static Status descend(Builder *builder, const TermList *parent, const Cube *cube
     double margin =
         (overlap_accuracies + 1) * cell_accuracy(parent->largest_radius) + builder->rounding;
     TermList terms;
-    if (!sight_meets(builder->sight, cube_box(cube, margin)))
-        return STATUS_OK;
     TRY(filter_terms(builder, parent, cube_box(cube, margin), &terms, err));
     if (terms.bound_sum >= empty_below && !misses_surface(builder, &terms, cube, margin)) {
         bool split =
@@ -448,7 +443,6 @@ Status celltree_build(const Geometry *geometry, const CellParams *params, CellTr
 {
     Builder builder = {.segments = geometry->segments,
                        .beta = params->beta > 0 ? params->beta : chosen_beta(geometry->n_segments),
-                       .sight = params->sight,
                        .tree = {.erf = params->erf}};
     Status status = STATUS_OK;
     if (geometry->blend.n_groups)

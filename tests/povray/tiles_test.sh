@@ -58,6 +58,20 @@ test_a_verification_leaves_the_scenes_of_its_tiles_and_no_others() {
     [ -z "$(find report -name '*tile*')" ] || fail "expected no tiles, got $(ls report)"
 }
 
+# 8,399 segments of a blob are more than POV-Ray reads in good time with their ids.
+test_a_scene_that_is_too_much_for_povray_is_drawn_in_tiles_or_refused() {
+    run_ok corcast grow --terminals 4200 --seed 5 -o tree.swc
+    run_ok corcast verify tree.swc --model blob --size 48x40 -o report
+    expect_json report/report.json '.verdict == "agree" and .povray.tiles == 2'
+    run_ok corcast verify tree.swc --model blob --height 25 --size 48x40 -o near
+    expect_json near/report.json '.verdict == "agree" and .povray.tiles == 1'
+    [ "$(wc -c <near/scene.inc)" -lt "$(wc -c <report/scene.tile-1.inc)" ] || fail "expected less to be seen from near by"
+    run corcast verify tree.swc --model blob --size 12x12 -o refused
+    expect_status 2
+    expect_sentence 'what may be seen in 12 x 12 pixels at \(0, 0\) is 103 % of what POV-Ray reads in good time, and tiles are no smaller; draw a larger picture, or leave out thin vessels \(--prune-radius\)$'
+    [ -z "$(ls refused)" ] || fail "expected an empty folder, got $(ls refused)"
+}
+
 test_more_tiles_than_a_picture_has_are_refused() {
     run_ok corcast grow --terminals 12 --seed 5 -o tree.swc
     run corcast verify tree.swc --size 40x30 --tiles 100 -o report

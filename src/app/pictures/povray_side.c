@@ -19,9 +19,8 @@
 
 enum { PLANES = ORACLE_ID + 1, LEAST_SIDE = 8 };
 
-/* The text of all scenes that are drawn side by side: POV-Ray takes up to forty times as much
- * memory. */
-static const double most_bytes_at_once = 64e6;
+/* The loads [emit.h, povray_load] of all scenes that POV-Ray holds at one time, for its memory. */
+static const double most_load_at_once = 2;
 
 static const char *const plane_names[PLANES] = {
     [ORACLE_COLOR] = "povray",
@@ -42,6 +41,7 @@ typedef struct Tile {
 typedef struct Tiles {
     Tile *tile; /* owned; from the top and the left */
     size_t n, room;
+    bool cut; /* scenes hold only what the rays of their tile can meet */
 } Tiles;
 
 static void tiles_release(Tiles *tiles)
@@ -59,23 +59,33 @@ static bool has_id_scene(const Verification *v)
     return model_has(v->scene.geometry.model, MODEL_FIELD);
 }
 
+/* What scenes are written from. */
+typedef struct Source {
+    const Verification *v;
+    CellTree cells; /* owned; of an isosurface, else empty */
+} Source;
+
 /* The scene for POV-Ray. It has no anatomy, which changes no picture and has POV-Ray read each tree
  * of a field twice. */
-static EmitParams emit_params(const Verification *v, const Scene *scene, bool ids,
+static EmitParams emit_params(const Source *source, const Scene *scene, bool ids,
                               const PixelRect *part)
 {
+    const Verification *v = source->v;
     return (EmitParams){.scene = scene,
                         .command = v->commands[0],
                         .shadows = v->picture->stage.shadows,
                         .ids = ids,
                         .cells = v->cells,
+                        .built = verification_takes_two_steps(v) ? &source->cells : NULL,
                         .part = part};
 }
 
-static Status weigh(const Verification *v, Tile *tile, Err *err)
+/* Of what the rays of a part can meet; NULL: of all. */
+static Status weigh(const Source *source, const PixelRect *part, double *load, Err *err)
 {
-    const EmitParams params = emit_params(v, &v->scene, has_id_scene(v), &tile->rect);
-    return povray_load(&params, &tile->load, err);
+    const Verification *v = source->v;
+    const EmitParams params = emit_params(source, &v->scene, has_id_scene(v), part);
+    return povray_load(&params, load, err);
 }
 
 static bool can_be_halved(const Tile *tile)
@@ -100,7 +110,7 @@ static Tile *heaviest(const Tiles *tiles)
 }
 
 /* Puts the halves of a tile in its place. */
-static Status halve(const Verification *v, Tiles *tiles, size_t place, Err *err)
+static Status halve(const Source *source, Tiles *tiles, size_t place, Err *err)
 {
     TRY(mem_reserve(&tiles->tile, &tiles->room, tiles->n + 1, sizeof *tiles->tile, "tiles", err));
     Tile *first = &tiles->tile[place], *second = first + 1;
@@ -115,8 +125,8 @@ static Status halve(const Verification *v, Tiles *tiles, size_t place, Err *err)
         second->rect.top += first->rect.height;
         second->rect.height -= first->rect.height;
     }
-    TRY(weigh(v, first, err));
-    return weigh(v, second, err);
+    TRY(weigh(source, &first->rect, &first->load, err));
+    return weigh(source, &second->rect, &second->load, err);
 }
 
 static Status check_tiles(const Verification *v, const Tiles *tiles, Err *err)
@@ -124,12 +134,13 @@ static Status check_tiles(const Verification *v, const Tiles *tiles, Err *err)
     for (size_t i = 0; i < tiles->n; i++) {
         const Tile *tile = &tiles->tile[i];
         if (tile->load > 1)
-            return err_set(err, STATUS_INFEASIBLE,
-                           "POV-Ray cannot prove this picture: what may be seen in %d x %d pixels "
-                           "at (%d, %d) is %.2g times what it holds; draw a larger picture, or "
-                           "leave out thin vessels (`prune_radius`)",
-                           tile->rect.width, tile->rect.height, tile->rect.left, tile->rect.top,
-                           tile->load);
+            return err_set(
+                err, STATUS_INFEASIBLE,
+                "what may be seen in %d x %d pixels at (%d, %d) is %.0f %% of what POV-Ray "
+                "reads in good time, and tiles are no smaller; draw a larger picture, or "
+                "leave out thin vessels (`prune_radius`)",
+                tile->rect.width, tile->rect.height, tile->rect.left, tile->rect.top,
+                100 * tile->load);
     }
     if (tiles->n < (size_t)v->least_tiles)
         return err_set(err, STATUS_USAGE,
@@ -140,17 +151,22 @@ static Status check_tiles(const Verification *v, const Tiles *tiles, Err *err)
     return STATUS_OK;
 }
 
-static Status find_tiles(const Verification *v, Tiles *tiles, Err *err)
+static Status find_tiles(const Source *source, Tiles *tiles, Err *err)
 {
+    const Verification *v = source->v;
     const int *pixels = v->picture->size.pixels;
     TRY(mem_reserve(&tiles->tile, &tiles->room, 1, sizeof *tiles->tile, "tiles", err));
-    tiles->tile[tiles->n++] = (Tile){.rect = {0, 0, pixels[0], pixels[1]}};
-    TRY(weigh(v, &tiles->tile[0], err));
+    Tile *whole = &tiles->tile[tiles->n++];
+    *whole = (Tile){.rect = {0, 0, pixels[0], pixels[1]}};
+    TRY(weigh(source, NULL, &whole->load, err));
+    tiles->cut = whole->load > 1 || v->least_tiles > 1;
+    if (tiles->cut)
+        TRY(weigh(source, &whole->rect, &whole->load, err));
     for (;;) {
         Tile *next = heaviest(tiles);
         if (!next || (next->load <= 1 && tiles->n >= (size_t)v->least_tiles))
             return check_tiles(v, tiles, err);
-        TRY(halve(v, tiles, (size_t)(next - tiles->tile), err));
+        TRY(halve(source, tiles, (size_t)(next - tiles->tile), err));
     }
 }
 
@@ -170,27 +186,42 @@ static Status tile_path(const Verification *v, const Tiles *tiles, size_t number
 /* ---- scenes ---------------------------------------------------------------------------------- */
 
 /* The ids of an implicit surface are painted in a scene of their own, as they take most of it. */
-static Status write_scene(const Verification *v, const Tiles *tiles, size_t number, bool ids,
+static Status write_scene(const Source *source, const Tiles *tiles, size_t number, bool ids,
                           Err *err)
 {
+    const Verification *v = source->v;
     Tile *tile = &tiles->tile[number];
     char **path = ids ? &tile->ids : &tile->scene;
     Scene whole = v->scene;
     if (v->frames.n_frames > 0)
         whole.appearance = v->frames;
     TRY(tile_path(v, tiles, number, ids ? "ids" : "scene", "pov", path, err));
-    const EmitParams params = emit_params(v, &whole, ids, tiles->n > 1 ? &tile->rect : NULL);
+    const EmitParams params = emit_params(source, &whole, ids, tiles->cut ? &tile->rect : NULL);
     return scene_files_write(emitter_find("pov", false), &params, v->tree, *path, false, NULL, err);
 }
 
-static Status write_scenes(const Verification *v, const Tiles *tiles, Err *err)
+static Status write_scenes(const Source *source, const Tiles *tiles, Err *err)
 {
     for (size_t i = 0; i < tiles->n; i++) {
-        TRY(write_scene(v, tiles, i, false, err));
-        if (has_id_scene(v))
-            TRY(write_scene(v, tiles, i, true, err));
+        TRY(write_scene(source, tiles, i, false, err));
+        if (has_id_scene(source->v))
+            TRY(write_scene(source, tiles, i, true, err));
     }
     return STATUS_OK;
+}
+
+/* Finds the tiles and writes their scenes. */
+static Status prepare_tiles(const Verification *v, Tiles *tiles, Err *err)
+{
+    Source source = {.v = v};
+    Status status = STATUS_OK;
+    if (verification_takes_two_steps(v))
+        TRY(celltree_build(&v->scene.geometry, &v->cells, &source.cells, err));
+    TRY_GOTO(find_tiles(&source, tiles, err));
+    status = write_scenes(&source, tiles, err);
+done:
+    celltree_release(&source.cells);
+    return status;
 }
 
 /* ---- runs ------------------------------------------------------------------------------------ */
@@ -228,29 +259,14 @@ static void report_plane(double fraction, void *context)
     pthread_mutex_unlock(&runs->lock);
 }
 
-/* Of the geometry beside a scene; 0: there is none. */
-static Status bytes_beside(const char *scene, double *bytes, Err *err)
-{
-    char *path = NULL;
-    if (!scene)
-        return STATUS_OK;
-    TRY(file_with_suffix(scene, ".inc", &path, err));
-    *bytes = fmax(*bytes, file_bytes(path));
-    free(path);
-    return STATUS_OK;
-}
-
 /* How many run side by side, each on its share of the processors that were asked for. */
-static Status runs_at_once(const Verification *v, const Tiles *tiles, int *at_once, Err *err)
+static int runs_at_once(const Verification *v, const Tiles *tiles)
 {
-    double largest = 1;
     int threads = v->common->threads, most = threads > 0 && threads < PLANES ? threads : PLANES;
-    for (size_t i = 0; i < tiles->n; i++) {
-        TRY(bytes_beside(tiles->tile[i].scene, &largest, err));
-        TRY(bytes_beside(tiles->tile[i].ids, &largest, err));
-    }
-    *at_once = (int)fmax(1, fmin(most, most_bytes_at_once / largest));
-    return STATUS_OK;
+    double load = 0;
+    for (size_t i = 0; i < tiles->n; i++)
+        load = fmax(load, tiles->tile[i].load);
+    return load * most <= most_load_at_once ? most : (int)fmax(1, most_load_at_once / load);
 }
 
 /* At which the scene is in the frame that is verified. */
@@ -406,10 +422,9 @@ static Status take_plane(Verification *v, const Tiles *tiles, const PlaneRun *ru
 static Status draw_planes(Verification *v, const Tiles *tiles, Err *err)
 {
     Runs runs = {.lock = PTHREAD_MUTEX_INITIALIZER};
-    int at_once = 1;
+    const int at_once = runs_at_once(v, tiles);
     Status status;
     progress_start(&runs.progress, "POV-Ray", v->common->quiet);
-    TRY_GOTO(runs_at_once(v, tiles, &at_once, err));
     TRY_GOTO(prepare_runs(v, tiles, at_once, &runs, err));
     threads_for(runs.n, at_once, run_one, &runs);
     TRY_GOTO(check_runs(v, &runs, err));
@@ -429,9 +444,8 @@ Status povray_side_draw(Verification *v, Err *err)
     Tiles tiles = {0};
     char *picture = NULL;
     Status status;
-    TRY_GOTO(find_tiles(v, &tiles, err));
+    TRY_GOTO(prepare_tiles(v, &tiles, err));
     v->n_tiles = tiles.n;
-    TRY_GOTO(write_scenes(v, &tiles, err));
     TRY_GOTO(draw_planes(v, &tiles, err));
     TRY_GOTO(file_join(v->folder, "povray.png", &picture, err));
     status = frames_write(&v->povray, &(FramesForm){.path = picture}, err);

@@ -137,6 +137,9 @@ static const FieldSegment *find_wall(const Asker *asker, Ray ray, Vec3 x, Vec3 *
     for (size_t i = 0; i < geometry->n_segments; i++) {
         BlobComponent components[BLOB_COMPONENTS];
         Vec3 gradient;
+        Ball ball = blob_ball(&geometry->segments[i]);
+        if (vec3_distance(ball.center, x) > ball.radius)
+            continue;
         blob_components(&blob_shape, &geometry->segments[i], components);
         double term = blob_components_at(components, x, &gradient);
         sum = vec3_add(sum, gradient);
