@@ -380,14 +380,15 @@ void suite_text(const Suite *suite, Text *out)
             text_printf(out, "%-7s %s: %s\n", suite_state_name(entry->state), entry->name,
                         entry->sentence);
     }
-    text_printf(out, "%s: %zu cases: ", suite->agrees ? "agree" : "differ", suite->n);
+    text_printf(out, "%s: %zu case%s: ", suite->agrees ? "agree" : "differ", suite->n,
+                suite->n == 1 ? "" : "s");
     for (SuiteState state = 0; state < SUITE_STATES; state++)
         if (suite->count[state]) {
             text_printf(out, "%s%zu %s", comma, suite->count[state], suite_state_name(state));
             comma = ", ";
         }
     if (suite->others)
-        text_printf(out, "; %zu other files", suite->others);
+        text_printf(out, "; %zu other file%s", suite->others, suite->others == 1 ? "" : "s");
     text_puts(out, "\n");
 }
 

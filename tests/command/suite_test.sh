@@ -32,7 +32,7 @@ test_every_case_has_its_state() {
     expect_stdout '^new     fresh\.ppm: has no reference$'
     expect_stdout '^missing gone\.ppm: has a reference, but was not drawn$'
     expect_stdout '^within  near\.ppm: 1 of 20 pixels differ, 0 are masked$'
-    expect_stdout '^differ: 6 cases: 2 same, 1 within, 1 changed, 1 new, 1 missing; 1 other files$'
+    expect_stdout '^differ: 6 cases: 2 same, 1 within, 1 changed, 1 new, 1 missing; 1 other file$'
 }
 
 test_json_and_junit_say_the_same() {
@@ -52,7 +52,7 @@ test_what_is_accepted_agrees_afterwards_and_has_its_reason() {
         run_ok corcast compare --reference stored drawn --accept $case --reason 'a new lamp'
     done
     run_ok corcast compare --reference stored drawn
-    expect_stdout '^agree: 5 cases: 5 same; 1 other files$'
+    expect_stdout '^agree: 5 cases: 5 same; 1 other file$'
     expect_same stored/fresh.ppm drawn/fresh.ppm
     [ ! -e stored/gone.ppm ] || fail 'expected the reference to be removed'
     [ "$(cut -f 1,3 stored/accepted.tsv | tail -n 1)" = "$(printf 'gone.ppm\ta new lamp')" ] ||
