@@ -28,7 +28,7 @@ typedef struct FieldPrepared {
 } FieldPrepared;
 
 /* Rows of tiles whose centres are traced together, with shadows. */
-enum { ROWS_AT_ONCE = 4 };
+enum { ROWS_AT_ONCE = 8 };
 
 /* A tile of a batch. */
 typedef struct BatchTile {

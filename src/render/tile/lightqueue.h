@@ -5,7 +5,7 @@
 #include "render/tile/tilekernels.h"
 
 /* Tiles of the picture whose places a light is asked about together. */
-enum { LIGHT_BATCH = 256, LIGHT_MOST_PLACES = LIGHT_BATCH * TILE_SAMPLES };
+enum { LIGHT_BATCH = 512, LIGHT_MOST_PLACES = LIGHT_BATCH * TILE_SAMPLES };
 
 /* Questions to one light, for the places of up to LIGHT_BATCH tiles of the picture. Not
  * thread-safe: each worker has a queue of its own for each light. */
