@@ -10,10 +10,9 @@
  * behind the last place. */
 typedef struct BeamPlaces {
     uint32_t n;
-    float *at[3];          /* owned, as all that follows; mm from Beams.origin */
-    float *normal[3];      /* unit */
-    float *above;          /* the ground: its sign; 0: the ground hides no sky */
-    float low[3], high[3]; /* of all of them */
+    float *at[3];     /* owned, as all that follows; mm from Beams.origin */
+    float *normal[3]; /* unit */
+    float *above;     /* the ground: its sign; 0: the ground hides no sky */
 } BeamPlaces;
 
 /* One direction, and how beams along it are cut. */
@@ -47,7 +46,7 @@ typedef struct BeamWork {
     float *free;     /* owned; of the sorted beams, what capsules leave of each */
     uint32_t *first; /* owned; sorted beam of each cell, row by row, and behind the last */
     int columns, rows;
-    float left, top, per_cell;
+    float low[3], high[3], per_cell; /* between what the beams begin */
     uint32_t n;
 } BeamWork;
 

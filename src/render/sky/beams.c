@@ -10,8 +10,9 @@
  * beam. A beam never widens beyond its height above the surface, so that it cannot be covered by
  * what lies below the horizon.
  *
- * All models are seen as capsules about their segments: against the rays of the model itself the
- * error is the same for rounded, joined and isosurface to 0.001. */
+ * All models are seen as capsules about their segments. That of a cut cylinder begins where the
+ * joint that leads to it does, and stands for both: with capsules of their own, joints would be
+ * multiplied with what they overlap, and the error of a disc be 0.037 instead of 0.029. */
 #include "render/sky/beams.h"
 
 #include <math.h>
@@ -28,39 +29,96 @@ static void store_point(float to[3][BEAM_BLOCK], size_t lane, Vec3 point, Vec3 o
     to[2][lane] = (float)(point.z - origin.z);
 }
 
-/* Puts a capsule behind the n that there are. */
-static void add_capsule(Beams *beams, size_t n, Vec3 a, Vec3 b, double radius)
+static Vec3 load_point(float from[3][BEAM_BLOCK], size_t lane, Vec3 origin)
 {
-    CapsuleBlock *block = &beams->capsules[n / BEAM_BLOCK];
-    store_point(block->a, n % BEAM_BLOCK, a, beams->origin);
-    store_point(block->b, n % BEAM_BLOCK, b, beams->origin);
-    block->radius[n % BEAM_BLOCK] = (float)radius;
+    return vec3_add(origin,
+                    vec3((double)from[0][lane], (double)from[1][lane], (double)from[2][lane]));
+}
+
+/* The capsules of a geometry while they are listed. */
+typedef struct Listing {
+    Beams *beams;
+    size_t n;
+    double radii;   /* their sum */
+    uint32_t *last; /* owned; of each segment that has a cylinder, the number behind its capsule */
+} Listing;
+
+static void add_capsule(Listing *listing, Vec3 a, Vec3 b, double radius)
+{
+    size_t lane = listing->n % BEAM_BLOCK;
+    CapsuleBlock *block = &listing->beams->capsules[listing->n++ / BEAM_BLOCK];
+    store_point(block->a, lane, a, listing->beams->origin);
+    store_point(block->b, lane, b, listing->beams->origin);
+    block->radius[lane] = (float)radius;
+    listing->radii += radius;
+}
+
+/* Lets the capsule of the joint's segment begin where the joint does. */
+static void stretch_capsule(const Listing *listing, const Primitive *joint)
+{
+    size_t number = listing->last[joint->segment] - 1, lane = number % BEAM_BLOCK;
+    Vec3 origin = listing->beams->origin;
+    CapsuleBlock *block = &listing->beams->capsules[number / BEAM_BLOCK];
+    bool begins_at_a = vec3_distance(joint->b, load_point(block->a, lane, origin)) <
+                       vec3_distance(joint->b, load_point(block->b, lane, origin));
+    store_point(begins_at_a ? block->a : block->b, lane, joint->a, origin);
+}
+
+static void list_primitives(Listing *listing, const Geometry *geometry)
+{
+    size_t n = geometry->n_primitives - geometry->n_ends;
+    for (size_t i = 0; i < n; i++) {
+        const Primitive *one = &geometry->primitives[i];
+        if (one->kind == PRIMITIVE_JOINT)
+            continue;
+        bool is_ball = one->kind == PRIMITIVE_SPHERE;
+        add_capsule(listing, one->a, is_ball ? one->a : one->b, one->radius_mm);
+        if (!is_ball)
+            listing->last[one->segment] = (uint32_t)listing->n;
+    }
+    for (size_t i = 0; i < n; i++) {
+        const Primitive *one = &geometry->primitives[i];
+        if (one->kind == PRIMITIVE_JOINT && listing->last[one->segment] > 0)
+            stretch_capsule(listing, one);
+        else if (one->kind == PRIMITIVE_JOINT)
+            add_capsule(listing, one->a, one->b, (one->radius_mm + one->radius_b_mm) / 2);
+    }
+}
+
+/* What all numbers of segments of primitives are below. */
+static size_t end_of_segments(const Geometry *geometry)
+{
+    size_t end = 0;
+    for (size_t i = 0; i < geometry->n_primitives; i++)
+        if (geometry->primitives[i].segment >= end)
+            end = (size_t)geometry->primitives[i].segment + 1;
+    return end;
 }
 
 Status beams_new(const Geometry *geometry, Beams *beams, Err *err)
 {
-    size_t primitives = geometry->n_primitives - geometry->n_ends, n = 0;
-    Beams made = {.n_blocks = (primitives + geometry->n_segments + BEAM_BLOCK - 1) / BEAM_BLOCK,
-                  .origin = box_center(geometry->bounds)};
-    double sum = 0;
-    TRY(mem_calloc(&made.capsules, made.n_blocks, sizeof *made.capsules, "occlusion", err));
-    for (size_t i = 0; i < primitives; i++) {
-        const Primitive *one = &geometry->primitives[i];
-        double radius = (one->radius_mm + primitive_radius_b(one)) / 2;
-        add_capsule(&made, n++, one->a, one->kind == PRIMITIVE_SPHERE ? one->a : one->b, radius);
-        sum += radius;
+    size_t most = geometry->n_primitives - geometry->n_ends + geometry->n_segments;
+    Beams made = {.origin = box_center(geometry->bounds)};
+    Listing listing = {.beams = &made};
+    TRY(mem_calloc(&listing.last, end_of_segments(geometry), sizeof *listing.last, "occlusion",
+                   err));
+    Status status =
+        mem_calloc(&made.capsules, most / BEAM_BLOCK + 1, sizeof *made.capsules, "occlusion", err);
+    if (status == STATUS_OK) {
+        list_primitives(&listing, geometry);
+        for (size_t i = 0; i < geometry->n_segments; i++) {
+            const FieldSegment *one = &geometry->segments[i];
+            add_capsule(&listing, one->a, one->b, one->radius_mm);
+        }
+        made.wide = listing.n > 0 ? (float)(wide_in_radii * listing.radii / (double)listing.n) : 0;
+        made.slack = (float)(1e-6 * vec3_distance(geometry->bounds.low, geometry->bounds.high));
+        made.n_blocks = (listing.n + BEAM_BLOCK - 1) / BEAM_BLOCK;
+        while (listing.n % BEAM_BLOCK)
+            add_capsule(&listing, made.origin, made.origin, -1);
+        *beams = made;
     }
-    for (size_t i = 0; i < geometry->n_segments; i++) {
-        const FieldSegment *one = &geometry->segments[i];
-        add_capsule(&made, n++, one->a, one->b, one->radius_mm);
-        sum += one->radius_mm;
-    }
-    made.wide = n > 0 ? (float)(wide_in_radii * sum / (double)n) : 0;
-    made.slack = (float)(1e-6 * vec3_distance(geometry->bounds.low, geometry->bounds.high));
-    for (; n % BEAM_BLOCK; n++)
-        add_capsule(&made, n, made.origin, made.origin, -1);
-    *beams = made;
-    return STATUS_OK;
+    free(listing.last);
+    return status;
 }
 
 void beams_release(Beams *beams)

@@ -33,9 +33,10 @@ LANE_FN Lanes along_axis(const float axis[3], const float point[3][BEAM_BLOCK], 
            axis[2] * lanes_load(&point[2][first]);
 }
 
-/* Sees LANES of a block's capsules. */
-LANE_FN void see_lanes(const BeamDirection *direction, const CapsuleBlock *block, int i,
-                       SeenBlock *seen)
+/* Sees LANES of a block's capsules. As bits, those that may cover a beam: they stand above one, and
+ * their bounds, wider by `reach`, are over the grid. */
+LANE_FN uint32_t see_lanes(const BeamDirection *direction, const CapsuleBlock *block, int i,
+                           const BeamWork *work, float reach, SeenBlock *seen)
 {
     const Lanes zero = lanes_set(0);
     Lanes radius = lanes_load(&block->radius[i]);
@@ -45,6 +46,13 @@ LANE_FN void see_lanes(const BeamDirection *direction, const CapsuleBlock *block
     Lanes bx = along_axis(direction->axes[0], block->b, i);
     Lanes by = along_axis(direction->axes[1], block->b, i);
     Lanes bz = along_axis(direction->axes[2], block->b, i);
+    Lanes far = 1.5f * (radius + reach);
+    LaneMask over =
+        (radius >= 0.0f) & (lanes_max(az, bz) > work->low[2]) &
+        (lanes_max(ax, bx) + far > work->low[0]) & (lanes_min(ax, bx) - far < work->high[0]) &
+        (lanes_max(ay, by) + far > work->low[1]) & (lanes_min(ay, by) - far < work->high[1]);
+    if (!lanes_any(over))
+        return 0;
     LaneMask falls = az > bz;
     Lanes x = lanes_select(falls, ax - bx, bx - ax), y = lanes_select(falls, ay - by, by - ay);
     Lanes length = lanes_sqrt(x * x + y * y);
@@ -59,31 +67,59 @@ LANE_FN void see_lanes(const BeamDirection *direction, const CapsuleBlock *block
     lanes_store(&seen->slope[i], lanes_select(stands, zero, lanes_abs(bz - az) / length));
     lanes_store(&seen->radius[i], radius);
     lanes_store(&seen->round[i], lanes_select(stands, quarter_turn * radius, zero));
+    return lanes_bits(over);
 }
 
 /* ---- beams ----------------------------------------------------------------------------------- */
 
-/* Sets a grid of squares over all places, a few beams a cell. */
-LANE_FN void set_grid(const BeamDirection *direction, const BeamPlaces *places, float wide,
-                      BeamWork *work)
+/* LANES of the places as the direction sees them, and how much each faces it. */
+LANE_FN Lanes see_places(const BeamDirection *direction, const BeamPlaces *places, uint32_t first,
+                         Lanes at[3])
 {
-    const float a_cell = 12;
-    float middle[2], half[2];
-    for (int i = 0; i < 2; i++) {
-        middle[i] = half[i] = 0;
-        for (int c = 0; c < 3; c++) {
-            middle[i] += direction->axes[i][c] * (places->high[c] + places->low[c]) / 2;
-            half[i] += fabsf(direction->axes[i][c]) * (places->high[c] - places->low[c]) / 2;
+    const float(*axes)[3] = direction->axes;
+    Lanes facing = lanes_set(0);
+    for (int i = 0; i < 3; i++)
+        at[i] = axes[i][0] * lanes_load(&places->at[0][first]) +
+                axes[i][1] * lanes_load(&places->at[1][first]) +
+                axes[i][2] * lanes_load(&places->at[2][first]);
+    for (int c = 0; c < 3; c++)
+        facing = facing + axes[2][c] * lanes_load(&places->normal[c][first]);
+    return facing;
+}
+
+/* Sets between what the places lie that face the direction: false if none does. */
+LANE_FN bool bound_beams(const BeamDirection *direction, const BeamPlaces *places, BeamWork *work)
+{
+    Lanes low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+        low[i] = lanes_set(HUGE_VALF);
+        high[i] = -low[i];
+    }
+    for (uint32_t first = 0; first < places->n; first += LANES) {
+        Lanes at[3];
+        LaneMask faces = see_places(direction, places, first, at) > 0.0f;
+        for (int i = 0; i < 3; i++) {
+            low[i] = lanes_select(faces, lanes_min(low[i], at[i]), low[i]);
+            high[i] = lanes_select(faces, lanes_max(high[i], at[i]), high[i]);
         }
     }
-    float longest = 2 * most_of(half[0], half[1]);
-    float side = most_of(wide, sqrtf(a_cell * 4 * half[0] * half[1] / (float)(places->n + 1)));
-    side = most_of(most_of(side, longest / (BEAM_MOST_CELLS - 1)), 1e-6f);
+    for (int i = 0; i < 3; i++) {
+        work->low[i] = lanes_least(low[i]);
+        work->high[i] = lanes_largest(high[i]);
+    }
+    return work->low[0] <= work->high[0];
+}
+
+/* Sets a grid of squares over the beams, a few a cell. */
+static inline void set_grid(const BeamPlaces *places, float wide, BeamWork *work)
+{
+    const float a_cell = 6;
+    float width = work->high[0] - work->low[0], height = work->high[1] - work->low[1];
+    float side = most_of(wide, sqrtf(a_cell * width * height / (float)(places->n + 1)));
+    side = most_of(most_of(side, most_of(width, height) / (BEAM_MOST_CELLS - 1)), 1e-6f);
     work->per_cell = 1 / side;
-    work->left = middle[0] - half[0];
-    work->top = middle[1] - half[1];
-    work->columns = (int)(2 * half[0] / side) + 1;
-    work->rows = (int)(2 * half[1] / side) + 1;
+    work->columns = (int)(width / side) + 1;
+    work->rows = (int)(height / side) + 1;
 }
 
 LANE_FN int cell_along(float at, float first, float per_cell, int n)
@@ -101,14 +137,7 @@ LANE_FN void list_beams(const BeamDirection *direction, const BeamPlaces *places
     float x[LANES], y[LANES], z[LANES], widening[LANES];
     uint32_t n = 0;
     for (uint32_t first = 0; first < places->n; first += LANES) {
-        const float(*axes)[3] = direction->axes;
-        Lanes at[3], facing = lanes_set(0);
-        for (int i = 0; i < 3; i++)
-            at[i] = axes[i][0] * lanes_load(&places->at[0][first]) +
-                    axes[i][1] * lanes_load(&places->at[1][first]) +
-                    axes[i][2] * lanes_load(&places->at[2][first]);
-        for (int c = 0; c < 3; c++)
-            facing = facing + axes[2][c] * lanes_load(&places->normal[c][first]);
+        Lanes at[3], facing = see_places(direction, places, first, at);
         LaneMask faces = facing > 0.0f;
         LaneMask hidden = faces & (lanes_load(&places->above[first]) * direction->ground < 0.0f);
         uint32_t grounded = lanes_bits(hidden);
@@ -120,8 +149,8 @@ LANE_FN void list_beams(const BeamDirection *direction, const BeamPlaces *places
             answers[first + i] = grounded >> i & 1 ? 0 : BEAM_UNASKED;
         for (uint32_t asks = lanes_bits(faces & ~hidden); asks; asks &= asks - 1, n++) {
             int i = __builtin_ctz(asks);
-            int column = cell_along(x[i], work->left, work->per_cell, work->columns);
-            int row = cell_along(y[i], work->top, work->per_cell, work->rows);
+            int column = cell_along(x[i], work->low[0], work->per_cell, work->columns);
+            int row = cell_along(y[i], work->low[1], work->per_cell, work->rows);
             listed->x[n] = x[i];
             listed->y[n] = y[i];
             listed->z[n] = z[i];
@@ -239,18 +268,18 @@ LANE_FN void cover_rows(const Cover *cover, BeamWork *work)
     const float half_ends = across > 1e-3f
                                 ? (cover->length / 2 + reach) / across + fabsf(lean_ends) * side / 2
                                 : HUGE_VALF;
-    int first = cell_along(cover->y + low_y, work->top, work->per_cell, work->rows);
-    int last = cell_along(cover->y + high_y, work->top, work->per_cell, work->rows);
+    int first = cell_along(cover->y + low_y, work->low[1], work->per_cell, work->rows);
+    int last = cell_along(cover->y + high_y, work->low[1], work->per_cell, work->rows);
     for (int row = first; row <= last; row++) {
-        float y = work->top + ((float)row + 0.5f) * side - cover->y;
+        float y = work->low[1] + ((float)row + 0.5f) * side - cover->y;
         float from =
             most_of(most_of(lean * y - half, middle_ends + lean_ends * y - half_ends), low_x);
         float to =
             least_of(least_of(lean * y + half, middle_ends + lean_ends * y + half_ends), high_x);
         if (!(from < to))
             continue;
-        int low = cell_along(cover->x + from, work->left, work->per_cell, work->columns);
-        int high = cell_along(cover->x + to, work->left, work->per_cell, work->columns);
+        int low = cell_along(cover->x + from, work->low[0], work->per_cell, work->columns);
+        int high = cell_along(cover->x + to, work->low[0], work->per_cell, work->columns);
         const uint32_t *begins = &work->first[row * work->columns];
         cover_beams(cover, begins[low], begins[high + 1], work);
     }
@@ -259,19 +288,23 @@ LANE_FN void cover_rows(const Cover *cover, BeamWork *work)
 LANE_TARGET static void BEAM_KERNEL(ask)(const Beams *beams, const BeamDirection *direction,
                                          const BeamPlaces *places, BeamWork *work, uint8_t *answers)
 {
-    set_grid(direction, places, beams->wide, work);
+    if (!bound_beams(direction, places, work)) {
+        __builtin_memset(answers, BEAM_UNASKED, places->n);
+        return;
+    }
+    set_grid(places, beams->wide, work);
     __builtin_memset(work->first, 0,
                      ((size_t)(work->columns * work->rows) + 1) * sizeof *work->first);
     list_beams(direction, places, work, answers);
     sort_beams(work);
-    for (size_t block = 0; block < beams->n_blocks; block++) {
+    for (size_t block = 0; block < beams->n_blocks; block++)
         for (int i = 0; i < BEAM_BLOCK; i += LANES)
-            see_lanes(direction, &beams->capsules[block], i, &work->seen);
-        for (int i = 0; i < BEAM_BLOCK && beams->capsules[block].radius[i] >= 0; i++) {
-            const Cover cover = cover_of(beams, &work->seen, i);
-            cover_rows(&cover, work);
-        }
-    }
+            for (uint32_t left = see_lanes(direction, &beams->capsules[block], i, work,
+                                           beams->wide + beams->slack, &work->seen);
+                 left; left &= left - 1) {
+                const Cover cover = cover_of(beams, &work->seen, i + __builtin_ctz(left));
+                cover_rows(&cover, work);
+            }
     for (uint32_t i = 0; i < work->n; i++)
         answers[work->sorted.place[i]] = (uint8_t)((float)BEAM_FREE * work->free[i] + 0.5f);
 }

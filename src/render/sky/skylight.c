@@ -169,23 +169,6 @@ static void number_squares(Sky *sky)
     sky->first[SETS] = taken;
 }
 
-/* Sets where the places of a set lie. */
-static void bound_places(size_t set, int worker, void *context)
-{
-    (void)worker;
-    Sky *sky = context;
-    BeamPlaces *places = &sky->places[set];
-    for (int c = 0; c < 3; c++) {
-        float low = HUGE_VALF, high = -HUGE_VALF;
-        for (uint32_t i = 0; i < places->n; i++) {
-            low = places->at[c][i] < low ? places->at[c][i] : low;
-            high = places->at[c][i] > high ? places->at[c][i] : high;
-        }
-        places->low[c] = low;
-        places->high[c] = high;
-    }
-}
-
 static Status choose_askers(Sky *sky, Err *err)
 {
     int threads = sky->drawing->params->threads;
@@ -198,7 +181,6 @@ static Status choose_askers(Sky *sky, Err *err)
     for (int set = 0; set < SETS; set++)
         TRY(beamplaces_new(sky->first[set + 1] - sky->first[set], &sky->places[set], err));
     threads_for(squares_of(sky), threads, set_square, sky);
-    threads_for(SETS, threads, bound_places, sky);
     return STATUS_OK;
 }
 
