@@ -271,9 +271,10 @@ static Band band_between(int first, int rows, int margin, int height)
 /* ---- light that samples share -----------------------------------------------------------------
  */
 
-/* What the centres of the band's pixels see of vessels. */
-static Status see_vessels(const Renderer *renderer, const Drawing *drawing, Frame *planes, Err *err)
+/* SharePlanes of a renderer. */
+static Status see_vessels(const Drawing *drawing, void *context, Frame *planes, Err *err)
 {
+    const Renderer *renderer = context;
     RenderParams params = *drawing->params;
     params.want_color = params.want_id = false;
     params.want_depth = params.want_normal = true;
@@ -307,13 +308,12 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Shar
         return STATUS_OK;
     if (params->occlusion > 0 && !renderer->beams.capsules)
         TRY(beams_new(renderer->occluders, &renderer->beams, err));
-    Frame planes = {0};
     Drawing wide = widened(drawing, margin);
-    Status status = see_vessels(renderer, &wide, &planes, err);
-    if (status == STATUS_OK)
-        status = share_light(&wide, renderer->engine->lights, &planes, &renderer->beams, out, err);
-    frame_release(&planes);
-    return status;
+    const LightSources from = {.see = see_vessels,
+                               .context = renderer,
+                               .views = renderer->engine->lights,
+                               .beams = &renderer->beams};
+    return share_light(&wide, &from, out, err);
 }
 
 static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)

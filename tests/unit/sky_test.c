@@ -105,7 +105,7 @@ static void occlusion_is_within_4_percent_of_1024_rays(void **state)
         const char *domain;
         NamedView view;
         SceneModel model;
-    } cases[] = {{"disc:50", VIEW_FRONT, SCENE_ROUNDED}, {"ball:50", VIEW_ISO, SCENE_ROUNDED}};
+    } cases[] = {{"disc:50", VIEW_FRONT, SCENE_JOINED}, {"ball:50", VIEW_ISO, SCENE_ROUNDED}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Tree tree = grown(10000, cases[i].domain);
         Scene scene = staged(&tree, &sky_look, cases[i].model, 2000, cases[i].view);

@@ -155,9 +155,8 @@ static Status draw_pictures(RenderOptions *options, Parsed *parsed, RenderParams
                        .resume = options->shard.resume,
                        .part = options->shard.resume || options->shard.tile,
                        .shard = *shard,
-                       .step =
-                           film_band_rows(form, options->picture.occlusion, options->memory_mb)};
-    TRY_GOTO(check_size(form, film.step, err));
+                       .memory_mb = options->memory_mb};
+    TRY_GOTO(check_size(form, film_band_rows(form, params, NULL, options->memory_mb), err));
     if (is_on_sheet(options))
         TRY_GOTO(sheet_open(&sheet, err));
     TRY_GOTO(picture_read_source(&options->picture, parsed, &source, err));

@@ -6,13 +6,25 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Floats, codes and masks, and with occlusion what pixels share, of which half see something. */
-int film_band_rows(const FramesForm *form, int occlusion, double memory_mb)
+static bool has_soft_shadows(const RenderParams *params, const View *view)
+{
+    bool soft = false;
+    for (size_t i = 0; i < view->n_lights; i++)
+        soft |= params->shadows && view->lights[i].casts_shadows && view->lights[i].samples > 1;
+    return soft;
+}
+
+/* Floats, codes and masks, and what pixels share: with occlusion half of them see something. */
+int film_band_rows(const FramesForm *form, const RenderParams *params, const View *view,
+                   double memory_mb)
 {
     int bytes = 12 + form->bits / 8 * 3 + 1 + 4 * form->depth + 12 * form->normal + 7 * form->id;
     if (image_is_floats(form->path))
         bytes += 12 + 4 * form->depth + 12 * form->normal + 4 * form->id;
-    bytes += occlusion > 0 ? 42 + occlusion : 0;
+    if (params && params->occlusion > 0)
+        bytes += 42 + params->occlusion;
+    else if (params && view && has_soft_shadows(params, view))
+        bytes += 46;
     double rows = memory_mb * 1e6 / ((double)bytes * form->width);
     if (rows >= form->height)
         return form->height;
@@ -21,13 +33,16 @@ int film_band_rows(const FramesForm *form, int occlusion, double memory_mb)
 }
 
 /* Draws the shard's rows band after band and writes each before the next. */
-static Status draw_bands(Renderer *renderer, const Scene *scene, FramesWriter *writer,
-                         const Film *film, Err *err)
+static Status draw_bands(Renderer *renderer, const Scene *scene, const FramesForm *form,
+                         FramesWriter *writer, const Film *film, Err *err)
 {
     const int end = film->shard.first + film->shard.rows;
-    for (int first = film->shard.first; first < end; first += film->step) {
+    const int step = film_band_rows(form, film->params, &scene->view, film->memory_mb);
+    if (step < film->shard.rows)
+        mem_keep();
+    for (int first = film->shard.first; first < end; first += step) {
         Frame band;
-        int rows = film->step < end - first ? film->step : end - first;
+        int rows = step < end - first ? step : end - first;
         TRY(renderer_rows(renderer, &scene->view, &scene->appearance, first, rows, &band, err));
         Status status = frames_rows(writer, &band, err);
         frame_release(&band);
@@ -41,7 +56,7 @@ Status film_draw_one(const Film *film, Renderer *renderer, const Scene *scene,
 {
     FramesWriter *writer = NULL;
     TRY(frames_open(&writer, form, err));
-    Status status = draw_bands(renderer, scene, writer, film, err);
+    Status status = draw_bands(renderer, scene, form, writer, film, err);
     if (status == STATUS_OK)
         return frames_commit(writer, err);
     frames_discard(writer);

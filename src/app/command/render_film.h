@@ -15,11 +15,13 @@ typedef struct Film {
     const Parsed *parsed;
     bool resume, part; /* what is there is kept; a note says what the picture is */
     Shard shard;       /* of each picture; its hash is still to be made */
-    int step;          /* rows of a band */
+    double memory_mb;  /* of a band */
 } Film;
 
-/* Rows of a band so that it takes about `memory_mb`, with `occlusion` rays a sample. */
-int film_band_rows(const FramesForm *form, int occlusion, double memory_mb);
+/* Rows of a band so that it takes about `memory_mb`. `params` NULL: pixels share no light; `view`
+ * NULL: no light of an area. */
+int film_band_rows(const FramesForm *form, const RenderParams *params, const View *view,
+                   double memory_mb);
 
 /* Draws one picture of the film by a renderer of the scene's geometry. STATUS_MEMORY, STATUS_IO. */
 MUST_CHECK Status film_draw_one(const Film *film, Renderer *renderer, const Scene *scene,

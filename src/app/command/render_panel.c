@@ -39,7 +39,7 @@ static Status draw_kept(Renderer *renderer, const Scene *scene, Picture *kept, E
                              .encoding = ENCODING_SRGB,
                              .picture = true,
                              .kept = kept};
-    const Film film = {.shard = {.rows = camera->height}, .step = film_band_rows(&form, 0, 128)};
+    const Film film = {.shard = {.rows = camera->height}, .memory_mb = 128};
     return film_draw_one(&film, renderer, scene, &form, err);
 }
 

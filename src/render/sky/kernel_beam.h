@@ -113,7 +113,7 @@ LANE_FN bool bound_beams(const BeamDirection *direction, const BeamPlaces *place
 /* Sets a grid of squares over the beams, a few a cell. */
 static inline void set_grid(const BeamPlaces *places, float wide, BeamWork *work)
 {
-    const float a_cell = 6;
+    const float a_cell = 12;
     float width = work->high[0] - work->low[0], height = work->high[1] - work->low[1];
     float side = most_of(wide, sqrtf(a_cell * width * height / (float)(places->n + 1)));
     side = most_of(most_of(side, most_of(width, height) / (BEAM_MOST_CELLS - 1)), 1e-6f);

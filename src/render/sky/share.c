@@ -14,18 +14,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SETS = 4, SQUARE = 32, PLACES_AT_ONCE = 512 };
+/* Rows of a strip, whose planes are forgotten when its places are made; columns and rows of a
+ * square; and what threads take at a time. */
+enum { SETS = 4, STRIP = 256, SQUARE = 32, PLACES_AT_ONCE = LIGHT_MOST_PLACES };
 
-/* Places are numbered set by set, and in a set square by square of SQUARE x SQUARE pixels, so that
- * those that follow one another ask about the same few tiles of a light. */
+/* Numbers from .. to of places of one set. */
+typedef struct Run {
+    size_t from, to;
+    int set;
+} Run;
+
+/* Places are numbered strip by strip, in a strip set by set, and in a set square by square of
+ * SQUARE x SQUARE pixels, so that those that follow one another ask about the same few tiles of a
+ * light. */
 typedef struct Share {
     const Drawing *drawing;
+    const LightSources *from;
     SharedLight *light;
-    const LightViews *views; /* NULL: lights are asked by rays */
-    uint32_t *pixels;        /* owned; of each number */
-    size_t first[SETS + 1];  /* numbers of set i are [first[i], first[i + 1]) */
-    int number;              /* of the light at hand */
-    uint16_t *reach;         /* owned; of each number, how many points of that it sees */
+    uint32_t *pixels; /* owned; of each number */
+    size_t n;         /* numbers */
+    Run *runs;        /* owned; at most PLACES_AT_ONCE numbers each */
+    size_t n_runs;
+    int number;      /* of the light at hand */
+    uint16_t *reach; /* owned; of each pixel, how many points of that it sees */
 } Share;
 
 static size_t squares_in(int pixels)
@@ -40,9 +51,11 @@ static int set_of(int column, int row)
 
 /* ---- places ---------------------------------------------------------------------------------- */
 
+/* The places of a strip. */
 typedef struct PlaceJob {
     const Share *share;
-    Frame *planes;
+    int first, rows; /* of the strip, in the band */
+    Frame planes;
     uint32_t (*next)[SETS]; /* of each square, the next number of each set */
 } PlaceJob;
 
@@ -51,13 +64,26 @@ typedef struct Square {
     int first_column, end_column, first_row, end_row;
 } Square;
 
-static Square square_of(const SharedLight *light, size_t number)
+static Square square_of(const PlaceJob *job, size_t number)
 {
-    size_t across = squares_in(light->width);
-    int column = (int)(number % across) * SQUARE, row = (int)(number / across) * SQUARE;
+    int width = job->share->light->width, end_of_strip = job->first + job->rows;
+    size_t across = squares_in(width);
+    int column = (int)(number % across) * SQUARE;
+    int row = job->first + (int)(number / across) * SQUARE;
     int end_column = column + SQUARE, end_row = row + SQUARE;
-    return (Square){column, end_column < light->width ? end_column : light->width, row,
-                    end_row < light->rows ? end_row : light->rows};
+    return (Square){column, end_column < width ? end_column : width, row,
+                    end_row < end_of_strip ? end_row : end_of_strip};
+}
+
+static size_t pixel_at(const SharedLight *light, int column, int row)
+{
+    return (size_t)row * (size_t)light->width + (size_t)column;
+}
+
+/* The pixel of the job's planes. */
+static size_t plane_pixel(const PlaceJob *job, int column, int row)
+{
+    return pixel_at(job->share->light, column, row - job->first);
 }
 
 /* Marks the pixels of the square that see something in SharedLight.numbers by their PlaceKind, adds
@@ -68,11 +94,10 @@ static void count_places(size_t number, int worker, void *context)
     const PlaceJob *job = context;
     const SharedLight *light = job->share->light;
     const View *view = job->share->drawing->view;
-    const Square square = square_of(light, number);
+    const Square square = square_of(job, number);
     for (int row = square.first_row; row < square.end_row; row++)
         for (int column = square.first_column; column < square.end_column; column++) {
-            size_t pixel = (size_t)row * (size_t)light->width + (size_t)column;
-            float *depth = &job->planes->depth.values[pixel];
+            float *depth = &job->planes.depth.values[plane_pixel(job, column, row)];
             double t = (double)*depth;
             bool on_ground =
                 view->ground.present &&
@@ -81,7 +106,7 @@ static void count_places(size_t number, int worker, void *context)
             if (!isfinite(t))
                 continue;
             *depth = (float)t;
-            light->numbers[pixel] = on_ground ? PLACE_GROUND : PLACE_VESSEL;
+            light->numbers[pixel_at(light, column, row)] = on_ground ? PLACE_GROUND : PLACE_VESSEL;
             job->next[number][set_of(column, light->first + row)]++;
         }
 }
@@ -90,10 +115,10 @@ static PixelPlace place_of(const PlaceJob *job, int column, int row)
 {
     const SharedLight *light = job->share->light;
     const View *view = job->share->drawing->view;
-    size_t pixel = (size_t)row * (size_t)light->width + (size_t)column;
-    const float *of_vessel = &job->planes->normal.values[3 * pixel];
-    PlaceKind kind = (PlaceKind)light->numbers[pixel];
-    double t = (double)job->planes->depth.values[pixel];
+    size_t pixel = plane_pixel(job, column, row);
+    const float *of_vessel = &job->planes.normal.values[3 * pixel];
+    PlaceKind kind = (PlaceKind)light->numbers[pixel_at(light, column, row)];
+    double t = (double)job->planes.depth.values[pixel];
     Ray ray = camera_ray(&view->camera, column, light->first + row);
     Vec3 normal = view->ground.normal;
     if (kind == PLACE_VESSEL)
@@ -109,10 +134,10 @@ static void set_places(size_t number, int worker, void *context)
     (void)worker;
     const PlaceJob *job = context;
     const SharedLight *light = job->share->light;
-    const Square square = square_of(light, number);
+    const Square square = square_of(job, number);
     for (int row = square.first_row; row < square.end_row; row++)
         for (int column = square.first_column; column < square.end_column; column++) {
-            size_t pixel = (size_t)row * (size_t)light->width + (size_t)column;
+            size_t pixel = pixel_at(light, column, row);
             if (light->numbers[pixel] == PLACE_NONE)
                 continue;
             uint32_t to = job->next[number][set_of(column, light->first + row)]++;
@@ -122,91 +147,92 @@ static void set_places(size_t number, int worker, void *context)
         }
 }
 
+static void add_runs(Share *share, int set, size_t from, size_t end)
+{
+    for (; from < end; from += PLACES_AT_ONCE) {
+        size_t to = end - from < PLACES_AT_ONCE ? end : from + PLACES_AT_ONCE;
+        share->runs[share->n_runs++] = (Run){from, to, set};
+    }
+}
+
 /* Turns counts into first numbers: set by set, square by square. */
 static void number_squares(Share *share, size_t n, uint32_t (*next)[SETS])
 {
-    uint32_t taken = 0;
     for (int set = 0; set < SETS; set++) {
-        share->first[set] = taken;
+        size_t first = share->n;
         for (size_t square = 0; square < n; square++) {
             uint32_t count = next[square][set];
-            next[square][set] = taken;
-            taken += count;
+            next[square][set] = (uint32_t)share->n;
+            share->n += count;
         }
+        add_runs(share, set, first, share->n);
     }
-    share->first[SETS] = taken;
 }
 
-static Status make_places(Share *share, Frame *planes, Err *err)
+/* Numbers the places of a strip behind those of the strips above it. */
+static Status add_strip(Share *share, PlaceJob *job, Err *err)
+{
+    Drawing strip = *share->drawing;
+    size_t squares = squares_in(share->light->width) * squares_in(job->rows);
+    int threads = share->drawing->params->threads;
+    strip.band = (Band){.first = share->light->first + job->first, .rows = job->rows};
+    TRY(share->from->see(&strip, share->from->context, &job->planes, err));
+    memset(job->next, 0, squares * sizeof *job->next);
+    threads_for(squares, threads, count_places, job);
+    number_squares(share, squares, job->next);
+    threads_for(squares, threads, set_places, job);
+    return STATUS_OK;
+}
+
+/* Room for a place of each pixel, of which what is not used is never touched. */
+static Status make_places(Share *share, Err *err)
 {
     SharedLight *light = share->light;
     size_t pixels = (size_t)light->width * (size_t)light->rows;
-    size_t squares = squares_in(light->width) * squares_in(light->rows);
-    int threads = share->drawing->params->threads;
-    PlaceJob job = {share, planes, NULL};
+    size_t strips = ((size_t)light->rows + STRIP - 1) / STRIP;
+    PlaceJob job = {.share = share};
     Status status;
     TRY(mem_calloc(&light->numbers, pixels, sizeof *light->numbers, "places", err));
     memset(light->numbers, 0xff, pixels * sizeof *light->numbers); /* PLACE_NONE */
-    TRY_GOTO(mem_calloc(&job.next, squares, sizeof *job.next, "places", err));
-    threads_for(squares, threads, count_places, &job);
-    number_squares(share, squares, job.next);
-    size_t n = share->first[SETS];
-    TRY_GOTO(mem_calloc(&light->places, n, sizeof *light->places, "places", err));
-    TRY_GOTO(mem_calloc(&share->pixels, n, sizeof *share->pixels, "places", err));
-    threads_for(squares, threads, set_places, &job);
+    TRY(mem_calloc(&light->places, pixels, sizeof *light->places, "places", err));
+    TRY(mem_calloc(&share->pixels, pixels, sizeof *share->pixels, "places", err));
+    TRY(mem_calloc(&share->runs, strips * SETS + pixels / PLACES_AT_ONCE + 1, sizeof *share->runs,
+                   "places", err));
+    TRY_GOTO(mem_calloc(&job.next, squares_in(light->width) * squares_in(STRIP), sizeof *job.next,
+                        "places", err));
+    for (job.first = 0; job.first < light->rows; job.first += STRIP) {
+        job.rows = light->rows - job.first < STRIP ? light->rows - job.first : STRIP;
+        TRY_GOTO(add_strip(share, &job, err));
+        frame_release(&job.planes);
+    }
 done:
+    frame_release(&job.planes);
     free(job.next);
     return status;
 }
 
 /* ---- what neighbours share ------------------------------------------------------------------- */
 
-/* Runs of numbers: those of a set are in as many as it takes. */
-static size_t runs_of(const Share *share, int set)
-{
-    return (share->first[set + 1] - share->first[set] + PLACES_AT_ONCE - 1) / PLACES_AT_ONCE;
-}
-
-static size_t all_runs(const Share *share)
-{
-    size_t sum = 0;
-    for (int set = 0; set < SETS; set++)
-        sum += runs_of(share, set);
-    return sum;
-}
-
-static void find_run(const Share *share, size_t index, int *set, size_t *from, size_t *to)
-{
-    for (*set = 0; index >= runs_of(share, *set); ++*set)
-        index -= runs_of(share, *set);
-    *from = share->first[*set] + index * PLACES_AT_ONCE;
-    *to = share->first[*set + 1];
-    *to = *to - *from > PLACES_AT_ONCE ? *from + PLACES_AT_ONCE : *to;
-}
-
-/* The place of one of the three by three pixels about another's, on its surface, and its weight. */
-typedef struct Neighbour {
-    uint32_t number;
-    int set, part;
-} Neighbour;
-
-static int neighbours_of(const Share *share, uint32_t number, Neighbour found[9])
+/* How many points the pixels about one that lie on its surface see, in the proportions 1 : 2 : 1,
+ * and the sum of these. */
+static int sum_about(const Share *share, int column, int row, int *parts)
 {
     const SharedLight *light = share->light;
-    uint32_t pixel = share->pixels[number];
-    int column = (int)(pixel % (uint32_t)light->width), row = (int)(pixel / (uint32_t)light->width);
-    int n = 0;
+    const PixelPlace *place = &light->places[light->numbers[pixel_at(light, column, row)]];
+    int sum = 0;
+    *parts = 0;
     for (int j = row - 1; j <= row + 1; j++)
         for (int i = column - 1; i <= column + 1; i++) {
             if (i < 0 || i >= light->width || j < 0 || j >= light->rows)
                 continue;
-            uint32_t other = light->numbers[(size_t)j * (size_t)light->width + (size_t)i];
-            if (other != PLACE_NONE &&
-                places_are_of_one(&light->places[number], &light->places[other]))
-                found[n++] = (Neighbour){other, set_of(i, light->first + j),
-                                         (i == column ? 2 : 1) * (j == row ? 2 : 1)};
+            uint32_t other = light->numbers[pixel_at(light, i, j)];
+            if (other == PLACE_NONE || !places_are_of_one(place, &light->places[other]))
+                continue;
+            int part = (i == column ? 2 : 1) * (j == row ? 2 : 1);
+            sum += part * share->reach[pixel_at(light, i, j)];
+            *parts += part;
         }
-    return n;
+    return sum;
 }
 
 /* ---- area lights ----------------------------------------------------------------------------- */
@@ -264,18 +290,18 @@ static uint16_t points_seen(const Share *share, const PixelPlace *place, int set
 static void cast_to_light(size_t index, int worker, void *context)
 {
     const Share *share = context;
-    int set;
-    size_t from, to;
-    find_run(share, index, &set, &from, &to);
-    for (size_t number = from; number < to; number++)
-        share->reach[number] = points_seen(share, &share->light->places[number], set, worker);
+    const Run *run = &share->runs[index];
+    for (size_t number = run->from; number < run->to; number++)
+        share->reach[share->pixels[number]] =
+            points_seen(share, &share->light->places[number], run->set, worker);
 }
 
 /* The points of a set of the light at hand, each looked from, and what the threads ask them. */
 typedef struct SetLook {
     const Share *share;
     int set, n_points;
-    void **shadows; /* owned, as all that follows; of each point */
+    int *points;    /* owned, as all that follows */
+    void **shadows; /* of each point */
     void **queues;  /* n_points a worker */
     Status *status; /* one a worker */
 } SetLook;
@@ -296,8 +322,8 @@ static uint64_t ask_places(const SetLook *look, size_t from, size_t to, int work
         wanted |= (uint64_t)is_facing(share, place, vec3_add(share->light->origin, at)) << i;
     }
     for (int k = 0; k < look->n_points; k++)
-        share->views->ask(look->queues[worker * look->n_points + k], kernels, &places, wanted,
-                          answer);
+        share->from->views->ask(look->queues[worker * look->n_points + k], kernels, &places, wanted,
+                                answer);
     return wanted;
 }
 
@@ -305,57 +331,85 @@ static void look_at_run(size_t index, int worker, void *context)
 {
     const SetLook *look = context;
     const Share *share = look->share;
+    const Run *run = &share->runs[index];
     uint8_t shadowed[LIGHT_MOST_PLACES];
     uint64_t wanted[LIGHT_BATCH];
-    size_t from = share->first[look->set] + index * LIGHT_MOST_PLACES;
-    size_t to = share->first[look->set + 1], n = to - from;
-    n = n < LIGHT_MOST_PLACES ? n : LIGHT_MOST_PLACES;
+    size_t n = run->to - run->from;
+    if (run->set != look->set)
+        return;
     for (size_t i = 0; i < n; i += TILE_SAMPLES)
-        wanted[i / TILE_SAMPLES] = ask_places(look, from + i, to, worker, (uint32_t)i);
+        wanted[i / TILE_SAMPLES] = ask_places(look, run->from + i, run->to, worker, (uint32_t)i);
     for (int k = 0; k < look->n_points; k++) {
-        memset(shadowed, 0, sizeof shadowed);
-        Status status = share->views->answer(look->queues[worker * look->n_points + k],
-                                             share->drawing->params->kernels, shadowed, NULL);
+        memset(shadowed, 0, n);
+        Status status = share->from->views->answer(look->queues[worker * look->n_points + k],
+                                                   share->drawing->params->kernels, shadowed, NULL);
         if (status != STATUS_OK)
             look->status[worker] = status;
         for (size_t i = 0; i < n; i++)
-            if (wanted[i / TILE_SAMPLES] >> i % TILE_SAMPLES & 1 && !shadowed[i])
-                share->reach[from + i]++;
+            share->reach[share->pixels[run->from + i]] +=
+                (uint16_t)(wanted[i / TILE_SAMPLES] >> i % TILE_SAMPLES & !shadowed[i]);
     }
+}
+
+/* What stopped a worker. */
+static Status check_looks(const SetLook *look, Err *err)
+{
+    for (int i = 0; i < look->share->drawing->params->threads; i++)
+        if (look->status[i] != STATUS_OK)
+            return err_set(err, look->status[i], "out of memory: no room for soft shadows");
+    return STATUS_OK;
+}
+
+/* A view from one point of the set. */
+static void look_from_point(size_t index, int worker, void *context)
+{
+    const SetLook *look = context;
+    const Share *share = look->share;
+    const Light point =
+        light_at_point(&share->drawing->view->lights[share->number], look->points[index]);
+    const Viewpoint frame = {
+        share->light->origin, {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)}, .perspective = false};
+    RenderParams alone = *share->drawing->params;
+    Drawing drawing = *share->drawing;
+    alone.threads = 1;
+    drawing.params = &alone;
+    Status status = share->from->views->look(&drawing, &point, &frame, &look->shadows[index], NULL);
+    if (status != STATUS_OK)
+        look->status[worker] = status;
 }
 
 /* Looks from the points of the set, for all threads to ask. */
 static Status make_looks(SetLook *look, Err *err)
 {
     const Share *share = look->share;
-    const LightViews *views = share->views;
     const Light *light = &share->drawing->view->lights[share->number];
-    const Viewpoint frame = {
-        share->light->origin, {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)}, .perspective = false};
     size_t workers = (size_t)share->drawing->params->threads, n = (size_t)light_points(light);
+    TRY(mem_calloc(&look->points, n, sizeof *look->points, "lights", err));
     TRY(mem_calloc(&look->shadows, n, sizeof *look->shadows, "lights", err));
     TRY(mem_calloc(&look->status, workers, sizeof *look->status, "lights", err));
-    for (int k = 0; k < light_points(light); k++) {
-        const Light point = light_at_point(light, k);
+    for (int k = 0; k < light_points(light); k++)
         if (point_is_of(light, k, look->set))
-            TRY(views->look(share->drawing, &point, &frame, &look->shadows[look->n_points++], err));
-    }
+            look->points[look->n_points++] = k;
+    threads_for((size_t)look->n_points, (int)workers, look_from_point, look);
+    TRY(check_looks(look, err));
     n = workers * (size_t)look->n_points;
     TRY(mem_calloc(&look->queues, n, sizeof *look->queues, "lights", err));
     for (size_t i = 0; i < n; i++)
-        TRY(views->queue_new(look->shadows[i % (size_t)look->n_points], &look->queues[i], err));
+        TRY(share->from->views->queue_new(look->shadows[i % (size_t)look->n_points],
+                                          &look->queues[i], err));
     return STATUS_OK;
 }
 
 static void release_looks(SetLook *look)
 {
-    const LightViews *views = look->share->views;
+    const LightViews *views = look->share->from->views;
     size_t workers = (size_t)look->share->drawing->params->threads;
     for (size_t i = 0; look->queues && i < workers * (size_t)look->n_points; i++)
         views->queue_free(look->queues[i]);
     for (int k = 0; look->shadows && k < look->n_points; k++)
         views->free(look->shadows[k]);
     free(look->queues);
+    free(look->points);
     free(look->shadows);
     free(look->status);
 }
@@ -363,14 +417,11 @@ static void release_looks(SetLook *look)
 static Status look_from_set(const Share *share, int set, Err *err)
 {
     SetLook look = {.share = share, .set = set};
-    size_t n = share->first[set + 1] - share->first[set];
-    int workers = share->drawing->params->threads;
     Status status = make_looks(&look, err);
-    if (status == STATUS_OK)
-        threads_for((n + LIGHT_MOST_PLACES - 1) / LIGHT_MOST_PLACES, workers, look_at_run, &look);
-    for (int i = 0; i < workers && status == STATUS_OK; i++)
-        if (look.status[i] != STATUS_OK)
-            status = err_set(err, look.status[i], "out of memory: no room for soft shadows");
+    if (status == STATUS_OK) {
+        threads_for(share->n_runs, share->drawing->params->threads, look_at_run, &look);
+        status = check_looks(&look, err);
+    }
     release_looks(&look);
     return status;
 }
@@ -379,10 +430,12 @@ static Status look_from_set(const Share *share, int set, Err *err)
 static Status find_reach(Share *share, Err *err)
 {
     const Drawing *drawing = share->drawing;
+    const SharedLight *shared = share->light;
+    const LightViews *views = share->from->views;
     const Light *light = &drawing->view->lights[share->number];
-    memset(share->reach, 0, share->first[SETS] * sizeof *share->reach);
-    if (!share->views || !lightviews_can(share->views, drawing->geometry, drawing->view, light)) {
-        threads_for(all_runs(share), drawing->params->threads, cast_to_light, share);
+    memset(share->reach, 0, (size_t)shared->width * (size_t)shared->rows * sizeof *share->reach);
+    if (!views || !lightviews_can(views, drawing->geometry, drawing->view, light)) {
+        threads_for(share->n_runs, drawing->params->threads, cast_to_light, share);
         return STATUS_OK;
     }
     for (int set = 0; set < SETS; set++)
@@ -390,65 +443,53 @@ static Status find_reach(Share *share, Err *err)
     return STATUS_OK;
 }
 
-/* Whether all pixels about the place's, whatever surface they see, see as many points as it. */
-static bool is_even(const Share *share, uint32_t number)
+/* Whether all pixels about one, whatever they see, see as many points as it. */
+static bool is_even(const Share *share, int column, int row)
 {
     const SharedLight *light = share->light;
-    uint32_t pixel = share->pixels[number];
-    int column = (int)(pixel % (uint32_t)light->width), row = (int)(pixel / (uint32_t)light->width);
     if (column == 0 || column == light->width - 1 || row == 0 || row == light->rows - 1)
         return false;
-    const uint32_t *numbers = &light->numbers[pixel];
-    for (int j = -1; j <= 1; j++)
-        for (int i = -1; i <= 1; i++) {
-            uint32_t other = numbers[j * light->width + i];
-            if (other != PLACE_NONE && share->reach[other] != share->reach[number])
-                return false;
-        }
-    return true;
+    const uint16_t *at = &share->reach[pixel_at(light, column, row)];
+    uint32_t off = 0;
+    for (int j = -light->width; j <= light->width; j += light->width)
+        off |= (uint32_t)((at[j - 1] ^ *at) | (at[j] ^ *at) | (at[j + 1] ^ *at));
+    return off == 0;
 }
 
-/* The part of the light's points that reaches the place, by what its neighbours on its surface see
- * of them. */
-static float gather_part(const Share *share, uint32_t number, int points)
-{
-    Neighbour found[9];
-    if (is_even(share, number))
-        return (float)(share->reach[number] * SETS) / (float)points;
-    int n = neighbours_of(share, number, found);
-    int sum = 0, all = 0;
-    for (int i = 0; i < n; i++) {
-        sum += found[i].part * share->reach[found[i].number];
-        all += found[i].part;
-    }
-    return (float)(sum * SETS) / (float)(all * points);
-}
-
-static void gather_reach(size_t index, int worker, void *context)
+/* The part of the light's points that reaches each pixel of a row, by what its neighbours on its
+ * surface see of them. */
+static void gather_row(size_t index, int worker, void *context)
 {
     (void)worker;
     const Share *share = context;
-    int points = light_points(&share->drawing->view->lights[share->number]);
-    float *parts = share->light->parts[share->number];
-    size_t end = share->first[SETS], from = index * PLACES_AT_ONCE;
-    for (size_t number = from; number < end && number < from + PLACES_AT_ONCE; number++)
-        parts[number] = gather_part(share, (uint32_t)number, points);
+    const SharedLight *light = share->light;
+    float points = (float)light_points(&share->drawing->view->lights[share->number]);
+    for (int column = 0, row = (int)index; column < light->width; column++) {
+        size_t pixel = pixel_at(light, column, row);
+        int sum = share->reach[pixel], parts = 1;
+        if (light->numbers[pixel] == PLACE_NONE)
+            continue;
+        if (!is_even(share, column, row))
+            sum = sum_about(share, column, row, &parts);
+        light->parts[share->number][light->numbers[pixel]] =
+            (float)(sum * SETS) / ((float)parts * points);
+    }
 }
 
 static Status share_lights(Share *share, Err *err)
 {
     const View *view = share->drawing->view;
     SharedLight *light = share->light;
-    size_t n = share->first[SETS];
+    size_t pixels = (size_t)light->width * (size_t)light->rows;
     int threads = share->drawing->params->threads;
-    TRY(mem_calloc(&share->reach, n, sizeof *share->reach, "lights", err));
+    TRY(mem_calloc(&share->reach, pixels, sizeof *share->reach, "lights", err));
     for (size_t i = 0; i < view->n_lights; i++) {
         if (!is_soft(&view->lights[i]))
             continue;
-        TRY(mem_calloc(&light->parts[i], n, sizeof *light->parts[i], "lights", err));
+        TRY(mem_calloc(&light->parts[i], share->n, sizeof *light->parts[i], "lights", err));
         share->number = (int)i;
         TRY(find_reach(share, err));
-        threads_for((n + PLACES_AT_ONCE - 1) / PLACES_AT_ONCE, threads, gather_reach, share);
+        threads_for((size_t)light->rows, threads, gather_row, share);
     }
     return STATUS_OK;
 }
@@ -464,11 +505,10 @@ bool share_is_wanted(const View *view, const RenderParams *params)
            !(view->effects.xray.per_mm > 0) && (params->occlusion > 0 || (params->shadows && soft));
 }
 
-Status share_light(const Drawing *drawing, const LightViews *views, Frame *planes,
-                   const Beams *beams, SharedLight **out, Err *err)
+Status share_light(const Drawing *drawing, const LightSources *from, SharedLight **out, Err *err)
 {
     const RenderParams *params = drawing->params;
-    Share share = {.drawing = drawing, .views = views};
+    Share share = {.drawing = drawing, .from = from};
     Status status;
     TRY(mem_calloc(&share.light, 1, sizeof *share.light, "places", err));
     share.light->side = 1;
@@ -476,10 +516,10 @@ Status share_light(const Drawing *drawing, const LightViews *views, Frame *plane
     share.light->first = drawing->band.first;
     share.light->rows = drawing->band.rows;
     share.light->origin =
-        params->occlusion > 0 ? beams->origin : box_center(drawing->geometry->bounds);
-    TRY_GOTO(make_places(&share, planes, err));
+        params->occlusion > 0 ? from->beams->origin : box_center(drawing->geometry->bounds);
+    TRY_GOTO(make_places(&share, err));
     if (params->occlusion > 0)
-        TRY_GOTO(skylight_find(drawing, beams, share.pixels, share.first[SETS], share.light, err));
+        TRY_GOTO(skylight_find(drawing, from->beams, share.n, share.light, err));
     if (params->shadows)
         TRY_GOTO(share_lights(&share, err));
     *out = share.light;
@@ -487,6 +527,7 @@ Status share_light(const Drawing *drawing, const LightViews *views, Frame *plane
 done:
     sharedlight_free(share.light);
     free(share.pixels);
+    free(share.runs);
     free(share.reach);
     return status;
 }

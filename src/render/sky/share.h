@@ -16,12 +16,22 @@ bool share_is_wanted(const View *view, const RenderParams *params);
 /* Rows of pixels to either side of a band whose places its light depends on. */
 enum { SHARE_MARGIN = 3 };
 
-/* Finds it for the drawing's band, whose centre rays have seen what `planes` has, depth and normal
- * of vessels. `beams` is of what hides the sky, and needed for occlusion alone; area lights
- * are looked from by `views`, or by rays of the drawing's caster where those cannot or are NULL.
- * *out is owned. The rows at the band's edges are right where they are the picture's too, or
- * SHARE_MARGIN away. STATUS_MEMORY. */
-MUST_CHECK Status share_light(const Drawing *drawing, const LightViews *views, Frame *planes,
-                              const Beams *beams, SharedLight **out, Err *err);
+/* Sets depth and normal of what the centre rays of the drawing's band see of vessels; *planes is
+ * the caller's even when this fails. STATUS_MEMORY. */
+typedef Status SharePlanes(const Drawing *drawing, void *context, Frame *planes, Err *err);
+
+/* What light is found from. */
+typedef struct LightSources {
+    SharePlanes *see;
+    void *context;           /* of `see` */
+    const LightViews *views; /* area lights are looked from by these, or by rays of the drawing's
+                              * caster where these cannot or are NULL */
+    const Beams *beams;      /* of what hides the sky; needed for occlusion alone */
+} LightSources;
+
+/* Finds it for the drawing's band. *out is owned. The rows at the band's edges are right where they
+ * are the picture's too, or SHARE_MARGIN away. STATUS_MEMORY. */
+MUST_CHECK Status share_light(const Drawing *drawing, const LightSources *from, SharedLight **out,
+                              Err *err);
 
 #endif

@@ -26,7 +26,7 @@
 enum { SETS = 4, PAIR = 2, MOST_A_SET = 256 };
 /* Directions for each beam that is asked for. */
 enum { DIRECTIONS = 8 };
-/* What threads take at a time: squares of pairs, and runs of places or of askers. */
+/* What threads take at a time: squares of pairs, and runs of askers. */
 enum { SQUARE = 32, RUN = 512 };
 
 /* The row of answers of each asker in a pair, plus one; 0 behind the last. */
@@ -37,8 +37,6 @@ typedef struct Sky {
     const Beams *beams;
     const BeamKernels *kernels;
     const SharedLight *light;
-    const uint32_t *pixels; /* of each place */
-    size_t n_places;
     int columns, rows;        /* of pairs */
     Askers *askers;           /* owned, as all that follows; of each pair */
     uint32_t (*next)[SETS];   /* of each square of pairs, the next row of each set */
@@ -270,13 +268,12 @@ static Status ask(Sky *sky, Err *err)
  * they fall with the distance from the pixel. */
 static const int across[PAIR][3] = {{3, 4, 1}, {1, 4, 3}};
 
-static float gather_open(const Sky *sky, size_t number)
+static float gather_open(const Sky *sky, uint32_t number, int x, int y)
 {
     const SharedLight *light = sky->light;
     const float *const directions[3] = {sky->directions[0], sky->directions[1], sky->directions[2]};
     const PixelPlace *place = &light->places[number];
-    int x = (int)(sky->pixels[number] % (uint32_t)light->width);
-    int y = (int)(sky->pixels[number] / (uint32_t)light->width), stride = sky->stride;
+    int stride = sky->stride;
     uint16_t free[SETS * MOST_A_SET], asked[SETS * MOST_A_SET];
     memset(free, 0, (size_t)(SETS * stride) * sizeof *free);
     memset(asked, 0, (size_t)(SETS * stride) * sizeof *asked);
@@ -297,12 +294,22 @@ static float gather_open(const Sky *sky, size_t number)
     return sky->kernels->mean(directions, place->normal, free, asked, SETS * stride);
 }
 
-static void gather_run(size_t index, int worker, void *context)
+/* Of the pixels of a pair. */
+static void gather_pair(const Sky *sky, int column, int row, uint32_t *next)
+{
+    (void)next;
+    for (int k = 0; k < PAIR; k++) {
+        uint32_t number = place_in(sky, column, row, k);
+        if (number != PLACE_NONE)
+            sky->light->open[number] = gather_open(sky, number, column * PAIR + k, row);
+    }
+}
+
+/* Square by square, as pixels that lie side by side take the answers of the same pairs. */
+static void gather_square(size_t number, int worker, void *context)
 {
     (void)worker;
-    const Sky *sky = context;
-    for (size_t i = index * RUN; i < sky->n_places && i < (index + 1) * RUN; i++)
-        sky->light->open[i] = gather_open(sky, i);
+    visit_square(context, number, gather_pair);
 }
 
 /* ---- all of it ------------------------------------------------------------------------------- */
@@ -323,22 +330,20 @@ static void release(Sky *sky)
     free(sky->works);
 }
 
-Status skylight_find(const Drawing *drawing, const Beams *beams, const uint32_t *pixels, size_t n,
-                     SharedLight *light, Err *err)
+Status skylight_find(const Drawing *drawing, const Beams *beams, size_t n, SharedLight *light,
+                     Err *err)
 {
     Status status;
     Sky sky = {.drawing = drawing,
                .beams = beams,
                .kernels = beamkernels[kernels_kind(drawing->params->kernels)],
                .light = light,
-               .pixels = pixels,
-               .n_places = n,
                .columns = (light->width + PAIR - 1) / PAIR,
                .rows = light->rows};
     TRY_GOTO(mem_calloc(&light->open, n, sizeof *light->open, "occlusion", err));
     TRY_GOTO(choose_askers(&sky, err));
     TRY_GOTO(ask(&sky, err));
-    threads_for((n + RUN - 1) / RUN, drawing->params->threads, gather_run, &sky);
+    threads_for(squares_of(&sky), drawing->params->threads, gather_square, &sky);
 done:
     release(&sky);
     return status;

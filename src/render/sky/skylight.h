@@ -5,10 +5,10 @@
 #include "render/light/sharedlight.h"
 #include "render/sky/beams.h"
 
-/* Sets light->open (owned by *light even when this fails) of n places, which lie in `pixels`, by
+/* Sets light->open (owned by *light even when this fails) of n places by
  * `drawing->params->occlusion` beams. `light` has places and numbers. What a place sees depends on
  * those of the row above it and of the row below. STATUS_MEMORY. */
-MUST_CHECK Status skylight_find(const Drawing *drawing, const Beams *beams, const uint32_t *pixels,
-                                size_t n, SharedLight *light, Err *err);
+MUST_CHECK Status skylight_find(const Drawing *drawing, const Beams *beams, size_t n,
+                                SharedLight *light, Err *err);
 
 #endif
