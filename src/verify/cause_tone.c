@@ -345,11 +345,34 @@ static bool has_colors(const Picture *picture, const Samples *samples)
     return colored >= ENOUGH;
 }
 
+/* Whether samples of one code in A have nearly one code in B. */
+static bool may_be_curve(const Codes *few)
+{
+    enum { CODES = 256, APART = 4 };
+    int low[CODES], high[CODES], a, b;
+    size_t apart = 0;
+    for (int i = 0; i < CODES; i++) {
+        low[i] = CODES;
+        high[i] = 0;
+    }
+    for (size_t i = 0; i < few->n; i++) {
+        take(few, i, &a, &b);
+        low[a] = b < low[a] ? b : low[a];
+        high[a] = b > high[a] ? b : high[a];
+    }
+    for (size_t i = 0; i < few->n; i++) {
+        take(few, i, &a, &b);
+        apart += high[a] - low[a] >= APART;
+    }
+    return 10 * apart <= few->n;
+}
+
 /* Any curve, of codes of 8 bits, of which a picture has enough of each; the first pixel's, as of a
  * background, which would outvote all others, are left out. */
 static Status find_any_curve(Meaning *meaning, Codes *few, Codes *all, Sentence *out, Err *err)
 {
-    if (meaning->n > 256 || !has_colors(all->a, few->samples) || !has_colors(all->b, few->samples))
+    if (meaning->n > 256 || !has_colors(all->a, few->samples) ||
+        !has_colors(all->b, few->samples) || !may_be_curve(few))
         return STATUS_OK;
     TRY(measure_curve(meaning, all, err));
     for (size_t c = 0; c < 3; c++)

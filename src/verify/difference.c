@@ -20,20 +20,29 @@ typedef struct HeatRows {
     Picture *heat;
 } HeatRows;
 
+static void put_heat(uint8_t *out, const HeatStep *heat)
+{
+    out[0] = heat->red;
+    out[1] = heat->green;
+    out[2] = heat->blue;
+}
+
 static void fill_heat(size_t y, int worker, void *context)
 {
+    enum { BLOCK = 64 };
     (void)worker;
     const HeatRows *rows = context;
-    size_t width = (size_t)rows->a->width;
-    uint8_t *out = rows->heat->codes8 + 3 * y * width;
+    const int width = rows->a->width;
+    uint8_t *out = rows->heat->codes8 + 3 * y * (size_t)width;
     double code_levels = rows->a->bits == 8 ? 1 : 1 / 257.0;
-    bool equal = picture_rows_equal(rows->a, rows->b, (int)y, 0, rows->a->width);
-    for (size_t x = 0; x < width; x++, out += 3) {
-        int codes = equal ? 0 : largest_difference(rows->a, rows->b, y * width + x);
-        const HeatStep *heat = heat_of(codes * code_levels);
-        out[0] = heat->red;
-        out[1] = heat->green;
-        out[2] = heat->blue;
+    for (int from = 0; from < width; from += BLOCK) {
+        int to = from + BLOCK < width ? from + BLOCK : width;
+        bool equal = picture_rows_equal(rows->a, rows->b, (int)y, from, to - from);
+        for (int x = from; x < to; x++, out += 3) {
+            size_t pixel = y * (size_t)width + (size_t)x;
+            int codes = equal ? 0 : largest_difference(rows->a, rows->b, pixel);
+            put_heat(out, codes ? heat_of(codes * code_levels) : &heat_steps[0]);
+        }
     }
 }
 
