@@ -264,7 +264,8 @@ static bool is_facing(const Share *share, const PixelPlace *place, Vec3 point)
 {
     const Light *light = &share->drawing->view->lights[share->number];
     Vec3 normal = {(double)place->normal[0], (double)place->normal[1], (double)place->normal[2]};
-    return vec3_dot(normal, light_way(light, point).towards) >= LEAST_LIT_COSINE;
+    Vec3 towards = vec3_sub(light->location, light->parallel ? light->target : point);
+    return vec3_dot(normal, towards) >= LEAST_LIT_COSINE * vec3_length(towards);
 }
 
 /* How many points of the set reach the place, by rays. */
