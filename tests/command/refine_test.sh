@@ -102,6 +102,30 @@ test_forests_are_refined_each_tree_with_its_terminals() {
     run_ok corcast grow --terminals 60 --inlet 0,50 --inlet 3,-40.5 --refine geometry -o grown.swc
 }
 
+# Where a fork is next to an end T has a minimum, and a lower one farther up.
+test_forks_leave_ends_that_they_were_caught_at() {
+    cat >caught.swc <<'END'
+# gamma: 3
+# lambda: 2
+# p_perf_mmHg: 100
+# p_term_mmHg: 60
+# q_perf_ml_min: 1e-6
+# viscosity_cP: 3.6
+1 3 0 50 0 0.00647 -1
+2 3 0 49.984 0 0.00647 1
+3 3 3.884 36.270 0 0.00618 2
+4 3 13.296 25.469 0 0.00539 3
+5 3 13.301 25.453 0 0.000663 4
+6 3 33.989 5.402 0 0.00538 4
+7 3 33.955 5.298 0 0.00162 6
+8 3 46.131 1.405 0 0.00533 6
+9 3 -22.317 -2.116 0 0.0043 3
+10 3 -18.526 44.423 0 0.00324 2
+END
+    run_ok corcast refine caught.swc --refine topology -o free.swc --json free.json
+    expect_json free.json '.target < 0.987 * .target_before'
+}
+
 test_vessels_of_several_segments_become_straight() {
     cat >bent.swc <<'END'
 # domain: rect:40,40

@@ -2,8 +2,9 @@
  * gains is tested for clearance (shift and connect, which call surcharge). A move that is not
  * wanted is undone.
  *
- * move_bifurcation optimises the place [bifurcation.h], and tries shorter and shorter steps towards
- * it; while rules may be broken, also random ones.
+ * move_bifurcation optimises the place [bifurcation.h], from further up as well where it is next to
+ * an end (leave_end), and tries shorter and shorter steps towards it; while rules may be broken,
+ * also random ones.
  *
  * move_subtree prunes the subtree, prices its connection to the nearest segments in O(1) by their
  * marginals (find_candidates, propose, price), chooses one (choose) and grafts it there (connect).
@@ -32,6 +33,10 @@ enum { STEPS = 3, JOLTS = 4, ATTEMPTS = 4 };
 /* Bifurcations keep so many times the least length from the ends: radii move a little too, and
  * vessels are given more room than they need [refine_clearance.c]. */
 static const double margin = 1.06;
+/* A bifurcation is next to an end if its shortest segment is this share of its longest at most; the
+ * parts of its mother by which it is then moved up, each half of the one before. */
+static const double near_end = 0.05, farthest_up = 0.4;
+enum { PARTS_UP = 4 };
 /* Gains of S_root, over S_root, too small to be worth a move. */
 static const double least_gain = 1e-9;
 
@@ -53,6 +58,25 @@ static Bifurcation bifurcation_of(const LocalSearch *search, int32_t proximal, i
         .least_widths = search->clearance.level,
         .least_part = INFINITY,
         .margin = margin};
+}
+
+/* Where the best place is next to an end, takes one further up the mother if that is better. The
+ * shorter a daughter, the thinner it is, and the faster T rises as it becomes longer: next to an
+ * end T has a minimum of its own, from which no short step leads away, and often not the least. */
+static void leave_end(const Law *law, const Bifurcation *problem, BifurcationState *best)
+{
+    const double *length = best->length;
+    double shortest = fmin(length[PROXIMAL], fmin(length[LEFT], length[RIGHT]));
+    if (shortest > near_end * fmax(length[PROXIMAL], fmax(length[LEFT], length[RIGHT])))
+        return;
+    Vec3 place = best->place, up = vec3_sub(problem->end[PROXIMAL], place);
+    double part = farthest_up;
+    for (int k = 0; k < PARTS_UP; k++, part /= 2) {
+        BifurcationState other;
+        bifurcation_at(law, problem, vec3_add_scaled(place, up, part), &other);
+        if (bifurcation_optimise(law, problem, ROUNDS, &other) && other.price < best->price)
+            *best = other;
+    }
 }
 
 /* Keeps the present move, which ends with a bifurcation at the end of segment i. */
@@ -129,6 +153,7 @@ Status move_bifurcation(LocalSearch *search, int32_t i, Err *err)
     best = now;
     if (!bifurcation_optimise(&law, &problem, ROUNDS, &best))
         return STATUS_OK;
+    leave_end(&law, &problem, &best);
     arbor_begin(arbor);
     double due = penalty(search, moved, 3), cost = arbor_cost(arbor);
     if (!(best.price < now.price + due - least_gain * cost))
