@@ -652,4 +652,13 @@ test_implicit_surfaces_of_odd_trees_are_drawn_or_refused() {
     done
 }
 
+test_a_pfm_that_fits_into_memory_goes_to_a_pipe() {
+    mkfifo pipe.pfm
+    cat pipe.pfm >got.pfm &
+    run_ok corcast render "$DATA/bifurcation.swc" --size 31x613 -o pipe.pfm
+    wait
+    run_ok corcast render "$DATA/bifurcation.swc" --size 31x613 -o file.pfm
+    expect_same file.pfm got.pfm
+}
+
 run_tests "$@"

@@ -14,18 +14,36 @@ static bool has_soft_shadows(const RenderParams *params, const View *view)
     return soft;
 }
 
-/* Floats, codes and masks, and what pixels share: with occlusion half of them see something. */
+/* Bytes of a pixel of what pixels share: with occlusion half of them see something. */
+static int shared_bytes(const RenderParams *params, const View *view)
+{
+    if (params && params->occlusion > 0)
+        return 42 + params->occlusion;
+    return params && view && has_soft_shadows(params, view) ? 46 : 0;
+}
+
+static bool has_floats(const FramesForm *form)
+{
+    return image_is_floats(form->path) || form->color || form->depth || form->normal;
+}
+
+/* The memory of one band serves the next, while that of a whole picture would take longer to be
+ * cleared than to be filled. So bands have no more rows, enough for each of many threads to have
+ * some tiles, but for two: where pixels share light each sees rows of its neighbours, and a PFM,
+ * which begins with its last row, can go to a pipe only if it is whole. */
+enum { MOST_ROWS = 512 };
+
+/* Floats, codes and masks, and what is shared. */
 int film_band_rows(const FramesForm *form, const RenderParams *params, const View *view,
                    double memory_mb)
 {
     int bytes = 12 + form->bits / 8 * 3 + 1 + 4 * form->depth + 12 * form->normal + 7 * form->id;
     if (image_is_floats(form->path))
         bytes += 12 + 4 * form->depth + 12 * form->normal + 4 * form->id;
-    if (params && params->occlusion > 0)
-        bytes += 42 + params->occlusion;
-    else if (params && view && has_soft_shadows(params, view))
-        bytes += 46;
-    double rows = memory_mb * 1e6 / ((double)bytes * form->width);
+    int shared = shared_bytes(params, view);
+    double rows = memory_mb * 1e6 / ((double)(bytes + shared) * form->width);
+    if (rows > MOST_ROWS && !shared && !has_floats(form))
+        rows = MOST_ROWS;
     if (rows >= form->height)
         return form->height;
     return rows < 2 * RENDER_BAND_STEP ? RENDER_BAND_STEP

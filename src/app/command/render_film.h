@@ -18,8 +18,8 @@ typedef struct Film {
     double memory_mb;  /* of a band */
 } Film;
 
-/* Rows of a band so that it takes about `memory_mb`. `params` NULL: pixels share no light; `view`
- * NULL: no light of an area. */
+/* Rows of a band so that it takes about `memory_mb`, or less. `params` NULL: pixels share no light;
+ * `view` NULL: no light of an area. */
 int film_band_rows(const FramesForm *form, const RenderParams *params, const View *view,
                    double memory_mb);
 
