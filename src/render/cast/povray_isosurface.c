@@ -156,8 +156,18 @@ void povray_isosurface_free(PovrayIsosurface *isosurface)
     free(isosurface);
 }
 
-/* The nearest hit in [t_min, t_max), of equals that in the first cell, or any with `any`, as *cell
- * and *t. */
+/* Whether a ray enters the box of a cell before that of another, or of equals of lower number. */
+static bool enters_first(const CellTree *tree, Ray ray, uint32_t number, uint32_t other)
+{
+    double t0, other_t0, t1;
+    bool both = cut_box(ray, &tree->cells[number], &t0, &t1) &&
+                cut_box(ray, &tree->cells[other], &other_t0, &t1);
+    return both && t0 != other_t0 ? t0 < other_t0 : number < other;
+}
+
+/* The nearest hit in [t_min, t_max), or any with `any`, as *cell and *t. Of equals, which are where
+ * two boxes overlap and the wall stands in the middle plane of both, the one whose box the ray
+ * enters first: POV-Ray looks into boxes in that order. */
 static bool find_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min, double t_max,
                      bool any, uint32_t *cell, double *t)
 {
@@ -170,7 +180,9 @@ static bool find_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min, 
             uint32_t number = isosurface->boxes.items[i];
             double at;
             if (hit_cell(&isosurface->tree, &isosurface->tree.cells[number], ray, &at) &&
-                at >= t_min && (at < *t || (found && at == *t && number < *cell))) {
+                at >= t_min &&
+                (at < *t ||
+                 (found && at == *t && enters_first(&isosurface->tree, ray, number, *cell)))) {
                 found = true;
                 *t = at;
                 *cell = number;
