@@ -22,7 +22,7 @@ const struct MorphometryName morphometry_names[MORPHOMETRY_MEASURES] = {
     [COMPARED_LENGTH_RATIO] = {"ratio of lengths", ""},
 };
 
-enum { ROW_NUMBERS = 7 + DAUGHTERS_SAID, RATIO_NUMBERS = 3 };
+enum { ROW_NUMBERS = 8 + DAUGHTERS_SAID, RATIO_NUMBERS = 3 };
 
 void morphometry_release(Morphometry *table)
 {
@@ -55,8 +55,8 @@ static Status take_row(Morphometry *table, size_t *capacity, const char *line, E
     *row = (MorphometryRow){.diameter_mm = {c[1] / 1000, c[2] / 1000},
                             .length_mm = {c[3], c[4]},
                             .elements = c[5],
-                            .vessels_per_element = c[6]};
-    memcpy(row->daughters, &c[7], sizeof row->daughters);
+                            .vessels_per_element = {c[6], c[7]}};
+    memcpy(row->daughters, &c[8], sizeof row->daughters);
     return STATUS_OK;
 }
 
@@ -125,7 +125,7 @@ static MorphometryRow row_of_tree(const TreeStatistics *statistics, size_t k)
     MorphometryRow row = {.diameter_mm = {2 * own->radius_mm.mean, 2 * own->radius_mm.sd},
                           .length_mm = own->length_mm,
                           .elements = (double)own->elements,
-                          .vessels_per_element = (double)own->vessels / (double)own->elements};
+                          .vessels_per_element.mean = (double)own->vessels / (double)own->elements};
     for (size_t less = 0; less < DAUGHTERS_SAID; less++)
         row.daughters[less] = less <= k ? statistics->daughters[k * n + k - less] : (double)NAN;
     return row;
@@ -138,9 +138,9 @@ static Spread row_value(const MorphometryRow *row, MorphometryMeasure measure)
         return row->diameter_mm;
     if (measure == COMPARED_LENGTH)
         return row->length_mm;
-    double number = measure == COMPARED_VESSELS ? row->vessels_per_element
-                                                : row->daughters[measure - COMPARED_DAUGHTERS];
-    return (Spread){number, (double)NAN};
+    if (measure == COMPARED_VESSELS)
+        return row->vessels_per_element;
+    return (Spread){row->daughters[measure - COMPARED_DAUGHTERS], (double)NAN};
 }
 
 /* Mean of the squared logarithms of the diameters' ratios; infinite where no order has both. */

@@ -15,7 +15,7 @@ enum { DAUGHTERS_SAID = 4 };
 typedef struct MorphometryRow {
     Spread diameter_mm, length_mm; /* of the elements */
     double elements;
-    double vessels_per_element;
+    Spread vessels_per_element;
     double daughters[DAUGHTERS_SAID]; /* elements of so many orders less that spring from one */
 } MorphometryRow;
 
@@ -29,7 +29,7 @@ typedef struct Morphometry {
 } Morphometry;
 
 /* Reads a file of templates/morphometry: "source TEXT", "ratios NUMBER DIAMETER LENGTH",
- * "fitted-from NUMBER DIAMETER LENGTH" (1 each where there is no such line), and a line of 11
+ * "fitted-from NUMBER DIAMETER LENGTH" (1 each where there is no such line), and a line of 12
  * numbers for each order from 1 on (micrometres, millimetres; "nan" where nothing is published);
  * '#' starts a comment line. In *table (owned; morphometry_release). STATUS_INPUT
  * naming file and line on anything else. */

@@ -170,7 +170,7 @@ test_the_coronary_artery_grows_in_its_stages() {
     sed -i -e 's/^domain = .*/domain = hull:20/' -e 's/^terminals = \([0-9]*\)000/terminals = \1/' stages.ini
     run_ok corcast grow --from trunk.swc --domain hull:20 --stages stages.ini --seed 2 -o tree.swc
     run_ok corcast info tree.swc --json
-    expect_json stdout '.terminals == 100 and .gamma_by_radius == [[0.013, 3], [0.04, 2.1]]'
+    expect_json stdout '.terminals == 150 and .lambda == 1 and .gamma_by_radius == [[0.013, 3], [0.04, 2.1]]'
 }
 
 run_tests "$@"

@@ -218,11 +218,11 @@ static void a_tree_stands_beside_the_published_orders_of_its_diameters(void **st
 {
     (void)state;
     write_table("# the head\nsource Nobody (1999)\nratios 2.44 nan 1.3\nfitted-from 1 1 3\n"
-                "1 1000 100 1.1 .1 80 2 .1 nan nan nan\n"
-                "2 1900 80 1.3 .7 24 1.2 .2 2.2 nan nan\n"
-                "3 4100 90 7.9 3 8 1.9 nan 2.4 .4 nan\n"
-                "4 8100 nan 13 nan 3 1 .2 2.3 .1 .3\n"
-                "5 16000 nan nan nan 1 3 nan nan nan nan\n");
+                "1 1000 100 1.1 .1 80 2 nan .1 nan nan nan\n"
+                "2 1900 80 1.3 .7 24 1.2 nan .2 2.2 nan nan\n"
+                "3 4100 90 7.9 3 8 1.9 nan nan 2.4 .4 nan\n"
+                "4 8100 nan 13 nan 3 1 .6 .2 2.3 .1 .3\n"
+                "5 16000 nan nan nan 1 3 nan nan nan nan nan\n");
     Tree tree = make_tree(HAND_N, hand_parent, hand_radius, hand_length);
     TreeStatistics statistics = statistics_of(&tree);
     Morphometry table;
@@ -241,6 +241,7 @@ static void a_tree_stands_beside_the_published_orders_of_its_diameters(void **st
         {COMPARED_DIAMETER, 3, 4, 8, 8.1, 0.25 * 8.1},
         {COMPARED_LENGTH, 2, 3, 7.5, 7.9, 3},
         {COMPARED_VESSELS, 2, 3, 1.5, 1.9, 0.25 * 1.9},
+        {COMPARED_VESSELS, 3, 4, 1, 1, 0.6},
         {COMPARED_DAUGHTERS, 1, 2, 1.0 / 6, 0.2, 0.05},
         {COMPARED_DAUGHTERS_1_LESS, 2, 3, 2.5, 2.4, 0.6},
         {COMPARED_DAUGHTERS_2_LESS, 3, 4, 0, 0.1, 0.025},
@@ -274,11 +275,11 @@ static void rejects_a_table_of_morphometry_that_is_none(void **state)
     (void)state;
     static const char *const wrong[][2] = {
         {"", ": a table of morphometry needs a row for order 1"},
-        {"1 9 1 1 1 9 2 .1 nan nan nan\n", ": a table of morphometry needs a source"},
-        {"source X\n2 9 1 1 1 9 2 .1 nan nan nan\n",
+        {"1 9 1 1 1 9 2 nan .1 nan nan nan\n", ": a table of morphometry needs a source"},
+        {"source X\n2 9 1 1 1 9 2 nan .1 nan nan nan\n",
          ":2: the row begins with order 2 and diameter 9; it must be order 1, and a "
          "diameter above 0"},
-        {"source X\n1 0 1 1 1 9 2 .1 nan nan nan\n", ":2: the row begins with order 1"},
+        {"source X\n1 0 1 1 1 9 2 nan .1 nan nan nan\n", ":2: the row begins with order 1"},
         {"source X\nratios 2 3\n", ":2: 'ratios 2 3' is neither a source, nor ratios"},
         {"source X\nfitted-from 1 1 2.5\n", ":2: 'fitted-from 1 1 2.5' is neither"},
         {"source X\nfitted-from 1 nan 1\n", ":2: 'fitted-from 1 nan 1' is neither"},
