@@ -313,9 +313,10 @@ test_a_compressed_picture_beyond_the_disk_is_refused_before_it_is_drawn() {
     done
 }
 
+# Where pixels share light a band is not cut to fewer rows than --memory holds.
 test_a_band_beyond_memory_is_refused() {
     grow_tree 3
-    run corcast render tree.swc --size 1000000x1000000 --memory 1e9 -o picture.png
+    run corcast render tree.swc --size 1000000x1000000 --ao 4 --memory 1e9 -o picture.png
     expect_status 3
     expect_sentence "out of memory"
     expect_only tree.swc
