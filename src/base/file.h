@@ -18,9 +18,9 @@ typedef struct FileForm {
 
 /* Reads all of `path` ("-": standard input) into *bytes (owned), zero-terminated; *size does not
  * count that zero. Of a text the byte order mark is left out, and every line end (LF, CR or CRLF)
- * is LF. STATUS_INPUT when the file is missing, a folder or not of its form, told by its size, its
- * first bytes or the first zero byte of a text before what follows is read; STATUS_IO when it
- * cannot be read; STATUS_MEMORY naming the file. */
+ * is LF. STATUS_INPUT when the file is missing, a folder, or not of its form: the sentence names
+ * its size, its first bytes or the first zero byte of a text; STATUS_IO when it cannot be read;
+ * STATUS_MEMORY naming the file. */
 MUST_CHECK Status file_read(const char *path, const FileForm *form, char **bytes, size_t *size,
                             Err *err);
 /* Makes a text of what was read as bytes, as file_read does; `path` and `form` are for the

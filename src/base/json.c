@@ -12,6 +12,11 @@ json_t *json_number(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
+json_t *json_count(uint64_t n)
+{
+    return json_integer((json_int_t)n);
+}
+
 json_t *json_text(const char *chars)
 {
     if (!chars)

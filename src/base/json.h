@@ -7,13 +7,16 @@
 
 #include "base/text.h"
 #include <jansson.h>
+#include <stdint.h>
 
 /* A JSON real, or null where the value is not finite. New reference, as of all below. */
 json_t *json_number(double value);
+/* A number of things. */
+json_t *json_count(uint64_t n);
 /* A JSON string; what of `chars` is not UTF-8 is replaced as text_utf8 does. NULL when `chars` is
  * NULL, as the characters of a text that failed are. */
 json_t *json_text(const char *chars);
-/* Likewise of what need not be there: null when `chars` is NULL. */
+/* As json_text, but null when `chars` is NULL. */
 json_t *json_text_or_null(const char *chars);
 
 typedef struct JsonMember {
@@ -21,12 +24,12 @@ typedef struct JsonMember {
     json_t *value;
 } JsonMember;
 
-/* `object` with a member more, whose value it takes; NULL, and both are let go of, when either is
- * NULL or memory runs out. */
+/* Adds a member to `object`, taking over `value`, and returns `object`. NULL when either is NULL or
+ * memory runs out; both are then released. */
 MUST_CHECK json_t *json_with(json_t *object, const char *key, json_t *value);
-/* Likewise with `n` members more. */
+/* As json_with, for `n` members. */
 MUST_CHECK json_t *json_with_members(json_t *object, const JsonMember *members, size_t n);
-/* Likewise `array` with an item more. */
+/* As json_with, for an item appended to `array`. */
 MUST_CHECK json_t *json_with_item(json_t *array, json_t *value);
 
 /* json_loadb of jansson, which may go on without a character that it has no room for: NULL then,

@@ -1,8 +1,9 @@
 /* number_text tries 15, 16 and 17 digits: a double needs at most 17, and the first that reads back
  * is the shortest in all but rare cases of even fewer digits, whose trailing zeros are cut. For
  * values in [1e-4, 1e14) this is exact integer arithmetic, ten times as fast as printing and
- * reading: the value m 2^e scaled to so many digits before the point is N / 2^shift with the whole
- * number N = m 5^k, which 128 bits hold, and the spacing of doubles there is 5^k in units of N.
+ * reading: the value m 2^e scaled to a number of digits before the point is N / 2^shift with the
+ * whole number N = m 5^k, which 128 bits hold, and the spacing of doubles there is 5^k in units of
+ * N.
  *
  * number_take reads what has at most 19 digits and stands for a whole number times 10^k, k from
  * -26 to 26, in the same arithmetic, five times as fast as strtod: the product with 5^k, or the

@@ -1,4 +1,4 @@
-/* A unit is so many of the first of its kind in the table. */
+/* The table gives each unit as a multiple of the first unit of its kind. */
 #include "base/units.h"
 
 #include <string.h>

@@ -32,6 +32,11 @@ static inline double pa_s_from_cp(double cp)
 
 #define MM_PER_INCH 25.4
 
+/* Angles are in radians: of half a circle, of a circle, of one degree. */
+#define PI 3.14159265358979323846
+#define FULL_TURN (2 * PI)
+#define DEGREE (PI / 180)
+
 /* Units by name, of pressure (Pa, mmHg, dyn/cm2, ...), length, flow and velocity. */
 
 /* The unit of this name, which lasts; NULL when there is none. */

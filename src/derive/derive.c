@@ -1,4 +1,4 @@
-/* One table row a field; what the tree's file says, a column, goes before what would be derived.
+/* One table row a field; a column of the tree's file takes precedence over what would be derived.
  * The functions write every node, roots with whatever suits their sweep; here the roots become NAN.
  */
 #include "derive/derive.h"

@@ -44,14 +44,14 @@ typedef struct Field {
  *                        others begin new ones, as do all segments that leave a root
  *     tree               of a forest, numbered from 1 in the order of the roots
  *
- * unless the tree has a column of exactly this name, which goes before. Flow shares, and with them
- * all fields of flow, are the tree's, or those of tree/outlets.h. mu is the constant viscosity of
- * the blood, or viscosity_pries_pa_s of each segment's radius. Velocity, wall shear stress and
+ * unless the tree has a column of exactly this name, which takes precedence. Flow shares, and with
+ * them all fields of flow, are the tree's, or those of tree/outlets.h. mu is the constant viscosity
+ * of the blood, or viscosity_pries_pa_s of each segment's radius. Velocity, wall shear stress and
  * Reynolds number of a segment of radius 0 are not defined: NAN; so are the pressures at and below
- * one. Capitals in the name of a field are as small letters. What the user has `said` goes before
- * what the tree says. The names in *field are borrowed, of a column from the tree. STATUS_USAGE for
- * an unknown name; STATUS_INPUT, naming the option and the key of the file, when neither says what
- * the field needs. */
+ * one. Capitals in the name of a field are as small letters. The values that the user gave, `said`,
+ * take precedence over the tree's. The names in *field are borrowed, of a column from the tree.
+ * STATUS_USAGE for an unknown name; STATUS_INPUT, naming the option and the key of the file, when
+ * neither says what the field needs. */
 MUST_CHECK Status derive_field(const Tree *tree, const TreeMeta *said, const char *name,
                                Field *field, Err *err);
 void field_release(Field *field);
@@ -66,9 +66,9 @@ typedef struct FieldSeries {
     size_t frames;
 } FieldSeries;
 
-/* As derive_field, but what the tree has as a series of columns [tree/series.h] goes before what is
- * derived; in *series (owned; fieldseries_release). The name in it is borrowed from `name` or as
- * derive_field has it. STATUS_INPUT also as tree_series. */
+/* As derive_field, but what the tree has as a series of columns [tree/series.h] takes precedence
+ * over what is derived; in *series (owned; fieldseries_release). The name in it is borrowed from
+ * `name` or as derive_field has it. STATUS_INPUT also as tree_series. */
 MUST_CHECK Status derive_series(const Tree *tree, const TreeMeta *said, const char *name,
                                 FieldSeries *series, Err *err);
 void fieldseries_release(FieldSeries *series);

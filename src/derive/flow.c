@@ -7,8 +7,6 @@
 #include <string.h>
 
 static const double density_g_mm3 = 1.05e-3; /* of blood */
-static const double pi = 3.14159265358979323846;
-
 /* The sentence goes on from "the field NAME ". */
 static Status need(const Tree *tree, const TreeMeta *said, MetaKey key, double *value, Err *err)
 {
@@ -108,7 +106,7 @@ Status field_velocity(const Tree *tree, const TreeMeta *said, double *value, Err
     TRY(flow_mm3_s(tree, said, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         double radius = tree->radius_mm[i];
-        value[i] = radius > 0 ? value[i] / (pi * radius * radius) : (double)NAN;
+        value[i] = radius > 0 ? value[i] / (PI * radius * radius) : (double)NAN;
     }
     return STATUS_OK;
 }
@@ -121,7 +119,7 @@ Status field_wss(const Tree *tree, const TreeMeta *said, double *value, Err *err
     for (size_t i = 0; i < tree->n; i++) {
         double radius = tree->radius_mm[i], viscosity = viscosity_pa_s(&blood, radius);
         value[i] =
-            radius > 0 ? 4 * viscosity * value[i] / (pi * radius * radius * radius) : (double)NAN;
+            radius > 0 ? 4 * viscosity * value[i] / (PI * radius * radius * radius) : (double)NAN;
     }
     return STATUS_OK;
 }
@@ -141,7 +139,7 @@ Status field_reynolds(const Tree *tree, const TreeMeta *said, double *value, Err
 static double poiseuille_drop_pa(double viscosity, double length, double flow, double radius)
 {
     double radius2 = radius * radius;
-    return radius > 0 ? 8 * viscosity * length * flow / (pi * radius2 * radius2) : (double)NAN;
+    return radius > 0 ? 8 * viscosity * length * flow / (PI * radius2 * radius2) : (double)NAN;
 }
 
 Status field_pressure(const Tree *tree, const TreeMeta *said, double *value, Err *err)

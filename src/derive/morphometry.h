@@ -16,14 +16,14 @@ typedef struct MorphometryRow {
     Spread diameter_mm, length_mm; /* of the elements */
     double elements;
     Spread vessels_per_element;
-    double daughters[DAUGHTERS_SAID]; /* elements of so many orders less that spring from one */
+    double daughters[DAUGHTERS_SAID]; /* by k: elements k orders lower that spring from one */
 } MorphometryRow;
 
 /* A published table: row[k] is order k + 1. */
 typedef struct Morphometry {
     char *source; /* owned; author, journal, year */
     OrderRatios ratios;
-    int fitted_from[3];  /* the order from which on numbers, diameters and lengths gave them */
+    int fitted_from[3];  /* the lowest order that each of the ratios was fitted to */
     MorphometryRow *row; /* owned */
     size_t n;            /* at least 1 */
 } Morphometry;

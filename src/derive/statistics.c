@@ -7,8 +7,6 @@
 #include <limits.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* Vessels of the same group in series; at levels, single vessels. */
 typedef struct Element {
     int32_t group;
@@ -251,7 +249,7 @@ static double volume_mm3(const Tree *tree)
 {
     double volume = 0;
     for (size_t i = 0; i < tree->n; i++)
-        volume += pi * tree->radius_mm[i] * tree->radius_mm[i] * tree_segment_length(tree, i);
+        volume += PI * tree->radius_mm[i] * tree->radius_mm[i] * tree_segment_length(tree, i);
     return volume;
 }
 

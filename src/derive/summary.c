@@ -4,26 +4,22 @@
 
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* Everything that one sweep over the segments gives. */
 static void sum_segments(const Tree *tree, TreeSummary *summary)
 {
     summary->nodes = tree->n;
     summary->min_radius_mm = (double)NAN;
+    summary->root_radius_mm = tree_root_radius(tree);
     for (size_t i = 0; i < tree->n; i++) {
         double radius = tree->radius_mm[i];
         if (!tree_is_segment(tree, i)) {
             summary->roots++;
-            summary->root_radius_mm = fmax(summary->root_radius_mm, radius);
             continue;
         }
         double length = tree_segment_length(tree, i);
-        if (!tree_is_segment(tree, (size_t)tree->parent[i]))
-            summary->root_radius_mm = fmax(summary->root_radius_mm, radius);
         summary->segments++;
         summary->total_length_mm += length;
-        summary->volume_mm3 += pi * radius * radius * length;
+        summary->volume_mm3 += PI * radius * radius * length;
         if (summary->has.target)
             summary->target += length * pow(radius, summary->lambda);
         summary->min_radius_mm = fmin(summary->min_radius_mm, radius);

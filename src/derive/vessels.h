@@ -1,7 +1,7 @@
 /* The tree as vessels: what lies between one branching of the tree and the next.
  *
  * In a grown tree each segment is a vessel; in a measured one a vessel is a chain of many short
- * segments, and only vessels can be held against the literature, which calls them segments. */
+ * segments, and only vessels can be compared with the literature, which calls them segments. */
 #ifndef CORCAST_DERIVE_VESSELS_H
 #define CORCAST_DERIVE_VESSELS_H
 

@@ -107,7 +107,7 @@ static Status ends_early(const char *path, const nifti_image *image, Err *err)
                    (long long)image->nx, (long long)image->ny, (long long)image->nz);
 }
 
-/* No size that the header claims is believed before it is held against that of the file. */
+/* A size that the header gives is checked against the file's before it is used. */
 static Status check_size(const char *path, const nifti_image *image, Err *err)
 {
     enum { DEFLATE_MAX_RATIO = 1032 };

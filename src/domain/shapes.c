@@ -9,15 +9,13 @@
 
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 static double square(double x)
 {
     return x * x;
 }
 
-/* Reads the numbers of a shape: so many that must be there, each at least DOMAIN_MIN_MM, and so
- * many more of either sign. */
+/* Reads the numbers of a shape: `n_positive`, which must be there and at least DOMAIN_MIN_MM, and
+ * up to `n_optional` more of either sign. */
 static Status load_sizes(Domain *domain, int n_positive, int n_optional, const char *example,
                          const char *values, Err *err)
 {
@@ -69,7 +67,7 @@ static Status disc_load(Domain *domain, const char *values, Err *err)
 {
     TRY(load_sizes(domain, 1, 0, "50", values, err));
     double r = domain->size[0];
-    set_centered(domain, 2, vec3(r, r, 0), pi * r * r);
+    set_centered(domain, 2, vec3(r, r, 0), PI * r * r);
     return STATUS_OK;
 }
 
@@ -85,7 +83,7 @@ static Status ball_load(Domain *domain, const char *values, Err *err)
 {
     TRY(load_sizes(domain, 1, 0, "30", values, err));
     double r = domain->size[0];
-    set_centered(domain, 3, vec3(r, r, r), 4.0 / 3 * pi * r * r * r);
+    set_centered(domain, 3, vec3(r, r, r), 4.0 / 3 * PI * r * r * r);
     return STATUS_OK;
 }
 
@@ -153,7 +151,7 @@ static Status ellipsoid_load(Domain *domain, const char *values, Err *err)
 {
     TRY(load_sizes(domain, 3, 0, "40,50,30", values, err));
     Vec3 axes = size_vector(domain);
-    set_centered(domain, 3, axes, 4.0 / 3 * pi * axes.x * axes.y * axes.z);
+    set_centered(domain, 3, axes, 4.0 / 3 * PI * axes.x * axes.y * axes.z);
     return STATUS_OK;
 }
 
@@ -179,7 +177,7 @@ static Vec3 cavity_axes(const Domain *domain)
 static double volume_below(Vec3 axes, double top)
 {
     double s = top / axes.y;
-    return pi * axes.x * axes.y * axes.z * (2.0 / 3 + s - s * s * s / 3);
+    return PI * axes.x * axes.y * axes.z * (2.0 / 3 + s - s * s * s / 3);
 }
 
 /* The radius along x of an ellipsoid at the height `y`, in [-axes.y, axes.y]. */

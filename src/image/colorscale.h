@@ -39,8 +39,8 @@ double colorscale_highest(const ColorScale *scale);
  * above 0 with `log`. False, and nothing is set, when there is none. */
 bool colorscale_fit(ColorScale *scale, const double *values, size_t n);
 
-/* The values of which so many percent, 0 to 100, of those that the scale can show are smaller,
- * interpolated between neighbours; NAN when it can show none. O(n log n). STATUS_MEMORY. */
+/* Two percentiles, percent[k] in 0 .. 100, of the values that the scale can show, interpolated
+ * between neighbours; NAN when it can show none. O(n log n). STATUS_MEMORY. */
 MUST_CHECK Status colorscale_percentiles(const ColorScale *scale, const double *values, size_t n,
                                          const double percent[2], double out[2], Err *err);
 

@@ -70,7 +70,7 @@ typedef struct RowEncoder {
     Status (*rows)(void *self, const void *values, int first, int n, Err *err);
     Status (*end)(void *self, Err *err); /* writes what comes last; may be NULL */
     void (*release)(void *self);         /* NULL is allowed */
-    double folds;     /* a file is at most so many times smaller than its values; 0: not known */
+    double folds;     /* a file is at most this many times smaller than its values; 0: not known */
     bool keeps_dpi;   /* has a place for the resolution on paper */
     bool keeps_inks;  /* takes codes of 4 channels: cyan magenta yellow black */
     bool keeps_alpha; /* takes codes of 4 channels: red green blue alpha */

@@ -15,7 +15,7 @@
 
 enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 8, IMAGE_MAX_ID = 0xffffff };
 
-/* Some pixels of a picture: so many from `left` and `top` on, counted from 0. */
+/* A rectangle of pixels; `left` and `top` count from 0. */
 typedef struct PixelRect {
     int left, top, width, height;
 } PixelRect;
@@ -263,7 +263,7 @@ typedef struct Image {
 
 void image_release(Image *image);
 
-/* Reads a file, its format told by its first bytes; "-" is standard input.
+/* Reads a file, whose format is recognised by its first bytes; "-" is standard input.
  * Codes: PPM/PGM (P2, P3, P5, P6, maxval up to 65535, '#' comments; a maxval other than 255 and
  * 65535 is rescaled to 8 bits below 255 and to 16 above), PNG (8 and 16 bit, grey, RGB, palette;
  * gamma by gAMA, unless sRGB says otherwise; 0.4550 to 0.4560 is sRGB's), TIFF (8 and 16 bit, grey
@@ -331,8 +331,8 @@ typedef struct ImageFacts {
     char profile[IMAGE_PROFILE_NAME]; /* its name; "": none */
 } ImageFacts;
 
-/* Of a file told by its first bytes; pixels are not looked at. STATUS_INPUT naming the file when it
- * is of no such format or its header is broken. */
+/* The format is recognised by the first bytes; pixels are not read. STATUS_INPUT naming the file
+ * when it is of no such format or its header is broken. */
 MUST_CHECK Status image_facts(const char *path, ImageFacts *out, Err *err);
 
 /* Appends the names and versions of the libraries that read and write images. */

@@ -255,7 +255,7 @@ static Status jpeg_facts(const ImageBytes *file, ImageFacts *facts, Err *err)
 static const struct {
     const char *begins;
     size_t length;
-    const char *format; /* of what is told by its name alone */
+    const char *format; /* of files that only their names identify */
     Status (*facts)(const ImageBytes *file, ImageFacts *facts, Err *err);
 } kinds[] = {{"\x89PNG", 4, NULL, png_facts},
              {"\xff\xd8\xff", 3, NULL, jpeg_facts},

@@ -1,6 +1,6 @@
-/* The format of a file is told by its first bytes, whatever its name. The whole file is read before
- * it is decoded: readers then know how much there is, and need no file that can be wound back, so
- * that standard input will do. */
+/* The format of a file is recognised by its first bytes, whatever its name. The whole file is read
+ * before it is decoded: readers then know how much there is, and need no file that can be wound
+ * back, so that standard input will do. */
 #include "image/formats.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* What a reader adds to the format's decoder: the file, and the number of the next row, so that the
- * end of the file is held against its last row. */
+ * end of the file is compared with its last row. */
 #include "image/formats.h"
 
 #include <assert.h>

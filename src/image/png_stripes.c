@@ -183,7 +183,7 @@ static int rows_of(const PngStripes *self, size_t i)
 /* isal_deflate_stateless fails only for want of room, of which there is enough. */
 static size_t deflate_rows(const PngStripes *self, const Worker *worker, size_t n, uint8_t *out)
 {
-    struct isal_zstream stream = {0}; /* what is called next leaves hist_bits as it is */
+    struct isal_zstream stream = {0}; /* isal_deflate_stateless_init sets all but hist_bits */
     isal_deflate_stateless_init(&stream);
     stream.level = LEVEL;
     stream.level_buf = worker->level;

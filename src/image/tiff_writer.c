@@ -31,6 +31,8 @@ static Status failed(Writer *self, Err *err)
     image_plain_text(self->tiff.complaint);
     if (errno == ENOMEM)
         return mem_out_of("for the TIFF", "that is written", err);
+    if (ferror(self->tiff.stream)) /* libtiff does not say why */
+        return err_set(err, STATUS_IO, "writing the TIFF failed: %s", strerror(errno));
     return err_set(err, STATUS_IO, "writing the TIFF failed: %s",
                    *self->tiff.complaint ? self->tiff.complaint : strerror(errno));
 }

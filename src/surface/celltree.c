@@ -33,9 +33,10 @@ static const double significant = 1e-2;
 /* The accuracy of a cell over its local radius, and the most that a shadow may ask for. */
 static const double accuracy_ratio = 1.0 / 300, largest_accuracy_ratio = 1.0 / 60;
 
-/* Boxes reach beyond their cubes by this many accuracies, and by this part of their coordinates,
- * because POV-Ray keeps bounding boxes in single precision. */
-static const double overlap_accuracies = 5, overlap_rounding = 4 * FLT_EPSILON;
+/* Boxes reach beyond their cubes by this many accuracies, and up to OCTANTS units of their sides.
+ */
+static const double overlap_accuracies = 5;
+enum { OCTANTS = 8 };
 
 /* With erf as a polynomial's tanh, s |A'| is at most this times A sqrt(-2 ln A) down to A =
  * LOG_FORM_FLOOR / 10, and within the bound of the exact form from A = 1e-3 up (tabulated in
@@ -58,7 +59,8 @@ typedef struct Builder {
     Support *supports; /* one a segment */
     double beta;
     double root_side;
-    double rounding; /* mm: what single precision may take from a box */
+    double
+        spacing; /* mm: single precision holds its multiples in all boxes, and their differences */
     uint32_t *stack; /* the lists of the cubes from the first down to the current one */
     size_t depth, stack_capacity;
     uint64_t looks;      /* at terms, in all cubes so far */
@@ -219,14 +221,21 @@ double cell_accuracy(double radius)
     return round_down(accuracy, decimals_of(accuracy, 3), 1);
 }
 
-/* The box with corners of few digits: larger by less than a hundredth of the accuracy. */
-static Box box_rounded(Box box, double accuracy)
+/* What the sides of a box are multiples of, mm: a power of 2, at most an eighth of the accuracy
+ * where single precision allows. POV-Ray keeps the least corner and the size of a box in single
+ * precision, and looks into no box that these miss: so they are the very box. */
+static double side_unit(const Builder *builder, double accuracy)
 {
-    int places = decimals_of(accuracy, 3);
-    return (Box){{round_down(box.low.x, places, 1), round_down(box.low.y, places, 1),
-                  round_down(box.low.z, places, 1)},
-                 {round_down(box.high.x, places, -1), round_down(box.high.y, places, -1),
-                  round_down(box.high.z, places, -1)}};
+    return fmax(exp2(floor(log2(accuracy / OCTANTS))), builder->spacing);
+}
+
+/* The least box of such sides about the box. */
+static Box box_rounded(Box box, double unit)
+{
+    return (Box){{floor(box.low.x / unit) * unit, floor(box.low.y / unit) * unit,
+                  floor(box.low.z / unit) * unit},
+                 {ceil(box.high.x / unit) * unit, ceil(box.high.y / unit) * unit,
+                  ceil(box.high.z / unit) * unit}};
 }
 
 /* Which ends of the segment the term feels somewhere in the box. */
@@ -309,17 +318,17 @@ static double max_gradient(const Builder *builder, const TermList *terms, const 
 /* How far the box of a cell reaches beyond its cube: not alike for any two neighbours, so that
  * POV-Ray, which halves what a ray has in the box, does not find the same wall at the same place in
  * both, and the order in which it looks at them does not matter. */
-static double overlap_of(const Builder *builder, const Cube *cube, double accuracy)
+static double overlap_of(const Cube *cube, double accuracy, double unit)
 {
     int64_t octant = (cube->at[0] & 1) | (cube->at[1] & 1) << 1 | (cube->at[2] & 1) << 2;
-    return (overlap_accuracies + (double)octant / 8) * accuracy + builder->rounding;
+    return overlap_accuracies * accuracy + (double)octant * unit;
 }
 
 static Status add_cell(Builder *builder, const TermList *candidates, const Cube *cube, Err *err)
 {
     double accuracy = cell_accuracy(candidates->local_radius);
-    double margin = overlap_of(builder, cube, accuracy);
-    Box box = box_rounded(cube_box(cube, margin), accuracy);
+    double unit = side_unit(builder, accuracy), margin = overlap_of(cube, accuracy, unit);
+    Box box = box_rounded(cube_box(cube, margin), unit);
     TermList terms;
     TRY(filter_terms(builder, candidates, box, &terms, err));
     if (terms.bound_sum < empty_below || misses_surface(builder, &terms, cube, 2 * margin))
@@ -352,8 +361,8 @@ static Status add_cell(Builder *builder, const TermList *candidates, const Cube 
 static Status descend(Builder *builder, const TermList *parent, const Cube *cube, Err *err)
 {
     size_t depth = builder->depth;
-    double margin =
-        (overlap_accuracies + 1) * cell_accuracy(parent->largest_radius) + builder->rounding;
+    double accuracy = cell_accuracy(parent->largest_radius);
+    double margin = overlap_accuracies * accuracy + OCTANTS * side_unit(builder, accuracy);
     TermList terms;
     TRY(filter_terms(builder, parent, cube_box(cube, margin), &terms, err));
     if (terms.bound_sum >= empty_below && !misses_surface(builder, &terms, cube, margin)) {
@@ -397,6 +406,15 @@ static Status descend_from_top(Builder *builder, const TermList *all, Box box, E
     return STATUS_OK;
 }
 
+/* The power of 2 whose multiples within a box, and up to two root cubes beyond, single precision
+ * holds, and so their differences. */
+static double spacing_within(Box box, double root_side)
+{
+    double farthest = fmax(fmax(fmax(-box.low.x, box.high.x), fmax(-box.low.y, box.high.y)),
+                           fmax(-box.low.z, box.high.z));
+    return exp2(ilogb(farthest + 2 * root_side) + 2 - FLT_MANT_DIG);
+}
+
 static Support support_of(const FieldSegment *segment)
 {
     double peak = potential_term_peak(segment);
@@ -427,9 +445,7 @@ static Status build(Builder *builder, size_t n_segments, Err *err)
         return STATUS_OK;
     builder->depth = n_segments;
     builder->root_side = 4 * all.largest_radius;
-    builder->rounding =
-        overlap_rounding * fmax(fmax(fmax(-box.low.x, box.high.x), fmax(-box.low.y, box.high.y)),
-                                fmax(-box.low.z, box.high.z));
+    builder->spacing = spacing_within(box, builder->root_side);
     return descend_from_top(builder, &all, box, err);
 }
 

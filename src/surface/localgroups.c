@@ -1,6 +1,6 @@
-/* Whether a segment is in the list, and whether a group has been met, is told by a number that need
- * not be initialised or cleared: place[s] is that of s if the list has s there [Briggs & Torczon,
- * "An efficient representation for sparse sets", 1993].
+/* Whether a segment is in the list, and whether a group has been met, is marked by a number that
+ * need not be initialised or cleared: place[s] is that of s if the list has s there [Briggs &
+ * Torczon, "An efficient representation for sparse sets", 1993].
  *
  * A group that holds all of another holds its rarest member, so it is among that one's groups;
  * how many segments both have in the list, and the lowest and the highest, settle most pairs. */

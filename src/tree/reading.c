@@ -1,6 +1,6 @@
 /* What a tree shows is measured on the tree that was built, for every format alike. A unit is
- * believed when the median radius, so read, is that of a vessel: the one that was gone by first,
- * then the commoner before the rarer. */
+ * believed when the median radius, so read, is that of a vessel: the one that the tree was read
+ * with first, then the commoner before the rarer. */
 #include "tree/reading.h"
 
 #include "tree/tree.h"

@@ -94,13 +94,13 @@ typedef struct TreeReading {
     size_t degree[READ_MAX_DEGREE + 1]; /* nodes by segments that meet there; the last: or more */
     size_t without_radius;              /* segments whose radius is 0 */
     double median_radius_mm;            /* of the segments; 0: there are none */
-    LengthUnit unit;                    /* of coordinates and radii, which was gone by ... */
-    bool unit_said;                     /* ... because options or file say it */
-    bool voxels;                        /* coordinates were multiplied by a voxel's size */
-    LengthUnit believed;                /* what the radii look like */
-    bool believes;                      /* ... if they look like vessels in any unit */
-    bool looks_like_voxels;             /* all of READ_FEW points or more are whole numbers */
-    char **note;                        /* owned; sentences about what was assumed */
+    LengthUnit unit;        /* of coordinates and radii, used for the tree, which is so ... */
+    bool unit_said;         /* ... because options or file say it */
+    bool voxels;            /* coordinates were multiplied by a voxel's size */
+    LengthUnit believed;    /* what the radii look like */
+    bool believes;          /* ... if they look like vessels in any unit */
+    bool looks_like_voxels; /* all of READ_FEW points or more are whole numbers */
+    char **note;            /* owned; sentences about what was assumed */
     size_t n_notes, notes_capacity;
 } TreeReading;
 

@@ -72,11 +72,21 @@ void tree_hash(const Tree *tree, Hash *hash)
             hash_add(hash, &meta->number[key], sizeof meta->number[key]);
 }
 
-double tree_segment_length(const Tree *tree, size_t i)
+int32_t tree_last_id(const Tree *tree)
 {
-    if (!tree_is_segment(tree, i))
-        return 0;
-    return vec3_distance(tree->position[tree->parent[i]], tree->position[i]);
+    int32_t last = 0;
+    for (size_t i = 0; i < tree->n; i++)
+        last = tree->id[i] > last ? tree->id[i] : last;
+    return last;
+}
+
+double tree_root_radius(const Tree *tree)
+{
+    double radius = 0;
+    for (size_t i = 0; i < tree->n; i++)
+        if (!tree_is_segment(tree, i) || !tree_is_segment(tree, (size_t)tree->parent[i]))
+            radius = fmax(radius, tree->radius_mm[i]);
+    return radius;
 }
 
 Status tree_child_counts(const Tree *tree, int32_t **count, Err *err)
@@ -185,11 +195,12 @@ Status tree_check(const Tree *tree, Err *err)
 {
     if (tree->n == 0)
         return err_set(err, STATUS_INPUT, "the tree has no nodes; at least one is needed");
+    for (size_t i = 0; i < tree->n; i++)
+        TRY(check_node(tree, i, err));
     uint8_t *seen = NULL; /* one bit an id */
-    TRY(mem_calloc(&seen, TREE_MAX_ID / 8 + 1, 1, "bytes of seen ids", err));
+    TRY(mem_calloc(&seen, (size_t)tree_last_id(tree) / 8 + 1, 1, "bytes of seen ids", err));
     Status status = STATUS_OK;
     for (size_t i = 0; i < tree->n; i++) {
-        TRY_GOTO(check_node(tree, i, err));
         uint8_t *byte = &seen[tree->id[i] / 8];
         uint8_t bit = (uint8_t)(1u << tree->id[i] % 8);
         if (*byte & bit)

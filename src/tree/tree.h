@@ -61,7 +61,18 @@ static inline bool tree_is_segment(const Tree *tree, size_t i)
 }
 
 /* Length of segment i, mm; 0 at a root. */
-double tree_segment_length(const Tree *tree, size_t i);
+static inline double tree_segment_length(const Tree *tree, size_t i)
+{
+    if (!tree_is_segment(tree, i))
+        return 0;
+    return vec3_distance(tree->position[tree->parent[i]], tree->position[i]);
+}
+
+/* The largest id. O(n). */
+int32_t tree_last_id(const Tree *tree);
+
+/* The largest radius of the roots and of the segments that leave them, mm. O(n). */
+double tree_root_radius(const Tree *tree);
 
 /* The number of children of every node, in *count (owned, n entries). A leaf that is not a root is
  * a terminal; a node with two children or more is a bifurcation. */

@@ -1,7 +1,7 @@
 /* The formats of the table in treeio.c: what each does, and what their texts share.
  *
- * A new format is a file of a sub-room and a row of that table. It is told by its extension; where
- * several share one, and on standard input, by its TreeDetect. One whose file is a tree, with ids
+ * A new format is a file of a sub-room and a row of that table. Its extension identifies it; where
+ * several share one, and on standard input, its TreeDetect does. One whose file is a tree, with ids
  * and parents, has a TreeRead, which hands nodes to a TreeBuilder [tree/builder.h]; one whose file
  * is a network of points and lines has a GraphRead, which hands these to a Graph [tree/graph.h] as
  * the file has them: treeio.c has it made a tree. Neither scales: options of the user are applied

@@ -31,7 +31,7 @@ enum {
     LOSES_SHARES = 4,
     LOSES_ROOT_VALUES = 8, /* of columns, which are of segments there */
     LOSES_ROOT_RADII = 16,
-    LOSES_IDS = 32, /* nodes are told by their places */
+    LOSES_IDS = 32, /* readers tell nodes apart by their places */
     IS_NETWORK = LOSES_TYPES | LOSES_SHARES | LOSES_ROOT_RADII | LOSES_IDS
 };
 
@@ -258,7 +258,7 @@ static const Format *find_written(const char *path)
     return NULL;
 }
 
-/* Whether a file may begin so whose format only its bytes tell: what is no text is told by them. */
+/* Whether a file may begin like this whose format only its bytes tell: those that are not text. */
 static bool may_begin(const char *start, size_t count)
 {
     bool is_binary = memchr(start, '\0', count) != NULL;
@@ -604,6 +604,8 @@ Status tree_write(const Tree *tree, const char *path, Err *err)
     TRY(tree_check(tree, err));
     TRY(outfile_open(&file, path, err));
     Status status = find_written(path)->write(tree, file.stream, err);
+    if (status == STATUS_IO)
+        err_prefix(err, "%s: ", path);
     if (status == STATUS_OK)
         return outfile_commit(&file, err);
     outfile_discard(&file);

@@ -38,9 +38,9 @@ void tree_format_list(Text *text);
 
 /* Reads the tree in *tree (owned; tree_release), parents first and otherwise in file order: an
  * ancestor that the file names later moves to just before its first descendant. The format is that
- * of the extension; that of standard input, "-", is told by its first bytes. STATUS_USAGE for an
- * unknown extension; STATUS_INPUT, naming file and line, for a wrong field count, a value that is
- * no number or out of range, a duplicate id, an unknown parent, a cycle, a key of bad value or
+ * of the extension; that of standard input, "-", is recognised by its first bytes. STATUS_USAGE for
+ * an unknown extension; STATUS_INPUT, naming file and line, for a wrong field count, a value that
+ * is no number or out of range, a duplicate id, an unknown parent, a cycle, a key of bad value or
  * given twice with different values, a flow share given twice or to what is no node, flow shares
  * that terminal_flow contradicts, and for a file without nodes. */
 MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);

@@ -248,7 +248,7 @@ typedef struct Outlines {
     const Picture *a, *b;
     Labels labels;
     int slight;        /* codes */
-    size_t enough;     /* when a row has so many inner pixels the rest of it is not asked */
+    size_t enough;     /* when a row has this many inner pixels the rest of it is not looked at */
     RowOutlines *rows; /* owned */
 } Outlines;
 

@@ -107,6 +107,8 @@ static Status patches_init(Patches *patches, const Samples *samples, Err *err)
 /* Whether a cell counts: in the core, and in both pictures, away from their edges. */
 static bool counts(const Patches *patches, int patch, int x, int y)
 {
+    if (x < MARGIN || x >= SIDE - MARGIN || y < MARGIN || y >= SIDE - MARGIN)
+        return false;
     int u = patches->at[patch].x + x, v = patches->at[patch].y + y;
     int s = u - patches->start.dx, t = v - patches->start.dy;
     int right = patches->a->width - RIM, bottom = patches->a->height - RIM;
@@ -114,17 +116,28 @@ static bool counts(const Patches *patches, int patch, int x, int y)
            t < bottom;
 }
 
+/* Steps through all cells that count, patch after patch; false behind the last. Begin with
+ * NO_CELL. */
+enum { NO_CELL = -1 };
+
+static bool next_cell(const Patches *patches, int *cell)
+{
+    while (++*cell < patches->n * CELLS) {
+        int in_patch = *cell % CELLS;
+        if (counts(patches, *cell / CELLS, in_patch % SIDE, in_patch / SIDE))
+            return true;
+    }
+    return false;
+}
+
 /* The sum of squares between two sides. */
 static double squares(const Patches *patches, const float *side, const float *other)
 {
     double sum = 0;
-    for (int i = 0; i < patches->n; i++)
-        for (int y = MARGIN; y < SIDE - MARGIN; y++)
-            for (int x = MARGIN; x < SIDE - MARGIN; x++) {
-                size_t cell = (size_t)i * CELLS + (size_t)(y * SIDE + x);
-                double d = (double)(side[cell] - other[cell]);
-                sum += counts(patches, i, x, y) ? d * d : 0;
-            }
+    for (int cell = NO_CELL; next_cell(patches, &cell);) {
+        double d = (double)(side[cell] - other[cell]);
+        sum += d * d;
+    }
     return sum;
 }
 
@@ -169,21 +182,16 @@ static void move(Patches *patches, const double d[2])
 static bool improve(const Patches *patches, double d[2])
 {
     double xx = 0, xy = 0, yy = 0, xr = 0, yr = 0;
-    for (int i = 0; i < patches->n; i++)
-        for (int y = MARGIN; y < SIDE - MARGIN; y++)
-            for (int x = MARGIN; x < SIDE - MARGIN; x++) {
-                size_t cell = (size_t)i * CELLS + (size_t)(y * SIDE + x);
-                const float *at = patches->moved + cell;
-                if (!counts(patches, i, x, y))
-                    continue;
-                double gx = (double)(at[1] - at[-1]) / 2, gy = (double)(at[SIDE] - at[-SIDE]) / 2;
-                double rest = (double)(patches->to[cell] - *at);
-                xx += gx * gx;
-                xy += gx * gy;
-                yy += gy * gy;
-                xr += gx * rest;
-                yr += gy * rest;
-            }
+    for (int cell = NO_CELL; next_cell(patches, &cell);) {
+        const float *at = patches->moved + cell;
+        double gx = (double)(at[1] - at[-1]) / 2, gy = (double)(at[SIDE] - at[-SIDE]) / 2;
+        double rest = (double)(patches->to[cell] - *at);
+        xx += gx * gx;
+        xy += gx * gy;
+        yy += gy * gy;
+        xr += gx * rest;
+        yr += gy * rest;
+    }
     double ridge = 1e-6 * (xx + yy), determinant = (xx + ridge) * (yy + ridge) - xy * xy;
     if (!(determinant > 0))
         return false;
@@ -203,19 +211,14 @@ static bool explains(Patches *patches, double before, double after)
 static double left_by_blur(const Patches *patches, double *blurred)
 {
     double rest_rest = 0, rest_bend = 0, bend_bend = 0;
-    for (int i = 0; i < patches->n; i++)
-        for (int y = MARGIN; y < SIDE - MARGIN; y++)
-            for (int x = MARGIN; x < SIDE - MARGIN; x++) {
-                size_t cell = (size_t)i * CELLS + (size_t)(y * SIDE + x);
-                const float *at = patches->moved + cell;
-                if (!counts(patches, i, x, y))
-                    continue;
-                double rest = (double)(patches->to[cell] - *at);
-                double bend = (double)(at[1] + at[-1] + at[SIDE] + at[-SIDE] - 4 * *at);
-                rest_rest += rest * rest;
-                rest_bend += rest * bend;
-                bend_bend += bend * bend;
-            }
+    for (int cell = NO_CELL; next_cell(patches, &cell);) {
+        const float *at = patches->moved + cell;
+        double rest = (double)(patches->to[cell] - *at);
+        double bend = (double)(at[1] + at[-1] + at[SIDE] + at[-SIDE] - 4 * *at);
+        rest_rest += rest * rest;
+        rest_bend += rest * bend;
+        bend_bend += bend * bend;
+    }
     *blurred = bend_bend > 0 ? rest_bend / bend_bend : 0;
     return rest_rest - *blurred * rest_bend;
 }
@@ -318,7 +321,7 @@ static void try_blur(Patches *patches, Sentence *out)
     }
 }
 
-/* Parts of 1 for every code of so many bits: of light, or of the code itself. */
+/* The level, in [0, 1], of every code of `bits` bits: linear light, or code / greatest code. */
 static Status list_levels(int bits, bool linear, float **levels, Err *err)
 {
     int n = 1 << bits;

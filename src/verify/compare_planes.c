@@ -1,4 +1,4 @@
-/* Depth, normal and id planes. What a pixel shows is told by its values. */
+/* Depth, normal and id planes. The values of a pixel say what it shows. */
 #include "verify/labels.h"
 #include "verify/result.h"
 

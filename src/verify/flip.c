@@ -6,10 +6,10 @@
  * taken in a Hunt-adjusted CIELab. Edges and points, first and second derivatives of a Gaussian
  * applied to Y, amplify it: error = colour^(1 - feature).
  *
- * Work goes by square tiles, small enough that all filtered planes of a tile stay in a processor's
- * cache: first all rows of the tile and its halo are filtered horizontally, then each of its rows
- * vertically. A tile that is equal in both images, halo included, is zero without computing: the
- * metric is local. Sums are kept by tile and added in order. */
+ * Pictures are measured tile by tile, small enough that all filtered planes of a tile stay in a
+ * processor's cache: first all rows of the tile and its halo are filtered horizontally, then each
+ * of its rows vertically. A tile that is equal in both images, halo included, is zero without
+ * computing: the metric is local. Sums are kept by tile and added in order. */
 #include "verify/flip.h"
 
 #include "verify/wide.h"

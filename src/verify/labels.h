@@ -6,7 +6,7 @@
 
 /* The length of an outline, in pixels, for each pixel side on it: pi / 4, right on average over all
  * directions [Cauchy-Crofton]. */
-#define PX_PER_EDGE 0.78539816339744831
+#define PX_PER_EDGE (PI / 4)
 
 typedef enum LabelSource {
     LABELS_UNKNOWN,

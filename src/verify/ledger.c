@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    ID_LIMIT = IMAGE_MAX_ID + 1,
-    LEVELS_MIN_PIXELS = 64,
-    OUTLINE_MIN_PX = 8,
-    MISSING_MIN_PIXELS = 3
-};
+enum { LEVELS_MIN_PIXELS = 64, OUTLINE_MIN_PX = 8, MISSING_MIN_PIXELS = 3 };
+
+static uint32_t max_of(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
 
 Status segment_index_init(SegmentIndex *index, const IdPlane *a, const IdPlane *b, Err *err)
 {
@@ -20,7 +20,9 @@ Status segment_index_init(SegmentIndex *index, const IdPlane *a, const IdPlane *
     Status status = STATUS_OK;
     size_t n = (size_t)a->width * (size_t)a->height;
     uint32_t last = 0, previous = 0;
-    TRY_GOTO(mem_calloc(&present, ID_LIMIT, 1, "marks of ids", err));
+    for (size_t i = 0; i < n; i++)
+        last = max_of(last, max_of(a->ids[i], b->ids[i]));
+    TRY_GOTO(mem_calloc(&present, (size_t)last + 1, 1, "marks of ids", err));
     present[0] = 1;
     for (int side = 0; side < 2; side++) {
         const uint32_t *ids = side ? b->ids : a->ids;
@@ -29,7 +31,6 @@ Status segment_index_init(SegmentIndex *index, const IdPlane *a, const IdPlane *
                 continue;
             previous = ids[i];
             present[previous] = 1;
-            last = previous > last ? previous : last;
         }
     }
     for (size_t id = 0; id <= last; id++)

@@ -123,7 +123,7 @@ static void read_version(const Text *log, char *version, size_t size)
     }
 }
 
-/* Whether a file is a PNG from signature to end mark, with colours of so many bits. */
+/* Whether a file is a PNG from signature to end mark, with colours of params->bits bits. */
 static bool is_whole_picture(const char *path, const OracleParams *params)
 {
     static const unsigned char begin[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR";

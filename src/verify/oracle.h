@@ -20,7 +20,7 @@ typedef struct OracleParams {
     int bits;            /* of the colour plane: 8, sRGB, or 16, linear */
     bool alpha;          /* of the colour plane: transparent where the scene's background is */
     double clock;        /* of the scene, 0 to 1 */
-    double patience_s;   /* POV-Ray is ended after so many seconds without a word; 0: never */
+    double patience_s;   /* POV-Ray is ended after this many seconds without output; 0: never */
     void (*progress)(double fraction, void *context); /* may be NULL */
     void *progress_context;
 } OracleParams;

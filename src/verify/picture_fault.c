@@ -60,7 +60,7 @@ static double shifted(const Planting *p, int x, int y, int c)
 static double turned(const Planting *p, int x, int y, int c)
 {
     double middle_x = (p->from->width - 1) / 2.0, middle_y = (p->from->height - 1) / 2.0;
-    double angle = p->size * 3.14159265358979323846 / 180, dx = x - middle_x, dy = y - middle_y;
+    double angle = p->size * DEGREE, dx = x - middle_x, dy = y - middle_y;
     return between(p->from, middle_x + cos(angle) * dx + sin(angle) * dy,
                    middle_y - sin(angle) * dx + cos(angle) * dy, c);
 }
@@ -132,8 +132,7 @@ static double noisy(const Planting *p, int x, int y, int c)
     random_seed(&random,
                 ((uint64_t)(unsigned)y << 34) + ((uint64_t)(unsigned)x << 2) + (uint64_t)c);
     double u = 1 - random_uniform(&random), v = random_uniform(&random);
-    return at(p->from, x, y, c) +
-           p->size / 255 * sqrt(-2 * log(u)) * cos(2 * 3.14159265358979323846 * v);
+    return at(p->from, x, y, c) + p->size / 255 * sqrt(-2 * log(u)) * cos(FULL_TURN * v);
 }
 
 static double fewer_bits(const Planting *p, int x, int y, int c)
@@ -175,7 +174,7 @@ static double mirrored(const Planting *p, int x, int y, int c)
     return at(p->from, p->from->width - 1 - x, y, c);
 }
 
-/* Rows that begin so many pixels one after another. */
+/* The picture as read with rows of `stride` pixels. */
 static double with_stride(const Planting *p, int stride, int x, int y, int c)
 {
     int64_t place = ((int64_t)y * stride + x) % ((int64_t)p->from->width * p->from->height);

@@ -264,7 +264,7 @@ json_t *power_json(const Power *power)
             rules,
             json_pack("{s:o, s:o, s:o, s:o}", "name", json_text(rule_name(power, rule)), "says",
                       json_text_or_null(rule ? published_rules[rule - 1].says : NULL), "missed",
-                      json_integer((json_int_t)power->missed[rule]), "false_alarm",
+                      json_count(power->missed[rule]), "false_alarm",
                       json_boolean(power->alarm[rule])));
     for (size_t i = 0; i < power->n; i++)
         if (power->cases[i].exists)
@@ -273,7 +273,7 @@ json_t *power_json(const Power *power)
                                   {"height", json_integer(power->height)},
                                   {"bits", json_integer(power->bits)},
                                   {"repeats", json_boolean(power->repeats)},
-                                  {"planted", json_integer((json_int_t)power->planted)},
+                                  {"planted", json_count(power->planted)},
                                   {"rules", rules},
                                   {"faults", cases}};
     return json_with_members(json_object(), members, sizeof members / sizeof *members);

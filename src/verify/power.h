@@ -11,8 +11,8 @@ typedef struct PublishedRule {
     const char *name;   /* "Blender" */
     const char *says;   /* the rule in words */
     double pixelmatch;  /* no pixel may differ by pixelmatch at this threshold; or NAN and: */
-    double levels, ppm; /* so many pixels may be off by more than this ... */
-    double most_levels; /* ... and none by more than this */
+    double levels, ppm; /* at most `ppm` of the pixels may be off by more than `levels` ... */
+    double most_levels; /* ... and none by more than `most_levels` */
 } PublishedRule;
 
 enum { PUBLISHED_RULES = 5, POWER_RULES = 1 + PUBLISHED_RULES };

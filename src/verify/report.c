@@ -9,7 +9,7 @@ static json_t *side_json(const ReportSide *side)
 {
     json_t *json = json_pack("{s:o, s:o, s:o}", "name", json_text(side->name), "version",
                              json_text(side->version), "seconds", json_number(side->seconds));
-    return side->tiles ? json_with(json, "tiles", json_integer((json_int_t)side->tiles)) : json;
+    return side->tiles ? json_with(json, "tiles", json_count(side->tiles)) : json;
 }
 
 json_t *report_json(const ReportCase *report)

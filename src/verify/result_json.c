@@ -16,7 +16,7 @@ static json_t *number(double value)
 
 static json_t *count(const CompareResult *result, size_t value)
 {
-    return result->has_mask ? json_integer((json_int_t)value) : json_null();
+    return result->has_mask ? json_count(value) : json_null();
 }
 
 static json_t *place_json(const CompareResult *result, const PixelPlace *place)
@@ -48,7 +48,7 @@ static json_t *classes_json(const CompareResult *result)
     for (PixelClass i = 0; i < PIXEL_CLASSES; i++)
         classes = json_with(classes, pixel_class_name(i),
                             i <= PIXEL_EDGE ? count(result, result->classes[i])
-                                            : json_integer((json_int_t)result->classes[i]));
+                                            : json_count(result->classes[i]));
     return classes;
 }
 

@@ -1,14 +1,14 @@
 /* The causes, and how many pixels of each a picture may have, are one table. A limit is the larger
- * of so many parts in a million and of a few pixels, because in a small picture a million's part is
- * less than one. */
+ * of a number of parts in a million and a number of pixels, because in a small picture a million's
+ * part is less than one. */
 #include "verify/result.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-/* What a picture may have of each cause, in words for reasons and tables. Of large pictures so many
- * ppm, of small ones so many pixels. */
+/* What a picture may have of each cause: `ppm` of its pixels, or `few` pixels if that is more; and
+ * the words for reasons and tables. */
 static const struct {
     const char *name, *sentence;
     double ppm;

@@ -51,8 +51,8 @@ typedef struct Settled {
     char reason[200]; /* a sentence; "" when it agrees */
 } Settled;
 
-/* Nothing settled yet in a picture of so many pixels; the causes `from` to `to` will be looked
- * for. */
+/* Begins with nothing settled, in a picture of `pixels` pixels; the causes `from` to `to` will be
+ * looked for. */
 MUST_CHECK Status settled_init(Settled *settled, size_t pixels, SettledCause from, SettledCause to,
                                Err *err);
 void settled_release(Settled *settled);

@@ -1,8 +1,8 @@
 /* Mean structural similarity. Five moments (a, b, aa, bb, ab) are blurred, first down the columns
- * of the eleven rows about an output row, then along it. Work goes by bands of output rows, so that
- * the luma of no more than a band is held; the sums of rows are added in order. A window that is
- * equal in both pictures is 1 by its definition, so only stretches of a row about pixels that
- * differ are blurred. */
+ * of the eleven rows about an output row, then along it. Pictures are measured in bands of output
+ * rows, so that the luma of no more than a band is held; the sums of rows are added in order. A
+ * window that is equal in both pictures is 1 by its definition, so only stretches of a row about
+ * pixels that differ are blurred. */
 #include "verify/verify.h"
 
 #include "verify/wide.h"

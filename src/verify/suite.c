@@ -401,8 +401,8 @@ json_t *suite_json(const Suite *suite)
             {"name", json_text(entry->name)},
             {"state", json_text(suite_state_name(entry->state))},
             {"reason", json_text_or_null(*entry->sentence ? entry->sentence : NULL)},
-            {"differing_pixels", json_integer((json_int_t)entry->differing)},
-            {"masked_pixels", json_integer((json_int_t)entry->masked)},
+            {"differing_pixels", json_count(entry->differing)},
+            {"masked_pixels", json_count(entry->masked)},
             {"seconds", json_number(entry->seconds)},
         };
         cases = json_with_item(
@@ -411,7 +411,6 @@ json_t *suite_json(const Suite *suite)
     json_t *json =
         json_with(json_object(), "verdict", json_text(suite->agrees ? "agree" : "differ"));
     for (SuiteState state = 0; state < SUITE_STATES; state++)
-        json =
-            json_with(json, suite_state_name(state), json_integer((json_int_t)suite->count[state]));
+        json = json_with(json, suite_state_name(state), json_count(suite->count[state]));
     return json_with(json, "cases", cases);
 }

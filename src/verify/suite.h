@@ -1,5 +1,5 @@
-/* A folder of pictures held against a folder of stored ones: a test suite of any renderer's. A case
- * is a picture of the same name in both, below the folders as deep as it may be. */
+/* A folder of pictures compared with a folder of stored ones: a test suite of any renderer's. A
+ * case is a picture of the same name in both, below the folders as deep as it may be. */
 #ifndef CORCAST_VERIFY_SUITE_H
 #define CORCAST_VERIFY_SUITE_H
 

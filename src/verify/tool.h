@@ -28,7 +28,7 @@ typedef struct Tool {
     const char *scene;    /* a regular file, under any name */
     const char *output;   /* the picture, likewise */
     const char *patience; /* the variable that sets patience_s */
-    double patience_s;    /* the program is ended after so many seconds without a word; 0: never */
+    double patience_s; /* the program is ended after this many seconds without output; 0: never */
     void (*progress)(double fraction, void *context); /* told of each "(30%)"; may be NULL */
     void *progress_context;
     /* Adds the program and its arguments; `scene` and `picture` are how it is to call them. */

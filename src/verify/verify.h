@@ -89,7 +89,7 @@ typedef struct PixelPlace {
     uint32_t id_a, id_b;
 } PixelPlace;
 
-/* One limit held against what was measured. */
+/* One limit, and the measured value that it is for. */
 typedef struct Rule {
     char name[64];    /* "pixels off by more than 2 levels" */
     const char *unit; /* "ppm", "mm", "pixels" */
@@ -215,7 +215,7 @@ typedef struct CompareResult {
 /* One rendering of a scene, as far as it is known. All is borrowed. */
 typedef struct Rendering {
     const Picture *picture;
-    const IdPlane *ids;          /* NULL, then in both views: silhouettes are told by the colour of
+    const IdPlane *ids;          /* NULL, then in both views: silhouettes are found by the colour of
                                   * the background, where three corners of each picture share one */
     const Plane *depth, *normal; /* NULL, then in both views: geometry is not told from shading */
 } Rendering;

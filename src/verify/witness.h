@@ -19,7 +19,7 @@ typedef struct WitnessParams {
     const char *output;  /* .ppm file, likewise */
     int width, height;   /* pixels */
     int threads;         /* 0: Tachyon's own choice */
-    double patience_s;   /* it is ended after so many seconds without a word; 0: never */
+    double patience_s;   /* Tachyon is ended after this many seconds without output; 0: never */
     WitnessPlane plane;
 } WitnessParams;
 

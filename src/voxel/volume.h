@@ -39,8 +39,8 @@ extern const VolumeFormat volume_formats[];
 /* The format of a file of this name, or NULL. */
 const VolumeFormat *volume_format_find(const char *path);
 
-/* STATUS_INFEASIBLE when a format cannot hold so many voxels along an axis, STATUS_USAGE when it
- * has no samples of this type, or no labels and `parts` is false. */
+/* STATUS_INFEASIBLE when a format cannot hold the grid's number of voxels along an axis,
+ * STATUS_USAGE when it has no samples of this type, or no labels and `parts` is false. */
 MUST_CHECK Status volume_check(const VolumeFormat *format, const VoxelGrid *grid, SampleType type,
                                bool parts, Err *err);
 

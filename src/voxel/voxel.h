@@ -15,10 +15,10 @@ MUST_CHECK Status voxelgrid_make(const Geometry *geometry, Vec3 step, VoxelGrid 
 
 /* How much work a volume is. */
 typedef struct VoxelEstimate {
-    double voxels, walls; /* of those, so many are partly filled */
+    double voxels, walls; /* how many there are, and how many of them are partly filled */
     double bytes;         /* of all volumes, in files of these formats: about */
     double memory;        /* bytes */
-    double seconds;       /* on so many threads of a processor of 2023 */
+    double seconds;       /* on the threads asked for, of a processor of 2023 */
 } VoxelEstimate;
 
 typedef struct VoxelParams {

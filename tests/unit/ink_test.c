@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.141592653589793
 /* A millimetre of the tree is so many on paper. */
 #define SCALE 5.0
 #define LINE_MM 0.2

@@ -11,8 +11,6 @@
 #include <string.h>
 
 enum { ZONES_A_TRIM = 1024 };
-static const double full_turn = 6.283185307179586;
-
 typedef struct RimPlace {
     uint32_t first, n; /* in rim_points of the assembly */
 } RimPlace;
@@ -96,7 +94,7 @@ static RimPlace add_rim(Assembly *assembly, const FieldSegment *self, Vec3 at, d
     RimPlace rim = {(uint32_t)assembly->n_rim_points, assembly->sides};
     vec3_across(axis_of(self), &u, &v);
     for (uint32_t i = 0; i < rim.n; i++) {
-        double angle = full_turn * ((i + turn) / rim.n - 0.5);
+        double angle = FULL_TURN * ((i + turn) / rim.n - 0.5);
         Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle)));
         assembly->rim_points[assembly->n_rim_points++] =
             add_point(assembly, vec3_add_scaled(at, way, self->radius_mm), way);
@@ -125,20 +123,20 @@ static void find_angles(const Assembly *assembly, const FieldSegment *segment, R
                         double *angles)
 {
     Vec3 u, v;
-    double before = -full_turn / 2;
+    double before = -FULL_TURN / 2;
     vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
     for (uint32_t i = 0; i < rim.n; i++) {
         const float *x = assembly->mesh->points[assembly->rim_points[rim.first + i]];
         Vec3 from = vec3_sub(vec3((double)x[0], (double)x[1], (double)x[2]), segment->a);
         double angle = atan2(vec3_dot(from, v), vec3_dot(from, u));
-        before = angles[i] = angle - full_turn * rint((angle - before) / full_turn);
+        before = angles[i] = angle - FULL_TURN * rint((angle - before) / FULL_TURN);
     }
 }
 
 /* The angle of the i-th point, counted on beyond a full turn. */
 static double turned_angle(const double *angles, uint32_t n, uint32_t i)
 {
-    return angles[i % n] + full_turn * (i / n);
+    return angles[i % n] + FULL_TURN * (i / n);
 }
 
 /* A chord is farthest off its circle half way; and that from the wall, where others move it. */

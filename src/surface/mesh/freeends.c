@@ -108,7 +108,7 @@ static bool is_too_much(const EndSearch *search, size_t near, double mm, TooMuch
         search->tree->body == BODY_ROUND ? 0 : 0.5 * FIELD_LEVEL * erfc(sqrt(2) * mm / radius);
     vec3_across(search->axis, &u, &v);
     for (size_t i = 0; i < CIRCLE_POINTS + near; i++) {
-        double angle = 6.283185307179586 * (double)i / CIRCLE_POINTS;
+        double angle = FULL_TURN * (double)i / CIRCLE_POINTS;
         if (i >= CIRCLE_POINTS) {
             const ZoneTerm *other = &search->terms[i - CIRCLE_POINTS];
             Vec3 towards = vec3_sub(nearest_of(other, center), center);

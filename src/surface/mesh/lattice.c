@@ -22,7 +22,7 @@ static const double nearly = 0.3;
  * the edges: moved off them, triangles may run into each other. */
 static const double last_step = 1e-3;
 enum { MOST_STEPS = 40 };
-/* So many are all looked at away from active cells. */
+/* Away from active cells, up to this many terms are all looked at. */
 enum { FEW_TERMS = 512 };
 
 typedef struct Cutter {

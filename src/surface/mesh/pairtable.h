@@ -18,7 +18,7 @@ typedef struct PairTable {
 } PairTable;
 
 void pairtable_release(PairTable *table);
-/* Empties it, with room for so many keys before it grows; keeps what memory it has. */
+/* Empties the table, with room for `expected` keys before it grows; keeps what memory it has. */
 MUST_CHECK Status pairtable_begin(PairTable *table, size_t expected, Err *err);
 
 /* Where the value of a key is kept, in *value (borrowed until the next call); *is_new tells that it

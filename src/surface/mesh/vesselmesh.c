@@ -21,7 +21,7 @@ static const double cells_at = 0.02, cell_ratio = 0.54, bending_ratio = 0.25, sa
 /* Of a round body: its balls bend both ways, and its creases are cut off. */
 static const double round_sagitta_part = 0.24, round_farthest_part = 1.75;
 
-/* With all that is made from them, so many cells of a zone take 4 GB of memory. */
+/* The most cells of a zone: with all that is made from them, they take 4 GB of memory. */
 enum { MOST_CELLS = 5000000 };
 
 /* How often all is made again where triangles cross, and by how much finer then the cells are. */
@@ -41,7 +41,7 @@ typedef struct Build {
     ZonePiece *pieces;
     ZoneWorker *workers;
     uint8_t *fates; /* one a segment: SegmentFate */
-    uint8_t *finer; /* one a zone: by so many steps */
+    uint8_t *finer; /* by zone: how many times its cells were made finer */
     Status *statuses;
     Err *errors;    /* of the lowest zone that has failed in each thread */
     size_t *failed; /* that zone */
@@ -97,10 +97,10 @@ static int workers_of(const MeshParams *params)
     return params->threads > 0 ? params->threads : threads_available();
 }
 
-/* A regular polygon of so many sides is within the sagitta of its circle. */
+/* The sides of a regular polygon that is within `sagitta` of its circle. */
 static uint32_t sides_of(double sagitta)
 {
-    return (uint32_t)fmax(8, ceil(3.141592653589793 / acos(1 - sagitta)));
+    return (uint32_t)fmax(8, ceil(PI / acos(1 - sagitta)));
 }
 
 /* Measured on grown trees of 200 to 20,000 segments at tolerances of 0.005 to 1.6, for each radius

@@ -91,7 +91,7 @@ MUST_CHECK Status vesseltree_free_ends(VesselTree *tree, const MeshParams *param
 /* What the mesh of a tree takes, within a factor of 2 as a rule. */
 typedef struct MeshEstimate {
     double triangles, bytes; /* of memory, at the most */
-    double seconds;          /* on so many threads of a processor of 2023 */
+    double seconds;          /* on the threads asked for, of a processor of 2023 */
 } MeshEstimate;
 
 /* O(n). */

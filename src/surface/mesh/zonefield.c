@@ -179,7 +179,7 @@ Status fieldpart_copy(const PartPool *from, const FieldPart *part, PartPool *to,
     return STATUS_OK;
 }
 
-/* Groups beyond so many are not compared with each other. */
+/* If there are more groups, they are not compared with each other. */
 enum { MOST_COMPARED = 256 };
 
 static bool is_subset(const uint64_t *a, const uint64_t *b, uint32_t words)

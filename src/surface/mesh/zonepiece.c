@@ -1,7 +1,7 @@
 /* Lattice, cut, collapse, split, and then the proof: every edge has two triangles, one each way, or
  * lies on a rim; the rims are one closed way for each arm, which goes about its axis once; the
- * piece is connected; and points - edges + triangles = 2 - arms, that of a sphere with so many
- * holes. */
+ * piece is connected; and points - edges + triangles = 2 - arms, that of a sphere with a
+ * hole for each arm. */
 #include "surface/mesh/zonepiece.h"
 
 #include "surface/mesh/nearpairs.h"
@@ -225,7 +225,7 @@ static bool find_own_wall(const Maker *maker, const FieldPart *all, uint32_t num
     Vec3 u, v, axis = vec3_sub(segment->b, segment->a);
     vec3_across(vec3_normalized(axis), &u, &v);
     for (int i = 0; i < PLACES * ANGLES; i++) {
-        double angle = 6.283185307179586 / ANGLES * (i % ANGLES);
+        double angle = FULL_TURN / ANGLES * (i % ANGLES);
         Vec3 from = vec3_add_scaled(segment->a, axis, (0.5 + i / ANGLES) / PLACES);
         Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle))), gradient;
         double low = 0, high = 2.5 * segment->radius_mm;

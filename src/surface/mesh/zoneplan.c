@@ -71,15 +71,9 @@ static int compare_terms(const void *a, const void *b)
 /* The number of a segment among the terms in order, or n_terms. */
 static uint32_t term_number(const ZoneField *field, uint32_t segment)
 {
-    uint32_t low = 0, high = field->n_terms;
-    while (low < high) {
-        uint32_t middle = (low + high) / 2;
-        if (field->terms[middle].segment < segment)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < field->n_terms && field->terms[low].segment == segment ? low : field->n_terms;
+    const ZoneTerm key = {.segment = segment};
+    const ZoneTerm *found = bsearch(&key, field->terms, field->n_terms, sizeof key, compare_terms);
+    return found ? (uint32_t)(found - field->terms) : field->n_terms;
 }
 
 static Status add_group(Planner *planner, uint32_t node, Err *err)

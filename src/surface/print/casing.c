@@ -106,7 +106,7 @@ static Status add_cylinder(const Enclosing *enclosing)
     uint32_t rings[2][CASING_SIDES], turned[CASING_SIDES];
     for (int end = 0; end < 2; end++)
         for (int i = 0; i < CASING_SIDES; i++) {
-            double at[3], angle = 6.283185307179586 * i / CASING_SIDES;
+            double at[3], angle = FULL_TURN * i / CASING_SIDES;
             at[axis] = face_place(casing, 2 * axis + end);
             at[u] = vec3_component(middle, u) + radius_of(casing) * cos(angle);
             at[v] = vec3_component(middle, v) + radius_of(casing) * sin(angle);

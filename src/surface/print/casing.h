@@ -11,7 +11,7 @@ typedef struct Casing {
     int axis;      /* of a cylinder: 0, 1 or 2 */
 } Casing;
 
-/* So many has a cylinder, as a prism. */
+/* The sides of the prism that stands for a cylinder. */
 enum { CASING_SIDES = 96 };
 
 /* The faces of a casing: 2 axis, and one more where its coordinate is the higher one. */

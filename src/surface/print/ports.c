@@ -309,7 +309,7 @@ static Status add_ring(const PortRing *rim, const Port *port, int number, Vec3 u
     const PortRing *ring = &port->rings[number];
     uint32_t n = port->end->n;
     for (uint32_t i = 0; i < n; i++) {
-        double angle = 6.283185307179586 * ((i + 0.5) / n - 0.5);
+        double angle = FULL_TURN * ((i + 0.5) / n - 0.5);
         Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle)));
         Vec3 at = port->is_straight ? cut_of(rim, port, way)
                                     : vec3_add_scaled(ring->center, way, ring->radius_mm);

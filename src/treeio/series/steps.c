@@ -121,7 +121,7 @@ static Status find_node(StepsReader *reader, size_t file, size_t *node, Err *err
     return STATUS_OK;
 }
 
-/* Makes the columns of so many steps: one without a time when there is one. */
+/* Makes one column for each step; a single one has no time. */
 static Status open_columns(StepsReader *reader, size_t steps, Err *err)
 {
     Tree *tree = reader->tree;

@@ -1,7 +1,8 @@
 /* Spatial graphs of Amira and Avizo (.am): a header of words that says how many vertices, edges and
  * points there are and which block holds which of their numbers, then the blocks, "@1" and so on,
  * each on a line of its own, in text, as packed numbers, or as these compressed by HxByteRLE
- * (a byte above 127: so many more as they are; else: the next byte so many times) or HxZip (zlib).
+ * (a byte n above 127: the next n - 128 bytes as they are; else: the next byte n times) or HxZip
+ * (zlib).
  *
  * The points of an edge run from its first vertex to its second, both included, edge after edge:
  * they become polylines of what VTK's files have, joined where edges share a vertex. Numbers of

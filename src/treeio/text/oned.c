@@ -28,8 +28,6 @@ typedef enum SegmentField {
     SEGMENT_FIELDS /* those that are read */
 } SegmentField;
 
-static const double pi = 3.14159265358979323846;
-
 enum { MAX_FIELDS = 1000 /* of a card */ };
 
 typedef struct Segment {
@@ -247,7 +245,7 @@ static Status add_segment(Deck *deck, size_t i, Err *err)
     TRY(names_find(&deck->nodes, segment->out_node, &segment->out, err));
     const GraphLine line = {.a = segment->in,
                             .b = segment->out,
-                            .radius = sqrt(segment->out_area / pi),
+                            .radius = sqrt(segment->out_area / PI),
                             .is_directed = true,
                             .record = segment->line};
     TRY(graph_line(graph, &line, err));
@@ -405,7 +403,7 @@ static void put_segment(const DeckTree *deck, size_t i)
 {
     enum { ELEMENTS_OF_A_SEGMENT = 5 };
     const Tree *tree = deck->tree;
-    double radius = cm_from_mm(tree->radius_mm[i]), area = pi * radius * radius;
+    double radius = cm_from_mm(tree->radius_mm[i]), area = PI * radius * radius;
     double outlet = deck_value(tree, OUT_AREA, i, area);
     bool as_read = fabs(outlet - area) <= 1e-9 * area;
     text_printf(deck->text, "SEGMENT segment%d %zu", tree->id[i], i - 1);

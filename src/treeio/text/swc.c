@@ -10,7 +10,7 @@
  *
  * The dialects: fields may be parted by commas or semicolons, a line may name the columns, with '#'
  * or without, ids may start at 0, a root may have the parent 0, and more columns may follow, as in
- * Vaa3D's ESWC, which become the tree's. Whether ids start at 0 is told by the first row, before
+ * Vaa3D's ESWC, which become the tree's. The first row shows whether ids start at 0, before
  * any id has been handed on. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"

@@ -1,6 +1,6 @@
 /* Tables of other programs: of nodes with a parent each, of nodes with a second table of lines, and
- * of vessels with both ends. Columns are told by what options call them, or else by names that
- * programs give them; those that mean nothing here become columns of the tree.
+ * of vessels with both ends. Columns are found by the names that options give them, or else by
+ * names that programs give them; those that mean nothing here become columns of the tree.
  *
  * The program's own CSV of segments is known by the titles that it begins with, none of which is a
  * column of the tree: ids are those of the distal nodes, and lengths follow from the ends.

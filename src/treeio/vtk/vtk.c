@@ -1,7 +1,7 @@
 /* Legacy VTK: keywords as text, and behind each the numbers that it announces, as text or as
- * big-endian bytes. Both are read through one cursor; what is announced is held against the bytes
- * that are left before any room is made for it. Polylines come as counts and points one behind the
- * other (before version 5) or as two arrays, OFFSETS and CONNECTIVITY. */
+ * big-endian bytes. Both are read through one cursor; what is announced is checked against the
+ * bytes that are left before any room is made for it. Polylines come as counts and points one
+ * behind the other (before version 5) or as two arrays, OFFSETS and CONNECTIVITY. */
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
 
@@ -302,7 +302,7 @@ static Status read_scalars(Cursor *cursor, VtkArrays *arrays, size_t n, Err *err
     return read_array(cursor, arrays, name, type, (size_t)components, n, err);
 }
 
-/* Attributes "NAME name [components] [type]" of so many components; 0: the file says. */
+/* Attributes "NAME name [components] [type]" and their components; 0: the file says how many. */
 static const struct Attribute {
     const char *keyword;
     size_t components;

@@ -1,6 +1,6 @@
 /* An array is what it is by its plain name [vtk_plain_name]: the names of the table of radii are
  * those that programs of vessels use, best first; of equal ones the array of cells is taken, as a
- * segment is a cell. A file of the program's own goes by its own names alone. */
+ * segment is a cell. A file that the program wrote is read by its own names alone. */
 #include "treeio/vtk/vtkmeaning.h"
 
 #include <math.h>
@@ -70,7 +70,7 @@ static void put_names(const VtkArrays *arrays, const char *of, Text *text, size_
         }
 }
 
-/* `what` goes before the list of arrays that there are. */
+/* The sentence is `what`, then the list of arrays that there are. */
 static Status refuse_radius(const VtkData *data, const Graph *graph, const char *what, Err *err)
 {
     Text names = TEXT_INIT;

@@ -1,6 +1,6 @@
 /* VTK's XML: its arrays are gathered as the elements come, those with numbers in the document at
  * once, and those in the AppendedData behind it, which need not be XML, when that has been found.
- * Then the pieces are put together. What an array is for is told by the element around it. */
+ * Then the pieces are put together. The element around an array says what it is for. */
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
 #include "treeio/vtk/vtpbytes.h"
