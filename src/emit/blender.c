@@ -34,8 +34,8 @@ static int compare_keys(const void *a, const void *b)
     return (*one > *other) - (*one < *other);
 }
 
-/* Sorts the segments by so many leading bits of their colours' codes, and counts how many there
- * are. */
+/* Sorts the segments by the `bits` leading bits of their colours' codes; returns how many
+ * different codes there are. */
 static size_t sort_colors(Script *script, int bits)
 {
     size_t n = script->params->vessels->n_segments, found = 0;

@@ -7,7 +7,7 @@
 #include "scene/scene.h"
 #include "surface/surface.h"
 
-/* So many vessels OpenSCAD unites in good time; of more, a mesh is the better model. */
+/* The most vessels that OpenSCAD unites in good time; of more, a mesh is the better model. */
 #define OPENSCAD_QUICK 100
 
 /* What may stand beside a mesh, each in a file of its own. */
@@ -22,36 +22,37 @@ typedef enum EmitBeside {
 typedef struct EmitParams {
     const Scene *scene;               /* NULL for an emitter of meshes or lines */
     const Anatomy *anatomy;           /* of its tree; NULL: orders are 0, and nothing is named */
-    const VesselMesh *mesh;           /* NULL for all others, and so are those that follow: */
+    const VesselMesh *mesh;           /* for an emitter of meshes; else NULL. Likewise: */
     const VesselTree *vessels;        /* whose segments the mesh's labels name, or that are lines */
-    const Appearance *appearance;     /* for an emitter with colours */
+    const Appearance *appearance;     /* for an emitter of meshes or lines with colours */
     const double *orders;             /* Strahler order of each segment, by its number; likewise */
     const MeshEnds *ends;             /* of the mesh, for an emitter with parts */
     const Text *beside[BESIDES];      /* what stands beside the mesh; NULL: nothing */
-    const char *beside_path[BESIDES]; /* where; NULL: it is not written */
+    const char *beside_path[BESIDES]; /* its path; NULL: it is not written */
     const char *templates;            /* the folder of templates, one folder for each language */
     const char *file;        /* names of the files as they stand in them, without folders; */
     const char *second_file; /* NULL: what would go to the second file stands in the first */
-    const char *description; /* what the scene shows; what would break its line becomes a blank */
+    const char *description; /* what the scene shows; line ends in it become blanks */
     const char *settings; /* NULL, or the file, beside those, that its program is started with; */
     const char *settings_path; /* where it is written; both or neither */
-    int antialias; /* samples along a pixel's side that it asks for; 1: as many as it likes */
-    const char *generator; /* program and version */
-    const char *command;   /* that makes the scene, one line */
+    int antialias;             /* samples along a pixel's side; 1: the program's own choice */
+    const char *generator;     /* program and version */
+    const char *command;       /* that makes the scene, one line */
     bool shadows;
     bool ids;         /* isosurface, blob: with the paint that the id plane needs */
     bool planes;      /* Tachyon: colours that tell depth and segment, in the place of the look's */
     CellParams cells; /* isosurface */
-    const CellTree *built; /* likewise, or NULL: its cells, that need not be found anew */
+    const CellTree *built; /* isosurface: its cells where they are found already; NULL: they are
+                            * found anew */
     const PixelRect *part; /* POV-Ray, without an anatomy, with cells that are built: only what the
                             * rays of this part of the picture can meet, each piece as the whole
                             * scene has it; NULL: all */
 } EmitParams;
 
 typedef struct EmitReport {
-    size_t cells;    /* of an isosurface; of a blob that is cut into cells, else 0 */
+    size_t cells;    /* of an isosurface, or of a blob that is cut into cells; else 0 */
     int joint_sides; /* of a joint's mesh; 0: joints are exact, which POV-Ray can hold 349,000 of */
-    double openscad_s; /* about how long OpenSCAD takes to make a solid of it; else 0 */
+    double openscad_s; /* estimate of how long OpenSCAD takes to make a solid; else 0 */
 } EmitReport;
 
 /* A format that scenes are written in: one row of `emitters`. */
@@ -73,7 +74,8 @@ typedef struct Emitter {
     unsigned elements;  /* it can write what is made of these: bits ModelElement */
     /* STATUS_USAGE when the format cannot name a second file so. NULL: it takes any name. */
     Status (*check_name)(const char *second_file, Err *err);
-    /* Likewise of params->settings, which it appends to *out; NULL: there is none. */
+    /* Appends the file params->settings to *out. STATUS_USAGE when the program cannot be given a
+     * file of that name. NULL: the format has no such file. */
     Status (*write_settings)(const EmitParams *params, Text *out, Err *err);
     /* Appends the file to *out and, where params->second_file is given, the second one to *second,
      * as they are made: with streams [base/text.h] memory does not grow with the scene. *report is
@@ -104,10 +106,10 @@ MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err
 MUST_CHECK Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
                              const char *second_path, EmitReport *report, Err *err);
 
-/* How much the scene is for POV-Ray, by the number of its pieces: of a load of 1 it reads each
- * plane in some ten seconds and 1 GB at most, where vessels lie as in grown trees; it holds twice
- * that of any model. STATUS_MEMORY. O(pieces); of an isosurface without cells that are built, as
- * celltree_build. */
+/* How much work the scene is for POV-Ray, by the number of its pieces: POV-Ray reads each plane of
+ * a scene of load 1 in some ten seconds and at most 1 GB, where vessels lie as in grown trees; it
+ * can hold a load of 2 of any model. STATUS_MEMORY. O(pieces); of an isosurface without cells that
+ * are built, as celltree_build. */
 MUST_CHECK Status povray_load(const EmitParams *params, double *load, Err *err);
 
 /* How much of a box vessels fill, in a density file for POV-Ray. */

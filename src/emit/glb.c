@@ -80,11 +80,6 @@ static Status prepare(Glb *glb, Err *err)
 
 /* ---- what the JSON says ---------------------------------------------------------------------- */
 
-static json_t *count(size_t n)
-{
-    return json_integer((json_int_t)n);
-}
-
 /* How many bytes of the buffer each view takes; all vertices take the same in the first three. */
 static size_t view_bytes(const Glb *glb, int view)
 {
@@ -187,7 +182,7 @@ static json_t *root_node(const Glb *glb, size_t n)
 {
     json_t *children = json_array();
     for (size_t i = 1; i <= n; i++)
-        children = json_with_item(children, count(i));
+        children = json_with_item(children, json_count(i));
     const JsonMember members[] = {
         {"name", json_text("tree")},
         {"scale", json_pack("[f,f,f]", 0.001, 0.001, 0.001)},

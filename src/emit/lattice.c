@@ -91,7 +91,7 @@ static Status put_preview_vertices(Text *out, void *context, Err *err)
         Vec3 u, v;
         vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
         for (int k = 0; k < 2 * SIDES; k++) {
-            double angle = 6.283185307179586 * k / SIDES;
+            double angle = FULL_TURN * k / SIDES;
             Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle)));
             threemf_put_vertex(
                 vec3_add_scaled(k < SIDES ? segment->a : segment->b, way, segment->radius_mm), out);

@@ -25,7 +25,9 @@ static const struct {
     ModelElement element;
     Status (*put_macros)(Text *out, void *geometry, Err *err);
     Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err);
-    double pieces; /* that are a load of 1, as measured; of a blob and an isosurface, with ids */
+    /* How many of its pieces POV-Ray reads in some ten seconds, as measured, of a blob and an
+     * isosurface with ids: a load of 1 [povray_load]. */
+    double pieces;
 } geometries[] = {
     {MODEL_POTENTIAL, put_cell_macros, put_cells, 100000},
     {MODEL_BLOB, put_blob_macros, put_blob, 8192},

@@ -21,31 +21,37 @@ enum { GROUP = 256, MAX_PAINTED = GROUP * GROUP, LEAF = 4 };
  * halves. */
 enum { CELL = 128 };
 
-/* POV-Ray's time for a ray grows with the square of the segments that it passes; so many in one
- * another, looked for about so many of a cell, take minutes for a picture. */
+/* POV-Ray's time for a ray grows with the square of the segments that it passes: where CROWD
+ * overlap, which is looked for about PROBES of a cell's segments, a picture takes minutes. */
 enum { CROWD = 64, PROBES = 64 };
 
 /* Cells reach into their neighbours, so that no ray slips between them. */
 static const double overlap_mm = 1e-3;
 
-static Box reach_of(const FieldSegment *segment)
+/* Where a segment is felt; `reach` is blob_reach. */
+static Box reach_of(const FieldSegment *segment, double reach)
 {
-    double reach = blob_reach(&blob_shape) * segment->radius_mm;
-    return box_with_ball(box_with_ball(box_empty(), segment->a, reach), segment->b, reach);
+    double mm = reach * segment->radius_mm;
+    return box_with_ball(box_with_ball(box_empty(), segment->a, mm), segment->b, mm);
 }
 
 /* ---- cells ----------------------------------------------------------------------------------- */
 
 typedef struct Cells {
     const Scene *scene;
-    const Sight *sight;
-    Text *text;   /* NULL: nothing is written, but */
-    bool *is_met; /* the segments of cells that rays of the part can meet are marked; or NULL */
-    uint32_t
-        *lists; /* a stack: the segments of a cell follow those of the cell that it is part of */
+    const Sight *sight; /* cells that it does not meet are left out */
+    Text *text;         /* where the others are written to, or NULL */
+    bool *is_met;       /* where the segments of the others are marked, or NULL */
+    double reach;       /* of all segments, over their radius */
+    uint32_t *lists; /* a stack: the segments of both halves of a cell follow those of the cell */
     size_t room;
     size_t written; /* none when all is one blob */
 } Cells;
+
+/* A list of segments on the stack of cells. */
+typedef struct List {
+    size_t first, n;
+} List;
 
 /* How many segments of a list are felt at x. */
 static size_t count_felt(const Cells *cells, const uint32_t *list, size_t n, Vec3 x)
@@ -75,11 +81,12 @@ static Status check_crowd(const Cells *cells, const uint32_t *list, size_t n, Er
     return STATUS_OK;
 }
 
-/* Writes the blob of lists[first .. first + n), clipped to a box or whole. */
-static Status put_cell(Cells *cells, size_t first, size_t n, const Box *clip, Err *err)
+/* Writes the blob of the segments of a list, clipped to a box or whole. */
+static Status put_cell(Cells *cells, List from, const Box *clip, Err *err)
 {
     Text *text = cells->text;
-    const uint32_t *list = cells->lists + first;
+    const uint32_t *list = cells->lists + from.first;
+    const size_t n = from.n;
     if (n * BLOB_POVRAY_COMPONENTS >= BLOB_POVRAY_LIMIT)
         return err_set(
             err, STATUS_INFEASIBLE,
@@ -112,29 +119,35 @@ static Status put_cell(Cells *cells, size_t first, size_t n, const Box *clip, Er
     return STATUS_OK;
 }
 
-/* The segments of lists[first .. first + n) that reach into the box, appended after those: how
- * many. */
-static size_t take_those_in(Cells *cells, size_t first, size_t n, Box box)
+/* The segments of a list that reach into the box, put on the stack at `top`. */
+static List take_those_in(const Cells *cells, List from, size_t top, Box box)
 {
-    uint32_t *list = cells->lists + first;
-    size_t count = 0;
-    for (size_t i = 0; i < n; i++)
-        if (box_meets(reach_of(&cells->scene->geometry.segments[list[i]]), box))
-            list[n + count++] = list[i];
-    return count;
+    const FieldSegment *segments = cells->scene->geometry.segments;
+    const uint32_t *list = cells->lists + from.first;
+    List taken = {top, 0};
+    for (size_t i = 0; i < from.n; i++)
+        if (box_meets(reach_of(&segments[list[i]], cells->reach), box))
+            cells->lists[top + taken.n++] = list[i];
+    return taken;
 }
 
-/* Halves a box into which lists[first .. first + n) reach, unless few do or most would reach into
- * both halves: *is_cut. */
-static Status halve(Cells *cells, size_t first, size_t n, Box box, Box half[2], bool *is_cut,
-                    Err *err)
+/* The two halves of a cell. */
+typedef struct Halves {
+    Box box[2];
+    List list[2];
+    bool is_cut; /* whether they are cells */
+} Halves;
+
+/* Halves a box into which the segments of a list reach, with the stack's end at `top`, unless few
+ * do or most would reach into both halves. */
+static Status halve(Cells *cells, List list, size_t top, Box box, Halves *out, Err *err)
 {
-    *is_cut = false;
-    if (n <= CELL)
+    *out = (Halves){.box = {box, box}};
+    if (list.n <= CELL)
         return STATUS_OK;
-    TRY(mem_reserve(&cells->lists, &cells->room, first + 2 * n, sizeof *cells->lists, "cells",
+    TRY(mem_reserve(&cells->lists, &cells->room, top + 2 * list.n, sizeof *cells->lists, "cells",
                     err));
-    half[0] = half[1] = box;
+    Box *half = out->box;
     Vec3 middle = box_center(box);
     switch (box_longest_axis(box)) {
     case 0:
@@ -146,30 +159,35 @@ static Status halve(Cells *cells, size_t first, size_t n, Box box, Box half[2], 
     default:
         half[0].high.z = half[1].low.z = middle.z;
     }
-    size_t in_halves = take_those_in(cells, first, n, half[0]);
-    in_halves += take_those_in(cells, first, n, half[1]);
-    *is_cut = 2 * in_halves <= 3 * n;
+    out->list[0] = take_those_in(cells, list, top, half[0]);
+    out->list[1] = take_those_in(cells, list, top + out->list[0].n, half[1]);
+    out->is_cut = 2 * (out->list[0].n + out->list[1].n) <= 3 * list.n;
     return STATUS_OK;
 }
 
-/* Writes the cells of a box into which lists[first .. first + n) reach. */
-static Status put_cells_of(Cells *cells, size_t first, size_t n, Box box, bool whole, Err *err)
+/* Writes the cells of a box into which the segments of a list reach, with the stack's end at
+ * `top`. */
+static Status put_cells_of(Cells *cells, List list, size_t top, Box box, bool whole, Err *err)
 {
-    Box half[2];
-    bool is_cut;
+    Halves halves;
     if (!whole && !sight_meets(cells->sight, box_padded(box, overlap_mm)))
         return STATUS_OK;
-    TRY(halve(cells, first, n, box, half, &is_cut, err));
-    for (size_t i = 0; !is_cut && cells->is_met && i < n; i++)
-        cells->is_met[cells->lists[first + i]] = true;
-    if (!is_cut)
-        return cells->text ? put_cell(cells, first, n, whole ? NULL : &box, err) : STATUS_OK;
-    for (int i = 0; i < 2; i++) {
-        size_t count = take_those_in(cells, first, n, half[i]);
-        if (count)
-            TRY(put_cells_of(cells, first + n, count, half[i], false, err));
-    }
+    TRY(halve(cells, list, top, box, &halves, err));
+    for (size_t i = 0; !halves.is_cut && cells->is_met && i < list.n; i++)
+        cells->is_met[cells->lists[list.first + i]] = true;
+    if (!halves.is_cut)
+        return cells->text ? put_cell(cells, list, whole ? NULL : &box, err) : STATUS_OK;
+    top += halves.list[0].n + halves.list[1].n;
+    for (int i = 0; i < 2; i++)
+        if (halves.list[i].n)
+            TRY(put_cells_of(cells, halves.list[i], top, halves.box[i], false, err));
     return STATUS_OK;
+}
+
+/* All of the object's segments. */
+static List all_of(const PovrayGeometry *geometry)
+{
+    return (List){0, geometry->objects[geometry->object].n};
 }
 
 /* The segments of the object, and the box that they reach into. */
@@ -178,13 +196,16 @@ static Status cells_begin(const PovrayGeometry *geometry, Text *text, Cells *cel
 {
     const Geometry *all = &geometry->scene->geometry;
     const PovrayItems *items = &geometry->objects[geometry->object];
-    *cells =
-        (Cells){.scene = geometry->scene, .sight = geometry->sight, .text = text, .room = items->n};
+    *cells = (Cells){.scene = geometry->scene,
+                     .sight = geometry->sight,
+                     .text = text,
+                     .reach = blob_reach(&blob_shape),
+                     .room = items->n};
     TRY(mem_calloc(&cells->lists, cells->room, sizeof *cells->lists, "cells", err));
     *box = box_empty();
     for (size_t i = 0; i < items->n; i++) {
         cells->lists[i] = items->index[i];
-        *box = box_union(*box, reach_of(&all->segments[items->index[i]]));
+        *box = box_union(*box, reach_of(&all->segments[items->index[i]], cells->reach));
     }
     return STATUS_OK;
 }
@@ -193,13 +214,14 @@ static Status cells_begin(const PovrayGeometry *geometry, Text *text, Cells *cel
 static Status blob_is_whole(const PovrayGeometry *geometry, bool *whole, Err *err)
 {
     Cells cells;
-    Box box, half[2];
-    bool is_cut;
+    Box box;
+    Halves halves;
+    const List all = all_of(geometry);
     TRY(cells_begin(geometry, NULL, &cells, &box, err));
-    Status status = halve(&cells, 0, cells.room, box, half, &is_cut, err);
+    Status status = halve(&cells, all, all.n, box, &halves, err);
     free(cells.lists);
     if (status == STATUS_OK)
-        *whole = !is_cut;
+        *whole = !halves.is_cut;
     return status;
 }
 
@@ -208,8 +230,9 @@ static Status put_blobs(Text *out, void *context, Err *err)
     const PovrayGeometry *geometry = context;
     Cells cells;
     Box box;
+    const List all = all_of(geometry);
     TRY(cells_begin(geometry, out, &cells, &box, err));
-    Status status = put_cells_of(&cells, 0, cells.room, box, true, err);
+    Status status = put_cells_of(&cells, all, all.n, box, true, err);
     free(cells.lists);
     geometry->report->cells = cells.written;
     return status == STATUS_OK ? text_check(out, err) : status;
@@ -235,7 +258,7 @@ Status find_painted(PovrayGeometry *geometry, Err *err)
         return STATUS_OK;
     TRY_GOTO(cells_begin(geometry, NULL, &cells, &box, err));
     TRY_GOTO(mem_calloc(&cells.is_met, all.n, sizeof *cells.is_met, "segments", err));
-    TRY_GOTO(put_cells_of(&cells, 0, all.n, box, true, err));
+    TRY_GOTO(put_cells_of(&cells, all_of(geometry), all.n, box, true, err));
     for (size_t i = 0; i < all.n; i++)
         if (cells.is_met[i])
             index[n++] = (uint32_t)i;
@@ -334,10 +357,11 @@ static void sort_along(Paints *paints, Item *items, size_t n, int axis)
 static Status put_node(Paints *paints, size_t first, size_t n, Err *err)
 {
     Item *items = paints->items + first;
+    const double reach = blob_reach(&blob_shape);
     Text list = TEXT_INIT;
     Box box = box_empty();
     for (size_t i = 0; i < n; i++)
-        box = box_union(box, reach_of(painted_segment(paints, items[i].segment)));
+        box = box_union(box, reach_of(painted_segment(paints, items[i].segment), reach));
     if (n > LEAF) {
         sort_along(paints, items, n, box_longest_axis(box));
         for (int half = 0; half < 2; half++) {

@@ -11,7 +11,7 @@ typedef struct Record {
     size_t length;
 } Record;
 
-/* The lowest so many `bytes` of `word`. */
+/* Appends the lowest `bytes` bytes of `word`. */
 static inline void put_word(Record *record, uint32_t word, int bytes)
 {
     for (int i = 0; i < bytes; i++)

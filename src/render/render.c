@@ -298,7 +298,7 @@ static Drawing widened(const Drawing *drawing, int margin)
     return all;
 }
 
-/* Finds what samples share, if they share anything, in the drawing's band and so many rows about
+/* Finds what samples share, if they share anything, in the drawing's band and `margin` rows about
  * it. */
 static Status share(Renderer *renderer, const Drawing *drawing, int margin, SharedLight **out,
                     Err *err)
@@ -342,7 +342,7 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
 /* ---- pictures with effects --------------------------------------------------------------------
  */
 
-/* About so many samples are drawn at a time, of some fifty bytes each. */
+/* About how many samples are drawn at a time, of some fifty bytes each. */
 static const double samples_at_once = 2e6;
 
 static int rounded_up(int rows)

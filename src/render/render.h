@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 #include "surface/surface.h"
 
-/* Bands begin at multiples of so many rows. */
+/* Bands begin at multiples of this many rows. */
 enum { RENDER_BAND_STEP = 8 };
 
 /* Draws one geometry in any views and appearances. */

@@ -11,7 +11,7 @@
 typedef struct Outline {
     double width_px; /* 0: no outlines */
     double radii;  /* the line is at most this wide in radii, so that thin vessels keep a colour */
-    double deeper; /* another vessel lies deeper from so many radii on */
+    double deeper; /* another vessel lies deeper if it is this many radii behind */
     double crease_cosine; /* vessels that touch are parted by a line where the cosine between their
                            * normals is below this; -1: never */
     Rgb color;
@@ -21,7 +21,7 @@ typedef struct Outline {
 typedef struct Halo {
     double width_px; /* 0: no halos */
     double radii;    /* the gap is at most this wide in radii */
-    double deeper;   /* what lies deeper by so many radii is behind it */
+    double deeper;   /* what is this many radii deeper is behind it */
 } Halo;
 
 /* The part of the paper's colour that vessels have, rising with their depth along the ray from

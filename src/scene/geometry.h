@@ -9,6 +9,7 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "scene/models.h"
+#include "scene/numberlists.h" // IWYU pragma: export
 #include "scene/triangles.h"
 #include <stdint.h>
 
@@ -22,8 +23,9 @@ typedef enum PrimitiveKind { PRIMITIVE_CYLINDER, PRIMITIVE_SPHERE, PRIMITIVE_JOI
  * and b [geom/joint.h]. */
 typedef struct Primitive {
     PrimitiveKind kind : 8;
-    bool round_a, round_b; /* of a cylinder: whether it has a round end about a, b */
-    uint32_t segment;      /* number of the segment that it stands for */
+    bool round_a, round_b;       /* of a cylinder: whether it has a round end about a, b */
+    bool free_a : 1, free_b : 1; /* of a cylinder: whether its end at a, b is flat and meets none */
+    uint32_t segment;            /* number of the segment that it stands for */
     Vec3 a, b;
     double radius_mm; /* > 0; of a joint, at a */
     /* Of a joint alone: the radius at b, > 0, and the unit axes across which the circles about a
@@ -78,19 +80,6 @@ typedef struct FieldSegment {
 /* e^-2, the level at which a long segment has its own radius. */
 #define FIELD_LEVEL 0.13533528323661270
 
-/* Lists of numbers, one for each of so many things: items[first[i] .. first[i + 1]), rising. */
-typedef struct NumberLists {
-    uint32_t *first, *items; /* owned */
-} NumberLists;
-
-void numberlists_release(NumberLists *lists);
-
-/* The place of a number in a rising list of n; n where it is not. O(log n). */
-size_t numbers_place(const uint32_t *rising, size_t n, uint32_t number);
-
-/* Whether the list of i holds the number. O(log of the length of the list). */
-bool numberlists_hold(const NumberLists *lists, size_t i, uint32_t number);
-
 /* Which field segments blend. The solid is the union, over groups of them, of the sets where the
  * sum of the group's terms exceeds FIELD_LEVEL; no group holds all of another [scene/blend.h].
  * Where there is no group, all segments are one: the solid is the set where the sum of all terms
@@ -106,7 +95,8 @@ typedef struct Geometry {
     SceneModel model;
     Primitive *primitives; /* owned; empty for an implicit model */
     size_t n_primitives;
-    /* The last so many are spheres about an end of a cylinder, with its radius and segment. */
+    /* The last n_ends primitives are spheres about an end of a cylinder, with its radius and
+     * segment. */
     size_t n_ends;
     bool implied_ends;      /* there is none, and round_a and round_b alone tell of them */
     Vec3 *axes;             /* owned; of the primitives that are joints */

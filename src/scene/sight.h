@@ -17,7 +17,7 @@ MUST_CHECK Status sight_new(const View *view, Box bounds, PixelRect part, bool s
 void sight_free(Sight *sight);
 
 /* Whether one of those rays can meet what is in the box, which lies within the bounds; true, too,
- * for some boxes that no ray meets. NULL is all rays there are. */
+ * for some boxes that no ray meets. A sight of NULL meets every box. */
 bool sight_meets(const Sight *sight, Box box);
 
 #endif

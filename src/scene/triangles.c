@@ -1,6 +1,7 @@
 /* A mesh is plain data; what is here is read off it. */
 #include "scene/triangles.h"
 
+#include "scene/numberlists.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,20 +20,6 @@ static Status reserve(const VesselMesh *mesh, VesselMesh *out, Err *err)
     TRY(mem_calloc(&out->normals, mesh->n_points, sizeof *out->normals, "points", err));
     TRY(mem_calloc(&out->triangles, mesh->n_triangles, sizeof *out->triangles, "triangles", err));
     return mem_calloc(&out->labels, mesh->n_triangles, sizeof *out->labels, "triangles", err);
-}
-
-/* Where a segment stands in the list; n: nowhere. */
-static uint32_t find_segment(const uint32_t *segments, uint32_t n, uint32_t segment)
-{
-    uint32_t low = 0, high = n;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (segments[middle] < segment)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < n && segments[low] == segment ? low : n;
 }
 
 /* The number of a point of the mesh in *out: number[point] is one more, or 0 where it has none. */
@@ -56,13 +43,13 @@ Status vesselmesh_part(const VesselMesh *mesh, const uint32_t *segments, size_t 
     TRY_GOTO(mem_calloc(&number, mesh->n_points, sizeof *number, "points", err));
     TRY_GOTO(reserve(mesh, &made, err));
     for (size_t i = 0; i < mesh->n_triangles; i++) {
-        uint32_t place = find_segment(segments, (uint32_t)n, mesh_segment(mesh, i));
+        size_t place = numbers_place(segments, n, mesh_segment(mesh, i));
         if (place == n)
             continue;
         for (int k = 0; k < 3; k++)
             made.triangles[made.n_triangles][k] =
                 take_point(mesh, mesh->triangles[i][k], number, &made);
-        made.labels[made.n_triangles++] = place | (mesh->labels[i] & MESH_FLAGS);
+        made.labels[made.n_triangles++] = (uint32_t)place | (mesh->labels[i] & MESH_FLAGS);
     }
     *out = made;
     made = (VesselMesh){0};

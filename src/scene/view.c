@@ -124,6 +124,19 @@ LightWay light_way(const Light *light, Vec3 place)
     return (LightWay){towards, vec3_dot(vec3_sub(light->location, place), towards)};
 }
 
+bool light_is_soft(const Light *light)
+{
+    return light->casts_shadows && light->samples > 1;
+}
+
+bool view_has_soft_shadows(const View *view)
+{
+    for (size_t i = 0; i < view->n_lights; i++)
+        if (light_is_soft(&view->lights[i]))
+            return true;
+    return false;
+}
+
 int light_points(const Light *light)
 {
     return light->samples > 1 ? light->samples * light->samples : 1;

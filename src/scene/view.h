@@ -75,6 +75,9 @@ typedef struct LightWay {
 
 LightWay light_way(const Light *light, Vec3 place);
 
+/* Whether the light casts soft shadows, which are averaged over more than one point of it. */
+bool light_is_soft(const Light *light);
+
 /* Points that shadows are averaged over: 1, or samples x samples. */
 int light_points(const Light *light);
 /* Point k of them, 0 <= k < light_points(), row by row along sides[0], as a light of its own; and
@@ -108,6 +111,9 @@ typedef struct View {
     bool transparent; /* there is none; `background` is for those who cannot leave it out */
     Effects effects;
 } View;
+
+/* Whether a light of the view casts soft shadows. */
+bool view_has_soft_shadows(const View *view);
 
 /* The view with all that is in it moved, or turned about an axis through `center`, by radians: what
  * is seen moves the other way. */

@@ -224,6 +224,13 @@ static void trim_cuts(Builder *builder, JointForm form)
     }
 }
 
+/* Whether no other vessel ends where this one does. */
+static bool end_is_free(const Builder *builder, size_t end)
+{
+    size_t place = place_of(builder, end);
+    return builder->first[place + 1] - builder->first[place] == 1;
+}
+
 static void add_cylinder(const Builder *builder, size_t i, Geometry *geometry)
 {
     double left = tree_segment_length(builder->tree, i);
@@ -234,6 +241,8 @@ static void add_cylinder(const Builder *builder, size_t i, Geometry *geometry)
         (Primitive){.kind = PRIMITIVE_CYLINDER,
                     .a = end_center(builder, 2 * i),
                     .b = end_center(builder, 2 * i + 1),
+                    .free_a = end_is_free(builder, 2 * i),
+                    .free_b = end_is_free(builder, 2 * i + 1),
                     .radius_mm = builder->tree->radius_mm[i],
                     .segment = (uint32_t)i};
 }

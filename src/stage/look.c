@@ -63,7 +63,7 @@ static bool read_finish(Reading *reading, const char *name, const char *value)
 static bool read_vector(Reading *reading, const char *value, Vec3 *out)
 {
     double xyz[3];
-    reading->problem = "three numbers, not all zero";
+    reading->problem = "three numbers from -1000000 to 1000000, not all zero";
     if (!read_numbers(value, 3, -1e6, 1e6, xyz) || (xyz[0] == 0 && xyz[1] == 0 && xyz[2] == 0))
         return false;
     *out = vec3(xyz[0], xyz[1], xyz[2]);
@@ -87,7 +87,8 @@ static bool read_light(Reading *reading, const char *name, const char *value)
     if (strcmp(name, "color") == 0)
         return read_color(reading, value, &light->color);
     if (strcmp(name, "size") == 0) {
-        reading->problem = "a number from 0 to 100, of a light that has a position";
+        reading->problem =
+            "a number from 0 to 100, below the position of a light that has a position";
         return light->is_point && read_numbers(value, 1, 0, 100, &light->size);
     }
     if (strcmp(name, "samples") == 0) {
@@ -281,9 +282,13 @@ static Status take_line(void *user, const char *section, const char *name, const
                         Err *err)
 {
     Reading *reading = user;
-    bool good = name ? read_pair(reading, section, name, value) : read_head(reading, section);
-    return good ? STATUS_OK
-                : err_set(err, STATUS_INPUT, "not a look: expected %s", reading->problem);
+    if (name ? read_pair(reading, section, name, value) : read_head(reading, section))
+        return STATUS_OK;
+    if (!name)
+        return err_set(err, STATUS_INPUT, "not a look: expected %s, not [%.80s]", reading->problem,
+                       section);
+    return err_set(err, STATUS_INPUT, "not a look: expected %s, not '%.80s = %.80s'",
+                   reading->problem, name, value);
 }
 
 Status look_read(Look *look, const char *path, Err *err)
@@ -310,7 +315,7 @@ Status look_read(Look *look, const char *path, Err *err)
 
 static double crease_cosine(double degrees)
 {
-    return degrees < 180 ? cos(degrees * (3.14159265358979323846 / 180)) : -1;
+    return degrees < 180 ? cos(degrees * DEGREE) : -1;
 }
 
 Effects look_effects(const Look *look, double thousandth_px, double diameter_mm)

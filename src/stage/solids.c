@@ -78,6 +78,28 @@ static void add_cylinders(Solids *solids)
     threads_for(solids->n_chunks, solids->threads, fill_cylinders, solids);
 }
 
+/* Flags the ends of cylinders that no other cylinder meets. */
+static Status flag_free_ends(const Solids *solids, Err *err)
+{
+    const Tree *tree = solids->tree;
+    const int32_t *place = solids->places->place, *cylinder = solids->cylinder;
+    uint32_t *meeting = NULL; /* by node that stands for a place: the cylinders that end there */
+    TRY(mem_calloc(&meeting, tree->n, sizeof *meeting, "nodes", err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (cylinder[i] >= 0) {
+            meeting[place[tree->parent[i]]]++;
+            meeting[place[i]]++;
+        }
+    for (size_t i = 0; i < tree->n; i++)
+        if (cylinder[i] >= 0) {
+            Primitive *one = &solids->geometry->primitives[cylinder[i]];
+            one->free_a = meeting[place[tree->parent[i]]] == 1;
+            one->free_b = meeting[place[i]] == 1;
+        }
+    free(meeting);
+    return STATUS_OK;
+}
+
 static void find_thickest(const Solids *solids)
 {
     const Tree *tree = solids->tree;
@@ -179,6 +201,8 @@ Status solids_add(const Tree *tree, const Places *places, const GeometryParams *
     add_cylinders(&solids);
     if (model_has(geometry->model, MODEL_BALLS))
         add_spheres(&solids);
+    else
+        status = flag_free_ends(&solids, err);
 done:
     free(solids.cylinder);
     free(solids.thickest);

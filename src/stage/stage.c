@@ -101,11 +101,12 @@ static Status copy_ids(const Tree *tree, Geometry *geometry, Err *err)
 /* Of a field there are no ends; those of cylinders have the balls of these. */
 static void find_bounds(Geometry *geometry)
 {
-    geometry->bounds = box_empty();
-    for (size_t i = 0; i < geometry_balls(geometry) - 2 * geometry->n_ends; i++) {
+    Box box = box_empty();
+    for (size_t i = 0, n = geometry_balls(geometry) - 2 * geometry->n_ends; i < n; i++) {
         Ball ball = geometry_ball(geometry, i);
-        geometry->bounds = box_with_ball(geometry->bounds, ball.center, ball.radius);
+        box = box_with_ball(box, ball.center, ball.radius);
     }
+    geometry->bounds = box;
 }
 
 /* A tree is far from the origin beyond this many times its size. */

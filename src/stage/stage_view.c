@@ -17,8 +17,6 @@ ViewParams view_defaults(void)
 
 /* ---- the camera ------------------------------------------------------------------------------ */
 
-static const double degrees_pi = 3.14159265358979323846 / 180;
-
 /* A vector of a world whose y axis is up, in a world whose upright is another. */
 static Vec3 upright(UpAxis up_axis, Vec3 v)
 {
@@ -40,7 +38,7 @@ void view_axes(const ViewParams *params, Vec3 *direction, Vec3 *up)
     if (params->turn_deg == 0 && params->rise_deg == 0)
         return;
     Vec3 axis = upright(params->up_axis, vec3(0, 1, 0));
-    double turn = params->turn_deg * degrees_pi, rise = params->rise_deg * degrees_pi;
+    double turn = params->turn_deg * DEGREE, rise = params->rise_deg * DEGREE;
     *direction = vec3_turned(*direction, axis, turn);
     *up = vec3_turned(*up, axis, turn);
     Vec3 right = vec3_normalized(vec3_cross(*direction, *up));
@@ -95,9 +93,30 @@ typedef struct Extent {
     double low_x, high_x, low_y, high_y;
 } Extent;
 
+/* Of a box along an axis of the coordinates, either way; false along another direction. */
+static bool extent_of_box(Box box, Vec3 along, double *low, double *high)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        double part = vec3_component(along, axis);
+        if (fabs(part) != 1 || vec3_dot(along, along) != 1)
+            continue;
+        double ends[] = {vec3_component(box.low, axis), vec3_component(box.high, axis)};
+        *low = part > 0 ? ends[0] : -ends[1];
+        *high = part > 0 ? ends[1] : -ends[0];
+        return true;
+    }
+    return false;
+}
+
+/* Most cameras look along an axis of the coordinates, where the box of a tree has the very numbers;
+ * that of a geometry may hold less than its balls. */
 static Extent extent_along(const Framed *framed, Vec3 right, Vec3 up)
 {
-    Extent extent = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+    Extent extent;
+    if (framed->subject->tree && extent_of_box(framed->box, right, &extent.low_x, &extent.high_x) &&
+        extent_of_box(framed->box, up, &extent.low_y, &extent.high_y))
+        return extent;
+    extent = (Extent){INFINITY, -INFINITY, INFINITY, -INFINITY};
     for (size_t i = 0; i < framed_segments(framed); i++) {
         Ball ends[2];
         for (int k = framed_ends(framed, i, ends); k-- > 0;) {
@@ -164,7 +183,7 @@ static void place_orthographic(const ViewParams *params, const Framed *framed, C
 static void place_perspective(const ViewParams *params, const Framed *framed, Camera *camera)
 {
     double aspect = (double)params->width / params->height, used = 1 - 2 * params->margin;
-    double tan_x = tan(params->angle_deg * degrees_pi / 2), tan_y = tan_x / aspect;
+    double tan_x = tan(params->angle_deg * DEGREE / 2), tan_y = tan_x / aspect;
     double room_x = (double)params->room[0] / params->width;
     double room_y = (double)params->room[1] / params->height;
     Vec3 target = params->has_look_at ? params->look_at : box_center(framed->box);

@@ -14,12 +14,13 @@ Subject subject_of(const ViewParams *params, const Geometry *geometry)
         subject.box = *params->box;
     if (params->box || !subject.tree)
         return subject;
-    subject.box = box_empty();
-    for (size_t i = 0; i < subject_segments(&subject); i++) {
+    Box box = box_empty();
+    for (size_t i = 0; i < subject.tree->n; i++) {
         Ball ends[2];
         for (int k = subject_ends(&subject, i, ends); k-- > 0;)
-            subject.box = box_with_ball(subject.box, ends[k].center, ends[k].radius);
+            box = box_with_ball(box, ends[k].center, ends[k].radius);
     }
+    subject.box = box;
     return subject;
 }
 

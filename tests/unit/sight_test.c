@@ -1,12 +1,5 @@
 #include "scene/scene.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
+#include "unit.h"
 
 static const Box bounds = {{-20, -15, -9}, {22, 17, 11}};
 static const PixelRect part = {31, 77, 40, 23};
@@ -48,7 +41,7 @@ static Sight *sight_of(const View *view, bool shadows)
 {
     Err err;
     Sight *sight = NULL;
-    assert_int_equal(sight_new(view, bounds, part, shadows, &sight, &err), STATUS_OK);
+    must(sight_new(view, bounds, part, shadows, &sight, &err), &err);
     return sight;
 }
 

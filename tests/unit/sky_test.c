@@ -105,7 +105,9 @@ static void occlusion_is_within_4_percent_of_1024_rays(void **state)
         const char *domain;
         NamedView view;
         SceneModel model;
-    } cases[] = {{"disc:50", VIEW_FRONT, SCENE_JOINED}, {"ball:50", VIEW_ISO, SCENE_ROUNDED}};
+    } cases[] = {{"disc:50", VIEW_FRONT, SCENE_JOINED},
+                 {"ball:50", VIEW_ISO, SCENE_ROUNDED},
+                 {"ball:28.8", VIEW_ISO, SCENE_JOINED}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Tree tree = grown(10000, cases[i].domain);
         Scene scene = staged(&tree, &sky_look, cases[i].model, 2000, cases[i].view);
@@ -223,6 +225,27 @@ static void a_vessel_of_a_few_pixels_has_its_sky(void **state)
     frame_release(&frame);
 }
 
+/* Of one vessel, stout enough for its end to be seen by many pixels. */
+static void flat_ends_that_meet_no_vessel_see_the_whole_sky(void **state)
+{
+    (void)state;
+    static const SceneModel flat[] = {SCENE_CYLINDERS, SCENE_JOINED};
+    Tree tree;
+    assert_int_equal(tree_init(&tree, 2, &err), STATUS_OK);
+    tree.parent[1] = 0;
+    tree.position[1] = vec3(0.2, 0.3, 31);
+    tree.radius_mm[0] = tree.radius_mm[1] = 4.7;
+    for (size_t i = 0; i < sizeof flat / sizeof *flat; i++) {
+        Scene scene = staged(&tree, &sky_look, flat[i], 61, VIEW_FRONT);
+        Frame frame = drawn(&scene, params_of(16));
+        for (int x = 20; x <= 40; x++)
+            assert_float_equal(frame.color.values[3 * (30 * 61 + x)], 1, 1e-4f);
+        frame_release(&frame);
+        scene_release(&scene);
+    }
+    tree_release(&tree);
+}
+
 /* The kernels fuse nothing where beams are found; shading is within 2e-5 of the light. */
 static void kernels_find_the_same_sky(void **state)
 {
@@ -316,6 +339,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shared_light_does_not_depend_on_threads_or_bands),
         cmocka_unit_test(a_vessel_of_a_few_pixels_has_its_sky),
+        cmocka_unit_test(flat_ends_that_meet_no_vessel_see_the_whole_sky),
         cmocka_unit_test(kernels_find_the_same_sky),
         cmocka_unit_test(the_ground_of_tiles_is_that_of_rays),
         cmocka_unit_test(soft_shadows_are_the_mean_over_all_points),

@@ -19,7 +19,7 @@ typedef struct RayTerm {
     uint32_t segment;
 } RayTerm;
 
-/* The workspace of one thread: room for so many segments on one ray, of which only the part that
+/* The workspace of one thread: room for the segments of one ray, of which only the part that
  * rays need is ever touched. Nothing is allocated later. */
 typedef struct FieldScratch {
     RayTerm *terms;

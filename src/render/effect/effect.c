@@ -1,10 +1,10 @@
 /* Edges are found first: samples of a vessel beside paper, or beside another vessel that lies
- * deeper by so many radii of the first; what lies at about the same depth is joined to it, and no
- * line parts the two. Then each row gathers what the edges near it spread: a line on the samples at
- * the edge's own depth, which are of the same wall, and a gap on those that lie deeper. A sample
- * takes the most that any edge gives it, so that order does not matter. Widths are distances from
- * the edge itself, half a sample beyond the samples that have it, and the part of a sample that
- * they cover is its share.
+ * deeper by a number of radii of the first [scene/effects.h]; what lies at about the same depth is
+ * joined to it, and no line parts the two. Then each row gathers what the edges near it spread: a
+ * line on the samples at the edge's own depth, which are of the same wall, and a gap on those that
+ * lie deeper. A sample takes the most that any edge gives it, so that order does not matter. Widths
+ * are distances from the edge itself, half a sample beyond the samples that have it, and the part
+ * of a sample that they cover is its share.
  *
  * A line is inside its vessel: with it a vessel is as wide as without. After T. Saito and T.
  * Takahashi: Comprehensible rendering of 3-D shapes, SIGGRAPH 1990, 197-206; gaps as in A. Appel et
@@ -14,7 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The wall that ends at an edge reaches so many radii towards the viewer from it. */
+/* How many radii the wall that ends at an edge reaches from it towards the viewer. */
 static const double wall_radii = 3;
 
 typedef struct Edges {

@@ -17,10 +17,11 @@ typedef enum PlaceState {
     PLACE_UNSURE /* within the margin of the arithmetic */
 } PlaceState;
 
-enum { PLACES_ROOM = LIGHT_MOST_PLACES + 15 };
+/* A kernel reads so many places more than there are, as many as may be left of its lanes. */
+enum { PLACES_BEHIND = 15, PLACES_ROOM = LIGHT_MOST_PLACES + PLACES_BEHIND };
 
-/* Places in a tile of a light's view, whose lines of sight lead to the light. Another 15 behind the
- * last are the same as the last. */
+/* Places in a tile of a light's view, whose lines of sight lead to the light. Behind the last stand
+ * PLACES_BEHIND copies of it. */
 typedef struct FieldPlaces {
     int n;
     float x[PLACES_ROOM], y[PLACES_ROOM]; /* as those of a FieldTile */

@@ -207,7 +207,7 @@ static void set_places(FieldQueue *queue, const LightRequest *request, FieldTile
         n++;
     }
     places->n = n;
-    for (int i = n; n > 0 && i < n + 15; i++) {
+    for (int i = n; n > 0 && i < n + PLACES_BEHIND; i++) {
         places->x[i] = places->x[n - 1];
         places->y[i] = places->y[n - 1];
         places->z[i] = places->z[n - 1];

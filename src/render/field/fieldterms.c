@@ -161,7 +161,7 @@ void fieldterms_make(const FrameSegment *segments, const uint32_t *list, size_t 
         tile->plane = tile->plane && is_in_plane(&terms[0], term);
         kept[tile->n_terms++] = list[i];
     }
-    if (!tile->plane)
+    if (!tile->plane && !tile->any_depth)
         sort_terms(terms, tile->n_terms);
 }
 

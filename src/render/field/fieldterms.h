@@ -35,7 +35,7 @@ typedef struct TileTerm {
 
 /* A tile of the potential: the terms near it, and where its samples are. */
 typedef struct FieldTile {
-    const TileTerm *terms; /* by rising `on`, unless in a plane */
+    const TileTerm *terms; /* by rising `on`, unless in a plane or of any depth */
     size_t n_terms;
     LocalGroups *groups; /* a workspace; NULL where all segments blend */
     bool perspective;

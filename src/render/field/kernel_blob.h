@@ -58,8 +58,8 @@ LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
     term->peak = lanes_select(d2 < term->term->reach2, most, lanes_set(0));
 }
 
-/* Sets what only packets need that may hit something. */
-LANE_FN void complete_term(PacketTerm *term, bool perspective)
+/* Sets what a sample of the term needs. */
+LANE_FN void bend_term(PacketTerm *term, bool perspective)
 {
     (void)perspective;
     Lanes end2 = term->e2 + lanes_min(term->end_y2[0], term->end_y2[1]);
@@ -70,6 +70,13 @@ LANE_FN void complete_term(PacketTerm *term, bool perspective)
                         bend);
     Lanes along = lanes_select(end2 < term->term->reach2, square(term->u1), lanes_set(0));
     term->curvature = bend * (square(term->w1) + along);
+    term->bent = true;
+}
+
+/* Sets what only packets need that may hit something. */
+LANE_FN void complete_term(PacketTerm *term, bool perspective)
+{
+    bend_term(term, perspective);
     term->spare = term->past;
     place_ends(term);
 }

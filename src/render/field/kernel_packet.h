@@ -13,8 +13,9 @@
 
 #include "render/field/kernel_trace_common.h"
 
-/* A term on the rays of a packet, in powers of dz = z - z of the term. All from `half_gauss` on are
- * set once it is known that the packet may hit something. */
+/* A term on the rays of a packet, in powers of dz = z - z of the term. From `half_gauss` on, those
+ * of a sample are set once one is to be taken, all once it is known that the packet may hit
+ * something. */
 typedef struct PacketTerm {
     Lanes w0, w1, u0, u1, v0; /* w = w0 + w1 dz, u = u0 + u1 dz, v = v0 - u1 dz */
     Lanes peak;               /* B, no less than the term is on the ray; 0 out of reach */
@@ -31,6 +32,7 @@ typedef struct PacketTerm {
     const TileTerm *term;
     float z;       /* of the term, relative to the group's */
     float on, off; /* likewise, between which it may exceed the cut-off */
+    bool bent;     /* whether half_gauss, curvature and `flat` are set */
     bool flat;     /* u and v are the same all along, and their factor is in half_gauss */
 } PacketTerm;
 

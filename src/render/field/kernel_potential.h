@@ -36,26 +36,33 @@ LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
     term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
 }
 
-/* Sets what only packets need that may hit something. */
-LANE_FN void complete_term(PacketTerm *term, bool perspective)
+/* Sets what a sample of the term needs. */
+LANE_FN void bend_term(PacketTerm *term, bool perspective)
 {
-    const Lanes one = lanes_set(1), tiny = lanes_set(1e-20f);
-    Lanes factor = lanes_min(term->share, one), speed2 = square(term->w1) + square(term->u1);
+    const Lanes tiny = lanes_set(1e-20f);
+    Lanes speed2 = square(term->w1) + square(term->u1);
     Lanes bend = lanes_min(term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny));
     term->curvature = term->gauss * speed2 * bend;
-    term->spare = term->past;
     term->half_gauss = term->gauss * 0.5f;
-    if (lanes_any(term->past > 0.0f)) {
-        term->spare -= lanes_log(factor);
+    if (lanes_any(term->past > 0.0f))
         term->half_gauss = lanes_exp_minus(term->e2) * 0.5f;
-    }
-    place_ends(term);
+    term->bent = true;
     term->flat = !perspective && fabsf(term->term->cosine) < 1e-8f;
     if (term->flat) {
         Lanes ends, ends_slope;
         axial_factors(term->u0, term->v0, &ends, &ends_slope);
         term->half_gauss *= ends;
     }
+}
+
+/* Sets what only packets need that may hit something. */
+LANE_FN void complete_term(PacketTerm *term, bool perspective)
+{
+    bend_term(term, perspective);
+    term->spare = term->past;
+    if (lanes_any(term->past > 0.0f))
+        term->spare -= lanes_log(lanes_min(term->share, lanes_set(1)));
+    place_ends(term);
 }
 
 LANE_FN TermSample sample_term(const PacketTerm *term, Lanes z)

@@ -75,12 +75,12 @@ LANE_FN PacketSample sample_places(const Departures *way, LaneMask open, Lanes *
     for (size_t i = 0; i < packet->n; i++) {
         PacketTerm *term = &packet->terms[i];
         if (term->on > way->to) {
-            sample.next = lanes_set(term->on);
-            break;
+            sample.next = lanes_min(sample.next, lanes_set(term->on));
+            continue;
         }
         if (term->off < way->from || !matters(term, open))
             continue;
-        complete_term(term, packet->tile->perspective);
+        bend_term(term, packet->tile->perspective);
         TermSample one = sample_term(term, way->z);
         add_sample(&one, open, term->curvature, &sample);
         places += steepness(term);
@@ -108,7 +108,9 @@ LANE_FN LaneMask lit_by_parts(const Departures *way, LaneMask open, Lanes z)
             continue;
         if (n == MOST_PARTS)
             return (LaneMask){0};
-        complete_term(term, packet->tile->perspective);
+        if (!term->bent)
+            bend_term(term, packet->tile->perspective);
+        place_ends(term);
         here = lanes_min(here, term_at(term, z).most);
         Lanes beside2 = MINUS_LOG_FAINT - term->e2;
         term_stretch(term, beside2, beside2 - 0.69314718f, &low[n], &high[n]);
@@ -201,12 +203,25 @@ LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving,
     }
 }
 
+/* Sorts the terms chosen by rising `on`. */
+LANE_FN void sort_sum(const Packet *packet)
+{
+    for (size_t i = 1; i < packet->n_sum; i++) {
+        PacketTerm *term = packet->sum[i];
+        size_t hole = i;
+        for (; hole > 0 && packet->sum[hole - 1]->term->on > term->term->on; hole--)
+            packet->sum[hole] = packet->sum[hole - 1];
+        packet->sum[hole] = term;
+    }
+}
+
 /* Looks for the light through the sum of the terms chosen. */
 LANE_FN void look_through_sum(const Departures *way, LaneMask *open, LaneMask *dark,
                               LaneMask *unsure)
 {
     const Packet *packet = &way->packet;
     const double nearest = way->base + (double)way->from;
+    sort_sum(packet);
     for (size_t i = 0; i < packet->n_sum && lanes_any(*open);) {
         Group group;
         float extent;

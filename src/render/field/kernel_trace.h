@@ -8,7 +8,9 @@
  * With B no less than a term is on the ray, and M than the second derivative of it
  * [kernel_packet.h, and the headers that it names]:
  *
- * - Windows. Phi >= T needs a term of at least its share T B / S, S the sum of all B of the group.
+ * - Windows. Of the terms of a group, those whose B is next to nothing, R all together, leave T - R
+ *   of T to the others: Phi >= T needs one of these of at least its share (T - R) B / S, S the sum
+ *   of their B.
  *   Where that can be is a stretch of the ray within a distance of the segment, found from what a
  *   term is at most by its distance. The march goes through these stretches and leaps what lies
  *   between them. For a lone straight vessel the first begins at its surface.
@@ -50,6 +52,7 @@ LANE_FN void add_to_packet(Packet *packet, const TileTerm *tile_term)
     if (!lanes_any(term->e2 + term->past < tile_term->reach2))
         return;
     term->term = tile_term;
+    term->bent = false;
     bound_term(term, (cross_a < 0.0f) | (cross_b < 0.0f));
     packet->n++;
 }
@@ -104,9 +107,11 @@ LANE_FN Lanes next_window(const Group *group, Lanes z)
     return next;
 }
 
-/* Sets what the march needs of a term that is at most exp(excess) times its share. */
-LANE_FN void place_windows(PacketTerm *term, Lanes excess)
+/* Sets what the march needs of a term that is at most exp(excess) times its share where it
+ * `counts`. */
+LANE_FN void place_windows(PacketTerm *term, Lanes excess, LaneMask counts)
 {
+    const Lanes none = lanes_set(1e30f);
     Lanes beside2 = excess + term->spare, reach2 = term->term->reach2 - term->e2;
     term_stretch(term, beside2, beside2 - 0.69314718f, &term->window[0], &term->window[1]);
     term_stretch(term, reach2, reach2, &term->reach[0], &term->reach[1]);
@@ -114,6 +119,8 @@ LANE_FN void place_windows(PacketTerm *term, Lanes excess)
         term->window[i] += term->z;
         term->reach[i] += term->z;
     }
+    term->window[0] = lanes_select(counts, term->window[0], none);
+    term->window[1] = lanes_select(counts, term->window[1], -none);
 }
 
 /* Sets the margins, and the windows and the reaches of the terms; false when there is no ray on
@@ -131,14 +138,20 @@ LANE_FN bool group_window(Group *group, float extent, LaneMask *live)
     *live &= sum >= low_level;
     if (!lanes_any(*live))
         return false;
-    Lanes excess = lanes_log(lanes_max(sum / low_level, lanes_set(1)));
+    const Lanes faint = low_level * (0.5f / (float)group->n);
+    Lanes rest = lanes_set(0);
+    for (size_t i = 0; i < group->n; i++) {
+        Lanes peak = group->terms[i]->peak;
+        rest += lanes_select(peak < faint, peak, lanes_set(0));
+    }
+    Lanes excess = lanes_log(lanes_max((sum - rest) / (low_level - rest), lanes_set(1)));
     size_t n = 0;
     for (size_t i = 0; i < group->n; i++) {
         PacketTerm *term = group->terms[i];
         if (!matters(term, *live))
             continue;
         complete_term(term, group->packet->tile->perspective);
-        place_windows(term, excess);
+        place_windows(term, excess, term->peak >= faint);
         group->terms[n++] = term;
     }
     group->n = n;

@@ -85,7 +85,7 @@ typedef struct Curve {
 /* Where a point of the curve is looked at, and, times 1 - `inwards` of its radius, drawn. */
 static Vec3 circle_point(const Curve *curve, double t, double radii)
 {
-    double angle = 6.283185307179586 * (curve->begin + t * curve->span);
+    double angle = FULL_TURN * (curve->begin + t * curve->span);
     Vec3 out = vec3_add_scaled(vec3_scale(curve->u, cos(angle)), curve->v, sin(angle));
     return vec3_add_scaled(curve->from, out, radii);
 }
@@ -139,8 +139,8 @@ static Status add_point(const Hand *hand, const Curve *curve, double t, InkPiece
 static Status add_piece(const Hand *hand, const Curve *curve, double t, double end,
                         InkPieces *pieces, Err *err)
 {
-    double radius_mm = curve->length_mm / curve->span / 6.283185307179586;
-    double side = fmin(2 * acos(1 - fmin(SAGITTA_MM / radius_mm, 0.5)) / 6.283185307179586, 0.125);
+    double radius_mm = curve->length_mm / curve->span / FULL_TURN;
+    double side = fmin(2 * acos(1 - fmin(SAGITTA_MM / radius_mm, 0.5)) / FULL_TURN, 0.125);
     int sides = curve->kind == CURVE_ARC ? (int)ceil((end - t) * curve->span / side) : 1;
     TRY(inkpieces_begin(pieces, curve->width_mm, err));
     for (int k = 0; k < sides; k++)
@@ -280,7 +280,7 @@ static Status draw_edge(const Hand *hand, int worker, const Primitive *vessel, V
                   .span = 1,
                   .from = center,
                   .shrink = hand->line_mm / 2 / radius_mm,
-                  .length_mm = 6.283185307179586 * radius_mm,
+                  .length_mm = FULL_TURN * radius_mm,
                   .width_mm = hand->line_mm};
     vec3_across(vec3_normalized(vec3_sub(vessel->b, vessel->a)), &edge.u, &edge.v);
     edge.u = vec3_scale(edge.u, vessel->radius_mm);
@@ -315,7 +315,7 @@ static Status draw_rulings(const Hand *hand, int worker, const JointFrame *joint
     for (int i = 0; i < n; i++) {
         double turn = 1; /* at most, in radians */
         for (int k = 0; k < m; k++) {
-            double apart = remainder(to[k] - from[i], 6.283185307179586);
+            double apart = remainder(to[k] - from[i], FULL_TURN);
             turn = fabs(apart) < fabs(turn) ? apart : turn;
         }
         const Curve outline = {.kind = CURVE_RULED,
@@ -343,17 +343,16 @@ static Status draw_creases(const Hand *hand, int worker, const JointFrame *joint
                           .width_mm = hand->line_mm};
     for (int k = 0, next; k < FINE_SAMPLES; k = next) {
         next = k + 1;
-        if (!joint_edge_is_outline(hand->camera, joint, end,
-                                   6.283185307179586 * (k + 0.5) / FINE_SAMPLES))
+        if (!joint_edge_is_outline(hand->camera, joint, end, FULL_TURN * (k + 0.5) / FINE_SAMPLES))
             continue;
         while (next < FINE_SAMPLES &&
                joint_edge_is_outline(hand->camera, joint, end,
-                                     6.283185307179586 * (next + 0.5) / FINE_SAMPLES))
+                                     FULL_TURN * (next + 0.5) / FINE_SAMPLES))
             next++;
         Curve arc = circle;
         arc.begin = (double)k / FINE_SAMPLES;
         arc.span = (double)(next - k) / FINE_SAMPLES;
-        arc.length_mm = 6.283185307179586 * radius * per_mm * arc.span;
+        arc.length_mm = FULL_TURN * radius * per_mm * arc.span;
         TRY(draw_curve(hand, worker, &arc, pieces, err));
     }
     return STATUS_OK;
@@ -392,7 +391,7 @@ static Status draw_ball(const Hand *hand, int worker, const Primitive *ball, Ink
                     .span = 1,
                     .from = vec3_add_scaled(ball->a, towards, nearer * ball->radius_mm),
                     .shrink = hand->line_mm / 2 / radius_mm,
-                    .length_mm = 6.283185307179586 * radius_mm,
+                    .length_mm = FULL_TURN * radius_mm,
                     .width_mm = hand->line_mm};
     vec3_across(towards, &circle.u, &circle.v);
     circle.u = vec3_scale(circle.u, radius);

@@ -8,8 +8,6 @@
 
 enum { SAMPLES = 48, NEWTON = 4 };
 
-static const double full_turn = 6.283185307179586;
-
 Vec3 towards_viewer(const Camera *camera, Vec3 point, double *distance)
 {
     Vec3 away = vec3_sub(camera->location, point);
@@ -60,11 +58,11 @@ int joint_outline(const Camera *camera, const JointFrame *joint, double way,
     const double first = 0.0357; /* apart from the plane of the axes, which is often seen edge-on */
     double before = joint_slant(camera, joint, first, way);
     for (int k = 1; k <= SAMPLES && n < JOINT_OUTLINES; k++) {
-        double angle = first + full_turn * k / SAMPLES;
+        double angle = first + FULL_TURN * k / SAMPLES;
         double slant = joint_slant(camera, joint, angle, way);
         if ((slant > 0) != (before > 0))
             angles[n++] = joint_outline_near(
-                camera, joint, angle - full_turn / SAMPLES * slant / (slant - before), way);
+                camera, joint, angle - FULL_TURN / SAMPLES * slant / (slant - before), way);
         before = slant;
     }
     return n;

@@ -7,7 +7,6 @@
 
 #include <math.h>
 
-static const double full_turn = 6.283185307179586;
 static const double shifts_per_turn = 12; /* so that u takes all values in every direction */
 static const double golden_part = 0.3819660112501051; /* of a full turn */
 
@@ -32,7 +31,7 @@ double occlusion_open(Caster *caster, int worker, const Ground *ground, Vec3 poi
     double shift = turn * shifts_per_turn - floor(turn * shifts_per_turn);
     for (int k = 0; k < rays; k++) {
         double part = (k + shift) / rays, radius = sqrt(part);
-        double angle = full_turn * (k * golden_part + turn);
+        double angle = FULL_TURN * (k * golden_part + turn);
         Vec3 direction = vec3_scale(normal, sqrt(1 - part));
         direction = vec3_add_scaled(direction, axes.a, radius * cos(angle));
         direction = vec3_add_scaled(direction, axes.b, radius * sin(angle));

@@ -37,10 +37,8 @@ static void add_shared(const Drawing *drawing, double i, double j, double t, boo
 
 bool raycolor_is_needed(const View *view, const RenderParams *params)
 {
-    bool soft = false;
-    for (size_t i = 0; i < view->n_lights; i++)
-        soft |= view->lights[i].casts_shadows && view->lights[i].samples > 1;
-    return params->occlusion > 0 || view->ground.present || (params->shadows && soft);
+    return params->occlusion > 0 || view->ground.present ||
+           (params->shadows && view_has_soft_shadows(view));
 }
 
 static Rgb pigment_of(const Drawing *drawing, const Surfel *surfel, Vec3 point)

@@ -1,6 +1,6 @@
 /* Adaptive antialiasing compares pixels as an eye would, by square roots of linear channels: about
  * equal steps of them look about equal. POV-Ray compares other numbers, so that no picture with a
- * threshold is held against its. */
+ * threshold is compared with its. */
 #include "render/light/resample.h"
 
 #include <assert.h>

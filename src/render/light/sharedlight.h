@@ -21,7 +21,7 @@ typedef struct PixelPlace {
 
 /* Constant once made [render/sky/share.h]. */
 typedef struct SharedLight {
-    int width, first, rows; /* of the picture's pixels; `first` row of so many */
+    int width, first, rows; /* pixels: the picture's width, and `rows` rows from `first` on */
     int side;               /* samples of the drawing that a pixel's side has, mostly 1 */
     Vec3 origin;
     uint32_t
@@ -63,7 +63,7 @@ uint32_t sharedlight_number(const SharedLight *shared, double i, double j, const
 PixelPlace sharedlight_place(const SharedLight *shared, PlaceKind kind, Vec3 point, Vec3 normal,
                              double mm_a_pixel);
 
-/* The width of a pixel at so many mm along the camera's ray. */
+/* The width, mm, of a pixel at a distance along the camera's ray. */
 double sharedlight_pixel_mm(const Camera *camera, double t);
 
 /* What the place shares: the part of the sky that it sees, and that of a light, or -1 of one that

@@ -12,7 +12,8 @@
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 
-/* What an item may touch is told by parts of 8 samples or 4, as many as make the most of lanes. */
+/* What an item may touch is found for groups of 8 samples or 4, whichever makes the most of lanes.
+ */
 enum {
     BLOCKS = TILE_SAMPLES / LANES,
     PART = LANES == 8 ? 8 : 4,
@@ -152,10 +153,17 @@ RASTER_FN unsigned touched_parts(const RasterState *state, const NearItem *near)
     return bits;
 }
 
+/* So many items ahead their memory is fetched. */
+enum { ITEMS_AHEAD = 8 };
+
 RASTER_FN void trace_items(RasterState *state, bool perspective)
 {
     const RasterTile *tile = state->tile;
+    for (size_t i = 0; i < tile->n && i < ITEMS_AHEAD; i++)
+        __builtin_prefetch(&tile->items[tile->list[i]]);
     for (size_t i = 0; i < tile->n; i++) {
+        if (i + ITEMS_AHEAD < tile->n)
+            __builtin_prefetch(&tile->items[tile->list[i + ITEMS_AHEAD]]);
         NearItem near = approach(tile, tile->list[i], perspective);
         outline(tile, &near);
         unsigned parts = touched_parts(state, &near);

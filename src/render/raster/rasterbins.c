@@ -72,7 +72,6 @@ static void make_chunk(size_t chunk, int worker, void *context)
         rasteritem_make(bins->geometry, &bins->view, (uint32_t)i, joint, item,
                         bins->joints ? &bins->joints[joint] : NULL,
                         bins->hulls ? &bins->hulls[joint] : NULL);
-        rasterreach_set(&bins->view, item);
         joint += is_joint(bins, i);
         for (int row = item->rows.first; row <= item->rows.last; row++)
             counts[row]++;

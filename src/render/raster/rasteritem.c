@@ -94,7 +94,12 @@ void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t 
     Vec3 middle = vec3_scale(vec3_add(primitive->a, primitive->b), 0.5);
     middle = viewpoint_place(&view->eye, middle);
     Vec3 span = viewpoint_to_frame(&view->eye, vec3_sub(primitive->b, primitive->a));
-    double length = vec3_length(span), radius = primitive->radius_mm, cosine = 0, sine = 1;
+    double radius = max_of(primitive->radius_mm, primitive_radius_b(primitive));
+    if (rasterreach_misses(view, middle, span, radius)) {
+        item->rows = item->columns = rastertiles_of(NOWHERE);
+        return;
+    }
+    double length = vec3_length(span), cosine = 0, sine = 1;
     double ex = 1, ey = 0, turn = span.z < 0 ? -1 : 1;
     if (length > 0) {
         double across = sqrt(span.x * span.x + span.y * span.y);
@@ -109,7 +114,6 @@ void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t 
     if (primitive->kind == PRIMITIVE_JOINT) {
         bool solid = !geometry->open_joints && primitive_joint_is_solid(primitive);
         kind = solid ? RASTER_JOINT : RASTER_EXACT;
-        radius = max_of(radius, primitive->radius_b_mm);
         if (solid && view->light)
             *hull = make_hull(view, primitive, span, length, turn);
         else if (solid)
@@ -131,4 +135,5 @@ void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t 
     double pixel = min_of(view->step_x, -view->step_y) * (view->eye.perspective ? near : 1);
     bool odd = item_is_close(item) || length / 2 + radius > most_pixels * pixel;
     item->kind = (unsigned)(odd ? RASTER_EXACT : kind) & 3;
+    rasterreach_set(view, item);
 }

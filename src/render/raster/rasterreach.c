@@ -105,6 +105,27 @@ static bool is_behind(const RasterItem *item)
     return item->z + item_depth(item) < 0;
 }
 
+/* Whether the samples of a view, `per` in a unit from `first` on, leave out what reaches `reach` to
+ * either side of `middle`. */
+static bool leaves_out(double middle, double reach, double first, double per, double stray,
+                       int count)
+{
+    Interval range = samples_within((Interval){middle - reach, middle + reach}, first, per);
+    double low = max_of(range.low - stray, 0), high = min_of(range.high + stray, count - 1);
+    int last = high < 0 ? -1 : (int)high;
+    return low > last;
+}
+
+bool rasterreach_misses(const RasterView *view, Vec3 middle, Vec3 span, double radius)
+{
+    if (view->eye.perspective)
+        return false;
+    return leaves_out(middle.x, fabs(span.x) / 2 + radius, view->left, view->per_x, view->stray,
+                      view->columns) ||
+           leaves_out(middle.y, fabs(span.y) / 2 + radius, view->top, view->per_y, view->stray,
+                      view->rows);
+}
+
 void rasterreach_set(const RasterView *view, RasterItem *item)
 {
     TileSpan rows = NOWHERE, columns = NOWHERE;

@@ -86,7 +86,7 @@ static void square_to(Vec3 axis, Vec3 *e, Vec3 *f)
 /* Directions around a circle. */
 static Vec3 around(Vec3 e, Vec3 f, int i, int n)
 {
-    double angle = 6.283185307179586 * i / n;
+    double angle = FULL_TURN * i / n;
     return vec3_add_scaled(vec3_scale(e, cos(angle)), f, sin(angle));
 }
 
@@ -95,7 +95,7 @@ static void draw_cylinder(const Brush *brush, Vec3 a, Vec3 b, double radius)
     Vec3 e, f, span = vec3_sub(b, a), axis = vec3_normalized(span);
     square_to(axis, &e, &f);
     int along = steps_through(brush, vec3_length(span));
-    int turn = steps_through(brush, 6.283185307179586 * radius);
+    int turn = steps_through(brush, FULL_TURN * radius);
     for (int j = 0; j <= along; j++) {
         Vec3 center = vec3_add_scaled(a, span, (double)j / along);
         for (int i = 0; i < turn && touches_row(brush, center, radius); i++) {
@@ -108,7 +108,7 @@ static void draw_cylinder(const Brush *brush, Vec3 a, Vec3 b, double radius)
         Vec3 center = end ? b : a, normal = vec3_scale(axis, end ? 1 : -1);
         for (int ring = 0; ring < rings && touches_row(brush, center, radius); ring++) {
             double part = radius * ring / rings;
-            int points = steps_through(brush, 6.283185307179586 * part);
+            int points = steps_through(brush, FULL_TURN * part);
             for (int i = 0; i < points; i++)
                 put_point(brush, vec3_add_scaled(center, around(e, f, i, points), part), normal);
         }
@@ -117,10 +117,10 @@ static void draw_cylinder(const Brush *brush, Vec3 a, Vec3 b, double radius)
 
 static void draw_sphere(const Brush *brush, Vec3 center, double radius)
 {
-    int rings = steps_through(brush, 3.141592653589793 * radius);
+    int rings = steps_through(brush, PI * radius);
     for (int ring = 0; ring <= rings; ring++) {
-        double angle = 3.141592653589793 * ring / rings, part = sin(angle);
-        int points = steps_through(brush, 6.283185307179586 * radius * part);
+        double angle = PI * ring / rings, part = sin(angle);
+        int points = steps_through(brush, FULL_TURN * radius * part);
         for (int i = 0; i < points; i++) {
             Vec3 out = vec3_scale(around(vec3(1, 0, 0), vec3(0, 1, 0), i, points), part);
             out.z = cos(angle);
@@ -136,10 +136,10 @@ static void draw_joint(const Brush *brush, const JointFrame *joint)
     double larger = fmax(joint->radius, joint->radius + joint->radius_change);
     double length =
         vec3_length(joint->span) + vec3_length(joint->across_change) + fabs(joint->radius_change);
-    int turn = steps_through(brush, 6.283185307179586 * larger);
+    int turn = steps_through(brush, FULL_TURN * larger);
     int along = steps_through(brush, length);
     for (int i = 0; i < turn; i++) {
-        double angle = 6.283185307179586 * i / turn, cosine = cos(angle), sine = sin(angle);
+        double angle = FULL_TURN * i / turn, cosine = cos(angle), sine = sin(angle);
         Vec3 run = vec3_add_scaled(joint->span, joint->across_change, cosine);
         run = vec3_add_scaled(run, joint->side, sine * joint->radius_change);
         for (int j = 0; j <= along; j++) {
@@ -245,6 +245,8 @@ static Status check_outside(const RasterBins *bins, Err *err)
 {
     for (size_t i = 0; i < rasterbins_items(bins->geometry); i++) {
         const RasterItem *item = &bins->items[i];
+        if (item->rows.first > item->rows.last)
+            continue;
         double deep = item_depth(item);
         if (item->z + deep > 0 && item->z - deep < (bins->view.eye.perspective ? deep * 0.01 : 0))
             return err_set(err, STATUS_USAGE,

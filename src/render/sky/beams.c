@@ -12,7 +12,10 @@
  *
  * All models are seen as capsules about their segments. That of a cut cylinder begins where the
  * joint that leads to it does, and stands for both: with capsules of their own, joints would be
- * multiplied with what they overlap, and the error of a disc be 0.037 instead of 0.029. */
+ * multiplied with what they overlap, and the error of a disc be 0.037 instead of 0.029. At
+ * a flat end that is seen, as those of tips are, the capsule's round end stays within the cylinder:
+ * beyond it, it would cover all places of the flat end, and the error of a dense ball be 0.052
+ * instead of 0.031. */
 #include "render/sky/beams.h"
 
 #include <math.h>
@@ -64,17 +67,31 @@ static void stretch_capsule(const Listing *listing, const Primitive *joint)
     store_point(begins_at_a ? block->a : block->b, lane, joint->a, origin);
 }
 
+/* An end of a segment, moved towards its other end, at most to the middle. */
+static Vec3 drawn_back(Vec3 end, Vec3 other, double by)
+{
+    double length = vec3_distance(end, other);
+    return vec3_add_scaled(end, vec3_sub(other, end), fmin(by / length, 0.5));
+}
+
+/* The capsule's round ends stay within flat ones that are seen. */
+static void add_cylinder(Listing *listing, const Primitive *one)
+{
+    Vec3 a = one->free_a ? drawn_back(one->a, one->b, one->radius_mm) : one->a;
+    Vec3 b = one->free_b ? drawn_back(one->b, one->a, one->radius_mm) : one->b;
+    add_capsule(listing, a, b, one->radius_mm);
+    listing->last[one->segment] = (uint32_t)listing->n;
+}
+
 static void list_primitives(Listing *listing, const Geometry *geometry)
 {
     size_t n = geometry->n_primitives - geometry->n_ends;
     for (size_t i = 0; i < n; i++) {
         const Primitive *one = &geometry->primitives[i];
-        if (one->kind == PRIMITIVE_JOINT)
-            continue;
-        bool is_ball = one->kind == PRIMITIVE_SPHERE;
-        add_capsule(listing, one->a, is_ball ? one->a : one->b, one->radius_mm);
-        if (!is_ball)
-            listing->last[one->segment] = (uint32_t)listing->n;
+        if (one->kind == PRIMITIVE_CYLINDER)
+            add_cylinder(listing, one);
+        else if (one->kind == PRIMITIVE_SPHERE)
+            add_capsule(listing, one->a, one->a, one->radius_mm);
     }
     for (size_t i = 0; i < n; i++) {
         const Primitive *one = &geometry->primitives[i];

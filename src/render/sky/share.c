@@ -237,11 +237,6 @@ static int sum_about(const Share *share, int column, int row, int *parts)
 
 /* ---- area lights ----------------------------------------------------------------------------- */
 
-static bool is_soft(const Light *light)
-{
-    return light->casts_shadows && light->samples > 1;
-}
-
 /* Of the points of an area light, row by row, those of a set lie in its squares of two by two as
  * the pixels of the set do in theirs. */
 static bool point_is_of(const Light *light, int point, int set)
@@ -485,7 +480,7 @@ static Status share_lights(Share *share, Err *err)
     int threads = share->drawing->params->threads;
     TRY(mem_calloc(&share->reach, pixels, sizeof *share->reach, "lights", err));
     for (size_t i = 0; i < view->n_lights; i++) {
-        if (!is_soft(&view->lights[i]))
+        if (!light_is_soft(&view->lights[i]))
             continue;
         TRY(mem_calloc(&light->parts[i], share->n, sizeof *light->parts[i], "lights", err));
         share->number = (int)i;
@@ -499,11 +494,9 @@ static Status share_lights(Share *share, Err *err)
 
 bool share_is_wanted(const View *view, const RenderParams *params)
 {
-    bool soft = false;
-    for (size_t i = 0; i < view->n_lights; i++)
-        soft |= is_soft(&view->lights[i]);
     return params->want_color && params->method != RENDER_TRACE &&
-           !(view->effects.xray.per_mm > 0) && (params->occlusion > 0 || (params->shadows && soft));
+           !(view->effects.xray.per_mm > 0) &&
+           (params->occlusion > 0 || (params->shadows && view_has_soft_shadows(view)));
 }
 
 Status share_light(const Drawing *drawing, const LightSources *from, SharedLight **out, Err *err)
