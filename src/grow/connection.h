@@ -25,8 +25,9 @@ typedef struct Connection {
 GridItem connection_item(const Network *net, const Grid *grid, const Rules *rules,
                          const Connection *connection, Vec3 terminal, int part);
 
-/* Whether a segment is long enough to be split into two that are longer than wide; a piece of a
- * given vessel always is. By its radius in the grid. */
+/* Whether a segment is long enough to be split into two that are longer than wide, with the radius
+ * that the grid has of it. A piece of a given vessel, and a segment that keeps its radius, may
+ * always be split. */
 bool connection_may_split(const Network *net, const Grid *grid, const Rules *rules,
                           int32_t segment);
 
@@ -41,7 +42,7 @@ bool connection_estimate(const Network *net, const Rules *rules, int32_t segment
 bool connection_optimise(const Network *net, const Rules *rules, Vec3 terminal,
                          Connection *connection);
 
-/* Moves the bifurcation of an optimised connection to the surface that the domain is; one on a
+/* Of a domain that is a surface: moves the bifurcation of an optimised connection onto it; one on a
  * given segment stays. False when a segment then is shorter than the rules allow. */
 bool connection_settle(const Network *net, const Rules *rules, const Domain *domain, Vec3 terminal,
                        Connection *connection);
@@ -54,7 +55,7 @@ bool connection_is_inside(const Network *net, const Domain *domain, const Connec
 typedef enum ConnectionClearance {
     CONNECTION_CLEAR,
     CONNECTION_BLOCKED, /* another segment is in the way */
-    CONNECTION_BEYOND,  /* it takes cells outside the zone to tell */
+    CONNECTION_BEYOND,  /* undecided, because that needs cells outside the zone */
 } ConnectionClearance;
 
 /* Whether the three segments of an optimised connection keep clear of all others in the grid, but

@@ -15,7 +15,7 @@ size_t continue_inlets(const Tree *from)
     return count;
 }
 
-/* Node i, which has so many children. */
+/* Checks node i, which has `children` children. */
 static Status check_node(const Tree *from, size_t i, int32_t children, const Domain *domain,
                          bool keep_radii, Err *err)
 {
@@ -137,28 +137,23 @@ void continue_from(const Tree *from, Network *net)
     network_resum(net);
 }
 
-/* One bit for every id that a node of the tree has, in *taken (owned). */
-static Status mark_ids(const Tree *from, uint8_t **taken, Err *err)
-{
-    TRY(mem_calloc(taken, TREE_MAX_ID / 8 + 1, 1, "bytes of seen ids", err));
-    for (size_t i = 0; i < from->n; i++)
-        (*taken)[from->id[i] / 8] |= (uint8_t)(1u << from->id[i] % 8);
-    return STATUS_OK;
-}
-
 static Status restore_nodes(const Tree *from, const Network *net, Tree *out, Err *err)
 {
-    uint8_t *taken = NULL;
-    TRY(mark_ids(from, &taken, err));
-    int32_t id = 1;
+    bool *taken = NULL; /* by id */
+    int32_t last = tree_last_id(from), id = 1;
+    TRY(mem_calloc(&taken, (size_t)last + 1, sizeof *taken, "seen ids", err));
+    for (size_t i = 0; i < from->n; i++)
+        taken[from->id[i]] = true;
     for (size_t i = 0; i < out->n; i++) {
         int32_t origin = net->trait[i].origin;
         if (origin >= 0) {
             out->id[i] = from->id[origin];
             out->type[i] = from->type[origin];
+            if (net->trunk && from->radius_mm[origin] > 0)
+                out->radius_mm[i] = from->radius_mm[origin];
             continue;
         }
-        while (taken[id / 8] >> id % 8 & 1)
+        while (id <= last && taken[id])
             id++;
         out->id[i] = id++;
     }
@@ -196,7 +191,7 @@ Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, E
     double *change = NULL;
     size_t n = 0;
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&node, TREE_MAX_ID + 1, sizeof *node, "ids", err));
+    TRY_GOTO(mem_calloc(&node, (size_t)tree_last_id(out) + 1, sizeof *node, "ids", err));
     TRY_GOTO(mem_calloc(&change, from->n, sizeof *change, "radii", err));
     for (size_t i = 0; i < from->n; i++)
         if (tree_is_segment(from, i) && from->radius_mm[i] > 0)

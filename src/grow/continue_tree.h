@@ -18,8 +18,8 @@ MUST_CHECK Status continue_check(const GrowParams *params, const Domain *domain,
 void continue_from(const Tree *from, Network *net);
 
 /* `out` has the nodes of `net`, in its order. Gives those that were in `from` their ids, types and
- * columns back, and the others the smallest ids that are free; and appends the remarks and command
- * lines of `from`. STATUS_MEMORY. */
+ * columns back, if `net` has a trunk their radii, inlets' too, and the others the smallest ids that
+ * are free; and appends the remarks and command lines of `from`. STATUS_MEMORY. */
 MUST_CHECK Status continue_restore(const Tree *from, const Network *net, Tree *out, Err *err);
 
 /* Compares the radii of the segments of `from` with those of the same ids in `out`: sets in *report

@@ -59,7 +59,8 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
     return status;
 }
 
-/* Viscosities and exponents agree with the radii to this share; rounds in which they are to. */
+/* The relative change of viscosities, and the change of exponents, below which they agree with the
+ * radii; and the most rounds until they do. */
 static const double agreement = 1e-13;
 enum { MAX_ROUNDS = 200 };
 
@@ -127,7 +128,7 @@ done:
     return status;
 }
 
-/* Of a domain from a file, the tree knows the file's name, not the user's folders. */
+/* Of a domain that was read from a file, the metadata has the file's name, not its folder. */
 static Status describe_domain(const Domain *domain, TreeMeta *meta, Err *err)
 {
     Text spec = TEXT_INIT, bare = TEXT_INIT;

@@ -7,13 +7,15 @@
 #include "grow/connection.h"
 #include "grow/mates.h"
 
-/* Points after which less distance is asked for, by which share; and after which there is none. */
+/* After every TRIES_PER_NOTCH points that will not do, the distance asked for falls by the fraction
+ * `notch`; after MAX_TRIES there is no root segment. */
 enum { TRIES_PER_NOTCH = 3, MAX_TRIES = 20000 };
 static const double notch = 0.1;
-/* Root segments keep clear of each other at so many times their radii: they widen as trees grow. */
+/* Root segments keep clear of each other at this many times their radii: they widen as trees grow.
+ */
 static const double reserve = 1.3;
 
-/* A root segment, perhaps to be. */
+/* A root segment, or a candidate for one. */
 typedef struct FirstSegment {
     Vec3 from, to;
     double radius; /* mm; at least what it will have while it is alone */

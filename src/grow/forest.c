@@ -6,7 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A tree may be ahead of its share of the terminals there are by this part of it, and some more. */
+/* A tree may be ahead of its share of the terminals so far by this fraction of it, plus
+ * LEAD_AT_LEAST terminals. */
 static const double lead = 1.0 / 16;
 enum { LEAD_AT_LEAST = 2 };
 

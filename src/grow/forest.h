@@ -6,11 +6,11 @@
 
 typedef struct Forest {
     size_t trees, terminals;
-    size_t *quota; /* terminals of each tree in the end */
-    size_t *has;   /* and so far */
-    size_t *limit; /* how many more each may get in the round at hand; the round takes off what it
-                      got */
-    size_t *grant; /* the limit that the round began with */
+    /* By tree: */
+    size_t *quota; /* terminals at the end of growth */
+    size_t *has;   /* terminals at the beginning of this round */
+    size_t *limit; /* terminals that it may still get in this round, which counts it down */
+    size_t *grant; /* the limit that this round began with */
 } Forest;
 
 /* `terminals`, not fewer than trees, go to the trees in proportion to `share`, rounded by largest
@@ -19,11 +19,11 @@ MUST_CHECK Status forest_init(Forest *forest, size_t trees, const double *share,
                               Err *err);
 void forest_release(Forest *forest);
 
-/* Sets the limits when there are so many terminals, so that no tree gets far ahead of its share of
- * the terminals there are. Some tree that lacks terminals is always allowed more. */
+/* Sets the limits of the next round, before which the forest has `terminals` terminals, so that no
+ * tree gets far ahead of its share of them. At least one tree that lacks terminals may get more. */
 void forest_limit(Forest *forest, size_t terminals);
 
-/* To be called after a round: adds what was taken off the limits to `has`. */
+/* To be called after a round: adds to `has` what the round counted down from `limit`. */
 void forest_count(Forest *forest);
 
 #endif

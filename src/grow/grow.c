@@ -29,15 +29,15 @@
 #include "grow/segment_weights.h"
 #include <stdlib.h>
 
-/* Cells of the grid for each terminal, when the grid is made; it serves until the terminals
- * doubled. */
+/* Cells of the grid for each terminal, when the grid is made; it is made anew when the terminals
+ * have doubled. */
 static const double cells_per_terminal = 1;
-/* Radii and sensitivities serve until there are so many times the terminals. */
+/* Radii and sensitivities are computed anew when there are this many times the terminals. */
 static const double refresh_growth = 1.2;
-static const double fine_growth = 1.03; /* where a radius ends growth */
-/* Trees keep apart by so many times the clearance asked for, as vessels widen. */
+static const double fine_growth = 1.03; /* with min_radius_mm */
+/* Vessels of different trees keep this many times clearance_mm apart, because they still widen. */
 static const double clearance_spare = 1.05;
-/* A round adds about one terminal for every so many there are; in tiles, more. */
+/* A round adds about one terminal for every TERMINALS_PER_ADDED that there are; in tiles, more. */
 enum { TERMINALS_PER_ADDED = 64, TERMINALS_PER_ADDED_IN_TILES = 12 };
 /* Points tossed for each terminal to be added. */
 enum { TOSSES_PER_ADDED = 3 };
@@ -45,13 +45,15 @@ enum { TOSSES_PER_ADDED = 3 };
 static const double toss_notch = 0.1, toss_notch_in_tiles = 0.5;
 /* Segments are no shorter than this share of the toss distance. */
 static const double least_length_share = 0.1;
-/* Trees with fewer terminals than this have cells too large to be full after a few misses. */
+/* With fewer terminals, the grid's cells are so large that a few points without room do not yet
+ * mean that a cell is full. */
 enum { LEAST_WITH_FULL_CELLS = 1000 };
-/* After so many points in crowded places without a connection vessels count as half as thick, below
- * the least thickness as lines; after LAST_PATIENCE points without one the domain is full. */
+/* After PATIENCE points in crowded places without a connection, vessels count as half as thick, and
+ * below the least thickness as lines; after LAST_PATIENCE points without one, the domain is full.
+ */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
 static const double least_thickness = 1.0 / 64;
-/* What growth holds at its end for each terminal, as measured with 10^6 and with 10^7. */
+/* Memory that growth needs for each terminal, as measured with 10^6 and with 10^7 terminals. */
 static const double bytes_per_terminal = 340;
 
 typedef struct Growth {
@@ -62,7 +64,7 @@ typedef struct Growth {
     Forest forest;
     Grid grid;
     Random random;
-    /* The terminals for which the grid, the radii, and the places of bifurcations serve. */
+    /* With how many terminals the grid is made anew, radii are refreshed, bifurcations relaxed. */
     size_t grid_until, refresh_until, relax_until;
     double toss_distance; /* mm */
     Rules rules;
@@ -73,7 +75,7 @@ typedef struct Growth {
     size_t crowded, outside; /* points far enough from the tree since one was connected */
 } Growth;
 
-/* The most terminals that one round adds to so many. */
+/* The most terminals that one round adds to a tree of `terminals`. */
 static size_t most_added(size_t terminals)
 {
     return 2 * (terminals / TERMINALS_PER_ADDED_IN_TILES + 1);
@@ -107,22 +109,26 @@ static Status refresh(Growth *growth, WeightsPrecision precision, Err *err)
     return STATUS_OK;
 }
 
-/* Where a radius ends growth, it is looked at more often. */
+/* With min_radius_mm, radii are refreshed more often, so that growth ends near it. */
 static double growth_until_refresh(const Growth *growth)
 {
     return growth->params->min_radius_mm > 0 ? fine_growth : refresh_growth;
 }
 
+/* Of the terminals whose radii follow; 0 where there is none. */
 static double mean_end_radius(const Network *net)
 {
     double sum = 0;
+    size_t count = 0;
     for (size_t i = 0; i < net->n; i++)
-        if (network_is_end(net, (int32_t)i) && network_kept_radius(net, (int32_t)i) == 0)
+        if (network_is_end(net, (int32_t)i) && network_kept_radius(net, (int32_t)i) == 0) {
             sum += (double)net->segment[i].radius;
-    return sum / (double)net->terminals;
+            count++;
+        }
+    return count > 0 ? sum / (double)count : 0;
 }
 
-/* Moves all bifurcations to better places while the tree is as small as asked for. */
+/* Moves all bifurcations to better places, if the tree has at most params->relax terminals. */
 static Status relax(Growth *growth, Err *err)
 {
     Network *net = &growth->net;
@@ -367,13 +373,13 @@ static Status start(Growth *growth, Err *err)
     return start_forest(growth, err);
 }
 
-/* Whether terminals are as thin as they were to become. */
+/* Whether the terminals' mean radius has come down to min_radius_mm. */
 static bool is_fine_enough(const Growth *growth)
 {
     return growth->end_radius > 0 && growth->end_radius <= growth->params->min_radius_mm;
 }
 
-/* Holds the clearance of different trees against what was asked for. */
+/* Proves the clearance of different trees and the distance of pairs, where they were asked for. */
 static Status check_apart(const GrowParams *params, const Tree *tree, double *apart, Err *err)
 {
     *apart = INFINITY;
@@ -392,15 +398,6 @@ static void report_progress(const Growth *growth, size_t before)
     if (growth->params->progress && terminals / 256 > before / 256)
         growth->params->progress((double)terminals / (double)growth->params->terminals,
                                  growth->params->progress_context);
-}
-
-static double root_radius_of(const Tree *tree)
-{
-    double radius = 0;
-    for (size_t i = 0; i < tree->n; i++)
-        if (!tree_is_segment(tree, i))
-            radius = fmax(radius, tree->radius_mm[i]);
-    return radius;
 }
 
 static double target_of(const Tree *tree)
@@ -448,7 +445,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     *report = (GrowReport){.seconds = clock_seconds() - begun,
                            .terminals = growth.net.terminals,
                            .target = target_of(out),
-                           .root_radius_mm = root_radius_of(out),
+                           .root_radius_mm = tree_root_radius(out),
                            .tosses = growth.tosses,
                            .rejected = growth.rejected,
                            .thickness = growth.rules.thickness,

@@ -24,23 +24,26 @@ enum { GROW_MAX_TERMINALS = 50000000, GROW_MAX_CANDIDATES = 1000, GROW_MAX_INLET
 
 typedef struct GrowParams {
     size_t terminals; /* in [1, GROW_MAX_TERMINALS] */
-    /* Murray exponent, or several by the radius, mm, of the parent; META_GAMMA has its range, and
-     * so on. */
+    /* Murray exponent, constant or a function of the parent segment's radius in mm. The ranges of
+     * this and of the following quantities are those of their keys in the table of tree/meta.h. */
     LogCurve gamma;
     double lambda; /* exponent of the target */
     uint64_t seed; /* of the random points */
-    /* The tree (borrowed) to grow on from, with its inlets; NULL: none. Its nodes keep their
-     * places, ids and types, its segments stay straight; a node other than an inlet has at most two
-     * children, an inlet one or two. Its radii, its flow shares and what is known of it are not
-     * looked at. */
+    /* A tree (borrowed) that growth continues, from its own inlets; NULL: none. Its nodes keep
+     * their places, ids and types, its segments stay straight; a node other than an inlet has at
+     * most two children, an inlet one or two. Growth does not read its radii, flow shares and
+     * metadata. */
     const Tree *from;
-    bool keep_radii; /* whether the segments of `from` keep theirs, too, which are then looked at */
-    size_t inlets;   /* at most GROW_MAX_INLETS; 0: one, the domain's default, or those of `from` */
-    const Vec3 *inlet; /* mm (borrowed); one tree grows from each */
-    size_t
-        inlet_shares; /* the number of shares: that of inlets, or 0: all trees get as many terminals
-                         as each other, or in the proportions that the trees of `from` have */
-    const double *inlet_share;  /* > 0 (borrowed): each tree's terminals relative to the others' */
+    bool keep_radii; /* whether the segments of `from` keep their radii, which growth then reads */
+    /* The number of inlets, at most GROW_MAX_INLETS, and their places, mm (borrowed): one tree
+     * grows from each. 0: the domain's default inlet, or the inlets of `from`. */
+    size_t inlets;
+    const Vec3 *inlet;
+    /* Each tree's number of terminals relative to the other trees', > 0 (borrowed), one for each
+     * inlet. 0 shares: all trees get equally many, or as many relative to each other as in `from`.
+     */
+    size_t inlet_shares;
+    const double *inlet_share;
     double p_perf_mmhg;         /* at the inlet */
     double p_term_mmhg;         /* at every terminal, below p_perf_mmhg */
     double q_perf_ml_min;       /* through the inlet */
@@ -49,22 +52,23 @@ typedef struct GrowParams {
     double viscosity_cp;        /* of the blood, by the constant law */
     double hematocrit;          /* by Pries's law */
     double plasma_viscosity_cp; /* by Pries's law */
-    /* How densely terminals are to stand (borrowed): as many for a volume as the map says, relative
-     * to elsewhere; or by TERMINAL_FLOW_DEMAND, how they share the flow, which then stand evenly
-     * where the map asks for something. NULL: evenly. */
+    /* A map (borrowed) of the relative density of terminals, in terminals per volume. With
+     * TERMINAL_FLOW_DEMAND it says instead how the terminals share the flow, and terminals have the
+     * same density wherever the map is above 0. NULL: the same density everywhere. */
     const Demand *demand;
-    double
-        min_radius_mm; /* growth ends, complete, when the terminals' mean radius is this; 0: not */
-    double clearance_mm; /* least distance of the walls of vessels of different trees, >= 0 */
-    /* How far apart, mm, the ends of paired terminals are, one of each of two trees; at least the
-     * clearance; 0: terminals are no pairs. */
+    double min_radius_mm; /* growth is complete when the terminals' mean radius is this; 0: never */
+    double clearance_mm;  /* least distance of the walls of vessels of different trees, >= 0 */
+    /* The distance, mm, of the ends of paired terminals, one of each of two trees; at least the
+     * clearance; 0: terminals are not paired. */
     double pair_mm;
     int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
-    size_t relax; /* all bifurcations move to better places whenever the terminals have doubled, and
-                     at the end, while there are so many at most; 0, or radii are kept: they stay */
+    /* While there are at most this many terminals, all bifurcations move to better places whenever
+     * the terminals have doubled, and at the end. 0, or with keep_radii: bifurcations never move.
+     */
+    size_t relax;
     GrowToss toss;
     int threads;  /* 0: all processors. The tree does not depend on it */
-    bool partial; /* whether the tree so far is a result when no more terminals find room */
+    bool partial; /* whether a tree with fewer terminals is a result when no more find room */
     void (*progress)(double fraction, void *context); /* NULL: none */
     void *progress_context;
 } GrowParams;
@@ -81,25 +85,24 @@ typedef struct GrowReport {
     double root_radius_mm; /* the largest */
     uint64_t tosses;       /* random points drawn */
     uint64_t rejected;     /* points in vessels, in full cells, or without room for a connection */
-    /* Segments are at least as long as wide, and apart from those they share no node with, if
-     * vessels count at this share of their radii: 1, or less (down to 0, for centrelines that do
-     * not cross) if the domain was too full for vessels as thick as they are. */
+    /* With all radii multiplied by this factor, segments are at least as long as wide and overlap
+     * none but those they share a node with: 1, or less where the domain was too full for that (0:
+     * only the centrelines do not cross). */
     double thickness;
     size_t broken; /* segments for which that does not hold, because they widened later on */
     /* The factors by which the radii of the segments of `from` changed; 0 where there are none. */
     double median_change, least_change, greatest_change;
-    /* The least distance of the walls of vessels of different trees, mm, by trees_apart, as far as
-     * it is below twice the clearance that was asked for, or for pairs below their distance; else
-     * INFINITY. */
+    /* The least distance of the walls of vessels of different trees, mm, by trees_apart; INFINITY
+     * where it is at least twice `clearance_mm` and at least `pair_mm`. */
     double apart_mm;
     bool complete; /* false: a partial tree; err holds the sentence that says why */
 } GrowReport;
 
-/* Sets in *meta what the parameters say of a tree grown by them. */
+/* Sets in *meta the keys that describe a tree grown with these parameters. */
 void grow_describe(const GrowParams *params, TreeMeta *meta);
-/* The other way round: sets the parameters that the tree knows and that are not given. Where the
- * tree says no law of viscosity, or of the terminals' flow, it is the constant one, or the equal
- * one. */
+/* The reverse: sets each parameter whose key is in *meta, but for the keys that are `given`.
+ * Without a law of viscosity in *meta, viscosity is constant; without a law of the terminals' flow,
+ * all terminals have the same flow. */
 void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_KEYS]);
 
 /* Whether growth can begin with these parameters in this domain: STATUS_USAGE, and STATUS_INPUT for
@@ -115,9 +118,9 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
  * any other; by demand, what these ask for. Centrelines do not cross. The same parameters give the
  * same tree, bit for bit. `report` may be NULL.
  *
- * With `pair_mm`, every terminal of the first tree has one of the second in that distance, its own,
- * and *out says the pairs [tree/pairs.h]. By then, and with `clearance_mm`, vessels of different
- * trees have been proved to be as far apart as that says.
+ * With `pair_mm`, every terminal of the first tree is paired with one of the second at that
+ * distance, and *out names the pairs [tree/pairs.h]. With `pair_mm` or `clearance_mm`, the distance
+ * of the vessels of different trees is proved before *out is returned.
  *
  * If a tree is continued (`from`), all its nodes are in *out with their ids, types and columns, and
  * so are its remarks; new nodes take the smallest ids that are free. New segments are in the domain
@@ -159,7 +162,7 @@ typedef enum GrowRefine {
 typedef struct RefineParams {
     GrowRefine level;
     double seconds; /* at most; 0: any. What a time allows differs from run to run */
-    uint64_t moves; /* tried at most; 0: any if `seconds` is given, else what the level allows */
+    uint64_t moves; /* tried at most; 0: no limit with `seconds`, else the level's own limit */
     uint64_t seed;  /* of the order of moves */
     bool (*stop)(void *context); /* asked after every move; NULL: never */
     void *stop_context;
@@ -172,6 +175,7 @@ typedef struct RefineReport {
     double target_before, target_after; /* sum of l r^lambda, mm^(1 + lambda) */
     uint64_t moves_tried, moves_kept;
     double thickness; /* the share of their radii at which vessels that moved were kept clear */
+    size_t broken;    /* segments that are shorter than wide, or too near to others, at that */
     double apart_mm;  /* as in a GrowReport, by what the tree's meta says, and its pairs */
     bool stopped;     /* by the callback */
 } RefineReport;

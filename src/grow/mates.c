@@ -6,7 +6,7 @@
 
 Vec3 mates_place(Vec3 terminal, double mm, int dimension, Random *random)
 {
-    double angle = 2 * acos(-1.0) * random_uniform(random);
+    double angle = FULL_TURN * random_uniform(random);
     double z = dimension == 3 ? 2 * random_uniform(random) - 1 : 0, across = sqrt(1 - z * z);
     return vec3_add_scaled(terminal, vec3(across * cos(angle), across * sin(angle), z), mm);
 }

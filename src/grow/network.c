@@ -272,8 +272,8 @@ void network_move(Network *net, int32_t node, Vec3 place)
         recompute(net, i);
 }
 
-/* The node after `i` in depth-first order below `top`, among those with at least so many terminals;
- * -1 after the last. */
+/* The node after `i` in depth-first order below `top`, among those with at least `terminals`
+ * terminals; -1 after the last. */
 static int32_t next_below(const Network *net, int32_t i, int32_t top, int32_t terminals)
 {
     for (int slot = 0; slot < 2; slot++) {

@@ -130,7 +130,7 @@ static inline bool network_is_end(const Network *net, int32_t i)
     return net->segment[i].child[0] < 0 && net->segment[i].parent >= 0;
 }
 
-/* The burden of segment i [law.h] if it carried so many terminals. */
+/* The burden of segment i [law.h] if it carried the flow of `terminals` terminals. */
 static inline double network_burden(const Network *net, int32_t i, int32_t terminals)
 {
     return net->trait ? terminals * net->trait[i].weight : terminals;
@@ -188,7 +188,7 @@ void network_spare(Network *net, size_t nodes);
 void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal,
                    const int32_t made[2], Box zone);
 
-/* Counts so many more terminals, which share the same flow: changes radius_unit. */
+/* Adds to the number of terminals, which share the same flow: changes radius_unit. */
 void network_grown(Network *net, size_t terminals);
 
 /* Moves the bifurcation `node`, and brings the sums of the three segments that meet there and of
@@ -200,7 +200,7 @@ void network_move(Network *net, int32_t node, Vec3 place);
 double network_cost(const Network *net);
 
 /* Brings the sums of all segments but lengths up to date, then their radii, gauges and
- * sensitivities. O(n), on so many threads, which do not change the result. */
+ * sensitivities. O(n). The result is the same for any number of threads. */
 void network_refresh(Network *net, int threads);
 
 /* Frees what only growth needs: network_split, network_spare and network_refresh must not be called

@@ -122,9 +122,10 @@ static Status check_shares(const GrowParams *params, size_t trees, Err *err)
     return STATUS_OK;
 }
 
-static Status check_pairs(const GrowParams *params, Err *err)
+static Status check_pairs(const GrowParams *params, const Domain *domain, Err *err)
 {
     double mm = params->pair_mm;
+    double across = vec3_distance(domain->bounds.low, domain->bounds.high);
     if (!(mm >= 0) || !isfinite(mm))
         return err_set(err, STATUS_USAGE, "`pair_mm` %g: must be a number of mm not below 0", mm);
     if (mm == 0)
@@ -144,6 +145,10 @@ static Status check_pairs(const GrowParams *params, Err *err)
                        "`pair_mm` %g: must be at least the clearance, `clearance_mm` %g, and both "
                        "radii",
                        mm, params->clearance_mm);
+    if (mm > across)
+        return err_set(err, STATUS_USAGE,
+                       "`pair_mm` %g: must be below what the domain is across, %.4g mm", mm,
+                       across);
     return STATUS_OK;
 }
 
@@ -174,11 +179,11 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     if (params->keep_radii && !params->from)
         return err_set(err, STATUS_USAGE, "`keep_radii`: needs a tree to grow on from, `from`");
     if (params->from) {
-        TRY(check_pairs(params, err));
+        TRY(check_pairs(params, domain, err));
         TRY(continue_check(params, domain, err));
         return check_shares(params, continue_inlets(params->from), err);
     }
     TRY(check_inlets(params, domain, err));
-    TRY(check_pairs(params, err));
+    TRY(check_pairs(params, domain, err));
     return check_shares(params, params->inlets > 0 ? params->inlets : 1, err);
 }

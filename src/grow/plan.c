@@ -43,8 +43,8 @@ static int cheapest(const Connection *connection, int count)
     return best;
 }
 
-/* Finds the nearest segments; -1 when it takes more than what is within `within` mm to tell. Looks
- * first as far as was enough for the last points, and a little more. */
+/* Finds the nearest segments; -1 when that needs more than what is within `within` mm. Looks first
+ * as far as was enough for the last points, and a little more. */
 static int find_near(const Site *site, Planner *planner, double within, Vec3 terminal)
 {
     const Grid *grid = site->grid;

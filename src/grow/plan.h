@@ -8,7 +8,7 @@
 #include "grow/network.h"
 
 typedef enum PlanState {
-    PLAN_BEYOND,    /* it takes cells outside the zone, or more terminals than are left, to tell */
+    PLAN_BEYOND,    /* undecided: needs cells outside the zone, or more terminals than are left */
     PLAN_TOO_NEAR,  /* nearer to the tree than the toss distance */
     PLAN_IN_VESSEL, /* far enough from all centrelines, but inside a thick vessel */
     PLAN_AHEAD,     /* next to a tree that may get no more terminals for now [forest.h] */
@@ -26,7 +26,7 @@ typedef struct Site {
     const Domain *domain;
     const Rules *rules;
     size_t *limit;        /* by tree: how many more terminals it may get */
-    double toss_distance; /* mm; where demand is the greatest */
+    double toss_distance; /* mm; where demand is greatest: elsewhere the distance is greater */
     const Demand *demand; /* NULL: the same everywhere */
     bool terminals_only;  /* the toss distance is kept from terminals' ends, not from segments */
     int candidates;       /* nearest segments that are tried */
@@ -36,7 +36,9 @@ typedef struct Site {
 typedef struct Planner {
     Near *near;             /* the candidates of the point at hand */
     Connection *connection; /* and their connections */
-    double reach; /* mm; a guess how far away candidates are, 0: none. The caller sets the first */
+    /* mm; an estimate of how far away the candidates are, learnt from point to point; 0: none yet.
+     * The caller sets the first. */
+    double reach;
 } Planner;
 
 MUST_CHECK Status planner_init(Planner *planner, int candidates, Err *err);

@@ -19,18 +19,21 @@
 #include <stdlib.h>
 
 enum { ROUNDS = 6, CHUNK = 512 };
-/* Where more than one segment in so many breaks a rule, the domain is too full for small moves. */
+/* Where more than one segment in FEW breaks a rule, the domain is too full for small moves. */
 enum { FEW = 20 };
-/* Moved segments keep to the rules with this to spare, over the radii. */
+/* Segments that repairs move keep to the rules with their radii widened by this fraction. */
 static const double spare = 2e-3;
-/* How far bifurcations are moved, over the radius of the segment that ends there. */
+/* How far bifurcations are moved, relative to the radius of the segment that ends there. */
 static const double steps[] = {0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
 
-/* Relaxed segments keep to them with this to spare, as radii grow; bifurcations are kept so many
- * times the least length off the ends; and tries of ever shorter steps. */
+/* Segments that relaxing moves keep to the rules with their radii widened by this fraction, because
+ * radii still grow; and the bifurcation's best place is this many times the least length off the
+ * ends. */
 static const double relaxed_spare = 0.15, off_ends = 1.02;
+/* Steps tried towards the best place, each half as long as the one before. */
 enum { TRIES = 3 };
-/* Rounds in which the best place is found, and a gain over the target that is none. */
+/* Rounds in which the best place is found; and the least gain, relative to the target, for which a
+ * bifurcation moves. */
 enum { PLACE_ROUNDS = 2 };
 static const double least_gain = 1e-9;
 
@@ -64,30 +67,33 @@ static double width_there(const Repair *repair, int32_t i)
 }
 
 /* How far apart segments i and j should be at a thickness: pieces of a vessel only have to keep
- * their centrelines apart, and given segments nothing from each other. */
+ * their centrelines apart. */
 static double needed(const Repair *repair, int32_t i, int32_t j, double thickness)
 {
     const Network *net = repair->net;
-    if (network_is_given(net, i) && network_is_given(net, j))
-        return 0;
     double apart = network_tree(net, i) == network_tree(net, j) ? 0 : repair->rules->apart;
     return repair->rules->gap + apart +
            (network_is_piece(net, i) || network_is_piece(net, j) ? 0 : thickness);
 }
 
 /* By how many mm segment i, as `item` of `radius`, is too near to another, radii multiplied by
- * `scale`. Centrelines that touch count as the worst fault there is. */
+ * `scale`. Centrelines that touch count as the worst fault there is; given segments may lie
+ * anyhow. */
 static double overlap(const Repair *repair, int32_t i, const GridItem *item, double radius,
                       double scale, int32_t other)
 {
+    const Network *net = repair->net;
     double gap = repair->rules->gap;
+    if (network_is_given(net, i) && network_is_given(net, other))
+        return 0;
     double need = needed(repair, i, other, scale * (radius + width_there(repair, other)));
     double apart2 = grid_distance2(item, &repair->grid->item[other]);
     return apart2 < gap * gap ? repair->rules->widest : need - sqrt(apart2);
 }
 
-/* By how many mm segment i, its radius and the others' widened by `margin` of them, is too short or
- * too near to another `below` an index, *with, which is unchanged when there is none. */
+/* By how many mm segment i is too short, or too near to a segment with an index less than `below`,
+ * whichever is more, with all radii widened by the fraction `margin`. *with: the segment that it is
+ * nearest to in that sense; unchanged when there is none. */
 static double fault(const Repair *repair, int32_t i, double margin, int32_t below, int32_t *with)
 {
     const Network *net = repair->net;
@@ -120,8 +126,8 @@ static double fault(const Repair *repair, int32_t i, double margin, int32_t belo
     return worst;
 }
 
-/* The faults of the three segments that meet at a bifurcation, their radii widened by `margin` of
- * them; anything from `enough` on when they are that much. */
+/* The sum of the faults of the three segments that meet at a bifurcation, with radii widened by the
+ * fraction `margin`. Stops adding, and returns what it has, once that is at least `enough`. */
 static double fault_at(const Repair *repair, int32_t node, double margin, double enough)
 {
     const int32_t *child = repair->net->segment[node].child;

@@ -19,9 +19,10 @@
 
 /* Cells along a tile: about 1,000 terminals. */
 enum { EDGE_2D = 34, EDGE_3D = 10 };
-/* The least number of tiles that are worth it, and points in each. */
+/* With fewer tiles, or fewer points in a tile, one thread connects all points. */
 enum { LEAST_TILES = 4, LEAST_POINTS = 16 };
-/* Of a tile's points, at most one in so many may be connected there; one in three is expected. */
+/* In a tile, at most one point in POINTS_PER_CONNECTED may be connected; one in three is expected.
+ */
 enum { POINTS_PER_CONNECTED = 2 };
 /* How many points ahead memory is asked for. */
 enum { AHEAD = 2 };
@@ -34,7 +35,7 @@ struct Tile {
     size_t most, made;    /* terminals */
     size_t over;          /* points left over, which are then the first ones in `order` */
     size_t *left;         /* by tree: how many terminals it may still get here */
-    double reach;         /* what its planner's came to be */
+    double reach;         /* its planner's at the end [plan.h] */
     Tally tally;
     Status status;
     Err err;
@@ -126,8 +127,8 @@ static Status connect(const Site *site, int worker, Box zone, const Connection *
 typedef struct Running {
     Round *round;
     const Site *site;
-    bool skip;
-    const uint32_t *turn; /* the tiles of one colour; NULL: one tile that is everywhere */
+    bool skip;            /* whether points in full cells are skipped */
+    const uint32_t *turn; /* the tiles of one colour; NULL: one tile, whose zone is all space */
 } Running;
 
 /* Prefetches what the next points will need: the further ahead the point, the earlier the step. */
@@ -272,7 +273,7 @@ static size_t tile_at(const Cut *cut, const Grid *grid, Vec3 point)
     return index;
 }
 
-/* A tile's cells and so many around them, also where the grid has none. */
+/* A tile's cells and `margin` more on all sides, also where the grid has none. */
 static GridBox box_of(const Cut *cut, size_t index, int margin)
 {
     GridBox box;
@@ -318,7 +319,8 @@ static size_t part_of(const Round *round, const Tile *tile, size_t whole)
     return whole * (tile->end - tile->first) / round->n;
 }
 
-/* Gives every tile its zone, spare nodes, and its part of what may be connected, by its points. */
+/* Gives every tile its zone, and in proportion to its points spare nodes and its part of the
+ * terminals that may be connected, of all trees and of each. */
 static void endow(Round *round, const Site *site, const Cut *cut, size_t tiles, size_t most)
 {
     size_t nodes = 0;
@@ -404,7 +406,7 @@ static Status run_tiles(Round *round, const Site *site, size_t most, bool skip, 
     size_t tiles = (size_t)cut.count[0] * cut.count[1] * cut.count[2];
     sort(round, &cut, site->grid, tiles);
     endow(round, site, &cut, tiles, most);
-    uint32_t *turn = round->tile_of; /* has served */
+    uint32_t *turn = round->tile_of; /* which only `sort` needed */
     for (int colour = 0; colour < COLOURS; colour++) {
         size_t count = 0;
         for (size_t t = 0; t < tiles; t++)

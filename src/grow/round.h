@@ -20,7 +20,7 @@ typedef struct Round {
     uint32_t *order;    /* the points' indices, tile by tile */
     Tile *tile;
     int tile_edge;       /* in cells of the grid */
-    size_t tiles;        /* at most, wherever their seams are */
+    size_t tiles;        /* the most that the grid is cut into, wherever their seams are */
     bool is_tiled;       /* whether there are enough to work on several at a time */
     size_t trees, *left; /* by tile and tree: how many terminals it may still get there */
     Planner *planner;    /* by thread */
@@ -31,11 +31,11 @@ typedef struct Round {
     Tally tally;     /* of the last round */
 } Round;
 
-/* A cell with so many crowded points counts as full: its points are skipped. */
+/* A cell with this many crowded points in succession counts as full: its points are skipped. */
 enum { ROUND_FULL = 2 };
 
-/* Initialises *round, whatever it holds, for a forest of `trees`, trying so many candidates for a
- * point on so many threads. To be released also on failure, STATUS_MEMORY. */
+/* Initialises *round, whatever it holds, for a forest of `trees`, with `candidates` candidates for
+ * each point and on `threads` threads. To be released also on failure, STATUS_MEMORY. */
 MUST_CHECK Status round_init(Round *round, int candidates, size_t trees, int threads, Err *err);
 void round_release(Round *round);
 
@@ -43,14 +43,14 @@ void round_release(Round *round);
  * which cells are full. */
 MUST_CHECK Status round_use_grid(Round *round, const Grid *grid, Err *err);
 
-/* Begins a round: makes room for so many points, which the caller then sets. */
+/* Begins a round: makes room for `points` points, which the caller then sets. */
 MUST_CHECK Status round_start(Round *round, size_t points, Err *err);
 
-/* Connects points, `most` of them at most and for each tree no more than site->limit allows, which
- * goes down by what the tree got; their number is *made. Points in full cells are skipped if
- * `skip`. Fills the tally. The network must be as of a refresh; afterwards, sums miss new terminals
- * except near them [network_split], and the caller has to call network_grown. The result does not
- * depend on the number of threads. STATUS_MEMORY. */
+/* Connects points: at most `most`, and for each tree no more than site->limit allows, which is
+ * counted down. *made: how many terminals were connected. Skips points in full cells if `skip`.
+ * Fills the tally. Needs the radii and sensitivities of the last refresh. Afterwards the sums miss
+ * new terminals except near them [network_split], and the caller has to call network_grown. The
+ * result does not depend on the number of threads. STATUS_MEMORY. */
 MUST_CHECK Status round_run(Round *round, const Site *site, size_t most, bool skip, size_t *made,
                             Err *err);
 

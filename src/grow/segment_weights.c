@@ -10,8 +10,8 @@
 #include "grow/territory.h"
 #include <stdlib.h>
 
-/* Lattice points for each terminal: rough; fine, at least and at most; and fine ones in all, if
- * that is between the two. */
+/* Lattice points for each terminal with WEIGHTS_ROUGH. With WEIGHTS_FINE there are all_points in
+ * all, but no fewer than least_points and no more than most_points for each terminal. */
 static const double rough_points = 8;
 static const double least_points = 256, most_points = 4096, all_points = 2e6;
 

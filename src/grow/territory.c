@@ -12,7 +12,7 @@
 /* A lattice over a box that is very thin for its length has at most POINTS_PER_ASKED as many points
  * as a box of that volume asks for, and LEAST_POINTS. */
 enum { POINTS_PER_ASKED = 8, LEAST_POINTS = 16384 };
-/* What a point counts for that asks for the most. */
+/* What a lattice point counts for where the demand is 1, its maximum. */
 enum { WHOLE = 1 << 20 };
 /* Cells of the grid a terminal. */
 static const double cells_per_terminal = 1;

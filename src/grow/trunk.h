@@ -6,11 +6,11 @@
 
 #include "grow/network.h"
 
-/* At least a thousandth of the drop is left to what hangs on a trunk. */
+/* The greatest share of the drop of pressure that may be spent along a trunk. */
 #define TRUNK_MOST_SPENT 0.999
 
-/* The share of the whole drop of pressure that is spent on the first `part` of the kept segment i,
- * if it carried so many terminals. Needs its length. */
+/* The share of the whole drop of pressure that is spent along the first `part`, in [0, 1], of the
+ * kept segment i if it carries the flow of that many terminals. Needs its length. */
 static inline double trunk_spent(const Network *net, int32_t i, int32_t terminals, double part)
 {
     double unit = net->radius_unit / net->trunk->radius[i], unit2 = unit * unit;

@@ -114,6 +114,15 @@ test_the_root_has_the_radius_of_the_thickest_vessel_that_leaves_it() {
     expect_json stdout ".root_radius_mm == $thickest"
 }
 
+# A fork as measured trees have them: both daughters begin with a point where it is.
+test_given_vessels_that_touch_each_other_are_no_fault_of_growth() {
+    printf '%s\n' '1 3 0 20 0 1.4 -1' '2 3 0 8 0 1.3 1' '3 3 0 8 0 1.1 2' '4 3 0 8 0 1.1 2' '5 3 -9 -3 0 1.1 3' '6 3 8 -4 0 1.1 4' >forked.swc
+    run_ok corcast grow --from forked.swc --domain disc:22 --terminals 30 --q-perf 20 --keep-radii -o grown.swc --json grown.json --quiet
+    expect_json grown.json '.broken == 0 and .root_radius_mm == 1.4'
+    [ ! -s stderr ] || fail "expected silence$(said)"
+    grep -q '^1 3 0 20 0 1.4 -1$' grown.swc || fail "expected the root to keep its radius: $(grep '^1 ' grown.swc)"
+}
+
 test_the_checker_of_what_stays_finds_what_does_not() {
     run_ok corcast grow --terminals 20 -o first.swc
     run_ok corcast grow --from first.swc --terminals 60 -o second.swc

@@ -50,12 +50,34 @@ test_an_xray_shows_lengths_alone() {
     run corcast render tree.swc --look xray --color-by radius -o no.png
     expect_status 2
     expect_sentence '--look xray has two colours of its own; --color-by has no effect'
+    run corcast render tree.swc --look xray --ao 3 -o no.png
+    expect_status 2
+    expect_sentence '^corcast render: --ao is of lit walls, and an x-ray has none$'
+    run corcast render tree.swc --look xray --shadows -o no.png
+    expect_status 2
+    expect_sentence '^corcast render: --shadows are of lights, and an x-ray has none$'
     run corcast scene tree.swc --quiet --look xray -o no.pov
     expect_status 2
     expect_sentence '--look xray is an x-ray, which POV-Ray does not draw; render does'
     run corcast verify tree.swc --quiet --look xray -o report
     expect_status 2
     expect_only film.ini film.pfm tree.swc
+}
+
+test_a_light_that_cannot_be_is_refused_with_its_line_and_what_it_says() {
+    local sentence change
+    make_crossing
+    while IFS='|' read -r change sentence; do
+        printf '[vessel]\ncolor = 1 0.5 0.2\n[light lamp]\nposition = -1 2 3.5\nsize = 0.7\n' | sed "$change" >lamp.ini
+        run corcast render tree.swc --quiet --look ./lamp.ini -o no.png
+        expect_status 2
+        expect_sentence "^corcast render: ./lamp.ini:$sentence\$"
+    done <<'END'
+s/= 0.7/= -0.7/|5: not a look: expected a number from 0 to 100, below .* position, not 'size = -0.7'
+s/-1 2 3.5/-1 2 1e9/|4: not a look: expected three numbers from -1000000 to 1000000, not all zero, not 'position = -1 2 1e9'
+s/light lamp/lamp/|3: not a look: expected one of the sections .*, not \[lamp\]
+s/position/direction/|5: not a look: .* position, not 'size = 0.7'
+END
 }
 
 test_planes_of_geometry_know_nothing_of_effects() {

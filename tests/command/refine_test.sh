@@ -51,11 +51,25 @@ test_annealing_stays_within_its_moves_and_is_repeatable() {
     expect_lower a.swc plain.swc 1
 }
 
-test_the_json_of_grow_tells_the_refined_target() {
-    run_ok corcast grow --terminals 60 --refine geometry --json grow.json -o tree.swc
+test_the_json_of_grow_tells_the_refined_target_and_root() {
+    run_ok corcast grow --terminals 60 --inlet 0,50 --inlet 0,-50 --inlet-shares 0.2,0.8 --refine geometry --json grow.json -o tree.swc
     run_ok corcast info tree.swc --json
-    awk -v a="$(jq .target stdout)" -v b="$(jq .target grow.json)" 'BEGIN { exit !(a - b < 1e-9 * b && b - a < 1e-9 * b) }' ||
-        fail "expected the target of grow.json to be the tree's"
+    jq -e --slurpfile said grow.json '$said[0] as $s | (.target - $s.target | fabs) < 1e-9 * .target and
+        .root_radius_mm == $s.root_radius_mm' stdout >jq.out || fail "expected grow.json to tell the tree's target and root"
+}
+
+test_vessels_that_stay_in_each_others_way_are_counted() {
+    run_ok corcast grow --terminals 230 --domain rect:4,30 --gamma 2 --seed 5 --p-term 80 --refine geometry --json grow.json -o tree.swc --quiet
+    [ "$(jq .broken grow.json)" -gt 10 ] || fail "expected broken rules: $(jq .broken grow.json)"
+    grep -qx "corcast: $(jq .broken grow.json) segments are shorter than wide or too near to others all the same" stderr ||
+        fail "expected their number$(said)"
+    run_ok corcast refine tree.swc --refine geometry --json refined.json -o refined.swc --quiet
+    grep -qx "corcast: $(jq .broken refined.json) segments are shorter than wide or too near to others all the same" stderr ||
+        fail "expected their number$(said)"
+    run_ok corcast grow --terminals 60 -o clear.swc
+    run_ok corcast refine clear.swc --refine geometry --json clear.json -o refined.swc --quiet
+    expect_json clear.json '.broken == 0'
+    [ ! -s stderr ] || fail "expected silence$(said)"
 }
 
 test_an_interrupted_refinement_writes_the_best_tree_so_far() {

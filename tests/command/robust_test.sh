@@ -37,6 +37,23 @@ test_limits_of_size_leave_nothing() {
     expect_only tree.swc
 }
 
+test_what_finds_no_room_is_named_with_the_reason() {
+    local file command
+    grow_tree 60
+    while read -r file command; do
+        # shellcheck disable=SC2086
+        (trap '' XFSZ && ulimit -f 1 && exec "$CORCAST" $command --quiet) >stdout 2>stderr
+        [ $? -eq 3 ] || fail "expected exit status 3 from: $command$(said)"
+        expect_sentence "^corcast [a-z]*: $file: writing( the TIFF)? failed: File too large$"
+        expect_only tree.swc
+    done <<'END'
+t.graphml convert tree.swc t.graphml
+t.gxl convert tree.swc t.gxl
+t.svg diagram tree.swc -o t.svg
+t.tif render tree.swc --size 90x90 -o t.tif
+END
+}
+
 test_a_verdict_that_cannot_be_told_is_a_failure() {
     local stream
     grow_tree 3

@@ -82,6 +82,15 @@ test_growth_ends_at_a_radius() {
         m = s / n; exit !(m > 0.22 && m < 0.237 && n > 50 && n < 1000) }' || fail "expected terminals of 0.235 mm in the mean"
 }
 
+# The ends of the trunk keep their radii, and do not count.
+test_growth_on_a_trunk_that_keeps_its_radii_ends_at_a_radius() {
+    run_ok corcast grow --terminals 200 -o trunk.swc
+    run_ok corcast grow --from trunk.swc --keep-radii --q-perf 90 --terminals 5000 --min-radius 0.0565 -o tree.swc
+    awk '/^#/ { next } FNR == NR { old[$1] = 1; next } { r[$1] = $6; has[$7] = 1 }
+        END { for (i in r) if (!(i in has) && !(i in old)) { s += r[i]; n++ }
+        m = s / n; exit !(m > 0.0525 && m < 0.0568 && n > 200 && n < 2000) }' trunk.swc tree.swc || fail "expected new terminals of 0.0565 mm in the mean"
+}
+
 # The least distance of the walls of two trees, by points on both axes.
 least_apart() {
     awk '/^#/ { next } { x[$1] = $3; y[$1] = $4; r[$1] = $6; p[$1] = $7; tree[$1] = $7 == -1 ? $1 : tree[$7]; id[++n] = $1 }

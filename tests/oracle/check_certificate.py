@@ -48,5 +48,7 @@ def check(tree_path, certificate_path):
 
 try:
     print(f"proved: the target is at least {float(check(*sys.argv[1:])):.12g}")
-except (AssertionError, ValueError, KeyError) as error:
+except AssertionError as error:
     sys.exit(f"{sys.argv[2]}: {error}")
+except (OSError, ValueError, KeyError, IndexError, ZeroDivisionError) as error:
+    sys.exit(f"{sys.argv[2]}: not a certificate of {sys.argv[1]}: {error!r}")

@@ -81,6 +81,7 @@ static void each_level_lowers_the_target_by_what_it_should(void **state)
         uint64_t moves; /* 0: as many as the level is given */
         double least_gain;
     } cases[] = {{GROW_REFINE_GEOMETRY, 1000, 0, 0.008},
+                 {GROW_REFINE_GEOMETRY, 20000, 1, 0.0023}, /* one joint move */
                  {GROW_REFINE_TOPOLOGY, 1000, 0, 0.035},
                  {GROW_REFINE_ANNEAL, 200, 150000, 0.06}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {

@@ -16,7 +16,7 @@ typedef struct BifurcationOptions {
     bool has_angles, has_ratio;
 } BifurcationOptions;
 
-static const double degree = 3.14159265358979323846 / 180, most_degrees = 180;
+static const double most_degrees = 180;
 
 static const Option own[] = {
     {.name = "output",
@@ -110,7 +110,7 @@ static Status find_angles(const BifurcationOptions *options, const double radii[
                            "no angles make the target least for these radii and --lambda %g: one "
                            "vessel is as thick as the others together; give --angles",
                            options->lambda);
-        angles[i] = acos(cosine) / degree;
+        angles[i] = acos(cosine) / DEGREE;
     }
     return STATUS_OK;
 }
@@ -154,7 +154,7 @@ static Status find_shape(const BifurcationOptions *options, double radii[3], dou
 /* Fills a tree of four nodes: inlet, branching point, left and right end. */
 static void fill(const double radii[3], const double lengths[3], const double angles[2], Tree *tree)
 {
-    const double left = angles[0] * degree, right = angles[1] * degree;
+    const double left = angles[0] * DEGREE, right = angles[1] * DEGREE;
     const Vec3 places[] = {{0, lengths[0], 0},
                            {0, 0, 0},
                            {-lengths[1] * sin(left), -lengths[1] * cos(left), 0},

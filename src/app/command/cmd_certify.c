@@ -29,7 +29,7 @@ static Status show_json(const Certified *found, Err *err)
         {"best_murray", json_number(bound->murray)},
         {"refined", json_number(found->refined)},
         {"parts", parts},
-        {"terminals", json_integer((json_int_t)bound->outlets)},
+        {"terminals", json_count(bound->outlets)},
         {"seconds", json_number(found->seconds)},
     };
     return json_write(json_with_members(json_object(), members, sizeof members / sizeof *members),

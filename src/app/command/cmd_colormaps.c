@@ -125,7 +125,7 @@ static int count_lines(const char *text)
     return n;
 }
 
-/* White, with room for so many strips. */
+/* Makes a white plane with room for `strips` strips. */
 static Status make_plane(Plane *plane, int strips, Err *err)
 {
     TRY(plane_init(plane, STRIP_WIDTH, strips * STRIP_STEP + STRIP_GAP, 3, err));

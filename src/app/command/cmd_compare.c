@@ -64,7 +64,7 @@ static Status read_ids(IdPlane *ids, const char *path, Err *err)
     return status;
 }
 
-/* Codes of sRGB of so many bits, whatever the file holds. */
+/* Converts the image to sRGB codes of `bits` bits, whatever the file holds. */
 static Status set_bits(Image *image, int bits, Err *err)
 {
     Picture made;

@@ -1,4 +1,4 @@
-/* What a file holds is told by its extension, and what is read becomes what is to be written: a
+/* What a file holds follows from its extension, and what is read becomes what is to be written: a
  * tree a tree, a picture a picture of sRGB, a plane of floats a plane. */
 #include "app/commands.h"
 #include "app/pictures/coloring.h"
@@ -203,7 +203,7 @@ static Status convert_plane(const ConvertOptions *options, const char *from, con
     return status;
 }
 
-/* What an output is to hold; an input that is no tree is told by its first bytes. */
+/* What an output is to hold; an input that is no tree is recognised by its first bytes. */
 typedef enum FileKind { FILE_TREE, FILE_PICTURE, FILE_PLANE, FILE_UNKNOWN } FileKind;
 
 static const struct {

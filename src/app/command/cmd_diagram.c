@@ -154,6 +154,8 @@ static Status put_svg(const Drawing *drawing, const DiagramSvg *svg, const char 
     if (status == STATUS_OK)
         status = text_flush(&text, err);
     text_release(&text);
+    if (status == STATUS_IO)
+        err_prefix(err, "%s: ", path);
     if (status == STATUS_OK)
         return outfile_commit(&file, err);
     outfile_discard(&file);

@@ -11,21 +11,34 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* What the report says of the tree once it is refined. */
+static GrowReport after_refining(const GrowReport *grown, const RefineReport *refined,
+                                 const Tree *tree)
+{
+    GrowReport report = *grown;
+    report.seconds += refined->seconds;
+    report.target = refined->target_after;
+    report.thickness = refined->thickness;
+    report.broken = refined->broken;
+    report.apart_mm = refined->apart_mm;
+    report.root_radius_mm = tree_root_radius(tree);
+    return report;
+}
+
 /* The report as JSON; with the bound of the tree if it is asked for. */
-static Status write_report(const char *path, const GrowReport *report, const RefineReport *refined,
-                           int threads, const Tree *tree, bool bounded, Err *err)
+static Status write_report(const char *path, const GrowReport *report, int threads,
+                           const Tree *tree, bool bounded, Err *err)
 {
     json_t *bound = json_null();
     if (bounded)
         TRY(certified_json(tree, &tree->meta, &bound, err));
-    double target = refined->target_before > 0 ? refined->target_after : report->target;
     json_t *json =
         json_pack("{s:s, s:f, s:I, s:f, s:f, s:I, s:I, s:f, s:I, s:b, s:i}", "generator", GENERATOR,
-                  "seconds", report->seconds + refined->seconds, "terminals",
-                  (json_int_t)report->terminals, "target", target, "root_radius_mm",
-                  report->root_radius_mm, "tosses", (json_int_t)report->tosses, "rejected",
-                  (json_int_t)report->rejected, "thickness", report->thickness, "broken",
-                  (json_int_t)report->broken, "complete", report->complete, "threads", threads);
+                  "seconds", report->seconds, "terminals", (json_int_t)report->terminals, "target",
+                  report->target, "root_radius_mm", report->root_radius_mm, "tosses",
+                  (json_int_t)report->tosses, "rejected", (json_int_t)report->rejected, "thickness",
+                  report->thickness, "broken", (json_int_t)report->broken, "complete",
+                  report->complete, "threads", threads);
     json_t *change = json_null();
     if (report->median_change > 0)
         change = json_pack("{s:f, s:f, s:f}", "median", report->median_change, "min",
@@ -65,7 +78,7 @@ static void print_size(const Domain *domain)
 }
 
 /* What a user has to know of a tree that is not as it should be. */
-static void print_warnings(const GrowReport *report, const Domain *domain, bool refined)
+static void print_warnings(const GrowReport *report, const Domain *domain)
 {
     Box box = domain->bounds;
     if (report->root_radius_mm > vec3_distance(box.low, box.high)) {
@@ -84,10 +97,7 @@ static void print_warnings(const GrowReport *report, const Domain *domain, bool 
                 "--q-perf\n",
                 report->thickness);
     }
-    if (report->broken > 0 && !refined)
-        fprintf(stderr,
-                "corcast: %zu segment%s shorter than wide or too near to others all the same\n",
-                report->broken, report->broken == 1 ? " is" : "s are");
+    print_broken(report->broken);
 }
 
 typedef struct GrowOptions {
@@ -125,14 +135,17 @@ static Status finish(const GrowOptions *options, const Common *common, const Tre
                      Err *err)
 {
     int threads = common->threads ? common->threads : threads_available();
+    GrowReport written = *report;
+    if (refined->target_before > 0)
+        written = after_refining(report, refined, tree);
     TRY(output_tree("grow", tree, options->output, common->quiet, err));
     if (options->json)
-        TRY(write_report(options->json, report, refined, threads, tree, options->bound, err));
+        TRY(write_report(options->json, &written, threads, tree, options->bound, err));
     if (!report->complete)
         fprintf(stderr, "corcast grow: %s\n", why->text);
     if (!common->quiet)
         print_report(report, &options->growing.params);
-    print_warnings(report, &options->growing.domain, refined->target_before > 0);
+    print_warnings(&written, &options->growing.domain);
     if (!common->quiet)
         refining_print(refined);
     return STATUS_OK;
@@ -163,10 +176,6 @@ static Status run_grow(void *options, Parsed *parsed, Err *err)
         TRY_GOTO(growing_run(growing, parsed->common.quiet, &tree, &report, &why, err));
     options_name_fields(parsed, &why);
     TRY_GOTO(refining_apply(refining, &parsed->common, &growing->domain, &tree, &refined, err));
-    if (refined.target_before > 0) {
-        report.root_radius_mm = tree.radius_mm[0];
-        report.apart_mm = refined.apart_mm;
-    }
     TRY_GOTO(command_describe(parsed, &tree.meta, err));
     TRY_GOTO(refining_describe(refining, &refined, &tree.meta, err));
     status = finish(own_options, &parsed->common, &tree, &report, &refined, &why, err);

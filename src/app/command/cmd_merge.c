@@ -32,7 +32,7 @@ typedef struct Tile {
 typedef struct Tiles {
     Tile *tile; /* owned */
     size_t n, capacity;
-    ImageReader *first; /* owned; of the first that was found, which the others are held against */
+    ImageReader *first; /* owned; of the first that was found, with which the others must agree */
 } Tiles;
 
 static void tiles_release(Tiles *tiles)

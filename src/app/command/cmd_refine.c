@@ -71,9 +71,10 @@ static Status write_report(const char *path, const RefineReport *report, const T
         {"seconds", json_number(report->seconds)},
         {"target_before", json_number(report->target_before)},
         {"target", json_number(report->target_after)},
-        {"moves_tried", json_integer((json_int_t)report->moves_tried)},
-        {"moves_kept", json_integer((json_int_t)report->moves_kept)},
+        {"moves_tried", json_count(report->moves_tried)},
+        {"moves_kept", json_count(report->moves_kept)},
         {"thickness", json_number(report->thickness)},
+        {"broken", json_integer((json_int_t)report->broken)},
         {"apart_mm", isfinite(report->apart_mm) ? json_number(report->apart_mm) : json_null()},
         {"stopped", json_boolean(report->stopped)},
         {"bound", bound},
@@ -108,6 +109,7 @@ static Status run_refine(void *options, Parsed *parsed, Err *err)
     TRY_GOTO(output_tree("refine", &tree, own_options->output, parsed->common.quiet, err));
     if (own_options->json)
         TRY_GOTO(write_report(own_options->json, &report, &tree, err));
+    print_broken(report.broken);
     if (!parsed->common.quiet)
         refining_print(&report);
 done:

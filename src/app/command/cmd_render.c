@@ -42,10 +42,10 @@ static Status write_report(const char *path, const Scene *scene, const RenderSta
         (json_int_t)stats->rays, "threads", threads ? threads : threads_available());
     if (model_has(scene->geometry.model, MODEL_JOINTS)) {
         const JsonMember of_joints[] = {
-            {"joints", json_integer((json_int_t)staged->joints)},
-            {"places_short", json_integer((json_int_t)staged->places_short)},
-            {"places_sharp", json_integer((json_int_t)staged->places_sharp)},
-            {"places_crowded", json_integer((json_int_t)staged->places_crowded)},
+            {"joints", json_count(staged->joints)},
+            {"places_short", json_count(staged->places_short)},
+            {"places_sharp", json_count(staged->places_sharp)},
+            {"places_crowded", json_count(staged->places_crowded)},
         };
         report = json_with_members(report, of_joints, sizeof of_joints / sizeof *of_joints);
     }
@@ -118,7 +118,8 @@ static Status fill_sheet(const RenderOptions *options, const char *tree, const S
     return annotation_put(&options->annotation, scene, whole, page, err);
 }
 
-/* Whether a band of so many rows, and the page that keeps all of them, find memory. */
+/* STATUS_MEMORY unless there is memory for a band of `step` rows, and for the page that keeps all.
+ */
 static Status check_size(const FramesForm *form, int step, Err *err)
 {
     TRY(picture_fits(form->width, step, 40, err));

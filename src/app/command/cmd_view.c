@@ -300,9 +300,8 @@ static Status on_drag(Viewer *viewer, const WindowEvent *event, Err *err)
 {
     ViewParams stage = picture_view_params(viewer->options, &viewer->source);
     int side = stage.width < stage.height ? stage.width : stage.height;
-    const double half_turn = 3.14159265358979323846;
     if (event->button == WINDOW_LEFT)
-        orbit_turn(&stage, event->x / side * half_turn, -event->y / side * half_turn);
+        orbit_turn(&stage, event->x / side * PI, -event->y / side * PI);
     else
         orbit_pan(&stage, event->x / stage.height, -event->y / stage.height);
     viewer->options->stage = stage;
@@ -374,10 +373,9 @@ static Status run(Viewer *viewer, Err *err)
     return STATUS_OK;
 }
 
-/* Once around in so many pictures of every pixel, as fast as they come. */
+/* Turns the camera once around in `pictures` full pictures, as fast as they are drawn. */
 static Status turn_around(Viewer *viewer, int pictures, Err *err)
 {
-    const double full_turn = 6.283185307179586;
     bool done;
     double start_s = clock_seconds(), start_cpu_s = clock_cpu_seconds();
     for (int i = 0; i < pictures && !viewer->quit; i++) {
@@ -385,7 +383,7 @@ static Status turn_around(Viewer *viewer, int pictures, Err *err)
         if (event.kind == WINDOW_QUIT)
             viewer->quit = true;
         ViewParams stage = picture_view_params(viewer->options, &viewer->source);
-        orbit_turn(&stage, full_turn / pictures, 0);
+        orbit_turn(&stage, FULL_TURN / pictures, 0);
         viewer->options->stage = stage;
         TRY(aim(viewer, err));
         display_set_coarseness(viewer->display, 1);

@@ -18,7 +18,7 @@ typedef struct JudgeOptions {
 extern const OptionTable judge_options;
 
 typedef struct CompareOptions {
-    PlaneKind kind; /* PLANE_KINDS: told by the names */
+    PlaneKind kind; /* PLANE_KINDS: by the files' names */
     JudgeOptions judge;
     const char *ids_a, *ids_b;
     const char *junit, *layer;

@@ -173,7 +173,8 @@ static Status read_value(Setting *setting, const char *value, bool twice, Err *e
     return STATUS_OK;
 }
 
-/* A panel's own tree goes before that of [panels], and is one: a file, or what a command makes. */
+/* A panel's own tree takes precedence over that of [panels], and is one of two: a file, or what a
+ * command makes. */
 static Status take_tree(Section *section, const Command *maker, const char *value, Err *err)
 {
     PanelOptions *panel = section->own.options;
@@ -221,7 +222,7 @@ typedef struct Reading {
 } Reading;
 
 /* Options that [panels] gives are not typed: one without effect in this panel is no fault of it,
- * and one of the panel's own goes before. */
+ * and one of the panel's own takes precedence. */
 static Status take_defaults(const Reading *reading, Section *section, Err *err)
 {
     for (size_t i = 0; i < reading->n; i++)
@@ -287,7 +288,7 @@ static Status begin_section(Reading *reading, const char *head, Err *err)
                    head);
 }
 
-/* What stands on the command line goes before; `said` marks what the recipe has given. */
+/* The command line takes precedence; `said` marks what the recipe has given. */
 static Status take_figure_key(Reading *reading, const char *name, const char *value, Err *err)
 {
     Setting *setting = find_key(reading->figure, is_own, name);

@@ -65,8 +65,8 @@ json_t *morphometry_json(const Morphometry *table, const MorphometryComparison *
         pairs = json_with_item(pairs, pair_json(&comparison->pair[i]));
     const JsonMember members[] = {
         {"source", json_text(table->source)},
-        {"compared", json_integer((json_int_t)comparison->n)},
-        {"passed", json_integer((json_int_t)comparison->agreeing)},
+        {"compared", json_count(comparison->n)},
+        {"passed", json_count(comparison->agreeing)},
         {"rows", pairs},
     };
     return json_with_members(json_object(), members, sizeof members / sizeof *members);

@@ -110,7 +110,7 @@ static json_t *connectivity_json(const TreeStatistics *statistics)
 json_t *statistics_json(const TreeStatistics *statistics)
 {
     const JsonMember members[] = {
-        {"vessels", json_integer((json_int_t)statistics->vessels)},
+        {"vessels", json_count(statistics->vessels)},
         {"volume_mm3", json_number(statistics->volume_mm3)},
         {"by_level", table_json("level", &statistics->by_level)},
         {"by_strahler", table_json("order", &statistics->by_strahler)},

@@ -6,20 +6,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static bool has_soft_shadows(const RenderParams *params, const View *view)
-{
-    bool soft = false;
-    for (size_t i = 0; i < view->n_lights; i++)
-        soft |= params->shadows && view->lights[i].casts_shadows && view->lights[i].samples > 1;
-    return soft;
-}
-
 /* Bytes of a pixel of what pixels share: with occlusion half of them see something. */
 static int shared_bytes(const RenderParams *params, const View *view)
 {
     if (params && params->occlusion > 0)
         return 42 + params->occlusion;
-    return params && view && has_soft_shadows(params, view) ? 46 : 0;
+    return params && view && params->shadows && view_has_soft_shadows(view) ? 46 : 0;
 }
 
 static bool has_floats(const FramesForm *form)

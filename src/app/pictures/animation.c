@@ -177,9 +177,8 @@ static Status grow_to(const AnimationSubject *subject, double part, Scene *grown
 Status animation_scene(const Animation *animation, const AnimationSubject *subject, int number,
                        Scene *shown, Scene *grown, Err *err)
 {
-    const double full_turn = 6.283185307179586;
     const Scene *whole = subject->whole;
-    double angle = -full_turn * (number - 1) / animation->n; /* of the camera, against the tree's */
+    double angle = -FULL_TURN * (number - 1) / animation->n; /* of the camera, against the tree's */
     *shown = *whole;
     if (animation->kind == ANIMATION_SERIES)
         shown->appearance = appearance_frame(&whole->appearance, (size_t)(number - 1));

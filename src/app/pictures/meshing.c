@@ -140,6 +140,12 @@ static Status triangulate(Meshing *made, const MeshingOptions *options, bool par
     return status;
 }
 
+static Printing printing_of(const Meshing *made)
+{
+    return (Printing){made->print,    &made->changes, made->of->pruned,
+                      &made->vessels, &made->printed, &made->mesh};
+}
+
 static Status make(const Common *common, const MeshingOptions *options, const Emitter *emitter,
                    Meshing *made, Err *err)
 {
@@ -153,21 +159,13 @@ static Status make(const Common *common, const MeshingOptions *options, const Em
     TRY(triangulate(made, options, emitter->has_parts, common, err));
     TRY(meshreport_check(&made->report, &made->vessels, err));
     say_result(made, common->quiet);
+    const Printing print = printing_of(made);
     if (made->print && !made->print->params.lids && !common->quiet)
-        printing_say(made->print, &made->changes, made->of->pruned, &made->vessels, &made->printed,
-                     &made->mesh);
+        printing_say(&print);
     return STATUS_OK;
 }
 
 /* ---- the manifest ---------------------------------------------------------------------------- */
-
-static json_t *id_list(const VesselTree *vessels, const uint32_t *list, size_t n)
-{
-    json_t *ids = json_array();
-    for (size_t i = 0; i < n; i++)
-        ids = json_with_item(ids, json_integer(vessels->ids[list[i]]));
-    return ids;
-}
 
 static json_t *pair_list(const VesselTree *vessels, const MeshReport *report)
 {
@@ -184,11 +182,6 @@ static json_t *pair_list(const VesselTree *vessels, const MeshReport *report)
     return pairs;
 }
 
-static json_t *count(size_t n)
-{
-    return json_integer((json_int_t)n);
-}
-
 static json_t *manifest(const Meshing *made)
 {
     const VesselTree *vessels = &made->vessels;
@@ -198,23 +191,24 @@ static json_t *manifest(const Meshing *made)
         {"generator", json_text(GENERATOR)},
         {"model", json_text(vessel_body_names[vessels->body])},
         {"unit", json_text("mm")},
-        {"trees", count(report->trees)},
-        {"components", count(report->components)},
-        {"genus", count(report->genus)},
+        {"trees", json_count(report->trees)},
+        {"components", json_count(report->components)},
+        {"genus", json_count(report->genus)},
         {"euler", json_integer(report->euler)},
         {"watertight", json_boolean(report->open_edges == 0)},
-        {"self_intersections", count(report->crossings)},
-        {"bridges", count(report->bridges)},
-        {"segments", count(vessels->n_segments)},
-        {"segments_present", count(vessels->n_segments - report->n_missing - report->n_swallowed)},
-        {"segments_missing", id_list(vessels, report->missing, report->n_missing)},
-        {"segments_swallowed", id_list(vessels, report->swallowed, report->n_swallowed)},
-        {"segments_thinned", id_list(vessels, made->thinned, made->n_thinned)},
-        {"segments_lengthened", id_list(vessels, made->longer, made->n_longer)},
-        {"round_ends", id_list(vessels, report->round, report->n_round)},
+        {"self_intersections", json_count(report->crossings)},
+        {"bridges", json_count(report->bridges)},
+        {"segments", json_count(vessels->n_segments)},
+        {"segments_present",
+         json_count(vessels->n_segments - report->n_missing - report->n_swallowed)},
+        {"segments_missing", segment_ids(vessels, report->missing, report->n_missing)},
+        {"segments_swallowed", segment_ids(vessels, report->swallowed, report->n_swallowed)},
+        {"segments_thinned", segment_ids(vessels, made->thinned, made->n_thinned)},
+        {"segments_lengthened", segment_ids(vessels, made->longer, made->n_longer)},
+        {"round_ends", segment_ids(vessels, report->round, report->n_round)},
         {"near_pairs", pair_list(vessels, report)},
-        {"triangles", count(mesh->n_triangles)},
-        {"points", count(mesh->n_points)},
+        {"triangles", json_count(mesh->n_triangles)},
+        {"points", json_count(mesh->n_points)},
         {"volume_mm3", json_number(report->volume_mm3)},
         {"tolerance", json_number(report->tolerance)},
         {"max_distance_mm", json_number(report->off.mm)},
@@ -223,9 +217,8 @@ static json_t *manifest(const Meshing *made)
     json_t *all = json_with_members(json_object(), members, sizeof members / sizeof *members);
     if (!made->print)
         return all;
-    return json_with(all, "print",
-                     printing_json(made->print, &made->changes, made->of->pruned, vessels,
-                                   &made->printed, mesh));
+    const Printing print = printing_of(made);
+    return json_with(all, "print", printing_json(&print));
 }
 
 static Status write_beside(bool parts, Meshing *made, Err *err)

@@ -349,13 +349,17 @@ static bool is_xray(const Look *look)
     return look_effects(look, 1, 1).xray.per_mm > 0;
 }
 
-static Status read_look(const PictureOptions *options, Look *look, Err *err)
+static Status read_look(const PictureOptions *options, const Parsed *parsed, Look *look, Err *err)
 {
     TRY(coloring_read_look(options->look, look, err));
     if (is_xray(look) && options->coloring.field)
         return err_set(err, STATUS_USAGE,
                        "--look %s has two colours of its own; --color-by has no effect",
                        options->look);
+    const OptionNeed needs[] = {{"ao", !is_xray(look), "is of lit walls, and an x-ray has none"},
+                                {"shadows", !is_xray(look), "are of lights, and an x-ray has none"},
+                                {0}};
+    TRY(options_check_needs(parsed, needs, err));
     if (options->has_background && !color_is_none(options->background))
         look->background = rgb_of_option(options->background);
     return STATUS_OK;
@@ -437,7 +441,7 @@ Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
 {
     PictureSource made = {0};
     TRY(check_camera(options, err));
-    TRY(read_look(options, &made.look, err));
+    TRY(read_look(options, parsed, &made.look, err));
     TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &made.of, err));
     Status status = STATUS_OK;
     if (options->frame == PICTURE_DOMAIN)

@@ -33,7 +33,7 @@ typedef struct PictureOptions {
 
 /* Of zeroed options: for POV-Ray's pictures, of one ray a pixel. */
 void picture_set_defaults(PictureOptions *options);
-/* --antialias where nothing is said and pictures are not held against POV-Ray's. */
+/* The default of --antialias, where pictures are not compared with POV-Ray's. */
 enum { PICTURE_ANTIALIAS = 3 };
 /* How far triangles may be off the surface, over the local radius, where nothing else is said. */
 #define MESHING_TOLERANCE 0.02

@@ -1,5 +1,5 @@
-/* One option holds all, as what a printer needs is said in one breath; a key is one row of a table,
- * from which what it takes is told where it is wrong. */
+/* `export --print` takes all settings of a printer as one text, KEY=VALUE,KEY=VALUE,... Each key is
+ * a row of a table, which also says what the key takes when its value is refused. */
 #include "app/pictures/printing.h"
 
 #include <stdio.h>
@@ -9,9 +9,8 @@
 typedef struct PrintKey PrintKey;
 struct PrintKey {
     const char *name;
-    const char *takes;        /* "a length in mm"; NULL: nothing */
-    size_t where;             /* offset in PrintSettings */
-    const char *const *words; /* of a choice */
+    const char *takes; /* "a length in mm" */
+    size_t where;      /* offset in PrintSettings of the number that read_length and read_bed set */
     bool (*read)(const PrintKey *key, const char *value, PrintSettings *out);
 };
 
@@ -53,7 +52,7 @@ static bool read_wall(const PrintKey *key, const char *value, PrintSettings *out
     return length < sizeof number && is_length(number, &out->params.wall_ratio);
 }
 
-/* "AxBxC" */
+/* Reads `n` lengths, "AxBxC". */
 static bool read_lengths(const char *value, int n, double *out)
 {
     for (int i = 0; i < n; i++) {
@@ -70,7 +69,7 @@ static bool read_bed(const PrintKey *key, const char *value, PrintSettings *out)
     return read_lengths(value, 3, member(key, out));
 }
 
-/* "box", "cylinder:30x45" */
+/* Reads "box", "cylinder:30x45". */
 static bool read_block(const PrintKey *key, const char *value, PrintSettings *out)
 {
     (void)key;
@@ -83,7 +82,7 @@ static bool read_block(const PrintKey *key, const char *value, PrintSettings *ou
             read_lengths(&value[length + 1], block->is_round ? 2 : 3, block->size_mm));
 }
 
-/* "", "inlet", "luer", "inlet:0.1" */
+/* Reads "", "inlet", "luer", "inlet:0.1". */
 static bool read_ports(const PrintKey *key, const char *value, PrintSettings *out)
 {
     (void)key;
@@ -172,6 +171,7 @@ static Status read_item(const char *item, PrintSettings *out, Err *err)
     return STATUS_OK;
 }
 
+/* What margin, ports and base have without a value; the margin of Luer ports has room for them. */
 static const double plain_margin_mm = 3, luer_margin_mm = 15, plain_taper = 0.06, plain_base_mm = 2;
 
 static Status settle_block(PrintParams *params, Err *err)
@@ -279,16 +279,19 @@ Status printing_check_bed(const PrintSettings *settings, const VesselMesh *mesh,
                    size[0], size[1], size[2], bed[0], bed[1], bed[2]);
 }
 
-void printing_say(const PrintSettings *settings, const PrintChanges *changes, size_t pruned,
-                  const VesselTree *vessels, const PrintReport *report, const VesselMesh *mesh)
+void printing_say(const Printing *print)
 {
+    const PrintSettings *settings = print->settings;
+    const PrintChanges *changes = print->changes;
+    const PrintReport *report = print->report;
+    const uint32_t *ids = print->vessels->ids;
     double size[3];
-    size_of(mesh, size);
+    size_of(print->mesh, size);
     if (changes->thickened)
         fprintf(stderr, "corcast: %zu segments are thickened to %g mm\n", changes->thickened,
                 settings->min_diameter_mm);
-    if (pruned)
-        fprintf(stderr, "corcast: %zu thin segments are pruned\n", pruned);
+    if (print->pruned)
+        fprintf(stderr, "corcast: %zu thin segments are pruned\n", print->pruned);
     if (changes->below_two)
         fprintf(stderr, "corcast: %zu segments are thinner than two widths of the nozzle\n",
                 changes->below_two);
@@ -296,8 +299,8 @@ void printing_say(const PrintSettings *settings, const PrintChanges *changes, si
         fprintf(stderr,
                 "corcast: vessels that do not belong together are %.3g mm apart at the least, "
                 "segments %u and %u\n",
-                report->closest.gap_mm, vessels->ids[report->closest.segments[0]],
-                vessels->ids[report->closest.segments[1]]);
+                report->closest.gap_mm, ids[report->closest.segments[0]],
+                ids[report->closest.segments[1]]);
     if (report->cavities)
         fprintf(stderr, "corcast: %zu trees are closed cavities, which cannot drain\n",
                 report->cavities);
@@ -319,7 +322,7 @@ void printing_say(const PrintSettings *settings, const PrintChanges *changes, si
             size[2]);
 }
 
-static json_t *ids_of(const VesselTree *vessels, const uint32_t *list, size_t n)
+json_t *segment_ids(const VesselTree *vessels, const uint32_t *list, size_t n)
 {
     json_t *ids = json_array();
     for (size_t i = 0; i < n; i++)
@@ -335,60 +338,59 @@ static json_t *lengths(const double *mm, int n)
     return all;
 }
 
-static json_t *count_of(size_t n)
+/* Adds the members of a wall. */
+static json_t *with_wall(json_t *object, const Printing *print)
 {
-    return json_integer((json_int_t)n);
-}
-
-/* Of a wall. */
-static json_t *with_wall(json_t *object, const PrintSettings *settings, const PrintReport *report)
-{
-    const PrintParams *params = &settings->params;
+    const PrintParams *params = &print->settings->params;
     const JsonMember members[] = {
         {"wall_mm", json_number(params->wall_mm)},
         {"wall_over_radius", json_number(params->wall_ratio)},
-        {"outer_mm3", json_number(report->outer_mm3)},
+        {"outer_mm3", json_number(print->report->outer_mm3)},
     };
     return json_with_members(object, members, sizeof members / sizeof *members);
 }
 
-/* Of vessels, walls, and gaps between vessels. */
-static double smallest_of(const PrintSettings *settings, const PrintChanges *changes,
-                          const PrintReport *report)
+/* The smallest of the vessels' diameters, the walls' thicknesses and the gaps between vessels, mm.
+ */
+static double smallest_of(const Printing *print)
 {
-    double least = changes->thinnest_mm;
-    if (print_has_wall(&settings->params))
-        least = fmin(least, thinnest_wall(settings, changes));
-    return report->has_closest ? fmin(least, report->closest.gap_mm) : least;
+    double least = print->changes->thinnest_mm;
+    if (print_has_wall(&print->settings->params))
+        least = fmin(least, thinnest_wall(print->settings, print->changes));
+    return print->report->has_closest ? fmin(least, print->report->closest.gap_mm) : least;
 }
 
-json_t *printing_json(const PrintSettings *settings, const PrintChanges *changes, size_t pruned,
-                      const VesselTree *vessels, const PrintReport *report, const VesselMesh *mesh)
+json_t *printing_json(const Printing *print)
 {
+    const PrintSettings *settings = print->settings;
+    const PrintChanges *changes = print->changes;
+    const VesselTree *vessels = print->vessels;
+    const PrintReport *report = print->report;
     double size[3];
-    size_of(mesh, size);
+    size_of(print->mesh, size);
     const JsonMember members[] = {
         {"scale", json_number(settings->scale)},
         {"min_diameter_mm", json_number(settings->min_diameter_mm)},
-        {"segments_thickened", count_of(changes->thickened)},
-        {"segments_pruned", count_of(pruned)},
+        {"segments_thickened", json_count(changes->thickened)},
+        {"segments_pruned", json_count(print->pruned)},
         {"nozzle_mm", json_number(settings->nozzle_mm)},
-        {"segments_below_two_nozzles", count_of(changes->below_two)},
+        {"segments_below_two_nozzles", json_count(changes->below_two)},
         {"thinnest_diameter_mm", json_number(changes->thinnest_mm)},
-        {"segments_lengthened", ids_of(vessels, report->longer, report->n_longer)},
-        {"openings", count_of(report->openings)},
-        {"closed_ends", ids_of(vessels, report->closed, report->n_closed)},
+        {"segments_lengthened", segment_ids(vessels, report->longer, report->n_longer)},
+        {"openings", json_count(report->openings)},
+        {"closed_ends", segment_ids(vessels, report->closed, report->n_closed)},
         {"lumen_mm3", json_number(report->lumen_mm3)},
-        {"pins", count_of(report->pins)},
-        {"hanging", count_of(report->hanging)},
-        {"closed_cavities", count_of(report->cavities)},
-        {"rings", count_of(report->rings)},
+        {"pins", json_count(report->pins)},
+        {"hanging", json_count(report->hanging)},
+        {"closed_cavities", json_count(report->cavities)},
+        {"rings", json_count(report->rings)},
         {"least_gap_mm", report->has_closest ? json_number(report->closest.gap_mm) : json_null()},
-        {"least_gap_between", ids_of(vessels, report->closest.segments, 2 * report->has_closest)},
-        {"smallest_feature_mm", json_number(smallest_of(settings, changes, report))},
+        {"least_gap_between",
+         segment_ids(vessels, report->closest.segments, 2 * report->has_closest)},
+        {"smallest_feature_mm", json_number(smallest_of(print))},
         {"size_mm", lengths(size, 3)},
         {"bed_mm", settings->bed_mm[2] > 0 ? lengths(settings->bed_mm, 3) : json_null()},
     };
     json_t *all = json_with_members(json_object(), members, sizeof members / sizeof *members);
-    return print_has_wall(&settings->params) ? with_wall(all, settings, report) : all;
+    return print_has_wall(&settings->params) ? with_wall(all, print) : all;
 }

@@ -7,11 +7,11 @@
 #include "surface/surface.h"
 
 typedef struct PrintSettings {
-    double scale;           /* of the whole model */
+    double scale;           /* factor of all lengths, > 0 */
     double min_diameter_mm; /* of vessels, after scaling; 0: any */
     bool prunes;            /* thinner vessels are cut off, else thickened */
     double nozzle_mm;       /* 0: not known */
-    double bed_mm[3];       /* room of the printer; 0: not known */
+    double bed_mm[3];       /* sides of the space that the printer has; 0: not known */
     PrintParams params;
 } PrintSettings;
 
@@ -21,10 +21,10 @@ MUST_CHECK Status printing_parse(const char *text, PrintSettings *out, Err *err)
 
 /* What was done to vessels before their surface is made. */
 typedef struct PrintChanges {
-    size_t thickened; /* segments that were thinner than they may be */
-    size_t below_two; /* thinner than two widths of the nozzle, in the end */
-    double trunk_mm;  /* diameter of the widest */
-    double thinnest_mm;
+    size_t thickened;   /* segments that were thinner than min_diameter_mm */
+    size_t below_two;   /* segments that are still thinner than two widths of the nozzle */
+    double trunk_mm;    /* diameter of the widest segment, scaled */
+    double thinnest_mm; /* diameter of the thinnest one, scaled and thickened */
 } PrintChanges;
 
 /* Scales and thickens the vessels. STATUS_INPUT when the nozzle is wider than the trunk or the
@@ -32,17 +32,28 @@ typedef struct PrintChanges {
 MUST_CHECK Status printing_prepare(const PrintSettings *settings, VesselTree *vessels,
                                    PrintChanges *changes, Err *err);
 
-/* STATUS_INPUT, with the sizes of both, when the mesh does not fit the bed, in either of the two
- * ways that it can stand along its sides. */
+/* STATUS_INPUT, with the sizes of both, when the mesh does not fit the bed, as it stands or turned
+ * by 90 degrees. */
 MUST_CHECK Status printing_check_bed(const PrintSettings *settings, const VesselMesh *mesh,
                                      Err *err);
 
-/* Says on standard error what was made. */
-void printing_say(const PrintSettings *settings, const PrintChanges *changes, size_t pruned,
-                  const VesselTree *vessels, const PrintReport *report, const VesselMesh *mesh);
+/* A print that was made; all borrowed. */
+typedef struct Printing {
+    const PrintSettings *settings;
+    const PrintChanges *changes;
+    size_t pruned; /* segments that were cut off before */
+    const VesselTree *vessels;
+    const PrintReport *report;
+    const VesselMesh *mesh;
+} Printing;
 
-/* The same and more for the manifest. NULL when memory runs out. */
-json_t *printing_json(const PrintSettings *settings, const PrintChanges *changes, size_t pruned,
-                      const VesselTree *vessels, const PrintReport *report, const VesselMesh *mesh);
+/* Says on standard error what was made. */
+void printing_say(const Printing *print);
+
+/* What the manifest says of the print. NULL when memory runs out. */
+json_t *printing_json(const Printing *print);
+
+/* The ids of `n` segments, listed by their indices. NULL when memory runs out. */
+json_t *segment_ids(const VesselTree *vessels, const uint32_t *list, size_t n);
 
 #endif

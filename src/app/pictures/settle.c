@@ -22,7 +22,7 @@ static const double same_root_radii = 0.02;
 /* The cosine of ray and normal below which a ray grazes. POV-Ray misses roots mostly there, of
  * neighbouring rays too; where the field rises steeply, of one ray alone. */
 static const double grazing_cosine = 0.1;
-/* A's normals are told by 16-bit codes. */
+/* A's normals are known to 16-bit codes. */
 static const double normal_slack = 2e-4;
 
 /* What is between a place and a light. */

@@ -11,7 +11,7 @@
 
 typedef struct ShardOptions {
     const char *tile; /* "I/N"; NULL: the whole picture */
-    int tiles;        /* commands for so many; 0: none */
+    int tiles;        /* commands for this many are printed; 0: none */
     int only;         /* this picture of an animation; 0: all */
     bool commands;    /* are printed, and nothing is drawn */
     bool resume;      /* what is there and right is not drawn again */
@@ -19,7 +19,8 @@ typedef struct ShardOptions {
 
 extern const OptionTable shard_table; /* sets a ShardOptions */
 
-/* The rows first .. first + rows of a picture of so many. A whole picture is tile 1 of 1. */
+/* Tile `number` of `count`: the rows first .. first + rows - 1 of the picture's `height`. A whole
+ * picture is tile 1 of 1. */
 typedef struct Shard {
     int number, count;
     int first, rows, height;

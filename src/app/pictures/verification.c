@@ -1,7 +1,7 @@
 /* One scene, two renderers: POV-Ray draws it from files (povray_side.c), corcast from memory; then
- * all four planes of both are held against each other. An implicit surface takes two steps:
+ * all four planes of both are compared. An implicit surface takes two steps:
  * corcast repeats POV-Ray's root finder, whose picture must be POV-Ray's, and where that sees the
- * surface is held against where it is. */
+ * surface is compared with where it is. */
 #include "app/pictures/verification.h"
 
 #include "app/pictures/frames.h"
@@ -236,7 +236,7 @@ static bool sees_whole_vessels(const IdPlane *ids)
             sides += y + 1 < height && !id[0] != !id[width];
         }
     double side = (double)(width < height ? width : height);
-    return 2 * (double)seen * 4 <= side * 0.785398163397448 * (double)sides;
+    return 2 * (double)seen * 4 <= side * PI / 4 * (double)sides;
 }
 
 /* Of a vessel from near by, POV-Ray's steps tilt all normals that are seen one way, by up to 0.1

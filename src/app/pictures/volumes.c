@@ -19,7 +19,7 @@ static const char *const depths[] = {"8", "16", "float", NULL};
 typedef enum LabelKind { LABEL_NONE, LABEL_SEGMENT, LABEL_STRAHLER, LABEL_TREE } LabelKind;
 static const char *const label_kinds[] = {"none", "segment", "strahler", "tree", NULL};
 
-/* Without --voxel, the longest side has so many. */
+/* Voxels along the longest side, without --voxel. */
 enum { USUAL_VOXELS = 256 };
 
 static const Option volume_options[] = {
@@ -310,10 +310,10 @@ static json_t *manifest(const Volumes *made, const char *command)
         {"voxel_mm", triple(grid->step.x, grid->step.y, grid->step.z)},
         {"first_voxel_mm", triple(first.x, first.y, first.z)},
         {"full", json_number(sample_full(made->streams[0].type))},
-        {"segments", json_integer((json_int_t)made->geometry.drawn)},
-        {"segments_within_others", json_integer((json_int_t)made->within)},
+        {"segments", json_count(made->geometry.drawn)},
+        {"segments_within_others", json_count(made->within)},
         {"labels", json_text(label_kinds[made->options->labels])},
-        {"labels_given_a_voxel", json_integer((json_int_t)report->claimed)},
+        {"labels_given_a_voxel", json_count(report->claimed)},
         {"filled_voxels", json_integer(report->filled)},
         {"volume_mm3", json_number(report->volume_mm3)},
         {"union_mm3", json_number(report->union_mm3)},

@@ -81,7 +81,7 @@ static Status add_field(Webpage *page, const TreeMeta *said, const char *name, E
     return STATUS_OK;
 }
 
-/* What the page opens with goes before what else there is of that name: it may be of a file of
+/* What the page opens with takes precedence over others of that name: it may be of a file of
  * values, and in a unit that was asked for. */
 static Status add_shown(Webpage *page, Err *err)
 {

@@ -262,7 +262,7 @@ static json_t *degrees_json(const TreeReading *reading)
 {
     json_t *list = json_array();
     for (int degree = 0; degree <= READ_MAX_DEGREE; degree++)
-        list = json_with_item(list, json_integer((json_int_t)reading->degree[degree]));
+        list = json_with_item(list, json_count(reading->degree[degree]));
     return list;
 }
 
@@ -282,7 +282,7 @@ static json_t *network_json(const TreeReading *reading)
         json_pack("{s:I, s:I, s:I}", "points", (json_int_t)reading->points, "lines",
                   (json_int_t)reading->lines, "lines_against", (json_int_t)reading->against);
     for (size_t i = 0; i < LEFT_OUT; i++)
-        json = json_with(json, left[i].key, json_integer((json_int_t)left[i].count));
+        json = json_with(json, left[i].key, json_count(left[i].count));
     return json_with(json, "cuts", cuts_json(reading));
 }
 
@@ -291,11 +291,11 @@ json_t *reading_json(const TreeReading *reading)
     const JsonMember members[] = {
         {"format", json_text(reading->format)},
         {"network", reading->is_graph ? network_json(reading) : json_null()},
-        {"components", json_integer((json_int_t)reading->n_roots)},
+        {"components", json_count(reading->n_roots)},
         {"roots", roots_json(reading)},
         {"degrees", degrees_json(reading)},
         {"median_radius_mm", json_number(reading->median_radius_mm)},
-        {"segments_without_radius", json_integer((json_int_t)reading->without_radius)},
+        {"segments_without_radius", json_count(reading->without_radius)},
         {"unit", json_text(length_unit_names[reading->unit])},
         {"unit_said", json_boolean(reading->unit_said)},
         {"believed_unit",

@@ -1,5 +1,5 @@
-/* What the user says of the blood in a tree that is there: it goes before what the tree's file
- * says. */
+/* What the user says of the blood in a tree that is there: it takes precedence over what the tree's
+ * file says. */
 #ifndef CORCAST_APP_BLOOD_H
 #define CORCAST_APP_BLOOD_H
 

@@ -226,6 +226,7 @@ Status growing_read_demand(Growing *growing, Err *err)
 Status growing_run(Growing *growing, bool quiet, Tree *tree, GrowReport *report, Err *why, Err *err)
 {
     Progress progress;
+    TRY(grow_params_check(&growing->params, &growing->domain, err));
     if (!quiet && growing->params.pair_mm > 0 && growing->domain.dimension == 2)
         fprintf(stderr, "corcast: two trees that must not cross soon shut each other out in the "
                         "plane: as a rule some 20 terminals in pairs find room, and any number "

@@ -86,6 +86,14 @@ void refining_print(const RefineReport *report)
         fprintf(stderr, "walls of different trees are at least %.4g mm apart\n", report->apart_mm);
 }
 
+void print_broken(size_t broken)
+{
+    if (broken > 0)
+        fprintf(stderr,
+                "corcast: %zu segment%s shorter than wide or too near to others all the same\n",
+                broken, broken == 1 ? " is" : "s are");
+}
+
 Status refining_describe(const Refining *refining, const RefineReport *report, TreeMeta *meta,
                          Err *err)
 {

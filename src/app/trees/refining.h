@@ -35,4 +35,7 @@ MUST_CHECK Status refining_describe(const Refining *refining, const RefineReport
 /* Says what was gained on standard error, if anything was asked for. */
 void refining_print(const RefineReport *report);
 
+/* Says on standard error how many segments break the rules of length and clearance, if any do. */
+void print_broken(size_t broken);
+
 #endif

@@ -1,6 +1,6 @@
 /* The file is read line by line, each value through its option, so that what is wrong is said with
  * its line before anything grows. Then each stage's lines are applied again, in turn, twice, with
- * the options put back before: to hold every stage against the one before it, and to grow it. */
+ * the options put back before: to compare every stage with the one before it, and to grow it. */
 #include "app/trees/staging.h"
 
 #include "app/trees/tree_domain.h"
@@ -120,7 +120,7 @@ static Status check_stage(const Staging *staging, const char *name, Err *err)
     return STATUS_OK;
 }
 
-/* Remembers what the next stage is held against. */
+/* Remembers what the next stage is compared with. */
 static void take_note(Staging *staging, const char *name)
 {
     const GrowParams *params = &staging->growing->params;

@@ -83,7 +83,7 @@ static bool is_range(const Option *option, const char *value, long long *from, l
            integer_parse(dots + 2, 0, 1000000000000, to);
 }
 
-/* Of a range the ends are held against what the option takes. */
+/* Of a range, the ends are checked against what the option takes. */
 static Status add_range(StudyKey *key, const char *range, long long from, long long to, Err *err)
 {
     if (to < from)

@@ -171,7 +171,7 @@ static json_t *measured_json(const Tree *tree, const GrowReport *report, Err *er
         return NULL;
     const JsonMember grown[] = {{"complete", json_boolean(report->complete)},
                                 {"thickness", json_number(report->thickness)},
-                                {"broken", json_integer((json_int_t)report->broken)}};
+                                {"broken", json_count(report->broken)}};
     return json_with_members(summary_json(&summary), grown, sizeof grown / sizeof *grown);
 }
 
@@ -220,11 +220,11 @@ static json_t *line_json(const StudyRunParams *params, const Run *run, json_t *s
     const char *key;
     json_t *value;
     const JsonMember of_shard[] = {{"plan", json_text(plan->hash.hex)},
-                                   {"runs", json_integer((json_int_t)plan->runs)},
+                                   {"runs", json_count(plan->runs)},
                                    {"made_from", json_text(run->made_from.hex)},
                                    {"tree", hash}};
     const JsonMember first[] = {
-        {"run", json_integer((json_int_t)run->number)},
+        {"run", json_count(run->number)},
         {"grow", values_json(plan, run->number - 1)},
         {"generator", json_text(GENERATOR)},
         {"command", json_text(run->command)},

@@ -17,7 +17,7 @@ typedef struct StudyRunParams {
  * its place in this plan; else the tree is grown and measured. *kept says which. Safe to be called
  * by several threads for different runs.
  *
- * A tree that finds no room is a result, told by the member `error`; other failures are failures,
+ * A tree that finds no room is a result, marked by the member `error`; other failures are failures,
  * and the sentence names the run. Costs the tree. */
 MUST_CHECK Status study_run(const StudyRunParams *params, size_t run, char **path, bool *kept,
                             Err *err);

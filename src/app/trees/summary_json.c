@@ -17,10 +17,10 @@ json_t *summary_json(const TreeSummary *summary)
     const Box *box = &summary->bounds;
     const LogCurve *gamma = &summary->gamma;
     const JsonMember members[] = {
-        {"segments", json_integer((json_int_t)summary->segments)},
-        {"terminals", json_integer((json_int_t)summary->terminals)},
-        {"bifurcations", json_integer((json_int_t)summary->bifurcations)},
-        {"roots", json_integer((json_int_t)summary->roots)},
+        {"segments", json_count(summary->segments)},
+        {"terminals", json_count(summary->terminals)},
+        {"bifurcations", json_count(summary->bifurcations)},
+        {"roots", json_count(summary->roots)},
         {"total_length_mm", json_number(summary->total_length_mm)},
         {"volume_mm3", json_number(summary->volume_mm3)},
         {"target", summary->has.target ? json_number(summary->target) : json_null()},

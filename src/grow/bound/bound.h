@@ -1,12 +1,12 @@
-/* How low the target of a tree can get at all: a lower bound, proved, and the geometry that comes
- * near it.
+/* A proved lower bound of the target of all trees of one topology, and the geometry that comes near
+ * it.
  *
- * Outlets are the nodes that blood leaves the tree at. Of a tree are kept: which of them lie below
- * which segment, their places, their flows, the places of the inlets, and of each outlet the drop
- * of pressure from its inlet, which follows from the tree's own radii by Poiseuille's law with one
- * viscosity. Radii, places of bifurcations and pressures there are free. The bound is below the
- * target of any such tree, whatever Murray exponent it has, whatever rules of length and clearance
- * it keeps, and also if less pressure drops on the way to an outlet. */
+ * Outlets are the nodes that blood leaves the tree at. Given are: which outlets lie below which
+ * segment, the places and flows of outlets, the places of inlets, and for each outlet the drop of
+ * pressure from its inlet, which follows from the tree's own radii by Poiseuille's law with one
+ * viscosity. Free are the radii, the places of bifurcations and the pressures there. The bound is
+ * below the target of any such tree, whatever Murray exponent it has, whatever rules of length and
+ * clearance it keeps, and also if less pressure drops on the way to an outlet. */
 #ifndef CORCAST_GROW_BOUND_H
 #define CORCAST_GROW_BOUND_H
 

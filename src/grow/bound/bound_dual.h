@@ -18,8 +18,8 @@ void dual_release(Dual *dual);
 /* Takes the forces at the end of the present step if they prove a better bound. O(n). */
 void dual_take(Dual *dual, const Problem *problem, const Newton *newton, double smoothing);
 
-/* What a mm of a segment costs at the least that `flow` passes and that pays `charge` for each unit
- * of drop: min over g of charge g + flow^a g^-a. */
+/* The least cost of 1 mm of a segment that carries `flow` and pays `charge` for each unit of drop:
+ * min over g of charge g + flow^a g^-a. */
 double dual_mm(double a, double flow, double charge);
 
 #endif

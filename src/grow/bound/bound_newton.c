@@ -11,7 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the way to where a drop would be 0, at most; of the slope, at least. */
+/* The most of the way to where a drop would be 0 that a step goes; and the least part of the fall
+ * that the slope promises for which a step is taken [Armijo's rule]. */
 static const double most_of_drop = 0.95, least_gain = 1e-4;
 enum { MAX_HALVINGS = 40 };
 

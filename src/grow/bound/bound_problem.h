@@ -1,4 +1,4 @@
-/* A tree as the problem that its bound is of: outlets and inlets fixed, all else free. */
+/* A tree as a convex optimisation problem: outlets and inlets are fixed, all else is free. */
 #ifndef CORCAST_GROW_BOUND_PROBLEM_H
 #define CORCAST_GROW_BOUND_PROBLEM_H
 
@@ -9,7 +9,7 @@
 /* x, y, z in mm, and the drop of pressure from the inlet in the unit of Outlet. */
 enum { PLACE_AXES = 3, DROP = 3, STATE = 4 };
 
-/* By how much lengths are smoothed at first, over the mean length. */
+/* By how much lengths are smoothed at first, relative to the mean length. */
 #define FIRST_SMOOTHING 0.3
 
 /* A node and the segment that leads to it. */

@@ -7,24 +7,25 @@
 #include "grow/cco/law.h"
 #include <stdbool.h>
 
-/* The segment that comes, and the two that leave. */
+/* The segment that leads to the bifurcation, and the two that leave it. */
 enum { PROXIMAL, LEFT, RIGHT, ENDS };
 
 /* The problem: everything that stays the same while the bifurcation moves. */
 typedef struct Bifurcation {
     Vec3 end[ENDS];      /* mm; the far ends of the three segments, which differ */
     double burden[ENDS]; /* flow times viscosity of each segment [law.h] */
-    Below below[2];      /* what hangs on the far ends of the two that leave */
+    Below below[2];      /* what hangs on the far ends of LEFT and RIGHT */
     Adjoint adjoint;     /* of the proximal segment */
     double radius_unit;  /* mm^(3/4); q times the proximal segment's gauge [law.h] */
-    /* The price is S_root, to first order, less what it was with `before` in place of the
-     * bifurcation, plus `extra`; with both 0 it is S_root but for a constant. */
+    /* The price is the change of S_root to first order: from a segment of load_before and
+     * cost_before in place of the bifurcation, plus `extra`. With all three 0 it is S_root but for
+     * a constant. */
     double load_before, cost_before, extra;
     double least_length; /* mm; segments are no shorter than this */
-    double least_widths; /* and no shorter than so many diameters */
-    double least_part;   /* mm; the proximal and the left one may always be this short */
-    double margin;       /* places are kept so many times the least length off the ends, >= 1 */
-    bool straight;       /* whether the proximal and the left one must stay in line */
+    double least_widths; /* and no shorter than this many diameters */
+    double least_part;   /* mm; PROXIMAL and LEFT may always be this short */
+    double margin;       /* places are kept this many times the least length off the ends, >= 1 */
+    bool straight;       /* whether PROXIMAL and LEFT must stay in line */
 } Bifurcation;
 
 /* The bifurcation at one place. */

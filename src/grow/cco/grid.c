@@ -282,7 +282,7 @@ void grid_remove(Grid *grid, int32_t segment)
     }
 }
 
-double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
+SegmentGap segment_gap(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
 {
     Vec3 u = vec3_sub(a1, a0), v = vec3_sub(b1, b0), w = vec3_sub(a0, b0);
     double uu = vec3_dot(u, u), vv = vec3_dot(v, v), uv = vec3_dot(u, v);
@@ -294,7 +294,12 @@ double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
         t = clamp01(t);
         s = clamp01((uv * t - uw) / uu);
     }
-    Vec3 apart = vec3_add_scaled(vec3_add_scaled(w, u, s), v, -t);
+    return (SegmentGap){s, t, vec3_add_scaled(vec3_add_scaled(w, u, s), v, -t)};
+}
+
+double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1)
+{
+    Vec3 apart = segment_gap(a0, a1, b0, b1).apart;
     return vec3_dot(apart, apart);
 }
 

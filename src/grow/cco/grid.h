@@ -129,8 +129,17 @@ int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *o
  * more; else false, with *out undefined. */
 bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, Near *out);
 
-/* Squared distance of two straight segments of positive length [Ericson, Real-Time Collision
- * Detection, 2005, sec. 5.1.9]. */
+/* Where two segments are nearest to each other: at the parts s of the first and t of the second, in
+ * [0, 1], from where they begin; and the way there from the second to the first, mm. */
+typedef struct SegmentGap {
+    double s, t;
+    Vec3 apart;
+} SegmentGap;
+
+/* Of straight segments of positive length [Ericson, Real-Time Collision Detection, 2005, sec.
+ * 5.1.9]. */
+SegmentGap segment_gap(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
+/* Their squared distance, mm^2. */
 double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
 
 /* Squared distance of two items' centrelines, and squared length of one's, mm^2. */

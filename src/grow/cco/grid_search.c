@@ -43,7 +43,7 @@ static inline float end_distance2(const GridItem *item, const float point[3])
     return dx * dx + dy * dy + dz * dz;
 }
 
-/* A few numbers at a time; every compiler knows how, on any machine. */
+/* Vectors of the compiler's own kind, which gcc and clang compile for any machine. */
 enum { LANES = GRID_LANES };
 typedef float Floats __attribute__((vector_size(16)));
 typedef int32_t Ints __attribute__((vector_size(16)));
@@ -245,8 +245,8 @@ static void gather_cell(Search *search, size_t index)
     }
 }
 
-/* Squared distance of the point from a row of cells, or with all cells of that column, along one
- * axis. */
+/* Squared distance, mm^2, of the point along one axis from the slab of cells that have the index
+ * `cell` along it. */
 static double excess2(const Search *search, int cell, int axis)
 {
     double low = cell * search->grid->edge, at = (double)search->at[axis];

@@ -80,12 +80,11 @@ static inline double inverse_cube_root(double x)
 }
 
 /* The radius unit q, mm^(3/4), of a tree whose terminals carry `flow` mm^3/s each at a pressure
- * `drop` Pa below the inlet's, for blood of so many Pa s; with the flow of all terminals, q
+ * `drop` Pa below the inlet's, for blood of `viscosity` Pa s; with the flow of all terminals, q
  * N^(1/4). */
 static inline double law_radius_unit(double viscosity, double flow, double drop)
 {
-    const double pi = 3.14159265358979323846;
-    return sqrt(sqrt(8 * viscosity / pi * flow / drop));
+    return sqrt(sqrt(8 * viscosity / PI * flow / drop));
 }
 
 /* x^lambda */

@@ -37,7 +37,7 @@ static const double first_rate = 0.1, last_rate = 2;
 static const double last_moves = 40, least_left = 0.1, most_left = 0.5;
 /* A round that gains less than this of S_root is the last: of sweeps; before annealing, of shuffles
  * while mending, and after it. */
-static const double least_sweep_gain = 1e-4, least_joint_gain = 1e-4;
+static const double least_sweep_gain = 1e-4, least_joint_gain = 1e-4, least_large_gain = 1e-2;
 static const double least_gain_before = 2e-3, least_gain_mending = 2e-4, least_gain_after = 5e-5;
 enum { ROUNDS_OF_MENDING = 120 };
 /* The moves of a cycle over the square of the number of terminals, and over the number at most:
@@ -357,7 +357,8 @@ static Status refine(Refinement *refinement, Err *err)
     bool over = is_over(refinement);
     double left;
     if (level == GROW_REFINE_GEOMETRY)
-        return descend(refinement, least_sweep_gain, &over, err);
+        return descend(refinement, is_large(refinement) ? least_large_gain : least_sweep_gain,
+                       &over, err);
     if (level == GROW_REFINE_ANNEAL) /* so that there is something if it is stopped */
         TRY(descend(refinement, least_gain_before, &over, err));
     do {
@@ -382,32 +383,49 @@ static Status pair_distance(const Tree *tree, double *mm, Err *err)
     return STATUS_OK;
 }
 
-/* Proves that the arbor's trees keep their clearance, if they have one. */
-static Status prove_apart(const Arbor *arbor, const Tree *was, double *apart, Err *err)
+/* How near vessels of different trees are looked for, mm; 0: nothing keeps the trees apart. */
+static Status proof_distance(const Tree *tree, double *mm, Err *err)
 {
-    double clearance = meta_number(&was->meta, META_CLEARANCE), pair_mm;
-    Tree tree = {0};
+    TRY(pair_distance(tree, mm, err));
+    *mm = fmax(*mm, 2 * fmax(meta_number(&tree->meta, META_CLEARANCE), 0));
+    return STATUS_OK;
+}
+
+/* Proves that what was made of a tree keeps the tree's clearance, if it has one. */
+static Status prove_apart(const Tree *made, const Tree *was, double *apart, Err *err)
+{
+    double clearance = meta_number(&was->meta, META_CLEARANCE), within;
     *apart = INFINITY;
-    TRY(pair_distance(was, &pair_mm, err));
-    if (!(clearance > 0) && !(pair_mm > 0))
+    TRY(proof_distance(was, &within, err));
+    if (!(within > 0))
         return STATUS_OK;
-    TRY(result_make(arbor, was, &tree, err));
-    Status status = trees_prove_apart(&tree, clearance > 0 ? clearance : -HUGE_VAL,
-                                      fmax(2 * clearance, pair_mm), "", apart, err);
-    tree_release(&tree);
+    return trees_prove_apart(made, clearance > 0 ? clearance : -HUGE_VAL, within, "", apart, err);
+}
+
+/* Proves it of the arbor as it is, before anything moves. */
+static Status prove_start(const Arbor *arbor, const Tree *tree, Err *err)
+{
+    Tree made;
+    double within, apart;
+    TRY(proof_distance(tree, &within, err));
+    if (!(within > 0))
+        return STATUS_OK;
+    TRY(result_make(arbor, tree, &made, err));
+    Status status = prove_apart(&made, tree, &apart, err);
+    if (status == STATUS_INFEASIBLE)
+        err_prefix(err, "as the trees are, ");
+    tree_release(&made);
     return status;
 }
 
-/* Gives *tree what was made of the arbor. */
-static Status write_result(const Arbor *arbor, Tree *tree, Err *err)
+/* Gives *tree, which keeps its meta, what was made of it. */
+static void take_result(Tree *made, Tree *tree)
 {
-    Tree made;
-    TRY(result_make(arbor, tree, &made, err));
-    made.meta = tree->meta;
+    made->meta = tree->meta;
     tree->meta = (TreeMeta){0};
     tree_release(tree);
-    *tree = made;
-    return STATUS_OK;
+    *tree = *made;
+    *made = (Tree){0};
 }
 
 /* The tree's target, mm^(1 + lambda). */
@@ -432,11 +450,7 @@ static Status start(Refinement *refinement, const Domain *domain, const Tree *tr
         return err_set(err, STATUS_INFEASIBLE,
                        "with this gamma and lambda %g the radii span more than a double can hold",
                        tree->meta.number[META_LAMBDA]);
-    double apart;
-    Status status = prove_apart(&search->arbor, tree, &apart, err);
-    if (status == STATUS_INFEASIBLE)
-        err_prefix(err, "as the trees are, ");
-    TRY(status);
+    TRY(prove_start(&search->arbor, tree, err));
     TRY(clearance_init(&search->clearance, domain, meta_number(&tree->meta, META_CLEARANCE),
                        &search->arbor, err));
     refinement->unclear = count_unclear(search);
@@ -459,18 +473,22 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
     TRY(refine_check(params, domain, tree, err));
     Refinement refinement = {.params = params, .begun = clock_seconds()};
     LocalSearch *search = &refinement.search;
+    Tree made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(start(&refinement, domain, tree, err));
     double before = target_of(&search->arbor), after = before, apart;
     TRY_GOTO(refine(&refinement, err));
-    if (search->arbor.local)
-        TRY_GOTO(settle(search, err));
+    TRY_GOTO(settle(search, err));
     if (search->arbor.local && count_unclear(search) > refinement.unclear)
         TRY_GOTO(recall(&refinement, err));
-    TRY_GOTO(prove_apart(&search->arbor, tree, &apart, err));
-    if (!search->arbor.local || count_unclear(search) <= refinement.unclear) {
+    TRY_GOTO(result_make(&search->arbor, tree, &made, err));
+    TRY_GOTO(prove_apart(&made, tree, &apart, err));
+    size_t broken = count_unclear(search);
+    if (search->arbor.local && broken > refinement.unclear) {
+        broken = refinement.unclear;
+    } else {
         after = target_of(&search->arbor);
-        TRY_GOTO(write_result(&search->arbor, tree, err));
+        take_result(&made, tree);
     }
     if (report)
         *report = (RefineReport){.seconds = clock_seconds() - refinement.begun,
@@ -479,9 +497,11 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
                                  .moves_tried = search->tried,
                                  .moves_kept = search->kept,
                                  .thickness = search->clearance.level,
+                                 .broken = broken,
                                  .apart_mm = apart,
                                  .stopped = refinement.stopped};
 done:
+    tree_release(&made);
     joints_release(&refinement.joints);
     free(refinement.order);
     free(refinement.best_parent);

@@ -13,6 +13,8 @@
 
 #include <stdlib.h>
 
+/* Segments that one thread finds room for at a time. */
+enum { BATCH = 4096 };
 /* Cells of the grid a terminal. */
 static const double cells_per_terminal = 4;
 /* Reserved radii over the radii: as a rule, and at least for a segment that moves. Vessels that
@@ -60,8 +62,7 @@ static double distance_of(const Shape *a, const Shape *b)
     return sqrt(segment_distance2(a->from, a->to, b->from, b->to));
 }
 
-/* How far off its axis segment i, when it reserves that radius, may meet what others reserve. */
-static double reach_of(const Clearance *clearance, int32_t i, double reserved_radius)
+double clearance_reach(const Clearance *clearance, int32_t i, double reserved_radius)
 {
     double wide = clearance->apart > 0 ? clearance->radius[i] : 0;
     return fmax(reserved_radius, wide) + clearance->gap + clearance->apart;
@@ -90,13 +91,21 @@ static double common_share(const Clearance *clearance, const Branch *a, double r
     return apart >= least ? (apart - least) / (most - least) : fmax(apart, 0) / least - 1;
 }
 
+double clearance_due(const Clearance *clearance, const Arbor *arbor, int32_t i, int32_t j)
+{
+    return reservation(clearance, &arbor->branch[i], clearance->radius[i], 0) +
+           reservation(clearance, &arbor->branch[j], clearance->radius[j], 0) +
+           clearance_between(clearance, arbor, i, j);
+}
+
 /* The greatest share that segment i and all it meets leave to each other. */
 static double fair_share(const Clearance *clearance, const Arbor *arbor, const double *radius,
                          int32_t i)
 {
     const Shape *shape = &arbor->shape[i];
     const Branch *branch = arbor->branch;
-    Capsule capsule = {shape->from, shape->to, reach_of(clearance, i, shape->reserved_radius)};
+    Capsule capsule = {shape->from, shape->to,
+                       clearance_reach(clearance, i, shape->reserved_radius)};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
     double share = 1;
     size_t index;
@@ -126,6 +135,25 @@ static Status measure(Clearance *clearance, Arbor *arbor, Err *err)
     return STATUS_OK;
 }
 
+/* What share_out works on. */
+typedef struct Sharing {
+    const Clearance *clearance;
+    const Arbor *arbor;
+} Sharing;
+
+/* Finds the fair shares of one batch of segments. */
+static void share_out(size_t batch, int worker, void *context)
+{
+    (void)worker;
+    const Sharing *sharing = context;
+    const Clearance *clearance = sharing->clearance;
+    size_t from = batch * BATCH, to = from + BATCH;
+    for (size_t i = from; i < to && i < sharing->arbor->n; i++)
+        if (!arbor_is_inlet(sharing->arbor, (int32_t)i))
+            clearance->share[i] =
+                fair_share(clearance, sharing->arbor, clearance->radius, (int32_t)i);
+}
+
 /* Reserves radii for all segments at the level; *clear: the share of segments that keep the rules.
  */
 static Status reserve_all(Clearance *clearance, Arbor *arbor, double *clear, Err *err)
@@ -136,8 +164,7 @@ static Status reserve_all(Clearance *clearance, Arbor *arbor, double *clear, Err
             reservation(clearance, &arbor->branch[i], clearance->radius[i], 1);
         TRY(enter(clearance, arbor, (int32_t)i, err));
     }
-    for (size_t i = arbor->inlets; i < arbor->n; i++)
-        clearance->share[i] = fair_share(clearance, arbor, clearance->radius, (int32_t)i);
+    threads_for(arbor->n / BATCH + 1, 0, share_out, &(Sharing){clearance, arbor});
     size_t count = 0;
     for (size_t i = arbor->inlets; i < arbor->n; i++) {
         Branch *branch = &arbor->branch[i];
@@ -214,7 +241,7 @@ static double most_room(const Clearance *clearance, const Arbor *arbor, int32_t 
     const Shape *shape = &arbor->shape[i];
     double most = fmin(wish, most_reservation(&arbor->branch[i]));
     size_t index;
-    Capsule capsule = {shape->from, shape->to, reach_of(clearance, i, most)};
+    Capsule capsule = {shape->from, shape->to, clearance_reach(clearance, i, most)};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
     for (GridWalk walk = grid_walk(&clearance->grid, &item); grid_walk_next(&walk, &index);) {
         const GridCell *cell = &clearance->grid.cell[index];

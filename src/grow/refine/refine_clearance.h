@@ -38,8 +38,9 @@ void clearance_release(Clearance *clearance);
  * sums up the arbor. O(n). STATUS_MEMORY. */
 MUST_CHECK Status clearance_reserve(Clearance *clearance, Arbor *arbor, Err *err);
 
-/* How far apart segments i and j have to be beyond what both reserve: if they are of different
- * trees by as much, too, as they are wider than they can reserve, so that their walls are apart. */
+/* The least distance between what segments i and j reserve. Between different trees it holds the
+ * clearance of the trees, and besides by how much each segment is wider than what it reserves: the
+ * clearance is one of walls. */
 static inline double clearance_between(const Clearance *clearance, const Arbor *arbor, int32_t i,
                                        int32_t j)
 {
@@ -49,6 +50,13 @@ static inline double clearance_between(const Clearance *clearance, const Arbor *
                    fmax(0, clearance->radius[j] - arbor->shape[j].reserved_radius);
     return clearance->gap + clearance->apart + spare;
 }
+
+/* How far from its axis segment i, when it reserves that radius, mm, looks for segments too near.
+ */
+double clearance_reach(const Clearance *clearance, int32_t i, double reserved_radius);
+/* The least distance of the centrelines of segments i and j at which both keep the rules, by the
+ * radii of the last clearance_reserve. */
+double clearance_due(const Clearance *clearance, const Arbor *arbor, int32_t i, int32_t j);
 
 /* Whether segment i keeps the rules, as of the last clearance_reserve. */
 static inline bool clearance_is_kept(const Clearance *clearance, const Arbor *arbor, int32_t i)

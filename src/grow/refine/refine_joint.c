@@ -4,12 +4,10 @@
  * segments, eliminated from the terminals to the inlet as in bound_newton.c. A few steps with
  * weights computed anew give the goals (find_goals); segments that would be shorter than wide are
  * pushed apart. Where bifurcations would merge, moving them one by one gets stuck far from there:
- * each waits for the other.
- *
- * The rules are kept by going only a part of the way to the goals: all of it at first, and half as
- * far, in the end not at all, where a segment breaks a rule that it kept (give_way), until none
- * does. */
+ * each waits for the other. The rules are kept on the way to the goals [refine_approach.h]. */
 #include "grow/refine/refine_joint.h"
+
+#include "grow/refine/refine_approach.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,11 +17,11 @@ static const double smoothing_share = 0.1;
 /* Segments shorter than so many radii are pushed apart as by a spring so many times as stiff as
  * their weight over that length. */
 static const double need_radii = 2.4, push = 10;
-enum { STEPS = 8, HALVINGS = 3, GIVING_WAY = 12 };
+enum { STEPS = 8, HALVINGS = 5 };
+/* A step is taken if it gains this share of what its first derivatives promise (Armijo's rule). */
+static const double least_share = 0.1;
 /* A step that gains less than this of S_root is the last. */
 static const double least_gain = 1e-5;
-/* Less of the way than this is none. */
-static const double least_part = 0.02;
 /* Where that does not lower S_root, all set out for this share of the way. */
 static const double next_scale = 0.3;
 enum { SCALES = 3 };
@@ -38,7 +36,8 @@ Status joints_init(Joints *joints, size_t nodes, Err *err)
     TRY(mem_calloc(&joints->load, nodes, sizeof *joints->load, "loads", err));
     TRY(mem_calloc(&joints->step, nodes, sizeof *joints->step, "steps", err));
     TRY(mem_calloc(&joints->spring, nodes, sizeof *joints->spring, "springs", err));
-    TRY(mem_calloc(&joints->part, nodes, sizeof *joints->part, "parts", err));
+    TRY(mem_calloc(&joints->returns, nodes, sizeof *joints->returns, "nodes", err));
+    TRY(mem_calloc(&joints->fixed, nodes, sizeof *joints->fixed, "nodes", err));
     return mem_calloc(&joints->was_clear, nodes, sizeof *joints->was_clear, "segments", err);
 }
 
@@ -52,7 +51,8 @@ void joints_release(Joints *joints)
     free(joints->load);
     free(joints->step);
     free(joints->spring);
-    free(joints->part);
+    free(joints->returns);
+    free(joints->fixed);
     free(joints->was_clear);
     *joints = (Joints){0};
 }
@@ -139,15 +139,18 @@ static void eliminate(Joints *joints, const Arbor *arbor, int32_t i)
         invert(sum, inverse);
         add_in_series(spring, inverse, curvature, joints->spring[above]);
         joints->load[i] = vec3_add(joints->load[i], pull);
-        handed = times(curvature, times(inverse, joints->load[i]));
+        Vec3 alone = times(inverse, joints->load[i]);
+        joints->promise += vec3_dot(joints->load[i], alone);
+        handed = times(curvature, alone);
         memcpy(spring, inverse, sizeof inverse);
     }
     joints->load[above] = vec3_add(joints->load[above], vec3_sub(handed, pull));
 }
 
-/* Finds the step of every bifurcation. */
+/* Finds the step of every bifurcation, and what it promises. */
 static void find_step(Joints *joints, const Arbor *arbor)
 {
+    joints->promise = 0;
     memset(joints->spring, 0, arbor->n * sizeof *joints->spring);
     memset(joints->load, 0, arbor->n * sizeof *joints->load);
     memset(joints->step, 0, arbor->n * sizeof *joints->step);
@@ -173,17 +176,17 @@ static void arrange(const Joints *joints, Arbor *arbor, const Vec3 *from, const 
     arbor_arrange(arbor, joints->parent, joints->place);
 }
 
-/* Takes the longest of a few parts of the step that lowers S_root, into goal. */
+/* Takes the longest of a few parts of the step that lowers S_root by enough, into goal. */
 static bool take_step(Joints *joints, Arbor *arbor)
 {
     double before = arbor_cost(arbor), part = 1;
     for (int k = 0; k < HALVINGS; k++, part /= 2) {
         arrange(joints, arbor, joints->goal, joints->step, part);
-        double after = arbor_cost(arbor);
-        if (!(after < before))
+        double gain = before - arbor_cost(arbor);
+        if (!(gain > least_share * part * joints->promise))
             continue;
         memcpy(joints->goal, joints->place, arbor->n * sizeof *joints->goal);
-        return after < before * (1 - least_gain);
+        return gain > before * least_gain;
     }
     arbor_arrange(arbor, joints->parent, joints->goal);
     return false;
@@ -220,64 +223,6 @@ static bool find_goals(Joints *joints, Arbor *arbor)
     return arbor_cost(arbor) < before;
 }
 
-/* Has the node go half as far. */
-static bool shorten(Joints *joints, const Arbor *arbor, int32_t i)
-{
-    if (arbor_is_inlet(arbor, i) || joints->part[i] == 0 || arbor->branch[i].child[0] < 0)
-        return false;
-    joints->part[i] = joints->part[i] / 2 >= least_part ? joints->part[i] / 2 : 0;
-    return true;
-}
-
-/* Whether segment i breaks a rule that it kept. */
-static bool is_newly_broken(const Joints *joints, const Arbor *arbor, const Clearance *clearance,
-                            int32_t i)
-{
-    bool moved = joints->part[i] > 0 || joints->part[arbor->branch[i].parent] > 0;
-    return joints->was_clear[i] && (!clearance_is_kept(clearance, arbor, i) ||
-                                    (moved && !clearance_is_held(clearance, arbor, i)));
-}
-
-/* Shortens the way of the ends of all segments that break a rule they kept; of all nodes, where
- * that shortens none. False when there is no such segment. */
-static bool give_way(Joints *joints, const Arbor *arbor, const Clearance *clearance)
-{
-    bool is_broken = false, is_shorter = false;
-    for (size_t k = 0; k < joints->n; k++) {
-        int32_t i = joints->order[k];
-        if (!is_newly_broken(joints, arbor, clearance, i))
-            continue;
-        is_broken = true;
-        is_shorter |= shorten(joints, arbor, i);
-        is_shorter |= shorten(joints, arbor, arbor->branch[i].parent);
-    }
-    for (size_t i = arbor->inlets; is_broken && !is_shorter && i < arbor->n; i++)
-        shorten(joints, arbor, (int32_t)i);
-    return is_broken;
-}
-
-/* Goes from the starts that part of the way to the goals, or as much of it as the rules allow. */
-static Status approach(Joints *joints, Arbor *arbor, Clearance *clearance, double whole, Err *err)
-{
-    for (size_t i = 0; i < arbor->n; i++)
-        joints->part[i] = whole;
-    for (size_t i = arbor->inlets; i < arbor->n; i++) /* what breaks rules is not to get worse */
-        if (!joints->was_clear[i])
-            joints->part[i] = joints->part[arbor->branch[i].parent] = 0;
-    for (int k = 0;; k++) {
-        for (size_t i = 0; i < arbor->n; i++) {
-            if (k == GIVING_WAY)
-                joints->part[i] = 0;
-            joints->place[i] = vec3_add_scaled(
-                joints->start[i], vec3_sub(joints->goal[i], joints->start[i]), joints->part[i]);
-        }
-        arbor_arrange(arbor, joints->parent, joints->place);
-        TRY(clearance_reserve(clearance, arbor, err));
-        if (k == GIVING_WAY || !give_way(joints, arbor, clearance))
-            return STATUS_OK;
-    }
-}
-
 Status joint_move(Joints *joints, Arbor *arbor, Clearance *clearance, bool *kept, Err *err)
 {
     double before = arbor_cost(arbor), whole = 1;
@@ -287,8 +232,8 @@ Status joint_move(Joints *joints, Arbor *arbor, Clearance *clearance, bool *kept
     if (!find_goals(joints, arbor))
         return STATUS_OK;
     for (int k = 0; k < SCALES && !*kept; k++, whole *= next_scale) {
-        TRY(approach(joints, arbor, clearance, whole, err));
-        *kept = arbor_cost(arbor) < before;
+        TRY(approach_goals(joints, arbor, clearance, whole, kept, err));
+        *kept = *kept && arbor_cost(arbor) < before;
     }
     if (*kept)
         return STATUS_OK;

@@ -11,11 +11,14 @@ typedef struct Joints {
     Vec3 *start, *goal, *place;
     Vec3 *load, *step;
     double (*spring)[6]; /* a symmetric matrix: 00, 10, 11, 20, 21, 22 */
-    double *part;        /* of the way from start to goal */
-    bool *was_clear;
-    size_t n;         /* segments in `order` */
-    double smoothing; /* mm, of lengths */
-    double level;     /* of the clearance */
+    bool *was_clear;     /* of the segment */
+    bool *fixed;         /* whether the node has to stay */
+    uint32_t *returns;   /* how often the node went half of the way back to its start */
+    size_t n;            /* segments in `order` */
+    double promise;      /* what the step would gain of S_root by its first derivatives */
+    double smoothing;    /* mm, of lengths */
+    double level;        /* of the clearance */
+    double margin;       /* of pushes, over what the rules ask */
 } Joints;
 
 /* Ends with joints_release, also on failure, STATUS_MEMORY. */

@@ -1,0 +1,172 @@
+/* All nodes are put to their goals at once. Then, round by round, what breaks a rule that it kept
+ * gives way (give_way), until nothing does. A segment that is shorter than wide is stretched, and
+ * two that overlap are pushed apart: just as far as the rule asks, each end by its part in the
+ * distance, and the more the thinner its segment is. Goals are near minima, so that a small push
+ * costs little. Where two overlap so deeply that a push might take them past each other, the ends
+ * of the thinner one go half of the way back to where the two were clear, and so do those of a
+ * segment that leaves the domain, and of any that is still broken after PUSHES rounds.
+ *
+ * Radii follow all that moves, so that a segment may break a rule where it stands; then it is
+ * pushed, too. Where many segments are in each other's way, giving way costs more than going that
+ * far gains, and the way is given up (most_broken). */
+#include "grow/refine/refine_approach.h"
+
+#include <string.h>
+
+/* Rounds in which segments are pushed, and all of them; RETURNS times half of the way back is all
+ * of it. */
+enum { PUSHES = 8, ROUNDS = 20, RETURNS = 6 };
+/* Pushes go so much further than the rules ask, and in each round by as much more: radii change
+ * with them. */
+static const double margin = 0.01;
+/* The share of the segments that may break a rule at the goals. */
+static const double most_broken = 0.025;
+/* Nearer than this share of what the rules ask is too deep for a push. */
+static const double too_deep = 0.4;
+
+/* Has the node go half of the way back. False where it stands at its start, or has to stay. */
+static bool go_back(Joints *joints, int32_t i)
+{
+    if (joints->fixed[i] || joints->returns[i] > RETURNS)
+        return false;
+    Vec3 half = vec3_scale(vec3_add(joints->place[i], joints->start[i]), 0.5);
+    joints->place[i] = joints->returns[i]++ < RETURNS ? half : joints->start[i];
+    return true;
+}
+
+/* Has both ends of segment i go half of the way back. False where neither can. */
+static bool retreat(Joints *joints, const Arbor *arbor, int32_t i)
+{
+    bool distal = go_back(joints, i), proximal = go_back(joints, arbor->branch[i].parent);
+    return distal || proximal;
+}
+
+/* A node to be pushed: its part in the distance that is too short, and how easily it moves. */
+typedef struct Pushed {
+    int32_t node;
+    double part, ease;
+} Pushed;
+
+/* Pushes `n` nodes, the ends of segments, so that the distance becomes `by` mm longer in the unit
+ * direction `along`, if one of them may move. */
+static void push(Joints *joints, const Pushed *pushed, int n, Vec3 along, double by)
+{
+    double sum = 0;
+    for (int k = 0; k < n; k++)
+        if (!joints->fixed[pushed[k].node])
+            sum += pushed[k].ease * pushed[k].part * pushed[k].part;
+    for (int k = 0; k < n; k++) {
+        Vec3 *place = &joints->place[pushed[k].node];
+        if (!joints->fixed[pushed[k].node] && sum > 0)
+            *place = vec3_add_scaled(*place, along, pushed[k].ease * pushed[k].part * by / sum);
+    }
+}
+
+/* Stretches segment i if it is shorter than wide. */
+static void stretch(Joints *joints, const Arbor *arbor, const Clearance *clearance, int32_t i)
+{
+    const Pushed end[] = {{arbor->branch[i].parent, -1, 1}, {i, 1, 1}};
+    Vec3 along = vec3_sub(joints->place[i], joints->place[end[0].node]);
+    double length = vec3_length(along), due = 2 * clearance->level * clearance->radius[i];
+    if (length > 0 && length < due)
+        push(joints, end, 2, vec3_scale(along, 1 / length), due * (1 + joints->margin) - length);
+}
+
+/* Pushes segments i and j apart if they overlap. */
+static void separate(Joints *joints, const Arbor *arbor, const Clearance *clearance, int32_t i,
+                     int32_t j)
+{
+    int32_t above_i = arbor->branch[i].parent, above_j = arbor->branch[j].parent;
+    const Vec3 *place = joints->place;
+    SegmentGap gap = segment_gap(place[above_i], place[i], place[above_j], place[j]);
+    double distance = vec3_length(gap.apart), due = clearance_due(clearance, arbor, i, j);
+    double ease_i = 1 / clearance->radius[i], ease_j = 1 / clearance->radius[j];
+    const Pushed end[] = {{above_i, 1 - gap.s, ease_i},
+                          {i, gap.s, ease_i},
+                          {above_j, gap.t - 1, ease_j},
+                          {j, -gap.t, ease_j}};
+    if (distance >= due)
+        return;
+    if (distance >= too_deep * due)
+        push(joints, end, 4, vec3_scale(gap.apart, 1 / distance),
+             due * (1 + joints->margin) - distance);
+    else if (!retreat(joints, arbor, ease_i > ease_j ? i : j))
+        retreat(joints, arbor, ease_i > ease_j ? j : i);
+}
+
+/* Pushes segment i and all that it overlaps apart. */
+static void make_room(Joints *joints, const Arbor *arbor, const Clearance *clearance, int32_t i)
+{
+    const Shape *shape = &arbor->shape[i];
+    double radius = clearance->level * clearance->radius[i];
+    Capsule capsule = {shape->from, shape->to, clearance_reach(clearance, i, radius)};
+    GridItem item = grid_item(&clearance->grid, capsule, 0);
+    size_t index;
+    for (GridWalk walk = grid_walk(&clearance->grid, &item); grid_walk_next(&walk, &index);) {
+        const GridCell *cell = &clearance->grid.cell[index];
+        for (uint32_t k = 0; k < cell->count; k++) {
+            int32_t other = cell->tag[k] >> 1;
+            if (other != i && !arbor_are_joined(arbor, i, other))
+                separate(joints, arbor, clearance, i, other);
+        }
+    }
+}
+
+/* Whether the node is elsewhere than at its start. */
+static bool is_away(const Joints *joints, int32_t i)
+{
+    return vec3_distance(joints->place[i], joints->start[i]) > 0;
+}
+
+/* Has all segments that break a rule which they kept give way; returns how many there are. */
+static size_t give_way(Joints *joints, const Arbor *arbor, const Clearance *clearance, bool pushes)
+{
+    size_t broken = 0;
+    for (size_t k = 0; k < joints->n; k++) {
+        int32_t i = joints->order[k], above = arbor->branch[i].parent;
+        bool is_held = clearance_is_held(clearance, arbor, i) ||
+                       !(is_away(joints, i) || is_away(joints, above));
+        if (!joints->was_clear[i] || (is_held && clearance_is_kept(clearance, arbor, i)))
+            continue;
+        broken++;
+        if (pushes && is_held) {
+            stretch(joints, arbor, clearance, i);
+            make_room(joints, arbor, clearance, i);
+        } else {
+            retreat(joints, arbor, i);
+        }
+    }
+    return broken;
+}
+
+/* Inlets and terminals stay, and the ends of segments that break a rule already. */
+static void fix_nodes(Joints *joints, const Arbor *arbor)
+{
+    for (size_t i = 0; i < arbor->n; i++)
+        joints->fixed[i] = arbor_is_inlet(arbor, (int32_t)i) || arbor->branch[i].child[0] < 0;
+    for (size_t i = arbor->inlets; i < arbor->n; i++)
+        if (!joints->was_clear[i])
+            joints->fixed[i] = joints->fixed[arbor->branch[i].parent] = true;
+}
+
+Status approach_goals(Joints *joints, Arbor *arbor, Clearance *clearance, double whole,
+                      bool *arrived, Err *err)
+{
+    fix_nodes(joints, arbor);
+    memset(joints->returns, 0, arbor->n * sizeof *joints->returns);
+    for (size_t i = 0; i < arbor->n; i++) {
+        Vec3 way = vec3_sub(joints->goal[i], joints->start[i]);
+        joints->place[i] = vec3_add_scaled(joints->start[i], way, joints->fixed[i] ? 0 : whole);
+    }
+    *arrived = false;
+    for (int round = 0; round < ROUNDS && !*arrived; round++) {
+        joints->margin = margin * (round + 1);
+        arbor_arrange(arbor, joints->parent, joints->place);
+        TRY(clearance_reserve(clearance, arbor, err));
+        size_t broken = give_way(joints, arbor, clearance, round < PUSHES);
+        *arrived = broken == 0;
+        if ((double)broken > most_broken * (double)joints->n)
+            break;
+    }
+    return STATUS_OK;
+}
