@@ -303,7 +303,7 @@ typedef struct ThinPicture {
     const ThinVessels *thin;
     const Drawing *drawing;
     Frame *frame;
-    Cover *covers;     /* of the band, row by row */
+    Cover *covers;     /* of each worker: the block that it draws, row by row */
     size_t n_blocks;   /* of the band */
     NumberLists lists; /* of each block: the strips that touch it */
 } ThinPicture;
@@ -312,6 +312,7 @@ typedef struct ThinPicture {
 typedef struct Brush {
     const ThinPicture *picture;
     const ThinStrip *strip;
+    Cover *covers;                  /* of the rows */
     int worker, first_row, end_row; /* rows of the picture */
     float line_width;               /* that a line stands for, pixels */
     bool has_color;
@@ -377,9 +378,9 @@ static void find_color(Brush *brush)
 static void cover(Brush *brush, int column, int row, float length, float depth_mm)
 {
     const Drawing *drawing = brush->picture->drawing;
-    size_t pixel =
-        (size_t)(row - drawing->band.first) * (size_t)drawing->view->camera.width + (size_t)column;
-    Cover *at = &brush->picture->covers[pixel];
+    size_t width = (size_t)drawing->view->camera.width;
+    size_t pixel = (size_t)(row - drawing->band.first) * width + (size_t)column;
+    Cover *at = &brush->covers[(size_t)(row - brush->first_row) * width + (size_t)column];
     if (depth_mm > brush->picture->frame->depth.values[pixel])
         return;
     if (!brush->has_color)
@@ -487,18 +488,22 @@ static void draw_block(size_t index, int worker, void *context)
     const Band *band = &picture->drawing->band;
     size_t width = (size_t)picture->drawing->view->camera.width;
     int first = (int)index * ROWS, end = first + ROWS < band->rows ? first + ROWS : band->rows;
-    for (size_t i = (size_t)first * width; i < (size_t)end * width; i++)
-        picture->covers[i] = (Cover){.clear = 1, .run = UINT32_MAX};
+    size_t pixels = (size_t)(end - first) * width;
+    Cover *covers = &picture->covers[(size_t)worker * ROWS * width];
+    float *colors = &picture->frame->color.values[3 * (size_t)first * width];
+    for (size_t i = 0; i < pixels; i++)
+        covers[i] = (Cover){.clear = 1, .run = UINT32_MAX};
     for (uint32_t i = picture->lists.first[index]; i < picture->lists.first[index + 1]; i++) {
         Brush brush = {.picture = picture,
                        .strip = &picture->thin->strips[picture->lists.items[i]],
+                       .covers = covers,
                        .worker = worker,
                        .first_row = band->first + first,
                        .end_row = band->first + end};
         draw_strip(&brush);
     }
-    for (size_t i = (size_t)first * width; i < (size_t)end * width; i++)
-        put_over(&picture->frame->color.values[3 * i], &picture->covers[i]);
+    for (size_t i = 0; i < pixels; i++)
+        put_over(&colors[3 * i], &covers[i]);
 }
 
 /* ---- which strips touch which blocks --------------------------------------------------------- */
@@ -556,14 +561,15 @@ static Status sort_strips(ThinPicture *picture, Err *err)
 Status thinvessels_draw(const ThinVessels *thin, const Drawing *drawing, Frame *frame, Err *err)
 {
     ThinPicture picture = {.thin = thin, .drawing = drawing, .frame = frame};
-    size_t rows = (size_t)drawing->band.rows;
-    size_t pixels = (size_t)drawing->view->camera.width * rows;
-    picture.n_blocks = (rows + ROWS - 1) / ROWS;
+    int threads = drawing->params->threads;
+    size_t a_worker = ROWS * (size_t)drawing->view->camera.width;
+    picture.n_blocks = ((size_t)drawing->band.rows + ROWS - 1) / ROWS;
     Status status = sort_strips(&picture, err);
     if (status == STATUS_OK)
-        status = mem_calloc(&picture.covers, pixels, sizeof *picture.covers, "thin vessels", err);
+        status = mem_calloc(&picture.covers, (size_t)threads * a_worker, sizeof *picture.covers,
+                            "thin vessels", err);
     if (status == STATUS_OK)
-        threads_for(picture.n_blocks, drawing->params->threads, draw_block, &picture);
+        threads_for(picture.n_blocks, threads, draw_block, &picture);
     numberlists_release(&picture.lists);
     free(picture.covers);
     return status;
