@@ -158,7 +158,7 @@ test_an_end_that_cannot_be_cut_off_flat_is_lengthened_until_it_can() {
     run_ok corcast export short.swc -o plain.stl --quiet
     expect_json plain.stl.json '.round_ends == [2] and .segments_lengthened == []'
     run_ok corcast export short.swc --parts -o t.stl
-    grep -q '1 ends are lengthened' stderr || fail "it does not say so: $(cat stderr)"
+    grep -q '1 end is lengthened' stderr || fail "it does not say so: $(cat stderr)"
     expect_json t.stl.json '.round_ends == [] and .segments_lengthened == [2]'
     [ "$(sed -n 's/^solid //p' t.stl | sed -n 2p)" = inlet ] || fail "expected an inlet: $(grep ^solid t.stl)"
     run_ok corcast convert t.centreline.vtp again.swc --quiet

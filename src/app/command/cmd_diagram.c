@@ -112,7 +112,8 @@ static Status make_drawing(const DiagramOptions *options, const Parsed *parsed, 
     TRY(coloring_read_look(options->look, &drawing->look, err));
     TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &drawing->of, err));
     if (of->pruned > 0 && !parsed->common.quiet)
-        fprintf(stderr, "corcast: %zu segments are pruned\n", of->pruned);
+        fprintf(stderr, "corcast: %zu segment%s pruned\n", of->pruned,
+                of->pruned == 1 ? " is" : "s are");
     const ColoredTree tree = picture_colored_tree(of);
     TRY(coloring_appearance(&options->coloring, &tree, &drawing->look, &drawing->appearance, err));
     if (!parsed->common.quiet)

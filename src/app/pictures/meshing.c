@@ -77,12 +77,12 @@ static void say_result(const Meshing *made, bool quiet)
     const MeshReport *report = &made->report;
     if (made->n_thinned)
         fprintf(stderr,
-                "corcast: %zu segments are thinned, because they overlap others that they do not "
-                "belong with, or blend with such\n",
-                made->n_thinned);
+                "corcast: %zu segment%s thinned, because of an overlap with others that do not "
+                "belong there, or blend with such\n",
+                made->n_thinned, made->n_thinned == 1 ? " is" : "s are");
     if (made->n_longer)
-        fprintf(stderr, "corcast: %zu ends are lengthened, so that they can be cut off flat\n",
-                made->n_longer);
+        fprintf(stderr, "corcast: %zu end%s lengthened to be cut off flat\n", made->n_longer,
+                made->n_longer == 1 ? " is" : "s are");
     if (report->n_swallowed)
         fprintf(stderr, "corcast: %zu segments lie wholly within others and have no wall\n",
                 report->n_swallowed);

@@ -327,9 +327,9 @@ static Status warn_of_losses(const Geometry *geometry, const StageReport *report
                 hidden, segments);
     if (report->thinned)
         fprintf(stderr,
-                "corcast: %zu segments are thinned, because they overlap others that they do not "
-                "belong with, or blend with such\n",
-                report->thinned);
+                "corcast: %zu segment%s thinned, because of an overlap with others that do not "
+                "belong there, or blend with such\n",
+                report->thinned, report->thinned == 1 ? " is" : "s are");
     if (report->places_short + report->places_sharp)
         fprintf(stderr,
                 "corcast: at %zu places vessels are too short for joints, at %zu they turn too "

@@ -288,13 +288,14 @@ void printing_say(const Printing *print)
     double size[3];
     size_of(print->mesh, size);
     if (changes->thickened)
-        fprintf(stderr, "corcast: %zu segments are thickened to %g mm\n", changes->thickened,
-                settings->min_diameter_mm);
+        fprintf(stderr, "corcast: %zu segment%s thickened to %g mm\n", changes->thickened,
+                changes->thickened == 1 ? " is" : "s are", settings->min_diameter_mm);
     if (print->pruned)
-        fprintf(stderr, "corcast: %zu thin segments are pruned\n", print->pruned);
+        fprintf(stderr, "corcast: %zu thin segment%s pruned\n", print->pruned,
+                print->pruned == 1 ? " is" : "s are");
     if (changes->below_two)
-        fprintf(stderr, "corcast: %zu segments are thinner than two widths of the nozzle\n",
-                changes->below_two);
+        fprintf(stderr, "corcast: %zu segment%s thinner than two widths of the nozzle\n",
+                changes->below_two, changes->below_two == 1 ? " is" : "s are");
     if (report->has_closest)
         fprintf(stderr,
                 "corcast: vessels that do not belong together are %.3g mm apart at the least, "
