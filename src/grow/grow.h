@@ -164,7 +164,8 @@ typedef struct RefineParams {
     double seconds; /* at most; 0: any. What a time allows differs from run to run */
     uint64_t moves; /* tried at most; 0: no limit with `seconds`, else the level's own limit */
     uint64_t seed;  /* of the order of moves */
-    bool (*stop)(void *context); /* asked after every move; NULL: never */
+    int threads;    /* 0: all processors */
+    bool (*stop)(void *context); /* asked after every move, by any thread; NULL: never */
     void *stop_context;
     void (*progress)(double fraction, void *context); /* NULL: none */
     void *progress_context;
@@ -195,10 +196,10 @@ typedef struct RefineReport {
  * part of their radii, report->thickness. Trees whose meta says a clearance keep it, which is
  * proved at the end; they have to keep it before, too, at the real thickness of their vessels.
  *
- * With a budget of moves alone, the same tree and parameters give the same bits. `report` may be
- * NULL. Fails, *tree unchanged, with STATUS_USAGE for wrong parameters, STATUS_INPUT for a tree
- * that cannot be refined, STATUS_INFEASIBLE when the radii span more than a double can hold, and
- * STATUS_MEMORY. */
+ * With a budget of moves alone, the same tree and parameters give the same bits, whatever the
+ * threads. `report` may be NULL. Fails, *tree unchanged, with STATUS_USAGE for wrong parameters,
+ * STATUS_INPUT for a tree that cannot be refined, STATUS_INFEASIBLE when the radii span more than a
+ * double can hold, and STATUS_MEMORY. */
 MUST_CHECK Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
                               RefineReport *report, Err *err);
 

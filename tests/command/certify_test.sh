@@ -123,7 +123,7 @@ test_says_what_has_no_bound() {
     [ ! -e none.cert ] || fail "expected no certificate of a tree without a bound"
 }
 
-# Of one set annealing ends 0.21 % above the best (docs/VALIDATION.md).
+# Of one set annealing ends 0.06 % above the best (docs/VALIDATION.md).
 test_annealing_finds_the_best_trees_of_small_point_sets() {
     run_ok "$(dirname "$CHECK_TREE")/optima/optima" "$REPO/tests/optima/sets.txt" 5 5
     expect_stdout '^\| disc \| 5 \| 105 \| 20 \|'

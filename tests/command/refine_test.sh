@@ -51,6 +51,20 @@ test_annealing_stays_within_its_moves_and_is_repeatable() {
     expect_lower a.swc plain.swc 1
 }
 
+test_cycles_side_by_side_give_the_same_bytes_on_any_number_of_threads() {
+    local threads
+    run_ok corcast grow --terminals 14 --seed 4 --relax 0 -o plain.swc
+    run_ok corcast refine plain.swc --refine anneal --refine-moves 4000 -o cycle.swc
+    run_ok corcast refine plain.swc --refine anneal --refine-moves 30000 --threads 1 -o one.swc --json one.json
+    expect_json one.json '.moves_tried > 10000 and .moves_tried <= 30000'
+    for threads in 2 5; do
+        run_ok corcast refine plain.swc --refine anneal --refine-moves 30000 --threads $threads -o many.swc
+        expect_same one.swc many.swc
+    done
+    check_tree one.swc
+    expect_lower one.swc cycle.swc 1.000001
+}
+
 test_the_json_of_grow_tells_the_refined_target_and_root() {
     run_ok corcast grow --terminals 60 --inlet 0,50 --inlet 0,-50 --inlet-shares 0.2,0.8 --refine geometry --json grow.json -o tree.swc
     run_ok corcast info tree.swc --json

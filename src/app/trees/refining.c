@@ -63,6 +63,7 @@ Status refining_apply(const Refining *refining, const Common *common, const Doma
                                  .seconds = refining->seconds,
                                  .moves = refining->moves,
                                  .seed = common->seed,
+                                 .threads = common->threads,
                                  .stop = interrupt_asked,
                                  .progress = progress_report,
                                  .progress_context = &progress};

@@ -137,8 +137,10 @@ static Status grow(Run *run, Tree *tree, GrowReport *report, Err *err)
 {
     const Growing *growing = &run->growth->growing;
     const Refining *refining = &run->growth->refining;
-    const RefineParams params = {
-        .level = refining->level, .moves = refining->moves, .seed = run->parsed.common.seed};
+    const RefineParams params = {.level = refining->level,
+                                 .moves = refining->moves,
+                                 .seed = run->parsed.common.seed,
+                                 .threads = run->parsed.common.threads};
     RefineReport refined;
     TRY(grow_tree(&growing->params, &growing->domain, tree, report, err));
     if (refining->level != GROW_REFINE_NONE)

@@ -12,6 +12,9 @@
  * only segments that break a rule and their neighbours are moved (repair). A last descent keeps the
  * rules. Annealing within the rules ends 1 % higher; joint moves settle what heat is to stir.
  *
+ * Annealing, mending and that descent are a cycle. Moves for several are spent on cycles from the
+ * same tree, side by side (refine_in_cycles), and the best tree is kept.
+ *
  * Refinement may be stopped after any move, and then has a tree that keeps the rules: the present
  * one in descend; while annealing or mending, the one before, which recall restores. So it does if
  * mending fails. What follows the radii, viscosities or exponents, is held fixed within a round and
@@ -27,6 +30,7 @@
 #include "grow/refine/refine_penalty.h"
 #include "grow/refine/refine_result.h"
 #include <stdlib.h>
+#include <string.h>
 
 /* Temperatures over S_root a segment: of annealing at first and at last, and of repairs. */
 static const double hot = 1, cold = 0.02, warm = 0.05;
@@ -44,6 +48,8 @@ enum { ROUNDS_OF_MENDING = 120 };
  * where it cools more slowly, segments lean on broken rules, and mending costs more than was
  * gained. */
 static const double moves_per_square = 20, most_per_terminal = 2000;
+/* Cycles at most, however small the tree is and long the time. */
+static const double most_cycles = 1 << 20;
 /* Segments that are moved around either end of one that breaks a rule. */
 enum { NEIGHBOURS = 8 };
 /* Rounds after which reserved radii are computed anew. */
@@ -57,7 +63,8 @@ typedef struct Refinement {
     const RefineParams *params;
     double begun; /* clock */
     uint64_t moves;
-    double fraction; /* of the budget that is spent */
+    double fraction;     /* of the budget that is spent */
+    double shown, shows; /* the progress to tell of at first, and how much more at the end */
     bool stopped;
     LocalSearch search;
     Joints joints;
@@ -102,7 +109,8 @@ static bool is_over(Refinement *refinement)
         fraction = fmax(fraction, (clock_seconds() - refinement->begun) / params->seconds);
     refinement->fraction = fraction;
     if (params->progress)
-        params->progress(fmin(fraction, 1), params->progress_context);
+        params->progress(refinement->shown + refinement->shows * fmin(fraction, 1),
+                         params->progress_context);
     return fraction >= 1;
 }
 
@@ -207,6 +215,16 @@ static Status recall(Refinement *refinement, Err *err)
     LocalSearch *search = &refinement->search;
     arbor_arrange(&search->arbor, refinement->best_parent, refinement->best_place);
     return settle(search, err);
+}
+
+/* Settles; where what follows the radii brings vessels together, goes back. */
+static Status settle_for_good(Refinement *refinement, Err *err)
+{
+    LocalSearch *search = &refinement->search;
+    TRY(settle(search, err));
+    if (search->arbor.local && count_unclear(search) > refinement->unclear)
+        return recall(refinement, err);
+    return STATUS_OK;
 }
 
 /* Rounds within the rules until one gains less than `least_gain` of S_root. */
@@ -351,23 +369,6 @@ static Status improve_topology(Refinement *refinement, bool *over, Err *err)
     return arbor_cost(&search->arbor) < best ? STATUS_OK : recall(refinement, err);
 }
 
-static Status refine(Refinement *refinement, Err *err)
-{
-    GrowRefine level = refinement->params->level;
-    bool over = is_over(refinement);
-    double left;
-    if (level == GROW_REFINE_GEOMETRY)
-        return descend(refinement, is_large(refinement) ? least_large_gain : least_sweep_gain,
-                       &over, err);
-    if (level == GROW_REFINE_ANNEAL) /* so that there is something if it is stopped */
-        TRY(descend(refinement, least_gain_before, &over, err));
-    do {
-        TRY(improve_topology(refinement, &over, err));
-        left = (double)refinement->search.tried * (1 / refinement->fraction - 1);
-    } while (!over && left > cycle_moves(refinement));
-    return STATUS_OK;
-}
-
 /* How far apart the terminals of a pair are, mm, where terminals are pairs; else 0. */
 static Status pair_distance(const Tree *tree, double *mm, Err *err)
 {
@@ -467,20 +468,188 @@ static Status start(Refinement *refinement, const Domain *domain, const Tree *tr
     return STATUS_OK;
 }
 
+/* ---- cycles side by side --------------------------------------------------------------------- */
+
+static void release(Refinement *refinement)
+{
+    LocalSearch *search = &refinement->search;
+    joints_release(&refinement->joints);
+    free(refinement->order);
+    free(refinement->best_parent);
+    free(refinement->best_place);
+    penalties_release(&search->penalties);
+    clearance_release(&search->clearance);
+    arbor_release(&search->arbor);
+}
+
+/* What a worker's cycles have found. */
+typedef struct Found {
+    Status status; /* of the last cycle: after one that fails there is no other */
+    Err err;
+    double cost;     /* of the best tree */
+    size_t cycle;    /* that found it */
+    int32_t *parent; /* of its nodes; owned, as is place; NULL: no cycle has ended */
+    Vec3 *place;
+    uint64_t tried, kept; /* moves of all cycles */
+    double seconds;       /* that the longest cycle took */
+    bool stopped;
+} Found;
+
+/* Cycles that begin with the same tree, each with a seed of its own. */
+typedef struct Cycles {
+    const Refinement *from; /* remembers the tree */
+    const Domain *domain;
+    const Tree *tree;
+    size_t count;
+    uint64_t moves; /* of each, at most */
+    Found *found;   /* of each worker */
+} Cycles;
+
+static bool is_better(const Refinement *cycle, size_t number, const Found *than)
+{
+    double cost = cycle->best_cost;
+    return !than->place || cost < than->cost || (cost == than->cost && number < than->cycle);
+}
+
+static Status run_cycle(const Cycles *cycles, size_t number, const RefineParams *params,
+                        Found *found, Err *err)
+{
+    const Refinement *from = cycles->from;
+    Refinement cycle = {.params = params, .begun = from->begun, .shows = 1};
+    const Arbor *arbor = &cycle.search.arbor;
+    Status status;
+    if (!(params->seconds > 0)) {
+        cycle.shows = 1 / (double)cycles->count;
+        cycle.shown = (double)number * cycle.shows;
+    }
+    TRY_GOTO(start(&cycle, cycles->domain, cycles->tree, err));
+    cycle.moves = cycles->moves;
+    cycle.best_cost = from->best_cost;
+    memcpy(cycle.best_parent, from->best_parent, arbor->n * sizeof *cycle.best_parent);
+    memcpy(cycle.best_place, from->best_place, arbor->n * sizeof *cycle.best_place);
+    TRY_GOTO(recall(&cycle, err));
+    bool over = is_over(&cycle);
+    TRY_GOTO(improve_topology(&cycle, &over, err));
+    TRY_GOTO(settle_for_good(&cycle, err));
+    remember(&cycle);
+    found->tried += cycle.search.tried;
+    found->kept += cycle.search.kept;
+    found->stopped = cycle.stopped;
+    if (is_better(&cycle, number, found)) {
+        int32_t *parent = found->parent;
+        Vec3 *place = found->place;
+        found->cost = cycle.best_cost;
+        found->cycle = number;
+        found->parent = cycle.best_parent;
+        found->place = cycle.best_place;
+        cycle.best_parent = parent;
+        cycle.best_place = place;
+    }
+done:
+    release(&cycle);
+    return status;
+}
+
+/* Whether a worker may begin another cycle. */
+static bool has_time(const Refinement *from, const Found *found)
+{
+    double end = clock_seconds() - from->begun + found->seconds;
+    if (found->stopped || found->status != STATUS_OK)
+        return false;
+    return !found->place || !(from->params->seconds > 0) || end <= from->params->seconds;
+}
+
+static void run_in_turn(size_t number, int worker, void *context)
+{
+    const Cycles *cycles = context;
+    Found *found = &cycles->found[worker];
+    RefineParams params = *cycles->from->params;
+    double begun = clock_seconds();
+    if (!has_time(cycles->from, found))
+        return;
+    params.seed ^= number * UINT64_C(0x9e3779b97f4a7c15);
+    if (worker != 0)
+        params.progress = NULL;
+    found->status = run_cycle(cycles, number, &params, found, &found->err);
+    found->seconds = fmax(found->seconds, clock_seconds() - begun);
+}
+
+/* Goes on to the best tree that was found. */
+static Status take_best(Refinement *refinement, const Found *found, int workers, Err *err)
+{
+    LocalSearch *search = &refinement->search;
+    const Found *best = NULL;
+    for (int i = 0; i < workers; i++) {
+        if (found[i].status != STATUS_OK) {
+            *err = found[i].err;
+            return found[i].status;
+        }
+        search->tried += found[i].tried;
+        search->kept += found[i].kept;
+        refinement->stopped = refinement->stopped || found[i].stopped;
+        if (found[i].place && (!best || found[i].cost < best->cost ||
+                               (found[i].cost == best->cost && found[i].cycle < best->cycle)))
+            best = &found[i];
+    }
+    if (!best)
+        return STATUS_OK;
+    arbor_arrange(&search->arbor, best->parent, best->place);
+    TRY(settle(search, err));
+    remember(refinement);
+    return STATUS_OK;
+}
+
+static Status refine_in_cycles(Refinement *refinement, const Domain *domain, const Tree *tree,
+                               size_t count, uint64_t moves, Err *err)
+{
+    int workers =
+        refinement->params->threads > 0 ? refinement->params->threads : threads_available();
+    Cycles cycles = {
+        .from = refinement, .domain = domain, .tree = tree, .count = count, .moves = moves};
+    TRY(mem_calloc(&cycles.found, (size_t)workers, sizeof *cycles.found, "cycles", err));
+    threads_for(count, workers, run_in_turn, &cycles);
+    Status status = take_best(refinement, cycles.found, workers, err);
+    for (int i = 0; i < workers; i++) {
+        free(cycles.found[i].parent);
+        free(cycles.found[i].place);
+    }
+    free(cycles.found);
+    return status;
+}
+
+static Status refine(Refinement *refinement, const Domain *domain, const Tree *tree, Err *err)
+{
+    GrowRefine level = refinement->params->level;
+    bool over = is_over(refinement);
+    if (level == GROW_REFINE_GEOMETRY)
+        return descend(refinement, is_large(refinement) ? least_large_gain : least_sweep_gain,
+                       &over, err);
+    if (level == GROW_REFINE_ANNEAL) /* so that there is something if it is stopped */
+        TRY(descend(refinement, least_gain_before, &over, err));
+    uint64_t left = refinement->moves - refinement->search.tried;
+    double count = fmin(round((double)left / cycle_moves(refinement)), most_cycles);
+    if (over)
+        return STATUS_OK;
+    if (count < 2)
+        return improve_topology(refinement, &over, err);
+    remember(refinement);
+    if (refinement->moves < UINT64_MAX)
+        left /= (uint64_t)count;
+    return refine_in_cycles(refinement, domain, tree, (size_t)count, left, err);
+}
+
 Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
                    RefineReport *report, Err *err)
 {
     TRY(refine_check(params, domain, tree, err));
-    Refinement refinement = {.params = params, .begun = clock_seconds()};
+    Refinement refinement = {.params = params, .begun = clock_seconds(), .shows = 1};
     LocalSearch *search = &refinement.search;
     Tree made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(start(&refinement, domain, tree, err));
     double before = target_of(&search->arbor), after = before, apart;
-    TRY_GOTO(refine(&refinement, err));
-    TRY_GOTO(settle(search, err));
-    if (search->arbor.local && count_unclear(search) > refinement.unclear)
-        TRY_GOTO(recall(&refinement, err));
+    TRY_GOTO(refine(&refinement, domain, tree, err));
+    TRY_GOTO(settle_for_good(&refinement, err));
     TRY_GOTO(result_make(&search->arbor, tree, &made, err));
     TRY_GOTO(prove_apart(&made, tree, &apart, err));
     size_t broken = count_unclear(search);
@@ -502,12 +671,6 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
                                  .stopped = refinement.stopped};
 done:
     tree_release(&made);
-    joints_release(&refinement.joints);
-    free(refinement.order);
-    free(refinement.best_parent);
-    free(refinement.best_place);
-    penalties_release(&search->penalties);
-    clearance_release(&search->clearance);
-    arbor_release(&search->arbor);
+    release(&refinement);
     return status;
 }
