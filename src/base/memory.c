@@ -1,5 +1,6 @@
-/* Memory is always zeroed: calloc gets it zeroed from the system for nothing when it is large, and
- * structs are released alike whether they were filled or not. Arrays double when they grow. */
+/* Memory is zeroed, but for large arrays: calloc gets it zeroed from the system for nothing when it
+ * is large and has not served before, and structs are released alike whether they were filled or
+ * not. Arrays double when they grow. */
 #include "base/memory.h"
 
 #include "base/number.h"
@@ -43,14 +44,26 @@ Status mem_check(double bytes, const char *name, Err *err)
                    bytes_text(bytes, needs), bytes_text(machine, has));
 }
 
-Status mem_calloc(void *out, size_t count, size_t size, const char *what, Err *err)
+/* Hands out what calloc or malloc gave, or nothing. */
+static Status hand_out(void *memory, void *out, size_t count, size_t size, const char *what,
+                       Err *err)
 {
-    void *memory = calloc(count ? count : 1, size);
     if (!memory)
         return out_of_memory(count, size, what, err);
     prefer_huge_pages(memory, count * size);
     memcpy(out, &memory, sizeof memory);
     return STATUS_OK;
+}
+
+Status mem_calloc(void *out, size_t count, size_t size, const char *what, Err *err)
+{
+    return hand_out(calloc(count ? count : 1, size), out, count, size, what, err);
+}
+
+Status mem_alloc(void *out, size_t count, size_t size, const char *what, Err *err)
+{
+    void *memory = count > SIZE_MAX / size ? NULL : malloc(count ? count * size : 1);
+    return hand_out(memory, out, count, size, what, err);
 }
 
 Status mem_grow(void *items, size_t *capacity, size_t needed, size_t size, const char *what,

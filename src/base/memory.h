@@ -10,6 +10,11 @@
  * zero gives a pointer that may be freed. Fails with STATUS_MEMORY, `what` naming the thing. */
 MUST_CHECK Status mem_calloc(void *out, size_t count, size_t size, const char *what, Err *err);
 
+/* As mem_calloc, of items that hold anything: for large arrays of which nothing is read that was
+ * not written before. Memory that served before is not cleared, and of fresh memory only what is
+ * used is ever touched. */
+MUST_CHECK Status mem_alloc(void *out, size_t count, size_t size, const char *what, Err *err);
+
 /* The bytes of memory that the machine has; infinity when it does not say. */
 double mem_of_machine(void);
 /* STATUS_MEMORY, saying that `name` needs them, when the machine has fewer bytes. Linux grants more

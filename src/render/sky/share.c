@@ -192,10 +192,10 @@ static Status make_places(Share *share, Err *err)
     size_t strips = ((size_t)light->rows + STRIP - 1) / STRIP;
     PlaceJob job = {.share = share};
     Status status;
-    TRY(mem_calloc(&light->numbers, pixels, sizeof *light->numbers, "places", err));
+    TRY(mem_alloc(&light->numbers, pixels, sizeof *light->numbers, "places", err));
     memset(light->numbers, 0xff, pixels * sizeof *light->numbers); /* PLACE_NONE */
-    TRY(mem_calloc(&light->places, pixels, sizeof *light->places, "places", err));
-    TRY(mem_calloc(&share->pixels, pixels, sizeof *share->pixels, "places", err));
+    TRY(mem_alloc(&light->places, pixels, sizeof *light->places, "places", err));
+    TRY(mem_alloc(&share->pixels, pixels, sizeof *share->pixels, "places", err));
     TRY(mem_calloc(&share->runs, strips * SETS + pixels / PLACES_AT_ONCE + 1, sizeof *share->runs,
                    "places", err));
     TRY_GOTO(mem_calloc(&job.next, squares_in(light->width) * squares_in(STRIP), sizeof *job.next,

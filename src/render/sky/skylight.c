@@ -127,10 +127,12 @@ static void set_askers(const Sky *sky, int column, int row, uint32_t *next)
     uint32_t numbers[PAIR], n = list_askers(sky, column, row, numbers);
     int set = set_of(sky, column, row);
     const BeamPlaces *places = &sky->places[set];
+    uint32_t *askers = sky->askers[(size_t)row * (size_t)sky->columns + (size_t)column];
+    memset(askers, 0, sizeof(Askers));
     for (uint32_t k = 0; k < n; k++) {
         uint32_t to = (*next)++, i = to - (uint32_t)sky->first[set];
         const PixelPlace *place = &sky->light->places[numbers[k]];
-        sky->askers[(size_t)row * (size_t)sky->columns + (size_t)column][k] = to + 1;
+        askers[k] = to + 1;
         sky->numbers[to] = numbers[k];
         for (int c = 0; c < 3; c++) {
             places->at[c][i] = place->at[c];
@@ -171,11 +173,11 @@ static Status choose_askers(Sky *sky, Err *err)
 {
     int threads = sky->drawing->params->threads;
     size_t pairs = (size_t)sky->columns * (size_t)sky->rows;
-    TRY(mem_calloc(&sky->askers, pairs, sizeof *sky->askers, "occlusion", err));
+    TRY(mem_alloc(&sky->askers, pairs, sizeof *sky->askers, "occlusion", err));
     TRY(mem_calloc(&sky->next, squares_of(sky), sizeof *sky->next, "occlusion", err));
     threads_for(squares_of(sky), threads, count_square, sky);
     number_squares(sky);
-    TRY(mem_calloc(&sky->numbers, sky->first[SETS], sizeof *sky->numbers, "occlusion", err));
+    TRY(mem_alloc(&sky->numbers, sky->first[SETS], sizeof *sky->numbers, "occlusion", err));
     for (int set = 0; set < SETS; set++)
         TRY(beamplaces_new(sky->first[set + 1] - sky->first[set], &sky->places[set], err));
     threads_for(squares_of(sky), threads, set_square, sky);
@@ -248,8 +250,8 @@ static Status ask(Sky *sky, Err *err)
     sky->asked = beams < 1 ? 1 : beams < MOST_A_SET ? beams : MOST_A_SET;
     sky->stride = (sky->asked + SUMMED - 1) / SUMMED * SUMMED;
     TRY(list_directions(sky, err));
-    TRY(mem_calloc(&sky->found, n, (size_t)sky->asked, "occlusion", err));
-    TRY(mem_calloc(&sky->answers, n, (size_t)sky->stride, "occlusion", err));
+    TRY(mem_alloc(&sky->found, n, (size_t)sky->asked, "occlusion", err));
+    TRY(mem_alloc(&sky->answers, n, (size_t)sky->stride, "occlusion", err));
     if (sky->stride > sky->asked)
         memset(sky->answers, BEAM_UNASKED, n * (size_t)sky->stride);
     for (int set = 0; set < SETS; set++)
