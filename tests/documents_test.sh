@@ -235,7 +235,7 @@ more than 349,000 joints @ povray_joint.c @ MOST_EXACT = 349000,
 where there are more than 8,000 @ povray_joint.c @ MANY = 8000,
 scenes of more than 3,000 segments the twelve @ povray_cells.c @ MOST_INLINE = 3000
 - `f(x) <= M d(x) / 2`, because a ray that missed @ povray_joint.c @ 2 * steepest};
-Its hits are within 10⁻⁷ radii @ joints.inc @ accuracy 1e-7 open
+Its hits are within 2 · 10⁻⁸ radii @ joints.inc @ accuracy 2e-8 open
 no tile has more than 400,000 cylinders @ povray.c @ {MODEL_CYLINDERS, put_primitive_macros, put_primitives, 400000},
 200,000 pieces of a joined tree, 8,192 segments of a blob @ povray.c @ {MODEL_BLOB, put_blob_macros, put_blob, 8192},
 of a mesh, or 100,000 cells @ povray.c @ {MODEL_POTENTIAL, put_cell_macros, put_cells, 100000},
