@@ -30,7 +30,7 @@ static const struct {
     double pieces;
 } geometries[] = {
     {MODEL_POTENTIAL, put_cell_macros, put_cells, 100000},
-    {MODEL_BLOB, put_blob_macros, put_blob, 8192},
+    {MODEL_BLOB, put_blob_macros, put_blob, 32768},
     {MODEL_TRIANGLES, put_mesh_macros, put_mesh, 4000},
     {MODEL_JOINTS, put_joined_macros, put_primitives, 200000},
     {MODEL_CYLINDERS, put_primitive_macros, put_primitives, 400000},

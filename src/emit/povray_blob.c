@@ -282,6 +282,8 @@ typedef struct Paints {
     PovrayItems painted;  /* numbered anew, in their order */
     const double *places; /* of sums for colours that blend; NULL: the largest term is found */
     const Tmpl *node;     /* the function of a box */
+    bool in_matrices;     /* as put_matrices says */
+    double grid_mm;       /* boxes are rounded to */
     Item *items;
     Text *text;
     unsigned nodes;
@@ -300,33 +302,95 @@ static int by_key(const void *a, const void *b)
     return x->segment < y->segment ? -1 : x->segment > y->segment;
 }
 
-static void put_term(Text *text, const Paints *paints, uint32_t number)
+/* Where a segment's value is on the scale; 0 for none. */
+static double place_of(const Paints *paints, uint32_t number)
 {
-    const FieldSegment *segment = painted_segment(paints, number);
-    TermForm form = term_form(segment);
+    const double *places = paints->scene->appearance.places;
+    double place = places ? places[painted_segment(paints, number)->segment] : 0;
+    return isnan(place) ? 0 : place;
+}
+
+/* A column that is the value at the origin. POV-Ray takes no matrix without an inverse, so that it
+ * cannot be the value everywhere. */
+static Linear value_and_axis(double value, int axis)
+{
+    Linear linear = {{0, 0, 0, value}};
+    linear.k[axis] = 1;
+    return linear;
+}
+
+static int largest_factor(const Linear *linear)
+{
+    int axis = fabs(linear->k[1]) > fabs(linear->k[0]) ? 1 : 0;
+    return fabs(linear->k[2]) > fabs(linear->k[axis]) ? 2 : axis;
+}
+
+/* For each segment v, w and start are the columns of Vs; end is one of Ve, whose others are the
+ * segment's number and place at the origin. */
+static Status put_matrices(const Paints *paints, const Tmpl *matrix, Err *err)
+{
+    put_matrix_arrays(paints->text, paints->painted.n);
+    for (uint32_t i = 0; i < paints->painted.n; i++) {
+        const TermForm form = term_form(painted_segment(paints, i));
+        const int axis = largest_factor(&form.end);
+        const Linear number = value_and_axis(i, (axis + 1) % 3),
+                     place = value_and_axis(place_of(paints, i), (axis + 2) % 3);
+        const Linear *const start[] = {&form.v, &form.w, &form.start};
+        const Linear *const end[] = {&form.end, &number, &place};
+        TRY(put_matrix(paints->text, matrix, 's', i, start, err));
+        TRY(put_matrix(paints->text, matrix, 'e', i, end, err));
+    }
+    return STATUS_OK;
+}
+
+/* v, w, start, end */
+static void put_forms(Text *text, const Paints *paints, uint32_t number)
+{
+    TermForm form = term_form(painted_segment(paints, number));
     const Linear *const parts[] = {&form.v, &form.w, &form.start, &form.end};
-    text_puts(text, paints->places ? "+Fn_Blob_Weight(" : ",Fn_Blob_Term(");
     for (int i = 0; i < 4; i++) {
         text_puts(text, i ? "," : "");
-        put_linear(text, parts[i]);
+        if (paints->in_matrices)
+            put_column(text, i < 3 ? 's' : 'e', number, "x,y,z", "xyzx"[i]);
+        else
+            put_linear(text, parts[i]);
     }
-    if (!paints->places) {
-        text_printf(text, ",%u)", number);
-        return;
-    }
-    double place = paints->places[segment->segment];
-    text_printf(text, ")*select(k,%d,1,", !isnan(place));
-    text_number(text, isnan(place) ? 0 : place);
+}
+
+static void put_weight(Text *text, const Paints *paints, uint32_t number)
+{
+    text_puts(text, "+Fn_Blob_Weight(");
+    put_forms(text, paints, number);
+    text_printf(text, ")*select(k,%d,1,",
+                !isnan(paints->places[painted_segment(paints, number)->segment]));
+    if (paints->in_matrices)
+        put_column(text, 'e', number, "0,0,0", 'z');
+    else
+        text_number(text, place_of(paints, number));
     text_puts(text, ")");
 }
 
-/* The middle of an extent along an axis, and a little more than its half, in few digits. */
-static void extent_along(double low, double high, char middle[NUMBER_TEXT_SIZE],
-                         char half[NUMBER_TEXT_SIZE])
+static void put_term(Text *text, const Paints *paints, uint32_t number)
 {
-    double center = (low + high) / 2;
-    snprintf(middle, NUMBER_TEXT_SIZE, "%.6g", center);
-    snprintf(half, NUMBER_TEXT_SIZE, "%.6g", (high - low) / 2 * 1.001 + fabs(center) * 1e-5);
+    text_puts(text, ",Fn_Blob_Term(");
+    put_forms(text, paints, number);
+    text_puts(text, ",");
+    if (paints->in_matrices)
+        put_column(text, 'e', number, "0,0,0", 'y');
+    else
+        text_printf(text, "%u", number);
+    text_puts(text, ")");
+}
+
+/* The middle and the half of an extent along an axis, rounded outwards. */
+static void extent_along(const Paints *paints, double low, double high,
+                         char middle[NUMBER_TEXT_SIZE], char half[NUMBER_TEXT_SIZE])
+{
+    const double grid = paints->grid_mm;
+    low = floor(low / grid) * grid;
+    high = ceil(high / grid) * grid;
+    number_text((low + high) / 2, middle);
+    number_text((high - low) / 2, half);
 }
 
 /* Declares the function of a box: of those listed the largest, or the sum, where the box holds the
@@ -335,8 +399,8 @@ static Status put_function(Paints *paints, Box box, const Text *list, Err *err)
 {
     char number[NUMBER_TEXT_SIZE], middle[3][NUMBER_TEXT_SIZE], half[3][NUMBER_TEXT_SIZE];
     for (int axis = 0; axis < 3; axis++)
-        extent_along(vec3_component(box.low, axis), vec3_component(box.high, axis), middle[axis],
-                     half[axis]);
+        extent_along(paints, vec3_component(box.low, axis), vec3_component(box.high, axis),
+                     middle[axis], half[axis]);
     snprintf(number, sizeof number, "%u", paints->nodes++);
     const TmplValue values[] = {{"number", number},  {"x", middle[0]},          {"half_x", half[0]},
                                 {"y", middle[1]},    {"half_y", half[1]},       {"z", middle[2]},
@@ -353,25 +417,32 @@ static void sort_along(Paints *paints, Item *items, size_t n, int axis)
     qsort(items, n, sizeof *items, by_key);
 }
 
+/* Where items[first .. first + n) are felt. */
+static Box box_of_items(const Paints *paints, size_t first, size_t n)
+{
+    const double reach = blob_reach(&blob_shape);
+    Box box = box_empty();
+    for (size_t i = first; i < first + n; i++)
+        box = box_union(box, reach_of(painted_segment(paints, paints->items[i].segment), reach));
+    return box;
+}
+
 /* Declares the function of items[first .. first + n), after those of its halves. */
 static Status put_node(Paints *paints, size_t first, size_t n, Err *err)
 {
     Item *items = paints->items + first;
-    const double reach = blob_reach(&blob_shape);
     Text list = TEXT_INIT;
-    Box box = box_empty();
-    for (size_t i = 0; i < n; i++)
-        box = box_union(box, reach_of(painted_segment(paints, items[i].segment), reach));
+    const Box box = box_of_items(paints, first, n);
     if (n > LEAF) {
         sort_along(paints, items, n, box_longest_axis(box));
         for (int half = 0; half < 2; half++) {
             TRY(put_node(paints, half ? first + n / 2 : first, half ? n - n / 2 : n / 2, err));
-            text_printf(&list, paints->places ? "+Fw%u(x,y,z,k)" : ",Fn%u(x,y,z)",
+            text_printf(&list, paints->places ? "+Fw[%u](x,y,z,k)" : ",Fn[%u](x,y,z)",
                         paints->nodes - 1);
         }
     }
     for (size_t i = 0; n <= LEAF && i < n; i++)
-        put_term(&list, paints, items[i].segment);
+        (paints->places ? put_weight : put_term)(&list, paints, items[i].segment);
     Status status = put_function(paints, box, &list, err);
     text_release(&list);
     return status;
@@ -383,27 +454,43 @@ static size_t count_nodes(size_t n)
     return n <= LEAF ? 1 : 1 + count_nodes(n / 2) + count_nodes(n - n / 2);
 }
 
-/* The functions that find the largest term, or that sum terms for the mean of `places`. */
+/* The power of 2 that is some 1/2000 of the box: fine enough for boxes of a few segments, and so
+ * few places that POV-Ray finds each number at once. */
+static double grid_of(Box box)
+{
+    Vec3 size = vec3_sub(box.high, box.low);
+    return ldexp(1, ilogb(fmax(size.x, fmax(size.y, size.z))) - 10);
+}
+
+/* The functions that find the largest term, and the matrices, or those that sum terms for the mean
+ * of `places`. */
 static Status put_hierarchy(Text *out, const PovrayGeometry *geometry, const double *places,
                             Err *err)
 {
-    Tmpl node = {0};
+    Tmpl node = {0}, matrix = {0};
+    const size_t n = geometry->painted.n;
     Paints paints = {.scene = geometry->scene,
                      .painted = geometry->painted,
                      .places = places,
                      .node = &node,
+                     .in_matrices = n > MOST_INLINE_TERMS,
                      .text = out};
-    size_t n = geometry->painted.n;
     Status status;
-    TRY(load_template(&node, geometry->params,
-                      places ? "povray/blob_weight.inc" : "povray/blob_node.inc", err));
+    TRY_GOTO(load_template(&node, geometry->params,
+                           places ? "povray/blob_weight.inc" : "povray/blob_node.inc", err));
+    TRY_GOTO(load_template(&matrix, geometry->params, "povray/matrix.inc", err));
     TRY_GOTO(mem_calloc(&paints.items, n, sizeof *paints.items, "segments", err));
     for (size_t i = 0; i < n; i++)
         paints.items[i].segment = (uint32_t)i;
+    paints.grid_mm = grid_of(box_of_items(&paints, 0, n));
+    if (paints.in_matrices && !places)
+        TRY_GOTO(put_matrices(&paints, &matrix, err));
+    text_printf(out, "#declare F%c=array[%zu]\n", places ? 'w' : 'n', count_nodes(n));
     TRY_GOTO(put_node(&paints, 0, n, err));
 done:
     free(paints.items);
     tmpl_release(&node);
+    tmpl_release(&matrix);
     return status;
 }
 
@@ -425,7 +512,7 @@ static Status put_blend(Text *out, void *context, Err *err)
     Values values = {0};
     if (!povray_blends(geometry))
         return text_check(out, err);
-    text_printf(add_value(&values, "top"), "Fw%zu", count_nodes(geometry->painted.n) - 1);
+    text_printf(add_value(&values, "top"), "Fw[%zu]", count_nodes(geometry->painted.n) - 1);
     add_part(&values, "nodes", put_weights, context);
     return values_expand(&values, geometry->params, "povray/blob_blend.inc", out, err);
 }
@@ -486,7 +573,7 @@ Status put_blob_macros(Text *out, void *context, Err *err)
     add_flag(&values, "painted", painted);
     Text *top = add_value(&values, "top"), *n_groups = add_value(&values, "n_groups");
     if (painted) {
-        text_printf(top, "Fn%zu", count_nodes(n) - 1);
+        text_printf(top, "Fn[%zu]", count_nodes(n) - 1);
         text_printf(n_groups, "%zu", (n + GROUP - 1) / GROUP);
     }
     add_part(&values, "paint", painted ? put_functions : put_nothing, context);

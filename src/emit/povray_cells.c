@@ -3,11 +3,9 @@
  * segment has one function for each part of it that a cell feels, so that cells are short to
  * read.
  *
- * POV-Ray looks for each number in a function through all numbers of all functions so far, and for
- * each name through one 257th of all names. So the functions stand in arrays and, in a large scene,
- * the numbers of a segment in matrices, whose products with a point are functions, too: these take
- * POV-Ray longer to evaluate, by a quarter of the time for a picture. They are summed in the order
- * of a Linear, so that both ways are the same to the bit. */
+ * POV-Ray looks for each name through one 257th of all names. So the functions stand in arrays and,
+ * in a large scene, the numbers of a segment in matrices. The products of these with a point are
+ * summed in the order of a Linear, so that both ways are the same to the bit. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/values.h"
@@ -22,10 +20,6 @@ enum { TUBE = TERM_MIDDLE + 1, N_FUNCTIONS };
 /* Scales are 2^(number - SCALE_ONE). */
 enum { SCALE_ONE = 64, N_SCALES = 128 };
 
-/* In scenes of more segments numbers are in matrices; from there on that saves more time than it
- * takes. */
-enum { MOST_INLINE = 3000 };
-
 /* A segment, as its functions are written. */
 typedef struct Term {
     const TermForm *form;
@@ -37,10 +31,10 @@ static void put_form(Text *text, const Term *term, const Linear *form)
 {
     const TermForm *forms = term->form;
     if (term->in_matrices)
-        text_printf(text, "V%c[%u](x,y,z).%c", form == &forms->end ? 'e' : 's', term->segment,
-                    form == &forms->v   ? 'x'
-                    : form == &forms->w ? 'y'
-                                        : 'z');
+        put_column(text, form == &forms->end ? 'e' : 's', term->segment, "x,y,z",
+                   form == &forms->v   ? 'x'
+                   : form == &forms->w ? 'y'
+                                       : 'z');
     else
         put_linear(text, form);
 }
@@ -78,27 +72,6 @@ static Status put_function(Text *text, const Tmpl *template, const Term *term, i
     text_release(&v);
     text_release(&w);
     text_release(&ends);
-    return status;
-}
-
-/* The matrix whose columns are v, w and the third. */
-static Status put_matrix(Text *text, const Tmpl *template, const Term *term, const Linear *third,
-                         Err *err)
-{
-    Text name = TEXT_INIT, numbers = TEXT_INIT;
-    text_printf(&name, "V%c[%u]", third == &term->form->end ? 'e' : 's', term->segment);
-    for (int row = 0; row < 4; row++) {
-        text_puts(&numbers, row ? "," : "");
-        text_number(&numbers, term->form->v.k[row] + 0);
-        text_puts(&numbers, ",");
-        text_number(&numbers, term->form->w.k[row] + 0);
-        text_puts(&numbers, ",");
-        text_number(&numbers, third->k[row] + 0);
-    }
-    const TmplValue values[] = {{"name", text_chars(&name)}, {"numbers", text_chars(&numbers)}};
-    Status status = tmpl_apply(template, values, 2, text, err);
-    text_release(&name);
-    text_release(&numbers);
     return status;
 }
 
@@ -169,10 +142,13 @@ static Status put_segment(Text *out, const TermTemplates *templates, const Term 
                           Err *err)
 {
     bool to_end = used & (1 << TERM_BOTH_ENDS | 1 << TERM_END);
+    const TermForm *form = term->form;
+    const Linear *const start[] = {&form->v, &form->w, &form->start};
+    const Linear *const end[] = {&form->v, &form->w, &form->end};
     if (term->in_matrices && used)
-        TRY(put_matrix(out, &templates->matrix, term, &term->form->start, err));
+        TRY(put_matrix(out, &templates->matrix, 's', term->segment, start, err));
     if (term->in_matrices && to_end)
-        TRY(put_matrix(out, &templates->matrix, term, &term->form->end, err));
+        TRY(put_matrix(out, &templates->matrix, 'e', term->segment, end, err));
     for (int function = 0; function < N_FUNCTIONS; function++)
         if (used & 1 << function)
             TRY(put_function(out, function == TUBE ? &templates->tube : &templates->term, term,
@@ -185,7 +161,7 @@ static void put_arrays(Text *out, size_t n, bool in_matrices)
     for (int function = 0; function < N_FUNCTIONS; function++)
         text_printf(out, "#declare %s=array[%zu]\n", function_names[function], n);
     if (in_matrices)
-        text_printf(out, "#declare Vs=array[%zu]\n#declare Ve=array[%zu]\n", n, n);
+        put_matrix_arrays(out, n);
 }
 
 /* Whether segments differ in what they are painted with. */
@@ -216,7 +192,7 @@ static Status put_terms(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     size_t n = geometry->scene->geometry.n_segments;
-    bool in_matrices = n > MOST_INLINE;
+    bool in_matrices = n > MOST_INLINE_TERMS;
     TermTemplates templates = {0};
     uint8_t *used = NULL;
     Status status;

@@ -1,7 +1,7 @@
 /* POV-Ray has no ruled surface between two circles. It is of degree 4, so a `poly` holds it, but
  * POV-Ray expands a poly about the start of the ray: from a distance of D radii its coefficients
  * lose D^4 of their precision, and small vessels dissolve. An `isosurface` whose function is zero
- * on the surface is evaluated on the spot and keeps full precision; it is found to within 2e-8
+ * on the surface is evaluated on the spot and keeps full precision; it is found to within 2e-9
  * radii.
  *
  * The function [docs/METHODS.md section 7]. In the frame of the first circle, x along e_1, y along

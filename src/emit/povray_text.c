@@ -83,3 +83,29 @@ void put_linear(Text *text, const Linear *linear)
         first = false;
     }
 }
+
+void put_matrix_arrays(Text *text, size_t n)
+{
+    text_printf(text, "#declare Vs=array[%zu]\n#declare Ve=array[%zu]\n", n, n);
+}
+
+Status put_matrix(Text *text, const Tmpl *matrix, char which, uint32_t number,
+                  const Linear *const columns[3], Err *err)
+{
+    Text name = TEXT_INIT, numbers = TEXT_INIT;
+    text_printf(&name, "V%c[%u]", which, number);
+    for (int i = 0; i < 12; i++) {
+        text_puts(&numbers, i ? "," : "");
+        text_number(&numbers, columns[i % 3]->k[i / 3] + 0);
+    }
+    const TmplValue values[] = {{"name", text_chars(&name)}, {"numbers", text_chars(&numbers)}};
+    Status status = tmpl_apply(matrix, values, 2, text, err);
+    text_release(&name);
+    text_release(&numbers);
+    return status;
+}
+
+void put_column(Text *text, char which, uint32_t number, const char *point, char column)
+{
+    text_printf(text, "V%c[%u](%s).%c", which, number, point, column);
+}

@@ -58,9 +58,9 @@ test_a_verification_leaves_the_scenes_of_its_tiles_and_no_others() {
     [ -z "$(find report -name '*tile*')" ] || fail "expected no tiles, got $(ls report)"
 }
 
-# 8,399 segments of a blob are more than POV-Ray reads in good time with their ids.
+# 33,599 segments of a blob are more than POV-Ray reads in good time with their ids.
 test_a_scene_that_is_too_much_for_povray_is_drawn_in_tiles_or_refused() {
-    run_ok corcast grow --terminals 4200 --seed 5 -o tree.swc
+    run_ok corcast grow --terminals 16800 --seed 5 --quiet -o tree.swc
     run_ok corcast verify tree.swc --model blob --size 48x40 -o report
     expect_json report/report.json '.verdict == "agree" and .povray.tiles == 2'
     run_ok corcast verify tree.swc --model blob --height 25 --size 48x40 -o near

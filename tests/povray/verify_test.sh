@@ -93,6 +93,15 @@ test_an_isosurface_whose_numbers_are_in_matrices_agrees() {
     grep -q 'Vs\[3072\](x,y,z)\.x' check/scene.inc || fail "expected the last segment to have a matrix"
 }
 
+test_a_blob_whose_numbers_are_in_matrices_agrees() {
+    local blend
+    run_ok corcast grow --terminals 1537 --seed 3 -o tree.swc --quiet
+    for blend in segment blended; do
+        run_ok corcast verify tree.swc --model blob --color-by pressure --color-blend $blend --size 60x40 -o check
+        grep -q 'Ve\[3072\](0,0,0)\.y' check/scene.inc || fail "expected the last segment to have a matrix"
+    done
+}
+
 test_joints_whose_numbers_move_a_point_agree() {
     run_ok corcast grow --terminals 4600 --seed 3 -o tree.swc --quiet
     run_ok corcast verify tree.swc --model joined --size 60x40 -o check
