@@ -1,10 +1,13 @@
 #include "any_file.h"
 #include "image/image.h"
+#include "image/png_stripes.h"
 #include "unit.h"
 #include <math.h>
+#include <pthread.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 static Err err;
@@ -137,6 +140,64 @@ static void writes_a_png_of_the_same_bytes_on_any_number_of_threads(void **state
         unlink("build/threads.png");
         picture_release(&picture);
     }
+}
+
+enum { WIDE = 21, HIGH = 15 };
+
+/* A stream as PngStripes hands it over. */
+typedef struct Deflated {
+    uint8_t bytes[WIDE * HIGH * 2];
+    size_t n;
+} Deflated;
+
+static void keep(void *context, const uint8_t *bytes, size_t n)
+{
+    Deflated *kept = context;
+    assert_true(n <= sizeof kept->bytes - kept->n);
+    memcpy(kept->bytes + kept->n, bytes, n);
+    kept->n += n;
+}
+
+static void *deflate_runs(void *context)
+{
+    static const ImageForm form = {.width = WIDE, .height = HIGH, .channels = 1, .bits = 8};
+    PngStripes *stripes;
+    uint8_t codes[WIDE * HIGH];
+    for (size_t i = 0; i < sizeof codes; i++)
+        codes[i] = i >= WIDE && i * i % 23 < 4 ? 4 : 9;
+    assert_int_equal(pngstripes_open(&stripes, &form, false, &err), STATUS_OK);
+    pngstripes_rows(stripes, codes, HIGH, keep, context);
+    pngstripes_free(stripes);
+    return NULL;
+}
+
+/* On stacks all over 4 GB. */
+static void deflates_a_png_to_the_same_bytes_wherever_memory_is(void **state)
+{
+    (void)state;
+    enum { STACKS = 4096, STACK_BYTES = 1 << 19 };
+    const size_t step = (size_t)1 << 20;
+    static Deflated first, other;
+    uint8_t *room = mmap(NULL, STACKS * step, PROT_READ | PROT_WRITE,
+                         MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    assert_ptr_not_equal(room, MAP_FAILED);
+    for (size_t i = 0; i < STACKS; i++) {
+        pthread_t thread;
+        pthread_attr_t attributes;
+        other.n = 0;
+        assert_int_equal(pthread_attr_init(&attributes), 0);
+        assert_int_equal(pthread_attr_setstack(&attributes, room + i * step, STACK_BYTES), 0);
+        assert_int_equal(pthread_create(&thread, &attributes, deflate_runs, i ? &other : &first),
+                         0);
+        assert_int_equal(pthread_join(thread, NULL), 0);
+        assert_int_equal(pthread_attr_destroy(&attributes), 0);
+        assert_int_equal(madvise(room + i * step, STACK_BYTES, MADV_DONTNEED), 0);
+        if (i > 0) {
+            assert_int_equal(other.n, first.n);
+            assert_memory_equal(other.bytes, first.bytes, first.n);
+        }
+    }
+    munmap(room, STACKS * step);
 }
 
 static unsigned one_value(size_t i, Random *random)
@@ -410,6 +471,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(writes_in_parts_the_bytes_of_the_whole),
         cmocka_unit_test(writes_a_png_of_the_same_bytes_on_any_number_of_threads),
+        cmocka_unit_test(deflates_a_png_to_the_same_bytes_wherever_memory_is),
         cmocka_unit_test(reads_back_a_png_whatever_is_in_it),
         cmocka_unit_test(writes_a_tiff_of_the_same_codes_however_it_is_packed),
         cmocka_unit_test(writes_a_jpeg_in_parts_the_smaller_the_worse),
