@@ -193,7 +193,8 @@ static void deflate_next(struct isal_zstream *stream, size_t n, uint16_t flush)
 
 /* The first bytes go by themselves: where ISA-L 2.30 begins with several hundred, it enters the
  * third into its table of matches by a hash of the stream's address, and what it writes depends on
- * where memory is. Of that table it clears what the first bytes need. */
+ * where memory is. ISA-L then clears as much of the table as the first bytes need; here all of it
+ * is cleared. */
 static size_t deflate_rows(const PngStripes *self, const Worker *worker, size_t n, uint8_t *out)
 {
     struct isal_zstream stream = {0}; /* isal_deflate_init sets all but hist_bits */
