@@ -5,6 +5,7 @@
 
 #include "render/job.h"
 #include "scene/scene.h"
+#include <math.h>
 
 typedef enum PlaceKind { PLACE_VESSEL, PLACE_GROUND } PlaceKind;
 
@@ -41,7 +42,8 @@ static inline bool places_are_of_one(const PixelPlace *a, const PixelPlace *b)
         off_a += way * a->normal[c];
         off_b += way * b->normal[c];
     }
-    return a->kind == b->kind && off_a < most && off_a > -most && off_b < most && off_b > -most;
+    /* In one go: which of these fails is hard to foresee. */
+    return (a->kind == b->kind) & (fabsf(off_a) < most) & (fabsf(off_b) < most);
 }
 
 /* The number of what the centre of a pixel sees, counted in the picture; PLACE_NONE, also outside

@@ -33,11 +33,10 @@ void beamplaces_release(BeamPlaces *places)
 
 static Status make_list(BeamList *list, size_t n, Err *err)
 {
-    float **const values[] = {&list->x, &list->y, &list->z, &list->widening};
+    float **const values[] = {&list->x, &list->y, &list->z, &list->widening, &list->free};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++)
-        TRY(mem_calloc(values[i], n + BEAM_BLOCK, sizeof(float), "occlusion", err));
-    TRY(mem_calloc(&list->place, n, sizeof *list->place, "occlusion", err));
-    return mem_calloc(&list->cell, n, sizeof *list->cell, "occlusion", err);
+        TRY(mem_alloc(values[i], n + BEAM_BLOCK, sizeof(float), "occlusion", err));
+    return STATUS_OK;
 }
 
 static void release_list(BeamList *list)
@@ -46,15 +45,14 @@ static void release_list(BeamList *list)
     free(list->y);
     free(list->z);
     free(list->widening);
-    free(list->place);
-    free(list->cell);
+    free(list->free);
 }
 
 Status beamwork_new(size_t n, BeamWork *work, Err *err)
 {
-    const size_t cells = (size_t)BEAM_MOST_CELLS * BEAM_MOST_CELLS;
-    TRY(mem_calloc(&work->first, cells + 1, sizeof *work->first, "occlusion", err));
-    TRY(mem_calloc(&work->free, n + BEAM_BLOCK, sizeof *work->free, "occlusion", err));
+    TRY(mem_alloc(&work->first, BEAM_MOST_CELLS + 1, sizeof *work->first, "occlusion", err));
+    TRY(mem_alloc(&work->cell, n, sizeof *work->cell, "occlusion", err));
+    TRY(mem_alloc(&work->place, n, sizeof *work->place, "occlusion", err));
     TRY(make_list(&work->listed, n, err));
     return make_list(&work->sorted, n, err);
 }
@@ -62,7 +60,8 @@ Status beamwork_new(size_t n, BeamWork *work, Err *err)
 void beamwork_release(BeamWork *work)
 {
     free(work->first);
-    free(work->free);
+    free(work->cell);
+    free(work->place);
     release_list(&work->listed);
     release_list(&work->sorted);
 }

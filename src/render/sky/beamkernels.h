@@ -15,42 +15,43 @@ typedef struct BeamPlaces {
     float *above;     /* the ground: its sign; 0: the ground hides no sky */
 } BeamPlaces;
 
-/* One direction, and how beams along it are cut. */
+/* One direction of a line through all places, and how beams along it are cut. */
 typedef struct BeamDirection {
-    float axes[3][3]; /* across, across, and towards the sky */
+    float axes[3][3]; /* across, across, and the direction */
     float widening;   /* the most that half a beam's width grows with its length */
     float ground;     /* the direction's cosine to the ground's normal */
 } BeamDirection;
 
 /* The capsules as one direction sees them: x and y across it, z along it, mm. */
 typedef struct SeenBlock {
-    float x[BEAM_BLOCK], y[BEAM_BLOCK], z[BEAM_BLOCK]; /* one end */
+    float x[BEAM_BLOCK], y[BEAM_BLOCK], z[BEAM_BLOCK]; /* the end of lower z */
     float ux[BEAM_BLOCK], uy[BEAM_BLOCK];              /* unit, across the view, to the other */
     float length[BEAM_BLOCK], slope[BEAM_BLOCK];       /* across the view, and rise of z with it */
     float radius[BEAM_BLOCK];
     float round[BEAM_BLOCK]; /* what its ends add to it where a beam is wider than it is */
+    float rise[BEAM_BLOCK];  /* to the other end, of one of no length across the view */
 } SeenBlock;
 
-/* Beams of one direction, as it sees them; those that are asked for, and the same sorted into the
- * cells of a grid. */
+/* Beams of one line, as its direction sees them. */
 typedef struct BeamList {
-    float *x, *y, *z, *widening; /* owned, as all that follows; where each begins; of half its width
-                                    with length */
-    uint32_t *place, *cell;
+    float *x, *y, *z; /* owned, as all that follows; where each begins */
+    float *widening;  /* of half its width with z: below 0 of what leads against the direction */
+    float *free;      /* what is left of each */
 } BeamList;
 
 /* What one thread asks with. */
 typedef struct BeamWork {
-    SeenBlock seen; /* a block of capsules */
-    BeamList listed, sorted;
-    float *free;     /* owned; of the sorted beams, what capsules leave of each */
-    uint32_t *first; /* owned; sorted beam of each cell, row by row, and behind the last */
+    SeenBlock seen;          /* a block of capsules */
+    BeamList listed, sorted; /* by place, and by cell of a grid across the direction */
+    uint32_t *cell;          /* owned, as all that follows; of each listed beam */
+    uint32_t *place;         /* of each sorted beam */
+    uint32_t *first;         /* sorted beam of each cell, row by row, and behind the last */
     int columns, rows;
-    float low[3], high[3], per_cell; /* between what the beams begin */
-    uint32_t n;
+    float low[2], high[2], per_row, per_column; /* between what the beams begin */
 } BeamWork;
 
-enum { BEAM_MOST_CELLS = 512 }; /* on a side of the grid */
+/* Squares on a side of the grid, which are parted into cells, and cells in all. */
+enum { BEAM_MOST_SQUARES = 512, BEAM_MOST_CELLS = 1 << 20 };
 
 /* Make room for n places, to be set, or for asking about at most so many. *places and *work are the
  * caller's even when these fail. STATUS_MEMORY. */
@@ -59,23 +60,34 @@ void beamplaces_release(BeamPlaces *places);
 MUST_CHECK Status beamwork_new(size_t n, BeamWork *work, Err *err);
 void beamwork_release(BeamWork *work);
 
-/* An answer is the part of a beam that is free, times BEAM_FREE; or, of a beam that leads into the
- * surface, BEAM_UNASKED. */
-enum { BEAM_FREE = 254, BEAM_UNASKED = 255 };
-/* Answers to one place are padded to multiples of this with BEAM_UNASKED. */
+/* An answer is the part of a beam that is free, times BEAM_FREE, and BEAM_AGAINST where the beam
+ * leads against the direction. */
+enum { BEAM_FREE = 127, BEAM_AGAINST = 128 };
+/* Answers to one place are padded to multiples of this. */
 enum { SUMMED = 16 };
 
+/* The directions of lines, unit and by coordinate, and zeros for what pads answers. */
+typedef struct BeamLines {
+    float *towards[3]; /* owned */
+    int n;             /* a multiple of SUMMED */
+} BeamLines;
+
+/* What neighbours of a place were answered about the same lines. */
+enum { MOST_NEIGHBORS = 18 };
+typedef struct BeamAnswers {
+    const uint8_t *of[MOST_NEIGHBORS];
+    int weight[MOST_NEIGHBORS], n;
+} BeamAnswers;
+
 typedef struct BeamKernels {
-    /* Sets answers[i] for each place i, of which there is one at least. */
+    /* Sets answers[i] for each place i, of which there is one at least. A place asks about the end
+     * of the line that its surface faces. */
     void (*ask)(const Beams *beams, const BeamDirection *direction, const BeamPlaces *places,
                 BeamWork *work, uint8_t *answers);
-    /* Adds to asked[n] `weight` where there is an answer, and to free[n] the answer as often. n is
-     * a multiple of SUMMED. */
-    void (*add)(const uint8_t *answers, int n, int weight, uint16_t *free, uint16_t *asked);
-    /* The mean of such sums of answers in n directions, given by coordinate, by the cosines to a
-     * normal that are positive: the part that is free, from 0 to 1. */
-    float (*mean)(const float *const directions[3], const float normal[3], const uint16_t *free,
-                  const uint16_t *asked, int n);
+    /* The part of the sky that is free, from 0 to 1, about a normal: of each line the mean of the
+     * answers about the end that the normal faces, by their weights, and of these the mean by their
+     * cosines to the normal; 1 where there are none. answers[i] is of lines[i]. */
+    float (*open)(const BeamLines *lines, const BeamAnswers *answers, int n, const float normal[3]);
 } BeamKernels;
 
 extern const BeamKernels beamkernels_portable;

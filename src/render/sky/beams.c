@@ -144,9 +144,10 @@ void beams_release(Beams *beams)
     *beams = (Beams){0};
 }
 
-/* Fibonacci's lattice: rings of equal area, each a golden angle on from the last. */
-Vec3 beams_direction(int n, int k)
+/* Fibonacci's lattice of a hemisphere: rings of equal area, each a golden angle on from the last.
+ */
+Vec3 beams_line(int n, int k)
 {
-    double z = 1 - (2 * k + 1.0) / n, across = sqrt(1 - z * z);
+    double z = 1 - (k + 0.5) / n, across = sqrt(1 - z * z);
     return vec3(across * cos(golden_turn * k), across * sin(golden_turn * k), z);
 }

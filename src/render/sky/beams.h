@@ -24,7 +24,8 @@ typedef struct Beams {
 MUST_CHECK Status beams_new(const Geometry *geometry, Beams *beams, Err *err);
 void beams_release(Beams *beams);
 
-/* Of `n` directions, evenly spread over the sphere, number k: unit. */
-Vec3 beams_direction(int n, int k);
+/* Of `n` lines whose both directions are spread evenly over the sphere, the one of number k that
+ * points up: unit. */
+Vec3 beams_line(int n, int k);
 
 #endif

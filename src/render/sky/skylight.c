@@ -1,21 +1,22 @@
 /* Pixels are taken in pairs along a row. Of each surface that a pair of pixels shows, one place
- * asks beams [beams.c] for both pixels; where the two show different surfaces, both places ask. The
- * directions of beams are parted into four sets, and a pair asks those of one set: in a square of
- * four by four pairs each row, each column and each quarter has all four sets.
+ * asks beams [beams.c] for both pixels; where the two show different surfaces, both places ask.
+ * Directions come in pairs, as lines, of which a place asks about the end that its surface faces.
+ * Lines are parted into four sets, and a pair of pixels asks those of one set: in a square of four
+ * by four pairs each row, each column and each quarter has all four sets.
  *
  * What part of the sky a place sees is found from what three by three pairs about it were answered,
- * as far as they asked from the same surface. For each direction that is the mean of the answers,
- * by weights that fall with the distance from the place; over all directions, the mean weighted by
- * the cosine to the normal at the place itself, because on a thin vessel that cosine changes most
- * from pixel to pixel. As neighbours have all four sets, there is neither grain nor a seam between
- * pairs.
+ * as far as they asked from the same surface. For each line that is the mean of the answers about
+ * the end that the place faces, by weights that fall with the distance from it; over all lines, the
+ * mean weighted by the cosine to the normal at the place itself, because on a thin vessel that
+ * cosine changes most from pixel to pixel. As neighbours have all four sets, there is neither grain
+ * nor a seam between pairs.
  *
  * Why pairs: a beam is wider than a pixel except near its beginning, so that two pixels can share
  * one. The error in a ball is 0.034 if each pixel asks, 0.035 with pairs and 0.040 if one pixel
  * asks for four; pairs take half the beams.
  *
  * Answers are bytes, so that those of a whole picture need little memory. A thread takes one
- * direction at a time, with all places that ask about it. */
+ * line at a time, with all places that ask about it. */
 #include "render/sky/skylight.h"
 
 #include "render/sky/beamkernels.h"
@@ -23,9 +24,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SETS = 4, PAIR = 2, MOST_A_SET = 256 };
-/* Directions for each beam that is asked for. */
-enum { DIRECTIONS = 8 };
+enum { SETS = 4, PAIR = 2, MOST_A_SET = 128 };
+/* Lines for each beam that is asked for. */
+enum { LINES = 4 };
 /* What threads take at a time: squares of pairs, and runs of askers. */
 enum { SQUARE = 32, RUN = 512 };
 
@@ -43,10 +44,10 @@ typedef struct Sky {
     size_t first[SETS + 1];   /* rows of set i are [first[i], first[i + 1]) */
     uint32_t *numbers;        /* of the asker of each row, its place */
     BeamPlaces places[SETS];  /* the same as beams begin from them */
-    int asked, stride;        /* beams of a set, and bytes of a row */
-    uint8_t *found, *answers; /* set by set, direction by direction; row by row */
-    float *directions[3];     /* of set i [i * stride, i * stride + asked) */
-    BeamWork *works;          /* one a worker */
+    int asked, stride;        /* lines of a set, and bytes of a row */
+    uint8_t *found, *answers; /* set by set, line by line; row by row */
+    BeamLines lines[SETS];
+    BeamWork *works; /* one a worker */
 } Sky;
 
 /* ---- who asks -------------------------------------------------------------------------------- */
@@ -191,15 +192,15 @@ static uint8_t *found_in(const Sky *sky, int set, int column)
     return sky->found + sky->first[set] * (size_t)sky->asked + (size_t)column * sky->places[set].n;
 }
 
-static void ask_direction(size_t index, int worker, void *context)
+static void ask_line(size_t index, int worker, void *context)
 {
     const Sky *sky = context;
     int n = SETS * sky->asked, set = (int)index % SETS;
-    Vec3 towards = beams_direction(n, (int)index);
+    Vec3 towards = beams_line(n, (int)index);
     Vec3 other = fabs(towards.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
     Vec3 across = vec3_normalized(vec3_cross(towards, other));
     const Vec3 axes[3] = {across, vec3_cross(towards, across), towards};
-    BeamDirection direction = {.widening = sqrtf(3.14159265f / (float)n),
+    BeamDirection direction = {.widening = sqrtf(1.57079633f / (float)n),
                                .ground =
                                    (float)vec3_dot(sky->drawing->view->ground.normal, towards)};
     for (int i = 0; i < 3; i++)
@@ -227,39 +228,42 @@ static void turn_run(size_t index, int worker, void *context)
     }
 }
 
-/* The directions of each set, and those that pad it. */
-static Status list_directions(Sky *sky, Err *err)
+/* The lines of each set, and those that pad it. */
+static Status list_lines(Sky *sky, Err *err)
 {
-    size_t stride = (size_t)sky->stride;
-    for (int c = 0; c < 3; c++)
-        TRY(mem_calloc(&sky->directions[c], SETS * stride, sizeof(float), "occlusion", err));
-    for (int k = 0; k < SETS * sky->asked; k++) {
-        Vec3 direction = beams_direction(SETS * sky->asked, k);
-        size_t place = (size_t)(k % SETS) * stride + (size_t)(k / SETS);
+    for (int set = 0; set < SETS; set++) {
+        BeamLines *lines = &sky->lines[set];
+        lines->n = sky->stride;
         for (int c = 0; c < 3; c++)
-            sky->directions[c][place] = (float)vec3_component(direction, c);
+            TRY(mem_calloc(&lines->towards[c], (size_t)sky->stride, sizeof(float), "occlusion",
+                           err));
+    }
+    for (int k = 0; k < SETS * sky->asked; k++) {
+        Vec3 towards = beams_line(SETS * sky->asked, k);
+        for (int c = 0; c < 3; c++)
+            sky->lines[k % SETS].towards[c][k / SETS] = (float)vec3_component(towards, c);
     }
     return STATUS_OK;
 }
 
 static Status ask(Sky *sky, Err *err)
 {
-    int beams = DIRECTIONS * sky->drawing->params->occlusion / SETS;
+    int lines = LINES * sky->drawing->params->occlusion / SETS;
     int threads = sky->drawing->params->threads;
     size_t n = sky->first[SETS], most = 0;
-    sky->asked = beams < 1 ? 1 : beams < MOST_A_SET ? beams : MOST_A_SET;
+    sky->asked = lines < MOST_A_SET ? lines : MOST_A_SET;
     sky->stride = (sky->asked + SUMMED - 1) / SUMMED * SUMMED;
-    TRY(list_directions(sky, err));
+    TRY(list_lines(sky, err));
     TRY(mem_alloc(&sky->found, n, (size_t)sky->asked, "occlusion", err));
     TRY(mem_alloc(&sky->answers, n, (size_t)sky->stride, "occlusion", err));
     if (sky->stride > sky->asked)
-        memset(sky->answers, BEAM_UNASKED, n * (size_t)sky->stride);
+        memset(sky->answers, 0, n * (size_t)sky->stride);
     for (int set = 0; set < SETS; set++)
         most = sky->places[set].n > most ? sky->places[set].n : most;
     TRY(mem_calloc(&sky->works, (size_t)threads, sizeof *sky->works, "occlusion", err));
     for (int i = 0; i < threads; i++)
         TRY(beamwork_new(most, &sky->works[i], err));
-    threads_for((size_t)(SETS * sky->asked), threads, ask_direction, sky);
+    threads_for((size_t)(SETS * sky->asked), threads, ask_line, sky);
     threads_for((n + RUN - 1) / RUN, threads, turn_run, sky);
     return STATUS_OK;
 }
@@ -273,12 +277,10 @@ static const int across[PAIR][3] = {{3, 4, 1}, {1, 4, 3}};
 static float gather_open(const Sky *sky, uint32_t number, int x, int y)
 {
     const SharedLight *light = sky->light;
-    const float *const directions[3] = {sky->directions[0], sky->directions[1], sky->directions[2]};
     const PixelPlace *place = &light->places[number];
-    int stride = sky->stride;
-    uint16_t free[SETS * MOST_A_SET], asked[SETS * MOST_A_SET];
-    memset(free, 0, (size_t)(SETS * stride) * sizeof *free);
-    memset(asked, 0, (size_t)(SETS * stride) * sizeof *asked);
+    BeamAnswers answers[SETS];
+    for (int set = 0; set < SETS; set++)
+        answers[set].n = 0;
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {
             int column = x / PAIR + i, row = y + j;
@@ -286,14 +288,15 @@ static float gather_open(const Sky *sky, uint32_t number, int x, int y)
                 continue;
             const uint32_t *askers =
                 sky->askers[(size_t)row * (size_t)sky->columns + (size_t)column];
-            int set = set_of(sky, column, row);
-            for (int k = 0; k < PAIR && askers[k] > 0; k++)
-                if (places_are_of_one(place, &light->places[sky->numbers[askers[k] - 1]]))
-                    sky->kernels->add(sky->answers + (askers[k] - 1) * (size_t)stride, stride,
-                                      across[x % PAIR][i + 1] * (j == 0 ? 2 : 1),
-                                      free + set * stride, asked + set * stride);
+            BeamAnswers *of_set = &answers[set_of(sky, column, row)];
+            for (int k = 0; k < PAIR && askers[k] > 0; k++) {
+                if (!places_are_of_one(place, &light->places[sky->numbers[askers[k] - 1]]))
+                    continue;
+                of_set->of[of_set->n] = sky->answers + (askers[k] - 1) * (size_t)sky->stride;
+                of_set->weight[of_set->n++] = across[x % PAIR][i + 1] * (j == 0 ? 2 : 1);
+            }
         }
-    return sky->kernels->mean(directions, place->normal, free, asked, SETS * stride);
+    return sky->kernels->open(sky->lines, answers, SETS, place->normal);
 }
 
 /* Of the pixels of a pair. */
@@ -325,8 +328,9 @@ static void release(Sky *sky)
         beamplaces_release(&sky->places[set]);
     free(sky->found);
     free(sky->answers);
-    for (int c = 0; c < 3; c++)
-        free(sky->directions[c]);
+    for (int set = 0; set < SETS; set++)
+        for (int c = 0; c < 3; c++)
+            free(sky->lines[set].towards[c]);
     for (int i = 0; sky->works && i < sky->drawing->params->threads; i++)
         beamwork_release(&sky->works[i]);
     free(sky->works);

@@ -105,6 +105,12 @@ LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
     return (LaneMask)_mm512_i32gather_epi32((__m512i)index, table, 4);
 }
 
+/* Bytes as numbers; of the general form compilers make one move a byte. */
+LANE_FN LaneMask lanes_load_bytes(const uint8_t *bytes)
+{
+    return (LaneMask)_mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)bytes));
+}
+
 #elif defined LANES_AVX2
 
 LANE_FN Lanes lanes_select(LaneMask mask, Lanes a, Lanes b)
@@ -125,6 +131,11 @@ LANE_FN float lanes_least(Lanes a)
 LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
 {
     return (LaneMask)_mm256_i32gather_epi32((const int *)table, (__m256i)index, 4);
+}
+
+LANE_FN LaneMask lanes_load_bytes(const uint8_t *bytes)
+{
+    return (LaneMask)_mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)bytes));
 }
 
 /* Bit i: lane i. */
@@ -182,6 +193,11 @@ LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
     return index;
 }
 
+LANE_FN LaneMask lanes_load_bytes(const uint8_t *bytes)
+{
+    return (LaneMask){bytes[0], bytes[1], bytes[2], bytes[3]};
+}
+
 LANE_FN uint32_t lanes_bits(LaneMask mask)
 {
     return (uint32_t)((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
@@ -223,9 +239,7 @@ LANE_FN void lanes_to_bytes(uint8_t *bytes, LaneMask mask)
 /* Which bytes are not 0. */
 LANE_FN LaneMask lanes_of_bytes(const uint8_t *bytes)
 {
-    LaneBytes lanes;
-    __builtin_memcpy(&lanes, bytes, sizeof lanes);
-    return __builtin_convertvector(lanes, LaneMask) != 0;
+    return lanes_load_bytes(bytes) != 0;
 }
 
 LANE_FN Lanes lanes_abs(Lanes a)
