@@ -309,7 +309,7 @@ LANE_TARGET static void BEAM_KERNEL(ask)(const Beams *beams, const BeamDirection
 /* ---- sums ------------------------------------------------------------------------------------ */
 
 /* Adds LANES of the lines, from one on. */
-LANE_FN void add_lines(const BeamLines *lines, const BeamAnswers *answers, int first,
+LANE_FN void add_lines(const BeamLines *lines, const BeamAnswers *answers, int pixel, int first,
                        const float normal[3], Lanes *open, Lanes *all)
 {
     Lanes cosine = normal[0] * lanes_load(&lines->towards[0][first]) +
@@ -318,7 +318,7 @@ LANE_FN void add_lines(const BeamLines *lines, const BeamAnswers *answers, int f
     LaneMask against = (cosine < 0.0f) & BEAM_AGAINST, free = {0}, asked = {0};
     for (int i = 0; i < answers->n; i++) {
         LaneMask answer = lanes_load_bytes(answers->of[i] + first) ^ against;
-        LaneMask part = (answer < BEAM_AGAINST) & answers->weight[i];
+        LaneMask part = (answer < BEAM_AGAINST) & answers->weight[pixel][i];
         free += part * answer;
         asked += part;
     }
@@ -329,14 +329,14 @@ LANE_FN void add_lines(const BeamLines *lines, const BeamAnswers *answers, int f
 }
 
 LANE_TARGET static float BEAM_KERNEL(open)(const BeamLines *lines, const BeamAnswers *answers,
-                                           int n, const float normal[3])
+                                           int n, int pixel, const float normal[3])
 {
     float open[SUMMED] = {0}, all[SUMMED] = {0};
     for (int first = 0; first < SUMMED; first += LANES) {
         Lanes open_lanes = lanes_set(0), all_lanes = lanes_set(0);
         for (int i = 0; i < n; i++)
             for (int k = first; k < lines[i].n; k += SUMMED)
-                add_lines(&lines[i], &answers[i], k, normal, &open_lanes, &all_lanes);
+                add_lines(&lines[i], &answers[i], pixel, k, normal, &open_lanes, &all_lanes);
         lanes_store(&open[first], open_lanes);
         lanes_store(&all[first], all_lanes);
     }
