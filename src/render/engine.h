@@ -22,6 +22,9 @@ typedef struct Engine {
     void (*free)(void *prepared);
     /* How it looks from lights; NULL: by rays alone. */
     const struct LightViews *lights;
+    /* What was prepared of a light by these, for places in the frame of the camera; NULL: nothing,
+     * rays are to be asked. NULL where `lights` is. */
+    const void *(*shadow)(const void *prepared, size_t light);
 } Engine;
 
 #endif

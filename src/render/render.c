@@ -4,7 +4,9 @@
  * nothing but colours.
  *
  * Where vessels thinner than a pixel are drawn by coverage, the colours are those of a renderer of
- * the other vessels alone, and the thin ones are laid over them [thin/thinvessels.h].
+ * the other vessels alone, and the thin ones are laid over them [thin/thinvessels.h]. The lights
+ * are asked once for all thin vessels, as they are for the others: area lights with the first rows
+ * of these, for which they are looked from point by point, the rest after those.
  *
  * The first engine of the table that can draws: the special ones first, rays, which can draw
  * anything, last.
@@ -47,11 +49,14 @@ struct Renderer {
     Light lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
     int antialias;
-    /* What is kept while thin vessels are drawn for this camera. */
-    Camera thin_camera;
+    /* What is kept while thin vessels are drawn for one camera. */
     ThinVessels thin;
     Geometry rest_geometry; /* without the thin ones */
     Renderer *rest;         /* of that; NULL: none is thin */
+    /* What of the lights reaches these, while lights and ground are the same. */
+    LonePlaces thin_places;
+    View thin_lights;  /* of this view's */
+    LonePlaces *asked; /* of another renderer, borrowed: places that ask area lights, too */
 };
 
 /* ---- planes ------------------------------------------------------------------------------------
@@ -196,6 +201,7 @@ static void forget_thin(Renderer *renderer)
     renderer_free(renderer->rest);
     renderer->rest = NULL;
     geometry_release(&renderer->rest_geometry);
+    loneplaces_release(&renderer->thin_places);
     thinvessels_release(&renderer->thin);
 }
 
@@ -312,7 +318,8 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Shar
     const LightSources from = {.see = see_vessels,
                                .context = renderer,
                                .views = renderer->engine->lights,
-                               .beams = &renderer->beams};
+                               .beams = &renderer->beams,
+                               .lone = renderer->asked};
     return share_light(&wide, &from, out, err);
 }
 
@@ -481,7 +488,7 @@ static Status sampled_rows(Renderer *renderer, const View *view, const Appearanc
 static Status prepare_thin(Renderer *renderer, const Camera *camera, Err *err)
 {
     const RenderParams *params = &renderer->params;
-    if (memcmp(&renderer->thin_camera, camera, sizeof *camera) == 0)
+    if (memcmp(&renderer->thin.camera, camera, sizeof *camera) == 0)
         return STATUS_OK;
     double start_s = clock_seconds();
     forget_thin(renderer);
@@ -495,8 +502,60 @@ static Status prepare_thin(Renderer *renderer, const Camera *camera, Err *err)
         TRY(renderer_new(&renderer->rest_geometry, &of_rest, &renderer->rest, err));
         renderer->rest->occluders = renderer->geometry;
     }
-    memcpy(&renderer->thin_camera, camera, sizeof *camera);
     renderer->stats.prepare_s += clock_seconds() - start_s;
+    return STATUS_OK;
+}
+
+static bool are_same_lights(const View *a, const View *b)
+{
+    return a->n_lights == b->n_lights &&
+           memcmp(a->lights, b->lights, a->n_lights * sizeof *a->lights) == 0 &&
+           memcmp(&a->ground, &b->ground, sizeof a->ground) == 0;
+}
+
+/* Has area lights asked for thin vessels with the next rows of the rest, unless it is known what of
+ * the view's lights reaches them. */
+static Status begin_light(Renderer *renderer, const View *view, Err *err)
+{
+    LonePlaces *places = &renderer->thin_places;
+    if (!renderer->params.shadows ||
+        (places->n > 0 && are_same_lights(&renderer->thin_lights, view)))
+        return STATUS_OK;
+    loneplaces_release(places);
+    *places = thinvessels_places(&renderer->thin);
+    renderer->thin_lights = (View){0};
+    renderer->rest->asked = places;
+    return loneplaces_init(view, places, err);
+}
+
+/* Asks a light for the thin vessels as the rows of the rest did, or by rays. */
+static Status ask_light(Renderer *renderer, Drawing *drawing, size_t light, Err *err)
+{
+    Renderer *rest = renderer->rest;
+    const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
+    const Engine *engine = rest->engine;
+    const void *shadow = engine->shadow ? engine->shadow(rest->prepared, light) : NULL;
+    if (shadow)
+        return lonelight_look(drawing, engine->lights, shadow, &eye, light, &renderer->thin_places,
+                              err);
+    TRY(make_caster(rest, err));
+    drawing->caster = rest->caster;
+    lonelight_cast(drawing, light, &renderer->thin_places);
+    return STATUS_OK;
+}
+
+/* Asks the lights that are not known yet, after rows of the rest. */
+static Status end_light(Renderer *renderer, Drawing *drawing, Err *err)
+{
+    const View *view = drawing->view;
+    const bool shared = share_is_wanted(view, drawing->params);
+    if (!renderer->rest->asked)
+        return STATUS_OK;
+    renderer->rest->asked = NULL;
+    for (size_t i = 0; i < view->n_lights; i++)
+        if (view->lights[i].casts_shadows && !(shared && light_is_soft(&view->lights[i])))
+            TRY(ask_light(renderer, drawing, i, err));
+    memcpy(&renderer->thin_lights, view, sizeof *view);
     return STATUS_OK;
 }
 
@@ -511,9 +570,9 @@ static Status cover_rows(Renderer *renderer, const View *view, const Appearance 
                        .params = &rest->params,
                        .band = {.first = first, .rows = frame->color.height}};
     double start_s = clock_seconds(), start_cpu_s = clock_cpu_seconds();
-    TRY(rest->params.shadows ? make_caster(rest, err) : STATUS_OK);
-    drawing.caster = rest->caster;
-    TRY(thinvessels_draw(&renderer->thin, &drawing, frame, err));
+    TRY(end_light(renderer, &drawing, err));
+    TRY(thinvessels_draw(&renderer->thin, rest->params.shadows ? &renderer->thin_places : NULL,
+                         &drawing, frame, err));
     rest->stats.trace_s += clock_seconds() - start_s;
     rest->stats.cpu_s += clock_cpu_seconds() - start_cpu_s;
     return STATUS_OK;
@@ -543,6 +602,7 @@ static Status covered_rows(Renderer *renderer, const View *view, const Appearanc
                            int first, int rows, Frame *frame, Err *err)
 {
     Frame made;
+    TRY(begin_light(renderer, view, err));
     TRY(sampled_rows(renderer->rest, view, appearance, first, rows, &made, err));
     Status status = cover_rows(renderer, view, appearance, first, &made, err);
     if (status == STATUS_OK)

@@ -553,6 +553,12 @@ static bool needs_rays(const Drawing *drawing)
     return rays;
 }
 
+static const void *shadow_of(const void *prepared, size_t light)
+{
+    const FieldPrepared *field = prepared;
+    return field->shadows[light];
+}
+
 const Engine field_engine = {.name = "field",
                              .makes_codes = true,
                              .can = can_draw,
@@ -560,4 +566,5 @@ const Engine field_engine = {.name = "field",
                              .prepare = prepare,
                              .rows = draw_rows,
                              .free = release_prepared,
-                             .lights = &field_lights};
+                             .lights = &field_lights,
+                             .shadow = shadow_of};

@@ -435,6 +435,12 @@ static bool needs_rays(const Drawing *drawing)
     return drawing->params->shadows && rastershadows_need_rays(drawing->geometry, drawing->view);
 }
 
+static const void *shadow_of(const void *prepared, size_t light)
+{
+    const RasterPrepared *raster = prepared;
+    return raster->shadows[light];
+}
+
 const Engine raster_engine = {.name = "raster",
                               .makes_codes = true,
                               .can = can_draw,
@@ -442,4 +448,5 @@ const Engine raster_engine = {.name = "raster",
                               .prepare = prepare,
                               .rows = draw_rows,
                               .free = release_prepared,
-                              .lights = &raster_lights};
+                              .lights = &raster_lights,
+                              .shadow = shadow_of};

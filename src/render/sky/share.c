@@ -356,6 +356,13 @@ static Status check_looks(const SetLook *look, Err *err)
     return STATUS_OK;
 }
 
+/* The frame that places are asked about in. */
+static Viewpoint frame_of(const Share *share)
+{
+    return (Viewpoint){
+        share->light->origin, {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)}, .perspective = false};
+}
+
 /* A view from one point of the set. */
 static void look_from_point(size_t index, int worker, void *context)
 {
@@ -363,8 +370,7 @@ static void look_from_point(size_t index, int worker, void *context)
     const Share *share = look->share;
     const Light point =
         light_at_point(&share->drawing->view->lights[share->number], look->points[index]);
-    const Viewpoint frame = {
-        share->light->origin, {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)}, .perspective = false};
+    const Viewpoint frame = frame_of(share);
     RenderParams alone = *share->drawing->params;
     Drawing drawing = *share->drawing;
     alone.threads = 1;
@@ -410,6 +416,17 @@ static void release_looks(SetLook *look)
     free(look->status);
 }
 
+/* Asks the points of the set for the lone places. */
+static Status look_at_lone(const SetLook *look, Err *err)
+{
+    const Share *share = look->share;
+    const Viewpoint frame = frame_of(share);
+    for (int k = 0; share->from->lone && k < look->n_points; k++)
+        TRY(lonelight_look(share->drawing, share->from->views, look->shadows[k], &frame,
+                           (size_t)share->number, share->from->lone, err));
+    return STATUS_OK;
+}
+
 static Status look_from_set(const Share *share, int set, Err *err)
 {
     SetLook look = {.share = share, .set = set};
@@ -418,6 +435,8 @@ static Status look_from_set(const Share *share, int set, Err *err)
         threads_for(share->n_runs, share->drawing->params->threads, look_at_run, &look);
         status = check_looks(&look, err);
     }
+    if (status == STATUS_OK)
+        status = look_at_lone(&look, err);
     release_looks(&look);
     return status;
 }
@@ -432,6 +451,8 @@ static Status find_reach(Share *share, Err *err)
     memset(share->reach, 0, (size_t)shared->width * (size_t)shared->rows * sizeof *share->reach);
     if (!views || !lightviews_can(views, drawing->geometry, drawing->view, light)) {
         threads_for(share->n_runs, drawing->params->threads, cast_to_light, share);
+        if (share->from->lone)
+            lonelight_cast(drawing, (size_t)share->number, share->from->lone);
         return STATUS_OK;
     }
     for (int set = 0; set < SETS; set++)

@@ -5,6 +5,7 @@
 
 #include "render/light/sharedlight.h"
 #include "render/sky/beams.h"
+#include "render/sky/lonelight.h"
 #include "render/tile/lightqueue.h"
 #include "render/tile/lightview.h"
 
@@ -27,6 +28,7 @@ typedef struct LightSources {
     const LightViews *views; /* area lights are looked from by these, or by rays of the drawing's
                               * caster where these cannot or are NULL */
     const Beams *beams;      /* of what hides the sky; needed for occlusion alone */
+    LonePlaces *lone;        /* whose reach of the area lights is found, too; NULL: no places' */
 } LightSources;
 
 /* Finds it for the drawing's band. *out is owned. The rows at the band's edges are right where they

@@ -10,14 +10,14 @@
  * sorted among themselves, and cast no shadows.
  *
  * The colour of a vessel is the mean of the shading model over the visible half of its wall, at
- * normals in the middle of SHADED strips of equal width.
+ * normals in the middle of SHADED strips of equal width. As the wall is less than a pixel wide, all
+ * of it has the shadows of one place: the middle of the wall towards the viewer.
  *
  * Blocks of ROWS rows, which begin where bands may, are the unit of work; each goes through the
  * vessels that touch it in their order, so that the picture depends neither on the number of
  * threads nor on the bands. */
 #include "render/thin/thinvessels.h"
 
-#include "render/cast/caster.h"
 #include "render/light/shade.h"
 #include <math.h>
 #include <stdlib.h>
@@ -204,6 +204,7 @@ Status thinvessels_find(const Geometry *whole, const Camera *camera, double leas
                         ThinVessels *thin, Err *err)
 {
     ThinVessels made = {.whole = whole, .least_px = least_px};
+    memcpy(&made.camera, camera, sizeof made.camera);
     size_t n = model_has(whole->model, MODEL_TRIANGLES) ? 0 : count_vessels(whole);
     Search search = {.thin = &made, .camera = camera, .n = n, .n_chunks = (n + CHUNK - 1) / CHUNK};
     Status status = mark(&search, threads, err);
@@ -212,7 +213,7 @@ Status thinvessels_find(const Geometry *whole, const Camera *camera, double leas
     free(search.most);
     free(search.first);
     if (status == STATUS_OK)
-        *thin = made;
+        memcpy(thin, &made, sizeof made); /* and what is between the members of the camera */
     else
         thinvessels_release(&made);
     return status;
@@ -277,6 +278,48 @@ Status thinvessels_rest(const ThinVessels *thin, Geometry *thick, Err *err)
     return status;
 }
 
+/* ---- their walls ----------------------------------------------------------------------------- */
+
+/* The middle of a vessel as the camera sees it. */
+typedef struct Wall {
+    Vec3 middle;      /* of its axis */
+    Vec3 direction;   /* of the line of sight there */
+    Vec3 front, side; /* unit, square to the axis: towards the viewer, and across the view */
+    double radius;
+} Wall;
+
+static Wall wall_of(const Vessel *vessel, const Camera *camera)
+{
+    Wall wall = {.middle = vec3_scale(vec3_add(vessel->a, vessel->b), 0.5),
+                 .direction = camera->direction,
+                 .radius = (vessel->radius_a + vessel->radius_b) / 2};
+    Vec3 axis = vec3_normalized(vec3_sub(vessel->b, vessel->a));
+    if (camera->projection == PROJECTION_PERSPECTIVE)
+        wall.direction = vec3_normalized(vec3_sub(wall.middle, camera->location));
+    Vec3 side = vec3_cross(axis, wall.direction), other;
+    if (vec3_length(side) > 1e-9)
+        wall.side = vec3_normalized(side);
+    else
+        vec3_across(axis, &wall.side, &other);
+    wall.front = vec3_cross(axis, wall.side);
+    if (vec3_dot(wall.front, wall.direction) > 0)
+        wall.front = vec3_scale(wall.front, -1);
+    return wall;
+}
+
+static Vec3 lone_place(const void *context, size_t number)
+{
+    const ThinVessels *thin = context;
+    const Vessel vessel = vessel_at(thin->whole, thin->strips[number].vessel);
+    const Wall wall = wall_of(&vessel, &thin->camera);
+    return vec3_add_scaled(wall.middle, wall.front, wall.radius);
+}
+
+LonePlaces thinvessels_places(const ThinVessels *thin)
+{
+    return (LonePlaces){.n = thin->n, .at = lone_place, .context = thin};
+}
+
 /* ---- coverage -------------------------------------------------------------------------------- */
 
 /* In place of fminf and fmaxf, which are calls: nothing here is NaN. */
@@ -301,6 +344,7 @@ typedef struct Cover {
 
 typedef struct ThinPicture {
     const ThinVessels *thin;
+    const LonePlaces *lone;
     const Drawing *drawing;
     Frame *frame;
     Cover *covers;     /* of each worker: the block that it draws, row by row */
@@ -312,47 +356,45 @@ typedef struct ThinPicture {
 typedef struct Brush {
     const ThinPicture *picture;
     const ThinStrip *strip;
-    Cover *covers;                  /* of the rows */
-    int worker, first_row, end_row; /* rows of the picture */
-    float line_width;               /* that a line stands for, pixels */
+    Cover *covers;          /* of the rows */
+    int first_row, end_row; /* rows of the picture */
+    float line_width;       /* that a line stands for, pixels */
     bool has_color;
     Rgb color;
 } Brush;
 
-static bool shadowed(void *context, Vec3 point, Vec3 towards, double distance)
+/* Sets the parts of the lights that reach the vessel; below 0 of those that cast no shadows. */
+static void find_parts(const Brush *brush, float parts[VIEW_MAX_LIGHTS])
 {
-    const Brush *brush = context;
-    const Drawing *drawing = brush->picture->drawing;
-    return caster_shadow(drawing->caster, brush->worker, &drawing->view->ground, point, towards,
-                         distance);
+    const View *view = brush->picture->drawing->view;
+    const LonePlaces *lone = brush->picture->lone;
+    size_t number = (size_t)(brush->strip - brush->picture->thin->strips);
+    for (size_t i = 0; i < view->n_lights; i++)
+        parts[i] = lone && lone->reach[i]
+                       ? (float)lone->reach[i][number] / (float)light_points(&view->lights[i])
+                       : -1;
 }
 
-/* The mean colour of the half of the vessel's wall that is seen from along `direction`. */
-static Rgb wall_color(Brush *brush, const Vessel *vessel, Vec3 direction)
+/* The mean colour of the half of the vessel's wall that is seen. */
+static Rgb wall_color(const Brush *brush, const Vessel *vessel)
 {
     const Drawing *drawing = brush->picture->drawing;
-    Vec3 axis = vec3_normalized(vec3_sub(vessel->b, vessel->a));
-    Vec3 middle = vec3_scale(vec3_add(vessel->a, vessel->b), 0.5);
-    double radius = (vessel->radius_a + vessel->radius_b) / 2;
-    Vec3 side = vec3_cross(axis, direction), other;
-    if (vec3_length(side) > 1e-9)
-        side = vec3_normalized(side);
-    else
-        vec3_across(axis, &side, &other);
-    Vec3 front = vec3_cross(axis, side);
-    if (vec3_dot(front, direction) > 0)
-        front = vec3_scale(front, -1);
+    const Wall wall = wall_of(vessel, &drawing->view->camera);
+    float parts[VIEW_MAX_LIGHTS];
     Rgb sum = {0};
+    find_parts(brush, parts);
     for (int k = 0; k < SHADED; k++) {
         double across = (2 * k + 1.0) / SHADED - 1;
-        Vec3 normal = vec3_add_scaled(vec3_scale(front, sqrt(1 - across * across)), side, across);
+        Vec3 normal =
+            vec3_add_scaled(vec3_scale(wall.front, sqrt(1 - across * across)), wall.side, across);
         const ShadePoint at = {.finish = &drawing->appearance->finish,
                                .pigment = appearance_color(drawing->appearance, vessel->segment),
-                               .point = vec3_add_scaled(middle, normal, radius),
+                               .point = vec3_add_scaled(wall.middle, normal, wall.radius),
                                .normal = normal,
-                               .direction = direction,
-                               .open = 1};
-        Rgb one = shade(drawing->view, &at, drawing->params->shadows ? shadowed : NULL, brush);
+                               .direction = wall.direction,
+                               .open = 1,
+                               .parts = parts};
+        Rgb one = shade(drawing->view, &at, NULL, NULL);
         sum = (Rgb){sum.r + one.r / SHADED, sum.g + one.g / SHADED, sum.b + one.b / SHADED};
     }
     return sum;
@@ -361,14 +403,9 @@ static Rgb wall_color(Brush *brush, const Vessel *vessel, Vec3 direction)
 static void find_color(Brush *brush)
 {
     const View *view = brush->picture->drawing->view;
-    const Camera *camera = &view->camera;
     const Vessel vessel = vessel_at(brush->picture->thin->whole, brush->strip->vessel);
-    Vec3 middle = vec3_scale(vec3_add(vessel.a, vessel.b), 0.5);
-    Vec3 direction = camera->projection == PROJECTION_PERSPECTIVE
-                         ? vec3_normalized(vec3_sub(middle, camera->location))
-                         : camera->direction;
     double depth = (double)(brush->strip->depth_mm[0] + brush->strip->depth_mm[1]) / 2;
-    brush->color = wall_color(brush, &vessel, direction);
+    brush->color = wall_color(brush, &vessel);
     if (effects_present(&view->effects))
         brush->color =
             rgb_mixed(brush->color, view->background, fade_at(&view->effects.fade, depth));
@@ -497,7 +534,6 @@ static void draw_block(size_t index, int worker, void *context)
         Brush brush = {.picture = picture,
                        .strip = &picture->thin->strips[picture->lists.items[i]],
                        .covers = covers,
-                       .worker = worker,
                        .first_row = band->first + first,
                        .end_row = band->first + end};
         draw_strip(&brush);
@@ -558,9 +594,10 @@ static Status sort_strips(ThinPicture *picture, Err *err)
     return STATUS_OK;
 }
 
-Status thinvessels_draw(const ThinVessels *thin, const Drawing *drawing, Frame *frame, Err *err)
+Status thinvessels_draw(const ThinVessels *thin, const LonePlaces *lone, const Drawing *drawing,
+                        Frame *frame, Err *err)
 {
-    ThinPicture picture = {.thin = thin, .drawing = drawing, .frame = frame};
+    ThinPicture picture = {.thin = thin, .lone = lone, .drawing = drawing, .frame = frame};
     int threads = drawing->params->threads;
     size_t a_worker = ROWS * (size_t)drawing->view->camera.width;
     picture.n_blocks = ((size_t)drawing->band.rows + ROWS - 1) / ROWS;

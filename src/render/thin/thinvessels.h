@@ -5,6 +5,7 @@
 #include "base/base.h"
 #include "image/image.h"
 #include "render/job.h"
+#include "render/sky/lonelight.h"
 #include "scene/scene.h"
 
 /* A vessel as the picture shows it: a strip about a line, in pixels from the left and the top. */
@@ -18,6 +19,7 @@ typedef struct ThinStrip {
 /* The thin vessels of a geometry in one view. */
 typedef struct ThinVessels {
     const Geometry *whole; /* borrowed */
+    Camera camera;         /* bit by bit as it was given */
     bool *is_thin;         /* owned; by vessel, as strips have it */
     ThinStrip *strips;     /* owned; by rising vessel */
     size_t n;
@@ -38,10 +40,14 @@ MUST_CHECK Status thinvessels_find(const Geometry *whole, const Camera *camera, 
  * with the ids and the bounds of the whole. O(n log n). STATUS_MEMORY. */
 MUST_CHECK Status thinvessels_rest(const ThinVessels *thin, Geometry *thick, Err *err);
 
-/* Draws the thin vessels over the band's colours, where they lie in front of its depths.
- * `drawing` is of the rest: its caster says what casts shadows on them if shadows are wanted; it
- * has params->threads workers. STATUS_MEMORY. O(vessels + what they cover). */
-MUST_CHECK Status thinvessels_draw(const ThinVessels *thin, const Drawing *drawing, Frame *frame,
-                                   Err *err);
+/* What asks the lights for the thin vessels: a place of each strip, which borrow *thin, and no
+ * lights yet. */
+LonePlaces thinvessels_places(const ThinVessels *thin);
+
+/* Draws the thin vessels over the band's colours, where they lie in front of its depths. `lone` has
+ * the lights that reach the places of theirs; NULL: nothing casts shadows. STATUS_MEMORY.
+ * O(vessels + what they cover). */
+MUST_CHECK Status thinvessels_draw(const ThinVessels *thin, const LonePlaces *lone,
+                                   const Drawing *drawing, Frame *frame, Err *err);
 
 #endif

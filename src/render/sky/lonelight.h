@@ -1,0 +1,30 @@
+/* The lights that places see which are not those of pixels. */
+#ifndef CORCAST_RENDER_LONELIGHT_H
+#define CORCAST_RENDER_LONELIGHT_H
+
+#include "render/job.h"
+#include "render/tile/lightview.h"
+
+/* Places of the world, and how many points of each light reach them. */
+typedef struct LonePlaces {
+    size_t n;
+    Vec3 (*at)(const void *context, size_t number); /* a place below n; of several threads */
+    const void *context;                            /* borrowed */
+    uint16_t *reach[VIEW_MAX_LIGHTS]; /* owned; of each place; NULL: the light casts no shadows */
+} LonePlaces;
+
+/* Make room for the lights of a view, all of whose points reach no place yet; *places is the
+ * caller's even when this fails. STATUS_MEMORY. */
+MUST_CHECK Status loneplaces_init(const View *view, LonePlaces *places, Err *err);
+void loneplaces_release(LonePlaces *places);
+
+/* Adds to the reach of a light 1 for each place that it, or one point of it, is not hidden from, as
+ * seen from there [LightViews.look, for places in `frame`]. STATUS_MEMORY. */
+MUST_CHECK Status lonelight_look(const Drawing *drawing, const LightViews *views,
+                                 const void *shadow, const Viewpoint *frame, size_t light,
+                                 LonePlaces *places, Err *err);
+
+/* Sets the reach of a light by rays of the drawing's caster to all of its points. */
+void lonelight_cast(const Drawing *drawing, size_t light, LonePlaces *places);
+
+#endif
