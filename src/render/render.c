@@ -282,6 +282,8 @@ static Status see_vessels(const Drawing *drawing, void *context, Frame *planes, 
 {
     const Renderer *renderer = context;
     RenderParams params = *drawing->params;
+    View vessels = *drawing->view;
+    vessels.ground.present = false; /* which no plane shows */
     params.want_color = params.want_id = false;
     params.want_depth = params.want_normal = true;
     params.antialias = 1;
@@ -289,6 +291,7 @@ static Status see_vessels(const Drawing *drawing, void *context, Frame *planes, 
     params.progress = NULL;
     Drawing seen = *drawing;
     seen.params = &params;
+    seen.view = &vessels;
     TRY(make_planes(drawing->view->camera.width, drawing->band.rows, &params, false, planes, err));
     return renderer->engine->rows(&seen, renderer->prepared, planes, err);
 }

@@ -37,13 +37,15 @@ typedef struct SharedLight {
 static inline bool places_are_of_one(const PixelPlace *a, const PixelPlace *b)
 {
     float off_a = 0, off_b = 0, most = 1.25f * a->size;
+    if (a->kind != b->kind)
+        return false;
     for (int c = 0; c < 3; c++) {
         float way = b->at[c] - a->at[c];
         off_a += way * a->normal[c];
         off_b += way * b->normal[c];
     }
     /* In one go: which of these fails is hard to foresee. */
-    return (a->kind == b->kind) & (fabsf(off_a) < most) & (fabsf(off_b) < most);
+    return (fabsf(off_a) < most) & (fabsf(off_b) < most);
 }
 
 /* The number of what the centre of a pixel sees, counted in the picture; PLACE_NONE, also outside

@@ -15,8 +15,11 @@
 #include <string.h>
 
 /* Rows of a strip, whose planes are forgotten when its places are made; columns and rows of a
- * square; and what threads take at a time. */
-enum { SETS = 4, STRIP = 256, SQUARE = 32, PLACES_AT_ONCE = LIGHT_MOST_PLACES };
+ * square; and what threads take at a time: so few that the questions to a set stay in the cache. */
+enum { SETS = 4, STRIP = 256, SQUARE = 32, PLACES_AT_ONCE = 8192 };
+
+/* In Share.reach: the pixel sees the ground. */
+enum { ON_GROUND = 1 << 15, POINTS_SEEN = ON_GROUND - 1 };
 
 /* Numbers from .. to of places of one set. */
 typedef struct Run {
@@ -36,7 +39,7 @@ typedef struct Share {
     Run *runs;        /* owned; at most PLACES_AT_ONCE numbers each */
     size_t n_runs;
     int number;      /* of the light at hand */
-    uint16_t *reach; /* owned; of each pixel, how many points of that it sees */
+    uint16_t *reach; /* owned; of each pixel, how many points of that it sees, and ON_GROUND */
 } Share;
 
 static size_t squares_in(int pixels)
@@ -56,6 +59,7 @@ typedef struct PlaceJob {
     const Share *share;
     int first, rows; /* of the strip, in the band */
     Frame planes;
+    double pixel_mm;        /* what a pixel is wide, in perspective at 1 mm */
     uint32_t (*next)[SETS]; /* of each square, the next number of each set */
 } PlaceJob;
 
@@ -64,15 +68,15 @@ typedef struct Square {
     int first_column, end_column, first_row, end_row;
 } Square;
 
-static Square square_of(const PlaceJob *job, size_t number)
+/* A square of some of the light's rows. */
+static Square square_at(const SharedLight *light, size_t number, int first, int rows)
 {
-    int width = job->share->light->width, end_of_strip = job->first + job->rows;
-    size_t across = squares_in(width);
+    size_t across = squares_in(light->width);
     int column = (int)(number % across) * SQUARE;
-    int row = job->first + (int)(number / across) * SQUARE;
+    int row = first + (int)(number / across) * SQUARE;
     int end_column = column + SQUARE, end_row = row + SQUARE;
-    return (Square){column, end_column < width ? end_column : width, row,
-                    end_row < end_of_strip ? end_row : end_of_strip};
+    return (Square){column, end_column < light->width ? end_column : light->width, row,
+                    end_row < first + rows ? end_row : first + rows};
 }
 
 static size_t pixel_at(const SharedLight *light, int column, int row)
@@ -86,6 +90,57 @@ static size_t plane_pixel(const PlaceJob *job, int column, int row)
     return pixel_at(job->share->light, column, row - job->first);
 }
 
+/* Lines of sight of a row of pixels, from SharedLight.origin: all begin a step apart, or in
+ * perspective at one point, and lead a step apart. */
+typedef struct SightRow {
+    bool perspective;
+    Vec3 from, from_step;                        /* that of the first pixel, and a step */
+    Vec3 way, way_step;                          /* likewise; in perspective not unit */
+    double above, above_step, along, along_step; /* the ground: the same across its normal */
+} SightRow;
+
+static SightRow sight_of_row(const Share *share, int row)
+{
+    const View *view = share->drawing->view;
+    const Camera *camera = &view->camera;
+    const Ground *ground = &view->ground;
+    Vec3 step = vec3_scale(camera->right, 1.0 / camera->width);
+    Vec3 first = vec3_add(vec3_scale(camera->right, 0.5 / camera->width - 0.5),
+                          vec3_scale(camera->up, 0.5 - (row + 0.5) / camera->height));
+    SightRow sight = {.perspective = camera->projection == PROJECTION_PERSPECTIVE,
+                      .from = vec3_sub(camera->location, share->light->origin),
+                      .way = vec3_normalized(camera->direction)};
+    if (sight.perspective) {
+        sight.way = vec3_add(camera->direction, first);
+        sight.way_step = step;
+    } else {
+        sight.from = vec3_add(sight.from, first);
+        sight.from_step = step;
+    }
+    sight.above = vec3_dot(ground->normal, vec3_add(sight.from, share->light->origin));
+    sight.above -= ground->offset_mm;
+    sight.above_step = vec3_dot(ground->normal, sight.from_step);
+    sight.along = vec3_dot(ground->normal, sight.way);
+    sight.along_step = vec3_dot(ground->normal, sight.way_step);
+    return sight;
+}
+
+static inline double sight_length(const SightRow *sight, int column)
+{
+    return sight->perspective ? vec3_length(vec3_add_scaled(sight->way, sight->way_step, column))
+                              : 1;
+}
+
+/* How far the ground is along a line of sight; infinite where it is not seen. */
+static inline double ground_distance(const SightRow *sight, int column)
+{
+    double length = sight_length(sight, column);
+    double along = sight->along + column * sight->along_step;
+    double t = -(sight->above + column * sight->above_step) * length / along;
+    bool seen = fabs(along) >= 1e-10 * length && t > NEAREST_SEEN_MM && t <= SCENE_FARTHEST_MM;
+    return seen ? t : HUGE_VAL;
+}
+
 /* Marks the pixels of the square that see something in SharedLight.numbers by their PlaceKind, adds
  * the depth of the ground where it is nearest, and counts them. */
 static void count_places(size_t number, int worker, void *context)
@@ -93,40 +148,46 @@ static void count_places(size_t number, int worker, void *context)
     (void)worker;
     const PlaceJob *job = context;
     const SharedLight *light = job->share->light;
-    const View *view = job->share->drawing->view;
-    const Square square = square_of(job, number);
-    for (int row = square.first_row; row < square.end_row; row++)
+    const Square square = square_at(light, number, job->first, job->rows);
+    const bool has_ground = job->share->drawing->view->ground.present;
+    for (int row = square.first_row; row < square.end_row; row++) {
+        const SightRow sight = sight_of_row(job->share, light->first + row);
         for (int column = square.first_column; column < square.end_column; column++) {
             float *depth = &job->planes.depth.values[plane_pixel(job, column, row)];
-            double t = (double)*depth;
-            bool on_ground =
-                view->ground.present &&
-                ground_hit(&view->ground, camera_ray(&view->camera, column, light->first + row),
-                           NEAREST_SEEN_MM, t, &t);
-            if (!isfinite(t))
+            double t = has_ground ? ground_distance(&sight, column) : HUGE_VAL;
+            bool on_ground = t < (double)*depth;
+            if (!on_ground && !isfinite(*depth))
                 continue;
-            *depth = (float)t;
+            if (on_ground)
+                *depth = (float)t;
             light->numbers[pixel_at(light, column, row)] = on_ground ? PLACE_GROUND : PLACE_VESSEL;
             job->next[number][set_of(column, light->first + row)]++;
         }
+    }
 }
 
-static PixelPlace place_of(const PlaceJob *job, int column, int row)
+static inline PixelPlace place_of(const PlaceJob *job, const SightRow *sight, int column, int row)
 {
     const SharedLight *light = job->share->light;
     const View *view = job->share->drawing->view;
     size_t pixel = plane_pixel(job, column, row);
-    const float *of_vessel = &job->planes.normal.values[3 * pixel];
-    PlaceKind kind = (PlaceKind)light->numbers[pixel_at(light, column, row)];
     double t = (double)job->planes.depth.values[pixel];
-    Ray ray = camera_ray(&view->camera, column, light->first + row);
-    Vec3 normal = view->ground.normal;
-    if (kind == PLACE_VESSEL)
-        normal = vec3((double)of_vessel[0], (double)of_vessel[1], (double)of_vessel[2]);
-    else if (vec3_dot(normal, ray.direction) > 0)
-        normal = vec3_scale(normal, -1);
-    return sharedlight_place(light, kind, ray_at(ray, t), normal,
-                             sharedlight_pixel_mm(&view->camera, t));
+    Vec3 from = vec3_add_scaled(sight->from, sight->from_step, column);
+    Vec3 way = vec3_add_scaled(sight->way, sight->way_step, column);
+    Vec3 at = vec3_add_scaled(from, way, t / sight_length(sight, column));
+    PixelPlace place = {.at = {(float)at.x, (float)at.y, (float)at.z},
+                        .size = (float)(sight->perspective ? t * job->pixel_mm : job->pixel_mm),
+                        .kind = (PlaceKind)light->numbers[pixel_at(light, column, row)]};
+    if (place.kind == PLACE_VESSEL) {
+        memcpy(place.normal, &job->planes.normal.values[3 * pixel], sizeof place.normal);
+    } else {
+        Vec3 normal = view->ground.normal;
+        double turn = sight->along + column * sight->along_step > 0 ? -1 : 1;
+        place.normal[0] = (float)(normal.x * turn);
+        place.normal[1] = (float)(normal.y * turn);
+        place.normal[2] = (float)(normal.z * turn);
+    }
+    return place;
 }
 
 static void set_places(size_t number, int worker, void *context)
@@ -134,17 +195,19 @@ static void set_places(size_t number, int worker, void *context)
     (void)worker;
     const PlaceJob *job = context;
     const SharedLight *light = job->share->light;
-    const Square square = square_of(job, number);
-    for (int row = square.first_row; row < square.end_row; row++)
+    const Square square = square_at(light, number, job->first, job->rows);
+    for (int row = square.first_row; row < square.end_row; row++) {
+        const SightRow sight = sight_of_row(job->share, light->first + row);
         for (int column = square.first_column; column < square.end_column; column++) {
             size_t pixel = pixel_at(light, column, row);
             if (light->numbers[pixel] == PLACE_NONE)
                 continue;
             uint32_t to = job->next[number][set_of(column, light->first + row)]++;
-            light->places[to] = place_of(job, column, row);
+            light->places[to] = place_of(job, &sight, column, row);
             light->numbers[pixel] = to;
             job->share->pixels[to] = (uint32_t)pixel;
         }
+    }
 }
 
 static void add_runs(Share *share, int set, size_t from, size_t end)
@@ -190,7 +253,8 @@ static Status make_places(Share *share, Err *err)
     SharedLight *light = share->light;
     size_t pixels = (size_t)light->width * (size_t)light->rows;
     size_t strips = ((size_t)light->rows + STRIP - 1) / STRIP;
-    PlaceJob job = {.share = share};
+    const Camera *camera = &share->drawing->view->camera;
+    PlaceJob job = {.share = share, .pixel_mm = sharedlight_pixel_mm(camera, 1)};
     Status status;
     TRY(mem_alloc(&light->numbers, pixels, sizeof *light->numbers, "places", err));
     memset(light->numbers, 0xff, pixels * sizeof *light->numbers); /* PLACE_NONE */
@@ -218,20 +282,22 @@ done:
 static int sum_about(const Share *share, int column, int row, int *parts)
 {
     const SharedLight *light = share->light;
-    const PixelPlace *place = &light->places[light->numbers[pixel_at(light, column, row)]];
-    int sum = 0;
-    *parts = 0;
-    for (int j = row - 1; j <= row + 1; j++)
-        for (int i = column - 1; i <= column + 1; i++) {
-            if (i < 0 || i >= light->width || j < 0 || j >= light->rows)
+    const PixelPlace place = light->places[light->numbers[pixel_at(light, column, row)]];
+    int first = column > 0 ? column - 1 : 0;
+    int last = column + 1 < light->width ? column + 1 : column;
+    int sum = 0, weights = 0;
+    for (int j = row > 0 ? row - 1 : 0; j <= row + 1 && j < light->rows; j++) {
+        const uint32_t *numbers = &light->numbers[pixel_at(light, 0, j)];
+        const uint16_t *reach = &share->reach[pixel_at(light, 0, j)];
+        for (int i = first; i <= last; i++) {
+            if (numbers[i] == PLACE_NONE || !places_are_of_one(&place, &light->places[numbers[i]]))
                 continue;
-            uint32_t other = light->numbers[pixel_at(light, i, j)];
-            if (other == PLACE_NONE || !places_are_of_one(place, &light->places[other]))
-                continue;
-            int part = (i == column ? 2 : 1) * (j == row ? 2 : 1);
-            sum += part * share->reach[pixel_at(light, i, j)];
-            *parts += part;
+            int weight = (i == column ? 2 : 1) * (j == row ? 2 : 1);
+            sum += weight * (reach[i] & POINTS_SEEN);
+            weights += weight;
         }
+    }
+    *parts = weights;
     return sum;
 }
 
@@ -263,13 +329,19 @@ static bool is_facing(const Share *share, const PixelPlace *place, Vec3 point)
     return vec3_dot(normal, towards) >= LEAST_LIT_COSINE * vec3_length(towards);
 }
 
+static void set_reach(const Share *share, size_t number, int seen)
+{
+    bool on_ground = share->light->places[number].kind == PLACE_GROUND;
+    share->reach[share->pixels[number]] = (uint16_t)(seen | (on_ground ? ON_GROUND : 0));
+}
+
 /* How many points of the set reach the place, by rays. */
-static uint16_t points_seen(const Share *share, const PixelPlace *place, int set, int worker)
+static int points_seen(const Share *share, const PixelPlace *place, int set, int worker)
 {
     const Drawing *drawing = share->drawing;
     const Light *light = &drawing->view->lights[share->number];
     Vec3 point = vec3_add(share->light->origin, off_surface(share, place));
-    uint16_t seen = 0;
+    int seen = 0;
     if (!is_facing(share, place, point))
         return 0;
     for (int k = 0; k < light_points(light); k++) {
@@ -288,8 +360,8 @@ static void cast_to_light(size_t index, int worker, void *context)
     const Share *share = context;
     const Run *run = &share->runs[index];
     for (size_t number = run->from; number < run->to; number++)
-        share->reach[share->pixels[number]] =
-            points_seen(share, &share->light->places[number], run->set, worker);
+        set_reach(share, number,
+                  points_seen(share, &share->light->places[number], run->set, worker));
 }
 
 /* The points of a set of the light at hand, each looked from, and what the threads ask them. */
@@ -328,13 +400,15 @@ static void look_at_run(size_t index, int worker, void *context)
     const SetLook *look = context;
     const Share *share = look->share;
     const Run *run = &share->runs[index];
-    uint8_t shadowed[LIGHT_MOST_PLACES];
-    uint64_t wanted[LIGHT_BATCH];
+    uint8_t shadowed[PLACES_AT_ONCE];
+    uint16_t hidden[PLACES_AT_ONCE];
+    uint64_t wanted[PLACES_AT_ONCE / TILE_SAMPLES];
     size_t n = run->to - run->from;
     if (run->set != look->set)
         return;
     for (size_t i = 0; i < n; i += TILE_SAMPLES)
         wanted[i / TILE_SAMPLES] = ask_places(look, run->from + i, run->to, worker, (uint32_t)i);
+    memset(hidden, 0, n * sizeof *hidden);
     for (int k = 0; k < look->n_points; k++) {
         memset(shadowed, 0, n);
         Status status = share->from->views->answer(look->queues[worker * look->n_points + k],
@@ -342,8 +416,11 @@ static void look_at_run(size_t index, int worker, void *context)
         if (status != STATUS_OK)
             look->status[worker] = status;
         for (size_t i = 0; i < n; i++)
-            share->reach[share->pixels[run->from + i]] +=
-                (uint16_t)(wanted[i / TILE_SAMPLES] >> i % TILE_SAMPLES & !shadowed[i]);
+            hidden[i] = (uint16_t)(hidden[i] + shadowed[i]);
+    }
+    for (size_t i = 0; i < n; i++) {
+        bool asked = wanted[i / TILE_SAMPLES] >> i % TILE_SAMPLES & 1;
+        set_reach(share, run->from + i, asked ? look->n_points - hidden[i] : 0);
     }
 }
 
@@ -460,37 +537,50 @@ static Status find_reach(Share *share, Err *err)
     return STATUS_OK;
 }
 
-/* Whether all pixels about one, whatever they see, see as many points as it. */
-static bool is_even(const Share *share, int column, int row)
+/* As sum_about, of a pixel that is none of the band's edge. Where all see as many points, whatever
+ * these lie on, or all see the ground, which is one surface, places need not be looked at. */
+static int sum_within(const Share *share, int column, int row, int *parts)
 {
-    const SharedLight *light = share->light;
-    if (column == 0 || column == light->width - 1 || row == 0 || row == light->rows - 1)
-        return false;
-    const uint16_t *at = &share->reach[pixel_at(light, column, row)];
-    uint32_t off = 0;
-    for (int j = -light->width; j <= light->width; j += light->width)
-        off |= (uint32_t)((at[j - 1] ^ *at) | (at[j] ^ *at) | (at[j + 1] ^ *at));
-    return off == 0;
+    const int width = share->light->width;
+    const uint16_t *at = &share->reach[pixel_at(share->light, column, row)];
+    const uint16_t *up = at - width, *down = at + width;
+    int differ = 0, all = *at;
+    for (int i = -1; i <= 1; i++) {
+        differ |= (up[i] ^ *at) | (at[i] ^ *at) | (down[i] ^ *at);
+        all &= up[i] & at[i] & down[i];
+    }
+    *parts = 1;
+    if (differ == 0)
+        return *at & POINTS_SEEN;
+    if (!(all & ON_GROUND))
+        return sum_about(share, column, row, parts);
+    *parts = 16;
+    int middle = up[0] + 2 * at[0] + down[0];
+    return up[-1] + 2 * at[-1] + down[-1] + 2 * middle + up[1] + 2 * at[1] + down[1] -
+           *parts * ON_GROUND;
 }
 
-/* The part of the light's points that reaches each pixel of a row, by what its neighbours on its
+/* The part of the light's points that reaches each pixel of a square, by what its neighbours on its
  * surface see of them. */
-static void gather_row(size_t index, int worker, void *context)
+static void gather_square(size_t index, int worker, void *context)
 {
     (void)worker;
     const Share *share = context;
     const SharedLight *light = share->light;
+    const Square square = square_at(light, index, 0, light->rows);
     float points = (float)light_points(&share->drawing->view->lights[share->number]);
-    for (int column = 0, row = (int)index; column < light->width; column++) {
-        size_t pixel = pixel_at(light, column, row);
-        int sum = share->reach[pixel], parts = 1;
-        if (light->numbers[pixel] == PLACE_NONE)
-            continue;
-        if (!is_even(share, column, row))
-            sum = sum_about(share, column, row, &parts);
-        light->parts[share->number][light->numbers[pixel]] =
-            (float)(sum * SETS) / ((float)parts * points);
-    }
+    for (int row = square.first_row; row < square.end_row; row++)
+        for (int column = square.first_column; column < square.end_column; column++) {
+            size_t pixel = pixel_at(light, column, row);
+            int parts;
+            bool within =
+                column > 0 && column < light->width - 1 && row > 0 && row < light->rows - 1;
+            if (light->numbers[pixel] == PLACE_NONE)
+                continue;
+            int sum = (within ? sum_within : sum_about)(share, column, row, &parts);
+            light->parts[share->number][light->numbers[pixel]] =
+                (float)(sum * SETS) / ((float)parts * points);
+        }
 }
 
 static Status share_lights(Share *share, Err *err)
@@ -506,7 +596,8 @@ static Status share_lights(Share *share, Err *err)
         TRY(mem_calloc(&light->parts[i], share->n, sizeof *light->parts[i], "lights", err));
         share->number = (int)i;
         TRY(find_reach(share, err));
-        threads_for((size_t)light->rows, threads, gather_row, share);
+        threads_for(squares_in(light->width) * squares_in(light->rows), threads, gather_square,
+                    share);
     }
     return STATUS_OK;
 }

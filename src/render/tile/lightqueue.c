@@ -28,9 +28,11 @@ Status lightqueue_new(const LightAim *aim, LightQueue **out, Err *err)
 {
     LightQueue *queue;
     size_t n = (size_t)aim->columns * (size_t)aim->rows;
-    TRY(mem_calloc(&queue, 1, sizeof *queue, "shadows", err));
+    TRY(mem_alloc(&queue, 1, sizeof *queue, "shadows", err));
     *out = queue;
     queue->aim = *aim;
+    queue->n_calls = queue->n_requests = queue->n_tiles = queue->n_asked = 0;
+    queue->last = NULL;
     TRY(mem_calloc(&queue->last, n, sizeof *queue->last, "shadows", err));
     memset(queue->last, -1, n * sizeof *queue->last);
     return STATUS_OK;
