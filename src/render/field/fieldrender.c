@@ -298,7 +298,13 @@ static void keep_further(const BatchTile *tile, float (*color)[TILE_SAMPLES], in
 static void visit_further(const SeenTile *vessels, int worker, void *context)
 {
     FurtherVisit *visit = context;
+    const Canvas *canvas = &visit->picture->canvas;
     Batch *batch = &visit->picture->batches[worker];
+    if (!vessels->hits && !canvas->drawing->view->ground.present && !canvas->wholly_colored) {
+        const BatchTile empty = {.seen = *vessels};
+        keep_further(&empty, NULL, worker, visit);
+        return;
+    }
     add_tile(visit->picture, vessels, batch);
     if (batch->n_tiles == visit->picture->batch_size && batch->status == STATUS_OK)
         batch->status = shade_batch(visit->picture, worker, keep_further, visit, &batch->err);

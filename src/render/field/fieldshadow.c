@@ -107,11 +107,13 @@ static void free_shadow(void *of)
     free(shadow);
 }
 
-/* Tiles on a side of a light's view: about as many as those of the picture. */
-static int tiles_for(const Camera *camera)
+/* Tiles on a side of a light's view: about as many as those of the picture, but no more tiles than
+ * segments. */
+static int tiles_for(const Camera *camera, size_t n_segments)
 {
     enum { LEAST = 16, MOST = 384 };
     int side = (camera->width > camera->height ? camera->width : camera->height) / 12;
+    side = (int)min_of(side, sqrt((double)n_segments));
     return side < LEAST ? LEAST : side > MOST ? MOST : side;
 }
 
@@ -127,7 +129,8 @@ static Status look(const Drawing *drawing, const Light *light, const Viewpoint *
     TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
     shadow->geometry = drawing->geometry;
     shadow->workers = params->threads;
-    shadow->view = lightview_of(drawing->geometry, light, tiles_for(&drawing->view->camera));
+    shadow->view = lightview_of(drawing->geometry, light,
+                                tiles_for(&drawing->view->camera, drawing->geometry->n_segments));
     shadow->aim = lightview_aim(&shadow->view, frame, from_mm);
     TRY_GOTO(vessellists_of_light(drawing->geometry, &shadow->view, params->threads, &shadow->lists,
                                   err));

@@ -16,7 +16,7 @@
 
 /* Rows of a strip, whose planes are forgotten when its places are made; columns and rows of a
  * square; and what threads take at a time: so few that the questions to a set stay in the cache. */
-enum { SETS = 4, STRIP = 256, SQUARE = 32, PLACES_AT_ONCE = 8192 };
+enum { SETS = 4, STRIP = 256, SQUARE = 128, PLACES_AT_ONCE = 8192 };
 
 /* In Share.reach: the pixel sees the ground. */
 enum { ON_GROUND = 1 << 15, POINTS_SEEN = ON_GROUND - 1 };
