@@ -307,8 +307,20 @@ static Drawing widened(const Drawing *drawing, int margin)
     return all;
 }
 
+/* The same in whole blocks of rows. */
+static Drawing in_blocks(const Drawing *drawing)
+{
+    const int height = drawing->view->camera.height;
+    int first = drawing->band.first / SHARE_BLOCK * SHARE_BLOCK;
+    int end = drawing->band.first + drawing->band.rows;
+    end += (SHARE_BLOCK - end % SHARE_BLOCK) % SHARE_BLOCK;
+    Drawing all = *drawing;
+    all.band = (Band){.first = first, .rows = (end < height ? end : height) - first};
+    return all;
+}
+
 /* Finds what samples share, if they share anything, in the drawing's band and `margin` rows about
- * it. */
+ * it at least. */
 static Status share(Renderer *renderer, const Drawing *drawing, int margin, SharedLight **out,
                     Err *err)
 {
@@ -318,6 +330,8 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Shar
     if (params->occlusion > 0 && !renderer->beams.capsules)
         TRY(beams_new(renderer->occluders, &renderer->beams, err));
     Drawing wide = widened(drawing, margin);
+    if (params->shadows && view_has_soft_shadows(drawing->view))
+        wide = in_blocks(&wide);
     const LightSources from = {.see = see_vessels,
                                .context = renderer,
                                .views = renderer->engine->lights,

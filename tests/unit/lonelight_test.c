@@ -283,7 +283,8 @@ static void have_the_same_bytes_whatever_threads_and_bands(void **state)
 {
     (void)state;
     in_bands_as_whole(SCENE_JOINED, 3, 1);
-    in_bands_as_whole(SCENE_ISOSURFACE, 2, 2);
+    in_bands_as_whole(SCENE_ISOSURFACE, 3, 2);
+    in_bands_as_whole(SCENE_BLOB, 3, 1);
 }
 
 int main(void)

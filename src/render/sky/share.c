@@ -16,7 +16,7 @@
 
 /* Rows of a strip, whose planes are forgotten when its places are made; columns and rows of a
  * square; and what threads take at a time: so few that the questions to a set stay in the cache. */
-enum { SETS = 4, STRIP = 256, SQUARE = 128, PLACES_AT_ONCE = 8192 };
+enum { SETS = 4, STRIP = 256, SQUARE = SHARE_BLOCK, PLACES_AT_ONCE = 8192 };
 
 /* In Share.reach: the pixel sees the ground. */
 enum { ON_GROUND = 1 << 15, POINTS_SEEN = ON_GROUND - 1 };
@@ -218,31 +218,33 @@ static void add_runs(Share *share, int set, size_t from, size_t end)
     }
 }
 
-/* Turns counts into first numbers: set by set, square by square. */
-static void number_squares(Share *share, size_t n, uint32_t (*next)[SETS])
+/* Turns counts into first numbers: set by set, square by square. Runs end with a row of squares, so
+ * that they are the same in all bands. */
+static void number_squares(Share *share, size_t across, size_t rows, uint32_t (*next)[SETS])
 {
-    for (int set = 0; set < SETS; set++) {
-        size_t first = share->n;
-        for (size_t square = 0; square < n; square++) {
-            uint32_t count = next[square][set];
-            next[square][set] = (uint32_t)share->n;
-            share->n += count;
+    for (int set = 0; set < SETS; set++)
+        for (size_t row = 0; row < rows; row++) {
+            size_t first = share->n;
+            for (size_t square = row * across; square < (row + 1) * across; square++) {
+                uint32_t count = next[square][set];
+                next[square][set] = (uint32_t)share->n;
+                share->n += count;
+            }
+            add_runs(share, set, first, share->n);
         }
-        add_runs(share, set, first, share->n);
-    }
 }
 
 /* Numbers the places of a strip behind those of the strips above it. */
 static Status add_strip(Share *share, PlaceJob *job, Err *err)
 {
     Drawing strip = *share->drawing;
-    size_t squares = squares_in(share->light->width) * squares_in(job->rows);
+    size_t across = squares_in(share->light->width), squares = across * squares_in(job->rows);
     int threads = share->drawing->params->threads;
     strip.band = (Band){.first = share->light->first + job->first, .rows = job->rows};
     TRY(share->from->see(&strip, share->from->context, &job->planes, err));
     memset(job->next, 0, squares * sizeof *job->next);
     threads_for(squares, threads, count_places, job);
-    number_squares(share, squares, job->next);
+    number_squares(share, across, squares_in(job->rows), job->next);
     threads_for(squares, threads, set_places, job);
     return STATUS_OK;
 }
@@ -252,7 +254,6 @@ static Status make_places(Share *share, Err *err)
 {
     SharedLight *light = share->light;
     size_t pixels = (size_t)light->width * (size_t)light->rows;
-    size_t strips = ((size_t)light->rows + STRIP - 1) / STRIP;
     const Camera *camera = &share->drawing->view->camera;
     PlaceJob job = {.share = share, .pixel_mm = sharedlight_pixel_mm(camera, 1)};
     Status status;
@@ -260,8 +261,8 @@ static Status make_places(Share *share, Err *err)
     memset(light->numbers, 0xff, pixels * sizeof *light->numbers); /* PLACE_NONE */
     TRY(mem_alloc(&light->places, pixels, sizeof *light->places, "places", err));
     TRY(mem_alloc(&share->pixels, pixels, sizeof *share->pixels, "places", err));
-    TRY(mem_calloc(&share->runs, strips * SETS + pixels / PLACES_AT_ONCE + 1, sizeof *share->runs,
-                   "places", err));
+    TRY(mem_calloc(&share->runs, SETS * squares_in(light->rows) + pixels / PLACES_AT_ONCE,
+                   sizeof *share->runs, "places", err));
     TRY_GOTO(mem_calloc(&job.next, squares_in(light->width) * squares_in(STRIP), sizeof *job.next,
                         "places", err));
     for (job.first = 0; job.first < light->rows; job.first += STRIP) {

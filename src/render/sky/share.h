@@ -17,6 +17,11 @@ bool share_is_wanted(const View *view, const RenderParams *params);
 /* Rows of pixels to either side of a band whose places its light depends on. */
 enum { SHARE_MARGIN = 3 };
 
+/* Rows of a block of the picture. Places of one block ask area lights together, and what a place is
+ * answered may depend on these in the last digits: where there are area lights, bands are of whole
+ * blocks. */
+enum { SHARE_BLOCK = 128 };
+
 /* Sets depth and normal of what the centre rays of the drawing's band see of vessels; *planes is
  * the caller's even when this fails. STATUS_MEMORY. */
 typedef Status SharePlanes(const Drawing *drawing, void *context, Frame *planes, Err *err);
