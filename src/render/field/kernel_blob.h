@@ -8,6 +8,8 @@
  *
  * - Distance. At the distance x of the segment it is at most ENVELOPE exp(2 - 2 x^2), at most half
  *   of that beyond an end, and at least -DIP: beads beyond an end may outweigh what else is there.
+ * - Steepness. At the distance x within the reach R its gradient is at most STEEPNESS (1 - x^2 /
+ *   R^2).
  * - Curvature. The second derivative along any line is at most CURVED_NEAR_END, unless the line
  * stays farther than NEAR_END from both ends, or farther than NEAR_AXIS from the segment; then it
  * is at most the next of the three, times the squared sine of the line to the axis where the line
@@ -19,6 +21,7 @@
 
 #define ENVELOPE 1.05f
 #define DIP 0.0085f
+#define STEEPNESS 7.2f
 #define NEAR_END 1.068f
 #define NEAR_AXIS 1.191f
 #define CURVED_NEAR_END 36.0f
@@ -46,7 +49,7 @@ LANE_FN float fixed_margin(size_t n)
 LANE_FN Lanes steepness(const PacketTerm *term)
 {
     Lanes inside = 1.0f - (term->e2 + term->past) / term->term->reach2;
-    return lanes_max(inside, lanes_set(0)) * (2 * term->term->k);
+    return lanes_max(inside, lanes_set(0)) * (STEEPNESS / (float)sqrt(2) * LEVEL * term->term->k);
 }
 
 /* Sets what bounds the term. */

@@ -180,20 +180,21 @@ LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving,
     for (int steps = 0; lanes_any(live); steps++) {
         Lanes beyond;
         PacketSample at = sample_departing(group, z, live, &beyond);
-        live &= ~(beyond + group->margin < SURELY_BELOW);
+        Lanes margin = margin_at(group, z);
+        live &= ~(beyond + margin < SURELY_BELOW);
         leaving &= at.phi > RIM * LEVEL;
         Lanes level = lanes_select(leaving, lanes_set(SKIN * LEVEL), lanes_set(LEVEL));
-        Lanes lack = level - at.phi, safe = lack - group->margin, slope = at.slope;
+        Lanes lack = level - at.phi, safe = lack - margin, slope = at.slope;
         Lanes curvature = lanes_max(at.curvature, lanes_set(1e-30f)), slope2 = square(slope);
-        LaneMask rises = (slope > 0.0f) & (slope2 >= SURE * curvature * (lack + group->margin));
-        LaneMask met = live & ~leaving & ((lack <= -group->margin) | rises);
+        LaneMask rises = (slope > 0.0f) & (slope2 >= SURE * curvature * (lack + margin));
+        LaneMask met = live & ~leaving & ((lack <= -margin) | rises) & (margin <= CLOSE_ENOUGH);
         *dark |= met;
         live &= ~met;
         Lanes root = lanes_sqrt(lanes_max(slope2 + 2.0f * curvature * safe, lanes_set(0)));
         Lanes step =
             lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
         Lanes to = lanes_min(z + step, at.next);
-        LaneMask stuck = live & ~((safe > 0.0f) & (to > z));
+        LaneMask stuck = live & ~((safe > 0.0f) & (to > z) & (margin <= CLOSE_ENOUGH));
         if (steps == MOST_STEPS)
             stuck = live;
         *unsure |= stuck;
@@ -224,17 +225,15 @@ LANE_FN void look_through_sum(const Departures *way, LaneMask *open, LaneMask *d
     sort_sum(packet);
     for (size_t i = 0; i < packet->n_sum && lanes_any(*open);) {
         Group group;
-        float extent;
-        i = next_group(packet, i, nearest, &group, &extent);
-        extent += way->to - way->from;
+        i = next_group(packet, i, nearest, &group);
+        group.near += way->to - way->from;
+        group.extent += way->to - way->from;
         LaneMask live = *open, stuck = {0};
-        if (!group_window(&group, extent, &live))
+        if (!group_window(&group, &live))
             continue;
         Lanes from = way->z + (float)(way->base - group.base);
         Lanes start = next_window(&group, lanes_set(-1e30f));
         live &= next_window(&group, from) < 1e30f;
-        stuck = live & (group.margin > CLOSE_ENOUGH);
-        live &= ~stuck;
         march_to_light(&group, live, start <= from, lanes_max(start, from), dark, &stuck);
         *unsure |= stuck;
         *open &= ~*dark;

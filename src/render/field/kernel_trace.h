@@ -63,8 +63,18 @@ typedef struct Group {
     PacketTerm **terms;
     size_t n;
     double base;
-    Lanes margin;
+    float extent; /* mm that z is at most from 0 where terms are in reach, and `near` */
+    float
+        near; /* mm that terms in reach of a place are off it at most, and samples off the middle */
+    float fixed; /* of the margin */
+    Lanes steep; /* the rest of it, for each mm of z and `near` */
 } Group;
+
+/* The margin at z: the farther from the base, the more are places rounded. */
+LANE_FN Lanes margin_at(const Group *group, Lanes z)
+{
+    return lanes_fma(group->steep, lanes_abs(z) + group->near, lanes_set(group->fixed));
+}
 
 /* Whether the term is above the cut-off on some of the rays. */
 LANE_FN bool matters(const PacketTerm *term, LaneMask rays)
@@ -123,9 +133,9 @@ LANE_FN void place_windows(PacketTerm *term, Lanes excess, LaneMask counts)
     term->window[1] = lanes_select(counts, term->window[1], -none);
 }
 
-/* Sets the margins, and the windows and the reaches of the terms; false when there is no ray on
- * which the potential may reach LEVEL - margin. */
-LANE_FN bool group_window(Group *group, float extent, LaneMask *live)
+/* Sets what margins are made of, and the windows and the reaches of the terms; false when there is
+ * no ray on which the potential may reach LEVEL - margin. */
+LANE_FN bool group_window(Group *group, LaneMask *live)
 {
     Lanes sum = lanes_set(0), places = lanes_set(0);
     for (size_t i = 0; i < group->n; i++) {
@@ -133,8 +143,10 @@ LANE_FN bool group_window(Group *group, float extent, LaneMask *live)
         sum += term->peak;
         places += steepness(term);
     }
-    group->margin = places * (extent * MARGIN_PLACE) + fixed_margin(group->n);
-    Lanes low_level = lanes_max(LEVEL - group->margin, lanes_set(0.01f * LEVEL));
+    group->steep = places * MARGIN_PLACE;
+    group->fixed = fixed_margin(group->n);
+    Lanes most = group->steep * group->extent + group->fixed;
+    Lanes low_level = lanes_max(LEVEL - most, lanes_set(0.01f * LEVEL));
     *live &= sum >= low_level;
     if (!lanes_any(*live))
         return false;
@@ -164,13 +176,14 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, LaneMask *hit, L
 {
     for (int steps = 0; lanes_any(live); steps++) {
         PacketSample sample = sample_at(group, *z, live);
-        Lanes lack = LEVEL - sample.phi, safe = lack - group->margin, slope = sample.slope;
+        Lanes margin = margin_at(group, *z);
+        Lanes lack = LEVEL - sample.phi, safe = lack - margin, slope = sample.slope;
         Lanes curvature = lanes_max(sample.curvature, lanes_set(1e-30f));
         Lanes slope2 = square(slope);
         Lanes safety = lanes_select(lack <= CLOSE_ENOUGH, lanes_set(SURE), lanes_set(10 * SURE));
-        LaneMask sure = (slope > 0.0f) & (lack >= -group->margin) & (lack <= NEAR_ENOUGH) &
-                        (slope2 >= safety * curvature * (lack + group->margin));
-        LaneMask met = live & sure;
+        LaneMask sure = (slope > 0.0f) & (lack >= -margin) & (lack <= NEAR_ENOUGH) &
+                        (slope2 >= safety * curvature * (lack + margin));
+        LaneMask met = live & sure & (margin <= CLOSE_ENOUGH);
         *hit |= met;
         *z = lanes_select(met, *z + lack / slope, *z);
         live &= ~met;
@@ -178,7 +191,7 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, LaneMask *hit, L
         Lanes step =
             lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
         Lanes to = lanes_min(*z + step, sample.next);
-        LaneMask stuck = live & ~((safe > 0.0f) & (to > *z));
+        LaneMask stuck = live & ~((safe > 0.0f) & (to > *z) & (margin <= CLOSE_ENOUGH));
         if (steps == MOST_STEPS)
             stuck = live;
         *unsure |= stuck;
@@ -219,25 +232,31 @@ LANE_FN void describe_hits(const Group *group, int first, LaneMask hit, Lanes z,
 
 /* Makes the terms from `first` on that overlap a group, and returns the number of the next. What is
  * nearer than `nearest` does not matter. */
-LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Group *group,
-                          float *extent)
+LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Group *group)
 {
     PacketTerm **terms = packet->sum;
     double begin = fmax(terms[first]->term->on, nearest), end = terms[first]->term->off;
     double base = fmax(terms[first]->term->z_near, nearest);
     size_t last = first + 1;
+    float span = 0;
     for (; last < packet->n_sum && terms[last]->term->on <= end; last++)
         end = terms[last]->term->off > end ? terms[last]->term->off : end;
     for (size_t i = first; i < last; i++) {
         terms[i]->z = (float)(terms[i]->term->z_near - base);
         terms[i]->on = (float)(terms[i]->term->on - base);
         terms[i]->off = (float)(terms[i]->term->off - base);
+        span = fmaxf(span, terms[i]->off - terms[i]->on);
     }
     double reach = end - base > base - begin ? end - base : base - begin;
-    double width = (double)packet->tile->half_size;
-    *group = (Group){packet, terms + first, last - first, base, lanes_set(0)};
-    *extent =
-        (float)(reach + width * (packet->tile->perspective ? fmax(fabs(begin), fabs(end)) : 1));
+    float width = packet->tile->half_size;
+    if (packet->tile->perspective)
+        width *= (float)fmax(fabs(begin), fabs(end));
+    *group = (Group){.packet = packet,
+                     .terms = terms + first,
+                     .n = last - first,
+                     .base = base,
+                     .near = span + width};
+    group->extent = (float)reach + group->near;
     return last;
 }
 
@@ -247,15 +266,14 @@ LANE_FN void trace_sum(const Packet *packet, int first, TileHits *hits)
     LaneMask open = (LaneMask){0} - 1;
     for (size_t i = 0; i < packet->n_sum && lanes_any(open);) {
         Group group;
-        float extent;
-        i = next_group(packet, i, -HUGE_VAL, &group, &extent);
+        i = next_group(packet, i, -HUGE_VAL, &group);
         LaneMask live = open, hit = {0}, unsure = {0};
-        if (!group_window(&group, extent, &live))
+        if (!group_window(&group, &live))
             continue;
         Lanes z = next_window(&group, lanes_set(-1e30f));
         Lanes z_min = lanes_set((float)(packet->tile->z_min - group.base));
         live &= next_window(&group, z_min) < 1e30f;
-        unsure = live & ((z <= z_min) | (group.margin > CLOSE_ENOUGH));
+        unsure = live & (z <= z_min);
         live &= ~unsure;
         march(&group, live, &z, &hit, &unsure);
         open &= ~(hit | unsure);
