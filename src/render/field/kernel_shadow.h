@@ -11,7 +11,7 @@
  *   recedes from the segment's line it is at most exp(-E^2 - w^2) from there on, beyond an end that
  *   it leaves at most exp(-E^2 - w^2 - x^2) / 2, once it falls at most what it is there, and
  *   elsewhere at most B. A place is lit if at the end of the stretch these sum up to less than the
- *   level, all of them, or all that overlap anywhere.
+ *   level.
  * - Dark. A term that is passed at E^2 <= 1.9, both its ends 1.5 / k or more away, is 1.06 times
  *   the level there alone.
  *
@@ -27,10 +27,6 @@
 #define RIM 0.998f
 #define SKIN 1.002f
 #define SURELY_BELOW (0.999f * LEVEL)
-/* What a term is outside the stretch where it counts, -ln of it, and how many may count. */
-#define FAINT (0.004f * LEVEL)
-#define MINUS_LOG_FAINT 7.5214609f
-#define MOST_PARTS 32
 
 /* Places, LANES of them, and the terms on the ways from there to the light. */
 typedef struct Departures {
@@ -93,40 +89,6 @@ LANE_FN PacketSample sample_places(const Departures *way, LaneMask open, Lanes *
     return sample;
 }
 
-/* Of the open lanes, those on which terms that overlap beyond z sum up to less than the level: a
- * term counts with the most that it is beyond z on the stretch outside which it is below FAINT, and
- * with FAINT elsewhere; their sum is largest where some stretch begins. */
-LANE_FN LaneMask lit_by_parts(const Departures *way, LaneMask open, Lanes z)
-{
-    const Packet *packet = &way->packet;
-    Lanes low[MOST_PARTS], high[MOST_PARTS], most[MOST_PARTS], worst = lanes_set(0);
-    int n = 0;
-    for (size_t i = 0; i < packet->n; i++) {
-        PacketTerm *term = &packet->terms[i];
-        Lanes here = most_beyond(term, z);
-        if (!lanes_any(open & (here > FAINT)))
-            continue;
-        if (n == MOST_PARTS)
-            return (LaneMask){0};
-        if (!term->bent)
-            bend_term(term, packet->tile->perspective);
-        place_ends(term);
-        here = lanes_min(here, term_at(term, z).most);
-        Lanes beside2 = MINUS_LOG_FAINT - term->e2;
-        term_stretch(term, beside2, beside2 - 0.69314718f, &low[n], &high[n]);
-        low[n] = lanes_max(low[n] + term->z, z);
-        high[n] += term->z;
-        most[n++] = here;
-    }
-    for (int i = 0; i < n; i++) {
-        Lanes sum = lanes_set(0);
-        for (int j = 0; j < n; j++)
-            sum += lanes_select((low[j] <= low[i]) & (low[i] <= high[j]), most[j], lanes_set(0));
-        worst = lanes_max(worst, sum);
-    }
-    return open & (worst + FAINT * (float)packet->n < SURELY_BELOW);
-}
-
 /* Of the open lanes, those that are proven lit by what is at the places and beyond the first
  * stretch. */
 LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open)
@@ -148,9 +110,7 @@ LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open)
     Lanes sum = lanes_set(fixed_margin(packet->n));
     for (size_t i = 0; i < packet->n; i++)
         sum += most_beyond(&packet->terms[i], to);
-    LaneMask lit = open & (sum < SURELY_BELOW);
-    open &= ~lit;
-    return lanes_any(open) ? lit | lit_by_parts(way, open, to) : lit;
+    return open & (sum < SURELY_BELOW);
 }
 
 /* As sample_at, and the most that Phi is from z on. */
