@@ -73,6 +73,7 @@ LANE_FN void bend_term(PacketTerm *term, bool perspective)
                         bend);
     Lanes along = lanes_select(end2 < term->term->reach2, square(term->u1), lanes_set(0));
     term->curvature = bend * (square(term->w1) + along);
+    term->steep = steepness(term);
     term->bent = true;
 }
 

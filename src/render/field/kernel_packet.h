@@ -26,13 +26,14 @@ typedef struct PacketTerm {
     Lanes inverse_speed2;     /* 1 / (w1^2 + u1^2) */
     Lanes half_gauss;         /* exp(-E^2) / 2 */
     Lanes curvature, spare;   /* M, and -ln B - E^2 */
+    Lanes steep;              /* steepness() of it */
     Lanes end_z[2];           /* dz nearest to the ends */
     Lanes window[2];          /* z between which it may be as large as its share of the level */
     Lanes reach[2];           /* z between which it may exceed the cut-off */
     const TileTerm *term;
     float z;       /* of the term, relative to the group's */
     float on, off; /* likewise, between which it may exceed the cut-off */
-    bool bent;     /* whether half_gauss, curvature and `flat` are set */
+    bool bent;     /* whether half_gauss, curvature, steep and `flat` are set */
     bool flat;     /* u and v are the same all along, and their factor is in half_gauss */
 } PacketTerm;
 
@@ -173,14 +174,27 @@ typedef struct PacketSample {
     Lanes phi, slope;
     Lanes curvature; /* M of the terms within reach, and they are all until next */
     Lanes next;
+    Lanes steep; /* how much phi may be off where places are off by 1 mm */
+    float depth; /* mm from the first to the last place within reach of a term, at most */
+    size_t n;    /* terms */
 } PacketSample;
 
-LANE_FN void add_sample(const TermSample *one, LaneMask here, Lanes curvature, PacketSample *sum)
+LANE_FN PacketSample nothing_sampled(void)
+{
+    return (PacketSample){.next = lanes_set(1e30f)};
+}
+
+LANE_FN void add_sample(const TermSample *one, LaneMask here, const PacketTerm *term,
+                        PacketSample *sum)
 {
     const Lanes zero = lanes_set(0);
     sum->phi += lanes_select(here, one->value, zero);
     sum->slope += lanes_select(here, one->slope, zero);
-    sum->curvature += lanes_select(here, curvature, zero);
+    sum->curvature += lanes_select(here, term->curvature, zero);
+    sum->steep += lanes_select(here, term->steep, zero);
+    float depth = term->off - term->on;
+    sum->depth = depth > sum->depth ? depth : sum->depth;
+    sum->n++;
 }
 
 /* Adds a gradient at dz of the term: `across` times the vector from the axis' line to there, and

@@ -46,6 +46,7 @@ LANE_FN void bend_term(PacketTerm *term, bool perspective)
     term->half_gauss = term->gauss * 0.5f;
     if (lanes_any(term->past > 0.0f))
         term->half_gauss = lanes_exp_minus(term->e2) * 0.5f;
+    term->steep = steepness(term);
     term->bent = true;
     term->flat = !perspective && fabsf(term->term->cosine) < 1e-8f;
     if (term->flat) {

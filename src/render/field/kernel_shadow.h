@@ -65,8 +65,7 @@ LANE_FN LaneMask depart(Departures *way, LaneMask open)
 LANE_FN PacketSample sample_places(const Departures *way, LaneMask open, Lanes *margin)
 {
     const Packet *packet = &way->packet;
-    PacketSample sample = {lanes_set(0), lanes_set(0), lanes_set(0), lanes_set(1e30f)};
-    Lanes places = lanes_set(0);
+    PacketSample sample = nothing_sampled();
     float extent = 0, width = packet->tile->half_size;
     for (size_t i = 0; i < packet->n; i++) {
         PacketTerm *term = &packet->terms[i];
@@ -78,14 +77,13 @@ LANE_FN PacketSample sample_places(const Departures *way, LaneMask open, Lanes *
             continue;
         bend_term(term, packet->tile->perspective);
         TermSample one = sample_term(term, way->z);
-        add_sample(&one, open, term->curvature, &sample);
-        places += steepness(term);
+        add_sample(&one, open, term, &sample);
         extent = fmaxf(extent, fabsf(term->z));
     }
     if (packet->tile->perspective)
         width *= (float)fabs(way->base);
-    *margin =
-        places * ((extent + width + way->to - way->from) * MARGIN_PLACE) + fixed_margin(packet->n);
+    *margin = sample.steep * ((extent + width + way->to - way->from) * MARGIN_PLACE) +
+              fixed_margin(packet->n);
     return sample;
 }
 
@@ -117,7 +115,7 @@ LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open)
 LANE_FN PacketSample sample_departing(const Group *group, Lanes z, LaneMask live, Lanes *beyond)
 {
     const Lanes zero = lanes_set(0);
-    PacketSample sample = {zero, zero, zero, lanes_set(1e30f)};
+    PacketSample sample = nothing_sampled();
     *beyond = zero;
     for (size_t i = 0; i < group->n; i++) {
         const PacketTerm *term = group->terms[i];
@@ -126,7 +124,7 @@ LANE_FN PacketSample sample_departing(const Group *group, Lanes z, LaneMask live
         if (!lanes_any(here))
             continue;
         TermThere there = term_at(term, z);
-        add_sample(&there.at, here, term->curvature, &sample);
+        add_sample(&there.at, here, term, &sample);
         *beyond += lanes_select(here, there.most, zero);
     }
     return sample;
@@ -140,7 +138,7 @@ LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving,
     for (int steps = 0; lanes_any(live); steps++) {
         Lanes beyond;
         PacketSample at = sample_departing(group, z, live, &beyond);
-        Lanes margin = margin_at(group, z);
+        Lanes margin = margin_at(group, &at, z);
         live &= ~(beyond + margin < SURELY_BELOW);
         leaving &= at.phi > RIM * LEVEL;
         Lanes level = lanes_select(leaving, lanes_set(SKIN * LEVEL), lanes_set(LEVEL));
@@ -186,7 +184,7 @@ LANE_FN void look_through_sum(const Departures *way, LaneMask *open, LaneMask *d
     for (size_t i = 0; i < packet->n_sum && lanes_any(*open);) {
         Group group;
         i = next_group(packet, i, nearest, &group);
-        group.near += way->to - way->from;
+        group.width += way->to - way->from;
         group.extent += way->to - way->from;
         LaneMask live = *open, stuck = {0};
         if (!group_window(&group, &live))

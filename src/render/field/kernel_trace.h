@@ -63,17 +63,15 @@ typedef struct Group {
     PacketTerm **terms;
     size_t n;
     double base;
-    float extent; /* mm that z is at most from 0 where terms are in reach, and `near` */
-    float
-        near; /* mm that terms in reach of a place are off it at most, and samples off the middle */
-    float fixed; /* of the margin */
-    Lanes steep; /* the rest of it, for each mm of z and `near` */
+    float extent; /* mm, of places: z, how far they are from a term's, and `width` */
+    float width;  /* mm that places are off the middle ray */
 } Group;
 
-/* The margin at z: the farther from the base, the more are places rounded. */
-LANE_FN Lanes margin_at(const Group *group, Lanes z)
+/* The margin of a sample at z: the farther from the base, the more are places rounded. */
+LANE_FN Lanes margin_at(const Group *group, const PacketSample *sample, Lanes z)
 {
-    return lanes_fma(group->steep, lanes_abs(z) + group->near, lanes_set(group->fixed));
+    return lanes_fma(sample->steep * MARGIN_PLACE, lanes_abs(z) + (sample->depth + group->width),
+                     lanes_set(fixed_margin(sample->n)));
 }
 
 /* Whether the term is above the cut-off on some of the rays. */
@@ -93,14 +91,14 @@ LANE_FN LaneMask lanes_reached(const PacketTerm *term, Lanes z, LaneMask live, L
 
 LANE_FN PacketSample sample_at(const Group *group, Lanes z, LaneMask live)
 {
-    PacketSample sample = {lanes_set(0), lanes_set(0), lanes_set(0), lanes_set(1e30f)};
+    PacketSample sample = nothing_sampled();
     for (size_t i = 0; i < group->n; i++) {
         const PacketTerm *term = group->terms[i];
         LaneMask here = lanes_reached(term, z, live, &sample.next);
         if (!lanes_any(here))
             continue;
         TermSample one = sample_term(term, z);
-        add_sample(&one, here, term->curvature, &sample);
+        add_sample(&one, here, term, &sample);
     }
     return sample;
 }
@@ -133,8 +131,8 @@ LANE_FN void place_windows(PacketTerm *term, Lanes excess, LaneMask counts)
     term->window[1] = lanes_select(counts, term->window[1], -none);
 }
 
-/* Sets what margins are made of, and the windows and the reaches of the terms; false when there is
- * no ray on which the potential may reach LEVEL - margin. */
+/* Sets the windows and the reaches of the terms; false when there is no ray on which the potential
+ * may reach LEVEL - margin. */
 LANE_FN bool group_window(Group *group, LaneMask *live)
 {
     Lanes sum = lanes_set(0), places = lanes_set(0);
@@ -143,10 +141,8 @@ LANE_FN bool group_window(Group *group, LaneMask *live)
         sum += term->peak;
         places += steepness(term);
     }
-    group->steep = places * MARGIN_PLACE;
-    group->fixed = fixed_margin(group->n);
-    Lanes most = group->steep * group->extent + group->fixed;
-    Lanes low_level = lanes_max(LEVEL - most, lanes_set(0.01f * LEVEL));
+    Lanes margin = places * (group->extent * MARGIN_PLACE) + fixed_margin(group->n);
+    Lanes low_level = lanes_max(LEVEL - margin, lanes_set(0.01f * LEVEL));
     *live &= sum >= low_level;
     if (!lanes_any(*live))
         return false;
@@ -176,7 +172,7 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, LaneMask *hit, L
 {
     for (int steps = 0; lanes_any(live); steps++) {
         PacketSample sample = sample_at(group, *z, live);
-        Lanes margin = margin_at(group, *z);
+        Lanes margin = margin_at(group, &sample, *z);
         Lanes lack = LEVEL - sample.phi, safe = lack - margin, slope = sample.slope;
         Lanes curvature = lanes_max(sample.curvature, lanes_set(1e-30f));
         Lanes slope2 = square(slope);
@@ -238,14 +234,14 @@ LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Gr
     double begin = fmax(terms[first]->term->on, nearest), end = terms[first]->term->off;
     double base = fmax(terms[first]->term->z_near, nearest);
     size_t last = first + 1;
-    float span = 0;
+    float depth = 0;
     for (; last < packet->n_sum && terms[last]->term->on <= end; last++)
         end = terms[last]->term->off > end ? terms[last]->term->off : end;
     for (size_t i = first; i < last; i++) {
         terms[i]->z = (float)(terms[i]->term->z_near - base);
         terms[i]->on = (float)(terms[i]->term->on - base);
         terms[i]->off = (float)(terms[i]->term->off - base);
-        span = fmaxf(span, terms[i]->off - terms[i]->on);
+        depth = fmaxf(depth, terms[i]->off - terms[i]->on);
     }
     double reach = end - base > base - begin ? end - base : base - begin;
     float width = packet->tile->half_size;
@@ -255,8 +251,8 @@ LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Gr
                      .terms = terms + first,
                      .n = last - first,
                      .base = base,
-                     .near = span + width};
-    group->extent = (float)reach + group->near;
+                     .extent = (float)reach + depth + width,
+                     .width = width};
     return last;
 }
 
