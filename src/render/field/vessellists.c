@@ -68,13 +68,15 @@ static TileSpan rows_of(const VesselLists *lists, const FrameSegment *segment)
 
 enum { CHUNK = 2048 };
 
-/* How far from the segment its term counts, mm; 0: nowhere. */
+/* How far from the segment its term counts, mm; 0: nowhere. The peak of the potential's, erf(x), is
+ * at most 1 and 2 x / sqrt(pi). */
 static double reach_of(const Geometry *geometry, const FieldSegment *segment)
 {
     if (model_has(geometry->model, MODEL_BLOB))
         return blob_reach(&blob_shape) * segment->radius_mm;
-    double reach2 = log(potential_term_peak(segment) / TILE_TERM_CUTOFF);
-    return reach2 > 0 ? sqrt(reach2) / potential_k(segment->radius_mm) : 0;
+    double k = potential_k(segment->radius_mm);
+    double peak = min_of(1, 0.56418958354775628695 * k * vec3_distance(segment->a, segment->b));
+    return peak > TILE_TERM_CUTOFF ? sqrt(log(peak / TILE_TERM_CUTOFF)) / k : 0;
 }
 
 typedef struct SegmentsJob {
