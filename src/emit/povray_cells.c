@@ -17,6 +17,9 @@
 static const char *const function_names[] = {"Fb", "Fs", "Fe", "Fm", "Ft"};
 enum { TUBE = TERM_MIDDLE + 1, N_FUNCTIONS };
 
+/* Of so many terms of a cell each is compared with those that follow. */
+enum { MOST_COMPARED = 4 };
+
 /* Scales are 2^(number - SCALE_ONE). */
 enum { SCALE_ONE = 64, N_SCALES = 128 };
 
@@ -174,7 +177,9 @@ static bool is_painted(const PovrayGeometry *geometry)
 static void put_paints(Text *out, const PovrayGeometry *geometry, const uint8_t *used)
 {
     const Geometry *all = &geometry->scene->geometry;
-    text_printf(out, "#if (Tree_Painted)\n#declare Paints=array[%zu]\n", all->n_segments);
+    text_printf(
+        out, "#if (Tree_Painted)\n#declare Paints=array[%zu]\n#declare Whole_Paints=array[%zu]\n",
+        all->n_segments, all->n_segments);
     for (uint32_t i = 0; i < all->n_segments; i++) {
         if (!used[i])
             continue;
@@ -232,36 +237,34 @@ Status put_cell_macros(Text *out, void *context, Err *err)
 
 /* A cell's values, with room that every cell uses again. */
 typedef struct CellText {
-    Text low, high, function, paint, sum, largest, pick, paints, by_segment, mean, known;
-    char max_gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE], count[NUMBER_TEXT_SIZE];
+    Text low, high, function, paint, sum, declared, pick, paints, by_segment, mean, known;
+    char max_gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE];
 } CellText;
 
 static void release_cell_text(CellText *part)
 {
-    Text *const texts[] = {&part->low,  &part->high,    &part->function,  &part->paint,
-                           &part->pick, &part->largest, &part->paints,    &part->sum,
-                           &part->mean, &part->known,   &part->by_segment};
+    Text *const texts[] = {&part->low,  &part->high,     &part->function,  &part->paint,
+                           &part->pick, &part->declared, &part->paints,    &part->sum,
+                           &part->mean, &part->known,    &part->by_segment};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         text_release(texts[i]);
 }
 
 typedef struct CellTemplates {
-    Tmpl cell, paints, group_paints, blend;
+    Tmpl cell, paints, blend;
 } CellTemplates;
 
 static Status load_cell_templates(const EmitParams *params, CellTemplates *templates, Err *err)
 {
     TRY(load_template(&templates->cell, params, "povray/cell.inc", err));
     TRY(load_template(&templates->paints, params, "povray/cell_paints.inc", err));
-    TRY(load_template(&templates->blend, params, "povray/cell_blend.inc", err));
-    return load_template(&templates->group_paints, params, "povray/cell_group_paints.inc", err);
+    return load_template(&templates->blend, params, "povray/cell_blend.inc", err);
 }
 
 static void release_cell_templates(CellTemplates *templates)
 {
     tmpl_release(&templates->cell);
     tmpl_release(&templates->paints);
-    tmpl_release(&templates->group_paints);
     tmpl_release(&templates->blend);
 }
 
@@ -370,19 +373,66 @@ static void put_largest_of_groups(Text *text, const CellTree *cells, const Cell 
     close_calls(text, cell->n_groups - 1);
 }
 
-/* Fn_Choose(T1-Fn_Top,0,Fn_Choose(T2-Fn_Top,1,...)): the number of the first term that equals the
- * largest, Fn_Top. In a cell of groups other terms may be larger: -abs(T1-Fn_Top), ... */
+/* The place of a term on a map of the cell's paints: exact in single precision, as the map has it,
+ * where it gives one paint alone. */
+static void put_place(Text *text, const Cell *cell, uint32_t k)
+{
+    text_number(text, ldexp(k, -ilogb(2 * cell->count - 1)));
+}
+
+/* Fn_Choose(T1-Fn_Max(T2,T3),place of 1,Fn_Choose(T2-T3,place of 2,place of 3)): the place of the
+ * first term that equals the largest. */
 static void put_pick(Text *text, const CellTree *cells, const Cell *cell)
+{
+    TermChoice rest = all_terms(cells, cell);
+    uint32_t k = 0;
+    for (; k + 1 < cell->count; k++) {
+        text_puts(text, "Fn_Choose(");
+        put_term(text, rest.terms);
+        text_puts(text, "-");
+        rest.terms++;
+        rest.n--;
+        put_largest(text, rest);
+        text_puts(text, ",");
+        put_place(text, cell, k);
+        text_puts(text, ",");
+    }
+    put_place(text, cell, k);
+    close_calls(text, k);
+}
+
+/* The same of many terms: Fn_Choose(T1-Fn_Top,place of 1,...), with the largest as Fn_Top. In a
+ * cell of groups other terms may be larger: -abs(T1-Fn_Top), ... */
+static void put_pick_of_many(Text *text, const CellTree *cells, const Cell *cell)
 {
     const CellTerm *terms = cells->terms + cell->first;
     bool grouped = cell->n_groups > 0;
-    for (uint32_t k = 0; k + 1 < cell->count; k++) {
+    uint32_t k = 0;
+    for (; k + 1 < cell->count; k++) {
         text_puts(text, grouped ? "Fn_Choose(-abs(" : "Fn_Choose(");
         put_term(text, &terms[k]);
-        text_printf(text, grouped ? "-Fn_Top(x,y,z)),%u," : "-Fn_Top(x,y,z),%u,", k);
+        text_puts(text, grouped ? "-Fn_Top(x,y,z))," : "-Fn_Top(x,y,z),");
+        put_place(text, cell, k);
+        text_puts(text, ",");
     }
-    text_printf(text, "%u", cell->count - 1);
-    close_calls(text, cell->count - 1);
+    put_place(text, cell, k);
+    close_calls(text, k);
+}
+
+/* Declares Fn_Top. */
+static void put_top(Text *text, const CellTree *cells, const Cell *cell)
+{
+    if (cell->n_groups > 0) {
+        text_puts(text, " Cell_Sum() ");
+        put_potential(text, cells, cell);
+        text_puts(text, " Cell_Sum_End()");
+    }
+    text_puts(text, " Cell_Top() ");
+    if (cell->n_groups > 0)
+        put_largest_of_groups(text, cells, cell);
+    else
+        put_largest(text, all_terms(cells, cell));
+    text_puts(text, " Cell_Top_End() ");
 }
 
 /* Appends the paint of a cell: that of the term that is largest all over it, or of each. */
@@ -390,30 +440,27 @@ static Status put_cell_paint(Text *text, const CellTemplates *templates, const C
                              const Cell *cell, CellText *part, Err *err)
 {
     const CellTerm *terms = cells->terms + cell->first;
-    bool grouped = cell->n_groups > 0;
     if (cell->largest != CELL_MIXED) {
-        text_printf(text, " Cell_One_Paint(%u)", cell->largest);
+        text_printf(text, "#if(Tree_Painted)texture{Whole_Paints[%u]}#end", cell->largest);
         return STATUS_OK;
     }
-    if (grouped) {
-        put_potential(cleared(&part->sum), cells, cell);
-        put_largest_of_groups(cleared(&part->largest), cells, cell);
+    cleared(&part->declared);
+    if (cell->n_groups > 0 || cell->count > MOST_COMPARED) {
+        put_top(&part->declared, cells, cell);
+        put_pick_of_many(cleared(&part->pick), cells, cell);
     } else {
-        put_largest(cleared(&part->largest), all_terms(cells, cell));
+        put_pick(cleared(&part->pick), cells, cell);
     }
-    put_pick(cleared(&part->pick), cells, cell);
-    snprintf(part->count, sizeof part->count, "%u", cell->count);
     cleared(&part->paints);
-    for (uint32_t k = 0; k < cell->count; k++)
-        text_printf(&part->paints, "[%u/%u Paints[%u]][%u/%u Paints[%u]]", k, cell->count,
-                    terms[k].segment, k + 1, cell->count, terms[k].segment);
-    const TmplValue values[] = {{"largest", text_chars(&part->largest)},
+    for (uint32_t k = 0; k < cell->count; k++) {
+        text_puts(&part->paints, "[");
+        put_place(&part->paints, cell, k);
+        text_printf(&part->paints, " Paints[%u]]", terms[k].segment);
+    }
+    const TmplValue values[] = {{"declared", text_chars(&part->declared)},
                                 {"pick", text_chars(&part->pick)},
-                                {"paints", text_chars(&part->paints)},
-                                {"count", part->count},
-                                {"sum", text_chars(&part->sum)}};
-    return tmpl_apply(grouped ? &templates->group_paints : &templates->paints, values,
-                      grouped ? 5 : 4, text, err);
+                                {"paints", text_chars(&part->paints)}};
+    return tmpl_apply(&templates->paints, values, sizeof values / sizeof *values, text, err);
 }
 
 /* ---- colours that blend ---------------------------------------------------------------------- */

@@ -77,9 +77,12 @@ typedef struct CellTree {
     ErfForm erf;
 } CellTree;
 
+/* Finer cells are traced faster, but take longer to read. */
+#define CELL_BETA 6
+
 typedef struct CellParams {
     double beta; /* > 0: cubes are split while longer than this times the smallest radius that
-                  * matters in them; 0: chosen from the number of segments */
+                  * matters in them; 0: CELL_BETA */
     ErfForm erf;
 } CellParams;
 

@@ -38,6 +38,10 @@ static const double accuracy_ratio = 1.0 / 300, largest_accuracy_ratio = 1.0 / 6
 static const double overlap_accuracies = 5;
 enum { OCTANTS = 8 };
 
+/* The box of a cell is that of the parts of its cube, halved so many times, that the surface may
+ * meet; of many terms, that of the whole cube. */
+enum { HALVINGS = 2, MOST_HALVED_TERMS = 16 };
+
 /* With erf as a polynomial's tanh, s |A'| is at most this times A sqrt(-2 ln A) down to A =
  * LOG_FORM_FLOOR / 10, and within the bound of the exact form from A = 1e-3 up (tabulated in
  * tests/unit/cells_test.c). */
@@ -75,7 +79,8 @@ typedef struct TermList {
     double bound_sum;
     double smallest_radius, largest_radius;
     double local_radius; /* smallest of the significant terms, of all when none is */
-    double steepness;    /* the bound of s_min |grad (log form)| below the level */
+    double steepness;    /* the bound of s_min |grad (log form)| below the level; 0 where there is
+                          * no surface by bound_sum */
 } TermList;
 
 /* A cube of the octree: the multiples of `side` from at[] on. */
@@ -83,6 +88,14 @@ typedef struct Cube {
     double side;
     int64_t at[3];
 } Cube;
+
+static Cube octant_of(const Cube *cube, int octant)
+{
+    Cube part = {cube->side / 2, {0}};
+    for (int axis = 0; axis < 3; axis++)
+        part.at[axis] = 2 * cube->at[axis] + (octant >> axis & 1);
+    return part;
+}
 
 static Vec3 cube_low(const Cube *cube)
 {
@@ -138,7 +151,7 @@ static Status filter_terms(Builder *builder, const TermList *from, Box box, Term
     }
     if (isinf(list.local_radius))
         list.local_radius = list.smallest_radius;
-    if (list.count)
+    if (list.bound_sum >= empty_below)
         list.steepness = gradient_bound(builder, &list, empty_below);
     builder->looks += KEPT * list.count;
     builder->depth += list.count;
@@ -324,15 +337,57 @@ static double overlap_of(const Cube *cube, double accuracy, double unit)
     return overlap_accuracies * accuracy + (double)octant * unit;
 }
 
+static bool box_has_box(Box box, Box other)
+{
+    return box_holds(box, other.low, 0) && box_holds(box, other.high, 0);
+}
+
+/* Widens *box to hold the parts of the cube, halved `times` times, in which the surface can lie,
+ * each with `margin` about it. */
+static Status hold_surface(Builder *builder, const TermList *candidates, const Cube *cube,
+                           double margin, int times, Box *box, Err *err)
+{
+    const Box own = cube_box(cube, margin);
+    size_t depth = builder->depth;
+    TermList terms;
+    if (box_has_box(*box, own))
+        return STATUS_OK;
+    TRY(filter_terms(builder, candidates, own, &terms, err));
+    if (terms.bound_sum >= empty_below && !misses_surface(builder, &terms, cube, margin)) {
+        if (times == 0)
+            *box = box_union(*box, own);
+        for (int octant = 0; times > 0 && octant < 8; octant++) {
+            const Cube part = octant_of(cube, octant);
+            TRY(hold_surface(builder, &terms, &part, margin, times - 1, box, err));
+        }
+    }
+    builder->depth = depth;
+    return STATUS_OK;
+}
+
+/* These looks are bounded by the number of cells, and not counted. */
+static Status box_of_surface(Builder *builder, const TermList *candidates, const Cube *cube,
+                             double margin, Box *box, Err *err)
+{
+    int times = candidates->count > MOST_HALVED_TERMS ? 0 : HALVINGS;
+    uint64_t looks = builder->looks;
+    *box = box_empty();
+    TRY(hold_surface(builder, candidates, cube, margin, times, box, err));
+    builder->looks = looks;
+    return STATUS_OK;
+}
+
 static Status add_cell(Builder *builder, const TermList *candidates, const Cube *cube, Err *err)
 {
     double accuracy = cell_accuracy(candidates->local_radius);
     double unit = side_unit(builder, accuracy), margin = overlap_of(cube, accuracy, unit);
-    Box box = box_rounded(cube_box(cube, margin), unit);
+    Box box;
     TermList terms;
-    TRY(filter_terms(builder, candidates, box, &terms, err));
-    if (terms.bound_sum < empty_below || misses_surface(builder, &terms, cube, 2 * margin))
+    TRY(box_of_surface(builder, candidates, cube, margin, &box, err));
+    if (box_is_empty(box))
         return STATUS_OK;
+    box = box_rounded(box, unit);
+    TRY(filter_terms(builder, candidates, box, &terms, err));
 
     CellTree *tree = &builder->tree;
     if (tree->n_cells == max_cells || tree->n_terms + terms.count > UINT32_MAX)
@@ -371,9 +426,7 @@ static Status descend(Builder *builder, const TermList *parent, const Cube *cube
         if (!split)
             TRY(add_cell(builder, &terms, cube, err));
         for (int octant = 0; split && octant < 8; octant++) {
-            Cube part = {cube->side / 2, {0}};
-            for (int axis = 0; axis < 3; axis++)
-                part.at[axis] = 2 * cube->at[axis] + (octant >> axis & 1);
+            const Cube part = octant_of(cube, octant);
             TRY(descend(builder, &terms, &part, err));
         }
     }
@@ -449,16 +502,10 @@ static Status build(Builder *builder, size_t n_segments, Err *err)
     return descend_from_top(builder, &all, box, err);
 }
 
-/* Finer cells are traced faster but take longer to read. */
-static double chosen_beta(size_t n_segments)
-{
-    return n_segments <= 3000 ? 3 : 6;
-}
-
 Status celltree_build(const Geometry *geometry, const CellParams *params, CellTree *cells, Err *err)
 {
     Builder builder = {.segments = geometry->segments,
-                       .beta = params->beta > 0 ? params->beta : chosen_beta(geometry->n_segments),
+                       .beta = params->beta > 0 ? params->beta : CELL_BETA,
                        .tree = {.erf = params->erf}};
     Status status = STATUS_OK;
     if (geometry->blend.n_groups)

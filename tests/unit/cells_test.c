@@ -343,16 +343,17 @@ static void cells_come_in_order_with_what_they_promise(void **state)
         const Cell *cell = &cells.cells[i];
         assert_int_equal(cell->first, next);
         next += cell->count;
-        double smallest = HUGE_VAL;
+        double smallest = HUGE_VAL, largest = 0;
         for (uint32_t k = 0; k < cell->count; k++) {
             uint32_t segment = cells.terms[cell->first + k].segment;
             assert_true(k == 0 || segment > cells.terms[cell->first + k - 1].segment);
             smallest = fmin(smallest, test.segments[segment].radius_mm);
+            largest = fmax(largest, test.segments[segment].radius_mm);
         }
         int exponent;
         assert_true(frexp(cell->scale, &exponent) == 0.5);
         assert_true(cell->scale <= smallest / 8 && cell->scale > smallest / 16);
-        assert_true(cell->accuracy >= cell_accuracy(smallest));
+        assert_true(cell->accuracy <= cell_accuracy(largest));
         assert_true(cell->high.x - cell->low.x <= 4 * 300 * cell->accuracy * 1.1);
     }
     assert_int_equal(next, cells.n_terms);
@@ -370,15 +371,15 @@ static void accuracy_follows_the_radius_but_for_shadows(void **state)
         assert_true(cell_accuracy(radius * 1.013) >= cell_accuracy(radius));
 }
 
-/* How far a cell reaches below its cube, whose corners are at multiples of `side`, over its
- * accuracy. */
+/* How far a cell reaches below the part of its cube with which it begins, whose corners are at
+ * multiples of `side`, over its accuracy. */
 static double reach_of(const Cell *cell, double side)
 {
     double reach = ceil(cell->low.x / side) * side - cell->low.x;
     return reach / cell->accuracy;
 }
 
-static void cells_reach_five_accuracies_and_a_part_beyond_their_cubes(void **state)
+static void cells_reach_five_accuracies_and_a_part_beyond_the_parts_of_their_cubes(void **state)
 {
     (void)state;
     TestScene test = {.geometry = {.segments = test.segments}};
@@ -386,7 +387,7 @@ static void cells_reach_five_accuracies_and_a_part_beyond_their_cubes(void **sta
     CellTree cells = cells_of(&test, 3, ERF_FAST);
     double least = HUGE_VAL, most = 0;
     for (size_t i = 0; i < cells.n_cells; i++) {
-        double reach = reach_of(&cells.cells[i], 2 * 0.73);
+        double reach = reach_of(&cells.cells[i], 0.5 * 0.73);
         least = fmin(least, reach);
         most = fmax(most, reach);
     }
@@ -419,32 +420,34 @@ static void single_precision_holds_boxes_and_boxes_about_them(void **state)
     celltree_release(&cells);
 }
 
-/* The cells of one vessel among others that are too short to be seen, without a given beta. */
-static double side_among(size_t n)
-{
-    Geometry geometry = {.model = SCENE_ISOSURFACE, .n_segments = n};
-    geometry.segments = calloc(n, sizeof *geometry.segments);
-    assert_non_null(geometry.segments);
-    for (size_t i = 0; i < n; i++) {
-        double z = 3 * (double)i;
-        geometry.segments[i] =
-            (FieldSegment){.a = {i ? 0 : -7, 0, z}, .b = {i ? 0.01 : 7, 0, z}, .radius_mm = 0.73};
-    }
-    CellTree cells;
-    const CellParams params = {.beta = 0, .erf = ERF_FAST};
-    assert_int_equal(celltree_build(&geometry, &params, &cells, NULL), STATUS_OK);
-    assert_true(cells.n_cells > 0);
-    double side = cells.cells[0].high.x - cells.cells[0].low.x;
-    celltree_release(&cells);
-    free(geometry.segments);
-    return side / 0.73;
-}
-
-static void cells_of_many_segments_are_larger(void **state)
+static void cells_are_not_split_without_a_given_beta_while_radii_are_alike(void **state)
 {
     (void)state;
-    assert_true(fabs(side_among(3000) - 2) < 0.1);
-    assert_true(fabs(side_among(3001) - 4) < 0.1);
+    TestScene test = {.geometry = {.segments = test.segments}};
+    put_segment(&test, vec3(-7, 0, 0), vec3(7, 0, 0), 0.73);
+    CellTree cells = cells_of(&test, 0, ERF_FAST);
+    double widest = 0;
+    for (size_t i = 0; i < cells.n_cells; i++)
+        widest = fmax(widest, cells.cells[i].high.x - cells.cells[i].low.x);
+    assert_true(fabs(widest / 0.73 - 4) < 0.1);
+    celltree_release(&cells);
+}
+
+/* About a vessel of radius 0.73 in cubes of 2.92 mm, whose quarters end 0.73 mm from its axis. */
+static void boxes_end_where_the_surface_does(void **state)
+{
+    (void)state;
+    TestScene test = {.geometry = {.segments = test.segments}};
+    put_segment(&test, vec3(-7, 0.002, -0.001), vec3(7, 0.002, -0.001), 0.73);
+    CellTree cells = cells_of(&test, 4, ERF_FAST);
+    assert_true(cells.n_cells > 12);
+    for (size_t i = 0; i < cells.n_cells; i++) {
+        const Cell *cell = &cells.cells[i];
+        double most = 2 * 0.73 + 7 * cell->accuracy;
+        assert_true(cell->high.y < most && cell->low.y > -most);
+        assert_true(cell->high.z < most && cell->low.z > -most);
+    }
+    celltree_release(&cells);
 }
 
 static void nothing_has_no_cells(void **state)
@@ -482,9 +485,10 @@ int main(void)
         cmocka_unit_test(a_long_vessel_is_made_of_tubes),
         cmocka_unit_test(cells_come_in_order_with_what_they_promise),
         cmocka_unit_test(accuracy_follows_the_radius_but_for_shadows),
-        cmocka_unit_test(cells_reach_five_accuracies_and_a_part_beyond_their_cubes),
+        cmocka_unit_test(cells_reach_five_accuracies_and_a_part_beyond_the_parts_of_their_cubes),
         cmocka_unit_test(single_precision_holds_boxes_and_boxes_about_them),
-        cmocka_unit_test(cells_of_many_segments_are_larger),
+        cmocka_unit_test(cells_are_not_split_without_a_given_beta_while_radii_are_alike),
+        cmocka_unit_test(boxes_end_where_the_surface_does),
         cmocka_unit_test(nothing_has_no_cells),
         cmocka_unit_test(refuses_a_scene_of_countless_cells),
     };

@@ -175,7 +175,7 @@ static const Option rows[] = {
      SETS(NUMBER, PictureOptions, cell_beta),
      FROM_TO(0.5, 64),
      .group = GROUP_POVRAY,
-     .otherwise = "by the number of segments",
+     .otherwise = "6",
      .help = "POV-Ray's isosurface: side of a cell over the smallest radius in it"},
     {.name = "shadows",
      SETS(SWITCH, PictureOptions, stage.shadows),
