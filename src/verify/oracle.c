@@ -144,6 +144,17 @@ static bool is_whole_picture(const char *path, const OracleParams *params)
            header[BEGIN + 9] == (params->alpha ? RGBA : RGB) && memcmp(tail, end, END) == 0;
 }
 
+/* POV-Ray writes the picture, says how long it took, and ends 0.3 s later. */
+static bool is_done(const void *context, const Text *said, const char *picture)
+{
+    enum { LAST = 400 };
+    const char *chars = text_chars(said);
+    if (!chars)
+        return false;
+    const char *last = chars + (said->length > LAST ? said->length - LAST : 0);
+    return strstr(last, "Trace Time:") && is_whole_picture(picture, context);
+}
+
 static Status judge(const void *context, const Text *said, int exit_status, const char *picture,
                     Err *err)
 {
@@ -176,6 +187,8 @@ Status oracle_run(const OracleParams *params, OracleRun *run, Err *err)
                        .progress_context = params->progress_context,
                        .add_arguments = add_arguments,
                        .judge = judge,
+                       .is_done = is_done,
+                       .process = "povray",
                        .context = params};
     Status status = tool_draw(&tool, &said, &seconds, err);
     if (status == STATUS_OK && run) {

@@ -7,6 +7,9 @@
  * file. They run in the scene's folder, where they find what the scene includes. The picture takes
  * its final name when it is whole.
  *
+ * A program that takes its time to end is ended once its picture is whole, if it is the program
+ * itself: a script that stands for it may have more to do.
+ *
  * The program is a process group of its own, a script that stands for it included. It is killed
  * when a signal ends this process, before its files are removed, and when it falls silent; if this
  * process is killed, the program itself dies with it. */
@@ -181,9 +184,22 @@ static Status end_program(pid_t child, Status status)
     return status;
 }
 
+/* Whether the process is the program itself, and has only to end. */
+static bool is_done(const Tool *tool, pid_t child, const Text *said, const char *picture)
+{
+    char link[40], path[4096];
+    if (!tool->is_done || !tool->is_done(tool->context, said, picture))
+        return false;
+    snprintf(link, sizeof link, "/proc/%d/exe", (int)child);
+    ssize_t length = readlink(link, path, sizeof path - 1);
+    path[length > 0 ? length : 0] = '\0';
+    return strcmp(file_name(path), tool->process) == 0;
+}
+
 /* Waits for the program itself: what it has started may live on and keep the pipe open, and it may
  * close the pipe and live on. What is in the pipe when it ends is still read. */
-static Status attend(const Tool *tool, pid_t child, int handle, Log *log, int *ended, Err *err)
+static Status attend(const Tool *tool, pid_t child, int handle, const char *picture, Log *log,
+                     int *ended, Err *err)
 {
     enum { WAIT_MS = 100, SHORT_WAIT_MS = 2, LAST_READS = 8 };
     double heard_s = clock_seconds();
@@ -193,6 +209,10 @@ static Status attend(const Tool *tool, pid_t child, int handle, Log *log, int *e
             open = hear(tool, handle, WAIT_MS, log, &heard_s);
         else
             poll(NULL, 0, SHORT_WAIT_MS);
+        if (is_done(tool, child, &log->text, picture)) {
+            *ended = 0;
+            return end_program(child, text_check(&log->text, err));
+        }
         if (log->bytes > log_most)
             return end_program(child, err_set(err, STATUS_TOOL,
                                               "%s was ended: it has said more than %.0f MB "
@@ -212,14 +232,14 @@ static Status attend(const Tool *tool, pid_t child, int handle, Log *log, int *e
 
 /* Starts the program and waits for it; *log holds what it said. */
 static Status run_program(const Tool *tool, char *const *arguments, const char *folder,
-                          int private_folder, Log *log, int *exit_status, Err *err)
+                          const Workplace *place, Log *log, int *exit_status, Err *err)
 {
     int pipe_ends[2], ended = 0;
     if (pipe2(pipe_ends, O_CLOEXEC) != 0)
         return err_set(err, STATUS_TOOL, "%s cannot be started: %s", tool->name, strerror(errno));
     pid_t child = fork();
     if (child == 0)
-        become_program(arguments, folder, private_folder, pipe_ends[1]);
+        become_program(arguments, folder, place->handle, pipe_ends[1]);
     if (child > 0) {
         setpgid(child, child); /* here as in the child: whoever comes first */
         file_kill_on_signal(child);
@@ -227,7 +247,7 @@ static Status run_program(const Tool *tool, char *const *arguments, const char *
     close(pipe_ends[1]);
     Status status = child < 0 ? err_set(err, STATUS_TOOL, "%s cannot be started: %s", tool->name,
                                         strerror(errno))
-                              : attend(tool, child, pipe_ends[0], log, &ended, err);
+                              : attend(tool, child, pipe_ends[0], place->picture, log, &ended, err);
     if (child > 0)
         file_spare_on_signal(child);
     close(pipe_ends[0]);
@@ -264,7 +284,7 @@ Status tool_draw(const Tool *tool, Text *said, double *seconds, Err *err)
     TRY_GOTO(open_workplace(&place, scene, output, err));
     TRY_GOTO(tool->add_arguments(tool->context, TOOL_FOLDER TOOL_SCENE, TOOL_FOLDER PRIVATE_PICTURE,
                                  &arguments, err));
-    TRY_GOTO(run_program(tool, arguments.list, folder, place.handle, &log, &exit_status, err));
+    TRY_GOTO(run_program(tool, arguments.list, folder, &place, &log, &exit_status, err));
     if (exit_status == STATUS_NOT_STARTED)
         TRY_GOTO(err_set(err, STATUS_TOOL,
                          "%s is needed and '%s' cannot be started; on Debian: apt install %s",

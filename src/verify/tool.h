@@ -37,6 +37,10 @@ typedef struct Tool {
     /* STATUS_TOOL unless it has drawn a whole picture, which stands at `picture`. */
     Status (*judge)(const void *context, const Text *said, int exit_status, const char *picture,
                     Err *err);
+    /* Whether it has drawn the picture and is only about to end: a process of the name `process`,
+     * no script, is not waited for then, but ended. May be NULL. */
+    bool (*is_done)(const void *context, const Text *said, const char *picture);
+    const char *process;
     const void *context;
 } Tool;
 
