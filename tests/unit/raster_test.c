@@ -648,6 +648,52 @@ static void boxes_hold_the_axes_of_vessels(void **state)
     }
 }
 
+/* Whether a sample of a picture of 40 x 30 pixels of 0.1 mm, the first at the origin, is within a
+ * capsule. */
+static bool sees_capsule(Vec3 middle, Vec3 span, double radius)
+{
+    double length2 = span.x * span.x + span.y * span.y;
+    for (int j = 0; j < 30; j++)
+        for (int i = 0; i < 40; i++) {
+            double dx = 0.1 * i - middle.x, dy = -0.1 * j - middle.y;
+            double part = length2 > 0 ? (dx * span.x + dy * span.y) / length2 : 0;
+            part = fmin(fmax(part, -0.5), 0.5);
+            if (hypot(dx - part * span.x, dy - part * span.y) <= radius)
+                return true;
+        }
+    return false;
+}
+
+static void of_many_thin_capsules_those_that_no_sample_sees_are_left_out(void **state)
+{
+    (void)state;
+    RasterView view = {.step_x = 0.1,
+                       .step_y = -0.1,
+                       .per_x = 1 / 0.1,
+                       .per_y = 1 / -0.1,
+                       .columns = 40,
+                       .rows = 30,
+                       .many = true};
+    Random random;
+    random_seed(&random, 51);
+    int missed = 0, found = 0;
+    for (int i = 0; i < 20000; i++) {
+        Vec3 middle = {number(&random, -0.3, 4.3), number(&random, -3.3, 0.3), 7.1};
+        Vec3 span = vec3_scale(point(&random, 0.09), i % 20 ? 1 : 0);
+        double radius = number(&random, 0.003, 0.06);
+        bool misses = rasterreach_misses(&view, middle, span, radius);
+        bool seen = sees_capsule(middle, span, radius);
+        assert_false(misses && seen);
+        missed += !seen;
+        found += misses;
+    }
+    assert_true(missed > 5000 && found > 0.98 * missed);
+    view.stray = 0.5;
+    assert_false(rasterreach_misses(&view, vec3(1.05, -1.05, 0), vec3(0, 0, 1), 0.01));
+    view.stray = 0;
+    assert_true(rasterreach_misses(&view, vec3(1.05, -1.05, 0), vec3(0, 0, 1), 0.01));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -666,6 +712,7 @@ int main(void)
         cmocka_unit_test(a_depth_buffer_does_not_depend_on_the_number_of_threads),
         cmocka_unit_test(every_kind_of_kernels_draws_what_rays_draw),
         cmocka_unit_test(boxes_hold_the_axes_of_vessels),
+        cmocka_unit_test(of_many_thin_capsules_those_that_no_sample_sees_are_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -117,7 +117,8 @@ RASTER_FN void meet_block(RasterState *state, const NearItem *near, int block)
         const RasterJoint *joint = &state->tile->joints[near->item->joint];
         LaneMask met =
             joint_entry(near, joint, &sight, within, (LaneMask){0}, &z, &ruling, &unsure);
-        met = keep_nearer(state, near, near->number | RASTER_RULED, block, met, z);
+        uint32_t item = (uint32_t)(near->item - state->tile->items);
+        met = keep_nearer(state, near, item | RASTER_RULED, block, met, z);
         keep_lanes(&state->hits->ruling[block * LANES], met, ruling);
         if (lanes_any(unsure))
             decide_block(state, near, block, unsure);
@@ -165,6 +166,7 @@ RASTER_FN void trace_items(RasterState *state, bool perspective)
         if (i + ITEMS_AHEAD < tile->n)
             __builtin_prefetch(&tile->items[tile->list[i + ITEMS_AHEAD]]);
         NearItem near = approach(tile, tile->list[i], perspective);
+        near.number = near.item->primitive;
         outline(tile, &near);
         unsigned parts = touched_parts(state, &near);
         if (item_is_close(near.item))
@@ -210,9 +212,9 @@ LANE_TARGET static void resolve_decided(const RasterTile *tile, uint32_t number,
     surface->normal[2][sample] = (float)normal.z;
 }
 
-/* The normals of the samples `of` a block, which see the joint. */
-RASTER_FN void resolve_joint(const RasterTile *tile, const RasterHits *hits, uint32_t number,
-                             int block, LaneMask of, bool perspective, TileHits *surface)
+/* The normals of the samples `of` a block, which see the joint, and its primitive's number. */
+RASTER_FN void resolve_joint(const RasterTile *tile, RasterHits *hits, uint32_t number, int block,
+                             LaneMask of, bool perspective, TileHits *surface)
 {
     int first = block * LANES;
     NearItem near = approach(tile, number, perspective);
@@ -222,10 +224,15 @@ RASTER_FN void resolve_joint(const RasterTile *tile, const RasterHits *hits, uin
     joint_normal(&near, &tile->joints[near.item->joint], &sight, lanes_load(&hits->ruling[first]),
                  normal);
     keep_normal(surface, block, of, normal);
+    for (uint32_t left = lanes_bits(of); left; left &= left - 1) {
+        int sample = first + __builtin_ctz(left);
+        surface->segment[sample] = near.item->primitive;
+        hits->item[sample] = near.item->primitive | RASTER_RULED;
+    }
 }
 
-RASTER_FN void resolve_block(const RasterTile *tile, const RasterHits *hits, int block,
-                             bool perspective, TileHits *surface)
+RASTER_FN void resolve_block(const RasterTile *tile, RasterHits *hits, int block, bool perspective,
+                             TileHits *surface)
 {
     int first = block * LANES;
     LaneMask items = load_items(&hits->item[first]), seen = items != (int32_t)RASTER_NOTHING;
@@ -246,7 +253,7 @@ RASTER_FN void resolve_block(const RasterTile *tile, const RasterHits *hits, int
     }
 }
 
-LANE_TARGET static void RASTER_KERNEL(resolve)(const RasterTile *tile, const RasterHits *hits,
+LANE_TARGET static void RASTER_KERNEL(resolve)(const RasterTile *tile, RasterHits *hits,
                                                TileHits *surface)
 {
     for (int block = 0; block < BLOCKS; block++)

@@ -1,7 +1,11 @@
 /* Items are counted into the rows of tiles that they may touch; chunks of items have counters of
  * their own, so that threads fill the rows without waiting and in the order of the items, each
  * with the columns that it may touch there. The list of a row's tiles is made when the row is
- * drawn. */
+ * drawn.
+ *
+ * But in a light's view, items that touch no tile are left out: each chunk has room for all of its
+ * own, and packs those that are left at the beginning. What lies behind them is never touched, and
+ * so costs no memory. */
 #include "render/raster/rasterbins.h"
 
 #include "render/cast/caster.h"
@@ -19,6 +23,7 @@ typedef struct Build {
     RasterBins *bins;
     RasterSlab *slabs;      /* one a row */
     size_t *counts;         /* chunk by chunk, of each row; then where the chunk's items go */
+    size_t *ends;           /* of each chunk: behind the last of its items */
     uint32_t *joints;       /* chunk by chunk: their number; then that of the first */
     size_t chunk, n_chunks; /* items in a chunk; chunks */
 } Build;
@@ -60,6 +65,11 @@ static Status make_room_for_joints(Build *build, int threads, Err *err)
     return mem_calloc(&bins->joints, (size_t)n + 1, sizeof *bins->joints, "joints", err);
 }
 
+static bool touches_tiles(const RasterItem *item)
+{
+    return item->rows.first <= item->rows.last;
+}
+
 static void make_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
@@ -67,15 +77,20 @@ static void make_chunk(size_t chunk, int worker, void *context)
     RasterBins *bins = build->bins;
     size_t *counts = build->counts + chunk * (size_t)bins->tile_rows;
     uint32_t joint = build->joints[chunk];
-    for (size_t i = chunk * build->chunk; i < chunk_end(build, chunk); i++) {
-        RasterItem *item = &bins->items[i];
+    size_t to = chunk * build->chunk;
+    for (size_t i = to; i < chunk_end(build, chunk); i++) {
+        RasterItem *item = &bins->items[to];
         rasteritem_make(bins->geometry, &bins->view, (uint32_t)i, joint, item,
                         bins->joints ? &bins->joints[joint] : NULL,
                         bins->hulls ? &bins->hulls[joint] : NULL);
         joint += is_joint(bins, i);
+        if (!bins->view.light)
+            item->primitive = (uint32_t)i;
         for (int row = item->rows.first; row <= item->rows.last; row++)
             counts[row]++;
+        to += bins->view.light || touches_tiles(item);
     }
+    build->ends[chunk] = to;
 }
 
 /* Puts an item into its rows, at the next of their places. */
@@ -99,7 +114,7 @@ static void fill_chunk(size_t chunk, int worker, void *context)
     (void)worker;
     const Build *build = context;
     size_t *places = build->counts + chunk * (size_t)build->bins->tile_rows;
-    for (size_t i = chunk * build->chunk; i < chunk_end(build, chunk); i++)
+    for (size_t i = chunk * build->chunk; i < build->ends[chunk]; i++)
         fill_item(build, places, i);
 }
 
@@ -109,6 +124,7 @@ static Status sort_into_rows(Build *build, int threads, Err *err)
     size_t rows = (size_t)bins->tile_rows, total = 0;
     size_t chunks = build->n_chunks;
     TRY(mem_calloc(&build->counts, chunks * rows, sizeof *build->counts, "rows of tiles", err));
+    TRY(mem_calloc(&build->ends, chunks, sizeof *build->ends, "rows of tiles", err));
     threads_for(chunks, threads, make_chunk, build);
     for (size_t row = 0; row < rows; row++) {
         bins->row_offsets[row] = total;
@@ -176,6 +192,7 @@ static Status make_bins(RasterBins *bins, int threads, Err *err)
     free(build.slabs);
     free(build.joints);
     free(build.counts);
+    free(build.ends);
     return status;
 }
 
@@ -188,6 +205,7 @@ Status rasterbins_new(const Geometry *geometry, const RasterView *view, int thre
     bins->view = *view;
     bins->view.per_x = 1 / view->step_x;
     bins->view.per_y = 1 / view->step_y;
+    bins->view.many = !rasterbins_are_small(geometry);
     bins->tile_columns = (view->columns + TILE_SIDE - 1) / TILE_SIDE;
     bins->tile_rows = (view->rows + TILE_SIDE - 1) / TILE_SIDE;
     Status status = make_bins(bins, threads, err);
@@ -287,16 +305,16 @@ RasterTile rasterbins_tile(const RasterBins *bins, int column, int row, const ui
 /* ---- items in double precision ------------------------------------------------------------------
  */
 
-void raster_joint(const RasterBins *bins, uint32_t item, RasterJoint *joint)
+void raster_joint(const RasterBins *bins, uint32_t number, RasterJoint *joint)
 {
-    const RasterItem *about = &bins->items[item];
-    *joint = rasterjoint_make(&bins->view, &bins->geometry->primitives[item],
+    const RasterItem *about = &bins->items[number];
+    *joint = rasterjoint_make(&bins->view, &bins->geometry->primitives[number],
                               vec3(about->x, about->y, about->z));
 }
 
-double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, Vec3 *normal)
+double raster_decide(const RasterBins *bins, uint32_t number, double x, double y, Vec3 *normal)
 {
-    const Primitive *primitive = &bins->geometry->primitives[item];
+    const Primitive *primitive = &bins->geometry->primitives[number];
     Ray ray = rasterview_ray(&bins->view, x, y);
     Hit hits[6];
     double nearest = HUGE_VAL;

@@ -9,7 +9,7 @@ typedef struct RasterBins {
     const Geometry *geometry; /* borrowed */
     RasterView view;
     void *item_memory;   /* holds the items */
-    RasterItem *items;   /* in a line of the cache each */
+    RasterItem *items;   /* in a line of the cache each; in a light's view one a primitive */
     RasterJoint *joints; /* of items that are joints, but in a light's view: */
     RasterHull *hulls;
     int tile_columns, tile_rows;
@@ -62,12 +62,12 @@ void rasterrow_release(RasterRow *row);
 RasterTile rasterbins_tile(const RasterBins *bins, int column, int row, const uint32_t *list,
                            size_t n, const RasterGrid *grid);
 
-/* Makes the joint of an item that is a RASTER_JOINT, anew from its primitive. */
-void raster_joint(const RasterBins *bins, uint32_t item, RasterJoint *joint);
+/* Makes the joint of an item of a light's view that is a RASTER_JOINT, anew from its primitive. */
+void raster_joint(const RasterBins *bins, uint32_t number, RasterJoint *joint);
 
-/* Intersects the line of sight at (x, y) of the view's plane with an item, in double precision.
+/* Intersects the line of sight at (x, y) of the view's plane with a primitive, in double precision.
  * Returns the depth of the hit along the view, mm, or INFINITY; if there is a hit and `normal` is
  * not NULL, sets *normal to the surface's unit normal in the view's frame. */
-double raster_decide(const RasterBins *bins, uint32_t item, double x, double y, Vec3 *normal);
+double raster_decide(const RasterBins *bins, uint32_t number, double x, double y, Vec3 *normal);
 
 #endif

@@ -4,9 +4,10 @@
 
 #include "render/raster/rasterview.h"
 
-/* Makes the item of the primitive numbered `number`; of one that touches no tiles, sets these
- * alone. `joint` is the index that the item keeps of its joint. If the item is a RASTER_JOINT, sets
- * *hull in the view of a light, *made in any other; each may be NULL where it is not set. */
+/* Makes the item of the primitive numbered `number`, but for RasterItem.primitive; of one that
+ * touches no tiles, sets these alone. `joint` is the index that the item keeps of its joint. If the
+ * item is a RASTER_JOINT, sets *hull in the view of a light, *made in any other; each may be NULL
+ * where it is not set. */
 void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t number,
                      uint32_t joint, RasterItem *item, RasterJoint *made, RasterHull *hull);
 
@@ -43,8 +44,8 @@ typedef struct RasterSlab {
 
 RasterSlab rasterslab_of(const RasterView *view, size_t row);
 
-/* Whether a parallel view has no sample within a capsule's box; in perspective nothing is known.
- * Most vessels of a tree of a million are such: they lie between the middles of pixels. */
+/* Whether a parallel view has no sample within a capsule's box, or, where it has few and all lie at
+ * the middles of pixels, within the capsule; in perspective nothing is known. */
 bool rasterreach_misses(const RasterView *view, Vec3 middle, Vec3 span, double radius);
 /* Sets the rows and columns of tiles that an item may touch, none if it is behind the viewer, and
  * in the view of a light its box. */

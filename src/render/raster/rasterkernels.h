@@ -14,9 +14,9 @@ typedef struct ShadowQueries {
     float x[LIGHT_MOST_PLACES],
         y[LIGHT_MOST_PLACES];   /* in the plane of the view, less the tile's middle */
     float z[LIGHT_MOST_PLACES]; /* less z_middle */
-    /* Index of the item whose surface the place lies on, as in RasterHits. If that is a sphere or a
-     * cylinder whose hit was found in single precision, it is not tested as a blocker of this
-     * place: rounding would let it shadow itself. */
+    /* Number of the primitive whose surface the place lies on, as in RasterHits. If that is a
+     * sphere or a cylinder whose hit was found in single precision, it is not tested as a blocker
+     * of this place: rounding would let it shadow itself. */
     uint32_t item[LIGHT_MOST_PLACES];
     uint8_t covered[LIGHT_MOST_PLACES]; /* 1 where an item is seen before that depth, else 0 */
 } ShadowQueries;
@@ -27,10 +27,10 @@ typedef struct RasterKernels {
      * if sample i sees an item. Reads tile->list[0 .. n), and of the bins what raster_decide
      * does. */
     uint64_t (*trace)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
-    /* Completes *surface after `trace` with the same tile and hits: state, item (as `segment`), and
-     * the normals of joints and of what was decided in double precision. Leaves z, any_hit and
-     * any_unsure alone. */
-    void (*resolve)(const RasterTile *tile, const RasterHits *hits, TileHits *surface);
+    /* Completes *surface after `trace` with the same tile and hits: state, the primitive's number
+     * (as `segment`), and the normals of joints and of what was decided in double precision; leaves
+     * z, any_hit and any_unsure alone. Of joints, completes *hits. */
+    void (*resolve)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
     /* The places that the hits are at. */
     void (*locate)(const RasterTile *tile, const RasterHits *hits, SeenPlaces *places);
     /* Sets `covered` of the queries, all of which lie in this tile of a light, and overwrites what

@@ -30,7 +30,8 @@ static inline RasterTiles rastertiles_of(TileSpan span)
 
 /* One primitive of the geometry, as a capsule that contains it: all points within `radius` of a
  * segment of length 2 half about the middle, along the unit axis (sine ex, sine ey, cosine) with
- * cosine >= 0. Items have the numbers of their primitives; a cylinder's round ends are its own. */
+ * cosine >= 0. In the view of a light items have the numbers of their primitives; a cylinder's
+ * round ends are its own. */
 typedef struct RasterItem {
     double x, y, z; /* the middle */
     float ex, ey;   /* a unit vector, where the axis points to across the view */
@@ -41,8 +42,11 @@ typedef struct RasterItem {
     uint32_t round_high : 1; /* and that at +half */
     uint32_t joint : 28;     /* index of its RasterJoint or RasterHull */
     RasterTiles rows, columns; /* of tiles that it may touch */
-    uint32_t box; /* in the view of a light: the item's box [rasteritem.h] in those tiles,
-                   * its minima in the first, its maxima in the last */
+    union {
+        uint32_t box;       /* in the view of a light: the item's box [rasteritem.h] in those tiles,
+                             * its minima in the first, its maxima in the last */
+        uint32_t primitive; /* in any other: its number */
+    };
 } RasterItem;
 
 /* No geometry with more primitives can be drawn. */
@@ -113,7 +117,7 @@ typedef struct RasterTile {
 
 #define RASTER_NOTHING UINT32_MAX
 /* Set in `item` where a sample was decided in double precision, and where it sees a joint; the rest
- * is the index. */
+ * is the number of the primitive. */
 #define RASTER_DECIDED 0x80000000u
 #define RASTER_RULED 0x40000000u
 #define RASTER_NUMBER 0x3fffffffu
@@ -121,7 +125,8 @@ typedef struct RasterTile {
 /* The first item at each sample. */
 typedef struct RasterHits {
     float z[TILE_SAMPLES]; /* depth along the view less z_middle; infinite: nothing is there */
-    uint32_t item[TILE_SAMPLES]; /* index, perhaps with flags; or RASTER_NOTHING */
+    uint32_t item[TILE_SAMPLES]; /* the number of its primitive, perhaps with flags, but of a joint,
+                                  * until it is resolved, its own; or RASTER_NOTHING */
     float ruling[TILE_SAMPLES];  /* of a joint: tan(q / 2) */
 } RasterHits;
 

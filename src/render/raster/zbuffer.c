@@ -155,16 +155,15 @@ static void draw_joint(const Brush *brush, const JointFrame *joint)
     }
 }
 
-static void draw_primitive(const Buffers *buffers, const RasterItem *item, uint32_t number,
-                           Brush *brush)
+static void draw_primitive(const Buffers *buffers, const RasterItem *item, Brush *brush)
 {
     const RasterView *view = brush->view;
-    const Primitive *primitive = &buffers->drawing->geometry->primitives[number];
+    const Primitive *primitive = &buffers->drawing->geometry->primitives[item->primitive];
     double pixel = fmin(view->step_x, -view->step_y);
     if (view->eye.perspective) /* a step across a slanting line of sight is foreshortened */
         pixel *= item_nearest(item) / (1 + view->left * view->left + view->top * view->top);
     brush->apart = pixel * pixels_apart;
-    brush->primitive = number;
+    brush->primitive = item->primitive;
     Vec3 a = viewpoint_place(&view->eye, primitive->a);
     Vec3 b = viewpoint_place(&view->eye, primitive->b);
     if (primitive->kind == PRIMITIVE_CYLINDER) {
@@ -234,7 +233,7 @@ static void draw_row(size_t number, int worker, void *context)
         points[i].z = HUGE_VAL;
     Brush brush = {.view = view, .points = points, .row = first};
     for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++)
-        draw_primitive(buffers, &bins->items[bins->row_items[i]], bins->row_items[i], &brush);
+        draw_primitive(buffers, &bins->items[bins->row_items[i]], &brush);
     for (int j = 0; j < tile_extent(view->rows - first); j++)
         for (int i = 0; i < view->columns; i++)
             finish_pixel(buffers, &points[j * view->columns + i], i,
@@ -243,10 +242,8 @@ static void draw_row(size_t number, int worker, void *context)
 
 static Status check_outside(const RasterBins *bins, Err *err)
 {
-    for (size_t i = 0; i < rasterbins_items(bins->geometry); i++) {
-        const RasterItem *item = &bins->items[i];
-        if (item->rows.first > item->rows.last)
-            continue;
+    for (size_t i = 0; i < bins->row_offsets[bins->tile_rows]; i++) {
+        const RasterItem *item = &bins->items[bins->row_items[i]];
         double deep = item_depth(item);
         if (item->z + deep > 0 && item->z - deep < (bins->view.eye.perspective ? deep * 0.01 : 0))
             return err_set(err, STATUS_USAGE,
