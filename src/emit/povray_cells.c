@@ -20,6 +20,9 @@ enum { TUBE = TERM_MIDDLE + 1, N_FUNCTIONS };
 /* Of so many terms of a cell each is compared with those that follow. */
 enum { MOST_COMPARED = 4 };
 
+/* The entries of a map of POV-Ray's colours or textures. */
+enum { MOST_PAINTS = 256 };
+
 /* Scales are 2^(number - SCALE_ONE). */
 enum { SCALE_ONE = 64, N_SCALES = 128 };
 
@@ -444,6 +447,12 @@ static Status put_cell_paint(Text *text, const CellTemplates *templates, const C
         text_printf(text, "#if(Tree_Painted)texture{Whole_Paints[%u]}#end", cell->largest);
         return STATUS_OK;
     }
+    if (cell->count > MOST_PAINTS)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "%u vessels meet near (%g, %g, %g): POV-Ray cannot paint more than %d of an "
+                       "isosurface at one place; draw them in one colour, or choose another "
+                       "model",
+                       cell->count, cell->low.x, cell->low.y, cell->low.z, MOST_PAINTS);
     cleared(&part->declared);
     if (cell->n_groups > 0 || cell->count > MOST_COMPARED) {
         put_top(&part->declared, cells, cell);

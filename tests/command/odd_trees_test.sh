@@ -94,6 +94,14 @@ test_twelve_hundred_daughters_at_one_node() {
     each_way draws
 }
 
+test_more_daughters_at_one_node_than_povray_paints() {
+    run_ok corcast scene "$DATA/star.swc" --quiet --model isosurface -o plain.pov
+    run corcast scene "$DATA/star.swc" --quiet --model isosurface --color-by length -o painted.pov
+    expect_status 2
+    grep -q 'cannot paint more than 256' stderr || fail "expected the reason$(said)"
+    expect_only plain.pov plain.inc
+}
+
 test_all_segments_on_one_line() {
     cp "$DATA/collinear.swc" tree.swc
     each_way draws
