@@ -57,7 +57,7 @@ void fieldterms_make(const FrameSegment *segments, const uint32_t *list, size_t 
 /* Has the memory of the segments fetched that fieldterms_make is about to read. */
 void fieldterms_fetch(const FrameSegment *segments, const uint32_t *list, size_t n);
 
-enum { TILE_WORK_BYTES = 1728 }; /* of one term in a kernel's workspace */
+enum { TILE_WORK_BYTES = 2176 }; /* of one term in a kernel's workspace */
 
 /* The workspace of a kernel, for up to `capacity` terms. */
 typedef struct TileWork {

@@ -61,10 +61,9 @@ LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
     term->peak = lanes_select(d2 < term->term->reach2, most, lanes_set(0));
 }
 
-/* Sets what a sample of the term needs. */
-LANE_FN void bend_term(PacketTerm *term, bool perspective)
+/* Sets what bounds the term's bends, and how much it may be off. */
+LANE_FN void bound_bend(PacketTerm *term)
 {
-    (void)perspective;
     Lanes end2 = term->e2 + lanes_min(term->end_y2[0], term->end_y2[1]);
     LaneMask near_axis = term->e2 + term->past < (float)IN_UNITS2(NEAR_AXIS);
     Lanes bend = lanes_select(near_axis, lanes_set(PER_UNITS2(CURVED_NEAR_AXIS)),
@@ -74,6 +73,13 @@ LANE_FN void bend_term(PacketTerm *term, bool perspective)
     Lanes along = lanes_select(end2 < term->term->reach2, square(term->u1), lanes_set(0));
     term->curvature = bend * (square(term->w1) + along);
     term->steep = steepness(term);
+}
+
+/* Sets what a sample of the term needs. */
+LANE_FN void bend_term(PacketTerm *term, bool perspective)
+{
+    (void)perspective;
+    bound_bend(term);
     term->bent = true;
 }
 
@@ -91,10 +97,8 @@ typedef struct BlobSum {
     Lanes value, across, along;
 } BlobSum;
 
-/* Its numbers are known where it is called, and so everything that follows from them. */
-#define FOLDED_FN LANE_FN __attribute__((always_inline))
-
-/* Adds a tube, of so much of its strength, at a squared distance. */
+/* Adds a tube, whose numbers are known where this is folded in, of so much of its strength, at a
+ * squared distance. */
 FOLDED_FN void add_tube(const BlobTube *tube, double part, Lanes distance2, BlobSum *sum)
 {
     const double strength = part * tube->strength * FIELD_LEVEL, per = 1 / IN_UNITS2(tube->radius);
@@ -134,14 +138,13 @@ LANE_FN BlobSum sum_end(Lanes rho2, Lanes x)
     return sum;
 }
 
-/* The term at dz, where its ray is at w. */
-LANE_FN BlobSum blob_sum(const PacketTerm *term, Lanes dz, Lanes w)
+/* The term where its ray is at w, u and v. */
+LANE_FN BlobSum blob_sum_at(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
 {
     const Lanes zero = lanes_set(0);
     const float reach =
         (float)(sqrt(2) * (blob_numbers.bead[1].offset + blob_numbers.bead[1].radius));
     BlobSum sum = {zero, zero, zero};
-    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
     Lanes rho2 = lanes_fma(w, w, term->e2), x = lanes_min(u, zero) - lanes_min(v, zero);
     Lanes distance2 = lanes_fma(x, x, rho2);
     add_tube(&blob_numbers.tube[0], 1, distance2, &sum);
@@ -162,6 +165,13 @@ LANE_FN BlobSum blob_sum(const PacketTerm *term, Lanes dz, Lanes w)
     return sum;
 }
 
+/* The term at dz, where its ray is at w. */
+LANE_FN BlobSum blob_sum(const PacketTerm *term, Lanes dz, Lanes w)
+{
+    return blob_sum_at(term, w, lanes_fma(term->u1, dz, term->u0),
+                       lanes_fma(-term->u1, dz, term->v0));
+}
+
 /* The slope along the ray of a sum. */
 LANE_FN Lanes slope_of(const PacketTerm *term, Lanes w, const BlobSum *sum)
 {
@@ -172,6 +182,13 @@ LANE_FN TermSample sample_term(const PacketTerm *term, Lanes z)
 {
     Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
     BlobSum sum = blob_sum(term, dz, w);
+    return (TermSample){sum.value, slope_of(term, w, &sum)};
+}
+
+/* The term at w, u and v; only its ray is set. */
+LANE_FN TermSample sample_once(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
+{
+    BlobSum sum = blob_sum_at(term, w, u, v);
     return (TermSample){sum.value, slope_of(term, w, &sum)};
 }
 
@@ -201,17 +218,20 @@ LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
     return near & (inside > 0.0f) & (square(inside) >= reach2) & (dz + term->z > z);
 }
 
-/* No more than this is the term anywhere from z on. */
-LANE_FN Lanes most_beyond(const PacketTerm *term, Lanes z)
+/* No more than this is a term anywhere from w on, where the end that it leaves is at `leaves`. */
+LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
 {
-    return lanes_min(ENVELOPE * gauss_beyond(term, z), term->peak);
+    Lanes most = ENVELOPE * gauss_beyond(e2, w, leaves);
+    return most * lanes_select(leaves < 0.0f, lanes_set(0.5f), lanes_set(1));
 }
 
 LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
 {
     Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    BlobSum sum = blob_sum(term, dz, w);
-    return (TermThere){{sum.value, slope_of(term, w, &sum)}, most_beyond(term, z)};
+    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
+    BlobSum sum = blob_sum_at(term, w, u, v);
+    Lanes most = most_beyond(term->e2, w, lanes_select(term->u1 > 0.0f, v, u));
+    return (TermThere){{sum.value, slope_of(term, w, &sum)}, lanes_min(most, term->peak)};
 }
 
 #endif

@@ -13,6 +13,9 @@
 
 #include "render/field/kernel_trace_common.h"
 
+/* A function of which only what its caller makes use of is to be computed. */
+#define FOLDED_FN LANE_FN __attribute__((always_inline))
+
 /* A term on the rays of a packet, in powers of dz = z - z of the term. From `half_gauss` on, those
  * of a sample are set once one is to be taken, all once it is known that the packet may hit
  * something. */
@@ -85,7 +88,7 @@ typedef struct TermRays {
     Lanes o[3], d[3];
 } TermRays;
 
-LANE_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
+FOLDED_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
 {
     const FieldTile *tile = packet->tile;
     TermRays rays = {{packet->x + term->o[0], packet->y + term->o[1], lanes_set(term->o[2])},
@@ -102,7 +105,7 @@ LANE_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
 
 /* The linear part of an orthographic packet's term, 1 / s and a; false, some of it not set, when
  * all rays pass the axis beyond reach. */
-LANE_FN bool place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out)
+FOLDED_FN bool place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, s = term->sine, a = term->cosine, *cross = term->cross;
     Lanes x = packet->x + term->o[0], y = packet->y + term->o[1];
@@ -128,7 +131,7 @@ LANE_FN Lanes dot(const Lanes a[3], const float b[3])
 
 /* Likewise in perspective, where they are not. The directions' common part of cross products comes
  * from the tile, in double, so that rays nearly along the axis lose nothing. */
-LANE_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTerm *out)
+FOLDED_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, *axis = term->axis;
     TermRays rays = rays_of(packet, term);
@@ -218,17 +221,12 @@ typedef struct TermThere {
     Lanes most;
 } TermThere;
 
-/* exp(-x^2) of x the least distance of the segment from z on, or less, or half of that where an end
- * has been left. */
-LANE_FN Lanes gauss_beyond(const PacketTerm *term, Lanes z)
+/* exp(-x^2) of x the least distance of the segment from w on, or less, where the end that the ray
+ * leaves is at `leaves`. */
+LANE_FN Lanes gauss_beyond(Lanes e2, Lanes w, Lanes leaves)
 {
-    const Lanes zero = lanes_set(0);
-    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
-    Lanes past = lanes_min(lanes_select(term->u1 > 0.0f, v, u), zero);
-    Lanes away = lanes_max(w, zero); /* w1 >= 0 */
-    Lanes gauss = lanes_exp_minus(lanes_fma(past, past, lanes_fma(away, away, term->e2)));
-    return gauss * lanes_select(past < 0.0f, lanes_set(0.5f), lanes_set(1));
+    Lanes away = lanes_max(w, lanes_set(0)), past = lanes_min(leaves, lanes_set(0));
+    return lanes_exp_minus(lanes_fma(past, past, lanes_fma(away, away, e2)));
 }
 
 #endif

@@ -36,17 +36,23 @@ LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
     term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
 }
 
-/* Sets what a sample of the term needs. */
-LANE_FN void bend_term(PacketTerm *term, bool perspective)
+/* Sets what bounds the term's bends, and how much it may be off. */
+LANE_FN void bound_bend(PacketTerm *term)
 {
     const Lanes tiny = lanes_set(1e-20f);
     Lanes speed2 = square(term->w1) + square(term->u1);
     Lanes bend = lanes_min(term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny));
     term->curvature = term->gauss * speed2 * bend;
+    term->steep = steepness(term);
+}
+
+/* Sets what a sample of the term needs. */
+LANE_FN void bend_term(PacketTerm *term, bool perspective)
+{
+    bound_bend(term);
     term->half_gauss = term->gauss * 0.5f;
     if (lanes_any(term->past > 0.0f))
         term->half_gauss = lanes_exp_minus(term->e2) * 0.5f;
-    term->steep = steepness(term);
     term->bent = true;
     term->flat = !perspective && fabsf(term->term->cosine) < 1e-8f;
     if (term->flat) {
@@ -77,6 +83,16 @@ LANE_FN TermSample sample_term(const PacketTerm *term, Lanes z)
                   &ends_slope);
     Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
     return (TermSample){gauss * ends, gauss * change};
+}
+
+/* The term at w, u and v; only its ray is set. */
+LANE_FN TermSample sample_once(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
+{
+    Lanes half_gauss = lanes_exp_minus(lanes_fma(w, w, term->e2)) * 0.5f, ends, ends_slope;
+    axial_factors(u, v, &ends, &ends_slope);
+    Lanes change =
+        lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), -2.0f * w * term->w1 * ends);
+    return (TermSample){half_gauss * ends, half_gauss * change};
 }
 
 LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Lanes *phi,
@@ -112,10 +128,12 @@ LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
     return near & (lanes_min(u, v) >= 1.5f) & (dz + term->z > z);
 }
 
-/* No more than this is the term anywhere from z on. */
-LANE_FN Lanes most_beyond(const PacketTerm *term, Lanes z)
+/* No more than this is a term anywhere from w on, where the end that it leaves is at `leaves`: its
+ * axial factor is at most (1 + erf x) / 2 from there on, which its tangent at 0 bounds. */
+LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
 {
-    return lanes_min(gauss_beyond(term, z), term->peak);
+    Lanes ends = lanes_fma(lanes_max(leaves, lanes_set(0)), lanes_set(0.5641896f), lanes_set(0.5f));
+    return gauss_beyond(e2, w, leaves) * lanes_min(ends, lanes_set(1));
 }
 
 /* The term falls for good where its computed slope says so and is right but for 2e-5 of its parts;

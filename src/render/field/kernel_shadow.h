@@ -8,12 +8,15 @@
  * - Start. Phi, its slope and the bound M of its curvature at the place give the stretch on which
  *   Phi stays below the level, as a step of kernel_trace.h's march does.
  * - Beyond. A term is a Gaussian convolved with a segment, and log-concave along a line. Where it
- *   recedes from the segment's line it is at most exp(-E^2 - w^2) from there on, beyond an end that
- *   it leaves at most exp(-E^2 - w^2 - x^2) / 2, once it falls at most what it is there, and
- *   elsewhere at most B. A place is lit if at the end of the stretch these sum up to less than the
- *   level.
+ *   recedes from the segment's line it is at most exp(-E^2 - w^2) from there on, at x before the
+ *   end that it leaves at most (1 + erf x) / 2 of that, beyond it at most exp(-E^2 - w^2 - x^2) /
+ *   2, once it falls at most what it is there, and elsewhere at most B. A place is lit if at the
+ *   end of the stretch these sum up to less than the level.
  * - Dark. A term that is passed at E^2 <= 1.9, both its ends 1.5 / k or more away, is 1.06 times
  *   the level there alone.
+ *
+ * These tests set out a term only to know what it is at the places, and keep little of it. Terms
+ * that are out of reach of a whole packet are left out before that, several at once.
  *
  * What is left is marched in full packets, each step of which may end in a proof of either kind;
  * that Phi is above the level somewhere on the way is proof enough, where is not asked.
@@ -28,86 +31,165 @@
 #define SKIN 1.002f
 #define SURELY_BELOW (0.999f * LEVEL)
 
+/* LANES terms of a parallel light's tile, one a lane: their segments in the plane across the light,
+ * in units of 1 / k. */
+typedef struct Outlines {
+    Lanes o[2], cross[2]; /* as those of TileTerm */
+    Lanes first, last;    /* distances of the ends from where the middle ray passes */
+    Lanes reach, k;
+} Outlines;
+
+_Static_assert(sizeof(Outlines) + sizeof(PacketTerm) + sizeof(PacketTerm *) + sizeof(uint32_t) <=
+                   TILE_WORK_BYTES,
+               "TILE_WORK_BYTES");
+
+/* What is kept of a term to tell whether it matters beyond the places. */
+typedef struct Blocker {
+    Lanes w, w1;      /* at the place, and its change with z, >= 0 */
+    Lanes leaves, u1; /* the distance, at the place, from the end that is left, and how it falls */
+    Lanes e2, peak;
+} Blocker;
+
 /* Places, LANES of them, and the terms on the ways from there to the light. */
 typedef struct Departures {
     Packet packet;
-    double base;    /* about which z is */
-    Lanes z;        /* of the places */
-    float from, to; /* the least and the largest of these */
+    Outlines *outlines; /* of the tile's terms; of parallel light */
+    Blocker *blockers;  /* in the memory of the packet's terms */
+    size_t n_blockers;
+    double base;           /* about which z is */
+    Lanes z;               /* of the places */
+    float from, to;        /* the least and the largest of these */
+    float middle[2], half; /* of a circle about the places, in the plane across the light */
 } Departures;
 
-/* Sets the terms beyond the places, and returns the lanes on which one of them hides the light. */
-LANE_FN LaneMask depart(Departures *way, LaneMask open)
+LANE_FN void outline_terms(const FieldTile *tile, Outlines *outlines)
+{
+    for (size_t i = 0; i < tile->n_terms; i += LANES) {
+        Outlines *out = &outlines[i / LANES];
+        for (size_t lane = 0; lane < LANES; lane++) {
+            const TileTerm *term = &tile->terms[i + lane < tile->n_terms ? i + lane : i];
+            for (int c = 0; c < 2; c++) {
+                out->o[c][lane] = term->o[c];
+                out->cross[c][lane] = term->cross[c];
+            }
+            out->first[lane] = term->u * term->sine;
+            out->last[lane] = term->v * term->sine;
+            out->reach[lane] = term->reach2;
+            out->k[lane] = term->k;
+        }
+        out->reach = lanes_sqrt(out->reach);
+    }
+}
+
+/* Of the LANES terms from `first` on, as bits, those that may be within reach of a packet and are
+ * not all behind its places. */
+LANE_FN uint32_t terms_near(const Departures *way, size_t first)
+{
+    const FieldTile *tile = way->packet.tile;
+    const size_t n = tile->n_terms - first < LANES ? tile->n_terms - first : LANES;
+    uint32_t near = (1u << n) - 1, ahead = 0;
+    if (!tile->perspective) {
+        const Outlines *terms = &way->outlines[first / LANES];
+        Lanes x = terms->o[0] + way->middle[0], y = terms->o[1] + way->middle[1];
+        Lanes along = lanes_fma(x, terms->cross[1], -(y * terms->cross[0]));
+        Lanes across = lanes_fma(y, terms->cross[1], x * terms->cross[0]);
+        Lanes past = lanes_min(lanes_min(along + terms->first, terms->last - along), lanes_set(0));
+        Lanes far = lanes_fma(terms->k, lanes_set(way->half), terms->reach);
+        near &= lanes_bits(lanes_fma(past, past, square(across)) < square(far));
+    }
+    for (uint32_t left = near; left; left &= left - 1) {
+        int lane = __builtin_ctz(left);
+        bool is_ahead = tile->terms[first + (size_t)lane].off >= way->base + (double)way->from;
+        ahead |= (uint32_t)is_ahead << lane;
+    }
+    return ahead;
+}
+
+FOLDED_FN void set_depths(const Departures *way, PacketTerm *term)
+{
+    term->z = (float)(term->term->z_near - way->base);
+    term->on = (float)(term->term->on - way->base);
+    term->off = (float)(term->term->off - way->base);
+}
+
+/* Keeps the term as a blocker, and adds what it is at the places to *at. */
+FOLDED_FN void pass_term(Departures *way, PacketTerm *term, LaneMask open, PacketSample *at,
+                         float *extent)
+{
+    Lanes dz = way->z - term->z, w = lanes_fma(term->w1, dz, term->w0);
+    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
+    way->blockers[way->n_blockers++] = (Blocker){.w = w,
+                                                 .w1 = term->w1,
+                                                 .leaves = lanes_select(term->u1 > 0.0f, v, u),
+                                                 .u1 = lanes_abs(term->u1),
+                                                 .e2 = term->e2,
+                                                 .peak = term->peak};
+    if (term->on > way->to) {
+        at->next = lanes_min(at->next, lanes_set(term->on));
+        return;
+    }
+    if (!matters(term, open))
+        return;
+    bound_bend(term);
+    TermSample one = sample_once(term, w, u, v);
+    add_sample(&one, open, term, at);
+    float far = fabsf(term->z);
+    *extent = far > *extent ? far : *extent;
+}
+
+/* Looks at the terms beyond the places: sets the blockers, Phi at the places and the margin for it,
+ * and returns the lanes on which one term alone hides the light; all of the former only if some are
+ * left. */
+LANE_FN LaneMask depart(Departures *way, LaneMask open, PacketSample *at, Lanes *margin)
 {
     const FieldTile *tile = way->packet.tile;
     LaneMask hidden = {0};
-    way->packet.n = 0;
-    for (size_t i = 0; i < tile->n_terms; i++) {
-        const TileTerm *term = &tile->terms[i];
-        size_t n = way->packet.n;
-        if (term->off < way->base + (double)way->from)
-            continue;
-        add_to_packet(&way->packet, term);
-        if (way->packet.n == n)
-            continue;
-        PacketTerm *added = &way->packet.terms[n];
-        added->z = (float)(term->z_near - way->base);
-        added->on = (float)(term->on - way->base);
-        added->off = (float)(term->off - way->base);
-        hidden |= term_hides(added, way->z, tile->n_terms);
-        if (!lanes_any(open & ~hidden))
-            break;
-    }
-    return hidden;
-}
-
-/* Phi at the places. Sets the margin for it. */
-LANE_FN PacketSample sample_places(const Departures *way, LaneMask open, Lanes *margin)
-{
-    const Packet *packet = &way->packet;
-    PacketSample sample = nothing_sampled();
-    float extent = 0, width = packet->tile->half_size;
-    for (size_t i = 0; i < packet->n; i++) {
-        PacketTerm *term = &packet->terms[i];
-        if (term->on > way->to) {
-            sample.next = lanes_min(sample.next, lanes_set(term->on));
-            continue;
+    float extent = 0, width = tile->half_size;
+    way->n_blockers = 0;
+    *at = nothing_sampled();
+    *margin = lanes_set(0);
+    for (size_t i = 0; i < tile->n_terms; i += LANES)
+        for (uint32_t near = terms_near(way, i); near; near &= near - 1) {
+            PacketTerm term;
+            if (!place_term(&way->packet, &tile->terms[i + (size_t)__builtin_ctz(near)], &term))
+                continue;
+            set_depths(way, &term);
+            hidden |= term_hides(&term, way->z, tile->n_terms);
+            if (!lanes_any(open & ~hidden))
+                return hidden;
+            pass_term(way, &term, open, at, &extent);
         }
-        if (term->off < way->from || !matters(term, open))
-            continue;
-        bend_term(term, packet->tile->perspective);
-        TermSample one = sample_term(term, way->z);
-        add_sample(&one, open, term, &sample);
-        extent = fmaxf(extent, fabsf(term->z));
-    }
-    if (packet->tile->perspective)
+    if (tile->perspective)
         width *= (float)fabs(way->base);
-    *margin = sample.steep * ((extent + width + way->to - way->from) * MARGIN_PLACE) +
-              fixed_margin(packet->n);
-    return sample;
+    *margin = at->steep * ((extent + width + way->to - way->from) * MARGIN_PLACE) +
+              fixed_margin(way->n_blockers);
+    return hidden;
 }
 
 /* Of the open lanes, those that are proven lit by what is at the places and beyond the first
  * stretch. */
-LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open)
+LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open, const PacketSample *at,
+                             Lanes margin)
 {
-    const Packet *packet = &way->packet;
-    Lanes margin;
-    PacketSample at = sample_places(way, open, &margin);
-    LaneMask leaving = at.phi > RIM * LEVEL;
-    Lanes safe = lanes_select(leaving, lanes_set(SKIN * LEVEL), lanes_set(LEVEL)) - at.phi - margin;
+    LaneMask leaving = at->phi > RIM * LEVEL;
+    Lanes safe =
+        lanes_select(leaving, lanes_set(SKIN * LEVEL), lanes_set(LEVEL)) - at->phi - margin;
     open &= (safe > 0.0f) & (margin <= CLOSE_ENOUGH);
     if (!lanes_any(open))
         return open;
-    Lanes curvature = lanes_max(at.curvature, lanes_set(1e-30f)), slope = at.slope;
+    Lanes curvature = lanes_max(at->curvature, lanes_set(1e-30f)), slope = at->slope;
     Lanes root =
         lanes_sqrt(lanes_fma(slope, slope, 2.0f * curvature * lanes_max(safe, lanes_set(0))));
     Lanes step =
         lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
-    Lanes to = lanes_min(way->z + step, at.next);
-    Lanes sum = lanes_set(fixed_margin(packet->n));
-    for (size_t i = 0; i < packet->n; i++)
-        sum += most_beyond(&packet->terms[i], to);
+    step = lanes_min(step, at->next - way->z);
+    Lanes sum = lanes_set(fixed_margin(way->n_blockers));
+    for (size_t i = 0; i < way->n_blockers; i++) {
+        const Blocker *term = &way->blockers[i];
+        Lanes beyond = most_beyond(term->e2, lanes_fma(term->w1, step, term->w),
+                                   lanes_fma(term->u1, -step, term->leaves));
+        sum += lanes_min(beyond, term->peak);
+    }
     return open & (sum < SURELY_BELOW);
 }
 
@@ -216,6 +298,19 @@ typedef struct Places {
     int n;
 } Places;
 
+/* Sets the circle about the places. */
+LANE_FN void enclose(Departures *way)
+{
+    const Lanes sides[2] = {way->packet.x, way->packet.y};
+    float half2 = 0;
+    for (int c = 0; c < 2; c++) {
+        float low = lanes_least(sides[c]), high = lanes_largest(sides[c]);
+        way->middle[c] = 0.5f * (low + high);
+        half2 += (high - low) * (high - low);
+    }
+    way->half = 0.501f * sqrtf(half2);
+}
+
 /* Takes LANES places, the first n of which count. Returns the lanes of those. */
 LANE_FN LaneMask load_places(const float *x, const float *y, const double *z, int n,
                              Departures *way)
@@ -229,6 +324,7 @@ LANE_FN LaneMask load_places(const float *x, const float *y, const double *z, in
     way->z = lanes_of_doubles(z, -way->base);
     way->from = lanes_least(way->z);
     way->to = lanes_largest(way->z);
+    enclose(way);
     return open < n;
 }
 
@@ -238,12 +334,14 @@ LANE_FN LaneMask decide_at_once(FieldPlaces *places, int first, Departures *way)
 {
     LaneMask open = load_places(&places->x[first], &places->y[first], &places->z[first],
                                 places->n - first, way);
-    LaneMask dark = open & depart(way, open);
+    PacketSample at;
+    Lanes margin;
+    LaneMask dark = open & depart(way, open, &at, &margin);
     for (uint32_t left = lanes_bits(dark); left; left &= left - 1)
         places->state[first + __builtin_ctz(left)] = PLACE_DARK;
     open &= ~dark;
     if (lanes_any(open))
-        open &= ~lit_at_once(way, open);
+        open &= ~lit_at_once(way, open, &at, margin);
     return open;
 }
 
@@ -252,6 +350,16 @@ LANE_FN void set_states(FieldPlaces *places, const uint16_t *numbers, LaneMask w
 {
     for (uint32_t left = lanes_bits(which); left; left &= left - 1)
         places->state[numbers[__builtin_ctz(left)]] = (uint8_t)state;
+}
+
+/* Sets the terms beyond the places. */
+LANE_FN void place_terms(Departures *way)
+{
+    const FieldTile *tile = way->packet.tile;
+    way->packet.n = 0;
+    for (size_t i = 0; i < tile->n_terms; i += LANES)
+        for (uint32_t near = terms_near(way, i); near; near &= near - 1)
+            add_to_packet(&way->packet, &tile->terms[i + (size_t)__builtin_ctz(near)]);
 }
 
 /* Decides the places that have been put off, and forgets them. */
@@ -264,7 +372,7 @@ LANE_FN void decide_by_march(FieldPlaces *places, Places *later, Departures *way
     }
     LaneMask open = load_places(later->x, later->y, later->z, later->n, way), dark = {0},
              unsure = {0};
-    depart(way, open);
+    place_terms(way);
     if (way->packet.tile->groups) {
         look_through_union(way, &open, &dark, &unsure);
     } else {
@@ -291,9 +399,12 @@ LANE_TARGET void SHADOW_KERNEL(const FieldTile *tile, TileWork *work, FieldPlace
 {
     Places later = {.n = 0};
     assert(tile->n_terms <= work->capacity);
-    Departures way = {.packet = {.tile = tile, .terms = work->memory}};
-    way.packet.sum = (PacketTerm **)(way.packet.terms + tile->n_terms);
+    Departures way = {.packet = {.tile = tile, .terms = work->memory}, .blockers = work->memory};
+    way.outlines = (Outlines *)(way.packet.terms + tile->n_terms);
+    way.packet.sum = (PacketTerm **)(way.outlines + (tile->n_terms + LANES - 1) / LANES);
     way.packet.segments = (uint32_t *)(way.packet.sum + tile->n_terms);
+    if (!tile->perspective)
+        outline_terms(tile, way.outlines);
     __builtin_memset(places->state, PLACE_LIT, (size_t)places->n);
     for (int first = 0; first < places->n; first += LANES)
         for (uint32_t open = lanes_bits(decide_at_once(places, first, &way)); open;

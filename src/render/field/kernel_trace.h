@@ -35,14 +35,13 @@
 #define NEAR_ENOUGH (2e-2f * LEVEL)
 #define MOST_STEPS 128
 
-/* Appends the term unless it is below the cut-off on every ray. */
-LANE_FN void add_to_packet(Packet *packet, const TileTerm *tile_term)
+/* Sets a term; false, some of it not set, when it is below the cut-off on every ray. */
+FOLDED_FN bool place_term(const Packet *packet, const TileTerm *tile_term, PacketTerm *term)
 {
-    PacketTerm *term = &packet->terms[packet->n];
     if (packet->tile->perspective)
         place_bundle(packet, tile_term, term);
     else if (!place_parallel(packet, tile_term, term))
-        return;
+        return false;
     Lanes cross_a = lanes_fma(term->u0, term->w1, -(term->w0 * term->u1));
     Lanes cross_b = lanes_fma(term->v0, term->w1, term->w0 * term->u1);
     term->end_y2[0] = square(cross_a) * term->inverse_speed2;
@@ -50,11 +49,17 @@ LANE_FN void add_to_packet(Packet *packet, const TileTerm *tile_term)
     term->past = lanes_select(cross_a < 0.0f, term->end_y2[0], lanes_set(0));
     term->past = lanes_select(cross_b < 0.0f, term->end_y2[1], term->past);
     if (!lanes_any(term->e2 + term->past < tile_term->reach2))
-        return;
+        return false;
     term->term = tile_term;
     term->bent = false;
     bound_term(term, (cross_a < 0.0f) | (cross_b < 0.0f));
-    packet->n++;
+    return true;
+}
+
+/* Appends the term unless it is below the cut-off on every ray. */
+LANE_FN void add_to_packet(Packet *packet, const TileTerm *term)
+{
+    packet->n += place_term(packet, term, &packet->terms[packet->n]);
 }
 
 /* Terms that overlap along the packet. z is relative to `base`. */
