@@ -17,7 +17,8 @@
 static const char *const function_names[] = {"Fb", "Fs", "Fe", "Fm", "Ft"};
 enum { TUBE = TERM_MIDDLE + 1, N_FUNCTIONS };
 
-/* Of so many terms of a cell each is compared with those that follow. */
+/* In a cell of at most so many terms the largest is found by comparing each with those that follow;
+ * in a cell of more, by comparing each with the largest, a function of its own. */
 enum { MOST_COMPARED = 4 };
 
 /* The entries of a map of POV-Ray's colours or textures. */

@@ -218,14 +218,18 @@ void renderer_free(Renderer *renderer)
     free(renderer);
 }
 
+/* Whether the view has these lights, bit by bit. */
+static bool has_lights(const View *view, const Light *lights, size_t n)
+{
+    return view->n_lights == n && memcmp(view->lights, lights, n * sizeof *lights) == 0;
+}
+
 static bool is_prepared(const Renderer *renderer, const Engine *engine, const Drawing *drawing)
 {
     const View *view = drawing->view;
-    size_t size = view->n_lights * sizeof *view->lights;
-    return renderer->engine == engine && renderer->n_lights == view->n_lights &&
-           renderer->antialias == drawing->params->antialias &&
+    return renderer->engine == engine && renderer->antialias == drawing->params->antialias &&
            memcmp(&renderer->camera, &view->camera, sizeof view->camera) == 0 &&
-           memcmp(renderer->lights, view->lights, size) == 0;
+           has_lights(view, renderer->lights, renderer->n_lights);
 }
 
 /* Frees what was prepared for another view, and prepares this. */
@@ -296,24 +300,19 @@ static Status see_vessels(const Drawing *drawing, void *context, Frame *planes, 
     return renderer->engine->rows(&seen, renderer->prepared, planes, err);
 }
 
-/* The drawing of a band with the rows that its shared light depends on, and that its samples look
- * at: all of them count. */
-static Drawing widened(const Drawing *drawing, int margin)
+static int rounded_up(int rows, int step)
 {
-    const Band *band = &drawing->band;
-    const Band wide = band_between(band->first, band->rows, margin, drawing->view->camera.height);
-    Drawing all = *drawing;
-    all.band = (Band){.first = wide.first, .rows = wide.rows};
-    return all;
+    return (rows + step - 1) / step * step;
 }
 
-/* The same in whole blocks of rows. */
-static Drawing in_blocks(const Drawing *drawing)
+/* The drawing of a band with the rows that its shared light depends on, and that its samples look
+ * at, in whole blocks of `block` rows of the picture: all of them count. */
+static Drawing widened(const Drawing *drawing, int margin, int block)
 {
+    const Band *band = &drawing->band;
     const int height = drawing->view->camera.height;
-    int first = drawing->band.first / SHARE_BLOCK * SHARE_BLOCK;
-    int end = drawing->band.first + drawing->band.rows;
-    end += (SHARE_BLOCK - end % SHARE_BLOCK) % SHARE_BLOCK;
+    const Band wide = band_between(band->first, band->rows, margin, height);
+    int first = wide.first / block * block, end = rounded_up(wide.first + wide.rows, block);
     Drawing all = *drawing;
     all.band = (Band){.first = first, .rows = (end < height ? end : height) - first};
     return all;
@@ -329,9 +328,8 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Shar
         return STATUS_OK;
     if (params->occlusion > 0 && !renderer->beams.capsules)
         TRY(beams_new(renderer->occluders, &renderer->beams, err));
-    Drawing wide = widened(drawing, margin);
-    if (params->shadows && view_has_soft_shadows(drawing->view))
-        wide = in_blocks(&wide);
+    const bool soft = params->shadows && view_has_soft_shadows(drawing->view);
+    const Drawing wide = widened(drawing, margin, soft ? SHARE_BLOCK : 1);
     const LightSources from = {.see = see_vessels,
                                .context = renderer,
                                .views = renderer->engine->lights,
@@ -369,16 +367,11 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
 /* About how many samples are drawn at a time, of some fifty bytes each. */
 static const double samples_at_once = 2e6;
 
-static int rounded_up(int rows)
-{
-    return (rows + RENDER_BAND_STEP - 1) / RENDER_BAND_STEP * RENDER_BAND_STEP;
-}
-
 /* The rows of samples of the pixels' rows first .. first + rows, with those that decide them. */
 static Band band_of_samples(const View *fine, int side, int first, int rows)
 {
-    return band_between(first * side, rows * side, rounded_up(effects_reach(&fine->effects, side)),
-                        fine->camera.height);
+    const int reach = rounded_up(effects_reach(&fine->effects, side), RENDER_BAND_STEP);
+    return band_between(first * side, rows * side, reach, fine->camera.height);
 }
 
 /* Draws rows of pixels, counted in the picture, into the rows of `color` from `row` on. */
@@ -414,7 +407,8 @@ static Status share_for_effects(Renderer *renderer, const Drawing *drawing, Shar
     if (!share_is_wanted(drawing->view, drawing->params))
         return STATUS_OK;
     TRY(prepare_view(renderer, drawing, err));
-    TRY(share(renderer, drawing, RENDER_BAND_STEP + rounded_up(effects_reach(effects, side)), out,
+    TRY(share(renderer, drawing,
+              RENDER_BAND_STEP + rounded_up(effects_reach(effects, side), RENDER_BAND_STEP), out,
               err));
     if (*out)
         (*out)->side = side;
@@ -523,20 +517,15 @@ static Status prepare_thin(Renderer *renderer, const Camera *camera, Err *err)
     return STATUS_OK;
 }
 
-static bool are_same_lights(const View *a, const View *b)
-{
-    return a->n_lights == b->n_lights &&
-           memcmp(a->lights, b->lights, a->n_lights * sizeof *a->lights) == 0 &&
-           memcmp(&a->ground, &b->ground, sizeof a->ground) == 0;
-}
-
 /* Has area lights asked for thin vessels with the next rows of the rest, unless it is known what of
  * the view's lights reaches them. */
 static Status begin_light(Renderer *renderer, const View *view, Err *err)
 {
     LonePlaces *places = &renderer->thin_places;
+    const View *known = &renderer->thin_lights;
     if (!renderer->params.shadows ||
-        (places->n > 0 && are_same_lights(&renderer->thin_lights, view)))
+        (places->n > 0 && has_lights(view, known->lights, known->n_lights) &&
+         memcmp(&view->ground, &known->ground, sizeof view->ground) == 0))
         return STATUS_OK;
     loneplaces_release(places);
     *places = thinvessels_places(&renderer->thin);

@@ -7,12 +7,12 @@
 #include "render/thin/thinvessels.h"
 #include "unit.h"
 
-#include "grow/grow.h"
 #include "render/cast/caster.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "test_grow.h"
 #include "test_stage.h"
 
 enum { SIDE = 240, TERMINALS = 3000 };
@@ -26,13 +26,7 @@ static const Look plain = {.color = {0.8f, 0.6f, 0.4f},
 static int grow(void **state)
 {
     (void)state;
-    Domain domain;
-    GrowParams params = grow_defaults();
-    params.terminals = TERMINALS;
-    params.seed = 11;
-    assert_int_equal(domain_parse(&domain, "ball:20", &err), STATUS_OK);
-    assert_int_equal(grow_tree(&params, &domain, &tree, NULL, &err), STATUS_OK);
-    domain_release(&domain);
+    tree = test_grown("ball:20", TERMINALS, 11);
     return 0;
 }
 
@@ -66,11 +60,8 @@ static void light(Scene *scene)
 static Scene staged(SceneModel model, Projection projection)
 {
     Scene scene;
-    StageParams params = stage_defaults();
-    params.geometry.model = model;
-    params.view.width = params.view.height = SIDE;
+    StageParams params = stage_square(model, SIDE);
     params.view.projection = projection;
-    params.view.shadows = true;
     assert_int_equal(stage_all(&tree, &plain, &params, &scene, NULL, &err), STATUS_OK);
     light(&scene);
     return scene;

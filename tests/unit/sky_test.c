@@ -2,13 +2,13 @@
 #include "render/render.h"
 #include "unit.h"
 
-#include "grow/grow.h"
 #include "render/light/occlusion.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "test_grow.h"
 #include "test_scene.h"
 #include "test_stage.h"
 
@@ -17,27 +17,11 @@ static Err err;
 /* Colours of this look are the part of the sky that is seen. */
 static const Look sky_look = {.color = {1, 1, 1}, .finish = {.ambient = 1, .brilliance = 1}};
 
-static Tree grown(size_t terminals, const char *domain_spec)
-{
-    Domain domain;
-    Tree tree;
-    GrowParams params = grow_defaults();
-    params.terminals = terminals;
-    params.seed = 5;
-    assert_int_equal(domain_parse(&domain, domain_spec, &err), STATUS_OK);
-    assert_int_equal(grow_tree(&params, &domain, &tree, NULL, &err), STATUS_OK);
-    domain_release(&domain);
-    return tree;
-}
-
 static Scene staged(const Tree *tree, const Look *look, SceneModel model, int size, NamedView view)
 {
     Scene scene;
-    StageParams params = stage_defaults();
-    params.geometry.model = model;
-    params.view.width = params.view.height = size;
+    StageParams params = stage_square(model, size);
     params.view.view = view;
-    params.view.shadows = true;
     assert_int_equal(stage_all(tree, look, &params, &scene, NULL, &err), STATUS_OK);
     return scene;
 }
@@ -109,7 +93,7 @@ static void occlusion_is_within_4_percent_of_1024_rays(void **state)
                  {"ball:50", VIEW_ISO, SCENE_ROUNDED},
                  {"ball:28.8", VIEW_ISO, SCENE_JOINED}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Tree tree = grown(10000, cases[i].domain);
+        Tree tree = test_grown(cases[i].domain, 10000, 5);
         Scene scene = staged(&tree, &sky_look, cases[i].model, 2000, cases[i].view);
         double error = error_of(&scene, 16, 200);
         if (!(error < 0.04))

@@ -14,6 +14,16 @@ static inline StageParams stage_defaults(void)
     return (StageParams){{.model = SCENE_ROUNDED}, view_defaults()};
 }
 
+/* The same for a square picture of a model with shadows. */
+static inline StageParams stage_square(SceneModel model, int size)
+{
+    StageParams params = stage_defaults();
+    params.geometry.model = model;
+    params.view.width = params.view.height = size;
+    params.view.shadows = true;
+    return params;
+}
+
 /* *scene is owned by the caller, scene_release, unless this fails. `report` and `err` may be
  * NULL. */
 static inline Status stage_all(const Tree *tree, const Look *look, const StageParams *params,

@@ -15,7 +15,7 @@ typedef struct BeamPlaces {
     float *above;     /* the ground: its sign; 0: the ground hides no sky */
 } BeamPlaces;
 
-/* One direction of a line through all places, and how beams along it are cut. */
+/* The direction of the parallel lines through all places, and how wide beams along them are. */
 typedef struct BeamDirection {
     float axes[3][3]; /* across, across, and the direction */
     float widening;   /* the most that half a beam's width grows with its length */

@@ -1,4 +1,5 @@
-/* The lights that places see which are not those of pixels. */
+/* How much of each light reaches places that belong to no pixel, as those that stand for vessels
+ * thinner than a pixel. */
 #ifndef CORCAST_RENDER_LONELIGHT_H
 #define CORCAST_RENDER_LONELIGHT_H
 
@@ -18,13 +19,15 @@ typedef struct LonePlaces {
 MUST_CHECK Status loneplaces_init(const View *view, LonePlaces *places, Err *err);
 void loneplaces_release(LonePlaces *places);
 
-/* Adds to the reach of a light 1 for each place that it, or one point of it, is not hidden from, as
- * seen from there [LightViews.look, for places in `frame`]. STATUS_MEMORY. */
+/* Looks at all places from a light, or from one point of an area light, and adds 1 to reach[light]
+ * of each place that nothing hides from there. `shadow` is what views->look prepared of that point
+ * for places in `frame`. STATUS_MEMORY. */
 MUST_CHECK Status lonelight_look(const Drawing *drawing, const LightViews *views,
                                  const void *shadow, const Viewpoint *frame, size_t light,
                                  LonePlaces *places, Err *err);
 
-/* Sets the reach of a light by rays of the drawing's caster to all of its points. */
+/* Sets reach[light] of all places by rays to all points of the light, cast by the drawing's
+ * caster. */
 void lonelight_cast(const Drawing *drawing, size_t light, LonePlaces *places);
 
 #endif

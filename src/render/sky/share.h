@@ -17,9 +17,9 @@ bool share_is_wanted(const View *view, const RenderParams *params);
 /* Rows of pixels to either side of a band whose places its light depends on. */
 enum { SHARE_MARGIN = 3 };
 
-/* Rows of a block of the picture. Places of one block ask area lights together, and what a place is
- * answered may depend on these in the last digits: where there are area lights, bands are of whole
- * blocks. */
+/* Rows of a block of the picture. The places of a block ask an area light together, and kernels of
+ * isosurfaces and blobs round by the places that ask together. So that a band has the bytes of the
+ * whole picture, light is found for whole blocks where there are area lights. */
 enum { SHARE_BLOCK = 128 };
 
 /* Sets depth and normal of what the centre rays of the drawing's band see of vessels; *planes is
