@@ -339,7 +339,7 @@ static Status unpack(Reader *reader, const Field *field, size_t n, double *value
 {
     size_t size = n * field->type->size;
     char *bytes = NULL;
-    bool fits;
+    bool fits = false;
     TRY(mem_calloc(&bytes, size, 1, "bytes of a block", err));
     Status status = STATUS_OK;
     if (field->packing == BYTE_RLE)
