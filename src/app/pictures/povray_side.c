@@ -200,14 +200,40 @@ static Status write_scene(const Source *source, const Tiles *tiles, size_t numbe
     return scene_files_write(emitter_find("pov", false), &params, v->tree, *path, false, NULL, err);
 }
 
+/* All scenes of all tiles: first those of a tile, then its ids where they have a scene. */
+typedef struct Scenes {
+    const Source *source;
+    const Tiles *tiles;
+    size_t each; /* scenes of a tile */
+    Status *status;
+    Err *err;
+} Scenes;
+
+static void write_one(size_t number, int worker, void *context)
+{
+    (void)worker;
+    const Scenes *scenes = context;
+    scenes->status[number] = write_scene(scenes->source, scenes->tiles, number / scenes->each,
+                                         number % scenes->each == 1, &scenes->err[number]);
+}
+
 static Status write_scenes(const Source *source, const Tiles *tiles, Err *err)
 {
-    for (size_t i = 0; i < tiles->n; i++) {
-        TRY(write_scene(source, tiles, i, false, err));
-        if (has_id_scene(source->v))
-            TRY(write_scene(source, tiles, i, true, err));
-    }
-    return STATUS_OK;
+    Scenes scenes = {.source = source, .tiles = tiles, .each = has_id_scene(source->v) ? 2 : 1};
+    size_t n = scenes.each * tiles->n;
+    Status status;
+    TRY_GOTO(mem_calloc(&scenes.status, n, sizeof *scenes.status, "scenes", err));
+    TRY_GOTO(mem_calloc(&scenes.err, n, sizeof *scenes.err, "scenes", err));
+    threads_for(n, source->v->common->threads, write_one, &scenes);
+    for (size_t i = 0; i < n && status == STATUS_OK; i++)
+        if (scenes.status[i] != STATUS_OK) {
+            *err = scenes.err[i];
+            status = scenes.status[i];
+        }
+done:
+    free(scenes.status);
+    free(scenes.err);
+    return status;
 }
 
 /* Finds the tiles and writes their scenes. */
@@ -418,39 +444,63 @@ static Status take_plane(Verification *v, const Tiles *tiles, const PlaneRun *ru
     return status;
 }
 
-/* Has POV-Ray draw all planes. */
-static Status draw_planes(Verification *v, const Tiles *tiles, Err *err)
+struct PovraySide {
+    Verification *v;
+    Tiles tiles;
+    Runs runs;
+    int at_once; /* runs */
+};
+
+void povray_side_free(PovraySide *side)
 {
-    Runs runs = {.lock = PTHREAD_MUTEX_INITIALIZER};
-    const int at_once = runs_at_once(v, tiles);
+    if (!side)
+        return;
+    for (size_t i = 0; side->runs.run && i < side->runs.n; i++)
+        free(side->runs.run[i].output);
+    free(side->runs.run);
+    pthread_mutex_destroy(&side->runs.lock);
+    tiles_release(&side->tiles);
+    free(side);
+}
+
+Status povray_side_prepare(Verification *v, PovraySide **side, Err *err)
+{
+    PovraySide *made;
     Status status;
-    progress_start(&runs.progress, "POV-Ray", v->common->quiet);
-    TRY_GOTO(prepare_runs(v, tiles, at_once, &runs, err));
-    threads_for(runs.n, at_once, run_one, &runs);
-    TRY_GOTO(check_runs(v, &runs, err));
-    for (int plane = 0; plane < PLANES; plane++)
-        TRY_GOTO(take_plane(v, tiles, runs.run, (OraclePlane)plane, err));
+    TRY(mem_calloc(&made, 1, sizeof *made, "runs", err));
+    made->v = v;
+    pthread_mutex_init(&made->runs.lock, NULL);
+    TRY_GOTO(prepare_tiles(v, &made->tiles, err));
+    v->n_tiles = made->tiles.n;
+    made->at_once = runs_at_once(v, &made->tiles);
+    TRY_GOTO(prepare_runs(v, &made->tiles, made->at_once, &made->runs, err));
+    *side = made;
+    return STATUS_OK;
 done:
-    progress_end(&runs.progress);
-    for (size_t i = 0; runs.run && i < runs.n; i++)
-        free(runs.run[i].output);
-    free(runs.run);
-    pthread_mutex_destroy(&runs.lock);
+    povray_side_free(made);
+    return status;
+}
+
+/* Has POV-Ray draw all planes. */
+static Status draw_planes(PovraySide *side, Err *err)
+{
+    Runs *runs = &side->runs;
+    progress_start(&runs->progress, "POV-Ray", side->v->common->quiet);
+    threads_for(runs->n, side->at_once, run_one, runs);
+    Status status = check_runs(side->v, runs, err);
+    for (int plane = 0; plane < PLANES && status == STATUS_OK; plane++)
+        status = take_plane(side->v, &side->tiles, runs->run, (OraclePlane)plane, err);
+    progress_end(&runs->progress);
     return status == STATUS_INPUT ? STATUS_TOOL : status; /* of POV-Ray's making */
 }
 
-Status povray_side_draw(Verification *v, Err *err)
+Status povray_side_draw(PovraySide *side, Err *err)
 {
-    Tiles tiles = {0};
+    Verification *v = side->v;
     char *picture = NULL;
-    Status status;
-    TRY_GOTO(prepare_tiles(v, &tiles, err));
-    v->n_tiles = tiles.n;
-    TRY_GOTO(draw_planes(v, &tiles, err));
-    TRY_GOTO(file_join(v->folder, "povray.png", &picture, err));
-    status = frames_write(&v->povray, &(FramesForm){.path = picture}, err);
-done:
+    TRY(draw_planes(side, err));
+    TRY(file_join(v->folder, "povray.png", &picture, err));
+    Status status = frames_write(&v->povray, &(FramesForm){.path = picture}, err);
     free(picture);
-    tiles_release(&tiles);
     return status;
 }

@@ -1,14 +1,13 @@
-/* One scene, two renderers: POV-Ray draws it from files (povray_side.c), corcast from memory; then
- * all four planes of both are compared. An implicit surface takes two steps:
- * corcast repeats POV-Ray's root finder, whose picture must be POV-Ray's, and where that sees the
- * surface is compared with where it is. */
+/* One scene, two renderers: POV-Ray draws it from files (povray_side.c) and corcast from memory, at
+ * the same time, since POV-Ray first waits a quarter of a second for itself; then all four planes
+ * of both are compared. An implicit surface takes two steps: corcast repeats POV-Ray's root finder,
+ * whose picture must be POV-Ray's, and where that sees the surface is compared with where it is. */
 #include "app/pictures/verification.h"
 
 #include "app/pictures/frames.h"
 #include "app/pictures/povfiles.h"
 #include "app/pictures/povray_side.h"
 #include "app/pictures/settle.h"
-#include "app/run/progress.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -64,14 +63,8 @@ static RenderParams render_params(const Verification *v, const CellParams *povra
 
 static Status render_frame(Verification *v, const CellParams *povray_cells, Frame *frame, Err *err)
 {
-    Progress progress;
     RenderParams params = render_params(v, povray_cells);
-    params.progress = progress_report;
-    params.progress_context = &progress;
-    progress_start(&progress, povray_cells ? "corcast, as POV-Ray" : "corcast", v->common->quiet);
-    Status status = render(&v->scene, &params, frame, &v->stats, err);
-    progress_end(&progress);
-    return status;
+    return render(&v->scene, &params, frame, &v->stats, err);
 }
 
 static Encoding encoding_of(const Verification *v)
@@ -80,7 +73,7 @@ static Encoding encoding_of(const Verification *v)
 }
 
 static Status write_frame(const Verification *v, const Frame *frame, const char *name,
-                          Encoding encoding, const char *provenance, Err *err)
+                          Encoding encoding, Err *err)
 {
     char *path = NULL;
     TRY(file_join(v->folder, name, &path, err));
@@ -90,7 +83,7 @@ static Status write_frame(const Verification *v, const Frame *frame, const char 
                              .encoding = encoding,
                              .picture = true,
                              .dpi = v->picture->size.dpi,
-                             .provenance = provenance,
+                             .provenance = v->commands[0],
                              .colors = v->scene.appearance.said};
     Status status = frames_write(frame, &form, err);
     free(path);
@@ -105,14 +98,17 @@ static const CellParams *cells_of(const Verification *v)
 
 static Status render_native(Verification *v, Err *err)
 {
-    const char *provenance = v->commands[0];
     TRY(render_frame(v, cells_of(v), &v->native, err));
     TRY(picture_from_plane(&v->native_picture, &v->native.color, encoding_of(v), v->bits, err));
-    TRY(write_frame(v, &v->native, "native.png", encoding_of(v), provenance, err));
-    if (!verification_takes_two_steps(v))
-        return STATUS_OK;
-    TRY(render_frame(v, NULL, &v->exact, err));
-    return write_frame(v, &v->exact, "exact.png", ENCODING_SRGB, provenance, err);
+    return verification_takes_two_steps(v) ? render_frame(v, NULL, &v->exact, err) : STATUS_OK;
+}
+
+static Status write_native(const Verification *v, Err *err)
+{
+    TRY(write_frame(v, &v->native, "native.png", encoding_of(v), err));
+    return verification_takes_two_steps(v)
+               ? write_frame(v, &v->exact, "exact.png", ENCODING_SRGB, err)
+               : STATUS_OK;
 }
 
 /* What a screen shows of linear codes. */
@@ -186,13 +182,47 @@ Status verification_pick_frame(Verification *v, int frame, Err *err)
     return STATUS_OK;
 }
 
+/* POV-Ray and corcast, which draw at the same time. */
+typedef enum Side { SIDE_POVRAY, SIDE_NATIVE, SIDES } Side;
+
+typedef struct BothSides {
+    Verification *v;
+    PovraySide *povray;
+    Status status[SIDES];
+    Err err[SIDES];
+} BothSides;
+
+static void draw_side(size_t side, int worker, void *context)
+{
+    (void)worker;
+    BothSides *both = context;
+    Err *err = &both->err[side];
+    both->status[side] =
+        side == SIDE_POVRAY ? povray_side_draw(both->povray, err) : render_native(both->v, err);
+}
+
+/* Fails as POV-Ray's side did, where both did. */
+static Status draw_sides(Verification *v, Err *err)
+{
+    BothSides both = {.v = v};
+    TRY(povray_side_prepare(v, &both.povray, err));
+    threads_for(SIDES, v->common->threads, draw_side, &both);
+    povray_side_free(both.povray);
+    for (int side = 0; side < SIDES; side++)
+        if (both.status[side] != STATUS_OK) {
+            *err = both.err[side];
+            return both.status[side];
+        }
+    return STATUS_OK;
+}
+
 Status verification_draw(Verification *v, Err *err)
 {
     v->cells = picture_cells(v->picture);
-    TRY(povray_side_draw(v, err));
+    TRY(draw_sides(v, err));
     if (v->asks_witness)
         TRY(ask_witness(v, err));
-    TRY(render_native(v, err));
+    TRY(write_native(v, err));
     return show_both(v, err);
 }
 
