@@ -173,8 +173,8 @@ MUST_CHECK Status stage_appearance(const Look *look, const Field *field, const C
                                    Appearance *appearance, Err *err);
 
 /* Has an appearance of a scale blend its colours where segments do: a point has the colour of the
- * mean of their places on the scale, weighted by their terms [surface/termmean.h]. STATUS_MEMORY.
- */
+ * mean of their places on the scale, weighted by their terms [surface/termmean.h], and a segment
+ * alone that of its own place, likewise on the ramp. STATUS_MEMORY. */
 MUST_CHECK Status stage_blend(Appearance *appearance, Err *err);
 
 /* The smallest box that holds the balls that views of the geometry are made about, in its

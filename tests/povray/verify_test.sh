@@ -93,6 +93,18 @@ test_an_isosurface_whose_numbers_are_in_matrices_agrees() {
     grep -q 'Vs\[3072\](x,y,z)\.x' check/scene.inc || fail "expected the last segment to have a matrix"
 }
 
+test_colours_that_blend_agree_to_the_last_of_16_bits() {
+    local options
+    tree_3d 30
+    for options in 'isosurface --color-by radius' 'isosurface --potential graph --color-by pressure' \
+        'isosurface --erf exact --color-by flow --classes 5' 'blob --color-by wss'; do
+        # shellcheck disable=SC2086
+        run_ok corcast verify tree.swc --bits 16 --view iso --size 160x120 -o report --model $options \
+            --color-blend blended
+        expect_json report/report.json '.planes.color.differing_pixels == 0'
+    done
+}
+
 test_a_blob_whose_numbers_are_in_matrices_agrees() {
     local blend
     run_ok corcast grow --terminals 1537 --seed 3 -o tree.swc --quiet
