@@ -247,6 +247,26 @@ END
         END { exit far || most < 0.2 * 65535 || NR != 64 }' || fail "expected hits up to 0.05 behind, got $codes"
 }
 
+# looked_into X Y CODE: that of a ray down z at (X, Y), of a box of an isosurface whose sides are at 20 and 20.5.
+looked_into() {
+    draw 1x1 <<END
+camera { orthographic location <$1, $2, 10> right x up y direction -z }
+isosurface { function { z } contained_by { box { <20, 20, -1>, <20.5, 20.5, 1> } }
+    max_gradient 1.1 accuracy 0.05 open Glow(1) }
+END
+    expect_codes "$3"
+}
+
+# In single precision 20.4999999 is 20.5, and 20.499998 is 20.499998.
+test_an_isosurface_is_not_seen_by_a_ray_whose_rounded_start_is_in_a_side_of_its_box_in_x() {
+    looked_into 20.4999999 20.25 0
+    looked_into 20.499998 20.25 65535
+    looked_into 20.0000001 20.25 0
+    looked_into 20.000002 20.25 65535
+    looked_into 20.25 20.4999999 65535
+    looked_into 20.25 20.0000001 65535
+}
+
 test_a_max_gradient_that_is_too_small_gives_holes() {
     local gradient
     for gradient in 4 0.4; do

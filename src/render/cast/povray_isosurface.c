@@ -16,6 +16,8 @@
  */
 #include "render/cast/povray_isosurface.h"
 
+#include "render/cast/povray_bound.h"
+
 #include <float.h>
 #include <stdlib.h>
 
@@ -95,11 +97,14 @@ static bool find_root(const CellSearch *search, Place a, Place b, double rise, d
            find_root(search, middle, b, rise, width, t);
 }
 
-static bool hit_cell(const CellTree *tree, const Cell *cell, Ray ray, double *t)
+/* The hit of a cell, at *t, and the order in which POV-Ray looks into it. */
+static bool hit_cell(const CellTree *tree, const Cell *cell, Ray ray, const BoundRay *bound_ray,
+                     double *t, double *order)
 {
     CellSearch search = {tree, cell, ray, 1};
     double t0, t1, accuracy = cell->accuracy;
-    if (!cut_box(ray, cell, &t0, &t1) || t1 - t0 < accuracy)
+    if (!cut_box(ray, cell, &t0, &t1) || t1 - t0 < accuracy ||
+        !povray_looks_into(bound_ray, (Box){cell->low, cell->high}, order))
         return false;
     if (t0 < accuracy && fabs(value_at(&search, t0)) < cell->max_gradient * accuracy * 4) {
         t0 = accuracy * 5;
@@ -156,34 +161,30 @@ void povray_isosurface_free(PovrayIsosurface *isosurface)
     free(isosurface);
 }
 
-/* Whether a ray enters the box of a cell before that of another, or of equals of lower number. */
-static bool enters_first(const CellTree *tree, Ray ray, uint32_t number, uint32_t other)
-{
-    double t0, other_t0, t1;
-    bool both = cut_box(ray, &tree->cells[number], &t0, &t1) &&
-                cut_box(ray, &tree->cells[other], &other_t0, &t1);
-    return both && t0 != other_t0 ? t0 < other_t0 : number < other;
-}
-
 /* The nearest hit in [t_min, t_max), or any with `any`, as *cell and *t. Of equals, which are where
- * two boxes overlap and the wall stands in the middle plane of both, the one whose box the ray
- * enters first: POV-Ray looks into boxes in that order. */
+ * two boxes overlap and the wall stands in the middle plane of both, the one that POV-Ray looks
+ * into first, or of these the one of lower number. */
 static bool find_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min, double t_max,
                      bool any, uint32_t *cell, double *t)
 {
     BoxWalk walk;
+    BoundRay rounded = bound_ray(ray);
+    double first = 0;
     bool found = false;
     *t = t_max;
     boxwalk_start(&walk, &isosurface->boxes, ray.origin, ray.direction, 0, !any);
     for (const BoxNode *leaf; !(any && found) && (leaf = boxwalk_leaf(&walk, *t));)
         for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
             uint32_t number = isosurface->boxes.items[i];
-            double at;
-            if (hit_cell(&isosurface->tree, &isosurface->tree.cells[number], ray, &at) &&
-                at >= t_min &&
-                (at < *t ||
-                 (found && at == *t && enters_first(&isosurface->tree, ray, number, *cell)))) {
+            double at, order;
+            bool hit = hit_cell(&isosurface->tree, &isosurface->tree.cells[number], ray, &rounded,
+                                &at, &order);
+            if (!hit || at < t_min)
+                continue;
+            bool sooner = order < first || (order == first && number < *cell);
+            if (at < *t || (found && at == *t && sooner)) {
                 found = true;
+                first = order;
                 *t = at;
                 *cell = number;
             }

@@ -1,0 +1,77 @@
+/* An object is looked into if both its leaf in the hierarchy of boxes (Check_And_Enqueue of
+ * bounding/bbox.cpp of 3.7.0.10) and the object itself (Intersect_BBox_Dir of scene/objects.cpp)
+ * find that the ray meets its box. Both compute in single precision, in different orders. The boxes
+ * above the leaf hold it, and are not asked here: they differ from tile to tile. */
+#include "render/cast/povray_bound.h"
+
+/* What POV-Ray calls EPSILON, BOUND_HUGE and MIN_ISECT_DEPTH. */
+static const double ahead = 1e-10, endless = 2e10;
+static const float nearest = 1e-4F;
+
+/* A bounding box: its least corner and its size. */
+typedef struct Bound {
+    float low[3], size[3];
+} Bound;
+
+static Bound bound_of(Box box)
+{
+    return (Bound){{(float)box.low.x, (float)box.low.y, (float)box.low.z},
+                   {(float)(box.high.x - box.low.x), (float)(box.high.y - box.low.y),
+                    (float)(box.high.z - box.low.z)}};
+}
+
+BoundRay bound_ray(Ray ray)
+{
+    Vec3 o = ray.origin, d = ray.direction;
+    return (BoundRay){{(float)o.x, (float)o.y, (float)o.z},
+                      {(float)(1 / d.x), (float)(1 / d.y), (float)(1 / d.z)}};
+}
+
+/* The leaf's test; *first is where the ray enters the box. */
+static bool meets_leaf(const BoundRay *ray, const Bound *bound, double *first)
+{
+    double last = endless;
+    *first = -endless;
+    for (int axis = 0; axis < 3; axis++) {
+        float low = bound->low[axis], size = bound->size[axis], origin = ray->origin[axis],
+              inverse = ray->inverse[axis];
+        if (isinf(inverse)) {
+            if (origin < low || origin > low + size)
+                return false;
+            continue;
+        }
+        double at_low = (double)((low - origin) * inverse);
+        double at_high = at_low + (double)(size * inverse);
+        *first = fmax(*first, fmin(at_low, at_high));
+        last = fmin(last, fmax(at_low, at_high));
+    }
+    return *first <= last && last >= ahead;
+}
+
+/* The object's test. A start in the plane of a side that the ray is parallel to gives 0 times
+ * infinity, no number: every comparison with it is false, so that from x it stays and fails the
+ * last one, and from y or z is passed over. */
+static bool meets_object(const BoundRay *ray, const Bound *bound)
+{
+    float near[3], far[3];
+    for (int axis = 0; axis < 3; axis++) {
+        float low = bound->low[axis], high = low + bound->size[axis];
+        bool down = ray->inverse[axis] < 0;
+        near[axis] = ((down ? high : low) - ray->origin[axis]) * ray->inverse[axis];
+        far[axis] = ((down ? low : high) - ray->origin[axis]) * ray->inverse[axis];
+    }
+    float first = near[0], last = far[0];
+    for (int axis = 1; axis < 3; axis++) {
+        if (first > far[axis] || near[axis] > last)
+            return false;
+        first = near[axis] > first ? near[axis] : first;
+        last = far[axis] < last ? far[axis] : last;
+    }
+    return first < HUGE_VALF && last > nearest;
+}
+
+bool povray_looks_into(const BoundRay *ray, Box box, double *order)
+{
+    Bound bound = bound_of(box);
+    return meets_leaf(ray, &bound, order) && meets_object(ray, &bound);
+}
