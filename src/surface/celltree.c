@@ -33,10 +33,10 @@ static const double significant = 1e-2;
 /* The accuracy of a cell over its local radius, and the most that a shadow may ask for. */
 static const double accuracy_ratio = 1.0 / 300, largest_accuracy_ratio = 1.0 / 60;
 
-/* Boxes reach beyond their cubes by this many accuracies, and up to OCTANTS units of their sides.
- */
+/* Boxes reach beyond their cubes by this many accuracies and up to 2 SHIFTS spacings, in which they
+ * are shifted against each other. */
 static const double overlap_accuracies = 5;
-enum { OCTANTS = 8 };
+enum { SHIFTS = 13 };
 
 /* The box of a cell is that of the parts of its cube, halved so many times, that the surface may
  * meet; of many terms, that of the whole cube. */
@@ -63,8 +63,10 @@ typedef struct Builder {
     Support *supports; /* one a segment */
     double beta;
     double root_side;
-    double
-        spacing; /* mm: single precision holds its multiples in all boxes, and their differences */
+    /* mm, a power of 2: single precision holds its multiples in all boxes, and their differences.
+     * POV-Ray keeps the least corner and the size of a box in single precision, and looks into no
+     * box that these miss: so the sides of boxes are such multiples. */
+    double spacing;
     uint32_t *stack; /* the lists of the cubes from the first down to the current one */
     size_t depth, stack_capacity;
     uint64_t looks;      /* at terms, in all cubes so far */
@@ -234,23 +236,6 @@ double cell_accuracy(double radius)
     return round_down(accuracy, decimals_of(accuracy, 3), 1);
 }
 
-/* What the sides of a box are multiples of, mm: a power of 2, at most an eighth of the accuracy
- * where single precision allows. POV-Ray keeps the least corner and the size of a box in single
- * precision, and looks into no box that these miss: so they are the very box. */
-static double side_unit(const Builder *builder, double accuracy)
-{
-    return fmax(exp2(floor(log2(accuracy / OCTANTS))), builder->spacing);
-}
-
-/* The least box of such sides about the box. */
-static Box box_rounded(Box box, double unit)
-{
-    return (Box){{floor(box.low.x / unit) * unit, floor(box.low.y / unit) * unit,
-                  floor(box.low.z / unit) * unit},
-                 {ceil(box.high.x / unit) * unit, ceil(box.high.y / unit) * unit,
-                  ceil(box.high.z / unit) * unit}};
-}
-
 /* Which ends of the segment the term feels somewhere in the box. */
 static TermPart part_in(const TermForm *form, Box box)
 {
@@ -328,13 +313,47 @@ static double max_gradient(const Builder *builder, const TermList *terms, const 
     return round_down(gradient, decimals_of(gradient, 4), -1);
 }
 
-/* How far the box of a cell reaches beyond its cube: not alike for any two neighbours, so that
- * POV-Ray, which halves what a ray has in the box, does not find the same wall at the same place in
- * both, and the order in which it looks at them does not matter. */
-static double overlap_of(const Cube *cube, double accuracy, double unit)
+/* SHIFTS, or 1, which is no shift, where single precision is too coarse. */
+static int shifts_at(const Builder *builder, double accuracy)
 {
-    int64_t octant = (cube->at[0] & 1) | (cube->at[1] & 1) << 1 | (cube->at[2] & 1) << 2;
-    return overlap_accuracies * accuracy + (double)octant * unit;
+    return 2 * SHIFTS * builder->spacing <= overlap_accuracies * accuracy ? SHIFTS : 1;
+}
+
+/* How far the box of a cell reaches beyond its cube, before it is shifted. */
+static double overlap_of(const Builder *builder, double accuracy)
+{
+    double step = shifts_at(builder, accuracy) * builder->spacing;
+    return ceil(overlap_accuracies * accuracy / step) * step;
+}
+
+/* Below SHIFTS - 1; not the same for two cells that touch and whose boxes, before they overlap, may
+ * have both faces across an axis in common. Such are at most HALVINGS levels apart, and of one
+ * level they differ in one or two of their places. */
+static int shift_of(const Builder *builder, const Cube *cube)
+{
+    int level = ilogb(builder->root_side / cube->side) % (HALVINGS + 1);
+    int64_t x = cube->at[0] & 1, y = cube->at[1] & 1, z = cube->at[2] & 1;
+    return 4 * level + (int)((x ^ z) | (y ^ z) << 1);
+}
+
+/* The box of a cell of this cube and accuracy, by what it has of the surface: its sides are
+ * multiples of the spacing, and it is shifted.
+ *
+ * POV-Ray halves what a ray has in a box, and finds the wall at some k / 2^i of it. Where a ray
+ * along an axis meets the boxes of two cells that shift_of tells apart, the same part of both is
+ * never the same place: with overlaps of 13 m and 13 m' spacings and shifts s and s' it would be
+ * one if 13 (m - m') (2 k - 2^i) were 2^i (s - s'), which 13 does not divide. Nor do both begin at
+ * one place: so where different parts of them are one, it is known which POV-Ray looks into first.
+ */
+static Box box_shifted(const Builder *builder, Box box, const Cube *cube, double accuracy)
+{
+    double unit = builder->spacing;
+    int shifts = shifts_at(builder, accuracy);
+    double up = shift_of(builder, cube) % shifts, down = shifts - 1 - up;
+    return (Box){{(floor(box.low.x / unit) - down) * unit, (floor(box.low.y / unit) - down) * unit,
+                  (floor(box.low.z / unit) - down) * unit},
+                 {(ceil(box.high.x / unit) + up) * unit, (ceil(box.high.y / unit) + up) * unit,
+                  (ceil(box.high.z / unit) + up) * unit}};
 }
 
 static bool box_has_box(Box box, Box other)
@@ -380,13 +399,12 @@ static Status box_of_surface(Builder *builder, const TermList *candidates, const
 static Status add_cell(Builder *builder, const TermList *candidates, const Cube *cube, Err *err)
 {
     double accuracy = cell_accuracy(candidates->local_radius);
-    double unit = side_unit(builder, accuracy), margin = overlap_of(cube, accuracy, unit);
     Box box;
     TermList terms;
-    TRY(box_of_surface(builder, candidates, cube, margin, &box, err));
+    TRY(box_of_surface(builder, candidates, cube, overlap_of(builder, accuracy), &box, err));
     if (box_is_empty(box))
         return STATUS_OK;
-    box = box_rounded(box, unit);
+    box = box_shifted(builder, box, cube, accuracy);
     TRY(filter_terms(builder, candidates, box, &terms, err));
 
     CellTree *tree = &builder->tree;
@@ -417,7 +435,8 @@ static Status descend(Builder *builder, const TermList *parent, const Cube *cube
 {
     size_t depth = builder->depth;
     double accuracy = cell_accuracy(parent->largest_radius);
-    double margin = overlap_accuracies * accuracy + OCTANTS * side_unit(builder, accuracy);
+    double margin =
+        overlap_accuracies * accuracy + 2 * shifts_at(builder, accuracy) * builder->spacing;
     TermList terms;
     TRY(filter_terms(builder, parent, cube_box(cube, margin), &terms, err));
     if (terms.bound_sum >= empty_below && !misses_surface(builder, &terms, cube, margin)) {

@@ -98,13 +98,13 @@ static bool find_root(const CellSearch *search, Place a, Place b, double rise, d
 }
 
 /* The hit of a cell, at *t, and the order in which POV-Ray looks into it. */
-static bool hit_cell(const CellTree *tree, const Cell *cell, Ray ray, const BoundRay *bound_ray,
+static bool hit_cell(const CellTree *tree, const Cell *cell, Ray ray, const BoundRay *rounded,
                      double *t, double *order)
 {
     CellSearch search = {tree, cell, ray, 1};
     double t0, t1, accuracy = cell->accuracy;
     if (!cut_box(ray, cell, &t0, &t1) || t1 - t0 < accuracy ||
-        !povray_looks_into(bound_ray, (Box){cell->low, cell->high}, order))
+        !povray_looks_into(rounded, (Box){cell->low, cell->high}, order))
         return false;
     if (t0 < accuracy && fabs(value_at(&search, t0)) < cell->max_gradient * accuracy * 4) {
         t0 = accuracy * 5;
@@ -162,8 +162,8 @@ void povray_isosurface_free(PovrayIsosurface *isosurface)
 }
 
 /* The nearest hit in [t_min, t_max), or any with `any`, as *cell and *t. Of equals, which are where
- * two boxes overlap and the wall stands in the middle plane of both, the one that POV-Ray looks
- * into first, or of these the one of lower number. */
+ * the middles of two boxes coincide, or other parts of them, the one that POV-Ray looks into first;
+ * or of these, which boxes are shifted to avoid, the one of lower number. */
 static bool find_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min, double t_max,
                      bool any, uint32_t *cell, double *t)
 {
