@@ -30,6 +30,7 @@ typedef struct TileTerm {
     float axis[3];                /* unit */
     float cross[3];               /* (middle ray's direction) x axis; orthographic: of length k */
     float sine, per_sine, cosine; /* orthographic: of the angle between axis and ray */
+    float per_w, per_u;           /* orthographic: 1 / (k sine) and 1 / (k cosine), finite */
     uint32_t segment;             /* index in the scene */
 } TileTerm;
 

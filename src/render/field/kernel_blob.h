@@ -139,7 +139,7 @@ LANE_FN BlobSum sum_end(Lanes rho2, Lanes x)
 }
 
 /* The term where its ray is at w, u and v. */
-LANE_FN BlobSum blob_sum_at(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
+FOLDED_FN BlobSum blob_sum_at(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
 {
     const Lanes zero = lanes_set(0);
     const float reach =
@@ -166,7 +166,7 @@ LANE_FN BlobSum blob_sum_at(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
 }
 
 /* The term at dz, where its ray is at w. */
-LANE_FN BlobSum blob_sum(const PacketTerm *term, Lanes dz, Lanes w)
+FOLDED_FN BlobSum blob_sum(const PacketTerm *term, Lanes dz, Lanes w)
 {
     return blob_sum_at(term, w, lanes_fma(term->u1, dz, term->u0),
                        lanes_fma(-term->u1, dz, term->v0));
@@ -178,7 +178,7 @@ LANE_FN Lanes slope_of(const PacketTerm *term, Lanes w, const BlobSum *sum)
     return -2.0f * lanes_fma(sum->across, w * term->w1, sum->along * term->u1);
 }
 
-LANE_FN TermSample sample_term(const PacketTerm *term, Lanes z)
+FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
 {
     Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
     BlobSum sum = blob_sum(term, dz, w);

@@ -28,7 +28,7 @@ typedef struct PacketTerm {
     Lanes share, cosine;      /* h / s, and a */
     Lanes inverse_speed2;     /* 1 / (w1^2 + u1^2) */
     Lanes half_gauss;         /* exp(-E^2) / 2 */
-    Lanes curvature, spare;   /* M, and -ln B - E^2 */
+    Lanes curvature, spare;   /* M, and no less than -ln B - E^2 */
     Lanes steep;              /* steepness() of it */
     Lanes end_z[2];           /* dz nearest to the ends */
     Lanes window[2];          /* z between which it may be as large as its share of the level */
@@ -58,29 +58,58 @@ LANE_FN Lanes inverse(Lanes a)
     return 1.0f / lanes_select(lanes_abs(a) > 1e-20f, a, lanes_set(1e-20f));
 }
 
-/* The stretch of dz within sqrt(beside2) of the axis beside the segment or sqrt(beyond2) of an end,
- * both less E^2. Empty (low > high) when there is none. */
-LANE_FN void term_stretch(const PacketTerm *term, Lanes beside2, Lanes beyond2, Lanes *low,
-                          Lanes *high)
+/* A stretch of dz; empty (low > high) when there is none. */
+typedef struct Stretch {
+    Lanes low, high;
+} Stretch;
+
+/* 1 / w1 and 1 / u1 of a term. */
+typedef struct Inverses {
+    Lanes w, u;
+} Inverses;
+
+LANE_FN Inverses inverses_of(const PacketTerm *term, bool perspective)
 {
-    const Lanes none = lanes_set(1e30f);
-    Lanes width = lanes_sqrt(lanes_max(beside2, lanes_set(0)));
-    Lanes per_w = inverse(term->w1), per_u = inverse(term->u1);
-    Lanes first = -term->u0 * per_u, last = term->v0 * per_u;
-    Lanes from = lanes_max((-width - term->w0) * per_w, lanes_min(first, last));
-    Lanes to = lanes_min((width - term->w0) * per_w, lanes_max(first, last));
-    LaneMask seen = (beside2 >= 0.0f) & (from <= to);
-    *low = lanes_select(seen, from, none);
-    *high = lanes_select(seen, to, -none);
+    if (perspective)
+        return (Inverses){inverse(term->w1), inverse(term->u1)};
+    return (Inverses){lanes_set(term->term->per_w), lanes_set(term->term->per_u)};
+}
+
+/* Where |w| is at most sqrt(width2), and the place no farther than `beyond` outside of the ends. */
+LANE_FN Stretch stretch_within(const PacketTerm *term, const Inverses *per, Lanes width2,
+                               Lanes width, Lanes beyond)
+{
+    Lanes first = (-beyond - term->u0) * per->u, last = (term->v0 + beyond) * per->u;
+    Lanes from = lanes_max((-width - term->w0) * per->w, lanes_min(first, last));
+    Lanes to = lanes_min((width - term->w0) * per->w, lanes_max(first, last));
+    LaneMask seen = (width2 >= 0.0f) & (from <= to);
+    return (Stretch){lanes_select(seen, from, lanes_set(1e30f)),
+                     lanes_select(seen, to, lanes_set(-1e30f))};
+}
+
+/* A stretch that holds all within sqrt(distance2) of the segment, less E^2. */
+LANE_FN Stretch stretch_near(const PacketTerm *term, const Inverses *per, Lanes distance2)
+{
+    Lanes distance = lanes_sqrt(lanes_max(distance2, lanes_set(0)));
+    return stretch_within(term, per, distance2, distance, distance);
+}
+
+/* The stretch within sqrt(beside2) of the axis beside the segment or sqrt(beyond2) of an end, both
+ * less E^2. */
+LANE_FN Stretch stretch_about(const PacketTerm *term, const Inverses *per, Lanes beside2,
+                              Lanes beyond2)
+{
+    const Lanes zero = lanes_set(0), none = lanes_set(1e30f);
+    Stretch stretch =
+        stretch_within(term, per, beside2, lanes_sqrt(lanes_max(beside2, zero)), zero);
     for (int end = 0; end < 2; end++) {
         Lanes chord2 = (beyond2 - term->end_y2[end]) * term->inverse_speed2;
-        seen = chord2 >= 0.0f;
-        if (!lanes_any(seen))
-            continue;
-        Lanes half = lanes_sqrt(lanes_max(chord2, lanes_set(0)));
-        *low = lanes_min(*low, lanes_select(seen, term->end_z[end] - half, none));
-        *high = lanes_max(*high, lanes_select(seen, term->end_z[end] + half, -none));
+        LaneMask seen = chord2 >= 0.0f;
+        Lanes half = lanes_sqrt(lanes_max(chord2, zero));
+        stretch.low = lanes_min(stretch.low, lanes_select(seen, term->end_z[end] - half, none));
+        stretch.high = lanes_max(stretch.high, lanes_select(seen, term->end_z[end] + half, -none));
     }
+    return stretch;
 }
 
 /* Place and direction, at dz = 0, of the rays as the term sees them. */

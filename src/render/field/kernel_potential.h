@@ -66,13 +66,12 @@ LANE_FN void bend_term(PacketTerm *term, bool perspective)
 LANE_FN void complete_term(PacketTerm *term, bool perspective)
 {
     bend_term(term, perspective);
-    term->spare = term->past;
-    if (lanes_any(term->past > 0.0f))
-        term->spare -= lanes_log(lanes_min(term->share, lanes_set(1)));
+    term->spare =
+        term->past + lanes_select(term->past > 0.0f, lanes_set(0.69314718f), lanes_set(0));
     place_ends(term);
 }
 
-LANE_FN TermSample sample_term(const PacketTerm *term, Lanes z)
+FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
 {
     Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
     Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), w_slope = -2.0f * w * term->w1;

@@ -122,24 +122,24 @@ LANE_FN Lanes next_window(const Group *group, Lanes z)
 
 /* Sets what the march needs of a term that is at most exp(excess) times its share where it
  * `counts`. */
-LANE_FN void place_windows(PacketTerm *term, Lanes excess, LaneMask counts)
+LANE_FN void place_windows(PacketTerm *term, bool perspective, Lanes excess, LaneMask counts)
 {
     const Lanes none = lanes_set(1e30f);
-    Lanes beside2 = excess + term->spare, reach2 = term->term->reach2 - term->e2;
-    term_stretch(term, beside2, beside2 - 0.69314718f, &term->window[0], &term->window[1]);
-    term_stretch(term, reach2, reach2, &term->reach[0], &term->reach[1]);
-    for (int i = 0; i < 2; i++) {
-        term->window[i] += term->z;
-        term->reach[i] += term->z;
-    }
-    term->window[0] = lanes_select(counts, term->window[0], none);
-    term->window[1] = lanes_select(counts, term->window[1], -none);
+    const Inverses per = inverses_of(term, perspective);
+    Lanes beside2 = excess + term->spare;
+    Stretch window = stretch_about(term, &per, beside2, beside2 - 0.69314718f);
+    Stretch reach = stretch_near(term, &per, term->term->reach2 - term->e2);
+    term->window[0] = lanes_select(counts, window.low + term->z, none);
+    term->window[1] = lanes_select(counts, window.high + term->z, -none);
+    term->reach[0] = reach.low + term->z;
+    term->reach[1] = reach.high + term->z;
 }
 
 /* Sets the windows and the reaches of the terms; false when there is no ray on which the potential
  * may reach LEVEL - margin. */
 LANE_FN bool group_window(Group *group, LaneMask *live)
 {
+    const bool perspective = group->packet->tile->perspective;
     Lanes sum = lanes_set(0), places = lanes_set(0);
     for (size_t i = 0; i < group->n; i++) {
         const PacketTerm *term = group->terms[i];
@@ -163,8 +163,8 @@ LANE_FN bool group_window(Group *group, LaneMask *live)
         PacketTerm *term = group->terms[i];
         if (!matters(term, *live))
             continue;
-        complete_term(term, group->packet->tile->perspective);
-        place_windows(term, excess, term->peak >= faint);
+        complete_term(term, perspective);
+        place_windows(term, perspective, excess, term->peak >= faint);
         group->terms[n++] = term;
     }
     group->n = n;
@@ -184,15 +184,17 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, LaneMask *hit, L
         Lanes safety = lanes_select(lack <= CLOSE_ENOUGH, lanes_set(SURE), lanes_set(10 * SURE));
         LaneMask sure = (slope > 0.0f) & (lack >= -margin) & (lack <= NEAR_ENOUGH) &
                         (slope2 >= safety * curvature * (lack + margin));
-        LaneMask met = live & sure & (margin <= CLOSE_ENOUGH);
+        LaneMask near = margin <= CLOSE_ENOUGH, met = live & sure & near;
         *hit |= met;
-        *z = lanes_select(met, *z + lack / slope, *z);
         live &= ~met;
         Lanes root = lanes_sqrt(lanes_max(slope2 + 2.0f * curvature * safe, lanes_set(0)));
-        Lanes step =
-            lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
-        Lanes to = lanes_min(*z + step, sample.next);
-        LaneMask stuck = live & ~((safe > 0.0f) & (to > *z) & (margin <= CLOSE_ENOUGH));
+        LaneMask rises = slope > 0.0f;
+        Lanes above = lanes_select(rises, 2.0f * safe, root - slope);
+        Lanes below = lanes_select(rises, slope + root, curvature);
+        Lanes step = lanes_select(met, lack, above) / lanes_select(met, slope, below);
+        Lanes to = lanes_min(*z + step, lanes_select(met, lanes_set(1e30f), sample.next));
+        *z = lanes_select(met, to, *z);
+        LaneMask stuck = live & ~((safe > 0.0f) & (to > *z) & near);
         if (steps == MOST_STEPS)
             stuck = live;
         *unsure |= stuck;

@@ -24,21 +24,13 @@ LANE_FN Lanes square(Lanes a)
     return a * a;
 }
 
-/* The axial factor of a term, twice, and exp(-u^2) - exp(-v^2). */
+/* The axial factor of a term, twice, and exp(-u^2) - exp(-v^2). Ends that are out of reach of all
+ * lanes are not told apart: a branch that is guessed wrongly costs more than it spares. */
 LANE_FN void axial_factors(Lanes u, Lanes v, Lanes *ends, Lanes *ends_slope)
 {
-    *ends = lanes_set(2);
-    *ends_slope = lanes_set(0);
-    if (lanes_any(u < SATURATED)) {
-        Lanes gauss = lanes_exp_minus(square(u));
-        *ends = lanes_erf(u, gauss) + 1.0f;
-        *ends_slope = gauss;
-    }
-    if (lanes_any(v < SATURATED)) {
-        Lanes gauss = lanes_exp_minus(square(v));
-        *ends += lanes_erf(v, gauss) - 1.0f;
-        *ends_slope -= gauss;
-    }
+    Lanes gauss_u = lanes_exp_minus(square(u)), gauss_v = lanes_exp_minus(square(v));
+    *ends = lanes_erf(u, gauss_u) + lanes_erf(v, gauss_v);
+    *ends_slope = gauss_u - gauss_v;
 }
 
 /* What the picture needs of a hit. */
