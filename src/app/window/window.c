@@ -184,19 +184,39 @@ WindowEvent window_event(Window *window, bool wait)
     }
 }
 
-/* Copies the picture to the window's pixels, of 32 bits each, the nearest of the picture's. */
+/* Copies a row of as many pixels to a window whose pixels are 0xRRGGBB, as they nearly always are.
+ */
+static void copy_row(const uint8_t *rgb, int n, uint32_t alpha, uint32_t *pixels)
+{
+    for (int x = 0; x < n; x++, rgb += 3)
+        pixels[x] = alpha | (uint32_t)rgb[0] << 16 | (uint32_t)rgb[1] << 8 | rgb[2];
+}
+
+/* Copies a row to any window's, the nearest of the picture's pixels. */
+static void stretch_row(const uint8_t *rgb, int width, const SDL_PixelFormat *format, int n,
+                        uint32_t *pixels)
+{
+    uint64_t step = ((uint64_t)width << 32) / (uint64_t)n, at = 0;
+    for (int x = 0; x < n; x++, at += step) {
+        const uint8_t *from = rgb + 3 * (at >> 32);
+        pixels[x] = (uint32_t)from[0] << format->Rshift | (uint32_t)from[1] << format->Gshift |
+                    (uint32_t)from[2] << format->Bshift | format->Amask;
+    }
+}
+
+/* Copies the picture to the window's pixels, of 32 bits each. */
 static void stretch(const uint8_t *rgb, int width, int height, SDL_Surface *to)
 {
     const SDL_PixelFormat *format = to->format;
+    const bool as_is =
+        width == to->w && format->Rshift == 16 && format->Gshift == 8 && format->Bshift == 0;
     for (int y = 0; y < to->h; y++) {
-        uint32_t *pixel = (uint32_t *)((uint8_t *)to->pixels + (size_t)y * (size_t)to->pitch);
+        uint32_t *pixels = (uint32_t *)((uint8_t *)to->pixels + (size_t)y * (size_t)to->pitch);
         const uint8_t *row = rgb + (size_t)((long long)y * height / to->h) * (size_t)width * 3;
-        uint64_t step = ((uint64_t)width << 32) / (uint64_t)to->w, at = 0;
-        for (int x = 0; x < to->w; x++, at += step) {
-            const uint8_t *from = row + 3 * (at >> 32);
-            pixel[x] = (uint32_t)from[0] << format->Rshift | (uint32_t)from[1] << format->Gshift |
-                       (uint32_t)from[2] << format->Bshift | format->Amask;
-        }
+        if (as_is)
+            copy_row(row, width, format->Amask, pixels);
+        else
+            stretch_row(row, width, format, to->w, pixels);
     }
 }
 
