@@ -40,17 +40,75 @@ typedef struct PacketTerm {
     bool flat;     /* u and v are the same all along, and their factor is in half_gauss */
 } PacketTerm;
 
-_Static_assert(sizeof(PacketTerm) + sizeof(PacketTerm *) + sizeof(uint32_t) <= TILE_WORK_BYTES,
+/* LANES terms of an orthographic view's tile, one a lane: their segments in the plane across the
+ * view, in units of 1 / k. */
+typedef struct Outlines {
+    Lanes o[2], cross[2]; /* as those of TileTerm */
+    Lanes first, last;    /* distances of the ends from where the middle ray passes */
+    Lanes reach, k;
+} Outlines;
+
+_Static_assert(sizeof(Outlines) + sizeof(PacketTerm) + sizeof(PacketTerm *) + sizeof(uint32_t) <=
+                   TILE_WORK_BYTES,
                "TILE_WORK_BYTES");
 
 typedef struct Packet {
     const FieldTile *tile;
-    Lanes x, y;         /* of the samples */
-    PacketTerm *terms;  /* those of the tile's that matter, in their order */
-    PacketTerm **sum;   /* those of them that are added up */
-    uint32_t *segments; /* of the terms, where groups are looked for */
+    Lanes x, y;            /* of the samples */
+    float middle[2], half; /* of a circle about them */
+    Outlines *outlines;    /* of the tile's terms; orthographic */
+    PacketTerm *terms;     /* those of the tile's that matter, in their order */
+    PacketTerm **sum;      /* those of them that are added up */
+    uint32_t *segments;    /* of the terms, where groups are looked for */
     size_t n, n_sum;
 } Packet;
+
+LANE_FN void outline_terms(const FieldTile *tile, Outlines *outlines)
+{
+    for (size_t i = 0; i < tile->n_terms; i += LANES) {
+        Outlines *out = &outlines[i / LANES];
+        for (size_t lane = 0; lane < LANES; lane++) {
+            const TileTerm *term = &tile->terms[i + lane < tile->n_terms ? i + lane : i];
+            for (int c = 0; c < 2; c++) {
+                out->o[c][lane] = term->o[c];
+                out->cross[c][lane] = term->cross[c];
+            }
+            out->first[lane] = term->u * term->sine;
+            out->last[lane] = term->v * term->sine;
+            out->reach[lane] = term->reach2;
+            out->k[lane] = term->k;
+        }
+        out->reach = lanes_sqrt(out->reach);
+    }
+}
+
+/* Shares out the memory from `terms` on, and sets the outlines. */
+LANE_FN void share_memory(Packet *packet)
+{
+    const FieldTile *tile = packet->tile;
+    packet->outlines = (Outlines *)(packet->terms + tile->n_terms);
+    packet->sum = (PacketTerm **)(packet->outlines + (tile->n_terms + LANES - 1) / LANES);
+    packet->segments = (uint32_t *)(packet->sum + tile->n_terms);
+    if (!tile->perspective)
+        outline_terms(tile, packet->outlines);
+}
+
+/* Of the LANES terms from `first` on, as bits, those that may be within reach of a packet. */
+LANE_FN uint32_t terms_near(const Packet *packet, size_t first)
+{
+    const FieldTile *tile = packet->tile;
+    const size_t n = tile->n_terms - first < LANES ? tile->n_terms - first : LANES;
+    const uint32_t all = (1u << n) - 1;
+    if (tile->perspective)
+        return all;
+    const Outlines *terms = &packet->outlines[first / LANES];
+    Lanes x = terms->o[0] + packet->middle[0], y = terms->o[1] + packet->middle[1];
+    Lanes along = lanes_fma(x, terms->cross[1], -(y * terms->cross[0]));
+    Lanes across = lanes_fma(y, terms->cross[1], x * terms->cross[0]);
+    Lanes past = lanes_min(lanes_min(along + terms->first, terms->last - along), lanes_set(0));
+    Lanes far = lanes_fma(terms->k, lanes_set(packet->half), terms->reach);
+    return all & lanes_bits(lanes_fma(past, past, square(across)) < square(far));
+}
 
 /* 1 / a, finite for a near 0. */
 LANE_FN Lanes inverse(Lanes a)

@@ -31,18 +31,6 @@
 #define SKIN 1.002f
 #define SURELY_BELOW (0.999f * LEVEL)
 
-/* LANES terms of a parallel light's tile, one a lane: their segments in the plane across the light,
- * in units of 1 / k. */
-typedef struct Outlines {
-    Lanes o[2], cross[2]; /* as those of TileTerm */
-    Lanes first, last;    /* distances of the ends from where the middle ray passes */
-    Lanes reach, k;
-} Outlines;
-
-_Static_assert(sizeof(Outlines) + sizeof(PacketTerm) + sizeof(PacketTerm *) + sizeof(uint32_t) <=
-                   TILE_WORK_BYTES,
-               "TILE_WORK_BYTES");
-
 /* What is kept of a term to tell whether it matters beyond the places. */
 typedef struct Blocker {
     Lanes w, w1;      /* at the place, and its change with z, >= 0 */
@@ -53,51 +41,20 @@ typedef struct Blocker {
 /* Places, LANES of them, and the terms on the ways from there to the light. */
 typedef struct Departures {
     Packet packet;
-    Outlines *outlines; /* of the tile's terms; of parallel light */
-    Blocker *blockers;  /* in the memory of the packet's terms */
+    Blocker *blockers; /* in the memory of the packet's terms */
     size_t n_blockers;
-    double base;           /* about which z is */
-    Lanes z;               /* of the places */
-    float from, to;        /* the least and the largest of these */
-    float middle[2], half; /* of a circle about the places, in the plane across the light */
+    double base;    /* about which z is */
+    Lanes z;        /* of the places */
+    float from, to; /* the least and the largest of these */
 } Departures;
-
-LANE_FN void outline_terms(const FieldTile *tile, Outlines *outlines)
-{
-    for (size_t i = 0; i < tile->n_terms; i += LANES) {
-        Outlines *out = &outlines[i / LANES];
-        for (size_t lane = 0; lane < LANES; lane++) {
-            const TileTerm *term = &tile->terms[i + lane < tile->n_terms ? i + lane : i];
-            for (int c = 0; c < 2; c++) {
-                out->o[c][lane] = term->o[c];
-                out->cross[c][lane] = term->cross[c];
-            }
-            out->first[lane] = term->u * term->sine;
-            out->last[lane] = term->v * term->sine;
-            out->reach[lane] = term->reach2;
-            out->k[lane] = term->k;
-        }
-        out->reach = lanes_sqrt(out->reach);
-    }
-}
 
 /* Of the LANES terms from `first` on, as bits, those that may be within reach of a packet and are
  * not all behind its places. */
-LANE_FN uint32_t terms_near(const Departures *way, size_t first)
+LANE_FN uint32_t terms_ahead(const Departures *way, size_t first)
 {
     const FieldTile *tile = way->packet.tile;
-    const size_t n = tile->n_terms - first < LANES ? tile->n_terms - first : LANES;
-    uint32_t near = (1u << n) - 1, ahead = 0;
-    if (!tile->perspective) {
-        const Outlines *terms = &way->outlines[first / LANES];
-        Lanes x = terms->o[0] + way->middle[0], y = terms->o[1] + way->middle[1];
-        Lanes along = lanes_fma(x, terms->cross[1], -(y * terms->cross[0]));
-        Lanes across = lanes_fma(y, terms->cross[1], x * terms->cross[0]);
-        Lanes past = lanes_min(lanes_min(along + terms->first, terms->last - along), lanes_set(0));
-        Lanes far = lanes_fma(terms->k, lanes_set(way->half), terms->reach);
-        near &= lanes_bits(lanes_fma(past, past, square(across)) < square(far));
-    }
-    for (uint32_t left = near; left; left &= left - 1) {
+    uint32_t ahead = 0;
+    for (uint32_t left = terms_near(&way->packet, first); left; left &= left - 1) {
         int lane = __builtin_ctz(left);
         bool is_ahead = tile->terms[first + (size_t)lane].off >= way->base + (double)way->from;
         ahead |= (uint32_t)is_ahead << lane;
@@ -149,7 +106,7 @@ LANE_FN LaneMask depart(Departures *way, LaneMask open, PacketSample *at, Lanes 
     *at = nothing_sampled();
     *margin = lanes_set(0);
     for (size_t i = 0; i < tile->n_terms; i += LANES)
-        for (uint32_t near = terms_near(way, i); near; near &= near - 1) {
+        for (uint32_t near = terms_ahead(way, i); near; near &= near - 1) {
             PacketTerm term;
             if (!place_term(&way->packet, &tile->terms[i + (size_t)__builtin_ctz(near)], &term))
                 continue;
@@ -305,10 +262,10 @@ LANE_FN void enclose(Departures *way)
     float half2 = 0;
     for (int c = 0; c < 2; c++) {
         float low = lanes_least(sides[c]), high = lanes_largest(sides[c]);
-        way->middle[c] = 0.5f * (low + high);
+        way->packet.middle[c] = 0.5f * (low + high);
         half2 += (high - low) * (high - low);
     }
-    way->half = 0.501f * sqrtf(half2);
+    way->packet.half = 0.501f * sqrtf(half2);
 }
 
 /* Takes LANES places, the first n of which count. Returns the lanes of those. */
@@ -358,7 +315,7 @@ LANE_FN void place_terms(Departures *way)
     const FieldTile *tile = way->packet.tile;
     way->packet.n = 0;
     for (size_t i = 0; i < tile->n_terms; i += LANES)
-        for (uint32_t near = terms_near(way, i); near; near &= near - 1)
+        for (uint32_t near = terms_ahead(way, i); near; near &= near - 1)
             add_to_packet(&way->packet, &tile->terms[i + (size_t)__builtin_ctz(near)]);
 }
 
@@ -400,11 +357,7 @@ LANE_TARGET void SHADOW_KERNEL(const FieldTile *tile, TileWork *work, FieldPlace
     Places later = {.n = 0};
     assert(tile->n_terms <= work->capacity);
     Departures way = {.packet = {.tile = tile, .terms = work->memory}, .blockers = work->memory};
-    way.outlines = (Outlines *)(way.packet.terms + tile->n_terms);
-    way.packet.sum = (PacketTerm **)(way.outlines + (tile->n_terms + LANES - 1) / LANES);
-    way.packet.segments = (uint32_t *)(way.packet.sum + tile->n_terms);
-    if (!tile->perspective)
-        outline_terms(tile, way.outlines);
+    share_memory(&way.packet);
     __builtin_memset(places->state, PLACE_LIT, (size_t)places->n);
     for (int first = 0; first < places->n; first += LANES)
         for (uint32_t open = lanes_bits(decide_at_once(places, first, &way)); open;

@@ -111,13 +111,13 @@ LANE_FN PacketSample sample_at(const Group *group, Lanes z, LaneMask live)
 /* The place from z on, or beyond all, where the group's potential may reach LEVEL - margin. */
 LANE_FN Lanes next_window(const Group *group, Lanes z)
 {
-    Lanes next = lanes_set(1e30f);
+    const Lanes far = lanes_set(1e30f);
+    Lanes next = far;
     for (size_t i = 0; i < group->n; i++) {
-        const PacketTerm *term = group->terms[i];
-        next = lanes_min(next, lanes_select(z <= term->window[1], lanes_max(term->window[0], z),
-                                            lanes_set(1e30f)));
+        const Lanes *window = group->terms[i]->window;
+        next = lanes_min(next, lanes_select(z <= window[1], window[0], far));
     }
-    return next;
+    return lanes_max(next, z);
 }
 
 /* Sets what the march needs of a term that is at most exp(excess) times its share where it
@@ -313,14 +313,29 @@ LANE_FN void trace_union(Packet *packet, int first, TileHits *hits)
     }
 }
 
+/* Sets the circle about the samples from `first` on, which are a block of rows and columns. */
+LANE_FN void enclose_block(Packet *packet, int first)
+{
+    const float *sides[2] = {&packet->tile->x[first], &packet->tile->y[first]};
+    float size2 = 0;
+    for (int c = 0; c < 2; c++) {
+        float size = sides[c][LANES - 1] - sides[c][0];
+        packet->middle[c] = sides[c][0] + 0.5f * size;
+        size2 += size * size;
+    }
+    packet->half = 0.501f * sqrtf(size2);
+}
+
 LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
 {
     const FieldTile *tile = packet->tile;
     packet->x = lanes_load(&tile->x[first]);
     packet->y = lanes_load(&tile->y[first]);
+    enclose_block(packet, first);
     packet->n = 0;
-    for (size_t i = 0; i < tile->n_terms; i++)
-        add_to_packet(packet, &tile->terms[i]);
+    for (size_t i = 0; i < tile->n_terms; i += LANES)
+        for (uint32_t near = terms_near(packet, i); near; near &= near - 1)
+            add_to_packet(packet, &tile->terms[i + (size_t)__builtin_ctz(near)]);
     if (tile->groups) {
         trace_union(packet, first, hits);
         return;
@@ -342,8 +357,7 @@ LANE_TARGET void FIELD_KERNEL(const FieldTile *tile, TileWork *work, TileHits *h
     }
 #endif
     Packet packet = {.tile = tile, .terms = work->memory};
-    packet.sum = (PacketTerm **)(packet.terms + tile->n_terms);
-    packet.segments = (uint32_t *)(packet.sum + tile->n_terms);
+    share_memory(&packet);
     for (int first = 0; first < TILE_SAMPLES; first += LANES)
         trace_packet(&packet, first, hits);
 }
