@@ -1,26 +1,22 @@
 /* The distance of the trees of a forest, held against all pairs of segments by another formula. */
-#include "grow/grow.h"
 #include "unit.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+#include "test_grow.h"
 #include "tree_promises.h"
 
-static Tree forest(const char *spec, double clearance, Err *err)
+static Tree forest(const char *spec, double clearance)
 {
     const Vec3 inlet[] = {{0, 29.5, 0}, {4.5, -28, 0}, {-27, 3, 0}};
     GrowParams params = grow_defaults();
-    Domain domain;
-    Tree tree = {0};
     params.terminals = 220;
     params.inlets = 3;
     params.inlet = inlet;
     params.q_perf_ml_min = 90;
     params.clearance_mm = clearance;
-    assert_int_equal(domain_parse(&domain, spec, NULL), STATUS_OK);
-    must(grow_tree(&params, &domain, &tree, NULL, err), err);
-    return tree;
+    return test_grown_by(&params, spec);
 }
 
 /* By all pairs. */
@@ -47,8 +43,7 @@ static void trees_are_as_far_apart_as_their_nearest_pair(void **state)
     (void)state;
     const char *const spec[] = {"disc:30", "ball:30"};
     for (int k = 0; k < 4; k++) {
-        Err err = {""};
-        Tree tree = forest(spec[k % 2], k / 2 * 1.25, &err);
+        Tree tree = forest(spec[k % 2], k / 2 * 1.25);
         double apart, by_pairs = apart_by_pairs(&tree);
         size_t pair[2];
         assert_int_equal(trees_apart(&tree, 50, &apart, pair, NULL), STATUS_OK);
@@ -68,7 +63,7 @@ static void refined_trees_keep_their_clearance(void **state)
     const char *const spec[] = {"ball:30", "disc:30"};
     for (int k = 0; k < 2; k++) {
         Err err = {""};
-        Tree tree = forest(spec[k], 1.25, &err);
+        Tree tree = forest(spec[k], 1.25);
         double clearance = apart_by_pairs(&tree) - 1e-3;
         meta_set_number(&tree.meta, META_CLEARANCE, clearance);
         RefineParams params = {.level = level[k], .moves = 4000, .seed = 5};
@@ -86,7 +81,7 @@ static void trees_that_are_too_near_are_not_refined(void **state)
 {
     (void)state;
     Err err = {""};
-    Tree tree = forest("disc:30", 1.25, &err);
+    Tree tree = forest("disc:30", 1.25);
     Vec3 last = tree.position[tree.n - 1];
     meta_set_number(&tree.meta, META_CLEARANCE, apart_by_pairs(&tree) + 1e-3);
     RefineParams params = {.level = GROW_REFINE_GEOMETRY};

@@ -1,6 +1,6 @@
 /* The bound of a tree's target: below all that was tried, reached by what is found. */
 #include "grow/bound/bound_newton.h"
-#include "grow/grow.h"
+#include "test_grow.h"
 #include "unit.h"
 
 #include <stdlib.h>
@@ -13,12 +13,7 @@ static Tree grown(size_t terminals, double lambda, const char *spec, TerminalFlo
     params.lambda = lambda;
     params.terminal_flow = flow;
     params.seed = 23;
-    Domain domain;
-    Tree tree;
-    assert_int_equal(domain_parse(&domain, spec, NULL), STATUS_OK);
-    assert_int_equal(grow_tree(&params, &domain, &tree, NULL, NULL), STATUS_OK);
-    domain_release(&domain);
-    return tree;
+    return test_grown_by(&params, spec);
 }
 
 /* A tree of so many nodes: x, y, z, radius and parent of each. */

@@ -9,7 +9,6 @@
 #include "render/field/fieldtiles.h"
 #include "unit.h"
 
-#include "grow/grow.h"
 #include "stage/stage.h"
 #include "treeio/treeio.h"
 #include <float.h>
@@ -18,6 +17,7 @@
 #include <unistd.h>
 
 #include "field_walk.h"
+#include "test_grow.h"
 #include <stdio.h>
 
 typedef struct Tally {
@@ -261,16 +261,12 @@ static void try_tree(const Tree *tree, SceneModel model, const char *name, bool 
 static void try_grown(const char *name, SceneModel model, const char *spec, double lambda,
                       bool facing)
 {
-    Domain domain;
-    Tree tree;
     GrowParams params = grow_defaults();
     params.terminals = 400;
     params.lambda = lambda;
-    assert_int_equal(domain_parse(&domain, spec, NULL), STATUS_OK);
-    assert_int_equal(grow_tree(&params, &domain, &tree, NULL, NULL), STATUS_OK);
+    Tree tree = test_grown_by(&params, spec);
     try_tree(&tree, model, name, facing, 61);
     tree_release(&tree);
-    domain_release(&domain);
 }
 
 static void holds_for_a_tree_of_least_volume(void **state)

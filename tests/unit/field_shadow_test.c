@@ -7,7 +7,6 @@
 #include "render/field/fieldshadow.h"
 #include "unit.h"
 
-#include "grow/grow.h"
 #include "render/cast/caster.h"
 #include "render/field/fieldtiles.h"
 #include "stage/stage.h"
@@ -15,6 +14,7 @@
 #include <stdio.h>
 
 #include "field_walk.h"
+#include "test_grow.h"
 
 /* Nothing nearer shadows a place, in radii of the smallest vessel. */
 static const double from_radii = 1e-3;
@@ -271,16 +271,13 @@ static void shadows_of_adversarial_scenes_are_right(void **state)
 static void try_grown(const char *name, SceneModel model, const char *spec, bool graph,
                       uint64_t seed)
 {
-    Domain domain;
-    Tree tree;
     Geometry geometry;
     Random random;
     Tally tally = {.name = name};
     GrowParams params = grow_defaults();
     const GeometryParams shape = {.model = model, .graph = graph};
     params.terminals = graph ? 12 : 300;
-    assert_int_equal(domain_parse(&domain, spec, NULL), STATUS_OK);
-    assert_int_equal(grow_tree(&params, &domain, &tree, NULL, NULL), STATUS_OK);
+    Tree tree = test_grown_by(&params, spec);
     assert_int_equal(stage_geometry(&tree, &shape, &geometry, NULL, NULL), STATUS_OK);
     random_seed(&random, seed);
     int cameras = graph ? 100 : model == SCENE_BLOB ? 400 : 1400;
@@ -288,7 +285,6 @@ static void try_grown(const char *name, SceneModel model, const char *spec, bool
     finish(&tally);
     geometry_release(&geometry);
     tree_release(&tree);
-    domain_release(&domain);
 }
 
 static void shadows_of_trees_are_right(void **state)
