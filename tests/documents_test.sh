@@ -69,7 +69,7 @@ with Phi clamped to [10⁻⁵, 0.2] @ surface.h @ #define LOG_FORM_CEILING 0.2
 `Phi'^2 >= 4.6 M lack` @ kernel_potential.h @ #define SURE 4.6f
 Within 2 % of C and with ten times that certainty @ kernel_trace.h @ #define NEAR_ENOUGH (2e-2f * LEVEL)
 or within 0.1 %, Newton's method closes it @ kernel_trace_common.h @ #define CLOSE_ENOUGH (1e-3f * LEVEL)
-come to where the margin exceeds 10⁻³ C @ kernel_trace.h @ (margin <= CLOSE_ENOUGH)
+come to where the margin exceeds 10⁻³ C @ kernel_trace.h @ near = margin <= CLOSE_ENOUGH
 does not count where Phi is within 1 % of C and falls @ fieldcast.c @ sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0
 lie in one plane (to 10⁻⁷ / k) @ fieldterms.c @ <= 1e-7;
 to within 4 · 10⁻⁶ of ln C @ kernel_trace_flat.h @ #define PLANE_CLOSE 3e-6f

@@ -184,13 +184,15 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, LaneMask *hit, L
         Lanes safety = lanes_select(lack <= CLOSE_ENOUGH, lanes_set(SURE), lanes_set(10 * SURE));
         LaneMask sure = (slope > 0.0f) & (lack >= -margin) & (lack <= NEAR_ENOUGH) &
                         (slope2 >= safety * curvature * (lack + margin));
-        LaneMask near = margin <= CLOSE_ENOUGH, met = live & sure & near;
+        LaneMask near = margin <= CLOSE_ENOUGH;
+        LaneMask met = live & sure & near;
         *hit |= met;
         live &= ~met;
         Lanes root = lanes_sqrt(lanes_max(slope2 + 2.0f * curvature * safe, lanes_set(0)));
         LaneMask rises = slope > 0.0f;
         Lanes above = lanes_select(rises, 2.0f * safe, root - slope);
         Lanes below = lanes_select(rises, slope + root, curvature);
+        /* Division is slow: one, for Newton's last step of those that are met, too. */
         Lanes step = lanes_select(met, lack, above) / lanes_select(met, slope, below);
         Lanes to = lanes_min(*z + step, lanes_select(met, lanes_set(1e30f), sample.next));
         *z = lanes_select(met, to, *z);
