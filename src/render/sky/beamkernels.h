@@ -72,11 +72,11 @@ typedef struct BeamLines {
     int n;             /* a multiple of SUMMED */
 } BeamLines;
 
-/* What the neighbours of either pixel of a pair were answered about the same lines. */
-enum { PAIR = 2, MOST_NEIGHBORS = 18 };
+/* What the neighbours of the pixels of a quad, 2 x 2 pixels, were answered about the same lines. */
+enum { QUAD_SIDE = 2, QUAD = QUAD_SIDE * QUAD_SIDE, MOST_NEIGHBORS = 9 * QUAD };
 typedef struct BeamAnswers {
     const uint8_t *of[MOST_NEIGHBORS];
-    int weight[PAIR][MOST_NEIGHBORS], n;
+    int weight[QUAD][MOST_NEIGHBORS], n;
 } BeamAnswers;
 
 typedef struct BeamKernels {
@@ -84,8 +84,8 @@ typedef struct BeamKernels {
      * of the line that its surface faces. */
     void (*ask)(const Beams *beams, const BeamDirection *direction, const BeamPlaces *places,
                 BeamWork *work, uint8_t *answers);
-    /* The part of the sky that is free, from 0 to 1, about the normal of either pixel of a pair: of
-     * each line the mean of the answers about the end that the normal faces, by the pixel's
+    /* The part of the sky that is free, from 0 to 1, about the normal of a pixel of a quad: of each
+     * line the mean of the answers about the end that the normal faces, by the pixel's
      * weights, and of these the mean by their cosines to the normal; 1 where there are none.
      * answers[i] is of lines[i]. */
     float (*open)(const BeamLines *lines, const BeamAnswers *answers, int n, int pixel,
