@@ -26,7 +26,10 @@ stored_as_recorded() {
         [ "$(pixel_hash "$golden/picture.png")" = "$(record "$golden" pixels_sha256)" ] ||
             fail "${golden#"$REPO"/}/picture.png is not the picture that case.json records"
     done
-    expect_json "$GOLDEN/snapshot/$1/case.json" 'has("tolerance") or has("widened") | not'
+    golden=$GOLDEN/snapshot/$1
+    [ "$(record "$golden" command)" = "$(snapshot_command "$1")" ] ||
+        fail "${golden#"$REPO"/}/case.json records another command than '$(snapshot_command "$1")'"
+    expect_json "$golden/case.json" 'has("tolerance") or has("widened") | not'
     has_oracle "$1" || return 0
     golden=$GOLDEN/oracle/$1/case.json
     expect_json "$golden" '.povray_version | startswith("3.7")'

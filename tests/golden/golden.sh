@@ -34,6 +34,11 @@ native_options() {
     case_options "$1" | grep -q -- '--method' && echo --antialias 1 || echo --exact
 }
 
+# The command that draws a case's snapshot, as its record says it.
+snapshot_command() {
+    echo "corcast render $(case_tree "$1") $(native_options "$1") $(case_options "$1") -o picture.png"
+}
+
 # The files of a case are named from the repository's folder. The options are words: no quotes around them.
 # shellcheck disable=SC2046
 draw_native() {
