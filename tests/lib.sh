@@ -197,7 +197,7 @@ run_tests() {
         fi
         {
             run_test $number "$name"
-            cat "$tests_folder/$number.tap"
+            printf '%s\n' "$(<"$tests_folder/$number.tap")" # cat loses lines that others write at the same time
             printf ' ' >&8
         } &
     done
