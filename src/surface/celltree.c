@@ -326,9 +326,10 @@ static double overlap_of(const Builder *builder, double accuracy)
     return ceil(overlap_accuracies * accuracy / step) * step;
 }
 
-/* Below SHIFTS - 1; not the same for two cells that touch and whose boxes, before they overlap, may
- * have both faces across an axis in common. Such are at most HALVINGS levels apart, and of one
- * level they differ in one or two of their places. */
+/* The shift of a cell's box, in spacings, below SHIFTS - 1. Two cells that touch have different
+ * shifts where their boxes, before the overlap is added, may begin and end in the same two planes
+ * across an axis: the cubes of such cells are at most HALVINGS levels of the octree apart, and if
+ * they are of one level, they differ in one or two of their three coordinates. */
 static int shift_of(const Builder *builder, const Cube *cube)
 {
     int level = ilogb(builder->root_side / cube->side) % (HALVINGS + 1);
@@ -339,11 +340,12 @@ static int shift_of(const Builder *builder, const Cube *cube)
 /* The box of a cell of this cube and accuracy, by what it has of the surface: its sides are
  * multiples of the spacing, and it is shifted.
  *
- * POV-Ray halves what a ray has in a box, and finds the wall at some k / 2^i of it. Where a ray
- * along an axis meets the boxes of two cells that shift_of tells apart, the same part of both is
- * never the same place: with overlaps of 13 m and 13 m' spacings and shifts s and s' it would be
- * one if 13 (m - m') (2 k - 2^i) were 2^i (s - s'), which 13 does not divide. Nor do both begin at
- * one place: so where different parts of them are one, it is known which POV-Ray looks into first.
+ * POV-Ray halves the stretch of a ray in a box again and again, and so finds the wall at a fraction
+ * k / 2^i of the stretch. Where a ray along an axis meets the boxes of two cells that shift_of
+ * tells apart, equal fractions of the two stretches are different places: with overlaps of 13 m and
+ * 13 m' spacings and shifts s and s' they would be one place if 13 (m - m') (2 k - 2^i) were 2^i (s
+ * - s'), which 13 does not divide. Unequal fractions may be one place; but as the two boxes begin
+ * at different places, it is known which of them POV-Ray looks into first.
  */
 static Box box_shifted(const Builder *builder, Box box, const Cube *cube, double accuracy)
 {

@@ -161,9 +161,10 @@ void povray_isosurface_free(PovrayIsosurface *isosurface)
     free(isosurface);
 }
 
-/* The nearest hit in [t_min, t_max), or any with `any`, as *cell and *t. Of equals, which are where
- * the middles of two boxes coincide, or other parts of them, the one that POV-Ray looks into first;
- * or of these, which boxes are shifted to avoid, the one of lower number. */
+/* The nearest hit in [t_min, t_max), or any with `any`, as *cell and *t. Where
+ * two cells are hit at one place, it is the hit of the cell that POV-Ray looks into first; where
+ * both boxes begin at one place, which their shifts [surface/celltree.c] avoid, of the lower
+ * number. */
 static bool find_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min, double t_max,
                      bool any, uint32_t *cell, double *t)
 {

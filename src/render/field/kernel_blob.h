@@ -178,18 +178,18 @@ LANE_FN Lanes slope_of(const PacketTerm *term, Lanes w, const BlobSum *sum)
     return -2.0f * lanes_fma(sum->across, w * term->w1, sum->along * term->u1);
 }
 
-FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
-{
-    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    BlobSum sum = blob_sum(term, dz, w);
-    return (TermSample){sum.value, slope_of(term, w, &sum)};
-}
-
 /* The term at w, u and v; only its ray is set. */
-LANE_FN TermSample sample_once(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
+FOLDED_FN TermSample sample_once(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
 {
     BlobSum sum = blob_sum_at(term, w, u, v);
     return (TermSample){sum.value, slope_of(term, w, &sum)};
+}
+
+FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
+{
+    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
+    return sample_once(term, w, lanes_fma(term->u1, dz, term->u0),
+                       lanes_fma(-term->u1, dz, term->v0));
 }
 
 LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Lanes *phi,
@@ -229,9 +229,8 @@ LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
 {
     Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
     Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
-    BlobSum sum = blob_sum_at(term, w, u, v);
     Lanes most = most_beyond(term->e2, w, lanes_select(term->u1 > 0.0f, v, u));
-    return (TermThere){{sum.value, slope_of(term, w, &sum)}, lanes_min(most, term->peak)};
+    return (TermThere){sample_once(term, w, u, v), lanes_min(most, term->peak)};
 }
 
 #endif
