@@ -110,3 +110,11 @@ void threads_for(size_t count, int threads, void (*body)(size_t index, int worke
     for (int i = 1; i < started; i++)
         pthread_join(handles[i], NULL);
 }
+
+Status calls_status(const CallResult *results, size_t count, Err *err)
+{
+    for (size_t i = 0; i < count; i++)
+        if (results[i].status != STATUS_OK)
+            return err_set(err, results[i].status, "%s", results[i].err.text);
+    return STATUS_OK;
+}

@@ -3,6 +3,8 @@
 #ifndef CORCAST_BASE_THREADS_H
 #define CORCAST_BASE_THREADS_H
 
+#include "base/status.h"
+
 #include <stddef.h>
 
 /* The number of processors this process may run on, at least 1. */
@@ -14,5 +16,15 @@ int threads_available(void);
  * cannot fail. Returns when all calls have returned. */
 void threads_for(size_t count, int threads, void (*body)(size_t index, int worker, void *context),
                  void *context);
+
+/* What a call of such a loop ended with, where calls can fail. */
+typedef struct CallResult {
+    Status status;
+    Err err; /* of a call that failed */
+} CallResult;
+
+/* Fails as the call of the lowest index did that failed, with its sentence in *err; STATUS_OK when
+ * all `count` calls did their work. `err` may be NULL. */
+MUST_CHECK Status calls_status(const CallResult *results, size_t count, Err *err);
 
 #endif

@@ -121,15 +121,15 @@ enum { SHOWN = 4 };
 typedef struct Shown {
     const Picture *pictures[SHOWN];
     Text *parts[SHOWN];
-    Status status[SHOWN];
-    Err err[SHOWN];
+    CallResult results[SHOWN];
 } Shown;
 
 static void put_shown(size_t i, int worker, void *context)
 {
     (void)worker;
     Shown *shown = context;
-    shown->status[i] = picture_put_uri(shown->pictures[i], shown->parts[i], &shown->err[i]);
+    CallResult *result = &shown->results[i];
+    result->status = picture_put_uri(shown->pictures[i], shown->parts[i], &result->err);
 }
 
 static Status picture_parts(const ReportCase *report, const Picture *heat, Markup *parts, Err *err)
@@ -141,10 +141,7 @@ static Status picture_parts(const ReportCase *report, const Picture *heat, Marku
     TRY(class_map(report, &classes, err));
     threads_for(SHOWN, 0, put_shown, &shown);
     picture_release(&classes);
-    for (int i = 0; i < SHOWN; i++)
-        if (shown.status[i] != STATUS_OK)
-            return err_set(err, shown.status[i], "%s", shown.err[i].text);
-    return STATUS_OK;
+    return calls_status(shown.results, SHOWN, err);
 }
 
 static Status plane_parts(const ReportCase *report, Markup *parts, Err *err)

@@ -17,8 +17,7 @@ typedef struct Sides {
     const char *paths[2];
     Image images[2];
     IdPlane ids[2]; /* without ids unless they are given */
-    Status status[4];
-    Err err[4];
+    CallResult results[4];
     const char *id_paths[2];
     const char *layer;   /* or NULL */
     float background[3]; /* linear; what is transparent is laid on it */
@@ -101,18 +100,16 @@ static void read_file(size_t index, int worker, void *context)
     const char *path = index < 2 ? sides->paths[side] : sides->id_paths[side];
     if (!path)
         return;
-    sides->status[index] = index < 2
-                               ? read_side(sides, path, &sides->images[side], &sides->err[index])
-                               : read_ids(&sides->ids[side], path, &sides->err[index]);
+    CallResult *result = &sides->results[index];
+    result->status = index < 2 ? read_side(sides, path, &sides->images[side], &result->err)
+                               : read_ids(&sides->ids[side], path, &result->err);
 }
 
 /* Reads all files at once; of several errors the first file's is reported. */
 static Status read_files(Sides *sides, int threads, Err *err)
 {
     threads_for(4, threads, read_file, sides);
-    for (int i = 0; i < 4; i++)
-        if (sides->status[i] != STATUS_OK)
-            return err_set(err, sides->status[i], "%s", sides->err[i].text);
+    TRY(calls_status(sides->results, 4, err));
     if (!sides->images[0].plane.values != !sides->images[1].plane.values &&
         (sides->paths[0] && sides->paths[1]))
         return err_set(err, STATUS_INPUT,

@@ -205,34 +205,26 @@ typedef struct Scenes {
     const Source *source;
     const Tiles *tiles;
     size_t each; /* scenes of a tile */
-    Status *status;
-    Err *err;
+    CallResult *results;
 } Scenes;
 
 static void write_one(size_t number, int worker, void *context)
 {
     (void)worker;
     const Scenes *scenes = context;
-    scenes->status[number] = write_scene(scenes->source, scenes->tiles, number / scenes->each,
-                                         number % scenes->each == 1, &scenes->err[number]);
+    CallResult *result = &scenes->results[number];
+    result->status = write_scene(scenes->source, scenes->tiles, number / scenes->each,
+                                 number % scenes->each == 1, &result->err);
 }
 
 static Status write_scenes(const Source *source, const Tiles *tiles, Err *err)
 {
     Scenes scenes = {.source = source, .tiles = tiles, .each = has_id_scene(source->v) ? 2 : 1};
     size_t n = scenes.each * tiles->n;
-    Status status;
-    TRY_GOTO(mem_calloc(&scenes.status, n, sizeof *scenes.status, "scenes", err));
-    TRY_GOTO(mem_calloc(&scenes.err, n, sizeof *scenes.err, "scenes", err));
+    TRY(mem_calloc(&scenes.results, n, sizeof *scenes.results, "scenes", err));
     threads_for(n, source->v->common->threads, write_one, &scenes);
-    for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        if (scenes.status[i] != STATUS_OK) {
-            *err = scenes.err[i];
-            status = scenes.status[i];
-        }
-done:
-    free(scenes.status);
-    free(scenes.err);
+    Status status = calls_status(scenes.results, n, err);
+    free(scenes.results);
     return status;
 }
 

@@ -188,17 +188,16 @@ typedef enum Side { SIDE_POVRAY, SIDE_NATIVE, SIDES } Side;
 typedef struct BothSides {
     Verification *v;
     PovraySide *povray;
-    Status status[SIDES];
-    Err err[SIDES];
+    CallResult results[SIDES];
 } BothSides;
 
 static void draw_side(size_t side, int worker, void *context)
 {
     (void)worker;
     BothSides *both = context;
-    Err *err = &both->err[side];
-    both->status[side] =
-        side == SIDE_POVRAY ? povray_side_draw(both->povray, err) : render_native(both->v, err);
+    CallResult *result = &both->results[side];
+    result->status = side == SIDE_POVRAY ? povray_side_draw(both->povray, &result->err)
+                                         : render_native(both->v, &result->err);
 }
 
 /* Fails as POV-Ray's side did, where both did. */
@@ -208,12 +207,7 @@ static Status draw_sides(Verification *v, Err *err)
     TRY(povray_side_prepare(v, &both.povray, err));
     threads_for(SIDES, v->common->threads, draw_side, &both);
     povray_side_free(both.povray);
-    for (int side = 0; side < SIDES; side++)
-        if (both.status[side] != STATUS_OK) {
-            *err = both.err[side];
-            return both.status[side];
-        }
-    return STATUS_OK;
+    return calls_status(both.results, SIDES, err);
 }
 
 Status verification_draw(Verification *v, Err *err)
