@@ -29,11 +29,12 @@ typedef struct Run {
 
 /* Places are numbered strip by strip, in a strip set by set, and in a set square by square of
  * SQUARE x SQUARE pixels, so that those that follow one another ask about the same few tiles of a
- * light. */
+ * light. Without area lights all are of set 0, so that neighbours follow one another. */
 typedef struct Share {
     const Drawing *drawing;
     const LightSources *from;
     SharedLight *light;
+    bool is_soft;     /* whether area lights are asked */
     uint32_t *pixels; /* owned; of each number */
     size_t n;         /* numbers */
     Run *runs;        /* owned; at most PLACES_AT_ONCE numbers each */
@@ -50,6 +51,12 @@ static size_t squares_in(int pixels)
 static int set_of(int column, int row)
 {
     return (row & 1) * 2 + (column & 1);
+}
+
+/* The set of a pixel of the picture. */
+static int set_of_pixel(const Share *share, int column, int row)
+{
+    return share->is_soft ? set_of(column, row) : 0;
 }
 
 /* ---- places ---------------------------------------------------------------------------------- */
@@ -161,7 +168,7 @@ static void count_places(size_t number, int worker, void *context)
             if (on_ground)
                 *depth = (float)t;
             light->numbers[pixel_at(light, column, row)] = on_ground ? PLACE_GROUND : PLACE_VESSEL;
-            job->next[number][set_of(column, light->first + row)]++;
+            job->next[number][set_of_pixel(job->share, column, light->first + row)]++;
         }
     }
 }
@@ -202,7 +209,7 @@ static void set_places(size_t number, int worker, void *context)
             size_t pixel = pixel_at(light, column, row);
             if (light->numbers[pixel] == PLACE_NONE)
                 continue;
-            uint32_t to = job->next[number][set_of(column, light->first + row)]++;
+            uint32_t to = job->next[number][set_of_pixel(job->share, column, light->first + row)]++;
             light->places[to] = place_of(job, &sight, column, row);
             light->numbers[pixel] = to;
             job->share->pixels[to] = (uint32_t)pixel;
@@ -615,7 +622,9 @@ bool share_is_wanted(const View *view, const RenderParams *params)
 Status share_light(const Drawing *drawing, const LightSources *from, SharedLight **out, Err *err)
 {
     const RenderParams *params = drawing->params;
-    Share share = {.drawing = drawing, .from = from};
+    Share share = {.drawing = drawing,
+                   .from = from,
+                   .is_soft = params->shadows && view_has_soft_shadows(drawing->view)};
     Status status;
     TRY(mem_calloc(&share.light, 1, sizeof *share.light, "places", err));
     share.light->side = 1;
@@ -627,7 +636,7 @@ Status share_light(const Drawing *drawing, const LightSources *from, SharedLight
     TRY_GOTO(make_places(&share, err));
     if (params->occlusion > 0)
         TRY_GOTO(skylight_find(drawing, from->beams, share.n, share.light, err));
-    if (params->shadows)
+    if (share.is_soft)
         TRY_GOTO(share_lights(&share, err));
     *out = share.light;
     share.light = NULL;

@@ -34,7 +34,8 @@ enum { LINES = 4 };
 /* What threads take at a time: squares of quads, and runs of askers. */
 enum { SQUARE = 32, RUN = 512 };
 
-/* The row of answers of each asker in a quad, plus one; 0 behind the last. */
+/* Of each asker in a quad the number of its place, plus one, while askers are chosen, then the row
+ * of its answers, plus one; 0 behind the last. */
 typedef uint32_t Askers[QUAD];
 
 typedef struct Sky {
@@ -46,7 +47,7 @@ typedef struct Sky {
     Askers *askers;           /* owned, as all that follows; of each quad */
     uint32_t (*next)[SETS];   /* of each square of quads, the next row of each set */
     size_t first[SETS + 1];   /* rows of set i are [first[i], first[i + 1]) */
-    uint32_t *numbers;        /* of the asker of each row, its place */
+    PixelPlace *asking;       /* of each row, the place that asks */
     BeamPlaces places[SETS];  /* the same as beams begin from them */
     int asked, stride;        /* lines of a set, and bytes of a row */
     uint8_t *found, *answers; /* set by set, line by line; row by row */
@@ -91,20 +92,9 @@ static bool asks_for(const PixelPlace *asker, const PixelPlace *place)
     return cosine > least_cosine && places_are_of_one(asker, place);
 }
 
-/* Lists the numbers of the places of a quad that ask: how many. */
-static uint32_t list_askers(const Sky *sky, int column, int row, uint32_t numbers[QUAD])
+static uint32_t *askers_of(const Sky *sky, int column, int row)
 {
-    const PixelPlace *places = sky->light->places;
-    uint32_t n = 0;
-    for (int k = 0; k < QUAD; k++) {
-        uint32_t number = place_in(sky, column, row, k);
-        bool asks = number != PLACE_NONE;
-        for (uint32_t i = 0; i < n && asks; i++)
-            asks = !asks_for(&places[numbers[i]], &places[number]);
-        if (asks)
-            numbers[n++] = number;
-    }
-    return n;
+    return sky->askers[(size_t)row * (size_t)sky->columns + (size_t)column];
 }
 
 static void visit_square(const Sky *sky, size_t number,
@@ -118,10 +108,21 @@ static void visit_square(const Sky *sky, size_t number,
             visit(sky, column, row, &sky->next[number][set_of(sky, column, row)]);
 }
 
-static void count_askers(const Sky *sky, int column, int row, uint32_t *next)
+/* Lists the places of a quad that ask, and counts them. */
+static void list_askers(const Sky *sky, int column, int row, uint32_t *next)
 {
-    uint32_t numbers[QUAD];
-    *next += list_askers(sky, column, row, numbers);
+    const PixelPlace *places = sky->light->places;
+    uint32_t *askers = askers_of(sky, column, row), n = 0;
+    memset(askers, 0, sizeof(Askers));
+    for (int k = 0; k < QUAD; k++) {
+        uint32_t number = place_in(sky, column, row, k);
+        bool asks = number != PLACE_NONE;
+        for (uint32_t i = 0; i < n && asks; i++)
+            asks = !asks_for(&places[askers[i] - 1], &places[number]);
+        if (asks)
+            askers[n++] = number + 1;
+    }
+    *next += n;
 }
 
 /* Above the ground or below it, by its sign; 0 of what the ground hides no sky from. */
@@ -135,18 +136,17 @@ static float above_ground(const Sky *sky, const PixelPlace *place)
     return (float)((above > 0) - (above < 0));
 }
 
+/* Gives the askers of a quad their rows. */
 static void set_askers(const Sky *sky, int column, int row, uint32_t *next)
 {
-    uint32_t numbers[QUAD], n = list_askers(sky, column, row, numbers);
+    uint32_t *askers = askers_of(sky, column, row);
     int set = set_of(sky, column, row);
     const BeamPlaces *places = &sky->places[set];
-    uint32_t *askers = sky->askers[(size_t)row * (size_t)sky->columns + (size_t)column];
-    memset(askers, 0, sizeof(Askers));
-    for (uint32_t k = 0; k < n; k++) {
+    for (int k = 0; k < QUAD && askers[k] > 0; k++) {
         uint32_t to = (*next)++, i = to - (uint32_t)sky->first[set];
-        const PixelPlace *place = &sky->light->places[numbers[k]];
+        const PixelPlace *place = &sky->light->places[askers[k] - 1];
         askers[k] = to + 1;
-        sky->numbers[to] = numbers[k];
+        sky->asking[to] = *place;
         for (int c = 0; c < 3; c++) {
             places->at[c][i] = place->at[c];
             places->normal[c][i] = place->normal[c];
@@ -155,10 +155,10 @@ static void set_askers(const Sky *sky, int column, int row, uint32_t *next)
     }
 }
 
-static void count_square(size_t number, int worker, void *context)
+static void list_square(size_t number, int worker, void *context)
 {
     (void)worker;
-    visit_square(context, number, count_askers);
+    visit_square(context, number, list_askers);
 }
 
 static void set_square(size_t number, int worker, void *context)
@@ -188,9 +188,9 @@ static Status choose_askers(Sky *sky, Err *err)
     size_t quads = (size_t)sky->columns * (size_t)sky->rows;
     TRY(mem_alloc(&sky->askers, quads, sizeof *sky->askers, "occlusion", err));
     TRY(mem_calloc(&sky->next, squares_of(sky), sizeof *sky->next, "occlusion", err));
-    threads_for(squares_of(sky), threads, count_square, sky);
+    threads_for(squares_of(sky), threads, list_square, sky);
     number_squares(sky);
-    TRY(mem_alloc(&sky->numbers, sky->first[SETS], sizeof *sky->numbers, "occlusion", err));
+    TRY(mem_alloc(&sky->asking, sky->first[SETS], sizeof *sky->asking, "occlusion", err));
     for (int set = 0; set < SETS; set++)
         TRY(beamplaces_new(sky->first[set + 1] - sky->first[set], &sky->places[set], err));
     threads_for(squares_of(sky), threads, set_square, sky);
@@ -292,7 +292,7 @@ static void add_answers(const Sky *sky, const PixelPlace *place, const uint32_t 
                         int down, BeamAnswers *answers)
 {
     for (int k = 0; k < QUAD && askers[k] > 0; k++) {
-        if (!places_are_of_one(place, &sky->light->places[sky->numbers[askers[k] - 1]]))
+        if (!places_are_of_one(place, &sky->asking[askers[k] - 1]))
             continue;
         answers->of[answers->n] = sky->answers + (askers[k] - 1) * (size_t)sky->stride;
         for (int pixel = 0; pixel < QUAD; pixel++)
@@ -312,17 +312,17 @@ static void gather_answers(const Sky *sky, const PixelPlace *place, int column, 
         for (int x = column - 1; x <= column + 1; x++) {
             if (x < 0 || x >= sky->columns || y < 0 || y >= sky->rows)
                 continue;
-            const uint32_t *askers = sky->askers[(size_t)y * (size_t)sky->columns + (size_t)x];
-            add_answers(sky, place, askers, x - column, y - row, &answers[set_of(sky, x, y)]);
+            add_answers(sky, place, askers_of(sky, x, y), x - column, y - row,
+                        &answers[set_of(sky, x, y)]);
         }
 }
 
 /* The place that asks for one of its quad. */
 static const PixelPlace *asker_of(const Sky *sky, const uint32_t *askers, const PixelPlace *place)
 {
-    const PixelPlace *places = sky->light->places, *asker = NULL;
+    const PixelPlace *asker = NULL;
     for (int k = 0; k < QUAD && askers[k] > 0; k++) {
-        asker = &places[sky->numbers[askers[k] - 1]];
+        asker = &sky->asking[askers[k] - 1];
         if (asks_for(asker, place))
             break;
     }
@@ -333,7 +333,7 @@ static const PixelPlace *asker_of(const Sky *sky, const uint32_t *askers, const 
 static void gather_quad(const Sky *sky, int column, int row, uint32_t *next)
 {
     (void)next;
-    const uint32_t *askers = sky->askers[(size_t)row * (size_t)sky->columns + (size_t)column];
+    const uint32_t *askers = askers_of(sky, column, row);
     BeamAnswers answers[SETS];
     const PixelPlace *gathered = NULL, *places = sky->light->places;
     for (int k = 0; k < QUAD; k++) {
@@ -362,7 +362,7 @@ static void release(Sky *sky)
 {
     free(sky->askers);
     free(sky->next);
-    free(sky->numbers);
+    free(sky->asking);
     for (int set = 0; set < SETS; set++)
         beamplaces_release(&sky->places[set]);
     free(sky->found);
