@@ -31,37 +31,20 @@ void beamplaces_release(BeamPlaces *places)
     free(places->above);
 }
 
-static Status make_list(BeamList *list, size_t n, Err *err)
-{
-    float **const values[] = {&list->x, &list->y, &list->z, &list->widening, &list->free};
-    for (size_t i = 0; i < sizeof values / sizeof *values; i++)
-        TRY(mem_alloc(values[i], n + BEAM_BLOCK, sizeof(float), "occlusion", err));
-    return STATUS_OK;
-}
-
-static void release_list(BeamList *list)
-{
-    free(list->x);
-    free(list->y);
-    free(list->z);
-    free(list->widening);
-    free(list->free);
-}
-
 Status beamwork_new(size_t n, BeamWork *work, Err *err)
 {
-    TRY(mem_alloc(&work->first, BEAM_MOST_CELLS + 1, sizeof *work->first, "occlusion", err));
-    TRY(mem_alloc(&work->cell, n, sizeof *work->cell, "occlusion", err));
-    TRY(mem_alloc(&work->place, n, sizeof *work->place, "occlusion", err));
-    TRY(make_list(&work->listed, n, err));
-    return make_list(&work->sorted, n, err);
+    size_t groups = n / BEAM_BLOCK + 1;
+    TRY(mem_alloc(&work->ends, BEAM_MOST_CELLS, sizeof *work->ends, "occlusion", err));
+    TRY(mem_alloc(&work->at, n, sizeof *work->at, "occlusion", err));
+    TRY(mem_alloc(&work->listed, groups, sizeof *work->listed, "occlusion", err));
+    return mem_alloc(&work->sorted, groups + BEAM_MOST_SQUARES, sizeof *work->sorted, "occlusion",
+                     err);
 }
 
 void beamwork_release(BeamWork *work)
 {
-    free(work->first);
-    free(work->cell);
-    free(work->place);
-    release_list(&work->listed);
-    release_list(&work->sorted);
+    free(work->ends);
+    free(work->at);
+    free(work->listed);
+    free(work->sorted);
 }

@@ -24,28 +24,35 @@ typedef struct BeamDirection {
 
 /* The capsules as one direction sees them: x and y across it, z along it, mm. */
 typedef struct SeenBlock {
-    float x[BEAM_BLOCK], y[BEAM_BLOCK], z[BEAM_BLOCK]; /* the end of lower z */
-    float ux[BEAM_BLOCK], uy[BEAM_BLOCK];              /* unit, across the view, to the other */
-    float length[BEAM_BLOCK], slope[BEAM_BLOCK];       /* across the view, and rise of z with it */
+    float x[BEAM_BLOCK], y[BEAM_BLOCK], z[BEAM_BLOCK]; /* the middle */
+    float ux[BEAM_BLOCK], uy[BEAM_BLOCK];              /* the axis: unit, across the view */
+    float half[BEAM_BLOCK], slope[BEAM_BLOCK]; /* half its length across the view, and the rise of
+                                                * z with that */
     float radius[BEAM_BLOCK];
     float round[BEAM_BLOCK]; /* what its ends add to it where a beam is wider than it is */
-    float rise[BEAM_BLOCK];  /* to the other end, of one of no length across the view */
+    /* The rectangle about it, turned as it is, in which the beams begin that it touches: the rows
+     * from `low` to `high` mm, and in a row at y from the middle what is in reach of both axes. */
+    float low[BEAM_BLOCK], high[BEAM_BLOCK];
+    float lean[2][BEAM_BLOCK];  /* what the middle of either strip moves by in x with y */
+    float reach[2][BEAM_BLOCK]; /* half of what a row has of it in x */
+    float reach_x[BEAM_BLOCK];  /* half of all of the rectangle in x */
 } SeenBlock;
 
 /* Beams of one line, as its direction sees them. */
-typedef struct BeamList {
-    float *x, *y, *z; /* owned, as all that follows; where each begins */
-    float *widening;  /* of half its width with z: below 0 of what leads against the direction */
-    float *free;      /* what is left of each */
-} BeamList;
+typedef struct BeamGroup {
+    float x[BEAM_BLOCK], y[BEAM_BLOCK], z[BEAM_BLOCK]; /* where each begins */
+    float widening[BEAM_BLOCK]; /* of half its width with z: below 0 of what leads against the
+                                 * direction, 0 of one that fills up its group */
+    float free[BEAM_BLOCK];     /* what is left of each */
+} BeamGroup;
 
-/* What one thread asks with. */
+/* What one thread asks with. Each row of the grid begins with a group. */
 typedef struct BeamWork {
-    SeenBlock seen;          /* a block of capsules */
-    BeamList listed, sorted; /* by place, and by cell of a grid across the direction */
-    uint32_t *cell;          /* owned, as all that follows; of each listed beam */
-    uint32_t *place;         /* of each sorted beam */
-    uint32_t *first;         /* sorted beam of each cell, row by row, and behind the last */
+    SeenBlock seen;             /* a block of capsules */
+    BeamGroup *listed, *sorted; /* owned, as all that follows; by place, and by cell of a grid
+                                 * across the direction */
+    uint32_t *at;               /* of each listed beam its cell, then its number among the sorted */
+    uint32_t *ends;             /* row by row, where the row begins, and the end of each cell */
     int columns, rows;
     float low[2], high[2], per_row, per_column; /* between what the beams begin */
 } BeamWork;

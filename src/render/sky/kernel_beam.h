@@ -5,7 +5,11 @@
  * touch: those of a row stand one after another, to be taken many at once. The other way about,
  * capsules in tiles for beams to ask, beams that lie side by side seldom touch the same ones. Beams
  * of both directions go together because each place begins one of the two: a capsule is set once
- * for both, and finds twice as many beams in its cells. */
+ * for both, and finds twice as many beams in its cells.
+ *
+ * Of beams taken at once a capsule covers a third. Whether it covers any is not asked before all is
+ * worked out: a processor foresees the answer badly, and what it does in vain costs more than a
+ * division and a root. */
 #ifndef BEAM_KERNEL
 #error "define BEAM_KERNEL(name), the name of a function"
 #endif
@@ -34,12 +38,23 @@ LANE_FN Lanes along_axis(const float axis[3], const float point[3][BEAM_BLOCK], 
            axis[2] * lanes_load(&point[2][first]);
 }
 
+/* Where a strip of the plane along (ux, uy), so wide to both sides, cuts rows. */
+LANE_FN void set_strip(Lanes ux, Lanes uy, Lanes wide, float row, int strip, int i, SeenBlock *seen)
+{
+    /* A strip along the rows holds all of them: the other bounds it. */
+    LaneMask lies = lanes_abs(uy) < 1e-3f;
+    Lanes lean = lanes_select(lies, lanes_set(0), ux / uy);
+    Lanes reach = wide / lanes_abs(uy) + lanes_abs(lean) * (0.5f * row);
+    lanes_store(&seen->lean[strip][i], lean);
+    lanes_store(&seen->reach[strip][i], lanes_select(lies, lanes_set(HUGE_VALF), reach));
+}
+
 /* Sees LANES of a block's capsules. As bits, those that may cover a beam: their bounds, wider by
  * `reach`, are over the grid. */
 LANE_FN uint32_t see_lanes(const BeamDirection *direction, const CapsuleBlock *block, int i,
-                           const BeamWork *work, float reach, SeenBlock *seen)
+                           float reach, BeamWork *work)
 {
-    const Lanes zero = lanes_set(0);
+    SeenBlock *seen = &work->seen;
     Lanes radius = lanes_load(&block->radius[i]);
     Lanes ax = along_axis(direction->axes[0], block->a, i);
     Lanes ay = along_axis(direction->axes[1], block->a, i);
@@ -47,28 +62,35 @@ LANE_FN uint32_t see_lanes(const BeamDirection *direction, const CapsuleBlock *b
     Lanes bx = along_axis(direction->axes[0], block->b, i);
     Lanes by = along_axis(direction->axes[1], block->b, i);
     Lanes bz = along_axis(direction->axes[2], block->b, i);
-    Lanes far = 1.5f * (radius + reach);
-    LaneMask over = (radius >= 0.0f) & (lanes_max(ax, bx) + far > work->low[0]) &
-                    (lanes_min(ax, bx) - far < work->high[0]) &
-                    (lanes_max(ay, by) + far > work->low[1]) &
-                    (lanes_min(ay, by) - far < work->high[1]);
+    Lanes x = bx - ax, y = by - ay, length = lanes_sqrt(x * x + y * y);
+    /* One along the line is a ball. */
+    LaneMask stands = length < 1e-3f * radius;
+    Lanes ux = lanes_select(stands, lanes_set(1), x / length);
+    Lanes uy = lanes_select(stands, lanes_set(0), y / length);
+    Lanes half = lanes_select(stands, lanes_set(0), 0.5f * length);
+    Lanes far = radius + reach, along = half + far, up = lanes_abs(uy), across = lanes_abs(ux);
+    Lanes reach_x = across * along + up * far, reach_y = up * along + across * far;
+    x = 0.5f * (ax + bx);
+    y = 0.5f * (ay + by);
+    LaneMask over = (radius >= 0.0f) & (x + reach_x > work->low[0]) &
+                    (x - reach_x < work->high[0]) & (y + reach_y > work->low[1]) &
+                    (y - reach_y < work->high[1]);
     if (!lanes_any(over))
         return 0;
-    LaneMask falls = az > bz;
-    Lanes x = lanes_select(falls, ax - bx, bx - ax), y = lanes_select(falls, ay - by, by - ay);
-    Lanes z = lanes_abs(bz - az), length = lanes_sqrt(x * x + y * y);
-    /* One along the line is a ball at the end that a beam's sky is at. */
-    LaneMask stands = length < 1e-3f * radius;
-    lanes_store(&seen->x[i], lanes_select(falls, bx, ax));
-    lanes_store(&seen->y[i], lanes_select(falls, by, ay));
-    lanes_store(&seen->z[i], lanes_select(falls, bz, az));
-    lanes_store(&seen->ux[i], lanes_select(stands, lanes_set(1), x / length));
-    lanes_store(&seen->uy[i], lanes_select(stands, zero, y / length));
-    lanes_store(&seen->length[i], lanes_select(stands, zero, length));
-    lanes_store(&seen->slope[i], lanes_select(stands, zero, z / length));
+    lanes_store(&seen->x[i], x);
+    lanes_store(&seen->y[i], y);
+    lanes_store(&seen->z[i], 0.5f * (az + bz));
+    lanes_store(&seen->ux[i], ux);
+    lanes_store(&seen->uy[i], uy);
+    lanes_store(&seen->half[i], half);
+    lanes_store(&seen->slope[i], lanes_select(stands, lanes_set(0), (bz - az) / length));
     lanes_store(&seen->radius[i], radius);
-    lanes_store(&seen->round[i], lanes_select(stands, quarter_turn * radius, zero));
-    lanes_store(&seen->rise[i], lanes_select(stands, z, zero));
+    lanes_store(&seen->round[i], lanes_select(stands, quarter_turn * radius, lanes_set(0)));
+    lanes_store(&seen->low[i], y - reach_y);
+    lanes_store(&seen->high[i], y + reach_y);
+    lanes_store(&seen->reach_x[i], reach_x);
+    set_strip(ux, uy, far, 1 / work->per_row, 0, i, seen);
+    set_strip(-uy, ux, along, 1 / work->per_row, 1, i, seen);
     return lanes_bits(over);
 }
 
@@ -87,7 +109,6 @@ LANE_FN LaneMask lane_numbers(void)
  * nothing is free. */
 LANE_FN void list_beams(const BeamDirection *direction, const BeamPlaces *places, BeamWork *work)
 {
-    const BeamList *listed = &work->listed;
     const float(*axes)[3] = direction->axes;
     const Lanes most = lanes_set(direction->widening);
     Lanes low[2] = {lanes_set(HUGE_VALF), lanes_set(HUGE_VALF)}, high[2] = {-low[0], -low[1]};
@@ -106,11 +127,13 @@ LANE_FN void list_beams(const BeamDirection *direction, const BeamPlaces *places
         }
         Lanes widening = lanes_max(lanes_min(facing, most), -most);
         Lanes ground = lanes_load(&places->above[first]) * direction->ground * widening;
-        lanes_store(&listed->x[first], at[0]);
-        lanes_store(&listed->y[first], at[1]);
-        lanes_store(&listed->z[first], at[2]);
-        lanes_store(&listed->widening[first], widening);
-        lanes_store(&listed->free[first], lanes_select(ground < 0.0f, lanes_set(0), lanes_set(1)));
+        BeamGroup *listed = &work->listed[first / BEAM_BLOCK];
+        const uint32_t lane = first % BEAM_BLOCK;
+        lanes_store(&listed->x[lane], at[0]);
+        lanes_store(&listed->y[lane], at[1]);
+        lanes_store(&listed->z[lane], at[2]);
+        lanes_store(&listed->widening[lane], widening);
+        lanes_store(&listed->free[lane], lanes_select(ground < 0.0f, lanes_set(0), lanes_set(1)));
     }
     for (int i = 0; i < 2; i++) {
         work->low[i] = lanes_least(low[i]);
@@ -141,146 +164,132 @@ LANE_FN int cell_along(float at, float first, float per_cell, int n)
 /* Counts the beams of each cell. */
 LANE_FN void count_beams(BeamWork *work, uint32_t n)
 {
-    const BeamList *listed = &work->listed;
-    __builtin_memset(work->first, 0,
-                     ((size_t)(work->columns * work->rows) + 1) * sizeof *work->first);
+    const int stride = work->columns + 1;
+    __builtin_memset(work->ends, 0, (size_t)(work->rows * stride) * sizeof *work->ends);
     for (uint32_t i = 0; i < n; i++) {
-        int column = cell_along(listed->x[i], work->low[0], work->per_column, work->columns);
-        int row = cell_along(listed->y[i], work->low[1], work->per_row, work->rows);
-        work->cell[i] = (uint32_t)(row * work->columns + column);
-        work->first[work->cell[i] + 1]++;
+        const BeamGroup *listed = &work->listed[i / BEAM_BLOCK];
+        const uint32_t lane = i % BEAM_BLOCK;
+        int column = cell_along(listed->x[lane], work->low[0], work->per_column, work->columns);
+        int row = cell_along(listed->y[lane], work->low[1], work->per_row, work->rows);
+        work->at[i] = (uint32_t)(row * stride + 1 + column);
+        work->ends[work->at[i]]++;
     }
+}
+
+/* Fills up the group that ends at a number of sorted beams, by beams that nothing touches, and
+ * returns where the next group begins. */
+static inline uint32_t fill_group(BeamWork *work, uint32_t end)
+{
+    for (; end % BEAM_BLOCK > 0; end++) {
+        BeamGroup *sorted = &work->sorted[end / BEAM_BLOCK];
+        const uint32_t lane = end % BEAM_BLOCK;
+        sorted->x[lane] = sorted->y[lane] = sorted->z[lane] = 0;
+        sorted->widening[lane] = sorted->free[lane] = 0;
+    }
+    return end;
 }
 
 /* Sorts what is listed into cells. */
 LANE_FN void sort_beams(BeamWork *work, uint32_t n)
 {
-    const BeamList *listed = &work->listed, *sorted = &work->sorted;
-    uint32_t n_cells = (uint32_t)(work->columns * work->rows);
-    for (uint32_t cell = 0; cell < n_cells; cell++)
-        work->first[cell + 1] += work->first[cell];
-    for (uint32_t i = 0; i < n; i++) {
-        uint32_t to = work->first[work->cell[i]]++;
-        sorted->x[to] = listed->x[i];
-        sorted->y[to] = listed->y[i];
-        sorted->z[to] = listed->z[i];
-        sorted->widening[to] = listed->widening[i];
-        sorted->free[to] = listed->free[i];
-        work->place[to] = i;
+    uint32_t end = 0, *ends = work->ends;
+    for (int row = 0; row < work->rows; row++) {
+        *ends++ = end;
+        for (int column = 0; column < work->columns; column++, ends++) {
+            uint32_t count = *ends;
+            *ends = end;
+            end += count;
+        }
+        end = fill_group(work, end);
     }
-    /* Each cell's first is now the one behind its last. */
-    for (uint32_t cell = n_cells; cell > 0; cell--)
-        work->first[cell] = work->first[cell - 1];
-    work->first[0] = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        const BeamGroup *listed = &work->listed[i / BEAM_BLOCK];
+        const uint32_t from = i % BEAM_BLOCK, number = work->ends[work->at[i]]++;
+        BeamGroup *sorted = &work->sorted[number / BEAM_BLOCK];
+        const uint32_t to = number % BEAM_BLOCK;
+        sorted->x[to] = listed->x[from];
+        sorted->y[to] = listed->y[from];
+        sorted->z[to] = listed->z[from];
+        sorted->widening[to] = listed->widening[from];
+        sorted->free[to] = listed->free[from];
+        work->at[i] = number;
+    }
 }
 
 /* ---- what capsules cover --------------------------------------------------------------------- */
 
-/* One capsule, and the rectangle about it, turned as it is, in which the beams begin that it
- * touches. */
+/* One capsule of those seen. */
 typedef struct Cover {
-    float x, y, z, ux, uy, length, slope, radius, round, rise;
-    float wide;  /* the most of half a beam's width */
-    float reach; /* beyond its axis and its ends */
+    float x, y, z, ux, uy, half, slope, radius, round;
+    float wide; /* the most of half a beam's width */
 } Cover;
 
-/* Takes what the capsule covers of the beams [first, end). A beam is a square, as wide as where it
+/* What stretches of half a length a and b share, whose middles are `apart`; below 0: nothing. */
+LANE_FN Lanes shared_stretch(Lanes a, Lanes b, Lanes apart)
+{
+    Lanes least = lanes_min(a, b);
+    return lanes_min(a + b - apart, least + least);
+}
+
+/* Takes what the capsule covers of LANES beams of a group. A beam is a square, as wide as where it
  * passes the axis: the capsule covers a strip of it between its ends. */
-LANE_FN void cover_beams(const Cover *cover, const BeamList beams, uint32_t first, uint32_t end)
+LANE_FN void cover_lanes(const Cover *cover, BeamGroup *beams, uint32_t lane)
 {
     const Lanes zero = lanes_set(0), radius = lanes_set(cover->radius);
-    for (uint32_t i = first; i < end; i += LANES) {
-        Lanes qx = lanes_load(&beams.x[i]) - cover->x, qy = lanes_load(&beams.y[i]) - cover->y;
-        Lanes off = lanes_abs(qy * cover->ux - qx * cover->uy);
-        LaneMask here = lane_numbers() < (int32_t)(end - i);
-        if (!lanes_any((off < cover->reach) & here))
-            continue;
-        Lanes along = qx * cover->ux + qy * cover->uy, widening = lanes_load(&beams.widening[i]);
-        Lanes on = lanes_max(lanes_min(along, lanes_set(cover->length)), zero);
-        Lanes rise = lanes_select(widening > 0.0f, lanes_set(cover->rise), zero);
-        Lanes height = cover->z + on * cover->slope + rise - lanes_load(&beams.z[i]);
-        Lanes half = lanes_min(height * widening, lanes_set(cover->wide));
-        LaneMask touches = (half > 0.0f) & (off < radius + half) & here;
-        if (!lanes_any(touches))
-            continue;
-        half = lanes_max(half, lanes_set(1e-6f));
-        Lanes rounded = lanes_set(cover->round);
-        LaneMask narrow = half < radius;
-        if (lanes_any(narrow & touches)) {
-            Lanes chord = lanes_sqrt(lanes_max(radius * radius - off * off, zero));
-            rounded = lanes_select(narrow, chord, rounded);
+    Lanes qx = lanes_load(&beams->x[lane]) - cover->x, qy = lanes_load(&beams->y[lane]) - cover->y;
+    Lanes off = lanes_abs(qy * cover->ux - qx * cover->uy);
+    Lanes along = qx * cover->ux + qy * cover->uy;
+    Lanes on = lanes_max(lanes_min(along, lanes_set(cover->half)), lanes_set(-cover->half));
+    Lanes height = on * cover->slope + cover->z - lanes_load(&beams->z[lane]);
+    Lanes width = lanes_min(height * lanes_load(&beams->widening[lane]), lanes_set(cover->wide));
+    LaneMask ahead = width > 0.0f;
+    width = lanes_max(width, lanes_set(1e-6f));
+    Lanes chord = lanes_sqrt(lanes_max(radius * radius - off * off, zero));
+    Lanes rounded = lanes_select(width < radius, chord, lanes_set(cover->round));
+    Lanes across = shared_stretch(radius, width, off);
+    Lanes length = shared_stretch(cover->half + rounded, width, lanes_abs(along));
+    Lanes covered = lanes_max(across, zero) * lanes_max(length, zero) / (4.0f * width * width);
+    Lanes free = lanes_load(&beams->free[lane]);
+    lanes_store(&beams->free[lane], lanes_select(ahead, free * (1.0f - covered), free));
+}
+
+/* Likewise of the sorted beams [first, end), and of others of their row that begin in the groups
+ * with them. */
+LANE_FN void cover_beams(const Cover *cover, BeamGroup *sorted, uint32_t first, uint32_t end)
+{
+    for (uint32_t i = first / LANES * LANES; i < end; i += LANES)
+        cover_lanes(cover, &sorted[i / BEAM_BLOCK], i % BEAM_BLOCK);
+}
+
+/* Takes what a capsule covers of all beams. */
+LANE_FN void cover_rows(const SeenBlock *seen, int i, float wide, BeamWork *work)
+{
+    const Cover cover = {.x = seen->x[i],
+                         .y = seen->y[i],
+                         .z = seen->z[i],
+                         .ux = seen->ux[i],
+                         .uy = seen->uy[i],
+                         .half = seen->half[i],
+                         .slope = seen->slope[i],
+                         .radius = seen->radius[i],
+                         .round = seen->round[i],
+                         .wide = wide};
+    const float side = 1 / work->per_row, from_x = cover.x - work->low[0];
+    const int first = cell_along(seen->low[i], work->low[1], work->per_row, work->rows);
+    const int last = cell_along(seen->high[i], work->low[1], work->per_row, work->rows);
+    for (int row = first; row <= last; row++) {
+        float y = ((float)row + 0.5f) * side + (work->low[1] - cover.y);
+        float low = -seen->reach_x[i], high = seen->reach_x[i];
+        for (int strip = 0; strip < 2; strip++) {
+            float middle = seen->lean[strip][i] * y;
+            low = most_of(low, middle - seen->reach[strip][i]);
+            high = least_of(high, middle + seen->reach[strip][i]);
         }
-        Lanes across = lanes_min(off + radius, half) - lanes_max(off - radius, -half);
-        Lanes length =
-            lanes_min(cover->length - along + rounded, half) - lanes_max(-along - rounded, -half);
-        Lanes covered = lanes_max(across, zero) * lanes_max(length, zero) / (4.0f * half * half);
-        Lanes free = lanes_load(&beams.free[i]);
-        lanes_store(&beams.free[i], lanes_select(touches, free * (1.0f - covered), free));
-    }
-}
-
-static inline Cover cover_of(const Beams *beams, const SeenBlock *seen, int i)
-{
-    return (Cover){.x = seen->x[i],
-                   .y = seen->y[i],
-                   .z = seen->z[i],
-                   .ux = seen->ux[i],
-                   .uy = seen->uy[i],
-                   .length = seen->length[i],
-                   .slope = seen->slope[i],
-                   .radius = seen->radius[i],
-                   .round = seen->round[i],
-                   .rise = seen->rise[i],
-                   .wide = beams->wide,
-                   .reach = seen->radius[i] + beams->wide + beams->slack};
-}
-
-/* The columns of x, relative to a capsule's. */
-LANE_FN LaneMask columns_at(Lanes x, float from, const BeamWork *work)
-{
-    Lanes column = (x + (from - work->low[0])) * work->per_column;
-    column = lanes_min(column, lanes_set((float)(work->columns - 1)));
-    return __builtin_convertvector(lanes_max(column, lanes_set(0)), LaneMask);
-}
-
-/* Takes what a capsule covers of all beams. A row of cells from y on cuts its rectangle, the
- * product of two strips, in part of each strip's stretch of x. */
-LANE_FN void cover_rows(const Cover *cover, BeamWork *work)
-{
-    const float across = fabsf(cover->ux), up = fabsf(cover->uy), side = 1 / work->per_row;
-    const float reach = cover->reach, reach_x = reach * (across + up);
-    const float low_x = least_of(cover->ux * cover->length, 0) - reach_x;
-    const float high_x = most_of(cover->ux * cover->length, 0) + reach_x;
-    const float low_y = least_of(cover->uy * cover->length, 0) - reach_x;
-    const float high_y = most_of(cover->uy * cover->length, 0) + reach_x;
-    /* x of the middle of either strip changes with y by so much. */
-    const float lean = up > 1e-3f ? cover->ux / cover->uy : 0;
-    const float lean_ends = across > 1e-3f ? -cover->uy / cover->ux : 0;
-    const float half = up > 1e-3f ? reach / up + fabsf(lean) * side / 2 : HUGE_VALF;
-    const float middle_ends = across > 1e-3f ? cover->length / 2 / cover->ux : 0;
-    const float half_ends = across > 1e-3f
-                                ? (cover->length / 2 + reach) / across + fabsf(lean_ends) * side / 2
-                                : HUGE_VALF;
-    int first = cell_along(cover->y + low_y, work->low[1], work->per_row, work->rows);
-    int last = cell_along(cover->y + high_y, work->low[1], work->per_row, work->rows);
-    for (int row = first; row <= last; row += LANES) {
-        LaneMask rows = lane_numbers() + row, there = rows <= last;
-        rows = (rows & there) | (last & ~there);
-        Lanes y = (__builtin_convertvector(rows, Lanes) + 0.5f) * side + (work->low[1] - cover->y);
-        Lanes middle = lean * y, ends = middle_ends + lean_ends * y;
-        Lanes from = lanes_max(lanes_max(middle - half, ends - half_ends), lanes_set(low_x));
-        Lanes to = lanes_min(lanes_min(middle + half, ends + half_ends), lanes_set(high_x));
-        LaneMask left = columns_at(from, cover->x, work), right = columns_at(to, cover->x, work);
-        LaneMask begin = lanes_gather(work->first, rows * work->columns + left);
-        LaneMask end = lanes_gather(work->first, rows * work->columns + right + 1);
-        LaneMask any = (from < to) & (begin < end) & there;
-        uint32_t begins[LANES], after[LANES];
-        __builtin_memcpy(begins, &begin, sizeof begin);
-        __builtin_memcpy(after, &end, sizeof end);
-        for (uint32_t bits = lanes_bits(any); bits; bits &= bits - 1) {
-            int i = __builtin_ctz(bits);
-            cover_beams(cover, work->sorted, begins[i], after[i]);
-        }
+        const uint32_t *ends = &work->ends[row * (work->columns + 1)];
+        int left = cell_along(low, -from_x, work->per_column, work->columns);
+        int right = cell_along(high, -from_x, work->per_column, work->columns);
+        if (low < high)
+            cover_beams(&cover, work->sorted, ends[left], ends[right + 1]);
     }
 }
 
@@ -293,16 +302,15 @@ LANE_TARGET static void BEAM_KERNEL(ask)(const Beams *beams, const BeamDirection
     sort_beams(work, places->n);
     for (size_t block = 0; block < beams->n_blocks; block++)
         for (int i = 0; i < BEAM_BLOCK; i += LANES)
-            for (uint32_t left = see_lanes(direction, &beams->capsules[block], i, work,
-                                           beams->wide + beams->slack, &work->seen);
-                 left; left &= left - 1) {
-                const Cover cover = cover_of(beams, &work->seen, i + __builtin_ctz(left));
-                cover_rows(&cover, work);
-            }
+            for (uint32_t left = see_lanes(direction, &beams->capsules[block], i,
+                                           beams->wide + beams->slack, work);
+                 left; left &= left - 1)
+                cover_rows(&work->seen, i + __builtin_ctz(left), beams->wide, work);
     for (uint32_t i = 0; i < places->n; i++) {
-        int free = (int)((float)BEAM_FREE * work->sorted.free[i] + 0.5f);
-        answers[work->place[i]] =
-            (uint8_t)(free + (work->sorted.widening[i] < 0 ? BEAM_AGAINST : 0));
+        const BeamGroup *sorted = &work->sorted[work->at[i] / BEAM_BLOCK];
+        const uint32_t lane = work->at[i] % BEAM_BLOCK;
+        int free = (int)((float)BEAM_FREE * sorted->free[lane] + 0.5f);
+        answers[i] = (uint8_t)(free + (sorted->widening[lane] < 0 ? BEAM_AGAINST : 0));
     }
 }
 
