@@ -43,22 +43,37 @@ Status image_check_memory(int width, int height, size_t bytes, Err *err)
     return STATUS_OK;
 }
 
-/* width * height * channels zeroed items in *out. */
-static Status allocate(void *out, int width, int height, int channels, size_t item, Err *err)
+/* Hands out zeroed or unset memory: mem_calloc or mem_alloc. */
+typedef Status Allocator(void *out, size_t count, size_t size, const char *what, Err *err);
+
+/* width * height * channels items in *out. */
+static Status allocate(Allocator *allocator, void *out, int width, int height, int channels,
+                       size_t item, Err *err)
 {
     TRY(image_check_sides("the image", width, height, err));
     size_t count = (size_t)width * (size_t)height * (size_t)channels;
     TRY(image_check_memory(width, height, count * item, err));
-    return mem_calloc(out, count, item, "image values", err);
+    return allocator(out, count, item, "image values", err);
+}
+
+static Status make_plane(Allocator *allocator, Plane *plane, int width, int height, int channels,
+                         Err *err)
+{
+    assert(channels >= 1 && channels <= IMAGE_MAX_CHANNELS);
+    float *values;
+    TRY(allocate(allocator, &values, width, height, channels, sizeof *values, err));
+    *plane = (Plane){.width = width, .height = height, .channels = channels, .values = values};
+    return STATUS_OK;
 }
 
 Status plane_init(Plane *plane, int width, int height, int channels, Err *err)
 {
-    assert(channels >= 1 && channels <= IMAGE_MAX_CHANNELS);
-    float *values;
-    TRY(allocate(&values, width, height, channels, sizeof *values, err));
-    *plane = (Plane){.width = width, .height = height, .channels = channels, .values = values};
-    return STATUS_OK;
+    return make_plane(mem_calloc, plane, width, height, channels, err);
+}
+
+Status plane_init_unset(Plane *plane, int width, int height, int channels, Err *err)
+{
+    return make_plane(mem_alloc, plane, width, height, channels, err);
 }
 
 Status picture_init(Picture *picture, int width, int height, int channels, int bits, Err *err)
@@ -67,9 +82,10 @@ Status picture_init(Picture *picture, int width, int height, int channels, int b
     assert(bits == 8 || bits == 16);
     Picture made = {.width = width, .height = height, .channels = channels, .bits = bits};
     if (bits == 8)
-        TRY(allocate(&made.codes8, width, height, channels, sizeof *made.codes8, err));
+        TRY(allocate(mem_calloc, &made.codes8, width, height, channels, sizeof *made.codes8, err));
     else
-        TRY(allocate(&made.codes16, width, height, channels, sizeof *made.codes16, err));
+        TRY(allocate(mem_calloc, &made.codes16, width, height, channels, sizeof *made.codes16,
+                     err));
     *picture = made;
     return STATUS_OK;
 }
@@ -96,7 +112,7 @@ bool picture_rows_equal(const Picture *a, const Picture *b, int y, int x, int n)
 Status idplane_init(IdPlane *ids, int width, int height, Err *err)
 {
     uint32_t *values;
-    TRY(allocate(&values, width, height, 1, sizeof *values, err));
+    TRY(allocate(mem_calloc, &values, width, height, 1, sizeof *values, err));
     *ids = (IdPlane){.width = width, .height = height, .ids = values};
     return STATUS_OK;
 }

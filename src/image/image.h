@@ -50,6 +50,8 @@ MUST_CHECK Status plane_init(Plane *plane, int width, int height, int channels, 
 MUST_CHECK Status picture_init(Picture *picture, int width, int height, int channels, int bits,
                                Err *err);
 MUST_CHECK Status idplane_init(IdPlane *ids, int width, int height, Err *err);
+/* As plane_init, but what the plane holds is not set: for one whose values are all about to be. */
+MUST_CHECK Status plane_init_unset(Plane *plane, int width, int height, int channels, Err *err);
 void plane_release(Plane *plane);
 void picture_release(Picture *picture);
 void idplane_release(IdPlane *ids);

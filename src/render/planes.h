@@ -5,6 +5,7 @@
 #include "geom/geom.h"
 #include "render/job.h"
 #include <math.h>
+#include <string.h>
 
 static inline bool planes_want_geometry(const Frame *frame)
 {
@@ -14,7 +15,8 @@ static inline bool planes_want_geometry(const Frame *frame)
 /* Stores what is seen at a pixel in those planes of geometry that there are: the depth along the
  * ray in mm, infinite where nothing is seen; the unit normal, facing the viewer, or 0; the id of
  * the segment, or 0. */
-static inline void planes_store(Frame *frame, size_t pixel, double depth, Vec3 normal, uint32_t id)
+static inline void planes_store(const Frame *frame, size_t pixel, double depth, Vec3 normal,
+                                uint32_t id)
 {
     if (frame->depth.values)
         frame->depth.values[pixel] = (float)depth;
@@ -27,12 +29,18 @@ static inline void planes_store(Frame *frame, size_t pixel, double depth, Vec3 n
         frame->id.ids[pixel] = id;
 }
 
-static inline void planes_store_nothing(Frame *frame, size_t pixel)
+/* Nothing is seen at `n` pixels from `first` on. */
+static inline void planes_store_nothing(const Frame *frame, size_t first, size_t n)
 {
-    planes_store(frame, pixel, HUGE_VAL, vec3(0, 0, 0), 0);
+    for (size_t i = 0; i < n && frame->depth.values; i++)
+        frame->depth.values[first + i] = HUGE_VALF;
+    if (frame->normal.values)
+        memset(frame->normal.values + 3 * first, 0, 3 * n * sizeof *frame->normal.values);
+    if (frame->id.ids)
+        memset(frame->id.ids + first, 0, n * sizeof *frame->id.ids);
 }
 
-static inline void planes_store_color(Frame *frame, size_t pixel, Rgb color)
+static inline void planes_store_color(const Frame *frame, size_t pixel, Rgb color)
 {
     frame->color.values[3 * pixel] = color.r;
     frame->color.values[3 * pixel + 1] = color.g;

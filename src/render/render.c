@@ -62,19 +62,19 @@ struct Renderer {
 /* ---- planes ------------------------------------------------------------------------------------
  */
 
-/* Makes the planes that are wanted, zeroed, in *frame (owned by the caller even when this fails):
- * of colour 8-bit codes if `codes`, else floats. */
+/* Makes the planes that are wanted, to be drawn all over, in *frame (owned by the caller even when
+ * this fails): of colour 8-bit codes if `codes`, else floats. */
 static Status make_planes(int width, int height, const RenderParams *params, bool codes,
                           Frame *frame, Err *err)
 {
     if (params->want_color && codes)
         TRY(picture_init(&frame->codes, width, height, 3, 8, err));
     else if (params->want_color)
-        TRY(plane_init(&frame->color, width, height, 3, err));
+        TRY(plane_init_unset(&frame->color, width, height, 3, err));
     if (params->want_depth)
-        TRY(plane_init(&frame->depth, width, height, 1, err));
+        TRY(plane_init_unset(&frame->depth, width, height, 1, err));
     if (params->want_normal)
-        TRY(plane_init(&frame->normal, width, height, 3, err));
+        TRY(plane_init_unset(&frame->normal, width, height, 3, err));
     if (params->want_id)
         TRY(idplane_init(&frame->id, width, height, err));
     return STATUS_OK;

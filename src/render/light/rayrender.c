@@ -63,7 +63,7 @@ static void render_row(size_t row, int worker, void *context)
             planes_store(picture->frame, pixel, surfel.t, surfel.normal,
                          picture->drawing->geometry->ids[surfel.segment]);
         else
-            planes_store_nothing(picture->frame, pixel);
+            planes_store_nothing(picture->frame, pixel, 1);
         if (picture->frame->color.values)
             planes_store_color(picture->frame, pixel,
                                ray_color(picture->drawing, worker, ray, i,

@@ -323,21 +323,26 @@ static void store_codes(const Canvas *canvas, const SeenTile *seen, float color[
         memcpy(pixels + (size_t)row * stride, whole[row], 3 * (size_t)seen->n_columns);
 }
 
+/* Stores what is seen of geometry in a tile. */
 static void store_geometry(const Canvas *canvas, const SeenTile *seen)
 {
     const TileHits *hits = seen->hits;
-    for (int j = 0; j < seen->n_rows; j++)
-        for (int i = 0; i < seen->n_columns; i++) {
-            size_t pixel = canvas_pixel(canvas, seen->column + i, seen->row + j);
-            int sample = hits ? tile_sample_at(i, j) : 0;
-            if (!hits || hits->state[sample] != TILE_HIT || seen->ground >> sample & 1) {
-                planes_store_nothing(canvas->frame, pixel);
+    for (int j = 0; j < seen->n_rows; j++) {
+        size_t first = canvas_pixel(canvas, seen->column, seen->row + j);
+        if (!hits)
+            planes_store_nothing(canvas->frame, first, (size_t)seen->n_columns);
+        for (int i = 0; i < seen->n_columns && hits; i++) {
+            size_t pixel = first + (size_t)i;
+            int sample = tile_sample_at(i, j);
+            if (hits->state[sample] != TILE_HIT || seen->ground >> sample & 1) {
+                planes_store_nothing(canvas->frame, pixel, 1);
                 continue;
             }
             Vec3 normal = viewpoint_to_world(&canvas->eye, load_vec3(hits->normal, sample));
             planes_store(canvas->frame, pixel, seen_depth(seen, sample), normal,
                          canvas->drawing->geometry->ids[segment_of(canvas, hits, sample)]);
         }
+    }
 }
 
 /* Pixels, not of one tile alone, where nothing is seen. */
@@ -351,9 +356,8 @@ static void store_nothing(const Canvas *canvas, const SeenTile *empty, const flo
             memcpy(frame->color.values + first, background, n * sizeof *background);
         if (frame->codes.codes8)
             memcpy(frame->codes.codes8 + first, canvas->background_codes, n);
+        planes_store_nothing(frame, first / 3, (size_t)empty->n_columns);
     }
-    if (canvas->wants_geometry)
-        store_geometry(canvas, empty);
 }
 
 /* What the worker has not drawn of a row of tiles up to this column. */
