@@ -2,6 +2,7 @@
 #include "render/render.h"
 #include "unit.h"
 
+#include "render/sky/share.h"
 #include "stage/stage.h"
 #include "treeio/treeio.h"
 #include <stdint.h>
@@ -49,7 +50,8 @@ static Scene staged(SceneModel model, Projection projection)
 
 static void assert_same_rows(const Frame *whole, const Frame *band, int first)
 {
-    size_t start = (size_t)first * WIDTH, n = (size_t)band->color.height * WIDTH;
+    size_t width = (size_t)whole->color.width;
+    size_t start = (size_t)first * width, n = (size_t)band->color.height * width;
     assert_memory_equal(whole->color.values + 3 * start, band->color.values, 3 * n * sizeof(float));
     assert_memory_equal(whole->depth.values + start, band->depth.values, n * sizeof(float));
     assert_memory_equal(whole->normal.values + 3 * start, band->normal.values,
@@ -60,15 +62,16 @@ static void assert_same_rows(const Frame *whole, const Frame *band, int first)
 /* `step` rows at a time. */
 static void assert_bands_are_the_whole(const Scene *scene, const RenderParams *params, int step)
 {
+    const int height = scene->view.camera.height;
     Frame whole;
     RenderStats stats;
     Renderer *renderer;
     assert_int_equal(render(scene, params, &whole, &stats, &err), STATUS_OK);
-    assert_int_equal(whole.color.height, HEIGHT);
+    assert_int_equal(whole.color.height, height);
     assert_int_equal(renderer_new(&scene->geometry, params, &renderer, &err), STATUS_OK);
-    for (int first = 0; first < HEIGHT; first += step) {
+    for (int first = 0; first < height; first += step) {
         Frame band;
-        int rows = step < HEIGHT - first ? step : HEIGHT - first;
+        int rows = step < height - first ? step : height - first;
         assert_int_equal(
             renderer_rows(renderer, &scene->view, &scene->appearance, first, rows, &band, &err),
             STATUS_OK);
@@ -134,6 +137,28 @@ static void bands_of_tiles_have_the_bytes_of_the_whole(void **state)
             }
             scene_release(&scene);
         }
+}
+
+/* Bands of some blocks of rows, of which each has the lists of the lights made for its places. */
+static void bands_have_the_soft_shadows_of_the_whole(void **state)
+{
+    (void)state;
+    const Look plain = look;
+    look.lights[1].samples = 4;
+    look.lights[1].size = 0.7;
+    for (int ground = 0; ground < 2; ground++)
+        for (SceneModel model = SCENE_CYLINDERS; model <= SCENE_BLOB; model++) {
+            look.ground.present = ground == 1;
+            Scene scene = staged(model, (Projection)ground);
+            scene.view.camera.height = 4 * SHARE_BLOCK + 11;
+            scene.view.camera.width = 2 * WIDTH;
+            RenderParams params = all_planes(1, 0);
+            params.method = RENDER_RASTER;
+            params.shadows = true;
+            assert_bands_are_the_whole(&scene, &params, SHARE_BLOCK + 8);
+            scene_release(&scene);
+        }
+    look = plain;
 }
 
 /* Draws the first rows twice and tells how often they were prepared in all. */
@@ -255,6 +280,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bands_have_the_bytes_of_the_whole),
         cmocka_unit_test(bands_of_tiles_have_the_bytes_of_the_whole),
+        cmocka_unit_test(bands_have_the_soft_shadows_of_the_whole),
         cmocka_unit_test(bands_prepare_again_for_another_view_alone_not_for_other_colours),
         cmocka_unit_test(bands_of_povrays_view_have_the_bytes_of_the_whole),
         cmocka_unit_test(progress_rises_from_band_to_band),

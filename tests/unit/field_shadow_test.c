@@ -83,7 +83,7 @@ static void ask(const Geometry *geometry, const Light *light, const Viewpoint *e
     const Drawing drawing = {.geometry = geometry, .view = &view, .params = &params};
     void *shadow, *queue;
     assert_true(field_lights.can(geometry, &view, light));
-    assert_int_equal(field_lights.look(&drawing, light, eye, &shadow, NULL), STATUS_OK);
+    assert_int_equal(field_lights.look(&drawing, light, eye, NULL, &shadow, NULL), STATUS_OK);
     assert_int_equal(field_lights.queue_new(shadow, &queue, NULL), STATUS_OK);
     memset(sight->shadowed, 0, sizeof sight->shadowed);
     field_lights.ask(queue, tilekernels[kind], &sight->places, wanted, 0);

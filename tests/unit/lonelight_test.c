@@ -106,7 +106,7 @@ static void look_from(Sight *sight, const LightViews *views, size_t number, Lone
     for (int k = 0; k < light_points(light); k++) {
         const Light point = light_at_point(light, k);
         void *shadow;
-        assert_int_equal(views->look(&sight->drawing, &point, &sight->frame, &shadow, &err),
+        assert_int_equal(views->look(&sight->drawing, &point, &sight->frame, NULL, &shadow, &err),
                          STATUS_OK);
         assert_int_equal(
             lonelight_look(&sight->drawing, views, shadow, &sight->frame, number, places, &err),

@@ -624,6 +624,8 @@ static void boxes_hold_the_axes_of_vessels(void **state)
         RasterView view =
             rasterview_of_camera(&staged.scene.view.camera, staged.scene.geometry.bounds, 2);
         view.light = true;
+        view.tile_columns = (TileSpan){0, (WIDTH - 1) / TILE_SIDE};
+        view.tile_rows = (TileSpan){0, (HEIGHT - 1) / TILE_SIDE};
         RasterBins *bins;
         assert_int_equal(rasterbins_new(&staged.scene.geometry, &view, 2, &bins, NULL), STATUS_OK);
         int held = 0;
@@ -694,6 +696,52 @@ static void of_many_thin_capsules_those_that_no_sample_sees_are_left_out(void **
     assert_true(rasterreach_misses(&view, vec3(1.05, -1.05, 0), vec3(0, 0, 1), 0.01));
 }
 
+/* Points of a capsule's axis, moved by its radius whichever way, that lie before the eye in the
+ * tiles of a perspective view. */
+static bool tiles_see_capsule(const RasterView *view, Random *random, Vec3 middle, Vec3 span,
+                              double radius)
+{
+    for (int i = 0; i < 64; i++) {
+        Vec3 at = vec3_add_scaled(middle, span, number(random, -0.5, 0.5));
+        at = vec3_add_scaled(at, vec3_normalized(point(random, 1)), radius);
+        double i_at = (at.x / at.z - view->left) / view->step_x;
+        double j_at = (at.y / at.z - view->top) / view->step_y;
+        if (at.z > 0 && i_at >= view->tile_columns.first * TILE_SIDE - 0.5 &&
+            i_at < (view->tile_columns.last + 1) * TILE_SIDE - 0.5 &&
+            j_at >= view->tile_rows.first * TILE_SIDE - 0.5 &&
+            j_at < (view->tile_rows.last + 1) * TILE_SIDE - 0.5)
+            return true;
+    }
+    return false;
+}
+
+static void in_perspective_capsules_beside_the_tiles_are_left_out(void **state)
+{
+    (void)state;
+    const RasterView view = {.eye.perspective = true,
+                             .left = -0.7,
+                             .top = 0.6,
+                             .step_x = 0.017,
+                             .step_y = -0.019,
+                             .columns = 80,
+                             .rows = 80,
+                             .tile_columns = {2, 5},
+                             .tile_rows = {3, 9}};
+    Random random;
+    random_seed(&random, 57);
+    int left_out = 0;
+    for (int i = 0; i < 20000; i++) {
+        double z = number(&random, -1, 9);
+        Vec3 middle = {number(&random, -1.3, 1.3) * z, number(&random, -1.3, 1.3) * z, z};
+        Vec3 span = point(&random, 0.9);
+        double radius = number(&random, 0.003, 0.3);
+        bool misses = rasterreach_misses(&view, middle, span, radius);
+        assert_false(misses && tiles_see_capsule(&view, &random, middle, span, radius));
+        left_out += misses;
+    }
+    assert_true(left_out > 8000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -713,6 +761,7 @@ int main(void)
         cmocka_unit_test(every_kind_of_kernels_draws_what_rays_draw),
         cmocka_unit_test(boxes_hold_the_axes_of_vessels),
         cmocka_unit_test(of_many_thin_capsules_those_that_no_sample_sees_are_left_out),
+        cmocka_unit_test(in_perspective_capsules_beside_the_tiles_are_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

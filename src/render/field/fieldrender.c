@@ -431,7 +431,7 @@ static Status prepare_shadows(const Drawing *drawing, FieldPrepared *field, Err 
         const Light *light = &drawing->view->lights[i];
         if (drawing->params->shadows && light->casts_shadows && light->samples <= 1 &&
             is_looked_from(drawing, light))
-            TRY(field_lights.look(drawing, light, &eye, &field->shadows[i], err));
+            TRY(field_lights.look(drawing, light, &eye, NULL, &field->shadows[i], err));
     }
     return STATUS_OK;
 }

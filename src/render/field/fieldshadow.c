@@ -117,8 +117,8 @@ static int tiles_for(const Camera *camera, size_t n_segments)
     return side < LEAST ? LEAST : side > MOST ? MOST : side;
 }
 
-static Status look(const Drawing *drawing, const Light *light, const Viewpoint *frame, void **out,
-                   Err *err)
+static Status look(const Drawing *drawing, const Light *light, const Viewpoint *frame,
+                   const Box *asked, void **out, Err *err)
 {
     Status status;
     FieldShadow *shadow = NULL;
@@ -129,8 +129,9 @@ static Status look(const Drawing *drawing, const Light *light, const Viewpoint *
     TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
     shadow->geometry = drawing->geometry;
     shadow->workers = params->threads;
-    shadow->view = lightview_of(drawing->geometry, light,
-                                tiles_for(&drawing->view->camera, drawing->geometry->n_segments));
+    shadow->view =
+        lightview_of(drawing->geometry, light,
+                     tiles_for(&drawing->view->camera, drawing->geometry->n_segments), asked);
     shadow->aim = lightview_aim(&shadow->view, frame, from_mm);
     TRY_GOTO(vessellists_of_light(drawing->geometry, &shadow->view, params->threads, &shadow->lists,
                                   err));

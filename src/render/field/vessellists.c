@@ -62,8 +62,9 @@ static TileSpan rows_of(const VesselLists *lists, const FrameSegment *segment)
     if (side > 0)
         range = capsule_shadow(lists->eye.perspective, segment->a.y, segment->a.z, segment->b.y,
                                segment->b.z, segment->reach);
-    return tiles_within(samples_within(range, lists->y[0], lists->per_y), lists->stray,
-                        lists->grid.n_rows);
+    TileSpan rows = tiles_within(samples_within(range, lists->y[0], lists->per_y), lists->stray,
+                                 lists->grid.n_rows);
+    return tiles_common(rows, lists->listed_rows);
 }
 
 enum { CHUNK = 2048 };
@@ -130,6 +131,8 @@ static Status begin_lists(const Viewpoint *eye, const SampleGrid *grid, VesselLi
     lists->grid = *grid;
     lists->tile_columns = (grid->n_columns + TILE_SIDE - 1) / TILE_SIDE;
     lists->tile_rows = (grid->n_rows + TILE_SIDE - 1) / TILE_SIDE;
+    lists->listed_columns = (TileSpan){0, lists->tile_columns - 1};
+    lists->listed_rows = (TileSpan){0, lists->tile_rows - 1};
     TRY(mem_calloc(&lists->x, (size_t)grid->n_columns, sizeof *lists->x, "columns", err));
     return mem_calloc(&lists->y, (size_t)grid->n_rows, sizeof *lists->y, "rows", err);
 }
@@ -159,6 +162,8 @@ Status vessellists_of_light(const Geometry *geometry, const LightView *view, int
         lists->x[i] = view->left + i * view->step_x;
         lists->y[i] = view->top + i * view->step_y;
     }
+    lists->listed_columns = view->columns;
+    lists->listed_rows = view->rows;
     lists->stray = 0.5 + SLACK_PIXELS;
     lists->per_x = 1 / view->step_x;
     lists->per_y = 1 / view->step_y;
@@ -188,7 +193,7 @@ static TileSpan columns_of(const VesselLists *lists, const FrameSegment *segment
                            double y_high)
 {
     if (side_of_camera(lists, segment) == 0)
-        return (TileSpan){0, lists->tile_columns - 1};
+        return lists->listed_columns;
     double from = 0, to = 1;
     const double heights[2][2] = {
         {above(lists, segment->a, y_low), above(lists, segment->b, y_low)},
@@ -203,8 +208,9 @@ static TileSpan columns_of(const VesselLists *lists, const FrameSegment *segment
     Vec3 last = vec3_add_scaled(segment->a, span, to);
     Interval range =
         capsule_shadow(lists->eye.perspective, first.x, first.z, last.x, last.z, segment->reach);
-    return tiles_within(samples_within(range, lists->x[0], lists->per_x), lists->stray,
-                        lists->grid.n_columns);
+    TileSpan columns = tiles_within(samples_within(range, lists->x[0], lists->per_x), lists->stray,
+                                    lists->grid.n_columns);
+    return tiles_common(columns, lists->listed_columns);
 }
 
 Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns, BinLists *tiles,

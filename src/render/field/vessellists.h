@@ -30,6 +30,7 @@ typedef struct VesselLists {
     double per_x, per_y; /* samples in a unit there, per_y below 0 */
     double stray;        /* samples are up to so much off their places, in samples */
     int tile_columns, tile_rows;
+    TileSpan listed_columns, listed_rows; /* of tiles: those whose lists are not left empty */
     FrameSegment *segments;
     size_t n_segments;
     TileSpan *segment_rows; /* of tiles */

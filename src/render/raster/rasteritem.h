@@ -45,7 +45,8 @@ typedef struct RasterSlab {
 RasterSlab rasterslab_of(const RasterView *view, size_t row);
 
 /* Whether a parallel view has no sample within a capsule's box, or, where it has few and all lie at
- * the middles of pixels, within the capsule; in perspective nothing is known. */
+ * the middles of pixels, within the capsule; in perspective, whether none of its tiles has one in a
+ * ball about the capsule. */
 bool rasterreach_misses(const RasterView *view, Vec3 middle, Vec3 span, double radius);
 /* Sets the rows and columns of tiles that an item may touch, none if it is behind the viewer, and
  * in the view of a light its box. */

@@ -66,7 +66,7 @@ static Interval perspective_range(const RasterItem *item, const RasterSlab *slab
 
 static TileSpan columns_of(const RasterView *view, Interval across)
 {
-    return tiles_within(across, view->stray, view->columns);
+    return tiles_common(tiles_within(across, view->stray, view->columns), view->tile_columns);
 }
 
 /* ---- boxes ----------------------------------------------------------------------------------- */
@@ -150,11 +150,32 @@ static bool samples_are_beside(const RasterView *view, SampleSpan columns, Sampl
     return true;
 }
 
+/* Whether a ball is beyond the lines of sight at one end of some tiles, in the plane of z and the
+ * axis whose coordinate is `at`; `pixel`: of the first one beyond. */
+static inline bool is_beyond(double at, double z, double radius, double pixel, double first,
+                             double step, bool above)
+{
+    double line = first + pixel * step, off = at - line * z;
+    return (above ? off : -off) > radius * (1 + fabs(line));
+}
+
+/* Whether it is beside all tiles of a perspective view. */
+static bool is_beside(const RasterView *view, Vec3 middle, double radius)
+{
+    const TileSpan *columns = &view->tile_columns, *rows = &view->tile_rows;
+    double left = columns->first * TILE_SIDE - 1, right = (columns->last + 1) * TILE_SIDE;
+    double top = rows->first * TILE_SIDE - 1, bottom = (rows->last + 1) * TILE_SIDE;
+    return is_beyond(middle.x, middle.z, radius, left, view->left, view->step_x, false) ||
+           is_beyond(middle.x, middle.z, radius, right, view->left, view->step_x, true) ||
+           is_beyond(middle.y, middle.z, radius, top, view->top, view->step_y, true) ||
+           is_beyond(middle.y, middle.z, radius, bottom, view->top, view->step_y, false);
+}
+
 bool rasterreach_misses(const RasterView *view, Vec3 middle, Vec3 span, double radius)
 {
     enum { FEW = 4 }; /* more are seldom all missed */
     if (view->eye.perspective)
-        return false;
+        return is_beside(view, middle, radius + vec3_length(span) / 2);
     SampleSpan columns = samples_about(middle.x, fabs(span.x) / 2 + radius, view->left, view->per_x,
                                        view->stray, view->columns);
     SampleSpan rows = samples_about(middle.y, fabs(span.y) / 2 + radius, view->top, view->per_y,
@@ -172,8 +193,10 @@ void rasterreach_set(const RasterView *view, RasterItem *item)
     TileSpan rows = NOWHERE, columns = NOWHERE;
     if (!is_behind(item)) {
         Interval across = whole_pixels(view, item, true), down = whole_pixels(view, item, false);
-        rows = tiles_within(down, view->stray, view->rows);
+        rows = tiles_common(tiles_within(down, view->stray, view->rows), view->tile_rows);
         columns = columns_of(view, across);
+        if (columns.first > columns.last)
+            rows = NOWHERE;
         if (view->light)
             item->box = RASTERBOX_GUARDS | parts_of(across, columns) | parts_of(down, rows) << 16;
     }

@@ -53,6 +53,8 @@ static RasterView view_of(const LightView *light)
                         .light = true,
                         .columns = light->tiles * TILE_SIDE,
                         .rows = light->tiles * TILE_SIDE,
+                        .tile_columns = light->columns,
+                        .tile_rows = light->rows,
                         .stray = 0.5,
                         .step_x = light->step_x,
                         .step_y = light->step_y,
@@ -117,12 +119,13 @@ static Status list_rows(RasterShadow *shadow, Err *err)
     return STATUS_OK;
 }
 
+/* For places in a box of the world; `asked` NULL: anywhere. */
 static Status make_shadow(const Geometry *geometry, const Light *light, const Viewpoint *camera,
-                          int threads, RasterShadow **out, Err *err)
+                          const Box *asked, int threads, RasterShadow **out, Err *err)
 {
     RasterShadow *shadow = NULL;
     TRY(mem_calloc(&shadow, 1, sizeof *shadow, "shadows", err));
-    LightView seen = lightview_of(geometry, light, tiles_for(geometry));
+    LightView seen = lightview_of(geometry, light, tiles_for(geometry), asked);
     RasterView view = view_of(&seen);
     /* Places and depths are rounded to 2^-24 of the scene's size, thrice. */
     double slack = slack_mm + 0x3p-23 * lightview_radius(geometry);
@@ -153,8 +156,8 @@ static void make_alone(size_t index, int worker, void *context)
 {
     (void)worker;
     Making *making = (Making *)context + index;
-    making->status =
-        make_shadow(making->geometry, making->light, making->camera, 1, making->out, &making->err);
+    making->status = make_shadow(making->geometry, making->light, making->camera, NULL, 1,
+                                 making->out, &making->err);
 }
 
 static Status make_shadows(Making *making, size_t n, int threads, Err *err)
@@ -171,7 +174,7 @@ static Status make_shadows(Making *making, size_t n, int threads, Err *err)
             return making[i].status;
         }
     for (size_t i = alone; i < n; i++)
-        TRY(make_shadow(making[i].geometry, making[i].light, making[i].camera, threads,
+        TRY(make_shadow(making[i].geometry, making[i].light, making[i].camera, NULL, threads,
                         making[i].out, err));
     return STATUS_OK;
 }
@@ -316,10 +319,10 @@ void rasterqueue_answer(RasterQueue *queue, const RasterKernels *kernels, uint8_
 /* ---- for those who ask by places alone ------------------------------------------------------- */
 
 static Status look(const Drawing *drawing, const Light *light, const Viewpoint *frame,
-                   void **shadow, Err *err)
+                   const Box *asked, void **shadow, Err *err)
 {
     RasterShadow *made;
-    TRY(make_shadow(drawing->geometry, light, frame, drawing->params->threads, &made, err));
+    TRY(make_shadow(drawing->geometry, light, frame, asked, drawing->params->threads, &made, err));
     *shadow = made;
     return STATUS_OK;
 }

@@ -3,6 +3,7 @@
 #define CORCAST_RENDER_RASTERVIEW_H
 
 #include "render/raster/rastertile.h"
+#include "render/tile/interval.h"
 #include "render/tile/viewpoint.h"
 #include "scene/scene.h"
 
@@ -14,8 +15,10 @@ typedef struct RasterView {
     double step_x, step_y; /* from one pixel to the next to the right (> 0) and below (< 0) */
     double per_x, per_y;   /* 1 / step, set by rasterbins_new */
     int columns, rows;     /* pixels */
-    double stray;          /* how far samples lie off the middles of their pixels, in pixels */
-    double z_middle;       /* depths in single precision are relative to it, mm */
+    TileSpan tile_columns, tile_rows; /* that are drawn or asked about; set by rasterbins_new, but
+                                       * in the view of a light */
+    double stray;    /* how far samples lie off the middles of their pixels, in pixels */
+    double z_middle; /* depths in single precision are relative to it, mm */
     bool many;  /* primitives, set by rasterbins_new: those that no sample sees are looked for */
     bool light; /* of a light: its bins have boxes, and hulls instead of joints */
 } RasterView;

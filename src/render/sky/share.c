@@ -40,7 +40,9 @@ typedef struct Share {
     Run *runs;        /* owned; at most PLACES_AT_ONCE numbers each */
     size_t n_runs;
     int number;      /* of the light at hand */
-    uint16_t *reach; /* owned; of each pixel, how many points of that it sees, and ON_GROUND */
+    Box asked;       /* about all places, if area lights are asked, from SharedLight.origin */
+    uint16_t *reach; /* owned; of each pixel, how many points of that it sees, and ON_GROUND; of one
+                      * that sees nothing 0 */
 } Share;
 
 static size_t squares_in(int pixels)
@@ -68,6 +70,7 @@ typedef struct PlaceJob {
     Frame planes;
     double pixel_mm;        /* what a pixel is wide, in perspective at 1 mm */
     uint32_t (*next)[SETS]; /* of each square, the next number of each set */
+    Box *boxes;             /* of each square, about its places, from SharedLight.origin */
 } PlaceJob;
 
 /* The pixels of a square, in the band. */
@@ -148,8 +151,8 @@ static inline double ground_distance(const SightRow *sight, int column)
     return seen ? t : HUGE_VAL;
 }
 
-/* Marks the pixels of the square that see something in SharedLight.numbers by their PlaceKind, adds
- * the depth of the ground where it is nearest, and counts them. */
+/* Marks the pixels of the square in SharedLight.numbers by their PlaceKind, or PLACE_NONE, adds the
+ * depth of the ground where it is nearest, and counts those that see something. */
 static void count_places(size_t number, int worker, void *context)
 {
     (void)worker;
@@ -163,11 +166,13 @@ static void count_places(size_t number, int worker, void *context)
             float *depth = &job->planes.depth.values[plane_pixel(job, column, row)];
             double t = has_ground ? ground_distance(&sight, column) : HUGE_VAL;
             bool on_ground = t < (double)*depth;
+            uint32_t *kind = &light->numbers[pixel_at(light, column, row)];
+            *kind = PLACE_NONE;
             if (!on_ground && !isfinite(*depth))
                 continue;
             if (on_ground)
                 *depth = (float)t;
-            light->numbers[pixel_at(light, column, row)] = on_ground ? PLACE_GROUND : PLACE_VESSEL;
+            *kind = on_ground ? PLACE_GROUND : PLACE_VESSEL;
             job->next[number][set_of_pixel(job->share, column, light->first + row)]++;
         }
     }
@@ -197,12 +202,19 @@ static inline PixelPlace place_of(const PlaceJob *job, const SightRow *sight, in
     return place;
 }
 
+/* Where a place is, mm from SharedLight.origin. */
+static inline Vec3 point_of(const PixelPlace *place)
+{
+    return vec3((double)place->at[0], (double)place->at[1], (double)place->at[2]);
+}
+
 static void set_places(size_t number, int worker, void *context)
 {
     (void)worker;
     const PlaceJob *job = context;
     const SharedLight *light = job->share->light;
     const Square square = square_at(light, number, job->first, job->rows);
+    Box box = box_empty();
     for (int row = square.first_row; row < square.end_row; row++) {
         const SightRow sight = sight_of_row(job->share, light->first + row);
         for (int column = square.first_column; column < square.end_column; column++) {
@@ -213,8 +225,11 @@ static void set_places(size_t number, int worker, void *context)
             light->places[to] = place_of(job, &sight, column, row);
             light->numbers[pixel] = to;
             job->share->pixels[to] = (uint32_t)pixel;
+            if (job->share->is_soft)
+                box = box_with_ball(box, point_of(&light->places[to]), 0);
         }
     }
+    job->boxes[number] = box;
 }
 
 static void add_runs(Share *share, int set, size_t from, size_t end)
@@ -253,6 +268,8 @@ static Status add_strip(Share *share, PlaceJob *job, Err *err)
     threads_for(squares, threads, count_places, job);
     number_squares(share, across, squares_in(job->rows), job->next);
     threads_for(squares, threads, set_places, job);
+    for (size_t i = 0; i < squares; i++)
+        share->asked = box_union(share->asked, job->boxes[i]);
     return STATUS_OK;
 }
 
@@ -265,12 +282,14 @@ static Status make_places(Share *share, Err *err)
     PlaceJob job = {.share = share, .pixel_mm = sharedlight_pixel_mm(camera, 1)};
     Status status;
     TRY(mem_alloc(&light->numbers, pixels, sizeof *light->numbers, "places", err));
-    memset(light->numbers, 0xff, pixels * sizeof *light->numbers); /* PLACE_NONE */
     TRY(mem_alloc(&light->places, pixels, sizeof *light->places, "places", err));
     TRY(mem_alloc(&share->pixels, pixels, sizeof *share->pixels, "places", err));
     TRY(mem_calloc(&share->runs, SETS * squares_in(light->rows) + pixels / PLACES_AT_ONCE,
                    sizeof *share->runs, "places", err));
+    share->asked = box_empty();
     TRY_GOTO(mem_calloc(&job.next, squares_in(light->width) * squares_in(STRIP), sizeof *job.next,
+                        "places", err));
+    TRY_GOTO(mem_calloc(&job.boxes, squares_in(light->width) * squares_in(STRIP), sizeof *job.boxes,
                         "places", err));
     for (job.first = 0; job.first < light->rows; job.first += STRIP) {
         job.rows = light->rows - job.first < STRIP ? light->rows - job.first : STRIP;
@@ -280,6 +299,7 @@ static Status make_places(Share *share, Err *err)
 done:
     frame_release(&job.planes);
     free(job.next);
+    free(job.boxes);
     return status;
 }
 
@@ -323,9 +343,11 @@ static bool point_is_of(const Light *light, int point, int set)
 static Vec3 off_surface(const Share *share, const PixelPlace *place)
 {
     Vec3 normal = {(double)place->normal[0], (double)place->normal[1], (double)place->normal[2]};
-    Vec3 at = {(double)place->at[0], (double)place->at[1], (double)place->at[2]};
+    Vec3 at = point_of(place);
     Vec3 eye = vec3_sub(share->drawing->view->camera.location, share->light->origin);
-    return vec3_add_scaled(at, normal, 1e-6 * (vec3_length(at) + vec3_distance(at, eye)));
+    Vec3 sight = vec3_sub(at, eye);
+    float off = sqrtf((float)vec3_dot(at, at)) + sqrtf((float)vec3_dot(sight, sight));
+    return vec3_add_scaled(at, normal, 1e-6 * (double)off);
 }
 
 /* Whether the place faces the middle of the light at hand. */
@@ -334,7 +356,9 @@ static bool is_facing(const Share *share, const PixelPlace *place, Vec3 point)
     const Light *light = &share->drawing->view->lights[share->number];
     Vec3 normal = {(double)place->normal[0], (double)place->normal[1], (double)place->normal[2]};
     Vec3 towards = vec3_sub(light->location, light->parallel ? light->target : point);
-    return vec3_dot(normal, towards) >= LEAST_LIT_COSINE * vec3_length(towards);
+    const double least = LEAST_LIT_COSINE * LEAST_LIT_COSINE;
+    double along = vec3_dot(normal, towards);
+    return along > 0 && along * along >= least * vec3_dot(towards, towards);
 }
 
 static void set_reach(const Share *share, size_t number, int seen)
@@ -456,11 +480,15 @@ static void look_from_point(size_t index, int worker, void *context)
     const Light point =
         light_at_point(&share->drawing->view->lights[share->number], look->points[index]);
     const Viewpoint frame = frame_of(share);
+    const Box asked = {vec3_add(share->asked.low, share->light->origin),
+                       vec3_add(share->asked.high, share->light->origin)};
+    const bool anywhere = share->from->lone || share->n == 0;
     RenderParams alone = *share->drawing->params;
     Drawing drawing = *share->drawing;
     alone.threads = 1;
     drawing.params = &alone;
-    Status status = share->from->views->look(&drawing, &point, &frame, &look->shadows[index], NULL);
+    Status status = share->from->views->look(&drawing, &point, &frame, anywhere ? NULL : &asked,
+                                             &look->shadows[index], NULL);
     if (status != STATUS_OK)
         look->status[worker] = status;
 }
@@ -530,10 +558,8 @@ static Status look_from_set(const Share *share, int set, Err *err)
 static Status find_reach(Share *share, Err *err)
 {
     const Drawing *drawing = share->drawing;
-    const SharedLight *shared = share->light;
     const LightViews *views = share->from->views;
     const Light *light = &drawing->view->lights[share->number];
-    memset(share->reach, 0, (size_t)shared->width * (size_t)shared->rows * sizeof *share->reach);
     if (!views || !lightviews_can(views, drawing->geometry, drawing->view, light)) {
         threads_for(share->n_runs, drawing->params->threads, cast_to_light, share);
         if (share->from->lone)

@@ -20,7 +20,7 @@ enum { SHARE_MARGIN = 3 };
 /* Rows of a block of the picture. The places of a block ask an area light together, and kernels of
  * isosurfaces and blobs round by the places that ask together. So that a band has the bytes of the
  * whole picture, light is found for whole blocks where there are area lights. */
-enum { SHARE_BLOCK = 128 };
+enum { SHARE_BLOCK = 64 };
 
 /* Sets depth and normal of what the centre rays of the drawing's band see of vessels; *planes is
  * the caller's even when this fails. STATUS_MEMORY. */

@@ -18,6 +18,13 @@ typedef struct TileSpan {
 
 static const TileSpan NOWHERE = {1, 0};
 
+/* The tiles of both. */
+static inline TileSpan tiles_common(TileSpan a, TileSpan b)
+{
+    TileSpan both = {a.first > b.first ? a.first : b.first, a.last < b.last ? a.last : b.last};
+    return both.first <= both.last ? both : NOWHERE;
+}
+
 /* Covers rounding where pixels and tiles are told apart, in pixels. */
 #define SLACK_PIXELS 1e-3
 

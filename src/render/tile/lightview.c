@@ -1,5 +1,7 @@
 /* The view is the smallest rectangle about the corners of the geometry's box, widened a little for
- * rounding. */
+ * rounding. Where places are asked about that lie in part of it, only the lists of the tiles in
+ * that part are made. The tiles are the same whatever the part: so are the answers, to the last
+ * bit. */
 #include "render/tile/lightview.h"
 
 /* A point light must be as far from the middle of the scene, in radii of the scene: it sees less
@@ -47,22 +49,48 @@ static Viewpoint eye_of(const Geometry *geometry, const Light *light)
     return eye;
 }
 
-LightView lightview_of(const Geometry *geometry, const Light *light, int tiles)
+/* What a box of the world covers of the view's plane; infinite where part of it may be behind. */
+static Box seen_box(const Viewpoint *eye, const Box *world)
 {
-    LightView view = {.eye = eye_of(geometry, light), .tiles = tiles};
-    const int samples = tiles * TILE_SIDE;
     Box box = box_empty();
     for (int i = 0; i < 8; i++) {
-        Vec3 at = viewpoint_place(&view.eye, corner(&geometry->bounds, i));
-        if (view.eye.perspective)
+        Vec3 at = viewpoint_place(eye, corner(world, i));
+        if (eye->perspective && at.z <= 0)
+            return (Box){vec3(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL), vec3(HUGE_VAL, HUGE_VAL, HUGE_VAL)};
+        if (eye->perspective)
             at = vec3(at.x / at.z, at.y / at.z, at.z);
         box = box_with_ball(box, at, 0);
     }
+    return box;
+}
+
+/* Of `tiles` tiles those from one place to another, both in tiles, and one more to either side for
+ * rounding. Places beside the tiles are those of the nearest. */
+static TileSpan tiles_between(double from, double to, int tiles)
+{
+    return (TileSpan){(int)max_of(min_of(from - 1, tiles - 1), 0),
+                      (int)max_of(min_of(to + 1, tiles - 1), 0)};
+}
+
+LightView lightview_of(const Geometry *geometry, const Light *light, int tiles, const Box *asked)
+{
+    LightView view = {.eye = eye_of(geometry, light), .tiles = tiles};
+    const int samples = tiles * TILE_SIDE;
+    Box box = seen_box(&view.eye, &geometry->bounds);
     view.step_x = (box.high.x - box.low.x) * 1.0001 / samples;
     view.step_y = -(box.high.y - box.low.y) * 1.0001 / samples;
     view.left = (box.low.x + box.high.x) / 2 - (samples - 1) / 2.0 * view.step_x;
     view.top = (box.low.y + box.high.y) / 2 - (samples - 1) / 2.0 * view.step_y;
     view.z_middle = (box.low.z + box.high.z) / 2;
+    view.columns = view.rows = (TileSpan){0, tiles - 1};
+    if (asked) {
+        Box seen = seen_box(&view.eye, asked);
+        double per_x = 1 / (TILE_SIDE * view.step_x), per_y = 1 / (TILE_SIDE * view.step_y);
+        view.columns = tiles_between((seen.low.x - view.left) * per_x,
+                                     (seen.high.x - view.left) * per_x, tiles);
+        view.rows =
+            tiles_between((seen.high.y - view.top) * per_y, (seen.low.y - view.top) * per_y, tiles);
+    }
     return view;
 }
 

@@ -3,6 +3,7 @@
 #ifndef CORCAST_RENDER_LIGHTVIEW_H
 #define CORCAST_RENDER_LIGHTVIEW_H
 
+#include "render/tile/interval.h"
 #include "render/tile/tilekernels.h"
 #include "render/tile/viewpoint.h"
 
@@ -12,6 +13,7 @@ typedef struct LightView {
     int tiles;
     double left, top, step_x, step_y; /* of samples in the view's plane, step_y below 0 */
     double z_middle;                  /* of the geometry */
+    TileSpan columns, rows;           /* of the tiles that places lie in */
 } LightView;
 
 /* The radius of a ball about the middle of the geometry's bounds that holds all of it. */
@@ -21,8 +23,8 @@ double lightview_radius(const Geometry *geometry);
  * off, and the view's ground is not before it. */
 bool lightview_sees_all(const Geometry *geometry, const View *view, const Light *light);
 
-/* That view. */
-LightView lightview_of(const Geometry *geometry, const Light *light, int tiles);
+/* That view, for places in a box of the world; `asked` NULL: for places anywhere. */
+LightView lightview_of(const Geometry *geometry, const Light *light, int tiles, const Box *asked);
 
 /* How it looks at places in the frame of a camera; see AimedPlaces for `slack`, mm. */
 LightAim lightview_aim(const LightView *view, const Viewpoint *camera, double slack);
@@ -31,10 +33,10 @@ LightAim lightview_aim(const LightView *view, const Viewpoint *camera, double sl
 typedef struct LightViews {
     /* Whether it can, from one point or along parallel lines. */
     bool (*can)(const Geometry *geometry, const View *view, const Light *light);
-    /* What a light that it can look from sees of the drawing's geometry, for places in `frame`:
-     * *shadow is owned. STATUS_MEMORY. */
+    /* What a light that it can look from sees of the drawing's geometry, for places in `frame`,
+     * which lie in a box of the world; `asked` NULL: anywhere. *shadow is owned. STATUS_MEMORY. */
     Status (*look)(const struct Drawing *drawing, const Light *light, const Viewpoint *frame,
-                   void **shadow, Err *err);
+                   const Box *asked, void **shadow, Err *err);
     void (*free)(void *shadow);
     /* A queue of questions to it, for one thread; *queue is the caller's even when this fails. */
     Status (*queue_new)(const void *shadow, void **queue, Err *err);
