@@ -70,6 +70,14 @@ void srgb_codes_init(SrgbCodes *codes)
     }
 }
 
+static void store_srgb_codes(const float *values, size_t n, uint8_t *codes)
+{
+    SrgbCodes table;
+    srgb_codes_init(&table);
+    for (size_t i = 0; i < n; i++)
+        codes[i] = srgb_code(&table, values[i]);
+}
+
 Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encoding, int bits,
                           Err *err)
 {
@@ -78,22 +86,18 @@ Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encodin
     made.gamma = encoding == ENCODING_LINEAR ? 1 : 0;
     size_t channels = (size_t)plane->channels;
     size_t n = (size_t)plane->width * (size_t)plane->height * channels;
-    SrgbCodes table;
-    bool tabled = encoding == ENCODING_SRGB && bits == 8;
-    if (tabled)
-        srgb_codes_init(&table);
+    *picture = made;
+    if (encoding == ENCODING_SRGB && bits == 8) {
+        store_srgb_codes(plane->values, n, made.codes8);
+        return STATUS_OK;
+    }
     for (size_t i = 0; i < n; i++) {
-        if (tabled) {
-            made.codes8[i] = srgb_code(&table, plane->values[i]);
-            continue;
-        }
         /* Most pixels are like the one before. */
         bool again = i >= channels && plane->values[i] == plane->values[i - channels];
-        picture_set(&made, i,
-                    again ? picture_code(&made, i - channels)
+        picture_set(picture, i,
+                    again ? picture_code(picture, i - channels)
                           : image_code(plane->values[i], encoding, bits));
     }
-    *picture = made;
     return STATUS_OK;
 }
 
