@@ -79,11 +79,13 @@ typedef struct BeamLines {
     int n;             /* a multiple of SUMMED */
 } BeamLines;
 
-/* What the neighbours of the pixels of a quad, 2 x 2 pixels, were answered about the same lines. */
-enum { QUAD_SIDE = 2, QUAD = QUAD_SIDE * QUAD_SIDE, MOST_NEIGHBORS = 9 * QUAD };
+/* What the askers of a quad, 2 x 2 pixels, and of the quads about it were answered about the same
+ * lines. */
+enum { QUAD_SIDE = 2, QUAD = QUAD_SIDE * QUAD_SIDE, QUADS_ABOUT = 9 };
 typedef struct BeamAnswers {
-    const uint8_t *of[MOST_NEIGHBORS];
-    int weight[QUAD][MOST_NEIGHBORS], n;
+    const uint8_t *of[QUADS_ABOUT * QUAD];
+    uint8_t quad[QUADS_ABOUT * QUAD]; /* that each is of, row by row of the quads */
+    int n;
 } BeamAnswers;
 
 typedef struct BeamKernels {

@@ -316,6 +316,13 @@ LANE_TARGET static void BEAM_KERNEL(ask)(const Beams *beams, const BeamDirection
 
 /* ---- sums ------------------------------------------------------------------------------------ */
 
+/* Of each pixel of a quad, the weights of the quads about it, row by row: they fall with the
+ * distance from the pixel, along a row and a column as 3 : 4 : 1 or 1 : 4 : 3. */
+static const int weights[QUAD][QUADS_ABOUT] = {{9, 12, 3, 12, 16, 4, 3, 4, 1},
+                                               {3, 12, 9, 4, 16, 12, 1, 4, 3},
+                                               {3, 4, 1, 12, 16, 4, 9, 12, 3},
+                                               {1, 4, 3, 4, 16, 12, 3, 12, 9}};
+
 /* Adds LANES of the lines, from one on. */
 LANE_FN void add_lines(const BeamLines *lines, const BeamAnswers *answers, int pixel, int first,
                        const float normal[3], Lanes *open, Lanes *all)
@@ -326,7 +333,7 @@ LANE_FN void add_lines(const BeamLines *lines, const BeamAnswers *answers, int p
     LaneMask against = (cosine < 0.0f) & BEAM_AGAINST, free = {0}, asked = {0};
     for (int i = 0; i < answers->n; i++) {
         LaneMask answer = lanes_load_bytes(answers->of[i] + first) ^ against;
-        LaneMask part = (answer < BEAM_AGAINST) & answers->weight[pixel][i];
+        LaneMask part = (answer < BEAM_AGAINST) & weights[pixel][answers->quad[i]];
         free += part * answer;
         asked += part;
     }

@@ -282,23 +282,16 @@ static Status ask(Sky *sky, Err *err)
 
 /* ---- what neighbours share ------------------------------------------------------------------- */
 
-/* Along a row or a column, weights of the quad before a pixel's own, its own and the one behind,
- * for either pixel of it: they fall with the distance from the pixel. */
-static const int weights[QUAD_SIDE][3] = {{3, 4, 1}, {1, 4, 3}};
-
-/* Adds what the askers of a quad were answered, as far as they are of the surface of `place`;
- * `across` and `down` are how many quads lie between. */
-static void add_answers(const Sky *sky, const PixelPlace *place, const uint32_t *askers, int across,
-                        int down, BeamAnswers *answers)
+/* Adds what the askers of quad number `quad` about one were answered, as far as they are of the
+ * surface of `place`: of each is written where it would stand, as which of them are of that surface
+ * is hard to foresee. */
+static void add_answers(const Sky *sky, const PixelPlace *place, const uint32_t *askers, int quad,
+                        BeamAnswers *answers)
 {
     for (int k = 0; k < QUAD && askers[k] > 0; k++) {
-        if (!places_are_of_one(place, &sky->asking[askers[k] - 1]))
-            continue;
         answers->of[answers->n] = sky->answers + (askers[k] - 1) * (size_t)sky->stride;
-        for (int pixel = 0; pixel < QUAD; pixel++)
-            answers->weight[pixel][answers->n] =
-                weights[pixel % QUAD_SIDE][across + 1] * weights[pixel / QUAD_SIDE][down + 1];
-        answers->n++;
+        answers->quad[answers->n] = (uint8_t)quad;
+        answers->n += places_are_of_one(place, &sky->asking[askers[k] - 1]);
     }
 }
 
@@ -312,7 +305,7 @@ static void gather_answers(const Sky *sky, const PixelPlace *place, int column, 
         for (int x = column - 1; x <= column + 1; x++) {
             if (x < 0 || x >= sky->columns || y < 0 || y >= sky->rows)
                 continue;
-            add_answers(sky, place, askers_of(sky, x, y), x - column, y - row,
+            add_answers(sky, place, askers_of(sky, x, y), 3 * (y - row + 1) + x - column + 1,
                         &answers[set_of(sky, x, y)]);
         }
 }
