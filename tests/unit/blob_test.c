@@ -327,6 +327,11 @@ static double distance_to(const FieldSegment *segment, Vec3 x)
     return vec3_distance(x, vec3_add_scaled(segment->a, span, fmin(fmax(along, 0), 1)));
 }
 
+static double curved(double curved, double width, double distance2)
+{
+    return curved * (1 - distance2 / (width * width));
+}
+
 static Line random_line(Random *random, const FieldSegment *segment)
 {
     Vec3 span = vec3_sub(segment->b, segment->a), axis = vec3_normalized(span);
@@ -337,9 +342,11 @@ static Line random_line(Random *random, const FieldSegment *segment)
     double distance = HUGE_VAL, sine = vec3_length(vec3_cross(axis, line.ray.direction));
     for (double t = -12; t < 12; t += 0.01)
         distance = fmin(distance, distance_to(segment, ray_at(line.ray, t)));
-    line.bend = end2 < pow((double)NEAR_END, 2)        ? (double)CURVED_NEAR_END
-                : distance - 0.005 < (double)NEAR_AXIS ? (double)CURVED_NEAR_AXIS
-                                                       : (double)CURVED_FAR;
+    line.bend =
+        fmax(curved((double)NEAR_END_CURVED, (double)NEAR_END_WIDTH, end2),
+             curved((double)NEAR_AXIS_CURVED, (double)NEAR_AXIS_WIDTH, distance * distance));
+    line.bend = fmax(line.bend,
+                     fmax(curved((double)FAR_CURVED, (double)FAR_WIDTH, distance * distance), 0));
     if (end2 > pow(blob_reach(&blob_shape), 2))
         line.bend *= sine * sine;
     return line;
@@ -377,7 +384,7 @@ static void the_bounds_of_terms_hold(void **state)
     Random random;
     random_seed(&random, 86);
     for (int i = 0; i < 1500; i++) {
-        double length = pow(10, uniform(&random, -1.5, 0.8));
+        double length = pow(10, uniform(&random, -2.5, 0.8));
         FieldSegment segment = {.radius_mm = 1, .a = random_point(&random, 1)};
         segment.b = vec3_add_scaled(segment.a, random_direction(&random), length);
         Line line = random_line(&random, &segment);

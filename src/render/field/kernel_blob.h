@@ -10,10 +10,11 @@
  *   of that beyond an end, and at least -DIP: beads beyond an end may outweigh what else is there.
  * - Steepness. At the distance x within the reach R its gradient is at most STEEPNESS (1 - x^2 /
  *   R^2).
- * - Curvature. The second derivative along any line is at most CURVED_NEAR_END, unless the line
- * stays farther than NEAR_END from both ends, or farther than NEAR_AXIS from the segment; then it
- * is at most the next of the three, times the squared sine of the line to the axis where the line
- * stays out of reach of both ends. It is no less than -1.25 times that. */
+ * - Curvature. Along a line that passes the segment at the distance d, and the nearer of its ends
+ *   at e, the second derivative is at most the largest of CURVED (1 - x^2 / WIDTH^2): near an end,
+ *   x = e; near the axis and far from it, x = d; and 0. Where the line stays out of reach of both
+ *   ends it is at most that times the squared sine of the line to the axis. It is no less than
+ *   -1.25 times that. */
 #ifndef CORCAST_RENDER_KERNEL_BLOB_H
 #define CORCAST_RENDER_KERNEL_BLOB_H
 
@@ -22,11 +23,12 @@
 #define ENVELOPE 1.05f
 #define DIP 0.0085f
 #define STEEPNESS 7.2f
-#define NEAR_END 1.068f
-#define NEAR_AXIS 1.191f
-#define CURVED_NEAR_END 36.0f
-#define CURVED_NEAR_AXIS 18.5f
-#define CURVED_FAR 5.8f
+#define NEAR_END_CURVED 37.5f
+#define NEAR_END_WIDTH 1.06f
+#define NEAR_AXIS_CURVED 18.9f
+#define NEAR_AXIS_WIDTH 1.21f
+#define FAR_CURVED 6.8f
+#define FAR_WIDTH 1.675f
 
 /* A squared length in radii, in units of 1 / k, and a second derivative likewise. */
 #define IN_UNITS2(length) (2 * (length) * (length))
@@ -61,15 +63,22 @@ LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
     term->peak = lanes_select(d2 < term->term->reach2, most, lanes_set(0));
 }
 
+/* curved (1 - x^2 / width^2) of x in radii */
+LANE_FN Lanes curved_within(float curved, float width, Lanes distance2)
+{
+    const float most = PER_UNITS2(curved);
+    return lanes_fma(distance2, lanes_set(-most / (float)IN_UNITS2(width)), lanes_set(most));
+}
+
 /* Sets what bounds the term's bends, and how much it may be off. */
 LANE_FN void bound_bend(PacketTerm *term)
 {
+    Lanes d2 = term->e2 + term->past;
     Lanes end2 = term->e2 + lanes_min(term->end_y2[0], term->end_y2[1]);
-    LaneMask near_axis = term->e2 + term->past < (float)IN_UNITS2(NEAR_AXIS);
-    Lanes bend = lanes_select(near_axis, lanes_set(PER_UNITS2(CURVED_NEAR_AXIS)),
-                              lanes_set(PER_UNITS2(CURVED_FAR)));
-    bend = lanes_select(end2 < (float)IN_UNITS2(NEAR_END), lanes_set(PER_UNITS2(CURVED_NEAR_END)),
-                        bend);
+    Lanes near_end = curved_within(NEAR_END_CURVED, NEAR_END_WIDTH, end2);
+    Lanes near_axis = curved_within(NEAR_AXIS_CURVED, NEAR_AXIS_WIDTH, d2);
+    Lanes far = lanes_max(curved_within(FAR_CURVED, FAR_WIDTH, d2), lanes_set(0));
+    Lanes bend = lanes_max(lanes_max(near_end, near_axis), far);
     Lanes along = lanes_select(end2 < term->term->reach2, square(term->u1), lanes_set(0));
     term->curvature = bend * (square(term->w1) + along);
     term->steep = steepness(term);
