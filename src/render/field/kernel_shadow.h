@@ -18,8 +18,9 @@
  * These tests set out a term only to know what it is at the places, and keep little of it. Terms
  * that are out of reach of a whole packet are left out before that, several at once.
  *
- * What is left is marched in full packets, each step of which may end in a proof of either kind;
- * that Phi is above the level somewhere on the way is proof enough, where is not asked.
+ * What is left is looked at in full packets. That Phi is above the level somewhere on the way is
+ * proof enough, where is not asked: one place is tried, where the term passed nearest is. Then rays
+ * are marched, each step of which may end in a proof of either kind.
  *
  * - Rim. Places are on the surface as well as it was found: until Phi has fallen below RIM of the
  *   level on leaving it, the level is SKIN times that. */
@@ -201,6 +202,23 @@ LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving,
     }
 }
 
+/* Of the live lanes at z, those that are above the level in the middle of the window, beyond z, of
+ * the term that may be the largest there. */
+LANE_FN LaneMask lanes_hidden(const Group *group, LaneMask live, Lanes z)
+{
+    Lanes largest = lanes_set(0), middle = lanes_set(1e30f);
+    for (size_t i = 0; i < group->n; i++) {
+        const PacketTerm *term = group->terms[i];
+        Lanes there = 0.5f * (term->window[0] + term->window[1]);
+        LaneMask larger = (there > z) & (term->peak > largest);
+        largest = lanes_select(larger, term->peak, largest);
+        middle = lanes_select(larger, there, middle);
+    }
+    PacketSample at = sample_at(group, middle, live);
+    Lanes margin = margin_at(group, &at, middle);
+    return live & (at.phi - margin >= SKIN * LEVEL) & (margin <= CLOSE_ENOUGH);
+}
+
 /* Sorts the terms chosen by rising `on`. */
 LANE_FN void sort_sum(const Packet *packet)
 {
@@ -231,6 +249,9 @@ LANE_FN void look_through_sum(const Departures *way, LaneMask *open, LaneMask *d
         Lanes from = way->z + (float)(way->base - group.base);
         Lanes start = next_window(&group, lanes_set(-1e30f));
         live &= next_window(&group, from) < 1e30f;
+        LaneMask hidden = lanes_hidden(&group, live, from);
+        *dark |= hidden;
+        live &= ~hidden;
         march_to_light(&group, live, start <= from, lanes_max(start, from), dark, &stuck);
         *unsure |= stuck;
         *open &= ~*dark;

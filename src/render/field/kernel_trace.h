@@ -94,7 +94,7 @@ LANE_FN LaneMask lanes_reached(const PacketTerm *term, Lanes z, LaneMask live, L
     return live & (z >= term->reach[0]) & (z <= term->reach[1]);
 }
 
-LANE_FN PacketSample sample_at(const Group *group, Lanes z, LaneMask live)
+FOLDED_FN PacketSample sample_at(const Group *group, Lanes z, LaneMask live)
 {
     PacketSample sample = nothing_sampled();
     for (size_t i = 0; i < group->n; i++) {
