@@ -364,13 +364,17 @@ static void check_line(const FieldSegment *segment, const Line *line)
         double slope =
             (double)gradient.x * d.x + (double)gradient.y * d.y + (double)gradient.z * d.z;
         double distance = distance_to(segment, x), bend = (slope - before) / h;
-        bool beyond = vec3_dot(vec3_sub(x, segment->a), vec3_sub(segment->b, segment->a)) < 0;
-        double most = (double)ENVELOPE * exp(2 - 2 * distance * distance) * (beyond ? 0.5 : 1);
+        Vec3 span = vec3_sub(segment->b, segment->a);
+        double length = vec3_length(span);
+        double along = vec3_dot(vec3_sub(x, segment->a), span) / length;
+        double inside = fmax(fmin(along, length - along), 0);
+        double most = (double)ENVELOPE * exp(2 - 2 * distance * distance) *
+                      fmin(0.5 + (double)INWARDS * inside, 1);
         assert_true(term <= most && term >= -(double)DIP);
         double steepness = sqrt(
             (double)(gradient.x * gradient.x + gradient.y * gradient.y + gradient.z * gradient.z));
-        double inside = 1 - pow(distance / blob_reach(&blob_shape), 2);
-        assert_true(steepness <= fmax((double)STEEPNESS * inside, 1e-12));
+        double within = 1 - pow(distance / blob_reach(&blob_shape), 2);
+        assert_true(steepness <= fmax((double)STEEPNESS * within, 1e-12));
         if (t > -3.5 && (bend > line->bend || bend < -1.25 * line->bend))
             fail_msg("%g at %g of a segment of %g, %g away, bound %g", bend, t,
                      vec3_distance(segment->a, segment->b), distance, line->bend);

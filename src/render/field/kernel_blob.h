@@ -6,8 +6,9 @@
  * length; tests/unit/blob_test.c holds them against the field. In radii, and before the
  * field is multiplied:
  *
- * - Distance. At the distance x of the segment it is at most ENVELOPE exp(2 - 2 x^2), at most half
- *   of that beyond an end, and at least -DIP: beads beyond an end may outweigh what else is there.
+ * - Distance. At the distance x of the segment it is at most ENVELOPE exp(2 - 2 x^2), beyond an end
+ *   at most half of that, and y within it at most 1/2 + INWARDS y of that. It is at least -DIP:
+ *   beads beyond an end may outweigh what else is there.
  * - Steepness. At the distance x within the reach R its gradient is at most STEEPNESS (1 - x^2 /
  *   R^2).
  * - Curvature. Along a line that passes the segment at the distance d, and the nearer of its ends
@@ -21,6 +22,7 @@
 #include "render/field/kernel_packet.h"
 
 #define ENVELOPE 1.05f
+#define INWARDS 0.62f
 #define DIP 0.0085f
 #define STEEPNESS 7.2f
 #define NEAR_END_CURVED 37.5f
@@ -230,8 +232,9 @@ LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
 /* No more than this is a term anywhere from w on, where the end that it leaves is at `leaves`. */
 LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
 {
-    Lanes most = ENVELOPE * gauss_beyond(e2, w, leaves);
-    return most * lanes_select(leaves < 0.0f, lanes_set(0.5f), lanes_set(1));
+    const float half = 0.5f * ENVELOPE, inwards = INWARDS / (float)sqrt(2) * ENVELOPE;
+    Lanes ends = lanes_fma(lanes_max(leaves, lanes_set(0)), lanes_set(inwards), lanes_set(half));
+    return gauss_beyond(e2, w, leaves) * lanes_min(ends, lanes_set(ENVELOPE));
 }
 
 LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
