@@ -107,12 +107,12 @@ static void free_shadow(void *of)
     free(shadow);
 }
 
-/* Tiles on a side of a light's view: about as many as those of the picture, but no more tiles than
+/* Tiles on a side of a light's view: half as many as those of the picture, but no more tiles than
  * segments. */
 static int tiles_for(const Camera *camera, size_t n_segments)
 {
     enum { LEAST = 16, MOST = 384 };
-    int side = (camera->width > camera->height ? camera->width : camera->height) / 12;
+    int side = (camera->width > camera->height ? camera->width : camera->height) / 16;
     side = (int)min_of(side, sqrt((double)n_segments));
     return side < LEAST ? LEAST : side > MOST ? MOST : side;
 }
