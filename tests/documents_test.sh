@@ -82,11 +82,13 @@ of at most 2 of its own radii @ vesseltree.h @ #define BLEND_REACH 2
 1 % of the one weighing as much as 4.3° of the other @ fit_blob.c @ #define ANGLE 13.0
 it is at most `1.05 exp(2 - 2 D^2)` @ kernel_blob.h @ #define ENVELOPE 1.05f
 nowhere below -0.0085 @ kernel_blob.h @ #define DIP 0.0085f
-line is at most 36 / r² @ kernel_blob.h @ #define CURVED_NEAR_END 36.0f
-18.5 / r² where the line stays @ kernel_blob.h @ #define CURVED_NEAR_AXIS 18.5f
-farther than 1.068 r from both ends @ kernel_blob.h @ #define NEAR_END 1.068f
-5.8 / r² where it stays farther than @ kernel_blob.h @ #define CURVED_FAR 5.8f
-farther than 1.191 r from the segment @ kernel_blob.h @ #define NEAR_AXIS 1.191f
+1/2 + 0.62 y of it y r within an end @ kernel_blob.h @ #define INWARDS 0.62f
+the largest of 37.5 (1 @ kernel_blob.h @ #define NEAR_END_CURVED 37.5f
+(1 - e² / 1.06²) @ kernel_blob.h @ #define NEAR_END_WIDTH 1.06f
+18.9 (1 - d² @ kernel_blob.h @ #define NEAR_AXIS_CURVED 18.9f
+/ 1.21²) @ kernel_blob.h @ #define NEAR_AXIS_WIDTH 1.21f
+6.8 (1 - d² / @ kernel_blob.h @ #define FAR_CURVED 6.8f
+1.675²) and 0 @ kernel_blob.h @ #define FAR_WIDTH 1.675f
 p from 24 to 96 @ fit_blob.c @ for (double power = 24; power <= 96; power *= 2)
 END
 }
