@@ -624,8 +624,8 @@ static void boxes_hold_the_axes_of_vessels(void **state)
         RasterView view =
             rasterview_of_camera(&staged.scene.view.camera, staged.scene.geometry.bounds, 2);
         view.light = true;
-        view.tile_columns = (TileSpan){0, (WIDTH - 1) / TILE_SIDE};
-        view.tile_rows = (TileSpan){0, (HEIGHT - 1) / TILE_SIDE};
+        view.listed_columns = (TileSpan){0, (WIDTH - 1) / TILE_SIDE};
+        view.listed_rows = (TileSpan){0, (HEIGHT - 1) / TILE_SIDE};
         RasterBins *bins;
         assert_int_equal(rasterbins_new(&staged.scene.geometry, &view, 2, &bins, NULL), STATUS_OK);
         int held = 0;
@@ -706,10 +706,10 @@ static bool tiles_see_capsule(const RasterView *view, Random *random, Vec3 middl
         at = vec3_add_scaled(at, vec3_normalized(point(random, 1)), radius);
         double i_at = (at.x / at.z - view->left) / view->step_x;
         double j_at = (at.y / at.z - view->top) / view->step_y;
-        if (at.z > 0 && i_at >= view->tile_columns.first * TILE_SIDE - 0.5 &&
-            i_at < (view->tile_columns.last + 1) * TILE_SIDE - 0.5 &&
-            j_at >= view->tile_rows.first * TILE_SIDE - 0.5 &&
-            j_at < (view->tile_rows.last + 1) * TILE_SIDE - 0.5)
+        if (at.z > 0 && i_at >= view->listed_columns.first * TILE_SIDE - 0.5 &&
+            i_at < (view->listed_columns.last + 1) * TILE_SIDE - 0.5 &&
+            j_at >= view->listed_rows.first * TILE_SIDE - 0.5 &&
+            j_at < (view->listed_rows.last + 1) * TILE_SIDE - 0.5)
             return true;
     }
     return false;
@@ -725,8 +725,8 @@ static void in_perspective_capsules_beside_the_tiles_are_left_out(void **state)
                              .step_y = -0.019,
                              .columns = 80,
                              .rows = 80,
-                             .tile_columns = {2, 5},
-                             .tile_rows = {3, 9}};
+                             .listed_columns = {2, 5},
+                             .listed_rows = {3, 9}};
     Random random;
     random_seed(&random, 57);
     int left_out = 0;

@@ -32,6 +32,12 @@ typedef struct SharedLight {
     float *parts[VIEW_MAX_LIGHTS]; /* likewise of each light; NULL: it is no area light */
 } SharedLight;
 
+/* Where a place is, mm from SharedLight.origin. */
+static inline Vec3 pixelplace_point(const PixelPlace *place)
+{
+    return vec3((double)place->at[0], (double)place->at[1], (double)place->at[2]);
+}
+
 /* Whether b is of the surface that a is of: of the same kind, and each within 5 / 4 of a pixel's
  * width of the other's tangent plane. */
 static inline bool places_are_of_one(const PixelPlace *a, const PixelPlace *b)

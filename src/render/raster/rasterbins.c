@@ -209,8 +209,8 @@ Status rasterbins_new(const Geometry *geometry, const RasterView *view, int thre
     bins->tile_columns = (view->columns + TILE_SIDE - 1) / TILE_SIDE;
     bins->tile_rows = (view->rows + TILE_SIDE - 1) / TILE_SIDE;
     if (!view->light) {
-        bins->view.tile_columns = (TileSpan){0, bins->tile_columns - 1};
-        bins->view.tile_rows = (TileSpan){0, bins->tile_rows - 1};
+        bins->view.listed_columns = (TileSpan){0, bins->tile_columns - 1};
+        bins->view.listed_rows = (TileSpan){0, bins->tile_rows - 1};
     }
     Status status = make_bins(bins, threads, err);
     if (status != STATUS_OK) {

@@ -66,7 +66,7 @@ static Interval perspective_range(const RasterItem *item, const RasterSlab *slab
 
 static TileSpan columns_of(const RasterView *view, Interval across)
 {
-    return tiles_common(tiles_within(across, view->stray, view->columns), view->tile_columns);
+    return tiles_common(tiles_within(across, view->stray, view->columns), view->listed_columns);
 }
 
 /* ---- boxes ----------------------------------------------------------------------------------- */
@@ -162,7 +162,7 @@ static inline bool is_beyond(double at, double z, double radius, double pixel, d
 /* Whether it is beside all tiles of a perspective view. */
 static bool is_beside(const RasterView *view, Vec3 middle, double radius)
 {
-    const TileSpan *columns = &view->tile_columns, *rows = &view->tile_rows;
+    const TileSpan *columns = &view->listed_columns, *rows = &view->listed_rows;
     double left = columns->first * TILE_SIDE - 1, right = (columns->last + 1) * TILE_SIDE;
     double top = rows->first * TILE_SIDE - 1, bottom = (rows->last + 1) * TILE_SIDE;
     return is_beyond(middle.x, middle.z, radius, left, view->left, view->step_x, false) ||
@@ -193,7 +193,7 @@ void rasterreach_set(const RasterView *view, RasterItem *item)
     TileSpan rows = NOWHERE, columns = NOWHERE;
     if (!is_behind(item)) {
         Interval across = whole_pixels(view, item, true), down = whole_pixels(view, item, false);
-        rows = tiles_common(tiles_within(down, view->stray, view->rows), view->tile_rows);
+        rows = tiles_common(tiles_within(down, view->stray, view->rows), view->listed_rows);
         columns = columns_of(view, across);
         if (columns.first > columns.last)
             rows = NOWHERE;

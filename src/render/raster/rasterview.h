@@ -15,8 +15,9 @@ typedef struct RasterView {
     double step_x, step_y; /* from one pixel to the next to the right (> 0) and below (< 0) */
     double per_x, per_y;   /* 1 / step, set by rasterbins_new */
     int columns, rows;     /* pixels */
-    TileSpan tile_columns, tile_rows; /* that are drawn or asked about; set by rasterbins_new, but
-                                       * in the view of a light */
+    TileSpan listed_columns, listed_rows; /* of tiles: those whose lists are not left empty. All of
+                                           * a camera's, set by rasterbins_new; of a light's those
+                                           * that places lie in, set before */
     double stray;    /* how far samples lie off the middles of their pixels, in pixels */
     double z_middle; /* depths in single precision are relative to it, mm */
     bool many;  /* primitives, set by rasterbins_new: those that no sample sees are looked for */

@@ -30,12 +30,13 @@ typedef struct SeenBlock {
                                                 * z with that */
     float radius[BEAM_BLOCK];
     float round[BEAM_BLOCK]; /* what its ends add to it where a beam is wider than it is */
-    /* The rectangle about it, turned as it is, in which the beams begin that it touches: the rows
-     * from `low` to `high` mm, and in a row at y from the middle what is in reach of both axes. */
+    /* The beams that it touches begin in a rectangle about it, turned as it is. That lies between
+     * `low` and `high` in y and within reach_x of the middle in x, and is what two strips have in
+     * common: one along the axis, one across it. In a row of the grid at y, mm from the middle,
+     * strip i lies within reach[i] of x = lean[i] y. */
     float low[BEAM_BLOCK], high[BEAM_BLOCK];
-    float lean[2][BEAM_BLOCK];  /* what the middle of either strip moves by in x with y */
-    float reach[2][BEAM_BLOCK]; /* half of what a row has of it in x */
-    float reach_x[BEAM_BLOCK];  /* half of all of the rectangle in x */
+    float lean[2][BEAM_BLOCK], reach[2][BEAM_BLOCK];
+    float reach_x[BEAM_BLOCK];
 } SeenBlock;
 
 /* Beams of one line, as its direction sees them. */

@@ -38,7 +38,9 @@ LANE_FN Lanes along_axis(const float axis[3], const float point[3][BEAM_BLOCK], 
            axis[2] * lanes_load(&point[2][first]);
 }
 
-/* Where a strip of the plane along (ux, uy), so wide to both sides, cuts rows. */
+/* Sets where a strip through the middles of capsules crosses the rows of the grid, which are `row`
+ * mm high. The strip runs along (ux, uy), `wide` mm to either side; what a row at y, mm from the
+ * middle, has of it lies within `reach` of x = lean y. */
 LANE_FN void set_strip(Lanes ux, Lanes uy, Lanes wide, float row, int strip, int i, SeenBlock *seen)
 {
     /* A strip along the rows holds all of them: the other bounds it. */
@@ -253,8 +255,8 @@ LANE_FN void cover_lanes(const Cover *cover, BeamGroup *beams, uint32_t lane)
     lanes_store(&beams->free[lane], lanes_select(ahead, free * (1.0f - covered), free));
 }
 
-/* Likewise of the sorted beams [first, end), and of others of their row that begin in the groups
- * with them. */
+/* Likewise of the sorted beams [first, end). Others of their row that stand in the first and the
+ * last LANES with them are worked out too, but lie out of the capsule's reach. */
 LANE_FN void cover_beams(const Cover *cover, BeamGroup *sorted, uint32_t first, uint32_t end)
 {
     for (uint32_t i = first / LANES * LANES; i < end; i += LANES)

@@ -35,7 +35,7 @@ typedef struct Share {
     const LightSources *from;
     SharedLight *light;
     bool is_soft;     /* whether area lights are asked */
-    uint32_t *pixels; /* owned; of each number */
+    uint32_t *pixels; /* owned; of each number, if area lights are asked */
     size_t n;         /* numbers */
     Run *runs;        /* owned; at most PLACES_AT_ONCE numbers each */
     size_t n_runs;
@@ -202,12 +202,6 @@ static inline PixelPlace place_of(const PlaceJob *job, const SightRow *sight, in
     return place;
 }
 
-/* Where a place is, mm from SharedLight.origin. */
-static inline Vec3 point_of(const PixelPlace *place)
-{
-    return vec3((double)place->at[0], (double)place->at[1], (double)place->at[2]);
-}
-
 static void set_places(size_t number, int worker, void *context)
 {
     (void)worker;
@@ -224,9 +218,10 @@ static void set_places(size_t number, int worker, void *context)
             uint32_t to = job->next[number][set_of_pixel(job->share, column, light->first + row)]++;
             light->places[to] = place_of(job, &sight, column, row);
             light->numbers[pixel] = to;
+            if (!job->share->is_soft)
+                continue;
             job->share->pixels[to] = (uint32_t)pixel;
-            if (job->share->is_soft)
-                box = box_with_ball(box, point_of(&light->places[to]), 0);
+            box = box_with_ball(box, pixelplace_point(&light->places[to]), 0);
         }
     }
     job->boxes[number] = box;
@@ -343,7 +338,7 @@ static bool point_is_of(const Light *light, int point, int set)
 static Vec3 off_surface(const Share *share, const PixelPlace *place)
 {
     Vec3 normal = {(double)place->normal[0], (double)place->normal[1], (double)place->normal[2]};
-    Vec3 at = point_of(place);
+    Vec3 at = pixelplace_point(place);
     Vec3 eye = vec3_sub(share->drawing->view->camera.location, share->light->origin);
     Vec3 sight = vec3_sub(at, eye);
     float off = sqrtf((float)vec3_dot(at, at)) + sqrtf((float)vec3_dot(sight, sight));

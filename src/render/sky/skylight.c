@@ -131,7 +131,7 @@ static float above_ground(const Sky *sky, const PixelPlace *place)
     const Ground *ground = &sky->drawing->view->ground;
     if (!ground->present || place->kind == PLACE_GROUND)
         return 0;
-    Vec3 at = vec3((double)place->at[0], (double)place->at[1], (double)place->at[2]);
+    Vec3 at = pixelplace_point(place);
     double above = vec3_dot(ground->normal, vec3_add(sky->light->origin, at)) - ground->offset_mm;
     return (float)((above > 0) - (above < 0));
 }
