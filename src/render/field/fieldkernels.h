@@ -17,16 +17,13 @@ typedef enum PlaceState {
     PLACE_UNSURE /* within the margin of the arithmetic */
 } PlaceState;
 
-/* A kernel reads so many places more than there are, as many as may be left of its lanes. */
-enum { PLACES_BEHIND = 15, PLACES_ROOM = LIGHT_MOST_PLACES + PLACES_BEHIND };
-
 /* Places in a tile of a light's view, whose lines of sight lead to the light. Behind the last stand
  * PLACES_BEHIND copies of it. */
 typedef struct FieldPlaces {
     int n;
-    float x[PLACES_ROOM], y[PLACES_ROOM]; /* as those of a FieldTile */
-    double z[PLACES_ROOM];                /* from where on something is in the way */
-    uint8_t state[LIGHT_MOST_PLACES];     /* PlaceState, the answer */
+    float *x, *y;                     /* as those of a FieldTile */
+    double *z;                        /* from where on something is in the way */
+    uint8_t state[LIGHT_MOST_PLACES]; /* PlaceState, the answer */
 } FieldPlaces;
 
 /* Says of places what state they are in; x and y of the tile are not read. A place within 0.2 % of

@@ -190,26 +190,30 @@ static FieldTile tile_of(const FieldShadow *shadow, int number, LocalGroups *gro
                        .z_min = HUGE_VAL};
 }
 
-/* Sets the places of a request, and from where on vessels matter, but for those outside the tile,
- * and so outside the view: these see the light. Sets where the answers about them go. */
-static void set_places(FieldQueue *queue, const LightRequest *request, FieldTile *tile,
-                       uint32_t *answers)
+/* Sets the places of a request, in its own memory, and from where on vessels matter, but for those
+ * outside the tile, and so outside the view: these see the light. */
+static void set_places(FieldQueue *queue, const LightRequest *request, FieldTile *tile)
 {
     FieldPlaces *places = &queue->places;
+    AskedPlaces *asked = request->places;
     const LightAim *aim = &queue->shadow->aim;
+    float half_x = (float)fabs(0.50005 / aim->per_x), half_y = (float)fabs(0.50005 / aim->per_y);
     int n = 0;
     for (int i = 0; i < request->n; i++) {
-        const AskedPlace *asked = &request->places[i];
-        double x = asked->x - tile->middle_x, y = asked->y - tile->middle_y;
-        if (!(fabs(x * aim->per_x) <= 0.50005 && fabs(y * aim->per_y) <= 0.50005))
+        float x = asked->x[i], y = asked->y[i];
+        double z = -(asked->z[i] + aim->z_middle);
+        if (!(fabsf(x) <= half_x && fabsf(y) <= half_y))
             continue;
-        answers[n] = queue->answer[asked->call] + asked->sample;
-        places->x[n] = (float)x;
-        places->y[n] = (float)y;
-        places->z[n] = -(asked->z + aim->z_middle);
-        tile->z_min = min_of(tile->z_min, places->z[n]);
+        asked->x[n] = x;
+        asked->y[n] = y;
+        asked->z[n] = z;
+        asked->from[n] = asked->from[i];
+        tile->z_min = min_of(tile->z_min, z);
         n++;
     }
+    places->x = asked->x;
+    places->y = asked->y;
+    places->z = asked->z;
     places->n = n;
     for (int i = n; n > 0 && i < n + PLACES_BEHIND; i++) {
         places->x[i] = places->x[n - 1];
@@ -246,14 +250,13 @@ static Status answer_tile(FieldQueue *queue, const LightRequest *request, Err *e
     const FieldShadow *shadow = queue->shadow;
     FieldPlaces *places = &queue->places;
     FieldSpace *space = &queue->space;
-    uint32_t answers[LIGHT_MOST_PLACES];
     FieldTile tile = tile_of(shadow, request->tile, space->groups);
     const size_t *list = list_of(shadow, request->tile);
     const uint32_t *segments = shadow->rows[request->tile / shadow->view.tiles].items + list[0];
     if (request->next >= 0)
         __builtin_prefetch(list_of(shadow, request->next));
     fieldterms_fetch(shadow->lists.segments, segments, list[1] - list[0]);
-    set_places(queue, request, &tile, answers);
+    set_places(queue, request, &tile);
     if (list[0] == list[1] || places->n == 0)
         return STATUS_OK;
     TRY(fieldspace_reserve(space, list[1] - list[0], err));
@@ -263,7 +266,9 @@ static Status answer_tile(FieldQueue *queue, const LightRequest *request, Err *e
     for (int i = 0; i < places->n; i++) {
         if (places->state[i] == PLACE_UNSURE)
             TRY(decide(queue, &tile, i, err));
-        queue->shadowed[answers[i]] = places->state[i] == PLACE_DARK;
+        uint32_t from = request->places->from[i];
+        queue->shadowed[queue->answer[from / TILE_SAMPLES] + from % TILE_SAMPLES] =
+            places->state[i] == PLACE_DARK;
     }
     return STATUS_OK;
 }

@@ -42,8 +42,8 @@ typedef struct QueryBlock {
 LANE_TARGET static bool decide_query(const NearItem *near, const RasterTile *tile,
                                      const ShadowQueries *queries, int query)
 {
-    const AskedPlace *place = &queries->places[query];
-    double z = raster_decide(tile->bins, near->number, place->x, place->y, NULL);
+    double z = raster_decide(tile->bins, near->number, tile->x + (double)queries->x[query],
+                             tile->y + (double)queries->y[query], NULL);
     return z - tile->z_middle < (double)queries->z[query];
 }
 

@@ -10,15 +10,13 @@
 /* Lines of sight of a light through places, all in one tile of its view, and depths on them. */
 typedef struct ShadowQueries {
     int n;
-    const AskedPlace *places;
-    float x[LIGHT_MOST_PLACES],
-        y[LIGHT_MOST_PLACES];   /* in the plane of the view, less the tile's middle */
-    float z[LIGHT_MOST_PLACES]; /* less z_middle */
+    float *x, *y;         /* in the plane of the view, less the tile's middle; PLACES_ROOM */
+    float z[PLACES_ROOM]; /* less z_middle */
     /* Number of the primitive whose surface the place lies on, as in RasterHits. If that is a
      * sphere or a cylinder whose hit was found in single precision, it is not tested as a blocker
      * of this place: rounding would let it shadow itself. */
-    uint32_t item[LIGHT_MOST_PLACES];
-    uint8_t covered[LIGHT_MOST_PLACES]; /* 1 where an item is seen before that depth, else 0 */
+    uint32_t item[PLACES_ROOM];
+    uint8_t covered[PLACES_ROOM]; /* 1 where an item is seen before that depth, else 0 */
 } ShadowQueries;
 
 typedef struct RasterKernels {

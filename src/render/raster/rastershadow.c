@@ -226,8 +226,7 @@ void rastershadow_free(RasterShadow *shadow)
 struct RasterQueue {
     const RasterShadow *shadow;
     LightQueue *places;
-    const uint32_t *items[LIGHT_BATCH]; /* of each call */
-    uint32_t nowhere[TILE_SAMPLES];     /* items of places of which they are not known */
+    const uint32_t *items[LIGHT_BATCH]; /* of each call; NULL: of none, as they are not known */
     uint32_t answer[LIGHT_BATCH];
     const RasterKernels *kernels;
     uint8_t *shadowed;
@@ -238,7 +237,6 @@ Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out, Err *err)
 {
     TRY(mem_calloc(out, 1, sizeof **out, "shadows", err));
     (*out)->shadow = shadow;
-    memset((*out)->nowhere, 0xff, sizeof(*out)->nowhere); /* RASTER_NOTHING */
     return lightqueue_new(&shadow->aim, &(*out)->places, err);
 }
 
@@ -256,7 +254,7 @@ void rasterqueue_ask(RasterQueue *queue, const TileKernels *kernels, const SeenP
     if (!wanted)
         return;
     int call = lightqueue_ask(queue->places, kernels, places, wanted);
-    queue->items[call] = items ? items : queue->nowhere;
+    queue->items[call] = items;
     queue->answer[call] = answer;
 }
 
@@ -280,18 +278,21 @@ static void fetch_list(const RasterShadow *shadow, int number)
         __builtin_prefetch(tile.list + word);
 }
 
-static void set_queries(RasterQueue *queue, const RasterTile *tile, const LightRequest *request)
+static void set_queries(RasterQueue *queue, const LightRequest *request)
 {
     ShadowQueries *queries = &queue->queries;
-    queries->places = request->places;
+    AskedPlaces *places = request->places;
+    queries->x = places->x;
+    queries->y = places->y;
     queries->n = request->n;
-    for (int i = 0; i < request->n; i++) {
-        const AskedPlace *place = &request->places[i];
-        queries->x[i] = (float)(place->x - tile->x);
-        queries->y[i] = (float)(place->y - tile->y);
-        queries->z[i] = (float)place->z;
-        queries->item[i] = queue->items[place->call][place->sample];
-    }
+    for (int i = 0; i < request->n; i++)
+        queries->z[i] = (float)places->z[i];
+    if (queue->items[0])
+        for (int i = 0; i < request->n; i++)
+            queries->item[i] =
+                queue->items[places->from[i] / TILE_SAMPLES][places->from[i] % TILE_SAMPLES];
+    else
+        memset(queries->item, 0xff, (size_t)request->n * sizeof *queries->item);
 }
 
 static void test_tile(const LightRequest *request, void *context)
@@ -301,11 +302,12 @@ static void test_tile(const LightRequest *request, void *context)
     RasterTile tile = tile_of(queue->shadow, request->tile);
     if (request->next >= 0)
         fetch_list(queue->shadow, request->next);
-    set_queries(queue, &tile, request);
+    set_queries(queue, request);
     queue->kernels->cover(&tile, queries);
-    for (int i = 0; i < queries->n; i++) {
-        const AskedPlace *place = &request->places[i];
-        queue->shadowed[queue->answer[place->call] + place->sample] = queries->covered[i];
+    uint8_t *shadowed = queue->shadowed;
+    for (int i = 0; i < request->n; i++) {
+        uint32_t from = request->places->from[i];
+        shadowed[queue->answer[from / TILE_SAMPLES] + from % TILE_SAMPLES] = queries->covered[i];
     }
 }
 

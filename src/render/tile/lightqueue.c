@@ -19,9 +19,9 @@ struct LightQueue {
     Request requests[LIGHT_MOST_PLACES];
     int tiles[LIGHT_MOST_PLACES]; /* of the light, that are asked, in the order of their first
                                    * request */
-    AskedPlace asked[LIGHT_MOST_PLACES];
-    AskedPlace taken[LIGHT_MOST_PLACES]; /* of the tile that is shown */
-    int *last; /* of each tile of the light, the last request there, or -1 */
+    AskedPlaces asked;
+    AskedPlaces taken; /* of the tile that is shown */
+    int *last;         /* of each tile of the light, the last request there, or -1 */
 };
 
 Status lightqueue_new(const LightAim *aim, LightQueue **out, Err *err)
@@ -49,13 +49,17 @@ void lightqueue_free(LightQueue *queue)
 /* Asks about the places whose bits are set, and returns how many they are. */
 static int append_places(LightQueue *queue, const AimedPlaces *aimed, int call, uint64_t places)
 {
-    int first = queue->n_asked;
-    for (; places; places &= places - 1) {
+    AskedPlaces *asked = &queue->asked;
+    int first = queue->n_asked, n = first;
+    for (; places; places &= places - 1, n++) {
         int sample = __builtin_ctzll(places);
-        queue->asked[queue->n_asked++] = (AskedPlace){
-            aimed->x[sample], aimed->y[sample], aimed->z[sample], (uint32_t)call, (uint32_t)sample};
+        asked->x[n] = aimed->x[sample];
+        asked->y[n] = aimed->y[sample];
+        asked->z[n] = aimed->z[sample];
+        asked->from[n] = (uint32_t)(TILE_SAMPLES * call + sample);
     }
-    return queue->n_asked - first;
+    queue->n_asked = n;
+    return n - first;
 }
 
 int lightqueue_ask(LightQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
@@ -84,8 +88,11 @@ static int take_places(LightQueue *queue, int tile)
     int n = 0;
     for (int i = queue->last[tile]; i >= 0; i = queue->requests[i].before) {
         const Request *request = &queue->requests[i];
-        memcpy(&queue->taken[n], &queue->asked[request->first],
-               (size_t)request->n * sizeof *queue->taken);
+        const size_t first = (size_t)request->first, count = (size_t)request->n;
+        memcpy(&queue->taken.x[n], &queue->asked.x[first], count * sizeof(float));
+        memcpy(&queue->taken.y[n], &queue->asked.y[first], count * sizeof(float));
+        memcpy(&queue->taken.z[n], &queue->asked.z[first], count * sizeof(double));
+        memcpy(&queue->taken.from[n], &queue->asked.from[first], count * sizeof(uint32_t));
         n += request->n;
     }
     queue->last[tile] = -1;
@@ -97,7 +104,7 @@ void lightqueue_visit(LightQueue *queue, LightVisitor *visit, void *context)
     for (int i = 0; i < queue->n_tiles; i++) {
         LightRequest request = {.tile = queue->tiles[i],
                                 .next = i + 1 < queue->n_tiles ? queue->tiles[i + 1] : -1,
-                                .places = queue->taken,
+                                .places = &queue->taken,
                                 .n = take_places(queue, queue->tiles[i])};
         visit(&request, context);
     }

@@ -21,16 +21,22 @@ void lightqueue_free(LightQueue *queue);
 int lightqueue_ask(LightQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
                    uint64_t wanted);
 
-/* A place as the light sees it, as AimedPlaces have it, and which of whose call it is. */
-typedef struct AskedPlace {
-    double x, y, z;
-    uint32_t call, sample; /* calls are counted since the last lightqueue_visit */
-} AskedPlace;
+/* Kernels may read and write so many places more than there are. */
+enum { PLACES_BEHIND = 15, PLACES_ROOM = LIGHT_MOST_PLACES + PLACES_BEHIND };
 
-/* What one tile of the light is asked: places[n]. `next` is the tile that comes after it, or -1. */
+/* Places as the light sees them [AimedPlaces], and which of whose call each is: TILE_SAMPLES call +
+ * i, calls counted since the last lightqueue_visit. */
+typedef struct AskedPlaces {
+    float x[PLACES_ROOM], y[PLACES_ROOM];
+    double z[PLACES_ROOM];
+    uint32_t from[PLACES_ROOM];
+} AskedPlaces;
+
+/* What one tile of the light is asked: n places, which may be overwritten. `next` is the tile that
+ * comes after it, or -1. */
 typedef struct LightRequest {
     int tile, next; /* row by row */
-    const AskedPlace *places;
+    AskedPlaces *places;
     int n;
 } LightRequest;
 

@@ -52,9 +52,9 @@ typedef struct LightAim {
 
 /* Places as the light sees them. */
 typedef struct AimedPlaces {
-    double x[TILE_SAMPLES], y[TILE_SAMPLES];
-    double z[TILE_SAMPLES];     /* before which a blocker must stand, less z_middle */
-    int32_t tile[TILE_SAMPLES]; /* row by row */
+    float x[TILE_SAMPLES], y[TILE_SAMPLES]; /* in the view's plane, from the middle of the tile */
+    double z[TILE_SAMPLES];                 /* before which a blocker must stand, less z_middle */
+    int32_t tile[TILE_SAMPLES];             /* row by row */
 } AimedPlaces;
 
 typedef struct TileKernels {
