@@ -28,10 +28,10 @@ static void add_shared(const Drawing *drawing, double i, double j, double t, boo
     PixelPlace seen =
         sharedlight_place(shared, on_ground ? PLACE_GROUND : PLACE_VESSEL, at->point, at->normal,
                           sharedlight_pixel_mm(&drawing->view->camera, t));
-    uint32_t number = sharedlight_number(shared, i, j, &seen);
-    at->open = (double)sharedlight_open(shared, number);
+    uint32_t pixel = sharedlight_pixel(shared, i, j, &seen);
+    at->open = (double)sharedlight_open(shared, pixel);
     for (size_t k = 0; k < drawing->view->n_lights; k++)
-        parts[k] = sharedlight_part(shared, k, number);
+        parts[k] = sharedlight_part(shared, k, pixel);
     at->parts = parts;
 }
 

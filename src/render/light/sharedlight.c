@@ -16,34 +16,35 @@ static float distance2(const PixelPlace *a, const PixelPlace *b)
     return sum;
 }
 
-/* That of the window about (column, row) that is nearest to what is seen. */
-static uint32_t nearest_number(const SharedLight *shared, int column, int row,
-                               const PixelPlace *seen)
+/* That of the window about (column, row) whose place is nearest to what is seen. */
+static uint32_t nearest_pixel(const SharedLight *shared, int column, int row,
+                              const PixelPlace *seen)
 {
     uint32_t nearest = PLACE_NONE;
     float least = HUGE_VALF;
     for (int j = row - SEARCHED; j <= row + SEARCHED; j++)
         for (int i = column - SEARCHED; i <= column + SEARCHED; i++) {
-            uint32_t number = sharedlight_at(shared, i, j);
-            if (number == PLACE_NONE || shared->places[number].kind != seen->kind)
+            uint32_t pixel = sharedlight_at(shared, i, j);
+            if (pixel == PLACE_NONE)
                 continue;
-            float far = distance2(&shared->places[number], seen);
-            if (far < least) {
+            const PixelPlace *place = &shared->places[shared->numbers[pixel]];
+            float far = distance2(place, seen);
+            if (place->kind == seen->kind && far < least) {
                 least = far;
-                nearest = number;
+                nearest = pixel;
             }
         }
     return nearest;
 }
 
-uint32_t sharedlight_number(const SharedLight *shared, double i, double j, const PixelPlace *seen)
+uint32_t sharedlight_pixel(const SharedLight *shared, double i, double j, const PixelPlace *seen)
 {
     int column = (int)floor((i + 0.5) / shared->side);
     int row = (int)floor((j + 0.5) / shared->side);
     uint32_t own = sharedlight_at(shared, column, row);
-    if (own != PLACE_NONE && places_are_of_one(&shared->places[own], seen))
+    if (own != PLACE_NONE && places_are_of_one(&shared->places[shared->numbers[own]], seen))
         return own;
-    return nearest_number(shared, column, row, seen);
+    return nearest_pixel(shared, column, row, seen);
 }
 
 PixelPlace sharedlight_place(const SharedLight *shared, PlaceKind kind, Vec3 point, Vec3 normal,

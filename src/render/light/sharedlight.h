@@ -28,7 +28,8 @@ typedef struct SharedLight {
     uint32_t
         *numbers; /* owned, as all that follows; of each pixel, row by row, that of its place */
     PixelPlace *places;            /* of each number */
-    float *open;                   /* of each number the part of the sky that is seen; NULL: all */
+    float *open;                   /* of each pixel that sees something, the part of the sky that
+                                    * its place sees; NULL: all */
     float *parts[VIEW_MAX_LIGHTS]; /* likewise of each light; NULL: it is no area light */
 } SharedLight;
 
@@ -54,20 +55,21 @@ static inline bool places_are_of_one(const PixelPlace *a, const PixelPlace *b)
     return (fabsf(off_a) < most) & (fabsf(off_b) < most);
 }
 
-/* The number of what the centre of a pixel sees, counted in the picture; PLACE_NONE, also outside
- * the rows that there are. */
+/* The pixel at (column, row) of the picture, counted from the first of the rows that there are;
+ * PLACE_NONE outside these, and where nothing is seen. */
 static inline uint32_t sharedlight_at(const SharedLight *shared, int column, int row)
 {
     row -= shared->first;
     if (column < 0 || column >= shared->width || row < 0 || row >= shared->rows)
         return PLACE_NONE;
-    return shared->numbers[(size_t)row * (size_t)shared->width + (size_t)column];
+    size_t pixel = (size_t)row * (size_t)shared->width + (size_t)column;
+    return shared->numbers[pixel] == PLACE_NONE ? PLACE_NONE : (uint32_t)pixel;
 }
 
-/* The number of the place whose light the sample at (i, j) of the drawing has, which sees `seen`:
- * that of the pixel that it lies in if that is of its surface, else the one nearest to it in space
- * of those no farther than two pixels, of one kind with it; PLACE_NONE if there is none. */
-uint32_t sharedlight_number(const SharedLight *shared, double i, double j, const PixelPlace *seen);
+/* The pixel whose light the sample at (i, j) of the drawing has, which sees `seen`: that which it
+ * lies in if that shows its surface, else of those no farther than two pixels, whose places are of
+ * one kind with it, the one whose place is nearest to it; PLACE_NONE if there is none. */
+uint32_t sharedlight_pixel(const SharedLight *shared, double i, double j, const PixelPlace *seen);
 
 /* A place at a point of the world. `mm_a_pixel` as in PixelPlace.size. */
 PixelPlace sharedlight_place(const SharedLight *shared, PlaceKind kind, Vec3 point, Vec3 normal,
@@ -76,18 +78,18 @@ PixelPlace sharedlight_place(const SharedLight *shared, PlaceKind kind, Vec3 poi
 /* The width, mm, of a pixel at a distance along the camera's ray. */
 double sharedlight_pixel_mm(const Camera *camera, double t);
 
-/* What the place shares: the part of the sky that it sees, and that of a light, or -1 of one that
- * is no area light that casts shadows. PLACE_NONE: all of both. */
-static inline float sharedlight_open(const SharedLight *shared, uint32_t number)
+/* What samples share with a pixel: the part of the sky that its place sees, and that of a light, or
+ * -1 of one that is no area light that casts shadows. PLACE_NONE: all of both. */
+static inline float sharedlight_open(const SharedLight *shared, uint32_t pixel)
 {
-    return shared->open && number != PLACE_NONE ? shared->open[number] : 1;
+    return shared->open && pixel != PLACE_NONE ? shared->open[pixel] : 1;
 }
 
-static inline float sharedlight_part(const SharedLight *shared, size_t light, uint32_t number)
+static inline float sharedlight_part(const SharedLight *shared, size_t light, uint32_t pixel)
 {
     if (!shared->parts[light])
         return -1;
-    return number != PLACE_NONE ? shared->parts[light][number] : 1;
+    return pixel != PLACE_NONE ? shared->parts[light][pixel] : 1;
 }
 
 void sharedlight_free(SharedLight *shared);

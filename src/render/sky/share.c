@@ -35,7 +35,7 @@ typedef struct Share {
     const LightSources *from;
     SharedLight *light;
     bool is_soft;     /* whether area lights are asked */
-    uint32_t *pixels; /* owned; of each number, if area lights are asked */
+    uint32_t *pixels; /* owned; of each number, if area lights are asked, as `reach` */
     size_t n;         /* numbers */
     Run *runs;        /* owned; at most PLACES_AT_ONCE numbers each */
     size_t n_runs;
@@ -206,21 +206,24 @@ static void set_places(size_t number, int worker, void *context)
 {
     (void)worker;
     const PlaceJob *job = context;
-    const SharedLight *light = job->share->light;
+    const Share *share = job->share;
+    const SharedLight *light = share->light;
     const Square square = square_at(light, number, job->first, job->rows);
     Box box = box_empty();
     for (int row = square.first_row; row < square.end_row; row++) {
-        const SightRow sight = sight_of_row(job->share, light->first + row);
+        const SightRow sight = sight_of_row(share, light->first + row);
         for (int column = square.first_column; column < square.end_column; column++) {
             size_t pixel = pixel_at(light, column, row);
+            if (share->is_soft)
+                share->reach[pixel] = light->numbers[pixel] == PLACE_GROUND ? ON_GROUND : 0;
             if (light->numbers[pixel] == PLACE_NONE)
                 continue;
-            uint32_t to = job->next[number][set_of_pixel(job->share, column, light->first + row)]++;
+            uint32_t to = job->next[number][set_of_pixel(share, column, light->first + row)]++;
             light->places[to] = place_of(job, &sight, column, row);
             light->numbers[pixel] = to;
-            if (!job->share->is_soft)
+            if (!share->is_soft)
                 continue;
-            job->share->pixels[to] = (uint32_t)pixel;
+            share->pixels[to] = (uint32_t)pixel;
             box = box_with_ball(box, pixelplace_point(&light->places[to]), 0);
         }
     }
@@ -278,7 +281,10 @@ static Status make_places(Share *share, Err *err)
     Status status;
     TRY(mem_alloc(&light->numbers, pixels, sizeof *light->numbers, "places", err));
     TRY(mem_alloc(&light->places, pixels, sizeof *light->places, "places", err));
-    TRY(mem_alloc(&share->pixels, pixels, sizeof *share->pixels, "places", err));
+    if (share->is_soft) {
+        TRY(mem_alloc(&share->pixels, pixels, sizeof *share->pixels, "places", err));
+        TRY(mem_alloc(&share->reach, pixels, sizeof *share->reach, "places", err));
+    }
     TRY(mem_calloc(&share->runs, SETS * squares_in(light->rows) + pixels / PLACES_AT_ONCE,
                    sizeof *share->runs, "places", err));
     share->asked = box_empty();
@@ -353,13 +359,14 @@ static bool is_facing(const Share *share, const PixelPlace *place, Vec3 point)
     Vec3 towards = vec3_sub(light->location, light->parallel ? light->target : point);
     const double least = LEAST_LIT_COSINE * LEAST_LIT_COSINE;
     double along = vec3_dot(normal, towards);
-    return along > 0 && along * along >= least * vec3_dot(towards, towards);
+    /* In one go, as in places_are_of_one. */
+    return (along > 0) & (along * along >= least * vec3_dot(towards, towards));
 }
 
 static void set_reach(const Share *share, size_t number, int seen)
 {
-    bool on_ground = share->light->places[number].kind == PLACE_GROUND;
-    share->reach[share->pixels[number]] = (uint16_t)(seen | (on_ground ? ON_GROUND : 0));
+    uint16_t *reach = &share->reach[share->pixels[number]];
+    *reach = (uint16_t)((*reach & ON_GROUND) | seen);
 }
 
 /* How many points of the set reach the place, by rays. */
@@ -566,27 +573,31 @@ static Status find_reach(Share *share, Err *err)
     return STATUS_OK;
 }
 
-/* As sum_about, of a pixel that is none of the band's edge. Where all see as many points, whatever
- * these lie on, or all see the ground, which is one surface, places need not be looked at. */
-static int sum_within(const Share *share, int column, int row, int *parts)
+/* The sums about the pixels of a square's row whatever their surfaces are, and where these do not
+ * matter: where all see as many points, or all see the ground, which is one surface. */
+typedef struct RowSums {
+    uint16_t sums[SQUARE];
+    uint16_t is_one[SQUARE];
+} RowSums;
+
+/* Sets them for n pixels from `at` on, none of which lies at the band's edge. */
+static void sum_row(const uint16_t *at, int width, int n, RowSums *row)
 {
-    const int width = share->light->width;
-    const uint16_t *at = &share->reach[pixel_at(share->light, column, row)];
     const uint16_t *up = at - width, *down = at + width;
-    int differ = 0, all = *at;
-    for (int i = -1; i <= 1; i++) {
-        differ |= (up[i] ^ *at) | (at[i] ^ *at) | (down[i] ^ *at);
-        all &= up[i] & at[i] & down[i];
+    for (int i = 0; i < n; i++) {
+        const uint16_t about[3][3] = {{up[i - 1], up[i], up[i + 1]},
+                                      {at[i - 1], at[i], at[i + 1]},
+                                      {down[i - 1], down[i], down[i + 1]}};
+        unsigned differ = 0, all = ON_GROUND, sum = 0;
+        for (int k = 0; k < 9; k++) {
+            unsigned seen = about[k / 3][k % 3];
+            differ |= seen ^ at[i];
+            all &= seen;
+            sum += (seen & POINTS_SEEN) << (k / 3 % 2 + k % 3 % 2);
+        }
+        row->sums[i] = (uint16_t)sum;
+        row->is_one[i] = (uint16_t)((differ == 0) | (all != 0));
     }
-    *parts = 1;
-    if (differ == 0)
-        return *at & POINTS_SEEN;
-    if (!(all & ON_GROUND))
-        return sum_about(share, column, row, parts);
-    *parts = 16;
-    int middle = up[0] + 2 * at[0] + down[0];
-    return up[-1] + 2 * at[-1] + down[-1] + 2 * middle + up[1] + 2 * at[1] + down[1] -
-           *parts * ON_GROUND;
 }
 
 /* The part of the light's points that reaches each pixel of a square, by what its neighbours on its
@@ -597,19 +608,26 @@ static void gather_square(size_t index, int worker, void *context)
     const Share *share = context;
     const SharedLight *light = share->light;
     const Square square = square_at(light, index, 0, light->rows);
-    float points = (float)light_points(&share->drawing->view->lights[share->number]);
-    for (int row = square.first_row; row < square.end_row; row++)
+    const int first = square.first_column > 0 ? square.first_column : 1;
+    const int end = square.end_column < light->width ? square.end_column : light->width - 1;
+    const float points = (float)light_points(&share->drawing->view->lights[share->number]);
+    for (int row = square.first_row; row < square.end_row; row++) {
+        bool within = row > 0 && row < light->rows - 1;
+        RowSums sums;
+        if (within)
+            sum_row(&share->reach[pixel_at(light, first, row)], light->width, end - first, &sums);
         for (int column = square.first_column; column < square.end_column; column++) {
             size_t pixel = pixel_at(light, column, row);
-            int parts;
-            bool within =
-                column > 0 && column < light->width - 1 && row > 0 && row < light->rows - 1;
+            int i = column - first, sum, parts = 16;
             if (light->numbers[pixel] == PLACE_NONE)
                 continue;
-            int sum = (within ? sum_within : sum_about)(share, column, row, &parts);
-            light->parts[share->number][light->numbers[pixel]] =
-                (float)(sum * SETS) / ((float)parts * points);
+            if (within && column >= first && column < end && sums.is_one[i])
+                sum = sums.sums[i];
+            else
+                sum = sum_about(share, column, row, &parts);
+            light->parts[share->number][pixel] = (float)(sum * SETS) / ((float)parts * points);
         }
+    }
 }
 
 static Status share_lights(Share *share, Err *err)
@@ -618,11 +636,10 @@ static Status share_lights(Share *share, Err *err)
     SharedLight *light = share->light;
     size_t pixels = (size_t)light->width * (size_t)light->rows;
     int threads = share->drawing->params->threads;
-    TRY(mem_calloc(&share->reach, pixels, sizeof *share->reach, "lights", err));
     for (size_t i = 0; i < view->n_lights; i++) {
         if (!light_is_soft(&view->lights[i]))
             continue;
-        TRY(mem_calloc(&light->parts[i], share->n, sizeof *light->parts[i], "lights", err));
+        TRY(mem_alloc(&light->parts[i], pixels, sizeof *light->parts[i], "lights", err));
         share->number = (int)i;
         TRY(find_reach(share, err));
         threads_for(squares_in(light->width) * squares_in(light->rows), threads, gather_square,
@@ -656,7 +673,7 @@ Status share_light(const Drawing *drawing, const LightSources *from, SharedLight
         params->occlusion > 0 ? from->beams->origin : box_center(drawing->geometry->bounds);
     TRY_GOTO(make_places(&share, err));
     if (params->occlusion > 0)
-        TRY_GOTO(skylight_find(drawing, from->beams, share.n, share.light, err));
+        TRY_GOTO(skylight_find(drawing, from->beams, share.light, err));
     if (share.is_soft)
         TRY_GOTO(share_lights(&share, err));
     *out = share.light;

@@ -74,14 +74,11 @@ static int set_of(const Sky *sky, int column, int row)
     return sets[(sky->light->first / QUAD_SIDE + row) % 4][column % 4];
 }
 
-/* The number of the place in pixel k of a quad; PLACE_NONE. */
-static uint32_t place_in(const Sky *sky, int column, int row, int k)
+/* Pixel k of a quad, as sharedlight_at. */
+static uint32_t pixel_in(const Sky *sky, int column, int row, int k)
 {
-    const SharedLight *light = sky->light;
-    int x = column * QUAD_SIDE + k % QUAD_SIDE, y = row * QUAD_SIDE + k / QUAD_SIDE;
-    if (x >= light->width || y >= light->rows)
-        return PLACE_NONE;
-    return light->numbers[(size_t)y * (size_t)light->width + (size_t)x];
+    return sharedlight_at(sky->light, column * QUAD_SIDE + k % QUAD_SIDE,
+                          sky->light->first + row * QUAD_SIDE + k / QUAD_SIDE);
 }
 
 /* Whether a place that asks does so for another of its quad, too. */
@@ -115,8 +112,9 @@ static void list_askers(const Sky *sky, int column, int row, uint32_t *next)
     uint32_t *askers = askers_of(sky, column, row), n = 0;
     memset(askers, 0, sizeof(Askers));
     for (int k = 0; k < QUAD; k++) {
-        uint32_t number = place_in(sky, column, row, k);
-        bool asks = number != PLACE_NONE;
+        uint32_t pixel = pixel_in(sky, column, row, k);
+        bool asks = pixel != PLACE_NONE;
+        uint32_t number = asks ? sky->light->numbers[pixel] : PLACE_NONE;
         for (uint32_t i = 0; i < n && asks; i++)
             asks = !asks_for(&places[askers[i] - 1], &places[number]);
         if (asks)
@@ -328,17 +326,17 @@ static void gather_quad(const Sky *sky, int column, int row, uint32_t *next)
     (void)next;
     const uint32_t *askers = askers_of(sky, column, row);
     BeamAnswers answers[SETS];
-    const PixelPlace *gathered = NULL, *places = sky->light->places;
+    const PixelPlace *gathered = NULL;
     for (int k = 0; k < QUAD; k++) {
-        uint32_t number = place_in(sky, column, row, k);
-        if (number == PLACE_NONE)
+        uint32_t pixel = pixel_in(sky, column, row, k);
+        if (pixel == PLACE_NONE)
             continue;
-        const PixelPlace *asker = asker_of(sky, askers, &places[number]);
+        const PixelPlace *place = &sky->light->places[sky->light->numbers[pixel]];
+        const PixelPlace *asker = asker_of(sky, askers, place);
         if (asker != gathered)
             gather_answers(sky, asker, column, row, answers);
         gathered = asker;
-        sky->light->open[number] =
-            sky->kernels->open(sky->lines, answers, SETS, k, places[number].normal);
+        sky->light->open[pixel] = sky->kernels->open(sky->lines, answers, SETS, k, place->normal);
     }
 }
 
@@ -368,8 +366,7 @@ static void release(Sky *sky)
     free(sky->works);
 }
 
-Status skylight_find(const Drawing *drawing, const Beams *beams, size_t n, SharedLight *light,
-                     Err *err)
+Status skylight_find(const Drawing *drawing, const Beams *beams, SharedLight *light, Err *err)
 {
     Status status;
     Sky sky = {.drawing = drawing,
@@ -378,7 +375,8 @@ Status skylight_find(const Drawing *drawing, const Beams *beams, size_t n, Share
                .light = light,
                .columns = (light->width + QUAD_SIDE - 1) / QUAD_SIDE,
                .rows = (light->rows + QUAD_SIDE - 1) / QUAD_SIDE};
-    TRY_GOTO(mem_calloc(&light->open, n, sizeof *light->open, "occlusion", err));
+    TRY_GOTO(mem_alloc(&light->open, (size_t)light->width * (size_t)light->rows,
+                       sizeof *light->open, "occlusion", err));
     TRY_GOTO(choose_askers(&sky, err));
     TRY_GOTO(ask(&sky, err));
     threads_for(squares_of(&sky), drawing->params->threads, gather_square, &sky);

@@ -5,10 +5,10 @@
 #include "render/light/sharedlight.h"
 #include "render/sky/beams.h"
 
-/* Sets light->open (owned by *light even when this fails) of n places by
- * `drawing->params->occlusion` beams. `light` has places and numbers; its first row is even.
- * What a place sees depends on those up to SHARE_MARGIN rows above it and below. STATUS_MEMORY. */
-MUST_CHECK Status skylight_find(const Drawing *drawing, const Beams *beams, size_t n,
-                                SharedLight *light, Err *err);
+/* Sets light->open (owned by *light even when this fails) by `drawing->params->occlusion` beams.
+ * `light` has places and numbers; its first row is even. What a place sees depends on those up to
+ * SHARE_MARGIN rows above it and below. STATUS_MEMORY. */
+MUST_CHECK Status skylight_find(const Drawing *drawing, const Beams *beams, SharedLight *light,
+                                Err *err);
 
 #endif

@@ -190,10 +190,10 @@ static void set_places(const SeenTile *seen, TileSurface *surface)
     }
 }
 
-/* The number of the place that a sample shares the light of. `per` are pixels across and down per
- * unit of the view's plane. */
-static uint32_t shared_number(const Canvas *canvas, const SeenTile *seen, int sample,
-                              const double per[2])
+/* The pixel that a sample shares the light of. `per` are pixels across and down per unit of the
+ * view's plane. */
+static uint32_t shared_pixel(const Canvas *canvas, const SeenTile *seen, int sample,
+                             const double per[2])
 {
     const SharedLight *shared = canvas->drawing->shared;
     const Camera *camera = &canvas->drawing->view->camera;
@@ -204,8 +204,22 @@ static uint32_t shared_number(const Canvas *canvas, const SeenTile *seen, int sa
         viewpoint_point(&canvas->eye, seen_place(seen, sample)),
         viewpoint_to_world(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
         sharedlight_pixel_mm(camera, seen->hits->z[sample]));
-    return sharedlight_number(shared, line.x * per[0] + (camera->width - 1) / 2.0,
-                              (camera->height - 1) / 2.0 - line.y * per[1], &place);
+    return sharedlight_pixel(shared, line.x * per[0] + (camera->width - 1) / 2.0,
+                             (camera->height - 1) / 2.0 - line.y * per[1], &place);
+}
+
+/* Asks memory for what the tiles to come share: a tile has little of each of its rows. */
+static void fetch_shared(const Canvas *canvas, const SeenTile *seen)
+{
+    const SharedLight *shared = canvas->drawing->shared;
+    const int column = seen->column + 2 * TILE_SIDE;
+    for (int row = seen->row; column < shared->width && row < seen->row + seen->n_rows; row++) {
+        size_t pixel = (size_t)(row - shared->first) * (size_t)shared->width + (size_t)column;
+        __builtin_prefetch(&shared->numbers[pixel]);
+        for (size_t i = 0; i < canvas->look.n_lights; i++)
+            if (shared->parts[i])
+                __builtin_prefetch(&shared->parts[i][pixel]);
+    }
 }
 
 /* The parts of light that samples share with their pixels, whose centres they are where there is
@@ -217,19 +231,20 @@ static void set_shared(const Canvas *canvas, const SeenTile *seen, CanvasWorker 
     const double per[2] = {camera->width / vec3_length(camera->right),
                            camera->height / vec3_length(camera->up)};
     bool centers = canvas->more.side == 0 && shared->side == 1;
+    fetch_shared(canvas, seen);
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (seen->hits->state[sample] != TILE_HIT)
             continue;
-        uint32_t number = PLACE_NONE;
+        uint32_t pixel = PLACE_NONE;
         if (centers)
-            number = sharedlight_at(shared, seen->column + tile_sample_x(sample),
-                                    seen->row + tile_sample_y(sample));
-        if (number == PLACE_NONE)
-            number = shared_number(canvas, seen, sample, per);
-        own->open[sample] = sharedlight_open(shared, number);
+            pixel = sharedlight_at(shared, seen->column + tile_sample_x(sample),
+                                   seen->row + tile_sample_y(sample));
+        if (pixel == PLACE_NONE)
+            pixel = shared_pixel(canvas, seen, sample, per);
+        own->open[sample] = sharedlight_open(shared, pixel);
         for (size_t i = 0; i < canvas->look.n_lights; i++)
             if (shared->parts[i])
-                own->parts[i][sample] = sharedlight_part(shared, i, number);
+                own->parts[i][sample] = sharedlight_part(shared, i, pixel);
     }
 }
 
@@ -329,17 +344,13 @@ static void store_geometry(const Canvas *canvas, const SeenTile *seen)
     const TileHits *hits = seen->hits;
     for (int j = 0; j < seen->n_rows; j++) {
         size_t first = canvas_pixel(canvas, seen->column, seen->row + j);
-        if (!hits)
-            planes_store_nothing(canvas->frame, first, (size_t)seen->n_columns);
+        planes_store_nothing(canvas->frame, first, (size_t)seen->n_columns);
         for (int i = 0; i < seen->n_columns && hits; i++) {
-            size_t pixel = first + (size_t)i;
             int sample = tile_sample_at(i, j);
-            if (hits->state[sample] != TILE_HIT || seen->ground >> sample & 1) {
-                planes_store_nothing(canvas->frame, pixel, 1);
+            if (hits->state[sample] != TILE_HIT || seen->ground >> sample & 1)
                 continue;
-            }
             Vec3 normal = viewpoint_to_world(&canvas->eye, load_vec3(hits->normal, sample));
-            planes_store(canvas->frame, pixel, seen_depth(seen, sample), normal,
+            planes_store(canvas->frame, first + (size_t)i, seen_depth(seen, sample), normal,
                          canvas->drawing->geometry->ids[segment_of(canvas, hits, sample)]);
         }
     }
