@@ -195,7 +195,6 @@ RASTER_FN QueryBlock load_queries(const RasterTile *tile, const ShadowQueries *q
  * LANES boxes and depths, of which those behind the end of the list are masked away. */
 RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const QueryBlock *block)
 {
-    typedef uint32_t LaneWords __attribute__((vector_size(4 * LANES)));
     LaneWords boxes;
     __builtin_memcpy(&boxes, tile->list + tile->n + first, sizeof boxes);
     LaneMask touched = ((boxes - block->box) & RASTERBOX_GUARDS) == RASTERBOX_GUARDS;

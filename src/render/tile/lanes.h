@@ -32,6 +32,7 @@ typedef __m256 WideFloats;
 
 typedef float Lanes __attribute__((vector_size(4 * LANES)));
 typedef int32_t LaneMask __attribute__((vector_size(4 * LANES)));
+typedef uint32_t LaneWords __attribute__((vector_size(4 * LANES)));
 
 LANE_FN Lanes lanes_set(float value)
 {
@@ -253,22 +254,24 @@ LANE_FN float lanes_largest(Lanes a)
 }
 
 /* exp(-x) of x >= 0, 0 from 24 on, so that products of a few are never subnormal, which is slow:
- * 2^n times a polynomial on [-ln 2 / 2, ln 2 / 2] of relative
- * error 7.5e-8 (Remez), with rounding at most 2.5e-7. Adding 1.5 * 2^23 rounds to a whole number
- * and leaves it in the low bits. */
+ * 2^n times 2^f, f in [-1/2, 1/2], by a polynomial of relative error 7.5e-8 (Remez), with rounding
+ * at most 2.5e-7 (1 + x). Adding 1.5 * 2^23 rounds to a whole number and leaves it in the low bits.
+ */
 LANE_FN Lanes lanes_exp_minus(Lanes x)
 {
-    const Lanes magic = lanes_set(12582912.0f), capped = lanes_min(x, lanes_set(24.0f));
-    Lanes shifted = lanes_fma(capped, lanes_set(-1.44269504f), magic), n = shifted - magic;
-    Lanes y = lanes_fma(n, lanes_set(-0.693359375f), -capped);
-    y = lanes_fma(n, lanes_set(2.12194440e-4f), y);
-    Lanes p = lanes_fma(y, lanes_set(0.00829765508f), lanes_set(0.041915382f));
-    p = lanes_fma(p, y, lanes_set(0.166675747f));
-    p = lanes_fma(p, y, lanes_set(0.499988949f));
-    p = lanes_fma(p, y, lanes_set(0.999999692f));
-    p = lanes_fma(p, y, lanes_set(1.00000007f));
-    LaneMask power = ((LaneMask)shifted + 127) << 23;
-    return (Lanes)((LaneMask)(p * (Lanes)power) & (x < 24.0f));
+    const Lanes magic = lanes_set(12582912.0f), per_ln2 = lanes_set(-1.44269504f);
+    Lanes shifted = lanes_fma(x, per_ln2, magic), n = shifted - magic;
+    Lanes f = lanes_fma(x, per_ln2, -n);
+    Lanes p = lanes_fma(f, lanes_set(0.00132764725f), lanes_set(0.00967554096f));
+    p = lanes_fma(p, f, lanes_set(0.0555071309f));
+    p = lanes_fma(p, f, lanes_set(0.240221202f));
+    p = lanes_fma(p, f, lanes_set(0.693146944f));
+    p = lanes_fma(p, f, lanes_set(1.00000012f));
+#if defined LANES_AVX512
+    return (Lanes)_mm512_maskz_scalef_ps((__mmask16)lanes_bits(x < 24.0f), (__m512)p, (__m512)n);
+#else
+    return (Lanes)(((LaneWords)p + ((LaneWords)shifted << 23)) & (LaneWords)(x < 24.0f));
+#endif
 }
 
 /* ln x of normal x > 0, to 1e-7 (1 + |ln x|), and relatively so near 1: x = 2^n m, m in [sqrt 1/2,
