@@ -211,18 +211,40 @@ static Status read_deep(Picture *picture, const char *path, Err *err)
                    path);
 }
 
+static Status take_depth(const Picture *picture, double near_mm, double far_mm, Plane *depth,
+                         Err *err)
+{
+    TRY(plane_init(depth, picture->width, picture->height, 1, err));
+    size_t pixels = (size_t)picture->width * (size_t)picture->height;
+    for (size_t i = 0; i < pixels; i++) {
+        const uint16_t *code = &picture->codes16[3 * i];
+        double fraction = (code[0] + code[1] / 65535.0) / 65535.0;
+        depth->values[i] =
+            code[2] > 0 ? (float)(near_mm + fraction * (far_mm - near_mm)) : HUGE_VALF;
+    }
+    return STATUS_OK;
+}
+
 Status oracle_read_depth(Plane *depth, const char *path, double near_mm, double far_mm, Err *err)
 {
     Picture picture;
     TRY(read_deep(&picture, path, err));
-    Status status = plane_init(depth, picture.width, picture.height, 1, err);
+    Status status = take_depth(&picture, near_mm, far_mm, depth, err);
+    picture_release(&picture);
+    return status;
+}
+
+Status oracle_read_depth_ids(Plane *depth, IdPlane *ids, const char *path, double near_mm,
+                             double far_mm, Err *err)
+{
+    Picture picture;
+    TRY(read_deep(&picture, path, err));
+    Status status = take_depth(&picture, near_mm, far_mm, depth, err);
+    if (status == STATUS_OK)
+        status = idplane_init(ids, picture.width, picture.height, err);
     size_t pixels = (size_t)picture.width * (size_t)picture.height;
-    for (size_t i = 0; status == STATUS_OK && i < pixels; i++) {
-        const uint16_t *code = &picture.codes16[3 * i];
-        double fraction = (code[0] + code[1] / 65535.0) / 65535.0;
-        depth->values[i] =
-            code[2] > 32767 ? (float)(near_mm + fraction * (far_mm - near_mm)) : HUGE_VALF;
-    }
+    for (size_t i = 0; status == STATUS_OK && i < pixels; i++)
+        ids->ids[i] = picture.codes16[3 * i + 2];
     picture_release(&picture);
     return status;
 }

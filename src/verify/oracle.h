@@ -6,7 +6,16 @@
 #include "image/image.h"
 
 /* What the scene's Corcast_Plane selects. */
-typedef enum OraclePlane { ORACLE_COLOR, ORACLE_DEPTH, ORACLE_NORMAL, ORACLE_ID } OraclePlane;
+typedef enum OraclePlane {
+    ORACLE_COLOR,
+    ORACLE_DEPTH,
+    ORACLE_NORMAL,
+    ORACLE_ID,
+    ORACLE_DEPTH_ID, /* both of these, for ids up to ORACLE_MOST_ID */
+    ORACLE_PLANES
+} OraclePlane;
+
+enum { ORACLE_MOST_ID = 65535 };
 
 typedef struct OracleParams {
     const char *program; /* NULL: povray */
@@ -16,7 +25,7 @@ typedef struct OracleParams {
     PixelRect part;      /* of the picture that is drawn, the rest is black; width 0: all of it */
     int antialias;       /* of the colour plane: 1, or N for +A0.0 +AM1 +RN -J */
     int threads;         /* 0: POV-Ray's own choice */
-    OraclePlane plane;   /* depth and normal are 16-bit linear, id 8-bit linear */
+    OraclePlane plane;   /* id alone is 8-bit linear, depth and normal are 16-bit linear */
     int bits;            /* of the colour plane: 8, sRGB, or 16, linear */
     bool alpha;          /* of the colour plane: transparent where the scene's background is */
     double clock;        /* of the scene, 0 to 1 */
@@ -46,5 +55,8 @@ MUST_CHECK Status oracle_read_depth(Plane *depth, const char *path, double near_
                                     Err *err);
 MUST_CHECK Status oracle_read_normal(Plane *normal, const char *path, Err *err);
 MUST_CHECK Status oracle_read_ids(IdPlane *ids, const char *path, Err *err);
+/* Depth and ids of one picture, as the former two. */
+MUST_CHECK Status oracle_read_depth_ids(Plane *depth, IdPlane *ids, const char *path,
+                                        double near_mm, double far_mm, Err *err);
 
 #endif

@@ -17,7 +17,8 @@ ${effects}//
 // transparent background: +UA Declare=Background_Transmit=1.
 #version 3.7;
 
-// 0 the picture; 1 depth, 2 normals, 3 segment ids, for checking other renderers against.
+// 0 the picture; 1 depth, 2 normals, 3 segment ids, 4 depth and ids below 65536, for checking other renderers
+// against.
 #ifndef (Corcast_Plane) #declare Corcast_Plane = 0; #end
 
 global_settings {
@@ -92,9 +93,9 @@ ${lights}
   #end
   Light_Axis(x) Light_Axis(y) Light_Axis(z)
 #end
-#if (Corcast_Plane = 1)
+#if (Corcast_Plane = 1 | Corcast_Plane = 4)
   // Distance along the viewing ray, from Depth_Near to Depth_Far, as a 32-bit fraction: the high half
-  // in red, the low half in green, and blue where anything is seen.
+  // in red, the low half in green. Blue is where anything is seen, or the id.
   #declare Depth_Near = ${depth_near};
   #declare Depth_Far  = ${depth_far};
   #local Lx = Camera_Location.x; #local Ly = Camera_Location.y; #local Lz = Camera_Location.z;
@@ -107,16 +108,17 @@ ${lights}
   #declare Fn_Fraction = function(x, y, z) {
     min(max((Fn_Depth(x, y, z) - Depth_Near) / (Depth_Far - Depth_Near), 0), 1)
   };
-  #declare P_Depth = pigment {
-    average pigment_map {
-      [1 function { floor(Fn_Fraction(x, y, z) * 65535) / 65535 }
-         color_map { [0 rgb 0] [1 rgb <3, 0, 0>] }]
-      [1 function { Fn_Fraction(x, y, z) * 65535 - floor(Fn_Fraction(x, y, z) * 65535) }
-         color_map { [0 rgb 0] [1 rgb <0, 3, 0>] }]
-      [1 rgb <0, 0, 3>]
-    }
+  #declare P_Depth_High = pigment {
+    function { floor(Fn_Fraction(x, y, z) * 65535) / 65535 } color_map { [0 rgb 0] [1 rgb <3, 0, 0>] }
   };
-  #declare T_Vessel = texture { pigment { P_Depth } finish { ambient 0 diffuse 0 emission 1 } }
+  #declare P_Depth_Low = pigment {
+    function { Fn_Fraction(x, y, z) * 65535 - floor(Fn_Fraction(x, y, z) * 65535) }
+    color_map { [0 rgb 0] [1 rgb <0, 3, 0>] }
+  };
+  #declare T_Vessel = texture {
+    pigment { average pigment_map { [1 P_Depth_High] [1 P_Depth_Low] [1 rgb <0, 0, 3>] } }
+    finish { ambient 0 diffuse 0 emission 1 }
+  }
 #end
 
 // ---- animation ------------------------------------------------------------------------------

@@ -280,7 +280,7 @@ test_failed_allocations_in_verify_and_povray() {
     command -v povray >/dev/null || skip "POV-Ray is not installed"
     inputs
     run_ok corcast verify tree.swc --size 20x20 -o stored
-    for plane in color depth normal id; do
+    for plane in color depth normal id depth-id; do
         run_ok corcast povray stored/scene.pov --plane $plane -o stored/$number.png
         number=$((number + 1))
     done

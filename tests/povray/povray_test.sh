@@ -44,6 +44,27 @@ test_every_plane_can_be_asked_for() {
     pnmfile depth.ppm | grep -q 'maxval 65535' || fail "expected 16 bits of depth"
 }
 
+# pixels PICTURE: the codes of a pixel a line.
+pixels() {
+    pngtopnm "$1" 2>/dev/null | pnmtoplainpnm | tail -n +4 | tr -s ' \n' '\n\n' | sed '/^$/d' | paste -d ' ' - - -
+}
+
+test_depth_and_ids_in_one_plane_are_those_of_two() {
+    local model plane
+    run_ok corcast grow --quiet --terminals 30 --seed 4 -o many.swc
+    for model in cylinders joined rounded mesh 'isosurface --ids on' 'blob --ids on'; do
+        # shellcheck disable=SC2086
+        run_ok corcast scene many.swc --quiet --model $model -o scene.pov
+        for plane in depth id depth-id; do
+            run_ok corcast povray scene.pov -o $plane.png --size 80x60 --plane $plane
+        done
+        paste -d ' ' <(pixels depth.png) <(pixels id.png) |
+            awk '{ print $1, $2, ($4 * 256 + $5) * 256 + $6; seen += $3 > 0 } END { exit seen < 100 }' >two ||
+            fail "expected vessels in the picture of $model"
+        expect_same two <(pixels depth-id.png)
+    done
+}
+
 test_what_an_artist_declares_changes_the_picture() {
     scene
     run_ok corcast povray scene.pov -o plain.png --size 80x60

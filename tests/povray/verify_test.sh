@@ -479,13 +479,13 @@ test_soft_shadows_fall_on_isosurfaces() {
     [ "$(differing exact.png hard.png 3)" -gt 40 ] || fail "expected soft shadows to differ from hard ones"
 }
 
-# A POV-Ray that waits until there are four.
+# A POV-Ray that waits until there are three.
 test_the_planes_are_drawn_side_by_side() {
     cat >povray.sh <<END
 #!/bin/sh
 touch "$PWD/begun.\$\$"
 for moment in \$(seq 200); do
-    [ \$(ls "$PWD"/begun.* | wc -l) -ge 4 ] && exec povray "\$@"
+    [ \$(ls "$PWD"/begun.* | wc -l) -ge 3 ] && exec povray "\$@"
     sleep 0.05
 done
 echo 'rror: alone' >&2
@@ -498,6 +498,25 @@ END
     run env CORCAST_POVRAY="$PWD/povray.sh" "$CORCAST" verify "$DATA/bifurcation.swc" --size 40x30 --threads 1 -o one
     expect_status 3
     expect_sentence 'exit status 1\): rror: alone'
+}
+
+# planes_asked_for REPORT: the planes of the scene, in the order of the commands, in one line.
+planes_asked_for() {
+    jq -r '.commands[]' "$1" | sed -n 's/.*Corcast_Plane=\([0-9]\).*/\1/p' | tr '\n' ' '
+}
+
+test_ids_too_large_for_a_plane_with_depth_have_their_own() {
+    local model
+    tree_2d 10
+    awk '/^#/ { print; next } { $1 += 65530; if ($7 >= 0) $7 += 65530; print }' tree.swc >large.swc
+    for model in joined isosurface; do
+        run_ok corcast verify tree.swc --model $model --size 80x60 -o small
+        run_ok corcast verify large.swc --model $model --size 80x60 -o large
+        [ "$(planes_asked_for small/report.json)" = '0 4 2 ' ] || fail "expected depth with ids of $model"
+        [ "$(planes_asked_for large/report.json)" = '0 1 2 3 ' ] || fail "expected ids alone of $model"
+        expect_json large/report.json '.verdict == "agree" and .planes.id.mismatch_fraction == 0'
+        cmp -s small/povray.depth.pfm large/povray.depth.pfm || fail "expected the same depths of $model"
+    done
 }
 
 test_verify_writes_what_the_contract_names() {

@@ -36,7 +36,7 @@ typedef struct PovrayOptions {
     OraclePlane plane;
 } PovrayOptions;
 
-static const char *const planes[] = {"color", "depth", "normal", "id", NULL};
+static const char *const planes[] = {"color", "depth", "normal", "id", "depth-id", NULL};
 
 static const Option own[] = {
     {.name = "output",

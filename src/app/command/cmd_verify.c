@@ -19,18 +19,18 @@
 
 /* All that a verification leaves. The verdict comes first: what is interrupted leaves none. */
 static const char *const left[] = {
-    "report.html",       "report.json",       "junit.xml",         "diff.png",
-    "scene.pov",         "scene.inc",         "ids.pov",           "ids.inc",
-    "povray.png",        "povray.depth.png",  "povray.normal.png", "povray.id.png",
-    "povray.depth.pfm",  "povray.normal.pfm", "povray.id.ppm",     "native.png",
-    "native.depth.pfm",  "native.normal.pfm", "native.id.ppm",     "exact.png",
-    "exact.depth.pfm",   "exact.normal.pfm",  "exact.id.ppm",      "scene.tachyon",
-    "tachyon.depth.ppm", "tachyon.id.ppm"};
+    "report.html",         "report.json",       "junit.xml",         "diff.png",
+    "scene.pov",           "scene.inc",         "ids.pov",           "ids.inc",
+    "povray.png",          "povray.depth.png",  "povray.normal.png", "povray.id.png",
+    "povray.depth-id.png", "povray.depth.pfm",  "povray.normal.pfm", "povray.id.ppm",
+    "native.png",          "native.depth.pfm",  "native.normal.pfm", "native.id.ppm",
+    "exact.png",           "exact.depth.pfm",   "exact.normal.pfm",  "exact.id.ppm",
+    "scene.tachyon",       "tachyon.depth.ppm", "tachyon.id.ppm"};
 
 /* Likewise those of tiles, by the beginnings of their names. */
-static const char *const left_of_tiles[] = {"scene.tile-",         "ids.tile-",
-                                            "povray.tile-",        "povray.depth.tile-",
-                                            "povray.normal.tile-", "povray.id.tile-"};
+static const char *const left_of_tiles[] = {
+    "scene.tile-",         "ids.tile-",       "povray.tile-",         "povray.depth.tile-",
+    "povray.normal.tile-", "povray.id.tile-", "povray.depth-id.tile-"};
 
 /* Where a verification writes to. */
 typedef struct Folder {

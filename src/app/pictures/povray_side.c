@@ -1,4 +1,5 @@
-/* POV-Ray reads a scene once for each plane, and several of these runs go on side by side.
+/* POV-Ray reads a scene once for each picture of its planes, and several of these runs go on side
+ * by side.
  *
  * A scene that is more than POV-Ray holds is drawn in tiles: the picture is halved, across its
  * longer side, and the heaviest tile again, until each has a scene of what its own rays can meet
@@ -17,17 +18,36 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { PLANES = ORACLE_ID + 1, LEAST_SIDE = 8 };
+enum { LEAST_SIDE = 8 };
 
 /* The loads [emit.h, povray_load] of all scenes that POV-Ray holds at one time, for its memory. */
 static const double most_load_at_once = 2;
 
-static const char *const plane_names[PLANES] = {
+static const char *const plane_names[ORACLE_PLANES] = {
     [ORACLE_COLOR] = "povray",
     [ORACLE_DEPTH] = "povray.depth",
     [ORACLE_NORMAL] = "povray.normal",
     [ORACLE_ID] = "povray.id",
+    [ORACLE_DEPTH_ID] = "povray.depth-id",
 };
+
+/* The planes that are drawn, the colours first. */
+typedef struct Planes {
+    OraclePlane plane[ORACLE_PLANES];
+    size_t n;
+} Planes;
+
+/* Depth and ids are drawn together if ids are small enough: so POV-Ray meets every ray once less.
+ */
+static Planes planes_of(const Geometry *geometry)
+{
+    uint32_t most = 0;
+    for (size_t i = 0; i < geometry->n_ids; i++)
+        most = geometry->ids[i] > most ? geometry->ids[i] : most;
+    if (most <= ORACLE_MOST_ID)
+        return (Planes){{ORACLE_COLOR, ORACLE_DEPTH_ID, ORACLE_NORMAL}, 3};
+    return (Planes){{ORACLE_COLOR, ORACLE_DEPTH, ORACLE_NORMAL, ORACLE_ID}, 4};
+}
 
 /* ---- tiles ----------------------------------------------------------------------------------- */
 
@@ -248,6 +268,7 @@ done:
 typedef struct Runs {
     struct PlaneRun *run; /* owned; the planes of the first tile, of the second, ... */
     size_t n;
+    Planes planes;
     bool failed;
     Progress progress;
     pthread_mutex_t lock; /* of `progress`, `failed` and the fractions */
@@ -278,10 +299,12 @@ static void report_plane(double fraction, void *context)
 }
 
 /* How many run side by side, each on its share of the processors that were asked for. */
-static int runs_at_once(const Verification *v, const Tiles *tiles)
+static int runs_at_once(const Verification *v, const Tiles *tiles, const Planes *planes)
 {
-    int threads = v->common->threads, most = threads > 0 && threads < PLANES ? threads : PLANES;
+    int threads = v->common->threads, most = (int)planes->n;
     double load = 0;
+    if (threads > 0 && threads < most)
+        most = threads;
     for (size_t i = 0; i < tiles->n; i++)
         load = fmax(load, tiles->tile[i].load);
     return load * most <= most_load_at_once ? most : (int)fmax(1, most_load_at_once / load);
@@ -299,9 +322,10 @@ static Status prepare_run(Verification *v, const Tiles *tiles, size_t number, Or
 {
     int threads = v->common->threads;
     const Tile *tile = &tiles->tile[number];
+    bool ids = tile->ids && (plane == ORACLE_ID || plane == ORACLE_DEPTH_ID);
     char **command;
     TRY(tile_path(v, tiles, number, plane_names[plane], "png", &run->output, err));
-    run->params = (OracleParams){.scene = plane == ORACLE_ID && tile->ids ? tile->ids : tile->scene,
+    run->params = (OracleParams){.scene = ids ? tile->ids : tile->scene,
                                  .output = run->output,
                                  .width = v->picture->size.pixels[0],
                                  .height = v->picture->size.pixels[1],
@@ -322,12 +346,13 @@ static Status prepare_run(Verification *v, const Tiles *tiles, size_t number, Or
 
 static Status prepare_runs(Verification *v, const Tiles *tiles, int at_once, Runs *runs, Err *err)
 {
-    runs->n = tiles->n * PLANES;
+    const Planes *planes = &runs->planes;
+    runs->n = tiles->n * planes->n;
     TRY(mem_calloc(&runs->run, runs->n, sizeof *runs->run, "runs", err));
     for (size_t i = 0; i < runs->n; i++) {
         runs->run[i].runs = runs;
-        TRY(prepare_run(v, tiles, i / PLANES, (OraclePlane)(i % PLANES), at_once, &runs->run[i],
-                        err));
+        TRY(prepare_run(v, tiles, i / planes->n, planes->plane[i % planes->n], at_once,
+                        &runs->run[i], err));
     }
     return STATUS_OK;
 }
@@ -358,9 +383,9 @@ static Status check_runs(Verification *v, const Runs *runs, Err *err)
             *err = runs->run[i].err;
             return runs->run[i].status;
         }
-    v->run = runs->run[ORACLE_COLOR].took;
-    for (size_t i = PLANES; i < runs->n; i += PLANES)
-        v->run.seconds += runs->run[i + ORACLE_COLOR].took.seconds;
+    v->run = runs->run[0].took;
+    for (size_t i = runs->planes.n; i < runs->n; i += runs->planes.n)
+        v->run.seconds += runs->run[i].took.seconds;
     return STATUS_OK;
 }
 
@@ -389,19 +414,20 @@ static Status add_tile(const char *path, const PixelRect *rect, Picture *plane, 
     return STATUS_OK;
 }
 
-/* Puts a plane together at `path`, and removes its tiles. */
-static Status join_plane(const Verification *v, const Tiles *tiles, const PlaneRun *runs,
-                         OraclePlane plane, const char *path, Err *err)
+/* Puts the plane of that place in Runs.planes together at `path`, and removes its tiles. */
+static Status join_plane(const Verification *v, const Tiles *tiles, const Runs *runs, size_t place,
+                         const char *path, Err *err)
 {
-    bool srgb = plane == ORACLE_COLOR && v->bits == 8;
+    bool srgb = runs->planes.plane[place] == ORACLE_COLOR && v->bits == 8;
+    size_t each = runs->planes.n;
     Picture joined = {0};
     Status status = STATUS_OK;
     for (size_t i = 0; i < tiles->n && status == STATUS_OK; i++)
-        status = add_tile(runs[i * PLANES + plane].output, &tiles->tile[i].rect, &joined, err);
+        status = add_tile(runs->run[i * each + place].output, &tiles->tile[i].rect, &joined, err);
     if (status == STATUS_OK)
         status = picture_write(&joined, path, srgb ? ENCODING_SRGB : ENCODING_LINEAR, NULL, err);
     for (size_t i = 0; i < tiles->n; i++)
-        unlink(runs[i * PLANES + plane].output);
+        unlink(runs->run[i * each + place].output);
     picture_release(&joined);
     return status;
 }
@@ -419,17 +445,22 @@ static Status read_plane(Verification *v, OraclePlane plane, const char *path, E
         return oracle_read_normal(&v->povray.normal, path, err);
     case ORACLE_ID:
         return oracle_read_ids(&v->povray.id, path, err);
+    case ORACLE_DEPTH_ID:
+        return oracle_read_depth_ids(&v->povray.depth, &v->povray.id, path, near_mm, far_mm, err);
+    case ORACLE_PLANES:
+        break;
     }
     return STATUS_OK;
 }
 
-static Status take_plane(Verification *v, const Tiles *tiles, const PlaneRun *runs,
-                         OraclePlane plane, Err *err)
+static Status take_plane(Verification *v, const Tiles *tiles, const Runs *runs, size_t place,
+                         Err *err)
 {
+    OraclePlane plane = runs->planes.plane[place];
     char file[40], *path = NULL;
     snprintf(file, sizeof file, "%s.png", plane_names[plane]);
     TRY(file_join(v->folder, file, &path, err));
-    Status status = tiles->n > 1 ? join_plane(v, tiles, runs, plane, path, err) : STATUS_OK;
+    Status status = tiles->n > 1 ? join_plane(v, tiles, runs, place, path, err) : STATUS_OK;
     if (status == STATUS_OK)
         status = read_plane(v, plane, path, err);
     free(path);
@@ -464,7 +495,8 @@ Status povray_side_prepare(Verification *v, PovraySide **side, Err *err)
     pthread_mutex_init(&made->runs.lock, NULL);
     TRY_GOTO(prepare_tiles(v, &made->tiles, err));
     v->n_tiles = made->tiles.n;
-    made->at_once = runs_at_once(v, &made->tiles);
+    made->runs.planes = planes_of(&v->scene.geometry);
+    made->at_once = runs_at_once(v, &made->tiles, &made->runs.planes);
     TRY_GOTO(prepare_runs(v, &made->tiles, made->at_once, &made->runs, err));
     *side = made;
     return STATUS_OK;
@@ -480,8 +512,8 @@ static Status draw_planes(PovraySide *side, Err *err)
     progress_start(&runs->progress, "POV-Ray", side->v->common->quiet);
     threads_for(runs->n, side->at_once, run_one, runs);
     Status status = check_runs(side->v, runs, err);
-    for (int plane = 0; plane < PLANES && status == STATUS_OK; plane++)
-        status = take_plane(side->v, &side->tiles, runs->run, (OraclePlane)plane, err);
+    for (size_t place = 0; place < runs->planes.n && status == STATUS_OK; place++)
+        status = take_plane(side->v, &side->tiles, runs, place, err);
     progress_end(&runs->progress);
     return status == STATUS_INPUT ? STATUS_TOOL : status; /* of POV-Ray's making */
 }
