@@ -278,24 +278,28 @@ LANE_TARGET static void TILE_KERNEL(aim)(const LightAim *aim, const SeenPlaces *
 {
     const LightAim a = *aim;
     const double width = 1 / a.per_x, height = 1 / a.per_y;
-    double in_x[TILE_SAMPLES], in_y[TILE_SAMPLES]; /* in tiles, from the edge of the first */
+    double seen_x[TILE_SAMPLES], seen_y[TILE_SAMPLES]; /* in the view's plane */
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         double px = places->x[sample], py = places->y[sample], pz = places->z[sample];
         double x = px * a.axes[0].x + py * a.axes[0].y + pz * a.axes[0].z + a.offset.x;
         double y = px * a.axes[1].x + py * a.axes[1].y + pz * a.axes[1].z + a.offset.y;
         double z = px * a.axes[2].x + py * a.axes[2].y + pz * a.axes[2].z + a.offset.z;
-        double scale = a.perspective ? 1 / z : 1;
-        x *= scale;
-        y *= scale;
-        float slope2 = a.perspective ? (float)(x * x + y * y) : 0.0f;
-        in_x[sample] = (x - a.left) * a.per_x;
-        in_y[sample] = (y - a.top) * a.per_y;
-        aimed->z[sample] = z - a.slack * (double)(1.0f / sqrtf(1.0f + slope2)) - a.z_middle;
+        seen_x[sample] = x;
+        seen_y[sample] = y;
+        aimed->z[sample] = z - a.slack - a.z_middle;
+    }
+    for (int sample = 0; a.perspective && sample < TILE_SAMPLES; sample++) {
+        double z = aimed->z[sample] + a.slack + a.z_middle, scale = 1 / z;
+        double x = seen_x[sample] * scale, y = seen_y[sample] * scale;
+        seen_x[sample] = x;
+        seen_y[sample] = y;
+        aimed->z[sample] = z - a.slack / sqrt(1 + x * x + y * y) - a.z_middle;
     }
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        int32_t row = tile_at(in_y[sample], a.rows), column = tile_at(in_x[sample], a.columns);
-        aimed->x[sample] = (float)((in_x[sample] - column - 0.5) * width);
-        aimed->y[sample] = (float)((in_y[sample] - row - 0.5) * height);
+        double x = (seen_x[sample] - a.left) * a.per_x, y = (seen_y[sample] - a.top) * a.per_y;
+        int32_t row = tile_at(y, a.rows), column = tile_at(x, a.columns);
+        aimed->x[sample] = (float)((x - column - 0.5) * width);
+        aimed->y[sample] = (float)((y - row - 0.5) * height);
         aimed->tile[sample] = row * (int32_t)a.columns + column;
     }
 }

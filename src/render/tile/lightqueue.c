@@ -82,17 +82,25 @@ int lightqueue_ask(LightQueue *queue, const TileKernels *kernels, const SeenPlac
     return call;
 }
 
+/* Copies n places, and up to PLACES_BEHIND more: requests are small, and blocks need no calls. */
+static void copy_places(const AskedPlaces *from, int first, int n, AskedPlaces *to, int at)
+{
+    enum { BLOCK = PLACES_BEHIND + 1 };
+    for (int i = 0; i < n; i += BLOCK) {
+        memcpy(&to->x[at + i], &from->x[first + i], BLOCK * sizeof *to->x);
+        memcpy(&to->y[at + i], &from->y[first + i], BLOCK * sizeof *to->y);
+        memcpy(&to->z[at + i], &from->z[first + i], BLOCK * sizeof *to->z);
+        memcpy(&to->from[at + i], &from->from[first + i], BLOCK * sizeof *to->from);
+    }
+}
+
 /* Collects what a tile is asked, and forgets it. */
 static int take_places(LightQueue *queue, int tile)
 {
     int n = 0;
     for (int i = queue->last[tile]; i >= 0; i = queue->requests[i].before) {
         const Request *request = &queue->requests[i];
-        const size_t first = (size_t)request->first, count = (size_t)request->n;
-        memcpy(&queue->taken.x[n], &queue->asked.x[first], count * sizeof(float));
-        memcpy(&queue->taken.y[n], &queue->asked.y[first], count * sizeof(float));
-        memcpy(&queue->taken.z[n], &queue->asked.z[first], count * sizeof(double));
-        memcpy(&queue->taken.from[n], &queue->asked.from[first], count * sizeof(uint32_t));
+        copy_places(&queue->asked, request->first, request->n, &queue->taken, n);
         n += request->n;
     }
     queue->last[tile] = -1;
