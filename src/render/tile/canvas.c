@@ -216,6 +216,8 @@ static void fetch_shared(const Canvas *canvas, const SeenTile *seen)
     for (int row = seen->row; column < shared->width && row < seen->row + seen->n_rows; row++) {
         size_t pixel = (size_t)(row - shared->first) * (size_t)shared->width + (size_t)column;
         __builtin_prefetch(&shared->numbers[pixel]);
+        if (shared->open)
+            __builtin_prefetch(&shared->open[pixel]);
         for (size_t i = 0; i < canvas->look.n_lights; i++)
             if (shared->parts[i])
                 __builtin_prefetch(&shared->parts[i][pixel]);
