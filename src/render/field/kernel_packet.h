@@ -277,11 +277,10 @@ LANE_FN PacketSample nothing_sampled(void)
 LANE_FN void add_sample(const TermSample *one, LaneMask here, const PacketTerm *term,
                         PacketSample *sum)
 {
-    const Lanes zero = lanes_set(0);
-    sum->phi += lanes_select(here, one->value, zero);
-    sum->slope += lanes_select(here, one->slope, zero);
-    sum->curvature += lanes_select(here, term->curvature, zero);
-    sum->steep += lanes_select(here, term->steep, zero);
+    sum->phi = lanes_add_where(here, sum->phi, one->value);
+    sum->slope = lanes_add_where(here, sum->slope, one->slope);
+    sum->curvature = lanes_add_where(here, sum->curvature, term->curvature);
+    sum->steep = lanes_add_where(here, sum->steep, term->steep);
     float depth = term->off - term->on;
     sum->depth = depth > sum->depth ? depth : sum->depth;
     sum->n++;

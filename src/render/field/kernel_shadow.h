@@ -154,18 +154,17 @@ LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open, const PacketS
 /* As sample_at, and the most that Phi is from z on. */
 LANE_FN PacketSample sample_departing(const Group *group, Lanes z, LaneMask live, Lanes *beyond)
 {
-    const Lanes zero = lanes_set(0);
     PacketSample sample = nothing_sampled();
-    *beyond = zero;
+    *beyond = lanes_set(0);
     for (size_t i = 0; i < group->n; i++) {
         const PacketTerm *term = group->terms[i];
         LaneMask here = lanes_reached(term, z, live, &sample.next);
-        *beyond += lanes_select(z < term->reach[0], term->peak, zero);
+        *beyond = lanes_add_where(z < term->reach[0], *beyond, term->peak);
         if (!lanes_any(here))
             continue;
         TermThere there = term_at(term, z);
         add_sample(&there.at, here, term, &sample);
-        *beyond += lanes_select(here, there.most, zero);
+        *beyond = lanes_add_where(here, *beyond, there.most);
     }
     return sample;
 }

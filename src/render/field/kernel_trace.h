@@ -89,8 +89,7 @@ LANE_FN bool matters(const PacketTerm *term, LaneMask rays)
  * beyond z may lower *next. */
 LANE_FN LaneMask lanes_reached(const PacketTerm *term, Lanes z, LaneMask live, Lanes *next)
 {
-    const Lanes far = lanes_set(1e30f);
-    *next = lanes_min(*next, lanes_select(z < term->reach[0], term->reach[0], far));
+    *next = lanes_min_where(z < term->reach[0], *next, term->reach[0]);
     return live & (z >= term->reach[0]) & (z <= term->reach[1]);
 }
 
@@ -111,11 +110,10 @@ FOLDED_FN PacketSample sample_at(const Group *group, Lanes z, LaneMask live)
 /* The place from z on, or beyond all, where the group's potential may reach LEVEL - margin. */
 LANE_FN Lanes next_window(const Group *group, Lanes z)
 {
-    const Lanes far = lanes_set(1e30f);
-    Lanes next = far;
+    Lanes next = lanes_set(1e30f);
     for (size_t i = 0; i < group->n; i++) {
         const Lanes *window = group->terms[i]->window;
-        next = lanes_min(next, lanes_select(z <= window[1], window[0], far));
+        next = lanes_min_where(z <= window[1], next, window[0]);
     }
     return lanes_max(next, z);
 }

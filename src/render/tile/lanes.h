@@ -243,6 +243,27 @@ LANE_FN LaneMask lanes_of_bytes(const uint8_t *bytes)
     return lanes_load_bytes(bytes) != 0;
 }
 
+/* a + b, and the lesser of a and b, where the mask is true, elsewhere a. */
+LANE_FN Lanes lanes_add_where(LaneMask mask, Lanes a, Lanes b)
+{
+#if defined LANES_AVX512
+    __mmask16 where = (__mmask16)lanes_bits(mask);
+    return (Lanes)_mm512_mask_add_ps((__m512)a, where, (__m512)a, (__m512)b);
+#else
+    return a + lanes_select(mask, b, lanes_set(0));
+#endif
+}
+
+LANE_FN Lanes lanes_min_where(LaneMask mask, Lanes a, Lanes b)
+{
+#if defined LANES_AVX512
+    __mmask16 where = (__mmask16)lanes_bits(mask);
+    return (Lanes)_mm512_mask_min_ps((__m512)a, where, (__m512)a, (__m512)b);
+#else
+    return lanes_min(a, lanes_select(mask, b, a));
+#endif
+}
+
 LANE_FN Lanes lanes_abs(Lanes a)
 {
     return (Lanes)((LaneMask)a & 0x7fffffff);
