@@ -208,7 +208,7 @@ static uint32_t shared_pixel(const Canvas *canvas, const SeenTile *seen, int sam
                              (camera->height - 1) / 2.0 - line.y * per[1], &place);
 }
 
-/* Asks memory for what the tiles to come share: a tile has little of each of its rows. */
+/* Asks memory for what the pixels of a tile to come share: of each of its rows that is little. */
 static void fetch_shared(const Canvas *canvas, const SeenTile *seen)
 {
     const SharedLight *shared = canvas->drawing->shared;
@@ -233,7 +233,8 @@ static void set_shared(const Canvas *canvas, const SeenTile *seen, CanvasWorker 
     const double per[2] = {camera->width / vec3_length(camera->right),
                            camera->height / vec3_length(camera->up)};
     bool centers = canvas->more.side == 0 && shared->side == 1;
-    fetch_shared(canvas, seen);
+    if (centers)
+        fetch_shared(canvas, seen);
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (seen->hits->state[sample] != TILE_HIT)
             continue;
