@@ -37,8 +37,7 @@ typedef struct Planes {
     size_t n;
 } Planes;
 
-/* Depth and ids are drawn together if ids are small enough: so POV-Ray meets every ray once less.
- */
+/* Depth and ids share a picture where ids are small enough, which saves a run of POV-Ray. */
 static Planes planes_of(const Geometry *geometry)
 {
     uint32_t most = 0;

@@ -190,8 +190,9 @@ static FieldTile tile_of(const FieldShadow *shadow, int number, LocalGroups *gro
                        .z_min = HUGE_VAL};
 }
 
-/* Sets the places of a request, in its own memory, and from where on vessels matter, but for those
- * outside the tile, and so outside the view: these see the light. */
+/* Makes the places of a request those that the kernel is asked about, in the request's own memory,
+ * and sets the tile's z_min, from where on vessels matter. Leaves out places outside the tile: they
+ * are outside the light's view, and see the light. */
 static void set_places(FieldQueue *queue, const LightRequest *request, FieldTile *tile)
 {
     FieldPlaces *places = &queue->places;

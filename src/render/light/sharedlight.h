@@ -66,9 +66,10 @@ static inline uint32_t sharedlight_at(const SharedLight *shared, int column, int
     return shared->numbers[pixel] == PLACE_NONE ? PLACE_NONE : (uint32_t)pixel;
 }
 
-/* The pixel whose light the sample at (i, j) of the drawing has, which sees `seen`: that which it
- * lies in if that shows its surface, else of those no farther than two pixels, whose places are of
- * one kind with it, the one whose place is nearest to it; PLACE_NONE if there is none. */
+/* The pixel whose light a sample takes, which is at (i, j) of the drawing and sees `seen`. The
+ * sample takes the light of the pixel that it lies in if that pixel shows the same surface; else,
+ * of the pixels at most two away that show the same kind of surface, the light of the one whose
+ * place is nearest to `seen`. PLACE_NONE if there is none. */
 uint32_t sharedlight_pixel(const SharedLight *shared, double i, double j, const PixelPlace *seen);
 
 /* A place at a point of the world. `mm_a_pixel` as in PixelPlace.size. */

@@ -226,7 +226,7 @@ void rastershadow_free(RasterShadow *shadow)
 struct RasterQueue {
     const RasterShadow *shadow;
     LightQueue *places;
-    const uint32_t *items[LIGHT_BATCH]; /* of each call; NULL: of none, as they are not known */
+    const uint32_t *items[LIGHT_BATCH]; /* of each call; NULL in all of them: not known */
     uint32_t answer[LIGHT_BATCH];
     const RasterKernels *kernels;
     uint8_t *shadowed;
@@ -292,7 +292,8 @@ static void set_queries(RasterQueue *queue, const LightRequest *request)
             queries->item[i] =
                 queue->items[places->from[i] / TILE_SAMPLES][places->from[i] % TILE_SAMPLES];
     else
-        memset(queries->item, 0xff, (size_t)request->n * sizeof *queries->item);
+        memset(queries->item, 0xff,
+               (size_t)request->n * sizeof *queries->item); /* RASTER_NOTHING */
 }
 
 static void test_tile(const LightRequest *request, void *context)

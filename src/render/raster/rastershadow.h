@@ -31,7 +31,8 @@ MUST_CHECK Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out,
 void rasterqueue_free(RasterQueue *queue);
 
 /* Adds a query for each place i whose bit is set in `wanted`; place i lies on items[i], as in
- * RasterHits. `items` is borrowed until rasterqueue_answer, which writes the answer for place i to
+ * RasterHits. `items` is NULL where that is not known, in all calls between two answers or in none
+ * of them. It is borrowed until rasterqueue_answer, which writes the answer for place i to
  * shadowed[answer + i]. At most LIGHT_BATCH calls between two answers. */
 void rasterqueue_ask(RasterQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
                      const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer);

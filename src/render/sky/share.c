@@ -35,7 +35,7 @@ typedef struct Share {
     const LightSources *from;
     SharedLight *light;
     bool is_soft;     /* whether area lights are asked */
-    uint32_t *pixels; /* owned; of each number, if area lights are asked, as `reach` */
+    uint32_t *pixels; /* owned; of each number; only where area lights are asked, as `reach` */
     size_t n;         /* numbers */
     Run *runs;        /* owned; at most PLACES_AT_ONCE numbers each */
     size_t n_runs;
@@ -573,8 +573,9 @@ static Status find_reach(Share *share, Err *err)
     return STATUS_OK;
 }
 
-/* The sums about the pixels of a square's row whatever their surfaces are, and where these do not
- * matter: where all see as many points, or all see the ground, which is one surface. */
+/* Of each pixel in a row of a square the sum that sum_about adds up, as if the pixel and its eight
+ * neighbours all showed one surface, and whether that sum is right: all nine see as many points, or
+ * all nine see the ground, which is one surface. */
 typedef struct RowSums {
     uint16_t sums[SQUARE];
     uint16_t is_one[SQUARE];

@@ -243,7 +243,7 @@ LANE_FN LaneMask lanes_of_bytes(const uint8_t *bytes)
     return lanes_load_bytes(bytes) != 0;
 }
 
-/* a + b, and the lesser of a and b, where the mask is true, elsewhere a. */
+/* a + b where the mask is true, elsewhere a. */
 LANE_FN Lanes lanes_add_where(LaneMask mask, Lanes a, Lanes b)
 {
 #if defined LANES_AVX512
@@ -254,6 +254,7 @@ LANE_FN Lanes lanes_add_where(LaneMask mask, Lanes a, Lanes b)
 #endif
 }
 
+/* The lesser of a and b where the mask is true, elsewhere a. */
 LANE_FN Lanes lanes_min_where(LaneMask mask, Lanes a, Lanes b)
 {
 #if defined LANES_AVX512

@@ -82,7 +82,8 @@ int lightqueue_ask(LightQueue *queue, const TileKernels *kernels, const SeenPlac
     return call;
 }
 
-/* Copies n places, and up to PLACES_BEHIND more: requests are small, and blocks need no calls. */
+/* Copies n places, and up to PLACES_BEHIND more: in blocks of one size, which compilers copy
+ * without a call, as requests are small. */
 static void copy_places(const AskedPlaces *from, int first, int n, AskedPlaces *to, int at)
 {
     enum { BLOCK = PLACES_BEHIND + 1 };
