@@ -12,6 +12,7 @@
 #   expect_file F              the file is there and not empty
 #   expect_only F ...          the current folder holds these files and no other
 #   expect_json FILE FILTER    the jq filter is true of the file
+#   npm_module NAME            installs what tests/npm/package.json lists into $NPM_MODULES, or skips the test
 #   expect_tree FILE FILTER ... it is true of what info, with the options, says of a file of ../shared/data
 #   skip REASON                ends the test: not run, and said so
 #   fail REASON                ends the test: failed
@@ -23,6 +24,7 @@ DATA=$REPO/tests/data
 CORCAST=${CORCAST:-$REPO/build/corcast}
 CHECK_TREE=${CHECK_TREE:-$REPO/build/release/tests/check_tree}
 CMYK=/usr/share/color/icc/ghostscript/default_cmyk.icc # of libgs-common
+NPM_MODULES=$REPO/build/npm/node_modules
 SHARED=${CORCAST_SHARED:-$REPO/../shared}/data
 
 corcast() {
@@ -123,6 +125,14 @@ expect_tree() {
     run_ok corcast info --quiet --json "$@" "$SHARED/$file"
     mv stdout info.json
     expect_json info.json "$filter"
+}
+
+npm_module() {
+    local folder=$REPO/build/npm
+    [ ! -d "$NPM_MODULES/$1" ] || return 0
+    command -v npm >/dev/null || skip "$1 is not installed, and there is no npm to install it"
+    mkdir -p "$folder" && cp "$REPO"/tests/npm/*.json "$folder" &&
+        timeout 60 npm ci --prefix "$folder" >npm.log 2>&1 || skip "npm cannot install $1: $(tail -1 npm.log)"
 }
 
 # A grown tree of N terminals in ./tree.swc.

@@ -139,7 +139,7 @@ static Status lay_picture(Image *image, const float background[3], Err *err)
         status = picture_from_plane(&made, &laid, encoding, image->picture.bits, err);
     plane_release(&laid);
     TRY(status);
-    picture_release(&image->picture);
+    image->transparent = image->picture;
     image->picture = made;
     return STATUS_OK;
 }

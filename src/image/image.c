@@ -139,6 +139,7 @@ void idplane_release(IdPlane *ids)
 void image_release(Image *image)
 {
     picture_release(&image->picture);
+    picture_release(&image->transparent);
     plane_release(&image->plane);
 }
 

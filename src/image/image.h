@@ -258,9 +258,10 @@ void imagereader_close(ImageReader *reader);
 MUST_CHECK Status picture_put_uri(const Picture *picture, Text *out, Err *err);
 /* What a file holds: integer codes, or linear floats. */
 typedef struct Image {
-    Picture picture;   /* without codes when the file holds floats */
-    Plane plane;       /* without values when it holds codes */
-    const char *lossy; /* the compression that changed the codes: "JPEG", "WebP"; else NULL */
+    Picture picture;     /* without codes when the file holds floats */
+    Plane plane;         /* without values when it holds codes */
+    Picture transparent; /* the picture before image_lay_on; without codes if it was opaque */
+    const char *lossy;   /* the compression that changed the codes: "JPEG", "WebP"; else NULL */
 } Image;
 
 void image_release(Image *image);
@@ -290,9 +291,9 @@ MUST_CHECK Status image_read_layer(Image *image, const char *path, const char *l
 MUST_CHECK Status picture_read_transparent(Picture *picture, const char *path, Err *err);
 /* Likewise, and STATUS_INPUT when the file holds codes. */
 MUST_CHECK Status plane_read_transparent(Plane *plane, const char *path, Err *err);
-/* Lays what has alpha on a background, red, green and blue from 0 to 1, in linear light; what is
- * left has 3 channels, its codes sRGB's unless they are linear. STATUS_MEMORY; *image is unchanged
- * then. */
+/* Lays an image with alpha on a background, red, green and blue from 0 to 1, in linear light. The
+ * result has 3 channels, its codes sRGB's unless they are linear; a picture with alpha moves to
+ * image->transparent. STATUS_MEMORY; *image is unchanged then. */
 MUST_CHECK Status image_lay_on(Image *image, const float background[3], Err *err);
 /* Likewise, and STATUS_INPUT when the file does not hold codes, or floats. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, Err *err);

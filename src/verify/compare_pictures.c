@@ -136,6 +136,12 @@ Status class_picture(Picture *out, const Rendering *a, const Rendering *b,
     return status;
 }
 
+static const Picture *as_read(const Rendering *rendering)
+{
+    const Picture *transparent = rendering->transparent;
+    return transparent && transparent->width > 0 ? transparent : rendering->picture;
+}
+
 Status compare_pictures(const Rendering *a, const Rendering *b, const Tolerance *tolerance,
                         CompareResult *result, Ledger *ledger, Err *err)
 {
@@ -156,7 +162,7 @@ Status compare_pictures(const Rendering *a, const Rendering *b, const Tolerance 
     TRY_GOTO(take_counts(&counting, &made, &of_segments, err));
     if (!isnan(tolerance->pixelmatch))
         made.pixelmatch_pixels =
-            (double)pixelmatch_count(picture, b->picture, tolerance->pixelmatch);
+            (double)pixelmatch_count(as_read(a), as_read(b), tolerance->pixelmatch);
     result_finish(&made, a->ids, b->ids);
     *result = made;
     if (ledger) {

@@ -109,10 +109,14 @@ static Status class_map(const ReportCase *report, Picture *classes, Err *err)
 {
     const ReportSide *a = &report->a, *b = &report->b;
     bool geometry = a->depth && a->normal && b->depth && b->normal;
-    const Rendering in_a = {a->picture, a->ids, geometry ? a->depth : NULL,
-                            geometry ? a->normal : NULL};
-    const Rendering in_b = {b->picture, b->ids, geometry ? b->depth : NULL,
-                            geometry ? b->normal : NULL};
+    const Rendering in_a = {.picture = a->picture,
+                            .ids = a->ids,
+                            .depth = geometry ? a->depth : NULL,
+                            .normal = geometry ? a->normal : NULL};
+    const Rendering in_b = {.picture = b->picture,
+                            .ids = b->ids,
+                            .depth = geometry ? b->depth : NULL,
+                            .normal = geometry ? b->normal : NULL};
     return class_picture(classes, &in_a, &in_b, &report->planes[PLANE_COLOR]->tolerance, err);
 }
 

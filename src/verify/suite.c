@@ -182,6 +182,15 @@ static Status read_image(Image *image, const char *path, const float background[
     return STATUS_OK;
 }
 
+/* Gives a pixel of a transparent picture the codes of an opaque one. */
+static void cover_pixel(Picture *transparent, size_t pixel, const Picture *opaque)
+{
+    for (size_t c = 0; c < 4 && transparent->width > 0; c++)
+        picture_set(transparent, 4 * pixel + c,
+                    c < 3 ? picture_code(opaque, 3 * pixel + c)
+                          : (uint16_t)(transparent->bits == 8 ? 255 : 65535));
+}
+
 /* Gives the picture the reference's codes where the mask is not black. */
 static Status apply_mask(Held *held, SuiteCase *entry, Err *err)
 {
@@ -198,6 +207,8 @@ static Status apply_mask(Held *held, SuiteCase *entry, Err *err)
         entry->masked += masked;
         for (size_t c = i * channels; masked && c < (i + 1) * channels; c++)
             picture_set(b, c, picture_code(a, c));
+        for (int side = 0; masked && side < 2; side++)
+            cover_pixel(&held->images[side].transparent, i, a);
     }
     return entry->masked < n ? STATUS_OK
                              : err_set(err, STATUS_INPUT, "the mask leaves no pixel to judge");
@@ -217,8 +228,9 @@ static Status read_pair(const Judging *judging, Held *held, SuiteCase *entry, Er
 static Status compare_pair(const Judging *judging, const Held *held, SuiteCase *entry, Err *err)
 {
     CompareResult result;
-    const Rendering a = {.picture = &held->images[0].picture};
-    const Rendering b = {.picture = &held->images[1].picture};
+    const Image *images = held->images;
+    const Rendering a = {.picture = &images[0].picture, .transparent = &images[0].transparent};
+    const Rendering b = {.picture = &images[1].picture, .transparent = &images[1].transparent};
     Status status = compare_pictures(&a, &b, judging->tolerance, &result, NULL, err);
     if (status == STATUS_INPUT) { /* another size or depth */
         entry->state = SUITE_CHANGED;

@@ -218,6 +218,8 @@ typedef struct Rendering {
     const IdPlane *ids;          /* NULL, then in both views: silhouettes are found by the colour of
                                   * the background, where three corners of each picture share one */
     const Plane *depth, *normal; /* NULL, then in both views: geometry is not told from shading */
+    const Picture *transparent;  /* The same picture before it was laid on a background, for
+                                  * pixelmatch alone; NULL or without codes: it was opaque. */
 } Rendering;
 
 /* What differs at a pixel by more than the tolerance allows for one pixel: its colour; its id,
@@ -302,8 +304,9 @@ double de2000(const double lab_a[3], const double lab_b[3]);
 /* Its mean and largest value over two pictures of the same shape, taken as sRGB under D65. */
 MUST_CHECK Status de2000_compute(const Picture *a, const Picture *b, double *mean, double *max,
                                  Err *err);
-/* The pixels that pixelmatch 7.2.0 finds different at a threshold in [0, 1] (0.1 by default there),
- * those that it takes for antialiasing not counted. 16-bit pictures are rounded to 8 bits. */
+/* Counts the pixels that pixelmatch 7.2.0 finds different at a threshold in [0, 1] (its default is
+ * 0.1), without those that it takes for antialiasing. The pictures have one size and 1, 3 or 4
+ * channels each, the fourth alpha. 16-bit codes are rounded to 8 bits. */
 size_t pixelmatch_count(const Picture *a, const Picture *b, double threshold);
 
 /* The levels at which the heat map of the difference changes colour: 0, 1, 2, 4, 8, 16 and more,

@@ -443,6 +443,35 @@ END
     expect_json both.json '(.de2000_max - .other.max | fabs) < 1e-3'
 }
 
+test_pixelmatch_counts_as_the_package_of_that_name_transparent_pictures_too() {
+    local pair threshold count
+    npm_module pixelmatch
+    run_ok node "$REPO/tests/oracle/pixelmatch_pairs.mjs" "$NPM_MODULES"
+    while read -r pair threshold count; do
+        corcast compare "$pair.a.png" "$pair.b.png" --pixelmatch "$threshold" --json
+    done <expected >all.json 2>stderr
+    jq .pixelmatch_pixels all.json | paste -d ' ' expected - | awk '$3 != $4' >other
+    [ ! -s other ] || fail "expected pixelmatch's counts, got (pair, threshold, pixelmatch, corcast): $(head -3 other)"
+    awk '$3 > 0 { found++ } END { exit found < 50 }' expected || fail "expected pictures that differ"
+}
+
+# Two pictures without colour on white: only their alpha, 0 and 255 at the eighth of 20 pixels, differs.
+test_pixelmatch_counts_alpha_in_folders_and_under_masks() {
+    mkdir stored drawn
+    printf 'P5\n5 4\n255\n%20s' | tr ' ' '\0' >clear.pgm
+    { printf 'P5\n5 4\n255\n'; head -c 7 /dev/zero; printf '\377'; head -c 12 /dev/zero; } >dot.pgm
+    printf 'P6\n5 4\n255\n%60s' | tr ' ' '\377' >white.ppm
+    pnmtopng -alpha=clear.pgm white.ppm >stored/a.png 2>log
+    pnmtopng -alpha=dot.pgm white.ppm >drawn/a.png 2>log
+    run_ok corcast compare stored/a.png drawn/a.png
+    run corcast compare stored/a.png drawn/a.png --pixelmatch 0.1
+    expect_status 1
+    run corcast compare --reference stored drawn --pixelmatch 0.1
+    expect_status 1
+    pnmtopng dot.pgm >stored/a.mask.png 2>log
+    run_ok corcast compare --reference stored drawn --pixelmatch 0.1
+}
+
 # Slow: forty pictures are made and compared.
 test_no_cause_is_named_that_was_not_planted() {
     /usr/bin/python3 -c 'import scipy' 2>import.log || skip "python3-scipy is not installed"

@@ -29,13 +29,8 @@ is_the_stl() {
 
 # gltf_validator FILE: what Khronos's validator says of it, in ./validated.
 gltf_validator() {
-    local modules=$REPO/build/npm
-    if [ ! -d "$modules/node_modules/gltf-validator" ]; then
-        command -v npm >/dev/null || skip "gltf-validator is not there, and no npm to install it"
-        mkdir -p "$modules" && cp "$REPO"/tests/npm/*.json "$modules" &&
-            timeout 60 npm ci --prefix "$modules" >npm.log 2>&1 || skip "npm cannot install gltf-validator: $(tail -1 npm.log)"
-    fi
-    NODE_PATH=$modules/node_modules node -e '
+    npm_module gltf-validator
+    NODE_PATH=$NPM_MODULES node -e '
         const bytes = new Uint8Array(require("fs").readFileSync(process.argv[1]));
         require("gltf-validator").validateBytes(bytes).then(report => console.log(JSON.stringify(report)));' \
         "$1" >validated || fail "gltf-validator fails"

@@ -47,8 +47,10 @@ static void must(Lab *lab, Status status)
 static bool tier_differs(Lab *lab, const Subject *a, const Subject *b, const Tolerance *tolerance)
 {
     const Frame *fa = &a->frame, *fb = &b->frame;
-    const Rendering ra = {&a->picture, &fa->id, &fa->depth, &fa->normal};
-    const Rendering rb = {&b->picture, &fb->id, &fb->depth, &fb->normal};
+    const Rendering ra = {
+        .picture = &a->picture, .ids = &fa->id, .depth = &fa->depth, .normal = &fa->normal};
+    const Rendering rb = {
+        .picture = &b->picture, .ids = &fb->id, .depth = &fb->depth, .normal = &fb->normal};
     CompareResult results[PLANE_KINDS];
     Err *err = &lab->err;
     must(lab, compare_pictures(&ra, &rb, tolerance, &results[PLANE_COLOR], NULL, err));

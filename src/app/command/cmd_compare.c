@@ -66,15 +66,16 @@ static Status read_ids(IdPlane *ids, const char *path, Err *err)
 /* Converts the image to sRGB codes of `bits` bits, whatever the file holds. */
 static Status set_bits(Image *image, int bits, Err *err)
 {
-    Picture made;
-    if (image->plane.values)
-        TRY(picture_from_plane(&made, &image->plane, ENCODING_SRGB, bits, err));
-    else
-        TRY(picture_to_srgb(&made, &image->picture, bits, err));
-    const char *lossy = image->lossy;
-    image_release(image);
-    *image = (Image){.picture = made, .lossy = lossy};
-    return STATUS_OK;
+    Image made = {.lossy = image->lossy};
+    Status status = image->plane.values
+                        ? picture_from_plane(&made.picture, &image->plane, ENCODING_SRGB, bits, err)
+                        : picture_to_srgb(&made.picture, &image->picture, bits, err);
+    if (status == STATUS_OK && image->transparent.width > 0)
+        status = picture_to_srgb(&made.transparent, &image->transparent, bits, err);
+    image_release(status == STATUS_OK ? image : &made);
+    if (status == STATUS_OK)
+        *image = made;
+    return status;
 }
 
 /* Of a plane of geometry every value counts: it has no alpha. */
@@ -225,8 +226,13 @@ static Status compare_codes(const CompareOptions *options, const Sides *sides,
                             const Tolerance *tolerance, CompareResult *result, Err *err)
 {
     bool ids = options->ids_a != NULL;
-    const Rendering a = {.picture = &sides->images[0].picture, .ids = ids ? &sides->ids[0] : NULL};
-    const Rendering b = {.picture = &sides->images[1].picture, .ids = ids ? &sides->ids[1] : NULL};
+    const Image *images = sides->images;
+    const Rendering a = {.picture = &images[0].picture,
+                         .transparent = &images[0].transparent,
+                         .ids = ids ? &sides->ids[0] : NULL};
+    const Rendering b = {.picture = &images[1].picture,
+                         .transparent = &images[1].transparent,
+                         .ids = ids ? &sides->ids[1] : NULL};
     Ledger ledger = {0};
     Picture shown[2] = {{0}, {0}};
     Status status = STATUS_OK;

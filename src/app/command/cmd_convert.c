@@ -145,6 +145,7 @@ static Status read_picture(const ConvertOptions *options, const char *from, cons
     Image image = {0};
     TRY(picture_read_transparent(&image.picture, from, err));
     TRY(lay_down(options, &image, err));
+    picture_release(&image.transparent);
     *picture = image.picture;
     if (picture->channels != 4 || image_keeps_alpha(to))
         return STATUS_OK;

@@ -300,7 +300,10 @@ static Status compare_exact(Verification *v, const Rendering *povray, Err *err)
     TRY(picture_from_plane(&picture, &v->exact.color, ENCODING_SRGB, 8, err));
     Rendering a = *povray;
     a.picture = verification_shown_by_povray(v);
-    const Rendering b = {&picture, &v->exact.id, &v->exact.depth, &v->exact.normal};
+    const Rendering b = {.picture = &picture,
+                         .ids = &v->exact.id,
+                         .depth = &v->exact.depth,
+                         .normal = &v->exact.normal};
     Status status = compare_pictures(&a, &b, &tolerance, &v->exact_color, NULL, err);
     picture_release(&picture);
     return status;
@@ -320,8 +323,14 @@ Status verification_compare(Verification *v, Err *err)
     camera_depth_range(&v->scene.view.camera, v->scene.geometry.bounds, &near_mm, &far_mm);
     Tolerance tolerance = tolerance_identity((far_mm - near_mm) / 65535);
     const IdPlane *a = &v->povray.id, *b = &v->native.id;
-    const Rendering view_a = {&v->povray_picture, a, &v->povray.depth, &v->povray.normal};
-    const Rendering view_b = {&v->native_picture, b, &v->native.depth, &v->native.normal};
+    const Rendering view_a = {.picture = &v->povray_picture,
+                              .ids = a,
+                              .depth = &v->povray.depth,
+                              .normal = &v->povray.normal};
+    const Rendering view_b = {.picture = &v->native_picture,
+                              .ids = b,
+                              .depth = &v->native.depth,
+                              .normal = &v->native.normal};
     if (v->asks_witness)
         TRY(compare_witness(v, (far_mm - near_mm) / 65535, err));
     TRY(settle_sides(v, &view_a, &view_b, &tolerance, err));
