@@ -42,6 +42,13 @@ END
     done
 }
 
+# A pixel has ten samples: alpha is a tenth of 255, a half of a code rounded up as POV-Ray rounds it.
+test_alpha_of_ten_samples_is_rounded_as_povray_rounds_it() {
+    run_ok corcast render "$DATA/coronary.swc" --quiet --size 120x120 --background none --antialias 3 -o none.png
+    rgba none.png | awk '{ print $4 }' | sort -nu | xargs >alphas
+    [ "$(cat alphas)" = '0 26 51 77 102 128 153 179 204 230 255' ] || fail "expected tenths of 255, got $(cat alphas)"
+}
+
 test_sixteen_bits_and_tiff_hold_the_same() {
     cp "$DATA/bifurcation.swc" tree.swc
     run_ok corcast render tree.swc --size 40x30 --background none -o eight.png

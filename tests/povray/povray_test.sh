@@ -129,17 +129,17 @@ INI
     done
 }
 
-# Colours to the code; alpha, which POV-Ray makes of transmission, to one code.
+# At antialiasing 3 many alphas are halves of a code: 0.3 x 255 = 76.5, which POV-Ray rounds up.
 test_a_transparent_picture_is_povrays() {
     local antialias
     cp "$DATA/bifurcation.swc" tree.swc
     run_ok corcast scene --quiet tree.swc --background none --size 60x50 -o scene.pov
-    for antialias in 1 3; do
+    for antialias in 1 3 5; do
         run_ok corcast povray --quiet scene.pov --alpha --antialias $antialias -o povray.png
         run_ok corcast render --quiet tree.swc --exact --background none --size 60x50 --antialias $antialias -o native.png
         paste -d ' ' <(pngtopam -alphapam povray.png | tail -c 12000 | od -A n -v -t u1 -w4) \
             <(pngtopam -alphapam native.png | tail -c 12000 | od -A n -v -t u1 -w4) |
-            awk '$1 != $5 || $2 != $6 || $3 != $7 || ($4 - $8) ^ 2 > 1 { exit 1 } $4 > 0 { seen++ } END { exit seen < 300 }' ||
+            awk '$1 != $5 || $2 != $6 || $3 != $7 || $4 != $8 { exit 1 } $4 > 0 { seen++ } END { exit seen < 300 }' ||
             fail "expected POV-Ray's colours and alpha, antialiased by $antialias"
     done
 }
