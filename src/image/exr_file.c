@@ -6,6 +6,8 @@
  * image. */
 #include "image/formats.h"
 
+#define IMATH_HALF_NO_LOOKUP_TABLE /* whose table is in a library of its own */
+#include <Imath/half.h>
 #include <errno.h>
 #include <openexr.h>
 #include <stdlib.h>
@@ -24,6 +26,7 @@ typedef struct Exr {
     int channels;                     /* alpha not counted */
     bool has_alpha, is_colored;       /* its channels are R G B */
     Plane plane;         /* owned; of the data window, then of the display; alpha last */
+    int x, y;            /* pixel of the plane at which the chunk being decoded begins */
     char complaint[200]; /* the library's, "" when there is none */
 } Exr;
 
@@ -262,25 +265,51 @@ static Status open_file(Exr *self, Err *err)
     return STATUS_OK;
 }
 
-/* Points the decoder's channels at column `x`, row `y` of the plane. */
-static void aim(Exr *self, exr_decode_pipeline_t *decoder, int x, int y)
+/* One number of a file, little-endian as all of OpenEXR, as a float. Integers above 2^24 are
+ * rounded. */
+static float number_at(const uint8_t *at, int type)
 {
-    size_t samples = (size_t)self->plane.channels;
-    size_t row = (size_t)self->plane.width * samples;
-    for (int c = 0; c < decoder->channel_count; c++) {
-        exr_coding_channel_info_t *channel = &decoder->channels[c];
-        channel->decode_to_ptr = NULL;
-        for (size_t i = 0; i < samples; i++) {
-            if (strcmp(channel->channel_name, self->names[i]) != 0)
+    uint32_t bits;
+    float value;
+    if (type == EXR_PIXEL_HALF)
+        return imath_half_to_float((imath_half_bits_t)(at[0] | at[1] << 8));
+    bits = at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
+    memcpy(&value, &bits, sizeof value);
+    return type == EXR_PIXEL_UINT ? (float)bits : value;
+}
+
+/* Returns the index in the plane of a channel of the file; -1 if the plane does not have it. */
+static int plane_channel(const Exr *self, const exr_coding_channel_info_t *channel)
+{
+    for (int i = 0; i < self->plane.channels; i++)
+        if (strcmp(channel->channel_name, self->names[i]) == 0)
+            return i;
+    return -1;
+}
+
+/* Copies a decompressed chunk into the plane. In each row of a chunk the channels follow each
+ * other, in the order of their names. OpenEXRCore 3.1.5 has a routine for this, but that one mixes
+ * up the channels of half RGBA. */
+static exr_result_t unpack(exr_decode_pipeline_t *decoder)
+{
+    Exr *self = decoder->decoding_user_data;
+    const uint8_t *at = decoder->unpacked_buffer;
+    const size_t samples = (size_t)self->plane.channels;
+    for (int y = 0; y < decoder->chunk.height; y++)
+        for (int c = 0; c < decoder->channel_count; c++) {
+            const exr_coding_channel_info_t *channel = &decoder->channels[c];
+            const int in_plane = plane_channel(self, channel);
+            if ((decoder->chunk.start_y + y) % channel->y_samples != 0)
                 continue;
-            float *first = self->plane.values + (size_t)y * row + (size_t)x * samples + i;
-            channel->decode_to_ptr = (uint8_t *)first;
-            channel->user_pixel_stride = (int32_t)(samples * sizeof(float));
-            channel->user_line_stride = (int32_t)(row * sizeof(float));
-            channel->user_bytes_per_element = sizeof(float);
-            channel->user_data_type = EXR_PIXEL_FLOAT;
+            for (int x = 0; in_plane >= 0 && x < channel->width; x++) {
+                size_t pixel =
+                    (size_t)(self->y + y) * (size_t)self->plane.width + (size_t)(self->x + x);
+                self->plane.values[pixel * samples + (size_t)in_plane] = number_at(
+                    at + (size_t)x * (size_t)channel->bytes_per_element, channel->data_type);
+            }
+            at += (size_t)channel->width * (size_t)channel->bytes_per_element;
         }
-    }
+    return EXR_ERR_SUCCESS;
 }
 
 /* How wide and high the chunks are, but for the last ones: tiles, or rows side by side. */
@@ -315,11 +344,12 @@ static bool decode_chunk(Exr *self, exr_decode_pipeline_t *decoder, const exr_ch
     bool first = x == 0 && y == 0;
     exr_result_t result = first ? exr_decoding_initialize(self->context, self->part, chunk, decoder)
                                 : exr_decoding_update(self->context, self->part, chunk, decoder);
-    if (result != EXR_ERR_SUCCESS)
-        return false;
-    aim(self, decoder, x, y);
-    if (first)
+    if (result == EXR_ERR_SUCCESS && first)
         result = exr_decoding_choose_default_routines(self->context, self->part, decoder);
+    decoder->unpack_and_convert_fn = unpack;
+    decoder->decoding_user_data = self;
+    self->x = x;
+    self->y = y;
     return result == EXR_ERR_SUCCESS &&
            exr_decoding_run(self->context, self->part, decoder) == EXR_ERR_SUCCESS;
 }

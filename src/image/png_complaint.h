@@ -15,5 +15,7 @@ typedef struct PngComplaint {
 void png_on_error(png_structp png, png_const_charp message);
 /* Warnings are passed over. */
 void png_on_warning(png_structp png, png_const_charp message);
+/* STATUS_INPUT: the file has all its pixels, but is cut off before its IEND chunk. */
+Status png_without_end(const char *name, Err *err);
 
 #endif

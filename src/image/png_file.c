@@ -32,6 +32,13 @@ void png_on_warning(png_structp png, png_const_charp message)
     (void)message;
 }
 
+Status png_without_end(const char *name, Err *err)
+{
+    return err_set(err, STATUS_INPUT,
+                   "%s: ends before its IEND chunk; its pixels are whole, but the file was cut off",
+                   name);
+}
+
 /* ------------------------------------------------------------------------------------ reading */
 
 typedef struct Reader {
@@ -39,10 +46,11 @@ typedef struct Reader {
     size_t at;
     png_structp png;
     png_infop info;
-    uint8_t *bytes;  /* owned; all rows */
-    png_bytep *rows; /* owned; into bytes */
-    Picture picture; /* owned */
-    double gamma;    /* of the picture */
+    uint8_t *bytes;              /* owned; all rows */
+    png_bytep *rows;             /* owned; into bytes */
+    Picture picture;             /* owned */
+    double gamma;                /* of the picture */
+    bool ends_early, has_pixels; /* more bytes were wanted than there are; all pixels were read */
     PngComplaint complaint;
     Err *err;
 } Reader;
@@ -50,7 +58,8 @@ typedef struct Reader {
 static void read_bytes(png_structp png, png_bytep out, size_t size)
 {
     Reader *self = png_get_io_ptr(png);
-    if (size > self->file.size - self->at)
+    self->ends_early = size > self->file.size - self->at;
+    if (self->ends_early)
         png_error(png, "the file ends too early");
     memcpy(out, self->file.bytes + self->at, size);
     self->at += size;
@@ -164,6 +173,7 @@ static Status read_picture(Reader *self)
     self->picture.gamma = self->gamma;
     TRY(allocate_rows(self, height, png_get_rowbytes(png, info)));
     png_read_image(png, self->rows);
+    self->has_pixels = true;
     png_read_end(png, NULL);
     take_rows(self);
     return STATUS_OK;
@@ -171,6 +181,8 @@ static Status read_picture(Reader *self)
 
 static Status unsound(Reader *self)
 {
+    if (self->has_pixels && self->ends_early)
+        return png_without_end(self->file.name, self->err);
     return err_set(self->err, STATUS_INPUT, "%s: is not a sound PNG file: %s", self->file.name,
                    self->complaint.text);
 }

@@ -136,7 +136,7 @@ static Status end(void *self, Err *err)
     const Rows *reader = self;
     errno = 0;
     if (setjmp(png_jmpbuf(reader->png)))
-        return unsound(reader, err);
+        return feof(reader->stream) ? png_without_end(reader->name, err) : unsound(reader, err);
     png_read_end(reader->png, NULL);
     return STATUS_OK;
 }

@@ -124,14 +124,15 @@ test_faults_of_pictures_are_named_one_each() {
     expect_stdout 'profile: "Wide built-in"; colours without ado are sRGB'
 }
 
-# helvetica FILE: a page with a font that is not in it.
-helvetica() {
+# page_with_font FONT FILE: a page whose only font is this dictionary.
+page_with_font() {
     {
         printf '%%PDF-1.4\n1 0 obj<</Type/Catalog/Pages 2 0 R>>endobj\n2 0 obj<</Type/Pages/Kids[3 0 R]/Count 1>>endobj\n'
         printf '3 0 obj<</Type/Page/Parent 2 0 R/MediaBox[0 0 200 100]/Contents 5 0 R/Resources<</Font<</F 4 0 R>>>>>>endobj\n'
-        printf '4 0 obj<</Type/Font/Subtype/Type1/BaseFont/Helvetica>>endobj\n5 0 obj<</Length 30>>stream\n'
-        printf 'BT /F 12 Tf 9 9 Td (mm) Tj ET \nendstream endobj\ntrailer<</Root 1 0 R>>\n'
-    } >"$1"
+        printf '4 0 obj<</Type/Font%s>>endobj\n5 0 obj<</Length 30>>stream\n' "$1"
+        printf 'BT /F 12 Tf 9 9 Td (mm) Tj ET \nendstream endobj\n6 0 obj<</Length 26>>stream\n'
+        printf '1000 0 d0 0 0 750 750 re f\nendstream endobj\ntrailer<</Root 1 0 R>>\n'
+    } >"$2"
 }
 
 test_faults_of_pages_are_named() {
@@ -143,8 +144,14 @@ test_faults_of_pages_are_named() {
     refused nature low.pdf 'resolution: 200 dpi of picture 1, less than 300 for halftone'
     run_ok corcast render tree.swc --size 200mmx50mm --dpi 300 --antialias 1 -o wide.pdf
     refused nature wide.pdf 'width: 200.0 mm, more than 183 mm'
-    helvetica bare.pdf
+    page_with_font '/Subtype/Type1/BaseFont/Helvetica' bare.pdf
     refused nature bare.pdf 'fonts: Helvetica is not embedded'
+    local drawn='/Subtype/Type3/FontBBox[0 0 750 750]/FontMatrix[.001 0 0 .001 0 0]/CharProcs<</m 6 0 R>>'
+    drawn+='/Encoding<</Type/Encoding/Differences[109/m]>>/FirstChar 109/LastChar 109/Widths[1000]'
+    page_with_font "$drawn" drawn.pdf
+    refused nature drawn.pdf 'fonts: one without a name is a Type 3 font; TrueType, OpenType and Type 1 fonts are taken'
+    page_with_font "$drawn/BaseFont/Dots" named.pdf
+    refused nature named.pdf 'fonts: Dots is a Type 3 font; .*'
     head -c 900 fine.pdf >cut.pdf
     run corcast check-figure cut.pdf --preset nature
     expect_status 2

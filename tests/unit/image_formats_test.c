@@ -333,6 +333,31 @@ static char *sample(size_t i, size_t *size)
 }
 enum { SAMPLES = 19 };
 
+static void names_the_end_that_a_png_lacks(void **state)
+{
+    (void)state;
+    static const char *const path = "build/image_formats_test.png";
+    for (size_t i = SAMPLES - 2; i < SAMPLES; i++) {
+        enum { END_CHUNK = 12 };
+        size_t size;
+        char *bytes = sample(i, &size);
+        Image image;
+        ImageReader *reader;
+        Picture rows;
+        assert_int_equal(file_write(path, bytes, size - END_CHUNK, &err), STATUS_OK);
+        assert_int_equal(image_read(&image, path, &err), STATUS_INPUT);
+        assert_non_null(strstr(err.text, "ends before its IEND chunk; its pixels are whole"));
+        assert_int_equal(imagereader_open(&reader, path, &err), STATUS_OK);
+        assert_int_equal(picture_init(&rows, W, H, 3, imagereader_form(reader)->bits, &err),
+                         STATUS_OK);
+        assert_int_equal(imagereader_codes(reader, &rows, &err), STATUS_INPUT);
+        assert_non_null(strstr(err.text, "ends before its IEND chunk; its pixels are whole"));
+        picture_release(&rows);
+        imagereader_close(reader);
+        free(bytes);
+    }
+}
+
 static void survives_files_cut_anywhere(void **state)
 {
     (void)state;
@@ -389,6 +414,7 @@ int main(void)
         cmocka_unit_test(says_what_it_does_not_read),
         cmocka_unit_test(keeps_alpha_or_lays_it_on_a_background),
         cmocka_unit_test(refuses_pixels_that_no_file_of_that_size_holds),
+        cmocka_unit_test(names_the_end_that_a_png_lacks),
         cmocka_unit_test(survives_files_cut_anywhere),
         cmocka_unit_test(survives_files_with_damaged_bytes),
     };

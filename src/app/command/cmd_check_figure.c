@@ -168,7 +168,9 @@ static void take_info(Findings *all, char *line, int number)
         check_lengths(all, width * mm, height * mm);
 }
 
-/* Two lines of heads; columns from the right: object number and generation, uni, sub, emb. */
+/* Two lines of heads; columns from the right: generation and object number, uni, sub, emb,
+ * encoding, the type in one to three words. The letters of a Type 3 font are drawings, which other
+ * programs cannot edit, search or hint, so publishers refuse it even if it is embedded. */
 static void take_font(Findings *all, char *line, int number)
 {
     char *words[16], *rest = NULL;
@@ -180,6 +182,9 @@ static void take_font(Findings *all, char *line, int number)
         return;
     if (strcmp(words[n - 5], "no") == 0)
         refuse(all, "fonts: %s is not embedded", words[0]);
+    if (n >= 8 && strcmp(words[n - 8], "Type") == 0 && strcmp(words[n - 7], "3") == 0)
+        refuse(all, "fonts: %s is a Type 3 font; TrueType, OpenType and Type 1 fonts are taken",
+               strcmp(words[0], "[none]") ? words[0] : "one without a name");
     if (number == 2 && strcmp(all->preset->text_form, "outlined") == 0)
         refuse(all, "fonts: text is live; it is to be outlines");
 }
