@@ -25,7 +25,8 @@ typedef struct Exr {
     const char *names[MAX_CHANNELS];  /* of the channels of the plane, the last one perhaps "A" */
     int channels;                     /* alpha not counted */
     bool has_alpha, is_colored;       /* its channels are R G B */
-    Plane plane;         /* owned; of the data window, then of the display; alpha last */
+    Plane plane; /* owned; of the data window, then of the display; alpha last */
+    exr_result_t (*decompress)(exr_decode_pipeline_t *decoder); /* the library's */
     int x, y;            /* pixel of the plane at which the chunk being decoded begins */
     char complaint[200]; /* the library's, "" when there is none */
 } Exr;
@@ -344,8 +345,13 @@ static bool decode_chunk(Exr *self, exr_decode_pipeline_t *decoder, const exr_ch
     bool first = x == 0 && y == 0;
     exr_result_t result = first ? exr_decoding_initialize(self->context, self->part, chunk, decoder)
                                 : exr_decoding_update(self->context, self->part, chunk, decoder);
-    if (result == EXR_ERR_SUCCESS && first)
+    if (result == EXR_ERR_SUCCESS && first) {
         result = exr_decoding_choose_default_routines(self->context, self->part, decoder);
+        self->decompress = decoder->decompress_fn;
+    }
+    /* A chunk that compression does not shorten is stored as it is. OpenEXRCore 3.1.5 knows this of
+     * all compressions except B44 and B44A, where it makes other numbers of such a chunk. */
+    decoder->decompress_fn = chunk->packed_size < chunk->unpacked_size ? self->decompress : NULL;
     decoder->unpack_and_convert_fn = unpack;
     decoder->decoding_user_data = self;
     self->x = x;
