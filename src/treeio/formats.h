@@ -51,11 +51,20 @@ const char *text_first_row(const char *start);
 /* Cuts a line in place into its fields [text_field]; returns how many there are, of which the first
  * `most` go to `field`. */
 size_t fields_cut(char *line, char **field, size_t most);
+/* Refuses a line of fields that holds a number with a decimal comma, as "10,5" between blanks or
+ * semicolons: a comma separates fields. STATUS_INPUT, without file and line. */
+MUST_CHECK Status fields_check_commas(const char *line, Err *err);
+/* Returns the end of a sentence about a text that is no number: it names the decimal comma where
+ * the text has one, and is "" elsewhere. */
+const char *decimal_comma_hint(const char *text);
 
 /* Numbers in a file: a finite one, at least `minimum`, and a whole one. STATUS_INPUT, without file
  * and record, calling it `what`. */
 MUST_CHECK Status field_number(const char *what, const char *text, double minimum, double *out,
                                Err *err);
+/* A radius or a diameter; a bad one becomes NAN where the options repair radii [reading_radius]. */
+MUST_CHECK Status field_radius(const ReadOptions *options, const char *what, const char *text,
+                               double *out, Err *err);
 MUST_CHECK Status field_whole(const char *what, const char *text, int32_t minimum, int32_t maximum,
                               int32_t *out, Err *err);
 /* A finite number; NAN where the field is empty, NA or NaN. */

@@ -542,13 +542,14 @@ static bool reads_tree(const Source *source, const ReadOptions *options)
     const Format *format = source->format;
     if (!format->read || !format->read_graph)
         return format->read != NULL;
-    return format->detect(source->bytes) && given_options(options) == 0;
+    return format->detect(source->bytes) && given_options(options) == 0 &&
+           options->radius_mm == 0 && !options->repair_radii;
 }
 
 static Status read_source(const Source *source, Tree *tree, const ReadOptions *options,
                           TreeReading *reading, Err *err)
 {
-    TreeBuilder builder = {.name = source->name, .reading = reading};
+    TreeBuilder builder = {.name = source->name, .options = options, .reading = reading};
     const Format *format = source->format;
     bool is_tree = reads_tree(source, options);
     Tree made;
@@ -560,7 +561,11 @@ static Status read_source(const Source *source, Tree *tree, const ReadOptions *o
     TRY(status);
     if (is_tree)
         scale_tree(&made, format, options, reading);
-    status = tree_check(&made, err);
+    status = reading_fill_radii(reading, options, &made, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", source->name);
+    if (status == STATUS_OK)
+        status = tree_check(&made, err);
     if (status == STATUS_OK)
         status = reading_measure(reading, &made, err);
     if (status == STATUS_OK)

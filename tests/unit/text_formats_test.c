@@ -228,7 +228,8 @@ static void rejects_vmv_that_makes_no_sense(void **state)
         {"$VERT_LIST_BEGIN\n1 0 0 0 1\n1 0 0 2 1\n",
          ":3: the vertex '1' has been given before, in line 2"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 -2\n",
-         ":2: the radius is '-2'; it must be a finite number that is not negative"},
+         ":2: the radius is '-2'; it must be a finite number that is not negative (`repair_radii` "
+         "takes the parent's)"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1 2\n",
          ":5: there is no vertex '2'"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1\n",
@@ -272,9 +273,10 @@ static void rejects_trees_of_vita_that_make_no_sense(void **state)
     assert_refused("cco", "3\n", ":1: a tree of VItA begins with *Tree");
     assert_refused("cco", "*Forest\n", ":1: '*Forest' is no section of VItA's trees");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2\n",
-                   ":3: the vessel has 12 numbers; it has 21");
+                   ":3: a VItA vessel needs 21 numbers, found 12");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 -1.3\n",
-                   ":3: the radius is '-1.3'; it must be a finite number that is not negative");
+                   ":3: the radius is '-1.3'; it must be a finite number that is not negative "
+                   "(`repair_radii` takes the parent's)");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 1\n",
                    ": there is no section *Connectivity");
     assert_refused("cco", "*Vessels\n2\n0 0 9 0 0.5 4 1 0 0 0 0 2 1\n*Connectivity\n0 -1\n",

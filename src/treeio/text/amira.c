@@ -298,8 +298,8 @@ static Status read_text(Reader *reader, double *value, size_t n, Err *err)
         memcpy(number, from, length);
         number[length] = '\0';
         if (!number_parse(number, &value[i]))
-            return err_set(err, STATUS_INPUT, "'%.40s' is no number, and %zu are to come", number,
-                           n - i);
+            return err_set(err, STATUS_INPUT, "'%.40s' is no number, and %zu are to come%s", number,
+                           n - i, decimal_comma_hint(number));
     }
     return STATUS_OK;
 }

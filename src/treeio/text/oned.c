@@ -206,6 +206,7 @@ static Status read_line(void *reader, size_t number, char *line, Err *err)
     line += strspn(line, TEXT_BLANKS);
     if (*line == '#')
         return read_comment(deck->graph, line + 1, err);
+    TRY(fields_check_commas(line, err));
     Card card = {field, fields_cut(line, field, MAX_FIELDS), number};
     if (card.count == 0)
         return STATUS_OK;

@@ -70,7 +70,7 @@ static Status read_row(const Reader *reader, size_t line, char *const *field, Er
     TRY(field_number("x coordinate", field[2], any, &node.position.x, err));
     TRY(field_number("y coordinate", field[3], any, &node.position.y, err));
     TRY(field_number("z coordinate", field[4], any, &node.position.z, err));
-    TRY(field_number("radius", field[5], 0, &node.radius_mm, err));
+    TRY(field_radius(builder->options, "radius", field[5], &node.radius_mm, err));
     TRY(read_parent(reader, field[6], &node.parent, err));
     TRY(builder_node(builder, &node, err));
     for (size_t k = 0; k + N_FIELDS < reader->n_fields; k++) {
@@ -206,6 +206,7 @@ static Status read_line(Reader *reader, char *line, Err *err)
     char *comment = strchr(line, '#');
     if (comment)
         *comment = '\0';
+    TRY(fields_check_commas(line, err));
     size_t count = fields_cut(line, field, MAX_FIELDS);
     if (count == 0)
         return STATUS_OK;

@@ -177,7 +177,8 @@ static Status parse_numbers(char *text, double **out, size_t *n, Err *err)
         Status status =
             mem_reserve(&made, &capacity, count + 1, sizeof *made, "numbers of an array", err);
         if (status == STATUS_OK && !number_parse(at, &made[count]))
-            status = err_set(err, STATUS_INPUT, "'%.40s' is no number", at);
+            status =
+                err_set(err, STATUS_INPUT, "'%.40s' is no number%s", at, decimal_comma_hint(at));
         if (status != STATUS_OK) {
             free(made);
             return status;
