@@ -37,6 +37,23 @@ GraphRead oned_read, vita_read, secomb_read, opencco_read, vmv_read, metaio_read
 TreeWrite swc_write, csv_write, csv_segments_write, oned_write, vmv_write, vtk_write, vtp_write,
     gxl_write, graphml_write;
 
+/* Numbers that a compressed or sparse file of `size` bytes may unpack to, and points, lines or
+ * cells that it may hold. Data of vessels take at least a byte per point and compress less than 64
+ * times; files that claim more are refused before memory is allocated, even if their claim is true.
+ */
+static inline double most_unpacked_bytes(size_t size)
+{
+    return 64e6 + 64 * (double)size;
+}
+static inline double most_elements(size_t size)
+{
+    return 1e6 + (double)size;
+}
+/* STATUS_INPUT, without the file, for more elements than that. */
+MUST_CHECK Status check_elements(const char *what, double count, size_t size, Err *err);
+/* STATUS_INPUT, without the file, for more bytes of numbers than that. */
+MUST_CHECK Status check_unpacked(double bytes, size_t size, Err *err);
+
 /* Takes in one line (zero-terminated, without its end; may be changed), the file's `number`th.
  * STATUS_INPUT without file and line. */
 typedef Status ReadLine(void *reader, size_t number, char *line, Err *err);

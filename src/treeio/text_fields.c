@@ -18,6 +18,26 @@ Status lines_read(const char *name, char *text, ReadLine *read, void *reader, Er
     return STATUS_OK;
 }
 
+Status check_elements(const char *what, double count, size_t size, Err *err)
+{
+    char bytes[BYTES_TEXT_SIZE];
+    if (count <= most_elements(size))
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT, "it claims %.0f %s; a file of %s holds at most %.0f", count,
+                   what, bytes_text((double)size, bytes), most_elements(size));
+}
+
+Status check_unpacked(double bytes, size_t size, Err *err)
+{
+    char claim[BYTES_TEXT_SIZE], file[BYTES_TEXT_SIZE], most[BYTES_TEXT_SIZE];
+    if (bytes <= most_unpacked_bytes(size))
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "its numbers take %s unpacked; a file of %s is unpacked to at most %s",
+                   bytes_text(bytes, claim), bytes_text((double)size, file),
+                   bytes_text(most_unpacked_bytes(size), most));
+}
+
 const char *text_first_row(const char *start)
 {
     static const char blanks[] = TEXT_BLANKS "\r\n";
