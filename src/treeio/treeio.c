@@ -191,7 +191,7 @@ static const Format formats[] = {
      .detect = metaio_detect,
      .read_graph = metaio_read},
     {.name = "Amira",
-     .description = "a spatial graph of Amira or Avizo, in um",
+     .description = "a spatial graph, line set or skeleton of Amira or Avizo, in um",
      .extensions = {"am"},
      .takes = ANY_GRAPH | RADIUS_ARRAY,
      .form = {.name = "an Amira file", .most_bytes = MOST_BYTES},
@@ -546,6 +546,15 @@ static bool reads_tree(const Source *source, const ReadOptions *options)
            options->radius_mm == 0 && !options->repair_radii;
 }
 
+/* Returns whether the program grew the tree: its files state lengths in the unit of their format.
+ */
+static bool is_own(const Tree *tree)
+{
+    static const char name[] = "corcast ";
+    const char *generator = tree->meta.text[META_GENERATOR];
+    return generator && strncmp(generator, name, sizeof name - 1) == 0;
+}
+
 static Status read_source(const Source *source, Tree *tree, const ReadOptions *options,
                           TreeReading *reading, Err *err)
 {
@@ -568,6 +577,7 @@ static Status read_source(const Source *source, Tree *tree, const ReadOptions *o
         status = tree_check(&made, err);
     if (status == STATUS_OK)
         status = reading_measure(reading, &made, err);
+    reading->unit_said = reading->unit_said || is_own(&made);
     if (status == STATUS_OK)
         *tree = made;
     else
@@ -602,13 +612,25 @@ Status tree_read(Tree *tree, const char *path, Err *err)
     return tree_read_as(tree, path, NULL, NULL, err);
 }
 
+/* A file without flow shares may not state that terminals have them: the key terminal_flow goes
+ * with the shares. */
+static Status write_to(const char *path, const Tree *tree, FILE *stream, Err *err)
+{
+    const Format *format = find_written(path);
+    Tree written = *tree; /* borrows all */
+    if (format->loses & LOSES_SHARES &&
+        meta_number(&tree->meta, META_TERMINAL_FLOW) != TERMINAL_FLOW_EQUAL)
+        written.meta.known[META_TERMINAL_FLOW] = false;
+    return format->write(&written, stream, err);
+}
+
 Status tree_write(const Tree *tree, const char *path, Err *err)
 {
     OutFile file;
     TRY(tree_format_check(path, err));
     TRY(tree_check(tree, err));
     TRY(outfile_open(&file, path, err));
-    Status status = find_written(path)->write(tree, file.stream, err);
+    Status status = write_to(path, tree, file.stream, err);
     if (status == STATUS_IO)
         err_prefix(err, "%s: ", path);
     if (status == STATUS_OK)
@@ -626,7 +648,7 @@ Status tree_write_text(const Tree *tree, const char *path, Text *out, Err *err)
     FILE *stream = open_memstream(&bytes, &size);
     if (!stream)
         return mem_out_of("for", "a tree", err);
-    Status status = find_written(path)->write(tree, stream, err);
+    Status status = write_to(path, tree, stream, err);
     /* Closing tells only by NULL that there was no room for the bytes. */
     if ((fclose(stream) != 0 || !bytes) && status == STATUS_OK)
         status = mem_out_of("for", "a tree", err);

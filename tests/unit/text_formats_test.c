@@ -581,10 +581,13 @@ static void rejects_graphs_of_amira_that_make_no_sense(void **state)
         const char *at, *with, *sentence;
     } bad[] = {
         {"HxSpatialGraph", "HxCluster",
-         ":22: the ContentType is not HxSpatialGraph: the file holds no network"},
+         ":22: the ContentType is 'HxCluster'; networks are HxSpatialGraph, HxLineSet or "
+         "SkeletonGraph"},
         {"define EDGE 3\n", "", ":21: the header does not define EDGE"},
+        {"define POINT 8", "define POINT 900000",
+         ":39: 2700000 numbers of 'EdgePointCoordinates' cannot be in the 122 bytes left"},
         {"define POINT 8", "define POINT 2000000000",
-         ":39: 6000000000 numbers of 'EdgePointCoordinates' cannot be in the 122 bytes left"},
+         ":6: it claims 2000000000 POINT; a file of 637 bytes holds at most 1000637"},
         {"define POINT 8", "define POINT -8",
          ":6: the POINT is '-8'; it must be a whole number from 0 to 2147483647"},
         {"define POINT 8", "define POINT 9", ":47: '@5' is no number, and 3 are to come"},
@@ -602,7 +605,8 @@ static void rejects_graphs_of_amira_that_make_no_sense(void **state)
         {"NumEdgePoints } @3", "EdgePoints } @3",
          ": there is no block of EDGE { NumEdgePoints } with 1 number each"},
         {"thickness", "weight",
-         ": no array is called a radius, and `radius_array` names none; its arrays of one number "
+         ": no array is called a radius, `radius_array` names none, and `radius` gives none; its "
+         "arrays of one number "
          "are 'Labels' of points, 'weight' of points, 'strahler' of cells"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)

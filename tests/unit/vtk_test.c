@@ -207,7 +207,8 @@ static void radii_are_found_by_name_or_named(void **state)
         tree_release(&tree);
     }
     refuses("vtk", CHAIN "POINT_DATA 2\nFIELD f 2\nage 1 2 int\n1 2\nv 2 2 int\n1 2 3 4\n",
-            ": no array is called a radius, and `radius_array` names none; its arrays of one "
+            ": no array is called a radius, `radius_array` names none, and `radius` gives none; "
+            "its arrays of one "
             "number are 'age' of points");
 }
 
@@ -280,8 +281,9 @@ static void refuses_xml_that_says_no_network(void **state)
         {"<gxl/>", ":1: the document is <gxl>; VTK's are <VTKFile>"},
         {"<VTKFile type=\"ImageData\"/>",
          ":1: the file is of type 'ImageData'; lines are in PolyData and UnstructuredGrid"},
-        {VTP("compressor=\"vtkLZ4DataCompressor\"") VTP_END,
-         ":2: it is compressed by vtkLZ4DataCompressor; vtkZLibDataCompressor is known"},
+        {VTP("compressor=\"vtkLZMADataCompressor\"") VTP_END,
+         ":2: it is compressed by vtkLZMADataCompressor; vtkZLibDataCompressor and "
+         "vtkLZ4DataCompressor are read"},
         {VTP(""), ":3: not well-formed XML: no element found"},
         {"<?xml version=\"1.0\"?>\n<!DOCTYPE a [<!ENTITY b \"bb\">]>\n" VTP_END,
          ":2: it declares the entity 'b'; documents with entities of their own are not read"},

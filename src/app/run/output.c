@@ -212,7 +212,7 @@ static void print_left_out(const char *command, const Tree *tree, const char *pa
         bool is_lost;
         const char *what;
     } others[] = {{lost->types, "the types"},
-                  {lost->flow_shares, "the flow shares"},
+                  {lost->flow_shares, "the flow shares (and the key terminal_flow)"},
                   {lost->root_values, "the roots' values"},
                   {lost->root_radii, "the roots' own radii"}};
     if (!lost->columns && !lost->types && !lost->flow_shares && !lost->root_values &&

@@ -502,7 +502,7 @@ Status oned_write(const Tree *tree, FILE *stream, Err *err)
     Text text = TEXT_TO(stream);
     DeckTree deck = {.tree = tree, .text = &text};
     Status status = STATUS_OK;
-    TRY_GOTO(comments_write(&tree->meta, stream, err));
+    TRY_GOTO(comments_write(&tree->meta, NULL, stream, err));
     TRY_GOTO(tree_child_counts(tree, &deck.children, err));
     TRY_GOTO(tree_flow_shares(tree, &deck.share, err));
     TRY_GOTO(put_deck(&deck, err));

@@ -449,7 +449,9 @@ Status swc_write(const Tree *tree, FILE *stream, Err *err)
     char share[NUMBER_TEXT_SIZE];
     TreePair *pair;
     size_t pairs;
-    TRY(comments_write(&tree->meta, stream, err));
+    /* Remarks of other formats that a reader of SWC would take for shares or pairs. */
+    static const char *const meaningful[] = {share_key, tree_pairs_name, NULL};
+    TRY(comments_write(&tree->meta, meaningful, stream, err));
     TRY(tree_pairs(tree, &pair, &pairs, err));
     for (size_t k = 0; k < pairs; k++)
         fprintf(stream, "# %s: %d %d\n", tree_pairs_name, tree->id[pair[k].node[0]],

@@ -299,7 +299,7 @@ Status vmv_write(const Tree *tree, FILE *stream, Err *err)
 {
     Branches branches;
     TRY(branches_find(tree, &branches, err));
-    Status status = comments_write(&tree->meta, stream, err);
+    Status status = comments_write(&tree->meta, NULL, stream, err);
     fprintf(stream,
             "$PARAM_BEGIN\nNUM_VERTS %zu\nNUM_STRANDS %zu\nNUM_ATTRIB_PER_VERT 4\n"
             "$PARAM_END\n\n",
