@@ -613,8 +613,15 @@ static int order_thickness(const void *a, const void *b)
     return number_order(one->thickness, other->thickness);
 }
 
-/* Looks for ends that miss another component by less than a radius: the file was cut by rounding
- * there, and the user may want them joined. */
+/* A gap at an end counts as one of rounding if it is below the radius and half the length of the
+ * last line: a tolerance as wide as the gap joins no more than the ends. */
+static double reach_of(const Graph *graph, const Link *link)
+{
+    double length = vec3_distance(graph->point[link->a].position, graph->point[link->b].position);
+    return fmin(link->thickness, length / 2);
+}
+
+/* Looks for ends that nearly touch another component [reach_of]: the user may want them joined. */
 static Status find_near_ends(Building *building, Err *err)
 {
     Graph *graph = building->graph;
@@ -631,7 +638,7 @@ static Status find_near_ends(Building *building, Err *err)
     for (uint32_t i = 0; i < graph->n_points; i++) {
         part[i] = is_node(building, i) ? graph_first(building->component, i) + 1 : 0;
         if (part[i] && building->degree[i] == 1)
-            reach[i] = fmin(link_at(building, i, 0)->thickness, median);
+            reach[i] = fmin(median, reach_of(graph, link_at(building, i, 0)));
     }
     if (median > 0)
         status = graph_near_ends(graph, part, reach, median, building->reading, err);

@@ -131,7 +131,7 @@ static void say_near_ends(const char *path, const TreeReading *reading)
         fprintf(stderr,
                 "corcast: %s: ends that miss another tree by at most %.2g mm: %zu; "
                 "--merge-tolerance %.2g joins them\n",
-                path, reading->near_mm, reading->near_ends, rounded_up(reading->near_mm));
+                path, reading->near_mm, reading->near_ends, rounded_up(1.001 * reading->near_mm));
 }
 
 static void say_unit(const char *path, const TreeReading *reading)
@@ -335,6 +335,10 @@ json_t *reading_json(const TreeReading *reading)
         {"degrees", degrees_json(reading)},
         {"median_radius_mm", json_number(reading->median_radius_mm)},
         {"segments_without_radius", json_count(reading->without_radius)},
+        {"given_radii", json_count(reading->given_radius)},
+        {"repaired_radii", json_count(reading->repaired_radii)},
+        {"near_ends", json_count(reading->near_ends)},
+        {"near_ends_mm", json_number(reading->near_mm)},
         {"unit", json_text(length_unit_names[reading->unit])},
         {"unit_said", json_boolean(reading->unit_said)},
         {"believed_unit",

@@ -265,7 +265,8 @@ static void find_axes(const VtkArrays *arrays, KeyNames *names)
                                            {"x of id", "y of id", "z of id"}};
     for (size_t i = 0; !names->axis[0] && i < sizeof usual / sizeof *usual; i++)
         if (has_array(arrays, usual[i][0]) && has_array(arrays, usual[i][1]))
-            memcpy(names->axis, usual[i], sizeof names->axis);
+            for (int k = 0; k < 3; k++)
+                names->axis[k] = k < 2 || has_array(arrays, usual[i][k]) ? usual[i][k] : NULL;
 }
 
 static Status check_axes(const Reader *reader, const KeyNames *names, Err *err)
