@@ -138,15 +138,14 @@ test_info_of_a_tree_without_segments_has_no_nan() {
 test_an_index_names_files_only() {
     grow_tree 4
     run_ok corcast convert --quiet tree.swc tree.vtp
-    for name in - pipe ./folder; do
-        printf '<VTKFile type="Collection"><Collection><DataSet timestep="0" file="%s"/></Collection></VTKFile>\n' "$name" >"${name##*/}.pvd"
-    done
-    mkfifo pipe && mkdir folder
-    local file
-    for file in ./-.pvd pipe.pvd folder.pvd; do
-        timeout 10 "$CORCAST" info "$file" <tree.vtp >stdout 2>stderr
-        status=$? command_line="info $file"
+    local name
+    mkfifo pipe.vtp && mkdir folder.vtp
+    for name in - pipe.vtp folder.vtp; do
+        printf '<VTKFile type="Collection"><Collection><DataSet timestep="0" file="%s"/></Collection></VTKFile>\n' "$name" >index.pvd
+        timeout 10 "$CORCAST" info index.pvd <tree.vtp >stdout 2>stderr
+        status=$? command_line="info index.pvd, which names $name"
         expect_status 2
+        expect_sentence "index.pvd:1: (./)?$name: (not the name of|is )"
     done
 }
 
@@ -220,7 +219,7 @@ PY
 }
 
 test_names_do_not_turn_the_text_around() {
-    local name=$'a\u202eb\u2066c.txt'
+    local name=$'a\xe2\x80\xaeb\xe2\x81\xa6c.txt'
     printf '0 0\n40 0\n40 40\n0 40\n' >"$name"
     run_ok corcast grow --quiet --terminals 4 --domain "polygon:$name" -o tree.swc
     run_ok corcast render --quiet --size 40x40 tree.swc -o page.svg

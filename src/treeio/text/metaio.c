@@ -332,11 +332,12 @@ static Status read_row(Reader *reader, Err *err)
     if (!line)
         return err_set(err, STATUS_INPUT, "the file ends within the points of a tube");
     size_t found = 0;
+    TRY(fields_check_commas(line, err));
     for (const char *at = line; found < n && number_take(&at, &number[found]); found++)
         at += strspn(at, TEXT_BLANKS);
     if (reader->header.has_point_dim ? !numbers_parse(line, n, number) : found < n)
-        return err_set(err, STATUS_INPUT, "the point '%.40s' is not the %zu numbers of PointDim%s",
-                       line, n, decimal_comma_hint(line));
+        return err_set(err, STATUS_INPUT, "the point '%.40s' is not the %zu numbers of PointDim",
+                       line, n);
     return add_point(reader, number, err);
 }
 
