@@ -317,6 +317,14 @@ static Status has_own_root_radii(const Tree *tree, bool *has, Err *err)
     return STATUS_OK;
 }
 
+/* A file without flow shares may not state that terminals have them: the key terminal_flow goes
+ * with the shares. */
+static bool loses_rule(const Format *format, const Tree *tree)
+{
+    return format && format->loses & LOSES_SHARES &&
+           meta_number(&tree->meta, META_TERMINAL_FLOW) != TERMINAL_FLOW_EQUAL;
+}
+
 bool tree_format_keeps(const char *path, const TreeColumn *column)
 {
     const Format *format = find_written(path);
@@ -329,6 +337,7 @@ Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, E
     unsigned loses = format ? format->loses : 0;
     TreeLosses lost = {.types = (loses & LOSES_TYPES) && has_types(tree),
                        .flow_shares = (loses & LOSES_SHARES) && tree->flow_share,
+                       .terminal_flow = loses_rule(format, tree),
                        .root_values = (loses & LOSES_ROOT_VALUES) && has_root_values(tree)};
     for (size_t k = 0; k < tree->n_columns; k++)
         lost.columns += !tree_format_keeps(path, &tree->column[k]);
@@ -612,14 +621,11 @@ Status tree_read(Tree *tree, const char *path, Err *err)
     return tree_read_as(tree, path, NULL, NULL, err);
 }
 
-/* A file without flow shares may not state that terminals have them: the key terminal_flow goes
- * with the shares. */
 static Status write_to(const char *path, const Tree *tree, FILE *stream, Err *err)
 {
     const Format *format = find_written(path);
     Tree written = *tree; /* borrows all */
-    if (format->loses & LOSES_SHARES &&
-        meta_number(&tree->meta, META_TERMINAL_FLOW) != TERMINAL_FLOW_EQUAL)
+    if (loses_rule(format, tree))
         written.meta.known[META_TERMINAL_FLOW] = false;
     return format->write(&written, stream, err);
 }

@@ -179,7 +179,7 @@ test_flow_shares_that_a_format_lacks_are_left_out_with_their_key() {
     for format in vmv in segments.csv; do
         run corcast convert tree.swc out.$format
         expect_status 0
-        grep -q 'the flow shares (and the key terminal_flow)' stderr || fail "expected a report: $(cat stderr)"
+        grep -q 'the flow shares and the key terminal_flow' stderr || fail "expected a report: $(cat stderr)"
         run_ok corcast info out.$format
     done
 }

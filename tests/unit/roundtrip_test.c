@@ -205,7 +205,7 @@ static void compare_keys(const Tree *tree, const Tree *back, const TreeLosses *l
 {
     Text a = TEXT_INIT, b = TEXT_INIT;
     for (int key = 0; key < META_KEYS; key++) {
-        bool dropped = key == META_TERMINAL_FLOW && lost->flow_shares;
+        bool dropped = key == META_TERMINAL_FLOW && lost->terminal_flow;
         assert_int_equal(back->meta.known[key], tree->meta.known[key] && !dropped);
         if (!back->meta.known[key] || meta_rows[key].kind == META_LINES)
             continue;
