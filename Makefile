@@ -51,7 +51,7 @@ OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -
 OPTIMISE_fuzz := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 OPTIMISE_tsan := -O1 -g -fsanitize=thread
 VECTORS_release := -O3 -fno-math-errno -fno-trapping-math
-PACKAGES := libpng libdeflate libisal zlib libtiff-4 libjpeg libwebp lcms2 jansson expat libmd cairo-ft freetype2
+PACKAGES := libpng libdeflate libisal zlib libtiff-4 libjpeg libwebp lcms2 jansson expat libmd cairo-ft freetype2 liblz4
 # `view` loads SDL 2 when it opens a window; only its header is needed here.
 HEADERS := sdl2
 PACKAGE_LIBS := $(shell pkg-config --exists $(HEADERS) && pkg-config --libs $(PACKAGES) 2>/dev/null)

@@ -137,7 +137,8 @@ static Status describe_domain(const Domain *domain, TreeMeta *meta, Err *err)
     if (status == STATUS_OK) {
         const char *chars = text_chars(&spec);
         size_t kind = strcspn(chars, ":") + 1;
-        text_printf(&bare, "%.*s%s", (int)kind, chars, file_name(chars + kind));
+        text_append(&bare, chars, kind);
+        text_put_line(&bare, file_name(chars + kind));
         status = text_check(&bare, err);
     }
     if (status == STATUS_OK)

@@ -86,7 +86,6 @@ static Status unknown_share(int64_t id, Err *err)
 
 static Status check_node(const BuilderNode *node, Err *err)
 {
-    char number[NUMBER_TEXT_SIZE];
     if (!is_id(node->id))
         return err_set(err, STATUS_INPUT,
                        "the id is '%lld'; it must be a whole number from 1 to %d",
@@ -95,10 +94,6 @@ static Status check_node(const BuilderNode *node, Err *err)
         return unknown_parent(node->parent, err);
     if (!vec3_finite(node->position))
         return err_set(err, STATUS_INPUT, "the position is not finite");
-    if (!(node->radius_mm >= 0) || !isfinite(node->radius_mm))
-        return err_set(err, STATUS_INPUT,
-                       "the radius is '%s'; it must be a finite number that is not negative",
-                       number_text(node->radius_mm, number));
     return STATUS_OK;
 }
 
@@ -127,14 +122,16 @@ static Status reserve_row(TreeBuilder *builder, Err *err)
 
 Status builder_node(TreeBuilder *builder, const BuilderNode *node, Err *err)
 {
+    double radius_mm = node->radius_mm;
     TRY(check_node(node, err));
+    TRY(reading_radius(builder->options, &radius_mm, err));
     TRY(reserve_row(builder, err));
     size_t i = builder->n++;
     builder->id[i] = (int32_t)node->id;
     builder->type[i] = node->type;
     builder->parent[i] = (int32_t)node->parent;
     builder->position[i] = node->position;
-    builder->radius_mm[i] = node->radius_mm;
+    builder->radius_mm[i] = radius_mm;
     builder->row_record[i] = node->record;
     if (node->id > builder->last_id)
         builder->last_id = (int32_t)node->id;

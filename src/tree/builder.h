@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 typedef struct Tree Tree;
+typedef struct ReadOptions ReadOptions;
 typedef struct TreeReading TreeReading;
 
 enum { BUILDER_MAX_COLUMNS = 10000 };
@@ -31,6 +32,7 @@ typedef struct BuilderNode {
 typedef struct TreeBuilder {
     const char *name;   /* of the file (borrowed) */
     const char *record; /* what its records are called, "point" (borrowed); NULL: they are lines */
+    const ReadOptions *options;  /* how radii are checked (borrowed); may be NULL */
     TreeReading *reading;        /* where the reader says what it assumes (borrowed); may be NULL */
     TreeMeta meta;               /* of the tree, for the reader to fill */
     int32_t *id, *type, *parent; /* of each row; a parent by its id */
@@ -55,7 +57,7 @@ void builder_release(TreeBuilder *builder);
 Status builder_blame(const TreeBuilder *builder, size_t record, Status status, Err *err);
 
 /* Adds a node, in O(1) amortised. STATUS_INPUT for an id or a parent beyond 1 .. TREE_MAX_ID, a
- * position that is not finite, and a radius that is not finite or below 0. */
+ * position that is not finite, and a radius that reading_radius refuses. */
 MUST_CHECK Status builder_node(TreeBuilder *builder, const BuilderNode *node, Err *err);
 
 /* Adds a column of values of nodes (name and unit copied), numbered in *column from 0 on.

@@ -31,16 +31,6 @@ Status graph_blame(const Graph *graph, GraphElement of, size_t record, Status st
     return builder_blame(&named, record, status, err);
 }
 
-static Status check_radius(double radius, Err *err)
-{
-    char number[NUMBER_TEXT_SIZE];
-    if (isnan(radius) || (radius >= 0 && isfinite(radius)))
-        return STATUS_OK;
-    return err_set(err, STATUS_INPUT,
-                   "the radius is '%s'; it must be a finite number that is not negative",
-                   number_text(radius, number));
-}
-
 static Status check_count(size_t n, const char *what, Err *err)
 {
     if (n < MOST_ELEMENTS)
@@ -56,21 +46,25 @@ Status graph_point(Graph *graph, const GraphPoint *point, Err *err)
         return err_set(err, STATUS_INPUT,
                        "the id is '%lld'; it must be a whole number from 1 to %d",
                        (long long)point->id, TREE_MAX_ID);
-    TRY(check_radius(point->radius, err));
+    double radius = point->radius;
+    TRY(reading_radius(graph->options, &radius, err));
     TRY(check_count(graph->n_points, "points", err));
     TRY(mem_reserve(&graph->point, &graph->points_capacity, graph->n_points + 1,
                     sizeof *graph->point, "points", err));
-    graph->point[graph->n_points++] = *point;
+    graph->point[graph->n_points] = *point;
+    graph->point[graph->n_points++].radius = radius;
     return STATUS_OK;
 }
 
 Status graph_line(Graph *graph, const GraphLine *line, Err *err)
 {
-    TRY(check_radius(line->radius, err));
+    double radius = line->radius;
+    TRY(reading_radius(graph->options, &radius, err));
     TRY(check_count(graph->n_lines, "lines", err));
     TRY(mem_reserve(&graph->line, &graph->lines_capacity, graph->n_lines + 1, sizeof *graph->line,
                     "lines", err));
-    graph->line[graph->n_lines++] = *line;
+    graph->line[graph->n_lines] = *line;
+    graph->line[graph->n_lines++].radius = radius;
     return STATUS_OK;
 }
 

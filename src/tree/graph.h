@@ -30,6 +30,7 @@ typedef struct GraphLine {
     size_t a, b;      /* numbers of points, from 0 on */
     double radius;    /* NAN: none */
     bool is_directed; /* blood flows from a to b */
+    bool is_part; /* of a polyline of several lines, so that values of lines are the polyline's */
     size_t record;
 } GraphLine;
 

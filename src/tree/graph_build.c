@@ -91,37 +91,92 @@ static int thickest_first(const void *a, const void *b)
     return order ? order : order_lines(a, b);
 }
 
-/* Both ends as one number, whichever way the link goes. */
-static uint64_t pair_of(const Link *link)
+/* Describes a link by numbers that are equal for two links exactly if one repeats the other: both
+ * points, the radius, and the values of the line and of its two ends in all columns. A polyline of
+ * several lines may overlap another polyline, as where each runs from the root to one outlet; only
+ * points and radii count there. `out` has space for 4 numbers and 2 per column. Returns how many
+ * there are. */
+static size_t describe_link(const Building *building, const Link *link, double *out)
 {
-    uint32_t low = link->a < link->b ? link->a : link->b;
-    return (uint64_t)low << 32 | (link->a ^ link->b ^ low);
+    const Graph *graph = building->graph;
+    const GraphLine *line = &graph->line[link->line];
+    const bool turned = link->a > link->b;
+    const size_t ends[] = {turned ? line->b : line->a, turned ? line->a : line->b};
+    size_t n = 0;
+    out[n++] = turned ? link->b : link->a;
+    out[n++] = turned ? link->a : link->b;
+    for (size_t side = 0; side < 2; side++)
+        out[n++] = isnan(line->radius) ? graph->point[ends[side]].radius : line->radius;
+    for (size_t k = 0; k < graph->n_columns && !line->is_part; k++) {
+        const GraphColumn *column = &graph->column[k];
+        const bool of_lines = column->of == GRAPH_LINES;
+        for (size_t side = 0; side < (of_lines ? 1 : 2); side++) {
+            size_t at = of_lines ? link->line : ends[side];
+            out[n++] = at < column->n ? column->value[at] : (double)NAN;
+        }
+    }
+    for (size_t i = 0; i < n; i++)
+        out[i] = isnan(out[i]) ? (double)NAN : out[i] + 0.0; /* one NAN, and no -0 */
+    return n;
 }
 
-/* Of the links of one pair of points the first stays: a table of slots with linear probing holds
- * numbers of those that are kept. */
+static uint64_t hash_numbers(const double *number, size_t n)
+{
+    uint64_t hash = n;
+    for (size_t i = 0; i < n; i++) {
+        uint64_t bits;
+        memcpy(&bits, &number[i], sizeof bits);
+        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 32;
+    }
+    return hash;
+}
+
+/* A hash table with linear probing holds the indices + 1 of links that are kept. */
+typedef struct LinkTable {
+    uint32_t *slot;
+    double *one, *other; /* descriptions of two links */
+    size_t slots;        /* a power of two */
+} LinkTable;
+
+/* Adds link `kept`, or returns false if it repeats a link of the table. */
+static bool take_link(const Building *building, LinkTable *table, size_t kept)
+{
+    const Link *link = building->link;
+    size_t n = describe_link(building, &link[kept], table->one);
+    size_t at = hash_numbers(table->one, n) & (table->slots - 1);
+    for (; table->slot[at]; at = (at + 1) & (table->slots - 1))
+        if (describe_link(building, &link[table->slot[at] - 1], table->other) == n &&
+            memcmp(table->one, table->other, n * sizeof *table->one) == 0)
+            return false;
+    table->slot[at] = (uint32_t)kept + 1;
+    return true;
+}
+
+/* Of links that repeat each other the first stays. Other links between the same two points are
+ * vessels of their own, which close a loop. */
 static Status drop_repeated(Building *building, Err *err)
 {
-    size_t slots = 64, kept = 0;
-    while (slots < 2 * building->n_links)
-        slots *= 2;
-    uint32_t *slot = NULL;
-    TRY(mem_calloc(&slot, slots, sizeof *slot, "slots for lines", err));
-    Link *link = building->link;
+    LinkTable table = {.slots = 64};
+    const size_t most = 4 + 2 * building->graph->n_columns;
+    size_t kept = 0;
+    Status status = STATUS_OK;
+    while (table.slots < 2 * building->n_links)
+        table.slots *= 2;
+    TRY_GOTO(mem_calloc(&table.slot, table.slots, sizeof *table.slot, "slots for lines", err));
+    TRY_GOTO(mem_calloc(&table.one, most, sizeof *table.one, "values of a line", err));
+    TRY_GOTO(mem_calloc(&table.other, most, sizeof *table.other, "values of a line", err));
     for (size_t i = 0; i < building->n_links; i++) {
-        uint64_t pair = pair_of(&link[i]), hash = pair * 0x9e3779b97f4a7c15u;
-        size_t at = (hash ^ hash >> 32) & (slots - 1);
-        while (slot[at] && pair_of(&link[slot[at] - 1]) != pair)
-            at = (at + 1) & (slots - 1);
-        if (slot[at])
-            continue;
-        link[kept++] = link[i];
-        slot[at] = (uint32_t)kept;
+        building->link[kept] = building->link[i];
+        kept += take_link(building, &table, kept);
     }
-    free(slot);
     building->reading->repeated = building->n_links - kept;
     building->n_links = kept;
-    return STATUS_OK;
+done:
+    free(table.slot);
+    free(table.one);
+    free(table.other);
+    return status;
 }
 
 /* ---- loops ---- */
@@ -392,11 +447,13 @@ static Status radius_of(const Building *building, uint32_t kept, double *radius,
         const GraphLine *line = &graph->line[building->link[building->above[kept]].line];
         *radius =
             isnan(line->radius) ? graph->point[distal_point(building, kept)].radius : line->radius;
-        if (!isnan(*radius))
+        if (!isnan(*radius) || building->options->repair_radii || building->options->radius_mm > 0)
             return STATUS_OK;
-        return graph_blame(
-            graph, GRAPH_LINES, line->record,
-            err_set(err, STATUS_INPUT, "neither the line nor its distal point has a radius"), err);
+        return graph_blame(graph, GRAPH_LINES, line->record,
+                           err_set(err, STATUS_INPUT,
+                                   "neither the line nor its distal point has a radius; `radius` "
+                                   "gives one"),
+                           err);
     }
     if (graph->is_tree && !isnan(graph->point[kept].radius)) {
         *radius = graph->point[kept].radius;
@@ -550,6 +607,48 @@ static bool looks_like_voxels(const Graph *graph)
     return graph->n_points >= READ_FEW;
 }
 
+static int order_thickness(const void *a, const void *b)
+{
+    const Link *one = a, *other = b;
+    return number_order(one->thickness, other->thickness);
+}
+
+/* A gap at an end counts as one of rounding if it is below the radius and half the length of the
+ * last line: a tolerance as wide as the gap joins no more than the ends. */
+static double reach_of(const Graph *graph, const Link *link)
+{
+    double length = vec3_distance(graph->point[link->a].position, graph->point[link->b].position);
+    return fmin(link->thickness, length / 2);
+}
+
+/* Looks for ends that nearly touch another component [reach_of]: the user may want them joined. */
+static Status find_near_ends(Building *building, Err *err)
+{
+    Graph *graph = building->graph;
+    Link *link = NULL;
+    double *reach = NULL;
+    uint32_t *part = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&link, building->n_links, sizeof *link, "lines", err));
+    TRY_GOTO(mem_calloc(&reach, graph->n_points, sizeof *reach, "reaches of ends", err));
+    TRY_GOTO(mem_calloc(&part, graph->n_points, sizeof *part, "components", err));
+    memcpy(link, building->link, building->n_links * sizeof *link);
+    qsort(link, building->n_links, sizeof *link, order_thickness);
+    const double median = link[building->n_links / 2].thickness;
+    for (uint32_t i = 0; i < graph->n_points; i++) {
+        part[i] = is_node(building, i) ? graph_first(building->component, i) + 1 : 0;
+        if (part[i] && building->degree[i] == 1)
+            reach[i] = fmin(median, reach_of(graph, link_at(building, i, 0)));
+    }
+    if (median > 0)
+        status = graph_near_ends(graph, part, reach, median, building->reading, err);
+done:
+    free(link);
+    free(reach);
+    free(part);
+    return status;
+}
+
 /* What the reading says before anything is changed. */
 static void describe(const Graph *graph, const ReadOptions *options, TreeReading *reading)
 {
@@ -580,6 +679,8 @@ static Status build(Building *building, TreeBuilder *builder, Err *err)
         return err_set(err, STATUS_INPUT, "%s: all lines begin and end at one place", graph->name);
     TRY(cut_loops(building, err));
     TRY(list_links(building, err));
+    if (!graph->is_tree)
+        TRY(find_near_ends(building, err));
     count_points(building);
     TRY(direct_links(building, err));
     return hand_over(building, builder, err);

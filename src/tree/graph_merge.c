@@ -92,14 +92,33 @@ static void keep(Cubes *cubes, uint32_t i)
     cubes->head[slot] = i + 1;
 }
 
+static void release_cubes(Cubes *cubes)
+{
+    free(cubes->head);
+    free(cubes->next);
+    *cubes = (Cubes){0};
+}
+
+/* Begins with empty cubes; release with release_cubes. */
+static Status begin_cubes(Cubes *cubes, const Graph *graph, double side, Err *err)
+{
+    Cubes made = {.point = graph->point, .side = side, .slots = 64};
+    while (made.slots < graph->n_points)
+        made.slots *= 2;
+    TRY(mem_calloc(&made.head, made.slots, sizeof *made.head, "cubes of points", err));
+    Status status =
+        mem_calloc(&made.next, graph->n_points, sizeof *made.next, "cubes of points", err);
+    if (status == STATUS_OK)
+        *cubes = made;
+    else
+        release_cubes(&made);
+    return status;
+}
+
 static Status merge_places(const Graph *graph, double tolerance, uint32_t *place, Err *err)
 {
-    Cubes cubes = {.point = graph->point, .side = tolerance, .slots = 64};
-    while (cubes.slots < graph->n_points)
-        cubes.slots *= 2;
-    Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&cubes.head, cubes.slots, sizeof *cubes.head, "cubes of points", err));
-    TRY_GOTO(mem_calloc(&cubes.next, graph->n_points, sizeof *cubes.next, "cubes of points", err));
+    Cubes cubes;
+    TRY(begin_cubes(&cubes, graph, tolerance, err));
     for (uint32_t i = 0; i < graph->n_points; i++) {
         if (place[i] != i) {
             place[i] = place[place[i]];
@@ -109,10 +128,45 @@ static Status merge_places(const Graph *graph, double tolerance, uint32_t *place
         if (place[i] == i)
             keep(&cubes, i);
     }
-done:
-    free(cubes.head);
-    free(cubes.next);
-    return status;
+    release_cubes(&cubes);
+    return STATUS_OK;
+}
+
+/* Returns the distance of point `i` to the nearest point of another component that is nearer than
+ * `reach`, or `reach`. Counts comparisons down in *left. */
+static double gap_of(const Cubes *cubes, const uint32_t *part, uint32_t i, double reach,
+                     int64_t *left)
+{
+    Vec3 at = cubes->point[i].position, cube = cube_of(cubes, at);
+    double nearest = reach;
+    for (int k = 0; k < 27; k++) {
+        Vec3 near = {cube.x + k % 3 - 1, cube.y + k / 3 % 3 - 1, cube.z + k / 9 - 1};
+        for (uint32_t j = cubes->head[slot_of(cubes, near)]; j && *left > 0;
+             j = cubes->next[j - 1], --*left)
+            if (part[j - 1] != part[i])
+                nearest = fmin(nearest, vec3_distance(cubes->point[j - 1].position, at));
+    }
+    return nearest;
+}
+
+Status graph_near_ends(const Graph *graph, const uint32_t *part, const double *reach, double most,
+                       TreeReading *reading, Err *err)
+{
+    Cubes cubes;
+    int64_t left = 100 * (int64_t)graph->n_points;
+    TRY(begin_cubes(&cubes, graph, most, err));
+    for (uint32_t i = 0; i < graph->n_points; i++)
+        if (part[i])
+            keep(&cubes, i);
+    for (uint32_t i = 0; i < graph->n_points && left > 0; i++) {
+        double gap = reach[i] > 0 ? gap_of(&cubes, part, i, reach[i], &left) : reach[i];
+        if (gap < reach[i]) {
+            reading->near_ends++;
+            reading->near_mm = fmax(reading->near_mm, gap);
+        }
+    }
+    release_cubes(&cubes);
+    return STATUS_OK;
 }
 
 static Status join_points(const Graph *graph, uint32_t *place, Err *err)

@@ -22,6 +22,13 @@ void graph_scale(Graph *graph);
  * *place (owned). STATUS_INPUT for a join of a point that there is not. O(points). */
 MUST_CHECK Status graph_merge(const Graph *graph, uint32_t **place, Err *err);
 
+/* Counts the ends that lie within their reach of a point of another component, and finds the widest
+ * of these gaps, in *reading. `part` is the component of each point, 0 of points that are left out;
+ * `reach` is 0 for points that are no ends, and at most `most`. Stops counting after 100
+ * comparisons per point, so that dense points do not take quadratic time. */
+MUST_CHECK Status graph_near_ends(const Graph *graph, const uint32_t *part, const double *reach,
+                                  double most, TreeReading *reading, Err *err);
+
 /* The first of the members of what `i` belongs to, where place[i] is itself or an earlier member;
  * shortens the way there. */
 uint32_t graph_first(uint32_t *place, uint32_t i);

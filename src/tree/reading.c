@@ -76,26 +76,90 @@ Status reading_note(TreeReading *reading, Err *err, const char *format, ...)
     return STATUS_OK;
 }
 
-/* Gives the roots that have none yet the reason that the file has, and all the size of their
- * components; `root` has room for one number a node. */
-static Status measure_roots(TreeReading *reading, const Tree *tree, uint32_t *root, Err *err)
+Status reading_refuse_radius(const char *what, const char *text, Err *err)
+{
+    return err_set(err, STATUS_INPUT,
+                   "the %s is '%.40s'; it must be a finite number that is not negative "
+                   "(`repair_radii` takes the parent's)",
+                   what, text);
+}
+
+Status reading_radius(const ReadOptions *options, double *radius, Err *err)
+{
+    char number[NUMBER_TEXT_SIZE];
+    if (isnan(*radius) || (*radius >= 0 && isfinite(*radius)))
+        return STATUS_OK;
+    if (!options || !options->repair_radii)
+        return reading_refuse_radius("radius", number_text(*radius, number), err);
+    *radius = (double)NAN;
+    return STATUS_OK;
+}
+
+/* Gives roots without a radius that of the thickest segment that leaves them. */
+static Status fill_roots(Tree *tree, bool zeros, Err *err)
+{
+    double *thickest = NULL;
+    TRY(mem_calloc(&thickest, tree->n, sizeof *thickest, "radii", err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i))
+            thickest[tree->parent[i]] = fmax(thickest[tree->parent[i]], tree->radius_mm[i]);
+    for (size_t i = 0; i < tree->n; i++)
+        if (!tree_is_segment(tree, i) &&
+            (isnan(tree->radius_mm[i]) || (zeros && tree->radius_mm[i] == 0)))
+            tree->radius_mm[i] = thickest[i];
+    free(thickest);
+    return STATUS_OK;
+}
+
+Status reading_fill_radii(TreeReading *reading, const ReadOptions *options, Tree *tree, Err *err)
+{
+    if (!options->repair_radii && options->radius_mm == 0)
+        return STATUS_OK;
+    TRY(fill_roots(tree, false, err));
+    for (size_t i = 0; i < tree->n; i++) {
+        double *radius = &tree->radius_mm[i];
+        if (!tree_is_segment(tree, i))
+            continue;
+        if (options->repair_radii && isnan(*radius) && tree->radius_mm[tree->parent[i]] > 0) {
+            *radius = tree->radius_mm[tree->parent[i]];
+            reading->repaired_radii++;
+        }
+        if (options->radius_mm > 0 && !(*radius > 0)) {
+            *radius = options->radius_mm;
+            reading->given_radius++;
+        }
+        if (isnan(*radius))
+            return err_set(err, STATUS_INPUT,
+                           "node %d has no radius, and no ancestor has one; `radius` gives one",
+                           tree->id[i]);
+    }
+    return fill_roots(tree, options->radius_mm > 0, err);
+}
+
+/* Counts the nodes of each component. Roots that have no reason yet get ROOT_SAID. */
+static Status measure_roots(TreeReading *reading, const Tree *tree, Err *err)
 {
     bool has_roots = reading->n_roots > 0;
+    uint32_t *root = NULL; /* per node: index of its component's root */
     size_t n = 0;
+    Status status = STATUS_OK;
+    TRY(mem_calloc(&root, tree->n, sizeof *root, "roots of nodes", err));
     for (size_t i = 0; i < tree->n; i++) {
         if (tree_is_segment(tree, i)) {
             root[i] = root[tree->parent[i]];
         } else {
             root[i] = (uint32_t)n++;
             if (!has_roots) {
-                TRY(mem_reserve(&reading->root, &reading->roots_capacity, n, sizeof *reading->root,
-                                "roots", err));
+                TRY_GOTO(mem_reserve(&reading->root, &reading->roots_capacity, n,
+                                     sizeof *reading->root, "roots", err));
                 reading->root[reading->n_roots++] = (ReadRoot){tree->id[i], ROOT_SAID, 0};
             }
         }
         reading->root[root[i]].nodes++;
     }
-    return STATUS_OK;
+done:
+    free(root);
+    return status;
 }
 
 static Status measure_degrees(TreeReading *reading, const Tree *tree, Err *err)
@@ -154,7 +218,7 @@ Status reading_measure(TreeReading *reading, const Tree *tree, Err *err)
     double *radius = NULL;
     Status status = STATUS_OK;
     TRY(mem_calloc(&radius, tree->n, sizeof *radius, "radii", err));
-    TRY_GOTO(measure_roots(reading, tree, (uint32_t *)radius, err));
+    TRY_GOTO(measure_roots(reading, tree, err));
     TRY_GOTO(measure_degrees(reading, tree, err));
     measure_radii(reading, tree, radius);
     if (!reading->is_graph && !reading->unit_said && !reading->voxels)

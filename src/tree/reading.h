@@ -36,6 +36,9 @@ typedef struct ReadOptions {
     const char *columns;       /* "x=NAME,y=NAME,...": the columns of a table */
     const char *edges;         /* path of the table of lines beside one of points */
     const char *format;        /* the format's chief extension, "vtk"; NULL: by name and bytes */
+    double radius_mm;          /* of segments whose radius the file does not state or states as 0;
+                                * 0: files must state radii */
+    bool repair_radii;         /* a radius that is negative or not finite becomes the parent's */
 } ReadOptions;
 
 /* What coordinates and radii of a file are multiplied by, to be mm. */
@@ -86,6 +89,8 @@ typedef struct TreeReading {
     size_t without_length, repeated; /* lines from a point to itself; given before */
     size_t against;                  /* lines that the file directs towards the root */
     size_t loops;                    /* lines beyond those of a tree */
+    size_t near_ends;                /* ends that nearly touch another component ... */
+    double near_mm;                  /* ... and the widest of these gaps */
     ReadCut *cut;                    /* owned; the first READ_MAX_CUTS that --break-loops cut */
     size_t n_cuts;
     /* Of every tree. */
@@ -93,6 +98,8 @@ typedef struct TreeReading {
     size_t n_roots, roots_capacity;
     size_t degree[READ_MAX_DEGREE + 1]; /* nodes by segments that meet there; the last: or more */
     size_t without_radius;              /* segments whose radius is 0 */
+    size_t given_radius;                /* segments that got ReadOptions.radius_mm */
+    size_t repaired_radii;              /* segments that got the radius of their parent */
     double median_radius_mm;            /* of the segments; 0: there are none */
     LengthUnit unit;        /* of coordinates and radii, used for the tree, which is so ... */
     bool unit_said;         /* ... because options or file say it */
@@ -110,6 +117,20 @@ void reading_release(TreeReading *reading);
  * 'Radius'". `reading` may be NULL. */
 MUST_CHECK Status reading_note(TreeReading *reading, Err *err, const char *format, ...)
     PRINTF_LIKE(3, 4);
+
+/* Checks a radius that a file states. With options->repair_radii a bad radius becomes NAN, which
+ * reading_fill_radii replaces. STATUS_INPUT, without file and record, for a radius that is infinite
+ * or negative; NAN is accepted. `options` may be NULL. */
+MUST_CHECK Status reading_radius(const ReadOptions *options, double *radius, Err *err);
+
+/* Refuses a radius by its text, and calls it `what`: STATUS_INPUT, without file and record. */
+MUST_CHECK Status reading_refuse_radius(const char *what, const char *text, Err *err);
+
+/* Replaces missing radii, which are NAN or 0, as the options say, and counts them in *reading.
+ * Other trees stay as they are. STATUS_INPUT when neither a node nor its ancestors have a radius.
+ * O(n). */
+MUST_CHECK Status reading_fill_radii(TreeReading *reading, const ReadOptions *options, Tree *tree,
+                                     Err *err);
 
 /* Whether all coordinates are whole numbers. */
 bool reading_is_voxel(Vec3 position);

@@ -55,12 +55,20 @@ bool comments_next(MetaWalk *walk, Text *line)
     return true;
 }
 
-Status comments_write(const TreeMeta *meta, FILE *stream, Err *err)
+static bool begins_with_one(const char *comment, const char *const *names)
+{
+    for (; names && *names; names++)
+        if (comment_value(comment, *names))
+            return true;
+    return false;
+}
+
+Status comments_write(const TreeMeta *meta, const char *const *but, FILE *stream, Err *err)
 {
     Text line = TEXT_INIT;
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);) {
         const char *chars = text_chars(&line);
-        if (chars)
+        if (chars && !begins_with_one(chars, but))
             fprintf(stream, *chars ? "# %s\n" : "#%s\n", chars);
     }
     Status status = text_check(&line, err);

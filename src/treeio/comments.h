@@ -20,7 +20,10 @@ MUST_CHECK Status comment_read_key(TreeMeta *meta, const char *comment, Err *err
  * with {.meta = meta}. */
 bool comments_next(MetaWalk *walk, Text *line);
 
-/* Writes all that is known, a comment a line. STATUS_MEMORY. */
-MUST_CHECK Status comments_write(const TreeMeta *meta, FILE *stream, Err *err);
+/* Writes all that is known, a comment a line, but leaves out comments that begin with one of the
+ * names `but` (ends with NULL) and a colon: they mean something else in the format. `but` may be
+ * NULL. STATUS_MEMORY. */
+MUST_CHECK Status comments_write(const TreeMeta *meta, const char *const *but, FILE *stream,
+                                 Err *err);
 
 #endif

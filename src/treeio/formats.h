@@ -37,6 +37,23 @@ GraphRead oned_read, vita_read, secomb_read, opencco_read, vmv_read, metaio_read
 TreeWrite swc_write, csv_write, csv_segments_write, oned_write, vmv_write, vtk_write, vtp_write,
     gxl_write, graphml_write;
 
+/* Numbers that a compressed or sparse file of `size` bytes may unpack to, and points, lines or
+ * cells that it may hold. Data of vessels take at least a byte per point and compress less than 64
+ * times; files that claim more are refused before memory is allocated, even if their claim is true.
+ */
+static inline double most_unpacked_bytes(size_t size)
+{
+    return 64e6 + 64 * (double)size;
+}
+static inline double most_elements(size_t size)
+{
+    return 1e6 + (double)size;
+}
+/* STATUS_INPUT, without the file, for more elements than that. */
+MUST_CHECK Status check_elements(const char *what, double count, size_t size, Err *err);
+/* STATUS_INPUT, without the file, for more bytes of numbers than that. */
+MUST_CHECK Status check_unpacked(double bytes, size_t size, Err *err);
+
 /* Takes in one line (zero-terminated, without its end; may be changed), the file's `number`th.
  * STATUS_INPUT without file and line. */
 typedef Status ReadLine(void *reader, size_t number, char *line, Err *err);
@@ -51,11 +68,20 @@ const char *text_first_row(const char *start);
 /* Cuts a line in place into its fields [text_field]; returns how many there are, of which the first
  * `most` go to `field`. */
 size_t fields_cut(char *line, char **field, size_t most);
+/* Refuses a line of fields that holds a number with a decimal comma, as "10,5" between blanks or
+ * semicolons: a comma separates fields. STATUS_INPUT, without file and line. */
+MUST_CHECK Status fields_check_commas(const char *line, Err *err);
+/* Returns the end of a sentence about a text that is no number: it names the decimal comma where
+ * the text has one, and is "" elsewhere. */
+const char *decimal_comma_hint(const char *text);
 
 /* Numbers in a file: a finite one, at least `minimum`, and a whole one. STATUS_INPUT, without file
  * and record, calling it `what`. */
 MUST_CHECK Status field_number(const char *what, const char *text, double minimum, double *out,
                                Err *err);
+/* A radius or a diameter; a bad one becomes NAN where the options repair radii [reading_radius]. */
+MUST_CHECK Status field_radius(const ReadOptions *options, const char *what, const char *text,
+                               double *out, Err *err);
 MUST_CHECK Status field_whole(const char *what, const char *text, int32_t minimum, int32_t maximum,
                               int32_t *out, Err *err);
 /* A finite number; NAN where the field is empty, NA or NaN. */

@@ -2,6 +2,7 @@
  * numbers. */
 #include "treeio/formats.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <string.h>
 #include <strings.h>
@@ -15,6 +16,26 @@ Status lines_read(const char *name, char *text, ReadLine *read, void *reader, Er
     for (char *line; (line = text_line(&text)); number++)
         TRY(builder_blame(&named, number, read(reader, number, line, err), err));
     return STATUS_OK;
+}
+
+Status check_elements(const char *what, double count, size_t size, Err *err)
+{
+    char bytes[BYTES_TEXT_SIZE];
+    if (count <= most_elements(size))
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT, "it claims %.0f %s; a file of %s holds at most %.0f", count,
+                   what, bytes_text((double)size, bytes), most_elements(size));
+}
+
+Status check_unpacked(double bytes, size_t size, Err *err)
+{
+    char claim[BYTES_TEXT_SIZE], file[BYTES_TEXT_SIZE], most[BYTES_TEXT_SIZE];
+    if (bytes <= most_unpacked_bytes(size))
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "its numbers take %s unpacked; a file of %s is unpacked to at most %s",
+                   bytes_text(bytes, claim), bytes_text((double)size, file),
+                   bytes_text(most_unpacked_bytes(size), most));
 }
 
 const char *text_first_row(const char *start)
@@ -37,13 +58,69 @@ size_t fields_cut(char *line, char **field, size_t most)
     return count;
 }
 
+/* Whether the first `length` characters are a number such as "-10,5" or "1,5e-3". */
+static bool is_decimal_comma(const char *text, size_t length)
+{
+    char copy[64];
+    double number;
+    const char *comma = memchr(text, ',', length);
+    if (!comma || length >= sizeof copy || !isdigit((unsigned char)comma[1]))
+        return false;
+    memcpy(copy, text, length);
+    copy[length] = '\0';
+    copy[comma - text] = '.';
+    return number_parse(copy, &number);
+}
+
+const char *decimal_comma_hint(const char *text)
+{
+    return is_decimal_comma(text, strlen(text)) ? "; it has a decimal comma, a point is needed"
+                                                : "";
+}
+
+Status fields_check_commas(const char *line, Err *err)
+{
+    static const char between[] = TEXT_BLANKS ";";
+    const char *found = NULL;
+    size_t words = 0, length = 0;
+    for (const char *at = line + strspn(line, between); *at; at += strspn(at, between)) {
+        size_t n = strcspn(at, between);
+        if (!found && is_decimal_comma(at, n)) {
+            found = at;
+            length = n;
+        }
+        at += n;
+        words++;
+    }
+    if (!found || words == 1)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "'%.*s' has a decimal comma; numbers need a decimal point, as a comma separates "
+                   "fields",
+                   (int)length, found);
+}
+
 Status field_number(const char *what, const char *text, double minimum, double *out, Err *err)
 {
     double value;
     if (!number_parse(text, &value) || !isfinite(value) || value < minimum)
-        return err_set(err, STATUS_INPUT, "the %s is '%.*s'; it must be a finite number%s", what,
-                       SHOWN, text, minimum == 0 ? " that is not negative" : "");
+        return err_set(err, STATUS_INPUT, "the %s is '%.*s'; it must be a finite number%s%s", what,
+                       SHOWN, text, minimum == 0 ? " that is not negative" : "",
+                       decimal_comma_hint(text));
     *out = value;
+    return STATUS_OK;
+}
+
+Status field_radius(const ReadOptions *options, const char *what, const char *text, double *out,
+                    Err *err)
+{
+    if (!number_parse(text, out))
+        return field_number(what, text, 0, out, err);
+    if (*out >= 0 && isfinite(*out))
+        return STATUS_OK;
+    if (!options || !options->repair_radii)
+        return reading_refuse_radius(what, text, err);
+    *out = (double)NAN;
     return STATUS_OK;
 }
 

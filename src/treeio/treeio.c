@@ -191,7 +191,7 @@ static const Format formats[] = {
      .detect = metaio_detect,
      .read_graph = metaio_read},
     {.name = "Amira",
-     .description = "a spatial graph of Amira or Avizo, in um",
+     .description = "a spatial graph, line set or skeleton of Amira or Avizo, in um",
      .extensions = {"am"},
      .takes = ANY_GRAPH | RADIUS_ARRAY,
      .form = {.name = "an Amira file", .most_bytes = MOST_BYTES},
@@ -317,6 +317,14 @@ static Status has_own_root_radii(const Tree *tree, bool *has, Err *err)
     return STATUS_OK;
 }
 
+/* A file without flow shares may not state that terminals have them: the key terminal_flow goes
+ * with the shares. */
+static bool loses_rule(const Format *format, const Tree *tree)
+{
+    return format && format->loses & LOSES_SHARES &&
+           meta_number(&tree->meta, META_TERMINAL_FLOW) != TERMINAL_FLOW_EQUAL;
+}
+
 bool tree_format_keeps(const char *path, const TreeColumn *column)
 {
     const Format *format = find_written(path);
@@ -329,6 +337,7 @@ Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, E
     unsigned loses = format ? format->loses : 0;
     TreeLosses lost = {.types = (loses & LOSES_TYPES) && has_types(tree),
                        .flow_shares = (loses & LOSES_SHARES) && tree->flow_share,
+                       .terminal_flow = loses_rule(format, tree),
                        .root_values = (loses & LOSES_ROOT_VALUES) && has_root_values(tree)};
     for (size_t k = 0; k < tree->n_columns; k++)
         lost.columns += !tree_format_keeps(path, &tree->column[k]);
@@ -542,13 +551,23 @@ static bool reads_tree(const Source *source, const ReadOptions *options)
     const Format *format = source->format;
     if (!format->read || !format->read_graph)
         return format->read != NULL;
-    return format->detect(source->bytes) && given_options(options) == 0;
+    return format->detect(source->bytes) && given_options(options) == 0 &&
+           options->radius_mm == 0 && !options->repair_radii;
+}
+
+/* Returns whether the program grew the tree: its files state lengths in the unit of their format.
+ */
+static bool is_own(const Tree *tree)
+{
+    static const char name[] = "corcast ";
+    const char *generator = tree->meta.text[META_GENERATOR];
+    return generator && strncmp(generator, name, sizeof name - 1) == 0;
 }
 
 static Status read_source(const Source *source, Tree *tree, const ReadOptions *options,
                           TreeReading *reading, Err *err)
 {
-    TreeBuilder builder = {.name = source->name, .reading = reading};
+    TreeBuilder builder = {.name = source->name, .options = options, .reading = reading};
     const Format *format = source->format;
     bool is_tree = reads_tree(source, options);
     Tree made;
@@ -560,9 +579,14 @@ static Status read_source(const Source *source, Tree *tree, const ReadOptions *o
     TRY(status);
     if (is_tree)
         scale_tree(&made, format, options, reading);
-    status = tree_check(&made, err);
+    status = reading_fill_radii(reading, options, &made, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", source->name);
+    if (status == STATUS_OK)
+        status = tree_check(&made, err);
     if (status == STATUS_OK)
         status = reading_measure(reading, &made, err);
+    reading->unit_said = reading->unit_said || is_own(&made);
     if (status == STATUS_OK)
         *tree = made;
     else
@@ -597,13 +621,22 @@ Status tree_read(Tree *tree, const char *path, Err *err)
     return tree_read_as(tree, path, NULL, NULL, err);
 }
 
+static Status write_to(const char *path, const Tree *tree, FILE *stream, Err *err)
+{
+    const Format *format = find_written(path);
+    Tree written = *tree; /* borrows all */
+    if (loses_rule(format, tree))
+        written.meta.known[META_TERMINAL_FLOW] = false;
+    return format->write(&written, stream, err);
+}
+
 Status tree_write(const Tree *tree, const char *path, Err *err)
 {
     OutFile file;
     TRY(tree_format_check(path, err));
     TRY(tree_check(tree, err));
     TRY(outfile_open(&file, path, err));
-    Status status = find_written(path)->write(tree, file.stream, err);
+    Status status = write_to(path, tree, file.stream, err);
     if (status == STATUS_IO)
         err_prefix(err, "%s: ", path);
     if (status == STATUS_OK)
@@ -621,7 +654,7 @@ Status tree_write_text(const Tree *tree, const char *path, Text *out, Err *err)
     FILE *stream = open_memstream(&bytes, &size);
     if (!stream)
         return mem_out_of("for", "a tree", err);
-    Status status = find_written(path)->write(tree, stream, err);
+    Status status = write_to(path, tree, stream, err);
     /* Closing tells only by NULL that there was no room for the bytes. */
     if ((fclose(stream) != 0 || !bytes) && status == STATUS_OK)
         status = mem_out_of("for", "a tree", err);

@@ -18,7 +18,7 @@ bool tree_format_known(const char *path);
 MUST_CHECK Status tree_format_check(const char *path, Err *err);
 /* What a tree holds and the format of a path has no place for. */
 typedef struct TreeLosses {
-    bool types, flow_shares;
+    bool types, flow_shares, terminal_flow;
     bool root_values; /* in columns, although those are not lost */
     bool root_radii;  /* which are not those of the thickest segments that leave the roots */
     size_t columns;   /* those that tree_format_keeps denies */

@@ -228,7 +228,8 @@ static void rejects_vmv_that_makes_no_sense(void **state)
         {"$VERT_LIST_BEGIN\n1 0 0 0 1\n1 0 0 2 1\n",
          ":3: the vertex '1' has been given before, in line 2"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 -2\n",
-         ":2: the radius is '-2'; it must be a finite number that is not negative"},
+         ":2: the radius is '-2'; it must be a finite number that is not negative (`repair_radii` "
+         "takes the parent's)"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1 2\n",
          ":5: there is no vertex '2'"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1\n",
@@ -272,9 +273,10 @@ static void rejects_trees_of_vita_that_make_no_sense(void **state)
     assert_refused("cco", "3\n", ":1: a tree of VItA begins with *Tree");
     assert_refused("cco", "*Forest\n", ":1: '*Forest' is no section of VItA's trees");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2\n",
-                   ":3: the vessel has 12 numbers; it has 21");
+                   ":3: a VItA vessel needs 21 numbers, found 12");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 -1.3\n",
-                   ":3: the radius is '-1.3'; it must be a finite number that is not negative");
+                   ":3: the radius is '-1.3'; it must be a finite number that is not negative "
+                   "(`repair_radii` takes the parent's)");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 1\n",
                    ": there is no section *Connectivity");
     assert_refused("cco", "*Vessels\n2\n0 0 9 0 0.5 4 1 0 0 0 0 2 1\n*Connectivity\n0 -1\n",
@@ -579,10 +581,13 @@ static void rejects_graphs_of_amira_that_make_no_sense(void **state)
         const char *at, *with, *sentence;
     } bad[] = {
         {"HxSpatialGraph", "HxCluster",
-         ":22: the ContentType is not HxSpatialGraph: the file holds no network"},
+         ":22: the ContentType is 'HxCluster'; networks are HxSpatialGraph, HxLineSet or "
+         "SkeletonGraph"},
         {"define EDGE 3\n", "", ":21: the header does not define EDGE"},
+        {"define POINT 8", "define POINT 900000",
+         ":39: 2700000 numbers of 'EdgePointCoordinates' cannot be in the 122 bytes left"},
         {"define POINT 8", "define POINT 2000000000",
-         ":39: 6000000000 numbers of 'EdgePointCoordinates' cannot be in the 122 bytes left"},
+         ":6: it claims 2000000000 POINT; a file of 637 bytes holds at most 1000637"},
         {"define POINT 8", "define POINT -8",
          ":6: the POINT is '-8'; it must be a whole number from 0 to 2147483647"},
         {"define POINT 8", "define POINT 9", ":47: '@5' is no number, and 3 are to come"},
@@ -600,7 +605,8 @@ static void rejects_graphs_of_amira_that_make_no_sense(void **state)
         {"NumEdgePoints } @3", "EdgePoints } @3",
          ": there is no block of EDGE { NumEdgePoints } with 1 number each"},
         {"thickness", "weight",
-         ": no array is called a radius, and `radius_array` names none; its arrays of one number "
+         ": no array is called a radius, `radius_array` names none, and `radius` gives none; its "
+         "arrays of one number "
          "are 'Labels' of points, 'weight' of points, 'strahler' of cells"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)

@@ -207,7 +207,8 @@ static void radii_are_found_by_name_or_named(void **state)
         tree_release(&tree);
     }
     refuses("vtk", CHAIN "POINT_DATA 2\nFIELD f 2\nage 1 2 int\n1 2\nv 2 2 int\n1 2 3 4\n",
-            ": no array is called a radius, and `radius_array` names none; its arrays of one "
+            ": no array is called a radius, `radius_array` names none, and `radius` gives none; "
+            "its arrays of one "
             "number are 'age' of points");
 }
 
@@ -256,7 +257,8 @@ static void refuses_legacy_files_that_say_no_network(void **state)
         {POLYDATA POINTS "LINES 1 3\n2 0 1\nPOINT_DATA 3\nFIELD f 1\nradius 1 3 int\n1 2 3\n",
          ": the array 'radius' has 3 values for 4 points"},
         {POLYDATA POINTS "LINES 1 3\n2 0 1\nCELL_DATA 1\nFIELD f 1\nradius 1 1 int\n-2\n",
-         ": cell 0: the radius is '-2'; it must be a finite number that is not negative"},
+         ": cell 0: the radius is '-2'; it must be a finite number that is not negative "
+         "(`repair_radii` takes the parent's)"},
         {POLYDATA POINTS "LINES 1 3\n2 0 1\nMESH 7\n",
          ":11: 'MESH' is no keyword of a VTK file of lines"},
         {LEGACY("3.0", "BINARY") "DATASET POLYDATA\nPOINTS 2 float\n0123456789",
@@ -279,8 +281,9 @@ static void refuses_xml_that_says_no_network(void **state)
         {"<gxl/>", ":1: the document is <gxl>; VTK's are <VTKFile>"},
         {"<VTKFile type=\"ImageData\"/>",
          ":1: the file is of type 'ImageData'; lines are in PolyData and UnstructuredGrid"},
-        {VTP("compressor=\"vtkLZ4DataCompressor\"") VTP_END,
-         ":2: it is compressed by vtkLZ4DataCompressor; vtkZLibDataCompressor is known"},
+        {VTP("compressor=\"vtkLZMADataCompressor\"") VTP_END,
+         ":2: it is compressed by vtkLZMADataCompressor; vtkZLibDataCompressor and "
+         "vtkLZ4DataCompressor are read"},
         {VTP(""), ":3: not well-formed XML: no element found"},
         {"<?xml version=\"1.0\"?>\n<!DOCTYPE a [<!ENTITY b \"bb\">]>\n" VTP_END,
          ":2: it declares the entity 'b'; documents with entities of their own are not read"},

@@ -110,7 +110,8 @@ static void ids_that_are_tuples_are_places(void **state)
     assert_nodes(&tree, "1 3 11 20 3 1.5 -1\n2 3 15 22 4 1.5 1\n");
     tree_release(&tree);
     assert_refused("graphml", text,
-                   ": no array is called a radius, and `radius_array` names none; its arrays of "
+                   ": no array is called a radius, `radius_array` names none, and `radius` gives "
+                   "none; its arrays of "
                    "one number are 'width' of edges");
 }
 

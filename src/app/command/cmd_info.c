@@ -37,8 +37,10 @@ static void print_summary(const char *path, const TreeSummary *summary)
         printf("  target        %.6g (sum of length * radius^%g)\n", summary->target,
                summary->lambda);
     print_gamma(&summary->gamma);
-    printf("  radius        %.6g mm at the root, %.6g mm at the thinnest\n",
-           summary->root_radius_mm, summary->min_radius_mm);
+    printf("  radius        %.6g mm at the root", summary->root_radius_mm);
+    if (summary->segments > 0)
+        printf(", %.6g mm at the thinnest", summary->min_radius_mm);
+    printf("\n");
     printf("  orders        bifurcation level %d, Strahler %d\n", summary->max_level,
            summary->max_strahler);
     if (summary->has.terminal_pressure)

@@ -39,6 +39,16 @@ static const Option rows[] = {
      SETS(FLAG, ReadOptions, break_loops),
      .group = GROUP_INPUT,
      .help = "cut each loop of a network at its thinnest line"},
+    {.name = "radius",
+     SETS(NUMBER, ReadOptions, radius_mm),
+     FROM_TO(0, 1e3),
+     .group = GROUP_INPUT,
+     .unit = "mm",
+     .help = "radius of vessels that have none in the file, or 0; 0: the file must have radii"},
+    {.name = "repair-radii",
+     SETS(FLAG, ReadOptions, repair_radii),
+     .group = GROUP_INPUT,
+     .help = "replace radii that are negative or no numbers by those of the parents"},
     {.name = "radius-array",
      SETS(TEXT, ReadOptions, radius_array),
      .group = GROUP_INPUT,
@@ -97,6 +107,33 @@ static void say_cuts(const TreeReading *reading)
             cut->position.z, cut->radius_mm);
 }
 
+/* Reports radii that the options changed. */
+static void say_radii(const char *path, const TreeReading *reading)
+{
+    if (reading->repaired_radii > 0)
+        fprintf(stderr, "corcast: %s: radii replaced by those of the parents: %zu\n", path,
+                reading->repaired_radii);
+    if (reading->given_radius > 0)
+        fprintf(stderr, "corcast: %s: segments without a radius that got --radius: %zu\n", path,
+                reading->given_radius);
+}
+
+/* Rounds up to two digits, so that a tolerance is not below the gap. */
+static double rounded_up(double gap)
+{
+    double unit = pow(10, floor(log10(gap)) - 1);
+    return (floor(gap / unit) + 1) * unit;
+}
+
+static void say_near_ends(const char *path, const TreeReading *reading)
+{
+    if (reading->near_ends > 0)
+        fprintf(stderr,
+                "corcast: %s: ends that miss another tree by at most %.2g mm: %zu; "
+                "--merge-tolerance %.2g joins them\n",
+                path, reading->near_mm, reading->near_ends, rounded_up(1.001 * reading->near_mm));
+}
+
 static void say_unit(const char *path, const TreeReading *reading)
 {
     const char *unit = length_unit_names[reading->unit];
@@ -123,6 +160,8 @@ Status reading_tree(const Parsed *parsed, const char *path, Tree *tree, TreeRead
     TRY(tree_read_as(tree, path, &parsed->reading, &own, err));
     if (!parsed->common.quiet) {
         say_cuts(&own);
+        say_radii(path, &own);
+        say_near_ends(path, &own);
         say_unit(path, &own);
     }
     if (reading)
@@ -296,6 +335,10 @@ json_t *reading_json(const TreeReading *reading)
         {"degrees", degrees_json(reading)},
         {"median_radius_mm", json_number(reading->median_radius_mm)},
         {"segments_without_radius", json_count(reading->without_radius)},
+        {"given_radii", json_count(reading->given_radius)},
+        {"repaired_radii", json_count(reading->repaired_radii)},
+        {"near_ends", json_count(reading->near_ends)},
+        {"near_ends_mm", json_number(reading->near_mm)},
         {"unit", json_text(length_unit_names[reading->unit])},
         {"unit_said", json_boolean(reading->unit_said)},
         {"believed_unit",

@@ -75,12 +75,24 @@ Status tree_domain_parse(const char *spec, const Tree *from, const char *from_pa
     return status;
 }
 
+/* Returns whether a domain such as "mask:-,0.5" is in a file called "-". */
+static bool is_standard_input(const char *spec)
+{
+    const char *file = strchr(spec, ':');
+    return file && file[1] == '-' && (!file[2] || file[2] == ',' || file[2] == '@');
+}
+
+/* Only the command line means standard input by "-": a file that names its domain names files. */
 Status tree_domain(const Tree *tree, Domain *domain, bool *found, Err *err)
 {
     *found = false;
     if (!tree->meta.known[META_DOMAIN])
         return STATUS_OK;
-    Status status = tree_domain_parse(tree->meta.text[META_DOMAIN], NULL, NULL, domain, err);
+    const char *spec = tree->meta.text[META_DOMAIN];
+    Status status =
+        is_standard_input(spec)
+            ? err_set(err, STATUS_INPUT, "the domain %s was read from standard input", spec)
+            : tree_domain_parse(spec, NULL, NULL, domain, err);
     if (status != STATUS_OK)
         err_prefix(err, "the tree's own domain cannot be read, so give --domain: ");
     *found = status == STATUS_OK;

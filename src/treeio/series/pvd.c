@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 typedef struct Moment {
     double time;
@@ -20,6 +21,7 @@ typedef struct Collection {
     const char *name; /* of the index */
     Moment *moment;   /* owned */
     size_t n, capacity;
+    size_t n_untimed; /* those whose time the index does not state */
 } Collection;
 
 static void release(Collection *collection)
@@ -31,13 +33,16 @@ static void release(Collection *collection)
     free(collection->moment);
 }
 
-/* `file`, which is told from the folder of the index. */
+/* Finds the path of `file`, which the index names relative to its own folder. A file called "-" is
+ * "./-": only the command line means standard input by "-". */
 static Status beside(const char *index, const char *file, char **out, Err *err)
 {
     if (*file == '/')
         return mem_strdup(out, file, err);
     Text path = TEXT_INIT;
     text_append(&path, index, (size_t)(file_name(index) - index));
+    if (strcmp(file, "-") == 0)
+        text_puts(&path, "./");
     text_puts(&path, file);
     Status status = text_take(&path, out, err);
     text_release(&path);
@@ -47,13 +52,15 @@ static Status beside(const char *index, const char *file, char **out, Err *err)
 static Status begin_element(void *context, Xml *xml, const XmlElement *element, Err *err)
 {
     Collection *collection = context;
-    Moment made = {.line = xml_line(xml)};
-    const char *time, *file, *part = xml_attribute(element, "part");
+    Moment made = {.line = xml_line(xml), .time = (double)collection->n};
+    const char *time = xml_attribute(element, "timestep"), *file,
+               *part = xml_attribute(element, "part");
     if (strcmp(element->name, "DataSet") != 0)
         return STATUS_OK;
-    TRY(xml_needed(element, "timestep", &time, err));
     TRY(xml_needed(element, "file", &file, err));
-    TRY(field_number("timestep", time, -HUGE_VAL, &made.time, err));
+    if (time && *time)
+        TRY(field_number("timestep", time, -HUGE_VAL, &made.time, err));
+    collection->n_untimed += !time || !*time;
     if (part && *part && strcmp(part, "0") != 0)
         return err_set(err, STATUS_INPUT, "part %.20s: a tree in several files cannot be read",
                        part);
@@ -92,17 +99,34 @@ static Status check_moment(const Collection *collection, const Moment *moment, E
     return STATUS_OK;
 }
 
+/* A pipe would wait for a writer, and a device may never end. What is not there is for the reader
+ * to report. */
+static Status check_file(const char *path, Err *err)
+{
+    struct stat about;
+    if (stat(path, &about) != 0 || S_ISREG(about.st_mode))
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT, "%s: is not a file, which is all that an index may name",
+                   path);
+}
+
 static Status read_moments(Collection *collection, Err *err)
 {
     if (collection->n == 0)
         return err_set(err, STATUS_INPUT, "%s: there is no DataSet in it", collection->name);
+    if (collection->n_untimed > 0 && collection->n_untimed < collection->n)
+        return err_set(err, STATUS_INPUT,
+                       "%s: %zu of %zu DataSets have no timestep; either all have one or none",
+                       collection->name, collection->n_untimed, collection->n);
     qsort(collection->moment, collection->n, sizeof *collection->moment, by_time);
     for (size_t i = 0; i < collection->n; i++) {
         Moment *moment = &collection->moment[i];
         if (i > 0 && moment->time == moment[-1].time)
             return err_set(err, STATUS_INPUT, "%s:%zu: %s has this timestep already, %g",
                            collection->name, moment->line, moment[-1].path, moment->time);
-        Status status = tree_read(&moment->tree, moment->path, err);
+        Status status = check_file(moment->path, err);
+        if (status == STATUS_OK)
+            status = tree_read(&moment->tree, moment->path, err);
         if (status != STATUS_OK)
             err_prefix(err, "%s:%zu: ", collection->name, moment->line);
         TRY(status);
@@ -201,6 +225,9 @@ Status pvd_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
         status = read_moments(&collection, err);
     if (status == STATUS_OK)
         status = build(builder, &collection, err);
+    if (status == STATUS_OK && collection.n_untimed > 1)
+        status = reading_note(builder->reading, err,
+                              "the index states no times; moments are 0, 1, ... in its order");
     release(&collection);
     return status;
 }

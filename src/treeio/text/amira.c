@@ -1,12 +1,15 @@
-/* Spatial graphs of Amira and Avizo (.am): a header of words that says how many vertices, edges and
- * points there are and which block holds which of their numbers, then the blocks, "@1" and so on,
- * each on a line of its own, in text, as packed numbers, or as these compressed by HxByteRLE
- * (a byte n above 127: the next n - 128 bytes as they are; else: the next byte n times) or HxZip
- * (zlib).
+/* Networks of Amira and Avizo (.am): a header of words that says how many elements of each kind
+ * there are and which block holds which of their numbers, then the blocks, "@1" and so on, each on
+ * a line of its own, in text, as packed numbers, or as these compressed by HxByteRLE (a byte n
+ * above 127: the next n - 128 bytes as they are; else: the next byte n times) or HxZip (zlib).
  *
- * The points of an edge run from its first vertex to its second, both included, edge after edge:
- * they become polylines of what VTK's files have, joined where edges share a vertex. Numbers of
- * vertices go to the points that lie there. */
+ * The ContentType says how elements are connected; all become polylines of what VTK's files have:
+ * HxSpatialGraph: the points of an edge run from its first vertex to its second, both included,
+ * edge after edge; edges that share a vertex are joined. Numbers of vertices go to the points that
+ *     lie there.
+ * HxLineSet: LineIdx lists the vertices of a line, and -1 ends it.
+ * SkeletonGraph: NeighbourList lists the neighbours of each vertex, NeighbourCount of them; Origins
+ *     are roots. */
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
 
@@ -17,10 +20,30 @@
 #include <string.h>
 #include <strings.h>
 
-typedef enum Element { VERTEX, EDGE, POINT, ELEMENTS } Element;
+/* Kinds of elements. LINES have the entries of LineIdx, NEIGHBOURS those of NeighbourList. */
+typedef enum Element {
+    VERTEX,
+    EDGE,
+    POINT,
+    VERTICES,
+    LINES,
+    NEIGHBOURS,
+    ORIGINS,
+    ELEMENTS
+} Element;
 
+/* Without regard to case. */
 static const char *const element_names[] = {
-    [VERTEX] = "VERTEX", [EDGE] = "EDGE", [POINT] = "POINT"};
+    [VERTEX] = "VERTEX", [EDGE] = "EDGE",       [POINT] = "POINT",          [VERTICES] = "Vertices",
+    [LINES] = "Lines",   [ORIGINS] = "Origins", [NEIGHBOURS] = "Neighbours"};
+
+/* How elements are connected. */
+typedef enum Content { NO_NETWORK, SPATIAL_GRAPH, LINE_SET, SKELETON, CONTENTS } Content;
+
+static const char *const content_names[] = {[NO_NETWORK] = "",
+                                            [SPATIAL_GRAPH] = "HxSpatialGraph",
+                                            [LINE_SET] = "HxLineSet",
+                                            [SKELETON] = "SkeletonGraph"};
 
 typedef enum Packing { PLAIN, BYTE_RLE, ZIP } Packing;
 
@@ -53,7 +76,8 @@ typedef struct Reader {
     Graph *graph;
     char *bytes, *at, *end; /* of the whole file */
     bool is_text, is_big_endian;
-    bool is_graph; /* the header says that it is a spatial graph */
+    Content content;
+    char content_name[40];
     bool has_count[ELEMENTS];
     size_t count[ELEMENTS];
     Field *field;
@@ -137,6 +161,14 @@ static void take_unit(Graph *graph, const char *said)
         }
 }
 
+static void set_content(Reader *reader, const char *name)
+{
+    snprintf(reader->content_name, sizeof reader->content_name, "%.39s", name);
+    for (int content = SPATIAL_GRAPH; content < CONTENTS; content++)
+        if (strcasecmp(name, content_names[content]) == 0)
+            reader->content = (Content)content;
+}
+
 /* What stands in braces behind "Parameters" and the like. */
 static Status read_parameters(Reader *reader, const char *end, Err *err)
 {
@@ -146,28 +178,37 @@ static Status read_parameters(Reader *reader, const char *end, Err *err)
             return err_set(err, STATUS_INPUT, "a brace of the header is not closed");
         depth += strcmp(word, "{") == 0;
         depth -= strcmp(word, "}") == 0;
-        if (strcmp(last, "ContentType") == 0)
-            reader->is_graph = strcmp(word, "HxSpatialGraph") == 0;
+        if (strcasecmp(last, "ContentType") == 0)
+            set_content(reader, word);
         if (strcmp(last, "Coordinates") == 0)
             take_unit(reader->graph, word);
     }
     return STATUS_OK;
 }
 
-static Status read_count(Reader *reader, const char *end, Err *err)
+/* ELEMENTS for another word. */
+static Element element_called(const char *name)
 {
-    char name[WORD_SIZE], count[WORD_SIZE];
+    int of = 0;
+    while (of < ELEMENTS && strcasecmp(name, element_names[of]) != 0)
+        of++;
+    return (Element)of;
+}
+
+/* Reads "define VERTEX 3" behind "define", or "3" behind "nVertices". */
+static Status read_count(Reader *reader, const char *end, const char *name, Err *err)
+{
+    char count[WORD_SIZE];
+    Element of = element_called(name);
     int32_t number;
-    if (!next_word(reader, end, name) || !next_word(reader, end, count))
-        return err_set(err, STATUS_INPUT, "the header ends behind 'define'");
-    for (int of = 0; of < ELEMENTS; of++) {
-        if (strcmp(name, element_names[of]) != 0)
-            continue;
-        TRY(field_whole(name, count, 0, INT32_MAX, &number, err));
-        reader->count[of] = (size_t)number;
-        reader->has_count[of] = true;
-    }
-    return STATUS_OK;
+    if (!next_word(reader, end, count))
+        return err_set(err, STATUS_INPUT, "the header ends behind '%.40s'", name);
+    if (of == ELEMENTS)
+        return STATUS_OK;
+    TRY(field_whole(name, count, 0, INT32_MAX, &number, err));
+    reader->count[of] = (size_t)number;
+    reader->has_count[of] = true;
+    return check_elements(name, number, (size_t)(reader->end - reader->bytes), err);
 }
 
 /* "float[3]" or "int". */
@@ -231,22 +272,34 @@ static Status read_declaration(Reader *reader, const char *end, Element of, Err 
 
 static Status read_statement(Reader *reader, const char *end, const char *word, Err *err)
 {
-    if (strcmp(word, "define") == 0)
-        return read_count(reader, end, err);
-    for (int of = 0; of < ELEMENTS; of++)
-        if (strcmp(word, element_names[of]) == 0)
-            return read_declaration(reader, end, (Element)of, err);
+    char name[WORD_SIZE];
+    if (strcasecmp(word, "define") == 0)
+        return next_word(reader, end, name)
+                   ? read_count(reader, end, name, err)
+                   : err_set(err, STATUS_INPUT, "the header ends behind 'define'");
+    Element of = element_called(word);
+    if (of < ELEMENTS)
+        return read_declaration(reader, end, of, err);
+    if (*word == 'n' && element_called(word + 1) < ELEMENTS)
+        return read_count(reader, end, word + 1, err);
     return is_word(reader, end, "{") ? read_parameters(reader, end, err) : STATUS_OK;
 }
 
 static Status check_header(const Reader *reader, Err *err)
 {
-    if (!reader->is_graph)
+    static const Element needed[CONTENTS][3] = {[SPATIAL_GRAPH] = {VERTEX, EDGE, POINT},
+                                                [LINE_SET] = {VERTICES, VERTICES, LINES},
+                                                [SKELETON] = {VERTICES, VERTICES, NEIGHBOURS}};
+    if (reader->content == NO_NETWORK)
         return err_set(err, STATUS_INPUT,
-                       "the ContentType is not HxSpatialGraph: the file holds no network");
-    for (int of = 0; of < ELEMENTS; of++)
+                       "the ContentType is '%s'; networks are HxSpatialGraph, HxLineSet or "
+                       "SkeletonGraph",
+                       reader->content_name);
+    for (size_t k = 0; k < 3; k++) {
+        Element of = needed[reader->content][k];
         if (!reader->has_count[of])
             return err_set(err, STATUS_INPUT, "the header does not define %s", element_names[of]);
+    }
     return STATUS_OK;
 }
 
@@ -298,8 +351,8 @@ static Status read_text(Reader *reader, double *value, size_t n, Err *err)
         memcpy(number, from, length);
         number[length] = '\0';
         if (!number_parse(number, &value[i]))
-            return err_set(err, STATUS_INPUT, "'%.40s' is no number, and %zu are to come", number,
-                           n - i);
+            return err_set(err, STATUS_INPUT, "'%.40s' is no number, and %zu are to come%s", number,
+                           n - i, decimal_comma_hint(number));
     }
     return STATUS_OK;
 }
@@ -378,6 +431,7 @@ static Status read_block(Reader *reader, Field *field, Err *err)
     size_t n = reader->count[field->of] * field->components;
     TRY(check_claim(reader, field, n, err));
     reader->taken += (double)n * sizeof *field->value;
+    TRY(check_unpacked(reader->taken, (size_t)(reader->end - reader->bytes), err));
     TRY(mem_check(reader->taken + (double)n * (double)field->type->size, reader->graph->name, err));
     free(field->value);
     field->value = NULL;
@@ -434,7 +488,7 @@ static Status read_blocks(Reader *reader, Err *err)
 static Field *find_field(const Reader *reader, Element of, const char *name)
 {
     for (size_t i = 0; i < reader->n_fields; i++)
-        if (reader->field[i].of == of && strcmp(reader->field[i].name, name) == 0)
+        if (reader->field[i].of == of && strcasecmp(reader->field[i].name, name) == 0)
             return &reader->field[i];
     return NULL;
 }
@@ -528,7 +582,7 @@ static Status spread(const Reader *reader, const Field *field, const size_t *ver
 /* Hands a field over as an array of VTK's. */
 static Status add_array(Reader *reader, Field *field, const size_t *vertex, Err *err)
 {
-    VtkArray array = {.n = reader->count[field->of == EDGE ? EDGE : POINT],
+    VtkArray array = {.n = reader->count[field->of == VERTEX ? POINT : field->of],
                       .components = field->components};
     VtkData *data = &reader->data;
     if (field->of == VERTEX)
@@ -545,10 +599,11 @@ static Status add_array(Reader *reader, Field *field, const size_t *vertex, Err 
 /* Those that are needed to connect points are no arrays. */
 static Status add_arrays(Reader *reader, const size_t *vertex, Err *err)
 {
-    static const char *const own[] = {"VertexCoordinates", "EdgeConnectivity", "NumEdgePoints",
-                                      "EdgePointCoordinates"};
+    static const char *const own[] = {"VertexCoordinates",    "EdgeConnectivity", "NumEdgePoints",
+                                      "EdgePointCoordinates", "Coordinates",      "NeighbourCount"};
     for (size_t i = 0; i < reader->n_fields; i++) {
-        bool is_own = !reader->field[i].value;
+        Element of = reader->field[i].of;
+        bool is_own = !reader->field[i].value || of == LINES || of == NEIGHBOURS || of == ORIGINS;
         for (size_t k = 0; k < sizeof own / sizeof *own && !is_own; k++)
             is_own = strcmp(reader->field[i].name, own[k]) == 0;
         if (!is_own)
@@ -575,7 +630,7 @@ static Status add_lines(Reader *reader, const Field *places, size_t *end, Err *e
     return STATUS_OK;
 }
 
-static Status add_network(Reader *reader, Err *err)
+static Status add_spatial_graph(Reader *reader, Err *err)
 {
     Field *vertices, *ends, *counts, *places;
     size_t *end = NULL, *vertex = NULL;
@@ -590,6 +645,102 @@ static Status add_network(Reader *reader, Err *err)
     if (status == STATUS_OK)
         status = add_arrays(reader, vertex, err);
     free(vertex);
+    return status;
+}
+
+/* The vertices are the points of the network. */
+static Status add_vertices(Reader *reader, Err *err)
+{
+    Field *places;
+    TRY(need_field(reader, VERTICES, "Coordinates", 3, &places, err));
+    reader->data.point = places->value;
+    reader->data.n_points = reader->count[VERTICES];
+    places->value = NULL;
+    return STATUS_OK;
+}
+
+/* The radius of a line set has no name of its own: it is the first array of one number per vertex,
+ * which Amira calls Data or Data0, unless another is called a radius. */
+static Status name_radius(Reader *reader, Err *err)
+{
+    Field *data = find_field(reader, VERTICES, "Data0");
+    data = data ? data : find_field(reader, VERTICES, "Data");
+    if (!data || !data->value || data->components != 1 || find_field(reader, VERTICES, "radius") ||
+        find_field(reader, VERTICES, "thickness") ||
+        (reader->graph->options && reader->graph->options->radius_array))
+        return STATUS_OK;
+    TRY(reading_note(reader->graph->reading, err, "the numbers '%.60s' of vertices are radii",
+                     data->name));
+    free(data->name);
+    return mem_strdup(&data->name, "radius", err);
+}
+
+static Status add_line_set(Reader *reader, Err *err)
+{
+    VtkData *data = &reader->data;
+    Field *lines;
+    size_t first = 0;
+    TRY(need_field(reader, LINES, "LineIdx", 1, &lines, err));
+    TRY(add_vertices(reader, err));
+    for (size_t i = 0, n = reader->count[LINES]; i <= n; i++) {
+        if (i < n && lines->value[i] != -1)
+            continue;
+        if (i - first > 1)
+            TRY(vtk_add_line(data, data->n_cells++, lines->value + first, i - first, 0, err));
+        first = i + 1;
+    }
+    return name_radius(reader, err);
+}
+
+/* Points that the file calls origins, as the array "root" of VTK's files. */
+static Status add_origins(Reader *reader, Err *err)
+{
+    const Field *origins = find_field(reader, ORIGINS, "Origins");
+    VtkArray array = {.n = reader->data.n_points, .components = 1};
+    if (!origins || !origins->value || origins->components != 1)
+        return STATUS_OK;
+    Status status = mem_strdup(&array.name, "root", err);
+    if (status == STATUS_OK)
+        status = mem_calloc(&array.value, array.n, sizeof *array.value, "numbers of points", err);
+    for (size_t i = 0; status == STATUS_OK && i < reader->count[ORIGINS]; i++)
+        if (origins->value[i] >= 0 && origins->value[i] < (double)array.n)
+            array.value[(size_t)origins->value[i]] = 1;
+    if (status == STATUS_OK)
+        return vtk_add_array(&reader->data.of_points, &array, err);
+    vtk_release_array(&array);
+    return status;
+}
+
+/* Each edge is in the lists of both its vertices; it is added from the lower one. */
+static Status add_skeleton(Reader *reader, Err *err)
+{
+    VtkData *data = &reader->data;
+    Field *counts, *list;
+    size_t at = 0, n = reader->count[NEIGHBOURS];
+    TRY(need_field(reader, VERTICES, "NeighbourCount", 1, &counts, err));
+    TRY(need_field(reader, NEIGHBOURS, "NeighbourList", 1, &list, err));
+    TRY(add_vertices(reader, err));
+    for (size_t i = 0; i < data->n_points; i++) {
+        double count = counts->value[i];
+        if (!(count >= 0 && count <= (double)(n - at)) || count != floor(count))
+            return err_set(err, STATUS_INPUT, "%s: vertex %zu has %g neighbours of the %zu left",
+                           reader->graph->name, i, count, n - at);
+        for (size_t end = at + (size_t)count; at < end; at++) {
+            const double corner[] = {(double)i, list->value[at]};
+            if (corner[1] > corner[0])
+                TRY(vtk_add_line(data, data->n_cells++, corner, 2, 0, err));
+        }
+    }
+    return add_origins(reader, err);
+}
+
+static Status add_network(Reader *reader, Err *err)
+{
+    Status status = reader->content == SPATIAL_GRAPH ? add_spatial_graph(reader, err)
+                    : reader->content == LINE_SET    ? add_line_set(reader, err)
+                                                     : add_skeleton(reader, err);
+    if (status == STATUS_OK && reader->content != SPATIAL_GRAPH)
+        status = add_arrays(reader, NULL, err);
     return status == STATUS_OK ? vtk_to_graph(&reader->data, reader->graph, err) : status;
 }
 
@@ -609,5 +760,5 @@ Status amira_read(Graph *graph, char *bytes, size_t size, Err *err)
 
 bool amira_detect(const char *start)
 {
-    return strncmp(start, "# AmiraMesh", 11) == 0 || strncmp(start, "# Avizo", 7) == 0;
+    return strncasecmp(start, "# AmiraMesh", 11) == 0 || strncasecmp(start, "# Avizo", 7) == 0;
 }

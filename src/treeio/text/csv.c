@@ -242,7 +242,7 @@ static void write_row(const Tree *tree, size_t i, FILE *stream)
 
 Status csv_write(const Tree *tree, FILE *stream, Err *err)
 {
-    TRY(comments_write(&tree->meta, stream, err));
+    TRY(comments_write(&tree->meta, NULL, stream, err));
     write_titles(tree, stream);
     for (size_t i = 0; i < tree->n; i++)
         write_row(tree, i, stream);
@@ -268,7 +268,7 @@ static void write_segment(const Tree *tree, size_t i, FILE *stream)
 
 Status csv_segments_write(const Tree *tree, FILE *stream, Err *err)
 {
-    TRY(comments_write(&tree->meta, stream, err));
+    TRY(comments_write(&tree->meta, NULL, stream, err));
     for (size_t k = 0; k < CSV_SEGMENT_TITLES; k++)
         fprintf(stream, "%s%s", k ? "," : "", csv_segment_titles[k]);
     for (size_t k = 0; k < tree->n_columns; k++)

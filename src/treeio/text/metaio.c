@@ -1,7 +1,9 @@
 /* Tubes of MetaIO scenes (.tre), as MetaIO's metaTube.cxx and ITK's converter of tubes read them: a
- * header "Key = value" for each object, which ends with "Points =", and then the points, a row of
- * text each or packed numbers. PointDim says what the numbers of a point are. Positions and radii
- * are in voxels of ElementSpacing; TransformMatrix, CenterOfRotation and Offset move them.
+ * header "Key = value" for each object, which ends with "Points =" or "Points", and then the
+ * points, a row of text each or packed numbers. PointDim says what the numbers of a point are;
+ * without it they are x, y, z (if NDims is 3), the radius, and numbers that are left out. Positions
+ * and radii are in voxels of ElementSpacing; TransformMatrix, CenterOfRotation and Offset move
+ * them.
  *
  * Older versions of MetaIO reserve more room for packed points than they fill: what lies between
  * the last point and the next object is skipped. Children lead away from their parents, so that a
@@ -32,6 +34,7 @@ typedef struct Header {
     int32_t points;
     double spacing[3], matrix[9], center[3], offset[3];
     ElementType type;
+    bool has_point_dim;
     size_t n_columns;
     int32_t meaning[MAX_COLUMNS]; /* of each number of a point: a Meaning, or a column */
 } Header;
@@ -60,7 +63,8 @@ typedef struct Reader {
     size_t n_objects, capacity;
     const char *column[MAX_COLUMNS]; /* names of PointDim that are columns (borrowed) */
     size_t n_columns;
-    Names ids; /* of objects */
+    Names ids;      /* of objects */
+    size_t assumed; /* tubes without PointDim */
 } Reader;
 
 static const Header no_header = {.artery = (double)NAN,
@@ -119,7 +123,7 @@ static Status read_matrix(Header *header, const char *value, Err *err)
 static Status read_type(Header *header, const char *value, Err *err)
 {
     for (int type = 0; type < ELEMENT_TYPES; type++) {
-        if (strcmp(value, element_types[type]) == 0) {
+        if (strcasecmp(value, element_types[type]) == 0) {
             header->type = (ElementType)type;
             return STATUS_OK;
         }
@@ -159,6 +163,7 @@ static Status read_point_dim(Reader *reader, char *value, Err *err)
 {
     Header *header = &reader->header;
     header->n_columns = 0;
+    header->has_point_dim = true;
     for (char *name; (name = text_field(&value)); header->n_columns++) {
         if (header->n_columns == MAX_COLUMNS)
             return err_set(err, STATUS_INPUT, "PointDim names more than %d numbers", MAX_COLUMNS);
@@ -256,25 +261,25 @@ static Status begin_object(Reader *reader, const char *type, Err *err)
     if (!reader->header.is_tube && reader->header.id >= 0)
         TRY(add_object(reader, err));
     reader->header = no_header;
-    reader->header.is_tube = strcmp(type, "Tube") == 0;
+    reader->header.is_tube = strcasecmp(type, "Tube") == 0;
     return STATUS_OK;
 }
 
 static Status read_key(Reader *reader, const char *key, char *value, Err *err)
 {
     Header *header = &reader->header;
-    if (strcmp(key, "ObjectType") == 0)
+    if (strcasecmp(key, "ObjectType") == 0)
         return begin_object(reader, value, err);
-    if (strcmp(key, "NDims") == 0)
+    if (strcasecmp(key, "NDims") == 0)
         return field_whole(key, value, 2, 3, &header->dimensions, err);
-    if (strcmp(key, "Artery") == 0)
+    if (strcasecmp(key, "Artery") == 0)
         header->artery = is_true(value);
-    if (strcmp(key, "ID") == 0)
+    if (strcasecmp(key, "ID") == 0)
         header->id_text = value;
-    if (strcmp(key, "ParentID") == 0)
+    if (strcasecmp(key, "ParentID") == 0)
         header->parent_text = value;
     for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
-        if (strcmp(key, keys[k].name) == 0)
+        if (strcasecmp(key, keys[k].name) == 0)
             return read_value(reader, k, value, err);
     return STATUS_OK;
 }
@@ -326,7 +331,11 @@ static Status read_row(Reader *reader, Err *err)
     char *line = next_line(reader);
     if (!line)
         return err_set(err, STATUS_INPUT, "the file ends within the points of a tube");
-    if (!numbers_parse(line, n, number))
+    size_t found = 0;
+    TRY(fields_check_commas(line, err));
+    for (const char *at = line; found < n && number_take(&at, &number[found]); found++)
+        at += strspn(at, TEXT_BLANKS);
+    if (reader->header.has_point_dim ? !numbers_parse(line, n, number) : found < n)
         return err_set(err, STATUS_INPUT, "the point '%.40s' is not the %zu numbers of PointDim",
                        line, n);
     return add_point(reader, number, err);
@@ -374,22 +383,43 @@ static bool has(const Header *header, Meaning meaning)
     return false;
 }
 
-static Status check_header(const Header *header, Err *err)
+static Status check_header(const Header *header, bool gives_radius, Err *err)
 {
     if (header->points < 0)
         return err_set(err, STATUS_INPUT, "the tube does not say NPoints");
     if (!has(header, MEANS_X) || !has(header, MEANS_Y) ||
-        (header->dimensions == 3 && !has(header, MEANS_Z)) || !has(header, MEANS_RADIUS))
+        (header->dimensions == 3 && !has(header, MEANS_Z)) ||
+        (!has(header, MEANS_RADIUS) && !gives_radius))
         return err_set(err, STATUS_INPUT, "PointDim must name x, y%s and a radius",
                        header->dimensions == 3 ? ", z" : "");
     return STATUS_OK;
 }
 
+/* Without PointDim, the numbers of a point are in the order in which MetaIO writes them. What
+ * follows the radius, as a colour, has no name. Packed points have a size that only PointDim
+ * states. */
+static Status assume_point_dim(Reader *reader, Err *err)
+{
+    static const int32_t order[] = {MEANS_X, MEANS_Y, MEANS_Z, MEANS_RADIUS};
+    Header *header = &reader->header;
+    if (header->is_binary)
+        return err_set(err, STATUS_INPUT, "packed points need PointDim, which names their numbers");
+    for (size_t k = 0; k < 4; k++)
+        if (k != 2 || header->dimensions == 3)
+            header->meaning[header->n_columns++] = order[k];
+    if (reader->assumed++ > 0)
+        return STATUS_OK;
+    return reading_note(reader->graph->reading, err,
+                        "a tube without PointDim has x, y, z and the radius first in each row");
+}
+
 static Status read_tube(Reader *reader, Err *err)
 {
-    const Header *header = &reader->header;
+    Header *header = &reader->header;
     Graph *graph = reader->graph;
-    TRY(check_header(header, err));
+    if (!header->has_point_dim)
+        TRY(assume_point_dim(reader, err));
+    TRY(check_header(header, graph->options && graph->options->radius_mm > 0, err));
     TRY(add_object(reader, err));
     Object *object = &reader->object[reader->n_objects - 1];
     if (header->is_binary)
@@ -408,11 +438,12 @@ static Status read_tube(Reader *reader, Err *err)
 static Status read_line(Reader *reader, char *line, Err *err)
 {
     char *equals = strchr(line, '=');
-    if (!equals)
-        return STATUS_OK;
-    *equals = '\0';
+    if (equals)
+        *equals = '\0';
     const char *key = text_trim(line);
-    if (strcmp(key, "Points") == 0)
+    if (!equals && strcasecmp(key, "Points") != 0)
+        return STATUS_OK;
+    if (strcasecmp(key, "Points") == 0)
         return reader->header.is_tube ? read_tube(reader, err) : STATUS_OK;
     return read_key(reader, key, text_trim(equals + 1), err);
 }
@@ -503,5 +534,5 @@ Status metaio_read(Graph *graph, char *bytes, size_t size, Err *err)
 
 bool metaio_detect(const char *start)
 {
-    return strncmp(start, "ObjectType", strlen("ObjectType")) == 0;
+    return strncasecmp(text_first_row(start), "ObjectType", strlen("ObjectType")) == 0;
 }

@@ -206,6 +206,7 @@ static Status read_line(void *reader, size_t number, char *line, Err *err)
     line += strspn(line, TEXT_BLANKS);
     if (*line == '#')
         return read_comment(deck->graph, line + 1, err);
+    TRY(fields_check_commas(line, err));
     Card card = {field, fields_cut(line, field, MAX_FIELDS), number};
     if (card.count == 0)
         return STATUS_OK;
@@ -501,7 +502,7 @@ Status oned_write(const Tree *tree, FILE *stream, Err *err)
     Text text = TEXT_TO(stream);
     DeckTree deck = {.tree = tree, .text = &text};
     Status status = STATUS_OK;
-    TRY_GOTO(comments_write(&tree->meta, stream, err));
+    TRY_GOTO(comments_write(&tree->meta, NULL, stream, err));
     TRY_GOTO(tree_child_counts(tree, &deck.children, err));
     TRY_GOTO(tree_flow_shares(tree, &deck.share, err));
     TRY_GOTO(put_deck(&deck, err));

@@ -13,6 +13,7 @@ static Status read_line(void *reader, size_t number, char *line, Err *err)
     double v[N_NUMBERS];
     if (!line[strspn(line, TEXT_BLANKS)])
         return STATUS_OK;
+    TRY(fields_check_commas(line, err));
     if (!numbers_parse(line, N_NUMBERS, v))
         return err_set(
             err, STATUS_INPUT,
@@ -44,5 +45,7 @@ bool opencco_detect(const char *start)
         return false;
     memcpy(line, start, length);
     line[length] = '\0';
+    for (char *comma = line; (comma = strchr(comma, ','));)
+        *comma = '.'; /* a decimal comma, which the reader names */
     return numbers_parse(line, N_NUMBERS, v);
 }

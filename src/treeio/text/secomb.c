@@ -68,7 +68,7 @@ static Status put_values(Reader *reader, size_t at, char *const *field, size_t c
 static Status read_segment(Reader *reader, char *const *field, size_t count, size_t line, Err *err)
 {
     Segment segment = {.from = field[2], .to = field[3], .line = line};
-    TRY(field_number("diameter", field[4], 0, &segment.diameter, err));
+    TRY(field_radius(reader->graph->options, "diameter", field[4], &segment.diameter, err));
     if (count > 5 && strcmp(field[5], "*") != 0)
         TRY(field_number("flow", field[5], -HUGE_VAL, &segment.flow, err));
     TRY(mem_reserve(&reader->segment, &reader->capacity, reader->n_segments + 1,
@@ -119,11 +119,12 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
 {
     Reader *reader = context;
     char *field[MAX_FIELDS];
-    size_t count = fields_cut(line, field, MAX_FIELDS);
     if (reader->skip > 0) {
         reader->skip--;
         return STATUS_OK;
     }
+    TRY(fields_check_commas(line, err));
+    size_t count = fields_cut(line, field, MAX_FIELDS);
     if (reader->left == 0) {
         reader->table++;
         reader->left = -1;

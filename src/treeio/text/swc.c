@@ -70,7 +70,7 @@ static Status read_row(const Reader *reader, size_t line, char *const *field, Er
     TRY(field_number("x coordinate", field[2], any, &node.position.x, err));
     TRY(field_number("y coordinate", field[3], any, &node.position.y, err));
     TRY(field_number("z coordinate", field[4], any, &node.position.z, err));
-    TRY(field_number("radius", field[5], 0, &node.radius_mm, err));
+    TRY(field_radius(builder->options, "radius", field[5], &node.radius_mm, err));
     TRY(read_parent(reader, field[6], &node.parent, err));
     TRY(builder_node(builder, &node, err));
     for (size_t k = 0; k + N_FIELDS < reader->n_fields; k++) {
@@ -206,6 +206,7 @@ static Status read_line(Reader *reader, char *line, Err *err)
     char *comment = strchr(line, '#');
     if (comment)
         *comment = '\0';
+    TRY(fields_check_commas(line, err));
     size_t count = fields_cut(line, field, MAX_FIELDS);
     if (count == 0)
         return STATUS_OK;
@@ -448,7 +449,9 @@ Status swc_write(const Tree *tree, FILE *stream, Err *err)
     char share[NUMBER_TEXT_SIZE];
     TreePair *pair;
     size_t pairs;
-    TRY(comments_write(&tree->meta, stream, err));
+    /* Remarks of other formats that a reader of SWC would take for shares or pairs. */
+    static const char *const meaningful[] = {share_key, tree_pairs_name, NULL};
+    TRY(comments_write(&tree->meta, meaningful, stream, err));
     TRY(tree_pairs(tree, &pair, &pairs, err));
     for (size_t k = 0; k < pairs; k++)
         fprintf(stream, "# %s: %d %d\n", tree_pairs_name, tree->id[pair[k].node[0]],

@@ -470,7 +470,7 @@ static Status read_radius(const Table *table, double *radius, Err *err)
     *radius = (double)NAN;
     if (!field)
         return STATUS_OK;
-    TRY(field_number(roles[role].alias[0], field, 0, radius, err));
+    TRY(field_radius(table->graph->options, roles[role].alias[0], field, radius, err));
     *radius *= table->radius_factor;
     return STATUS_OK;
 }

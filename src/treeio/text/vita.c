@@ -29,7 +29,7 @@ static const struct {
                {FUNCTION, "vessel_function"},
                {STAGE, "stage"}};
 
-enum { N_COLUMNS = sizeof columns / sizeof *columns, MAX_FIELDS = 10000 };
+enum { N_COLUMNS = sizeof columns / sizeof *columns };
 
 typedef enum Section { NO_SECTION, TREE, VESSELS, CONNECTIVITY } Section;
 
@@ -61,12 +61,12 @@ static Status read_vessel(Reader *reader, char *const *field, size_t count, size
     size_t number = reader->vessels.n;
     GraphLine segment = {.a = 2 * number, .b = 2 * number + 1, .is_directed = true, .record = line};
     if (count < RADIUS + 1)
-        return err_set(err, STATUS_INPUT, "the vessel has %zu numbers; it has %d", count,
-                       VESSEL_FIELDS);
+        return err_set(err, STATUS_INPUT, "a VItA vessel needs %d numbers, found %zu",
+                       VESSEL_FIELDS, count);
     TRY(names_add(&reader->vessels, field[VESSEL], number, line, err));
     TRY(read_end(reader, field + PROXIMAL, line, err));
     TRY(read_end(reader, field + DISTAL, line, err));
-    TRY(field_number("radius", field[RADIUS], 0, &segment.radius, err));
+    TRY(field_radius(graph->options, "radius", field[RADIUS], &segment.radius, err));
     TRY(graph_line(graph, &segment, err));
     for (size_t k = 0; k < N_COLUMNS && (size_t)columns[k].field < count; k++) {
         double value;
@@ -103,8 +103,9 @@ static Status begin_section(Reader *reader, const char *title, Err *err)
 static Status read_line(void *context, size_t number, char *line, Err *err)
 {
     Reader *reader = context;
-    char *field[MAX_FIELDS];
-    size_t count = fields_cut(line, field, MAX_FIELDS);
+    char *field[VESSEL_FIELDS]; /* no line has a meaning beyond these */
+    TRY(fields_check_commas(line, err));
+    size_t count = fields_cut(line, field, VESSEL_FIELDS);
     if (count == 0)
         return STATUS_OK;
     if (*field[0] == '*')

@@ -93,7 +93,7 @@ static Status read_vertex(Reader *reader, char *line, size_t number, Err *err)
     TRY(names_add(&reader->names, field[0], graph->n_points, number, err));
     for (size_t i = 0; i < 3; i++)
         TRY(field_number("coordinate", field[1 + i], -HUGE_VAL, coordinate[i], err));
-    TRY(field_number("radius", field[4], 0, &point.radius, err));
+    TRY(field_radius(graph->options, "radius", field[4], &point.radius, err));
     TRY(graph_point(graph, &point, err));
     if (count == VERTEX_FIELDS)
         return STATUS_OK;
@@ -190,6 +190,7 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
     line = text_trim(line);
     if (*line == '#')
         return comment_read(&reader->graph->meta, line + 1, err);
+    TRY(fields_check_commas(line, err));
     if (reader->section == PARAMETERS && strncmp(line, "$NUM_", 5) == 0)
         line++;
     if (*line == '$')
@@ -298,7 +299,7 @@ Status vmv_write(const Tree *tree, FILE *stream, Err *err)
 {
     Branches branches;
     TRY(branches_find(tree, &branches, err));
-    Status status = comments_write(&tree->meta, stream, err);
+    Status status = comments_write(&tree->meta, NULL, stream, err);
     fprintf(stream,
             "$PARAM_BEGIN\nNUM_VERTS %zu\nNUM_STRANDS %zu\nNUM_ATTRIB_PER_VERT 4\n"
             "$PARAM_END\n\n",

@@ -1,6 +1,7 @@
 /* An array is filled up with NAN when a later element has a number, and at the end. */
 #include "treeio/vtk/attributes.h"
 
+#include "treeio/formats.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,6 +46,8 @@ static Status find_array(Attributes *attributes, const char *name, size_t *numbe
 static Status fill(Attributes *attributes, size_t number, size_t n, double value, Err *err)
 {
     VtkArray *array = &attributes->arrays.array[number];
+    attributes->numbers += n > array->n ? (double)(n - array->n) : 0;
+    TRY(check_unpacked(attributes->numbers * sizeof *array->value, attributes->file_size, err));
     TRY(mem_reserve(&array->value, &attributes->capacity[number], n, sizeof *array->value,
                     "values of an array", err));
     while (array->n < n)

@@ -11,8 +11,10 @@ typedef struct Attributes {
     VtkArrays arrays;
     size_t *capacity; /* of the values of each array; owned */
     size_t n_capacities, capacities;
-    size_t n;    /* elements so far */
-    size_t next; /* the array that is likely asked for next */
+    size_t n;         /* elements so far */
+    size_t next;      /* the array that is likely asked for next */
+    size_t file_size; /* in bytes, which bounds how many numbers the arrays may hold */
+    double numbers;   /* of all arrays so far */
 } Attributes;
 
 void attributes_release(Attributes *attributes);

@@ -105,13 +105,22 @@ static Status read_count(Cursor *cursor, const char *what, size_t *count, Err *e
     return STATUS_OK;
 }
 
-static Status read_type(Cursor *cursor, char word[WORD], const VtkType **type, Err *err)
+/* Reads the type of an array: that of its numbers, or NULL for an array of strings. */
+static Status read_type(Cursor *cursor, const VtkType **type, Err *err)
 {
+    char word[WORD];
     next_word(cursor, word);
     *type = vtk_type_of_legacy(word, strlen(word));
     if (*type || strcasecmp(word, "string") == 0)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT, "'%.40s' is no type of numbers", word);
+}
+
+/* Reads a type that must be one of numbers: `what` cannot be strings. */
+static Status read_number_type(Cursor *cursor, const char *what, const VtkType **type, Err *err)
+{
+    TRY(read_type(cursor, type, err));
+    return *type ? STATUS_OK : err_set(err, STATUS_INPUT, "%s cannot be strings", what);
 }
 
 /* ---- numbers --------------------------------------------------------------------------------- */
@@ -135,11 +144,11 @@ static Status read_text_numbers(Cursor *cursor, const char *what, size_t n, doub
         *end = '\0';
         bool is_number = number_parse(cursor->at, &out[i]);
         Status status =
-            is_number ? STATUS_OK
-            : *cursor->at
-                ? err_set(err, STATUS_INPUT, "'%.40s' of %s is no number", cursor->at, what)
-                : err_set(err, STATUS_INPUT, "the file ends after %zu of the %zu numbers of %s", i,
-                          n, what);
+            is_number     ? STATUS_OK
+            : *cursor->at ? err_set(err, STATUS_INPUT, "'%.40s' of %s is no number%s", cursor->at,
+                                    what, decimal_comma_hint(cursor->at))
+                          : err_set(err, STATUS_INPUT,
+                                    "the file ends after %zu of the %zu numbers of %s", i, n, what);
         *end = after;
         TRY(status);
         cursor->at = end;
@@ -268,7 +277,7 @@ static void skip_metadata(Cursor *cursor)
 
 static Status read_field(Cursor *cursor, VtkArrays *arrays, Err *err)
 {
-    char word[WORD], type_name[WORD];
+    char word[WORD];
     size_t n_arrays = 0, components = 0, n = 0;
     const VtkType *type;
     next_word(cursor, word);
@@ -281,7 +290,7 @@ static Status read_field(Cursor *cursor, VtkArrays *arrays, Err *err)
             return err_set(err, STATUS_INPUT, "the file ends after %zu of %zu arrays", i, n_arrays);
         TRY(read_count(cursor, "components", &components, err));
         TRY(read_count(cursor, "values", &n, err));
-        TRY(read_type(cursor, type_name, &type, err));
+        TRY(read_type(cursor, &type, err));
         TRY(read_array(cursor, arrays, word, type, components, n, err));
     }
     return STATUS_OK;
@@ -293,7 +302,7 @@ static Status read_scalars(Cursor *cursor, VtkArrays *arrays, size_t n, Err *err
     const VtkType *type;
     long long components = 1;
     next_word(cursor, name);
-    TRY(read_type(cursor, word, &type, err));
+    TRY(read_type(cursor, &type, err));
     next_in_line(cursor, word);
     if (*word && !integer_parse(word, 1, 1000, &components))
         return err_set(err, STATUS_INPUT, "the number of components is '%.40s'", word);
@@ -318,14 +327,14 @@ static const struct Attribute {
 static Status read_attribute(Cursor *cursor, const struct Attribute *attribute, VtkArrays *arrays,
                              size_t n, Err *err)
 {
-    char name[WORD], word[WORD];
+    char name[WORD];
     size_t components = attribute->components;
     const VtkType *type = vtk_type_of_legacy("unsigned_char", 13);
     next_word(cursor, name);
     if (components == 0)
         TRY(read_count(cursor, "components", &components, err));
     if (!attribute->is_color)
-        TRY(read_type(cursor, word, &type, err));
+        TRY(read_type(cursor, &type, err));
     return read_array(cursor, arrays, name, type, components, n, err);
 }
 
@@ -349,13 +358,12 @@ static Status skip_table(Cursor *cursor, Err *err)
 static Status read_offset_cells(Cursor *cursor, size_t n_offsets, size_t n_corners, VtkCells *cells,
                                 Err *err)
 {
-    char word[WORD];
     const VtkType *type;
-    TRY(read_type(cursor, word, &type, err));
+    TRY(read_number_type(cursor, "OFFSETS", &type, err));
     TRY(read_numbers(cursor, type, "OFFSETS", n_offsets, &cells->end, err));
     if (!take_word(cursor, "CONNECTIVITY"))
         return err_set(err, STATUS_INPUT, "OFFSETS must be followed by CONNECTIVITY");
-    TRY(read_type(cursor, word, &type, err));
+    TRY(read_number_type(cursor, "CONNECTIVITY", &type, err));
     TRY(read_numbers(cursor, type, "CONNECTIVITY", n_corners, &cells->corner, err));
     cells->n = n_offsets > 0 ? n_offsets - 1 : 0;
     cells->n_corners = n_corners;
@@ -432,13 +440,12 @@ static void release(Reader *reader)
 
 static Status read_points(Reader *reader, Err *err)
 {
-    char word[WORD];
     const VtkType *type;
     size_t n = 0;
     TRY(read_count(&reader->cursor, "points", &n, err));
-    TRY(read_type(&reader->cursor, word, &type, err));
-    if (reader->data.point || !type)
-        return err_set(err, STATUS_INPUT, "POINTS are given twice, or are text");
+    TRY(read_number_type(&reader->cursor, "POINTS", &type, err));
+    if (reader->data.point)
+        return err_set(err, STATUS_INPUT, "POINTS are given twice");
     TRY(read_numbers(&reader->cursor, type, "POINTS", 3 * n, &reader->data.point, err));
     reader->data.n_points = n;
     return STATUS_OK;

@@ -30,6 +30,7 @@ static Status add_lines(const VtkMeaning *meaning, const VtkData *data, Graph *g
                 .b = (size_t)data->corner[k],
                 .radius = radius ? meaning->factor * radius->value[data->cell[i]] : (double)NAN,
                 .is_directed = data->is_directed,
+                .is_part = data->end[i] - at > 2,
                 .record = data->cell[i]};
             TRY(graph_blame(graph, GRAPH_LINES, line.record, graph_line(graph, &line, err), err));
         }

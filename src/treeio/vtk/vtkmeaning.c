@@ -95,9 +95,13 @@ static Status find_radius(VtkMeaning *meaning, const VtkData *data, const Graph 
     for (size_t i = 0; !said && i < sizeof diameter_names / sizeof *diameter_names; i++)
         if (take_radius(meaning, data, diameter_names[i], 0.5))
             return STATUS_OK;
+    if (!said && graph->options && graph->options->radius_mm > 0)
+        return STATUS_OK;
     if (!said)
         return refuse_radius(data, graph,
-                             "no array is called a radius, and `radius_array` names none", err);
+                             "no array is called a radius, `radius_array` names none, and `radius` "
+                             "gives none",
+                             err);
     char plain[PLAIN_SIZE], what[160];
     vtk_plain_name(said, plain, sizeof plain);
     const VtkArray *of_cells = find_exact(&data->of_cells, said);
@@ -183,10 +187,11 @@ Status vtk_tell_meaning(const VtkMeaning *meaning, const VtkData *data, const Gr
                         Err *err)
 {
     TreeReading *reading = graph->reading;
-    TRY(reading_note(reading, err, "radius is %sthe %s array '%.60s'",
-                     meaning->factor == 1 ? "" : "half of ",
-                     meaning->of == GRAPH_POINTS ? graph->point_record : graph->line_record,
-                     meaning->radius->name));
+    if (meaning->radius)
+        TRY(reading_note(reading, err, "radius is %sthe %s array '%.60s'",
+                         meaning->factor == 1 ? "" : "half of ",
+                         meaning->of == GRAPH_POINTS ? graph->point_record : graph->line_record,
+                         meaning->radius->name));
     if (meaning->inlet)
         TRY(reading_note(reading, err, "inlets are the points whose '%.60s' is %g",
                          meaning->inlet->name, meaning->inlet_value));
@@ -199,11 +204,12 @@ Status vtk_tell_meaning(const VtkMeaning *meaning, const VtkData *data, const Gr
 
 bool vtk_is_used(const VtkMeaning *meaning, const VtkArray *array)
 {
-    char plain[PLAIN_SIZE];
-    vtk_plain_name(meaning->radius->name, plain, sizeof plain);
+    char plain[PLAIN_SIZE] = "";
+    if (meaning->radius)
+        vtk_plain_name(meaning->radius->name, plain, sizeof plain);
     const VtkArray *const used[] = {meaning->radius, meaning->id, meaning->type, meaning->share};
     for (size_t i = 0; i < sizeof used / sizeof *used; i++)
         if (array == used[i])
             return true;
-    return !meaning->id && array->components == 1 && has_plain_name(array, plain);
+    return *plain && !meaning->id && array->components == 1 && has_plain_name(array, plain);
 }

@@ -6,16 +6,16 @@
 
 /* All borrowed from the data; of one number for each point or cell. */
 typedef struct VtkMeaning {
-    const VtkArray *radius;
-    GraphElement of;       /* that have the radius */
-    double factor;         /* 0.5 of diameters */
-    const VtkArray *inlet; /* of points; NULL: there is none */
-    double inlet_value;    /* where the inlets are */
+    const VtkArray *radius; /* NULL: the file has none, and options->radius_mm is set */
+    GraphElement of;        /* that have the radius */
+    double factor;          /* 0.5 of diameters */
+    const VtkArray *inlet;  /* of points; NULL: there is none */
+    double inlet_value;     /* where the inlets are */
     const VtkArray *id; /* of points, in files of the program's own, which are trees; else NULL */
     const VtkArray *type, *share; /* likewise; NULL: the file has none */
 } VtkMeaning;
 
-/* STATUS_INPUT, with the file's name, when there is no array of radii. */
+/* STATUS_INPUT, with the file's name, when there is no array of radii and options give none. */
 MUST_CHECK Status vtk_find_meaning(VtkMeaning *meaning, const VtkData *data, const Graph *graph,
                                    Err *err);
 /* Tells graph->reading what was assumed. */

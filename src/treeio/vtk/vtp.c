@@ -6,6 +6,7 @@
 #include "treeio/vtk/vtpbytes.h"
 #include "treeio/xml.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,11 +46,16 @@ typedef struct Reader {
     Array *array;
     size_t n, capacity;
     size_t pieces;
-    double points, cells;     /* as the piece that is being read says; 0 before the first */
-    double taken;             /* bytes that the numbers of all arrays take so far */
-    bool in_array, is_base64; /* of the array, or the appended data */
-    size_t appended;          /* where its first byte is; 0: there is none */
+    double points, cells;         /* as the piece that is being read says; 0 before the first */
+    double all_points, all_cells; /* of the pieces so far */
+    double taken;                 /* bytes that the numbers of all arrays take so far */
+    bool in_array, is_base64;     /* of the array, or the appended data */
+    size_t appended;              /* where its first byte is; 0: there is none */
 } Reader;
+
+/* What the attribute `compressor` says. */
+static const char *const packings[] = {
+    [VTP_PLAIN] = "", [VTP_ZLIB] = "vtkZLibDataCompressor", [VTP_LZ4] = "vtkLZ4DataCompressor"};
 
 static Status read_file_element(Reader *reader, const XmlElement *element, Err *err)
 {
@@ -61,11 +67,14 @@ static Status read_file_element(Reader *reader, const XmlElement *element, Err *
         return err_set(err, STATUS_INPUT,
                        "the file is of type '%.40s'; lines are in PolyData and UnstructuredGrid",
                        type ? type : "");
-    if (compressor && *compressor && strcmp(compressor, "vtkZLibDataCompressor") != 0)
-        return err_set(err, STATUS_INPUT,
-                       "it is compressed by %.60s; vtkZLibDataCompressor is known", compressor);
+    int packing = VTP_PLAIN;
+    while (packing <= VTP_LZ4 && strcmp(packings[packing], compressor ? compressor : "") != 0)
+        packing++;
+    if (packing > VTP_LZ4)
+        return err_set(err, STATUS_INPUT, "it is compressed by %.60s; %s and %s are read",
+                       compressor, packings[VTP_ZLIB], packings[VTP_LZ4]);
     reader->coding = (VtpCoding){.is_big_endian = order && strcmp(order, "BigEndian") == 0,
-                                 .is_compressed = compressor && *compressor,
+                                 .packing = (VtpPacking)packing,
                                  .header_size = header && strcmp(header, "UInt64") == 0 ? 8 : 4};
     return STATUS_OK;
 }
@@ -103,7 +112,10 @@ static Status begin_piece(Reader *reader, const XmlElement *element, Err *err)
         TRY(read_whole(element, of_cells[k], INT64_MAX, 0, &n, err));
         reader->cells += (double)n;
     }
-    return STATUS_OK;
+    reader->all_points += reader->points;
+    reader->all_cells += reader->cells;
+    TRY(check_elements("points", reader->all_points, reader->size, err));
+    return check_elements("cells", reader->all_cells, reader->size, err);
 }
 
 /* How many numbers, or bytes of text, an array can have. Nothing says how long lines, texts and the
@@ -115,7 +127,7 @@ static double most_numbers(const Reader *reader, const Array *of)
         return reader->points * (double)of->array.components;
     if (!of->is_text && of->section == CELL_DATA)
         return reader->cells * (double)of->array.components;
-    return 100 * (reader->points + reader->cells) + 1e6;
+    return fmin(100 * (reader->points + reader->cells) + 1e6, 4 * most_elements(reader->size));
 }
 
 static Status begin_array(Reader *reader, Section section, const XmlElement *element, Err *err)
@@ -177,7 +189,8 @@ static Status parse_numbers(char *text, double **out, size_t *n, Err *err)
         Status status =
             mem_reserve(&made, &capacity, count + 1, sizeof *made, "numbers of an array", err);
         if (status == STATUS_OK && !number_parse(at, &made[count]))
-            status = err_set(err, STATUS_INPUT, "'%.40s' is no number", at);
+            status =
+                err_set(err, STATUS_INPUT, "'%.40s' is no number%s", at, decimal_comma_hint(at));
         if (status != STATUS_OK) {
             free(made);
             return status;
@@ -221,7 +234,7 @@ static Status decode(Reader *reader, Array *of, const char *from, size_t left, E
     const char *bytes = NULL;
     char *decoded = NULL;
     size_t size = 0;
-    const VtpRoom room = {reader->name, of->most, of->type->size, reader->taken};
+    const VtpRoom room = {reader->name, reader->size, of->most, of->type->size, reader->taken};
     TRY(vtp_decode(&reader->coding, reader->is_base64, from, left, &room, &bytes, &size, &decoded,
                    err));
     size_t n = size / of->type->size;

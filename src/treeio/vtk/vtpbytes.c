@@ -2,16 +2,21 @@
  * large each is and the last, how many bytes each has compressed, and these. In base64 the bytes go
  * on without padding behind the number, but behind those of blocks there may be some; a group that
  * is padded gives fewer bytes and the next begins anew, so that either is read. zlib makes nothing
- * 1032 times smaller, so a file that announces more is refused before room is made for it, and so
- * is one that announces more than its array can have: a megabyte could become one of zeros. */
+ * 1032 times smaller and LZ4 nothing 255 times, so a file that announces more is refused before
+ * room is made for it, and so is one that announces more than its array can have or than a file of
+ * its size may [check_unpacked]: a megabyte could become a gigabyte of zeros. */
 #include "treeio/vtk/vtpbytes.h"
 
+#include "treeio/formats.h"
+
 #include <libdeflate.h>
+#include <limits.h>
+#include <lz4.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_RATIO 1032.0
+static const double most_ratio[] = {[VTP_PLAIN] = 1, [VTP_ZLIB] = 1032, [VTP_LZ4] = 255};
 
 typedef struct Stream {
     const char *at, *end;
@@ -159,18 +164,29 @@ static Status read_blocks(Stream *stream, const VtpCoding *coding, Blocks *block
     TRY(check_claim(stream, packed, bytes_left(stream), err));
     *total = (double)(blocks->n - 1) * (double)blocks->size +
              (double)(blocks->last ? blocks->last : blocks->size);
-    return check_claim(stream, *total, packed * MOST_RATIO, err);
+    return check_claim(stream, *total, packed * most_ratio[coding->packing] + 64, err);
 }
 
-static Status inflate_blocks(Stream *stream, const Blocks *blocks, char *out, char *packed,
-                             struct libdeflate_decompressor *inflater, Err *err)
+/* Unpacks to exactly `size` bytes; false for data that are not so packed. */
+static bool unpack(const VtpCoding *coding, struct libdeflate_decompressor *inflater,
+                   const char *packed, size_t n, char *out, size_t size)
+{
+    if (coding->packing == VTP_LZ4)
+        return n <= INT_MAX && size <= INT_MAX &&
+               LZ4_decompress_safe(packed, out, (int)n, (int)size) == (int)size;
+    return libdeflate_zlib_decompress(inflater, packed, n, out, size, NULL) == LIBDEFLATE_SUCCESS;
+}
+
+static Status inflate_blocks(Stream *stream, const VtpCoding *coding, const Blocks *blocks,
+                             char *out, char *packed, struct libdeflate_decompressor *inflater,
+                             Err *err)
 {
     for (size_t i = 0; i < blocks->n; i++) {
         size_t size = i + 1 == blocks->n && blocks->last ? blocks->last : blocks->size;
         TRY(take(stream, packed, blocks->packed[i], err));
-        if (libdeflate_zlib_decompress(inflater, packed, blocks->packed[i], out, size, NULL) !=
-            LIBDEFLATE_SUCCESS)
-            return err_set(err, STATUS_INPUT, "block %zu is no zlib data of %zu bytes", i, size);
+        if (!unpack(coding, inflater, packed, blocks->packed[i], out, size))
+            return err_set(err, STATUS_INPUT, "block %zu is no %s data of %zu bytes", i,
+                           coding->packing == VTP_LZ4 ? "LZ4" : "zlib", size);
         out += size;
     }
     return STATUS_OK;
@@ -185,6 +201,7 @@ static Status check_room(double total, const VtpRoom *room, Err *err)
                        "it announces %s; by the numbers of points and cells of its piece it has at "
                        "most %s",
                        bytes_text(total, claim), bytes_text(most, allowed));
+    TRY(check_unpacked(room->taken + total / size * sizeof(double), room->file_size, err));
     return mem_check(room->taken + total + total / size * sizeof(double), room->name, err);
 }
 
@@ -205,7 +222,7 @@ static Status decode_blocks(Stream *stream, const VtpCoding *coding, const VtpRo
     inflater = libdeflate_alloc_decompressor();
     if (!inflater)
         TRY_GOTO(mem_out_of("to inflate", "an array", err));
-    TRY_GOTO(inflate_blocks(stream, blocks, made, packed, inflater, err));
+    TRY_GOTO(inflate_blocks(stream, coding, blocks, made, packed, inflater, err));
     *decoded = made;
     *size = (size_t)total;
     made = NULL;
@@ -222,7 +239,7 @@ Status vtp_decode(const VtpCoding *coding, bool is_base64, const char *from, siz
 {
     Stream stream = {.at = from, .end = from + left, .is_base64 = is_base64};
     *decoded = NULL;
-    if (!coding->is_compressed)
+    if (coding->packing == VTP_PLAIN)
         return decode_plain(&stream, coding, bytes, size, decoded, err);
     Blocks blocks = {0};
     Status status = decode_blocks(&stream, coding, room, &blocks, decoded, size, err);

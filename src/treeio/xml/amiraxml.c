@@ -186,7 +186,11 @@ static Status to_graph(Reader *reader, Graph *graph, Err *err)
 Status amiraxml_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
     static const XmlHandlers handlers = {begin, end};
-    Reader reader = {.name = graph->name, .sheet = SHEET_OTHER, .points = {.what = "point"}};
+    Reader reader = {.name = graph->name,
+                     .sheet = SHEET_OTHER,
+                     .points = {.what = "point"},
+                     .of_points = {.file_size = size},
+                     .of_segments = {.file_size = size}};
     Status status = xml_read(graph->name, bytes, size, &handlers, &reader, err);
     if (status == STATUS_OK)
         status = to_graph(&reader, graph, err);

@@ -123,6 +123,18 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
     return strcmp(name, "data") == 0 ? begin_data(reader, element, err) : STATUS_OK;
 }
 
+/* Returns whether a key of this name may hold the place of a node as one text. */
+static bool is_place(const char *name)
+{
+    static const char *const usual[] = {"pos",         "position",   "xyz",    "coord",
+                                        "coordinates", "coordinate", "coords", "location",
+                                        "centroid",    "point"};
+    for (size_t i = 0; i < sizeof usual / sizeof *usual; i++)
+        if (strcasecmp(name, usual[i]) == 0)
+            return true;
+    return false;
+}
+
 /* A number, or a truth; false for other texts. */
 static bool read_value(const char *text, double *value)
 {
@@ -132,6 +144,31 @@ static bool read_value(const char *text, double *value)
     return yes || no || number_parse(text, value);
 }
 
+/* Reads a text that is three numbers, as "(1, 2, 3)", "[1 2 3]" or "1;2;3"; returns false for other
+ * texts. */
+static bool read_tuple(const char *from, double place[3])
+{
+    char text[200];
+    size_t length = strlen(from);
+    if (length >= sizeof text)
+        return false;
+    for (size_t i = 0; i <= length; i++)
+        text[i] = (char)(from[i] && strchr("()[]{},;", from[i]) ? ' ' : from[i]);
+    return numbers_parse(text, 3, place);
+}
+
+static Status set_place(Reader *reader, const char *const axes[3], const double place[3], Err *err)
+{
+    for (int k = 0; k < 3; k++)
+        TRY(attributes_set(&reader->network.of_points, axes[k], place[k], err));
+    return STATUS_OK;
+}
+
+/* VesselExpress's nodes are called "(z, y, x)"; other programs have a text "[x, y, z]" for the
+ * place. */
+static const char *const axes_of_id[] = {"x of id", "y of id", "z of id"};
+static const char *const axes_of_text[] = {"x of text", "y of text", "z of text"};
+
 static Status end_data(Reader *reader, const char *around, char *text, Err *err)
 {
     const Key *key = &reader->key[reader->data];
@@ -140,36 +177,21 @@ static Status end_data(Reader *reader, const char *around, char *text, Err *err)
         return strcmp(key->name, VTK_KNOWN) == 0 ? namednetwork_known(&reader->network, text, err)
                                                  : STATUS_OK;
     bool of_point = strcmp(around, "node") == 0;
+    double place[3];
+    if (of_point && is_place(key->name) && read_tuple(text, place))
+        return set_place(reader, axes_of_text, place, err);
     if ((!of_point && strcmp(around, "edge") != 0) || !read_value(text, &value))
         return STATUS_OK;
     return attributes_set(of_point ? &reader->network.of_points : &reader->network.of_lines,
                           key->name, value, err);
 }
 
-/* "(z, y, x)" as the id of a node. */
-static bool read_tuple(const char *id, double place[3])
-{
-    char text[200];
-    size_t length = strlen(id);
-    if (id[0] != '(' || length + 1 > sizeof text || id[length - 1] != ')')
-        return false;
-    memcpy(text, id + 1, length - 2);
-    text[length - 2] = '\0';
-    for (char *at = text; *at; at++)
-        *at = *at == ',' ? ' ' : *at;
-    return numbers_parse(text, 3, place);
-}
-
-static const char *const axes_of_id[] = {"x of id", "y of id", "z of id"};
-
 static Status end_node(Reader *reader, Err *err)
 {
     double place[3];
-    if (!read_tuple(reader->last_id, place))
+    if (*reader->last_id != '(' || !read_tuple(reader->last_id, place))
         return STATUS_OK;
-    for (int k = 0; k < 3; k++)
-        TRY(attributes_set(&reader->network.of_points, axes_of_id[k], place[2 - k], err));
-    return STATUS_OK;
+    return set_place(reader, axes_of_id, (const double[]){place[2], place[1], place[0]}, err);
 }
 
 static Status end(void *context, Xml *xml, const char *name, char *text, Err *err)
@@ -239,10 +261,12 @@ static void find_axes(const VtkArrays *arrays, KeyNames *names)
                                            {"pos_x", "pos_y", "pos_z"},
                                            {"coord_x", "coord_y", "coord_z"},
                                            {"v_x", "v_y", "v_z"},
+                                           {"x of text", "y of text", "z of text"},
                                            {"x of id", "y of id", "z of id"}};
     for (size_t i = 0; !names->axis[0] && i < sizeof usual / sizeof *usual; i++)
         if (has_array(arrays, usual[i][0]) && has_array(arrays, usual[i][1]))
-            memcpy(names->axis, usual[i], sizeof names->axis);
+            for (int k = 0; k < 3; k++)
+                names->axis[k] = k < 2 || has_array(arrays, usual[i][k]) ? usual[i][k] : NULL;
 }
 
 static Status check_axes(const Reader *reader, const KeyNames *names, Err *err)
@@ -292,8 +316,11 @@ static void reader_release(Reader *reader)
 Status graphml_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
     static const XmlHandlers handlers = {begin, end};
-    Reader reader = {
-        .network = {.names = {.what = "node"}}, .ids = {.what = "key"}, .graph = graph};
+    Reader reader = {.network = {.names = {.what = "node"},
+                                 .of_points = {.file_size = size},
+                                 .of_lines = {.file_size = size}},
+                     .ids = {.what = "key"},
+                     .graph = graph};
     Status status = xml_read(graph->name, bytes, size, &handlers, &reader, err);
     if (status == STATUS_OK)
         status = to_graph(&reader, err);

@@ -94,7 +94,7 @@ static Status end(void *context, Xml *xml, const char *name, char *text, Err *er
         return take_remark(reader, text, err);
     if (strcmp(name, "string") == 0 || (!of_point && !of_line))
         return STATUS_OK;
-    TRY(field_number(reader->attribute, text, -HUGE_VAL, &value, err));
+    TRY(field_value(reader->attribute, text, &value, err));
     return take_number(reader, of_point ? &reader->network.of_points : &reader->network.of_lines,
                        of_point, value, err);
 }
@@ -102,7 +102,10 @@ static Status end(void *context, Xml *xml, const char *name, char *text, Err *er
 Status gxl_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
     static const XmlHandlers handlers = {begin, end};
-    Reader reader = {.network = {.names = {.what = "node"}}, .graph = graph};
+    Reader reader = {.network = {.names = {.what = "node"},
+                                 .of_points = {.file_size = size},
+                                 .of_lines = {.file_size = size}},
+                     .graph = graph};
     Status status = xml_read(graph->name, bytes, size, &handlers, &reader, err);
     reader.network.data.is_directed = true;
     if (status == STATUS_OK)

@@ -7,7 +7,8 @@
 #include "treeio/vtk/attributes.h"
 #include "treeio/vtk/vtkdata.h"
 
-/* Begin with {.names = {.what = "node"}}; release with namednetwork_release. */
+/* Begin with {.names = {.what = "node"}} and the size of the file in both Attributes; release with
+ * namednetwork_release. */
 typedef struct NamedNetwork {
     Names names;
     Slabs texts;
