@@ -111,9 +111,11 @@ void file_hold_standard_streams(void)
             return;
 }
 
-/* Every line end becomes LF; the byte order mark goes. */
+/* Turns every line end into LF. Drops a byte order mark, and the Control-Z that CP/M and DOS wrote
+ * behind a text. */
 static void tidy_lines(char *bytes, size_t *size)
 {
+    enum { CONTROL_Z = 0x1a };
     static const char byte_order_mark[] = "\xef\xbb\xbf";
     char *from = bytes, *to = bytes, *end = bytes + *size;
     if (strncmp(bytes, byte_order_mark, 3) == 0)
@@ -130,6 +132,8 @@ static void tidy_lines(char *bytes, size_t *size)
         from = cr + 1;
         from += *from == '\n';
     }
+    while (to > bytes && to[-1] == CONTROL_Z)
+        to--;
     *to = '\0';
     *size = (size_t)(to - bytes);
 }

@@ -70,7 +70,7 @@ void demand_release(Demand *demand)
     if (!demand)
         return;
     free(demand->file);
-    free(demand->mask.is_tissue);
+    free(demand->mask.bits);
     free(demand->mask.value);
     free(demand);
 }

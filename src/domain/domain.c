@@ -19,6 +19,9 @@ enum { KINDS = sizeof kinds / sizeof *kinds };
 static const double slack = 1e-6; /* of the diagonal of the bounds */
 /* The least part of its bounds that a domain must fill, or rejection would take too long. */
 static const double least_filled = 1e-3;
+/* Points that are drawn, at most, until one is inside. A domain that fills the least part of its
+ * bounds is missed by all of them once in e^100 times. */
+enum { MOST_DRAWS = 100000 };
 
 const char *domain_shape_name(size_t i)
 {
@@ -49,7 +52,7 @@ static Status refuse_shape(const char *spec, Err *err)
     return status;
 }
 
-/* Whether points can be sampled. */
+/* Whether the domain is large enough for points to be sampled. */
 static Status check_filling(const Domain *domain, Err *err)
 {
     Vec3 size = vec3_sub(domain->bounds.high, domain->bounds.low);
@@ -63,12 +66,28 @@ static Status check_filling(const Domain *domain, Err *err)
                    least_filled);
 }
 
+static bool try_sample(const Domain *domain, Random *random, Vec3 *point);
+
+/* Finds a point of the domain, or refuses one that has none where points are drawn. */
+static Status find_inner(Domain *domain, Err *err)
+{
+    Random random;
+    random_seed(&random, 1);
+    if (try_sample(domain, &random, &domain->inner))
+        return STATUS_OK;
+    return err_set(err, domain->file ? STATUS_INPUT : STATUS_USAGE,
+                   "%s%sof %d points drawn in the domain none is inside it%s",
+                   domain->file ? domain->file : "", domain->file ? ": " : "", MOST_DRAWS,
+                   domain->surface ? "; the mesh may be thinner than twice its OFFSET" : "");
+}
+
 /* What every kind has in common once it is loaded. */
 static Status complete(Domain *domain, Vec3 at, Err *err)
 {
     TRY(check_filling(domain, err));
     domain->slack_mm = slack * vec3_distance(domain->bounds.low, domain->bounds.high);
     domain->own_bounds = domain->bounds;
+    TRY(find_inner(domain, err));
     domain->is_placed = vec3_length(at) > 0;
     if (!domain->is_placed)
         return STATUS_OK;
@@ -76,6 +95,7 @@ static Status complete(Domain *domain, Vec3 at, Err *err)
         return err_set(err, STATUS_USAGE,
                        "a domain of two dimensions lies in the plane z = 0, so its place is @X,Y");
     domain->at = at;
+    domain->inner = vec3_add(domain->inner, at);
     domain->bounds = (Box){vec3_add(domain->bounds.low, at), vec3_add(domain->bounds.high, at)};
     domain->inlet = vec3_add(domain->inlet, at);
     return STATUS_OK;
@@ -260,14 +280,24 @@ static Vec3 sample_bounds(const Domain *domain, Random *random)
     return vec3_add(center, vec3(x * half.x, y * half.y, z * half.z));
 }
 
-Vec3 domain_sample(const Domain *domain, Random *random)
+static bool try_sample(const Domain *domain, Random *random, Vec3 *point)
 {
     const DomainOps *ops = domain->ops;
-    for (;;) {
-        Vec3 point = ops->sample ? ops->sample(domain, random) : sample_bounds(domain, random);
+    for (int i = 0; i < MOST_DRAWS; i++) {
+        Vec3 drawn = ops->sample ? ops->sample(domain, random) : sample_bounds(domain, random);
         if (domain->is_placed)
-            point = vec3_add(point, domain->at);
-        if (domain_inside(domain, point, 0))
-            return point;
+            drawn = vec3_add(drawn, domain->at);
+        if (!domain_inside(domain, drawn, 0))
+            continue;
+        *point = drawn;
+        return true;
     }
+    return false;
+}
+
+Vec3 domain_sample(const Domain *domain, Random *random)
+{
+    Vec3 point = domain->inner;
+    try_sample(domain, random, &point);
+    return point;
 }

@@ -48,6 +48,7 @@ typedef struct Domain {
     Box bounds;              /* the smallest box that holds it, mm; flat in two dimensions */
     double volume;           /* mm^3, or mm^2 in two dimensions */
     Vec3 inlet;              /* where no other is asked for, mm: at its top, where y is largest */
+    Vec3 inner;              /* a point of the domain, mm */
     double slack_mm;         /* 1e-6 of the diagonal of the bounds: a length that does not matter */
 } Domain;
 
@@ -109,7 +110,9 @@ Vec3 domain_settle(const Domain *domain, Vec3 point);
 /* How far outside the domain the point is, mm, to a thousandth of it, at most `most`; 0 inside. */
 double domain_distance(const Domain *domain, Vec3 point, double most);
 
-/* A random point, mm, uniformly distributed in the domain; domain_inside at tolerance 0. */
+/* Returns a random point, mm, uniformly distributed in the domain; domain_inside at tolerance 0.
+ * Draws at most 100,000 points; when none of them is inside, which e^100 calls do not see, it
+ * returns `inner`. */
 Vec3 domain_sample(const Domain *domain, Random *random);
 
 /* Name of shape `i`, from 0 on, "disc", and what stands behind its colon, "R"; NULL after the last.

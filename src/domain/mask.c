@@ -15,7 +15,8 @@ static bool is_tissue(const Mask *mask, const int64_t voxel[3])
     for (int axis = 0; axis < 3; axis++)
         if (voxel[axis] < 0 || voxel[axis] >= mask->n[axis])
             return false;
-    return mask->is_tissue[(voxel[2] * mask->n[1] + voxel[1]) * mask->n[0] + voxel[0]];
+    size_t number = (size_t)((voxel[2] * mask->n[1] + voxel[1]) * mask->n[0] + voxel[0]);
+    return mask->bits[number / 64] >> number % 64 & 1;
 }
 
 static void index_of(const Mask *mask, Vec3 point, double index[3])
@@ -137,12 +138,30 @@ static bool mask_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return true;
 }
 
+/* Returns the voxel of tissue that `pick` others precede: the last word that fewer precede, then
+ * bit by bit. */
+static uint32_t tissue_voxel(const Mask *mask, size_t pick)
+{
+    size_t low = 0, high = mask_words(mask) - 1;
+    while (low < high) {
+        size_t middle = (low + high + 1) / 2;
+        if (mask->before[middle] <= pick)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    uint64_t word = mask->bits[low];
+    for (size_t i = mask->before[low]; i < pick; i++)
+        word &= word - 1;
+    return (uint32_t)(64 * low) + (uint32_t)__builtin_ctzll(word);
+}
+
 static Vec3 mask_sample(const Domain *domain, Random *random)
 {
     const Mask *mask = domain->mask;
     size_t pick = (size_t)(random_uniform(random) * (double)mask->n_tissue);
     int64_t voxel[3];
-    voxel_of(mask, mask->tissue[pick], voxel);
+    voxel_of(mask, tissue_voxel(mask, pick), voxel);
     double index[3] = {0};
     for (int axis = 0; axis < domain->dimension; axis++)
         index[axis] = (double)voxel[axis] + random_uniform(random);
@@ -177,20 +196,38 @@ Status mask_invert_axes(Mask *mask, const char *file, double *volume, Err *err)
     return STATUS_OK;
 }
 
-static Status list_tissue(Domain *domain, Err *err)
+static Status count_tissue(Domain *domain, Err *err)
 {
     Mask *mask = domain->mask;
-    size_t n = (size_t)(mask->n[0] * mask->n[1] * mask->n[2]), count = 0;
-    for (size_t i = 0; i < n; i++)
-        count += mask->is_tissue[i];
-    if (count == 0)
-        return err_set(err, STATUS_INPUT, "%s: the mask is empty: none of its %zu %s is above 0",
-                       domain->file, n, domain->dimension == 2 ? "pixels" : "voxels");
-    TRY(mem_calloc(&mask->tissue, count, sizeof *mask->tissue, "voxels", err));
-    for (size_t i = 0; i < n; i++)
-        if (mask->is_tissue[i])
-            mask->tissue[mask->n_tissue++] = (uint32_t)i;
-    return STATUS_OK;
+    size_t words = mask_words(mask);
+    TRY(mem_calloc(&mask->before, words, sizeof *mask->before, "voxels", err));
+    for (size_t i = 0; i < words; i++) {
+        mask->before[i] = (uint32_t)mask->n_tissue;
+        mask->n_tissue += (size_t)__builtin_popcountll(mask->bits[i]);
+    }
+    if (mask->n_tissue > 0)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT, "%s: the mask is empty: none of its %zu %s is above 0",
+                   domain->file, (size_t)(mask->n[0] * mask->n[1] * mask->n[2]),
+                   domain->dimension == 2 ? "pixels" : "voxels");
+}
+
+/* Visits the voxels of tissue in ascending order. Starts zeroed. */
+typedef struct TissueWalk {
+    size_t words;  /* of the mask, visited so far */
+    uint64_t rest; /* bits of the last word that are not visited */
+} TissueWalk;
+
+static bool next_tissue(const Mask *mask, TissueWalk *walk, uint32_t *voxel)
+{
+    while (walk->rest == 0) {
+        if (walk->words == mask_words(mask))
+            return false;
+        walk->rest = mask->bits[walk->words++];
+    }
+    *voxel = (uint32_t)(64 * (walk->words - 1)) + (uint32_t)__builtin_ctzll(walk->rest);
+    walk->rest &= walk->rest - 1;
+    return true;
 }
 
 /* Bounds of the voxels of tissue, and the middle one of those whose middle is highest. */
@@ -205,14 +242,15 @@ static void find_extent(Domain *domain)
             0.5);
     Box middles = box_empty();
     size_t highest = 0;
-    for (size_t i = 0; i < mask->n_tissue; i++) {
-        Vec3 middle = middle_of(domain, mask->tissue[i]);
+    uint32_t voxel;
+    for (TissueWalk walk = {0}; next_tissue(mask, &walk, &voxel);) {
+        Vec3 middle = middle_of(domain, voxel);
         highest = middle.y > middles.high.y ? 1 : highest + (middle.y == middles.high.y);
         middles = box_with_ball(middles, middle, 0);
     }
     size_t skipped = highest / 2;
-    for (size_t i = 0; i < mask->n_tissue; i++) {
-        domain->inlet = middle_of(domain, mask->tissue[i]);
+    for (TissueWalk walk = {0}; next_tissue(mask, &walk, &voxel);) {
+        domain->inlet = middle_of(domain, voxel);
         if (domain->inlet.y == middles.high.y && skipped-- == 0)
             break;
     }
@@ -268,7 +306,7 @@ static Status mask_load(Domain *domain, const char *values, Err *err)
     TRY(read_file(domain, err));
     double volume = 0;
     TRY(mask_invert_axes(domain->mask, domain->file, &volume, err));
-    TRY(list_tissue(domain, err));
+    TRY(count_tissue(domain, err));
     find_extent(domain);
     TRY(domain_check_point(domain->file, 0, domain->bounds.low, err));
     TRY(domain_check_point(domain->file, 0, domain->bounds.high, err));
@@ -280,8 +318,8 @@ static void mask_release(Domain *domain)
 {
     if (!domain->mask)
         return;
-    free(domain->mask->is_tissue);
-    free(domain->mask->tissue);
+    free(domain->mask->bits);
+    free(domain->mask->before);
     free(domain->mask);
 }
 

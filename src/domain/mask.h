@@ -8,18 +8,24 @@
 /* The voxel (i, j, k), each from 0 to n - 1, fills the points whose index coordinates are in
  * [i, i + 1) x [j, j + 1) x [k, k + 1). */
 struct Mask {
-    int64_t n[3];       /* below 2^32 in all */
-    uint8_t *is_tissue; /* 0 or 1, i fastest; owned */
-    Vec3 corner;        /* of the index coordinates 0 0 0, mm */
-    Vec3 step[3];       /* from one voxel to the next along i, j, k, mm */
-    Vec3 inverse[3];    /* rows of the inverse of the matrix whose columns the steps are */
-    float *value;       /* of each voxel, where readers are to keep it: else NULL; owned */
+    int64_t n[3];    /* below 2^32 in all */
+    uint64_t *bits;  /* bit v % 64 of word v / 64: voxel v is tissue; i runs fastest; owned */
+    Vec3 corner;     /* of the index coordinates 0 0 0, mm */
+    Vec3 step[3];    /* from one voxel to the next along i, j, k, mm */
+    Vec3 inverse[3]; /* rows of the inverse of the matrix whose columns the steps are */
+    float *value;    /* of each voxel, where readers are to keep it: else NULL; owned */
     bool keeps_values;
-    uint32_t *tissue; /* the voxels of tissue, ascending; owned */
+    uint32_t *before; /* per word of bits: number of voxels of tissue in the words before; owned */
     size_t n_tissue;
 };
 
-/* Readers fill n, is_tissue, corner and step of a zeroed mask. STATUS_INPUT naming the file.
+/* Returns the number of words of `bits`. */
+static inline size_t mask_words(const Mask *mask)
+{
+    return ((size_t)mask->n[0] * (size_t)mask->n[1] * (size_t)mask->n[2] + 63) / 64;
+}
+
+/* Readers fill n, bits, corner and step of a zeroed mask. STATUS_INPUT naming the file.
  * A picture: black is not tissue; a pixel is `mm` wide, the middle of the picture is the origin,
  * the first row is at the top. */
 MUST_CHECK Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err);
@@ -35,8 +41,5 @@ MUST_CHECK Status mask_invert_axes(Mask *mask, const char *file, double *volume,
 int64_t mask_voxel(const Mask *mask, Vec3 point);
 /* Whether the file's name is that of a NIfTI file. */
 bool mask_is_nifti(const char *file);
-
-/* Room for n[0] n[1] n[2] voxels that are not tissue. STATUS_INPUT when there are 2^32 or more. */
-MUST_CHECK Status mask_init(Mask *mask, const char *path, const int64_t n[3], Err *err);
 
 #endif

@@ -11,29 +11,39 @@
 #include <string.h>
 #include <unistd.h>
 
-static Status check_count(const char *path, const int64_t n[3], Err *err)
+/* Voxels of a map that keeps their values, at most: a gigabyte of floats. */
+static const int64_t most_values = (int64_t)1 << 28;
+
+static Status check_count(const Mask *mask, const char *path, const int64_t n[3], Err *err)
 {
-    int64_t most = UINT32_MAX;
+    int64_t most = mask->keeps_values ? most_values : UINT32_MAX;
     for (int axis = 0; axis < 3; axis++) {
         if (n[axis] < 1 || n[axis] > most)
             return err_set(err, STATUS_INPUT,
                            "%s: has %lld x %lld x %lld voxels; it must have at least one and fewer "
-                           "than 2^32",
-                           path, (long long)n[0], (long long)n[1], (long long)n[2]);
+                           "than %s",
+                           path, (long long)n[0], (long long)n[1], (long long)n[2],
+                           mask->keeps_values ? "2^28, as a map of values" : "2^32");
         most /= n[axis];
     }
     return STATUS_OK;
 }
 
-Status mask_init(Mask *mask, const char *path, const int64_t n[3], Err *err)
+/* Makes the mask n[0] x n[1] x n[2] voxels, none of them tissue. */
+static Status init(Mask *mask, const char *path, const int64_t n[3], Err *err)
 {
-    TRY(check_count(path, n, err));
+    TRY(check_count(mask, path, n, err));
     for (int axis = 0; axis < 3; axis++)
         mask->n[axis] = n[axis];
     size_t voxels = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
     if (mask->keeps_values)
         TRY(mem_calloc(&mask->value, voxels, sizeof *mask->value, "voxels", err));
-    return mem_calloc(&mask->is_tissue, voxels, 1, "voxels", err);
+    return mem_calloc(&mask->bits, mask_words(mask), sizeof *mask->bits, "voxels", err);
+}
+
+static void set_tissue(Mask *mask, size_t voxel)
+{
+    mask->bits[voxel / 64] |= (uint64_t)1 << voxel % 64;
 }
 
 Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err)
@@ -42,13 +52,15 @@ Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err)
     TRY(picture_read_mask(&picture, path, err));
     const int64_t n[3] = {picture.width, picture.height, 1};
     Status status = STATUS_OK;
-    TRY_GOTO(mask_init(mask, path, n, err));
+    TRY_GOTO(init(mask, path, n, err));
     size_t channels = (size_t)picture.channels;
     for (size_t i = 0; i < (size_t)picture.width * (size_t)picture.height; i++)
         for (size_t c = 0; c < channels; c++) {
-            mask->is_tissue[i] |= picture_code(&picture, i * channels + c) != 0;
+            uint32_t code = picture_code(&picture, i * channels + c);
+            if (code != 0)
+                set_tissue(mask, i);
             if (mask->keeps_values)
-                mask->value[i] += (float)picture_code(&picture, i * channels + c);
+                mask->value[i] += (float)code;
         }
     mask->corner = vec3(-mm * picture.width / 2, mm * picture.height / 2, 0);
     mask->step[0] = vec3(mm, 0, 0);
@@ -59,13 +71,14 @@ done:
     return status;
 }
 
-/* Sets *value to the voxel as stored; false when numbers of this type are not known. */
-static bool stored_value(const nifti_image *image, size_t i, double *value)
+/* Reads voxel `i` of a buffer that holds numbers of the NIfTI type `datatype`. Returns false for a
+ * type that is no real number. */
+static bool stored_value(int datatype, const void *buffer, size_t i, double *value)
 {
-    switch (image->datatype) {
+    switch (datatype) {
 #define CASE(code, type)                                                                           \
     case code:                                                                                     \
-        *value = (double)((const type *)image->data)[i];                                           \
+        *value = (double)((const type *)buffer)[i];                                                \
         return true;
         CASE(DT_UINT8, uint8_t)
         CASE(DT_INT8, int8_t)
@@ -107,26 +120,53 @@ static Status ends_early(const char *path, const nifti_image *image, Err *err)
                    (long long)image->nx, (long long)image->ny, (long long)image->nz);
 }
 
-/* A size that the header gives is checked against the file's before it is used. */
+/* Checks the size that the header states against the size of the file. */
 static Status check_size(const char *path, const nifti_image *image, Err *err)
 {
     enum { DEFLATE_MAX_RATIO = 1032 };
     double needed = (double)image->nvox * image->nbyper;
     if (needed > file_bytes(path) * (nifti_is_gzfile(path) ? DEFLATE_MAX_RATIO : 1))
         return ends_early(path, image, err);
-    return mem_check(needed, path, err);
+    return STATUS_OK;
 }
 
-static Status load_voxels(const char *path, nifti_image *image, Err *err)
+/* Sets the voxels from `first` on from the n numbers of a buffer. */
+static void store(Mask *mask, const nifti_image *image, const void *buffer, size_t first, size_t n)
 {
-    int64_t size = image->nvox * image->nbyper;
-    TRY(mem_calloc(&image->data, (size_t)size, 1, "bytes of voxels", err));
+    bool scaled = image->scl_slope != 0;
+    for (size_t i = 0; i < n; i++) {
+        double value = 0;
+        stored_value(image->datatype, buffer, i, &value);
+        if (scaled)
+            value = value * (double)image->scl_slope + (double)image->scl_inter;
+        if (value > 0)
+            set_tissue(mask, first + i);
+        if (mask->keeps_values)
+            mask->value[first + i] = (float)value;
+    }
+}
+
+/* Reads the voxels a buffer at a time: a mask keeps one bit of each, so that the memory it takes
+ * does not grow with the voxels' type, nor with how well they are compressed. */
+static Status load_voxels(Mask *mask, const char *path, nifti_image *image, Err *err)
+{
+    enum { BUFFER = 1 << 20 };
+    void *buffer = NULL;
+    TRY(mem_calloc(&buffer, BUFFER, 1, "bytes of voxels", err));
     errno = 0;
     znzFile file = znzopen(path, "rb", nifti_is_gzfile(path));
-    bool whole = !znz_isnull(file) &&
-                 znzseek(file, (znz_off_t)image->iname_offset, SEEK_SET) >= 0 &&
-                 nifti_read_buffer(file, image->data, size, image) == size;
+    bool whole = !znz_isnull(file) && znzseek(file, (znz_off_t)image->iname_offset, SEEK_SET) >= 0;
+    size_t voxels = (size_t)image->nvox, n = BUFFER / (size_t)image->nbyper;
+    for (size_t first = 0; whole && first < voxels; first += n) {
+        if (n > voxels - first)
+            n = voxels - first;
+        int64_t bytes = (int64_t)n * image->nbyper;
+        whole = nifti_read_buffer(file, buffer, bytes, image) == bytes;
+        if (whole)
+            store(mask, image, buffer, first, n);
+    }
     znzclose(file);
+    free(buffer);
     if (!whole && errno == ENOMEM)
         return mem_out_of("to read", path, err);
     return whole ? STATUS_OK : ends_early(path, image, err);
@@ -135,55 +175,118 @@ static Status load_voxels(const char *path, nifti_image *image, Err *err)
 static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err *err)
 {
     const int64_t n[3] = {image->nx, image->ny, image->nz};
-    TRY(check_count(path, n, err));
-    TRY(check_size(path, image, err));
-    TRY(mask_init(mask, path, n, err));
-    size_t count = (size_t)image->nvox;
-    if (count != (size_t)n[0] * (size_t)n[1] * (size_t)n[2])
+    static const double zero[2] = {0};
+    double value;
+    TRY(check_count(mask, path, n, err));
+    if (image->nvox != n[0] * n[1] * n[2])
         return err_set(err, STATUS_INPUT,
                        "%s: holds more than one volume (%lld dimensions); a mask is a single one",
                        path, (long long)image->ndim);
-    TRY(load_voxels(path, image, err));
-    bool scaled = image->scl_slope != 0;
-    for (size_t i = 0; i < count; i++) {
-        double value = 0;
-        if (!stored_value(image, i, &value))
-            return err_set(err, STATUS_INPUT,
-                           "%s: its voxels are of the NIfTI type %s; a mask has whole or real "
-                           "numbers",
-                           path, nifti_datatype_string(image->datatype));
-        if (scaled)
-            value = value * (double)image->scl_slope + (double)image->scl_inter;
-        mask->is_tissue[i] = value > 0;
-        if (mask->keeps_values)
-            mask->value[i] = (float)value;
-    }
+    if (!stored_value(image->datatype, zero, 0, &value))
+        return err_set(err, STATUS_INPUT,
+                       "%s: its voxels are of the NIfTI type %s; a mask has whole or real numbers",
+                       path, nifti_datatype_string(image->datatype));
+    TRY(check_size(path, image, err));
+    TRY(init(mask, path, n, err));
+    TRY(load_voxels(mask, path, image, err));
     place(mask, image);
     return STATUS_OK;
 }
 
-/* What the library would say in its own words, told to be quiet or not. */
-static bool is_named(int datatype, int64_t width)
+/* What is checked of a header. */
+typedef struct Header {
+    int version;
+    int datatype;
+    int64_t width;
+    double vox_offset;
+    bool is_one_file; /* the voxels are in the same file */
+} Header;
+
+static int header_bytes(int version)
 {
-    return datatype != DT_UNKNOWN && datatype != DT_BINARY && width > 0;
+    return version == 1 ? (int)sizeof(nifti_1_header) : (int)sizeof(nifti_2_header);
 }
 
-/* With the voxels in the same file. */
-static bool has_good_header(const char *path)
+/* Reads a header and turns its bytes round if the file has the other order. Returns false for one
+ * that is no NIfTI header. The library checks the type of the voxels before it turns it round, so
+ * the check is made here. */
+static bool read_header(const char *path, Header *out)
 {
     int version = 0;
-    void *header = nifti_read_header(path, &version, 0);
-    const nifti_1_header *first = header;
-    const nifti_2_header *second = header;
-    bool good = false;
-    if (header && version == 1)
-        good = nifti_hdr1_looks_good(first) && NIFTI_ONEFILE(*first) &&
-               is_named(first->datatype, first->dim[1]);
-    else if (header && version == 2)
-        good = nifti_hdr2_looks_good(second) && memcmp(second->magic, "n+2", 4) == 0 &&
-               is_named(second->datatype, second->dim[1]);
-    free(header);
+    void *bytes = nifti_read_header(path, &version, 0);
+    nifti_1_header *first = bytes;
+    nifti_2_header *second = bytes;
+    bool good = bytes && (version == 1 || version == 2);
+    if (good && first->sizeof_hdr != header_bytes(version))
+        swap_nifti_header(bytes, version);
+    if (good && version == 1)
+        *out = (Header){1, first->datatype, first->dim[1], (double)first->vox_offset,
+                        NIFTI_ONEFILE(*first)};
+    else if (good)
+        *out = (Header){2, second->datatype, second->dim[1], (double)second->vox_offset,
+                        memcmp(second->magic, "n+2", 4) == 0};
+    good = good && (version == 1 ? nifti_hdr1_looks_good(first) : nifti_hdr2_looks_good(second));
+    free(bytes);
     return good;
+}
+
+/* What the library would refuse in its own words, told to be quiet or not. */
+static bool is_mask_header(const Header *header)
+{
+    return header->is_one_file && header->datatype != DT_UNKNOWN && header->datatype != DT_BINARY &&
+           header->width > 0;
+}
+
+/* Whether extensions follow the header: the first of the 4 bytes behind it is not 0. */
+static bool has_extensions(const char *path, int version)
+{
+    char extender = 0;
+    znzFile file = znzopen(path, "rb", nifti_is_gzfile(path));
+    bool read = !znz_isnull(file) && znzseek(file, header_bytes(version), SEEK_SET) >= 0 &&
+                znzread(&extender, 1, 1, file) == 1;
+    znzclose(file);
+    return read && extender != 0;
+}
+
+/* Finds where the voxels begin, in bytes: behind the header and the 4 bytes that follow it, or at
+ * vox_offset. A vox_offset of 0, which many programs write, stands for the first. */
+static Status find_voxels(const char *path, const Header *header, int64_t *begin, Err *err)
+{
+    *begin = header_bytes(header->version) + 4;
+    double offset = header->vox_offset;
+    if (offset == 0 && has_extensions(path, header->version))
+        return err_set(err, STATUS_INPUT,
+                       "%s: its vox_offset is 0, but extensions follow the header, so that it is "
+                       "not known where the voxels begin",
+                       path);
+    if (offset == 0)
+        return STATUS_OK;
+    if (!(offset >= (double)*begin && offset <= 1e15 && offset == floor(offset)))
+        return err_set(err, STATUS_INPUT,
+                       "%s: its vox_offset is %.9g; it must be 0 or an integer from %lld on", path,
+                       offset, (long long)*begin);
+    *begin = (int64_t)offset;
+    return STATUS_OK;
+}
+
+static Status read_image(Mask *mask, const char *path, Err *err)
+{
+    Header header;
+    errno = 0;
+    nifti_image *image = NULL;
+    int64_t begin = 0;
+    if (read_header(path, &header) && is_mask_header(&header)) {
+        TRY(find_voxels(path, &header, &begin, err));
+        image = nifti_image_read(path, 0);
+    }
+    if (!image && errno == ENOMEM)
+        return mem_out_of("to read", path, err);
+    if (!image)
+        return err_set(err, STATUS_INPUT, "%s: is not a NIfTI-1 or NIfTI-2 file", path);
+    image->iname_offset = begin;
+    Status status = read_voxels(mask, path, image, err);
+    nifti_image_free(image);
+    return status;
 }
 
 Status mask_read_nifti(Mask *mask, const char *path, Err *err)
@@ -196,13 +299,5 @@ Status mask_read_nifti(Mask *mask, const char *path, Err *err)
         free(bytes);
     }
     nifti_set_debug_level(0);
-    errno = 0;
-    nifti_image *image = has_good_header(path) ? nifti_image_read(path, 0) : NULL;
-    if (!image && errno == ENOMEM)
-        return mem_out_of("to read", path, err);
-    if (!image)
-        return err_set(err, STATUS_INPUT, "%s: is not a NIfTI-1 or NIfTI-2 file", path);
-    Status status = read_voxels(mask, path, image, err);
-    nifti_image_free(image);
-    return status;
+    return read_image(mask, path, err);
 }

@@ -1,7 +1,9 @@
-/* A point is inside when a ray from it crosses the surface an odd number of times. The ray runs
- * nearly along an axis, so that the box around it is thin and meets few triangles; one that comes
- * too near to an edge, or to the plane of a triangle, to be counted safely is replaced by one of
- * another direction. The directions are fixed, so that the answer is, too.
+/* A point is inside when the surface winds round it: a ray from the point leaves the surface more
+ * often than it enters. A shell within another, turned the same way, thus changes nothing, and one
+ * turned to the inside bounds a hollow. The ray runs nearly along an axis, so that the box around
+ * it is thin and meets few triangles. A ray that comes too near to an edge, or to the plane of a
+ * triangle, to be counted safely is replaced by one of another direction. The directions are fixed,
+ * so that the answer is, too.
  *
  * Crossings of a ray and contacts of a segment are found as by Moeller & Trumbore (J. Graphics
  * Tools 2 (1997), 21). */
@@ -16,6 +18,7 @@
  */
 typedef struct Crossing {
     double t, u, v;
+    int sign; /* 1 from the back of the triangle to its front, -1 from front to back */
 } Crossing;
 
 /* False when the line and the plane are too nearly parallel to say. */
@@ -31,6 +34,7 @@ static bool cross_plane(const Triangle *triangle, Vec3 a, Vec3 d, Crossing *cros
     crossing->t = vec3_dot(from, normal) / determinant;
     crossing->u = vec3_dot(triangle->ac, across) / determinant;
     crossing->v = -vec3_dot(triangle->ab, across) / determinant;
+    crossing->sign = determinant < 0 ? 1 : -1;
     return true;
 }
 
@@ -40,13 +44,14 @@ static double depth(const Crossing *crossing)
     return fmin(fmin(crossing->u, crossing->v), 1 - crossing->u - crossing->v);
 }
 
-/* Counts the triangles between `point` and `end`; false when one cannot be counted safely. */
-static bool count_crossings(const Mesh *mesh, Vec3 point, Vec3 end, int *count)
+/* Sums the signs of the crossings between `point` and `end`; false when a triangle cannot be
+ * counted safely. */
+static bool sum_crossings(const Mesh *mesh, Vec3 point, Vec3 end, int *sum)
 {
     Vec3 d = vec3_sub(end, point);
     bool safe = true;
     uint32_t i;
-    *count = 0;
+    *sum = 0;
     Box around = box_with_ball(box_with_ball(box_empty(), point, 0), end, 0);
     for (BoxWalk walk = boxwalk_box(&mesh->tree, around); boxwalk_next(&walk, &i);) {
         Crossing crossing;
@@ -56,25 +61,26 @@ static bool count_crossings(const Mesh *mesh, Vec3 point, Vec3 end, int *count)
         }
         double inner = depth(&crossing);
         safe = safe && fabs(inner) > CONTACT_MARGIN;
-        *count += inner > 0 && crossing.t > 0;
+        if (inner > 0 && crossing.t > 0)
+            *sum += crossing.sign;
     }
     return safe;
 }
 
-bool mesh_is_odd(const Mesh *mesh, const Box *bounds, Vec3 point)
+int mesh_winding(const Mesh *mesh, const Box *bounds, Vec3 point)
 {
     static const Vec3 directions[] = {
         {1, 0.0013713, 0.0007179},   {-1, 0.0031415, -0.0019321}, {0.0017711, 1, 0.0009173},
         {-0.0023131, -1, 0.0037191}, {0.0041381, 0.0011933, 1},   {-0.0017393, 0.0029173, -1},
     };
     if (!box_holds(*bounds, point, 0))
-        return false;
+        return 0;
     double reach = 1.01 * vec3_distance(bounds->low, bounds->high);
-    int count = 0;
+    int sum = 0;
     for (size_t i = 0; i < sizeof directions / sizeof *directions; i++)
-        if (count_crossings(mesh, point, vec3_add_scaled(point, directions[i], reach), &count))
+        if (sum_crossings(mesh, point, vec3_add_scaled(point, directions[i], reach), &sum))
             break;
-    return count % 2 == 1;
+    return sum;
 }
 
 double mesh_distance2(const Triangle *triangle, Vec3 point)
@@ -102,7 +108,7 @@ static bool is_near(const Mesh *mesh, Vec3 point, double reach)
 
 static bool mesh_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    return mesh_is_odd(domain->mesh, &domain->own_bounds, point) ||
+    return mesh_winding(domain->mesh, &domain->own_bounds, point) > 0 ||
            (tolerance_mm > 0 && is_near(domain->mesh, point, tolerance_mm));
 }
 
@@ -168,12 +174,16 @@ static double volume6(const Triangle *triangle, Vec3 origin)
 static Status set_triangles(Mesh *mesh, const Soup *soup, Err *err)
 {
     TRY(mem_calloc(&mesh->triangles, soup->n / 3, sizeof *mesh->triangles, "triangles", err));
-    for (const Vec3 *corner = soup->corners; corner < soup->corners + soup->n; corner += 3) {
+    TRY(mem_calloc(&mesh->shell, soup->n / 3, sizeof *mesh->shell, "triangles", err));
+    for (size_t i = 0; i < soup->n / 3; i++) {
+        const Vec3 *corner = soup->corners + 3 * i;
         Triangle triangle = {corner[0], vec3_sub(corner[1], corner[0]),
                              vec3_sub(corner[2], corner[0])};
         Vec3 normal = vec3_cross(triangle.ab, triangle.ac);
-        if (vec3_dot(normal, normal) > 0)
-            mesh->triangles[mesh->n++] = triangle;
+        if (!(vec3_dot(normal, normal) > 0))
+            continue;
+        mesh->shell[mesh->n] = soup->shell[i];
+        mesh->triangles[mesh->n++] = triangle;
     }
     return STATUS_OK;
 }
@@ -196,21 +206,83 @@ static Status build_tree(Domain *domain, Err *err)
     return status;
 }
 
-static Status build(Domain *domain, const Soup *soup, Err *err)
+/* A shell: triangles that hang together by their edges. */
+typedef struct Shell {
+    double volume;   /* enclosed, mm^3; below 0 when the triangles are turned to the inside */
+    uint32_t widest; /* its triangle of the largest area */
+    double area2;    /* of that triangle, times 2, squared */
+} Shell;
+
+static void measure_shells(const Mesh *mesh, Shell *shells)
+{
+    for (size_t i = 0; i < mesh->n; i++) {
+        const Triangle *triangle = &mesh->triangles[i];
+        Shell *shell = &shells[mesh->shell[i]];
+        Vec3 normal = vec3_cross(triangle->ab, triangle->ac);
+        shell->volume += volume6(triangle, mesh->triangles[0].a) / 6;
+        if (vec3_dot(normal, normal) <= shell->area2)
+            continue;
+        shell->area2 = vec3_dot(normal, normal);
+        shell->widest = (uint32_t)i;
+    }
+}
+
+/* Returns how often the surface winds round the points just in front of the triangle. */
+static int winding_before(const Mesh *mesh, const Box *bounds, const Triangle *triangle)
+{
+    double off = 1e-7 * vec3_distance(bounds->low, bounds->high);
+    Vec3 normal = vec3_normalized(vec3_cross(triangle->ab, triangle->ac));
+    return mesh_winding(mesh, bounds, vec3_add_scaled(middle_of(triangle), normal, off));
+}
+
+/* Sums up the volumes of the shells that bound the inside: in front of them the surface does not
+ * wind round a point, behind them it does. A shell within another that is turned the same way
+ * bounds nothing. One that has inside neither before nor behind it is turned to the wrong side. */
+static Status sum_shells(Domain *domain, const Shell *shells, size_t n, Err *err)
+{
+    size_t turned = 0;
+    domain->volume = 0;
+    for (size_t i = 0; i < n; i++) {
+        const Triangle *widest = &domain->mesh->triangles[shells[i].widest];
+        int before =
+            shells[i].area2 > 0 ? winding_before(domain->mesh, &domain->bounds, widest) : 1;
+        turned += before < 0 && shells[i].volume < 0;
+        if (before == 0)
+            domain->volume += shells[i].volume;
+    }
+    if (turned == 0)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "%s: %zu of the mesh's %zu shells %s inside out and within no other; triangles "
+                   "must be counter-clockwise seen from outside",
+                   domain->file, turned, n, turned == 1 ? "is" : "are");
+}
+
+static Status find_volume(Domain *domain, size_t n_shells, Err *err)
+{
+    Shell *shells = NULL;
+    TRY(mem_calloc(&shells, n_shells, sizeof *shells, "shells", err));
+    measure_shells(domain->mesh, shells);
+    domain->volume = shells[0].volume;
+    Status status = n_shells > 1 ? sum_shells(domain, shells, n_shells, err) : STATUS_OK;
+    free(shells);
+    TRY(status);
+    if (domain->volume > 0)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "%s: the mesh is %s: its volume is %.9g mm^3; its triangles must be "
+                   "counter-clockwise seen from outside",
+                   domain->file, domain->volume < 0 ? "inside out" : "flat", domain->volume);
+}
+
+static Status build(Domain *domain, Soup *soup, Err *err)
 {
     Mesh *mesh = domain->mesh;
-    TRY(soup_check_closed(soup, domain->file, err));
+    size_t n_shells = 0;
+    TRY(soup_find_shells(soup, domain->file, &n_shells, err));
     TRY(set_triangles(mesh, soup, err));
-    double sum = 0;
-    for (size_t i = 0; i < mesh->n; i++)
-        sum += volume6(&mesh->triangles[i], mesh->triangles[0].a);
-    domain->volume = sum / 6;
-    if (!(domain->volume > 0))
-        return err_set(err, STATUS_INPUT,
-                       "%s: the mesh is %s: its volume is %.9g mm^3; its triangles must be "
-                       "counter-clockwise seen from outside",
-                       domain->file, domain->volume < 0 ? "inside out" : "flat", domain->volume);
     TRY(build_tree(domain, err));
+    TRY(find_volume(domain, n_shells, err));
     domain->inlet = find_inlet(mesh, &domain->bounds);
     return STATUS_OK;
 }
@@ -228,6 +300,7 @@ Status mesh_read(Domain *domain, double mm, Err *err)
     status = build(domain, &soup, err);
 done:
     free(soup.corners);
+    free(soup.shell);
     return status;
 }
 
@@ -243,6 +316,7 @@ void mesh_release(Domain *domain)
         return;
     boxtree_release(&domain->mesh->tree);
     free(domain->mesh->triangles);
+    free(domain->mesh->shell);
     free(domain->mesh);
 }
 

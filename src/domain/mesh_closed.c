@@ -1,10 +1,12 @@
 /* A surface is closed, and its sides agree, if every edge is run along by as many triangles in one
- * direction as in the other. Sorting the corners by place gives equal ones the same number; sorting
+ * direction as in the other. Sorting the corners by place gives equal ones the same number. Sorting
  * the edges by the numbers of their two ends brings equal edges together, and then as many must run
- * up as down. Sorting needs less memory than a hash table, and no care for its order. */
+ * up as down. Sorting needs less memory than a hash table, and its result does not depend on the
+ * order of the file. Shells are the classes of a union-find over the triangles at each edge. */
 #include "domain/mesh.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct Corner {
     Vec3 place;
@@ -14,6 +16,7 @@ typedef struct Corner {
 typedef struct SoupEdge {
     uint32_t low, high; /* numbers of the ends */
     int way;            /* 1: from low to high; -1: from high to low */
+    uint32_t triangle;
 } SoupEdge;
 
 static int compare_places(Vec3 a, Vec3 b)
@@ -58,9 +61,9 @@ static size_t list_edges(const Soup *soup, const uint32_t *numbers, SoupEdge *ed
         for (size_t k = 0; k < 3; k++) {
             uint32_t from = numbers[i + k], to = numbers[i + (k + 1) % 3];
             if (from < to)
-                edges[n++] = (SoupEdge){from, to, 1};
+                edges[n++] = (SoupEdge){from, to, 1, (uint32_t)(i / 3)};
             else if (to < from)
-                edges[n++] = (SoupEdge){to, from, -1};
+                edges[n++] = (SoupEdge){to, from, -1, (uint32_t)(i / 3)};
         }
     }
     qsort(edges, n, sizeof *edges, compare_edges);
@@ -91,17 +94,110 @@ static Status check_edges(const SoupEdge *edges, size_t n, const char *path, Err
     return STATUS_OK;
 }
 
-Status soup_check_closed(const Soup *soup, const char *path, Err *err)
+/* A triangle by the numbers of its corners, the lowest first. */
+typedef struct Corners {
+    uint32_t number[3];
+    uint32_t triangle;
+} Corners;
+
+static Corners corners_of(const uint32_t *numbers, size_t triangle)
+{
+    const uint32_t *n = numbers + 3 * triangle;
+    unsigned low = n[0] <= n[1] && n[0] <= n[2] ? 0 : n[1] <= n[2] ? 1 : 2;
+    return (Corners){{n[low], n[(low + 1) % 3], n[(low + 2) % 3]}, (uint32_t)triangle};
+}
+
+static int compare_numbers(const Corners *a, const Corners *b)
+{
+    for (int i = 0; i < 3; i++)
+        if (a->number[i] != b->number[i])
+            return a->number[i] < b->number[i] ? -1 : 1;
+    return 0;
+}
+
+static int compare_triangles(const void *a, const void *b)
+{
+    const Corners *c = a, *d = b;
+    int by_number = compare_numbers(c, d);
+    return by_number ? by_number : (c->triangle > d->triangle) - (c->triangle < d->triangle);
+}
+
+/* Leaves out all but the first of equal triangles, and keeps the order of the others. */
+static Status drop_repeated(Soup *soup, uint32_t *numbers, Err *err)
+{
+    size_t n = soup->n / 3, kept = 0;
+    Corners *sorted = NULL;
+    bool *repeats = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&sorted, n, sizeof *sorted, "triangles", err));
+    TRY_GOTO(mem_calloc(&repeats, n, sizeof *repeats, "triangles", err));
+    for (size_t i = 0; i < n; i++)
+        sorted[i] = corners_of(numbers, i);
+    qsort(sorted, n, sizeof *sorted, compare_triangles);
+    for (size_t i = 1; i < n; i++)
+        repeats[sorted[i].triangle] = compare_numbers(&sorted[i - 1], &sorted[i]) == 0;
+    for (size_t i = 0; i < n; i++) {
+        if (repeats[i])
+            continue;
+        memmove(soup->corners + 3 * kept, soup->corners + 3 * i, 3 * sizeof *soup->corners);
+        memmove(numbers + 3 * kept, numbers + 3 * i, 3 * sizeof *numbers);
+        kept++;
+    }
+    soup->n = 3 * kept;
+done:
+    free(sorted);
+    free(repeats);
+    return status;
+}
+
+/* Returns the class of a triangle, and shortens the path to it. */
+static uint32_t find_class(uint32_t *parent, uint32_t triangle)
+{
+    while (parent[triangle] != triangle) {
+        parent[triangle] = parent[parent[triangle]];
+        triangle = parent[triangle];
+    }
+    return triangle;
+}
+
+/* Turns the classes, whose representatives are their lowest triangles, into numbers from 0 on. */
+static size_t number_classes(uint32_t *parent, size_t n)
+{
+    uint32_t shells = 0;
+    for (size_t i = 0; i < n; i++)
+        parent[i] = parent[i] == i ? shells++ : parent[parent[i]];
+    return shells;
+}
+
+static size_t find_shells(const SoupEdge *edges, size_t n_edges, uint32_t *shell, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        shell[i] = (uint32_t)i;
+    for (size_t i = 1; i < n_edges; i++) {
+        if (compare_edges(&edges[i - 1], &edges[i]) != 0)
+            continue;
+        uint32_t a = find_class(shell, edges[i - 1].triangle);
+        uint32_t b = find_class(shell, edges[i].triangle);
+        shell[a > b ? a : b] = a > b ? b : a;
+    }
+    for (size_t i = 0; i < n; i++)
+        shell[i] = find_class(shell, (uint32_t)i);
+    return number_classes(shell, n);
+}
+
+Status soup_find_shells(Soup *soup, const char *path, size_t *n_shells, Err *err)
 {
     uint32_t *numbers = NULL;
     SoupEdge *edges = NULL;
-    Status status = mem_calloc(&numbers, soup->n, sizeof *numbers, "corners", err);
-    if (status != STATUS_OK)
-        return status;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&numbers, soup->n, sizeof *numbers, "corners", err));
     TRY_GOTO(mem_calloc(&edges, soup->n, sizeof *edges, "edges", err));
+    TRY_GOTO(mem_calloc(&soup->shell, soup->n / 3, sizeof *soup->shell, "triangles", err));
     TRY_GOTO(number_corners(soup, numbers, err));
+    TRY_GOTO(drop_repeated(soup, numbers, err));
     size_t n = list_edges(soup, numbers, edges);
     TRY_GOTO(check_edges(edges, n, path, err));
+    *n_shells = find_shells(edges, n, soup->shell, soup->n / 3);
 done:
     free(numbers);
     free(edges);

@@ -1,6 +1,9 @@
 /* A binary STL file is recognised by its size, 84 + 50 n bytes with the n it states, because its
- * 80-byte title may begin with "solid" as an ASCII file does. Normals, colours, textures and groups
- * are not read: the outside of a triangle is where its corners run counter-clockwise. */
+ * 80-byte title may begin with "solid" as an ASCII file does. One with zero bytes in it may also be
+ * longer: some programs write more behind the triangles. Keywords of an ASCII file may be in
+ * capitals, "end loop" may be two words, and what stands behind "endsolid" is not read. Normals,
+ * colours, textures and groups are not read: the outside of a triangle is where its corners run
+ * counter-clockwise. */
 #include "domain/mesh.h"
 
 #include "domain/kinds.h"
@@ -9,7 +12,7 @@
 #include <strings.h>
 
 enum { STL_TITLE = 80, STL_HEADER = 84, STL_FACET = 50, STL_CORNERS = 12, SHOWN = 40 };
-enum { MAX_TRIANGLES = INT32_MAX };
+enum { MAX_TRIANGLES = INT32_MAX / 3 };
 
 static const FileForm obj_file = {.name = "an OBJ file", .most_bytes = 8e9, .is_text = true};
 static const FileForm stl_file = {.name = "an STL file", .most_bytes = 8e9};
@@ -21,6 +24,10 @@ typedef struct Reader {
     size_t line;    /* counted from 1 */
     Vec3 *vertices; /* of an OBJ file, or of the facet of an STL file being read; owned */
     size_t n, capacity;
+    bool has_ended;   /* STL: the last keyword was endsolid */
+    Vec3 first, last; /* OBJ: corners of the face being read */
+    int corners;      /* OBJ: how many the face being read has so far */
+    bool goes_on;     /* OBJ: the last line was of a face and ended in a backslash */
 } Reader;
 
 static Status add_triangle(Reader *reader, Vec3 a, Vec3 b, Vec3 c, Err *err)
@@ -51,15 +58,27 @@ static double stl_float(const char *bytes)
     return (double)value;
 }
 
-static bool is_binary_stl(const char *bytes, size_t size)
+/* Returns the size of a binary STL file of as many triangles as this one states. */
+static size_t stated_size(const char *bytes)
 {
-    return size >= STL_HEADER &&
-           size == STL_HEADER + (size_t)STL_FACET * little_endian(bytes + STL_TITLE);
+    return STL_HEADER + (size_t)STL_FACET * little_endian(bytes + STL_TITLE);
 }
 
-/* What has zero bytes can only have been meant for a binary file. */
+static bool is_binary_stl(const char *bytes, size_t size)
+{
+    if (size < STL_HEADER)
+        return false;
+    size_t stated = stated_size(bytes);
+    return size == stated ||
+           (size > stated && stated > STL_HEADER && memchr(bytes, '\0', stated) != NULL);
+}
+
+/* Zero bytes may stand behind a text. What has zero bytes in it can only have been meant for a
+ * binary file. */
 static Status check_ascii_stl(const char *path, char *bytes, size_t *size, Err *err)
 {
+    while (*size > 0 && bytes[*size - 1] == '\0')
+        --*size;
     if (!memchr(bytes, '\0', *size))
         return file_to_text(path, &stl_file, bytes, size, err);
     if (*size < STL_HEADER)
@@ -67,16 +86,15 @@ static Status check_ascii_stl(const char *path, char *bytes, size_t *size, Err *
                        "%s: has %zu bytes, fewer than the %d before the triangles of a binary STL "
                        "file",
                        path, *size, STL_HEADER);
-    uint32_t stated = little_endian(bytes + STL_TITLE);
     return err_set(err, STATUS_INPUT,
                    "%s: is no text, and a binary STL file of the %u triangles that it states has "
                    "%zu bytes, this one %zu",
-                   path, stated, STL_HEADER + (size_t)STL_FACET * stated, *size);
+                   path, little_endian(bytes + STL_TITLE), stated_size(bytes), *size);
 }
 
-static Status read_binary_stl(Reader *reader, const char *bytes, size_t size, Err *err)
+static Status read_binary_stl(Reader *reader, const char *bytes, Err *err)
 {
-    for (size_t at = STL_HEADER; at < size; at += STL_FACET) {
+    for (size_t at = STL_HEADER; at < stated_size(bytes); at += STL_FACET) {
         Vec3 corner[3];
         for (size_t i = 0; i < 3; i++) {
             const char *xyz = bytes + at + STL_CORNERS + 12 * i;
@@ -102,7 +120,11 @@ static Status add_vertex(Reader *reader, char **rest, Err *err)
     for (int i = 0; i < 3; i++) {
         const char *word = strtok_r(NULL, TEXT_BLANKS, rest);
         if (!word || !number_parse(word, &value[i]))
-            return refuse_line(reader, "is not a number; a vertex has three, x y z",
+            return refuse_line(reader,
+                               word && strchr(word, ',')
+                                   ? "has a comma; a vertex has three numbers, x y z, with "
+                                     "decimal points and blanks between them"
+                                   : "is not a number; a vertex has three, x y z",
                                word ? word : "", err);
     }
     Vec3 vertex = vec3_scale(vec3(value[0], value[1], value[2]), reader->mm);
@@ -113,29 +135,51 @@ static Status add_vertex(Reader *reader, char **rest, Err *err)
     return STATUS_OK;
 }
 
+/* Returns the number of the keyword that the line begins with, -1 for none of them. "end loop" is
+ * "endloop". */
+static int find_keyword(const char *word, char **rest, const char *const *keywords, int n)
+{
+    static const char *const end = "end";
+    bool is_parted = strcasecmp(word, end) == 0;
+    if (is_parted)
+        word = strtok_r(NULL, TEXT_BLANKS, rest);
+    for (int i = 0; i < n && word; i++) {
+        const char *keyword = keywords[i];
+        if (is_parted && strncmp(keyword, end, strlen(end)) != 0)
+            continue;
+        if (strcasecmp(word, is_parted ? keyword + strlen(end) : keyword) == 0)
+            return i;
+    }
+    return -1;
+}
+
 static Status read_stl_line(Reader *reader, char *line, Err *err)
 {
+    enum { VERTEX, END_LOOP, END_SOLID, SOLID, FACET, OUTER, END_FACET, KEYWORDS };
+    static const char *const keywords[KEYWORDS] = {"vertex", "endloop", "endsolid", "solid",
+                                                   "facet",  "outer",   "endfacet"};
     char *rest = NULL;
     const char *word = strtok_r(line, TEXT_BLANKS, &rest);
     if (!word)
         return STATUS_OK;
-    if (strcmp(word, "vertex") == 0)
+    int keyword = find_keyword(word, &rest, keywords, KEYWORDS);
+    if (keyword < 0 && reader->has_ended)
+        return STATUS_OK;
+    if (keyword < 0)
+        return refuse_line(reader,
+                           "is no word of an ASCII STL file, nor is the file a binary one of "
+                           "the size it states",
+                           word, err);
+    reader->has_ended = keyword == END_SOLID;
+    if (keyword == VERTEX)
         return add_vertex(reader, &rest, err);
-    if (strcmp(word, "endloop") == 0) {
-        const Vec3 *corner = reader->vertices;
-        if (reader->n != 3)
-            return refuse_line(reader, "closes a facet that has not three vertices", word, err);
-        reader->n = 0;
-        return add_triangle(reader, corner[0], corner[1], corner[2], err);
-    }
-    static const char *const others[] = {"solid", "facet", "outer", "endfacet", "endsolid"};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-        if (strcmp(word, others[i]) == 0)
-            return STATUS_OK;
-    return refuse_line(reader,
-                       "is no word of an ASCII STL file, nor is the file a binary one of "
-                       "the size it states",
-                       word, err);
+    if (keyword != END_LOOP)
+        return STATUS_OK;
+    const Vec3 *corner = reader->vertices;
+    if (reader->n != 3)
+        return refuse_line(reader, "closes a facet that has not three vertices", word, err);
+    reader->n = 0;
+    return add_triangle(reader, corner[0], corner[1], corner[2], err);
 }
 
 /* One corner of a face, "7", "7/1", "7//3" or "7/1/3"; negative numbers count from the last vertex
@@ -150,29 +194,52 @@ static Status find_corner(const Reader *reader, char *word, Vec3 *corner, Err *e
     return STATUS_OK;
 }
 
-static Status read_obj_line(Reader *reader, char *line, Err *err)
+/* Reads the corners of a face that stand on one line. */
+static Status add_corners(Reader *reader, char **rest, Err *err)
 {
-    line[strcspn(line, "#")] = '\0';
-    char *rest = NULL, *word = strtok_r(line, TEXT_BLANKS, &rest);
-    if (!word)
-        return STATUS_OK;
-    if (strcmp(word, "v") == 0)
-        return add_vertex(reader, &rest, err);
-    if (strcmp(word, "f") != 0)
-        return STATUS_OK;
-    Vec3 first = {0}, last = {0}, corner;
-    int n = 0;
-    for (; (word = strtok_r(NULL, TEXT_BLANKS, &rest)); n++) {
+    Vec3 corner;
+    for (char *word; (word = strtok_r(NULL, TEXT_BLANKS, rest)); reader->corners++) {
         TRY(find_corner(reader, word, &corner, err));
-        if (n >= 2)
-            TRY(add_triangle(reader, first, last, corner, err));
-        if (n == 0)
-            first = corner;
-        last = corner;
+        if (reader->corners >= 2)
+            TRY(add_triangle(reader, reader->first, reader->last, corner, err));
+        if (reader->corners == 0)
+            reader->first = corner;
+        reader->last = corner;
     }
-    if (n < 3)
+    if (reader->corners < 3 && !reader->goes_on)
         return refuse_line(reader, "is a face of fewer than three corners", "f", err);
     return STATUS_OK;
+}
+
+/* Cuts a backslash off the end of a line, which says that the next line goes on with it. */
+static bool cut_backslash(char *line)
+{
+    line = text_trim(line);
+    size_t length = strlen(line);
+    if (length == 0 || line[length - 1] != '\\')
+        return false;
+    line[length - 1] = '\0';
+    return true;
+}
+
+static Status read_obj_line(Reader *reader, char *line, Err *err)
+{
+    static char face[] = "f";
+    line[strcspn(line, "#")] = '\0';
+    bool goes_on = cut_backslash(line), went_on = reader->goes_on;
+    char *rest = line;
+    const char *word = went_on ? face : strtok_r(line, TEXT_BLANKS, &rest);
+    reader->goes_on = false;
+    if (!word)
+        return STATUS_OK;
+    if (strcasecmp(word, "v") == 0)
+        return add_vertex(reader, &rest, err);
+    if (strcasecmp(word, "f") != 0)
+        return STATUS_OK;
+    reader->goes_on = goes_on;
+    if (!went_on)
+        reader->corners = 0;
+    return add_corners(reader, &rest, err);
 }
 
 static Status read_lines(Reader *reader, char *bytes, Status (*read_line)(Reader *, char *, Err *),
@@ -197,7 +264,7 @@ Status soup_read(Soup *soup, const char *path, double mm, Err *err)
     if (is_obj) {
         TRY_GOTO(read_lines(&reader, bytes, read_obj_line, err));
     } else if (is_binary_stl(bytes, size)) {
-        TRY_GOTO(read_binary_stl(&reader, bytes, size, err));
+        TRY_GOTO(read_binary_stl(&reader, bytes, err));
     } else {
         TRY_GOTO(check_ascii_stl(path, bytes, &size, err));
         TRY_GOTO(read_lines(&reader, bytes, read_stl_line, err));

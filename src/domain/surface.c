@@ -45,7 +45,7 @@ static double depth_of(const Domain *domain, Vec3 point, double reach, uint32_t 
     }
     if (!found)
         return INFINITY;
-    return mesh_is_odd(mesh, &domain->own_bounds, point) ? sqrt(least2) : -sqrt(least2);
+    return mesh_winding(mesh, &domain->own_bounds, point) > 0 ? sqrt(least2) : -sqrt(least2);
 }
 
 /* How far the point is from the faces of the layer; below 0 outside. */

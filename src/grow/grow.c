@@ -170,16 +170,22 @@ static const Demand *density(const GrowParams *params)
     return params->terminal_flow == TERMINAL_FLOW_DEMAND ? NULL : params->demand;
 }
 
+/* Draws a point where blood is asked for. A map asks for 1e-4 of its maximum in the mean
+ * (demand_check), so that MOST_TOSSES draws all fail once in e^100 times; then the last one is
+ * taken. */
 static Vec3 toss(Growth *growth)
 {
+    enum { MOST_TOSSES = 1000000 };
     const Demand *demand = growth->params->demand;
     bool dense = density(growth->params) != NULL;
-    for (;;) {
+    Vec3 point;
+    for (int i = 0; i < MOST_TOSSES; i++) {
         growth->tosses++;
-        Vec3 point = domain_sample(growth->domain, &growth->random);
+        point = domain_sample(growth->domain, &growth->random);
         if (!demand || demand_at(demand, point) > (dense ? random_uniform(&growth->random) : 0))
-            return point;
+            break;
     }
+    return point;
 }
 
 /* How many terminals the next round should add. */

@@ -175,19 +175,6 @@ static Status add_strip(Assembly *assembly, uint32_t segment, RimPlace a, RimPla
     return STATUS_OK;
 }
 
-double mesh_reach(const VesselTree *tree)
-{
-    double farthest = 0;
-    for (size_t i = 0; i < tree->n_segments; i++) {
-        const FieldSegment *segment = &tree->segments[i];
-        for (int axis = 0; axis < 3; axis++)
-            farthest = fmax(farthest,
-                            2 * segment->radius_mm + fmax(fabs(vec3_component(segment->a, axis)),
-                                                          fabs(vec3_component(segment->b, axis))));
-    }
-    return farthest;
-}
-
 /* How many rims between its own make a tube's triangles as short as asked. */
 static uint32_t count_rims(const Assembly *assembly, uint32_t segment)
 {
@@ -225,13 +212,6 @@ static Status add_tube(Assembly *assembly, uint32_t segment, Err *err)
         a = next;
     }
     return add_strip(assembly, segment, a, b, err);
-}
-
-double mesh_grid(double reach_mm)
-{
-    int exponent;
-    frexp(reach_mm, &exponent);
-    return ldexp(1, exponent - 24);
 }
 
 static uint32_t count_caps(const Assembly *assembly)

@@ -4,13 +4,6 @@
 
 #include "surface/mesh/zonepiece.h"
 
-/* No coordinate of the tree's mesh is farther from 0, mm. */
-double mesh_reach(const VesselTree *tree);
-/* The step of the grid that the points of a mesh lie on: the spacing of floats at the coordinate
- * farthest from 0, so that each coordinate is a whole number of less than 26 bits of it, and a
- * float. */
-double mesh_grid(double reach_mm);
-
 /* Joins all into *mesh (owned by the caller), its points on the grid; a cap has `sides` sides, and
  * so has a rim in between, of which a tube gets as many as make its triangles no longer than
  * `tube_edge` radii; 0: none. The

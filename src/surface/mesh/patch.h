@@ -35,7 +35,7 @@ PatchPoint patch_wall_point(const ZoneField *field, Vec3 x, const FieldValue *va
 MUST_CHECK Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *number, Err *err);
 MUST_CHECK Status patch_add_triangle(Patch *patch, Triangle triangle, Err *err);
 
-/* A coordinate as the nearest whole multiple of `grid_mm`. */
+/* Returns a coordinate as the nearest integer multiple of `grid_mm`. */
 static inline float patch_rounded(double x_mm, double grid_mm)
 {
     return (float)(round(x_mm / grid_mm) * grid_mm);

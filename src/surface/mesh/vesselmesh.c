@@ -10,6 +10,7 @@
  * Swept rings alone cannot be: two junctions of five lie in zones of several nodes. */
 #include "surface/mesh/assemble.h"
 #include "surface/mesh/meshcheck.h"
+#include "surface/mesh/reach.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -26,6 +27,8 @@ enum { MOST_CELLS = 5000000 };
 
 /* How often all is made again where triangles cross, and by how much finer then the cells are. */
 enum { MOST_ROUNDS = 4 };
+/* Far from the origin it is not made again when one triangle in FOLDED_PART or more is crossed. */
+enum { FOLDED_PART = 20 };
 static const double finer = 0.8;
 
 /* After a zone of more terms a thread does not keep its room: it would be ten times what most need.
@@ -64,6 +67,15 @@ bool meshreport_is_sound(const MeshReport *report)
            report->bridges == 0 && report->n_missing == 0;
 }
 
+/* Whether roundings are what makes triangles cross: where trees near the origin are sound, those
+ * whose thinnest radius is fewer steps of the grid than this are often not. */
+static bool is_far(const VesselTree *tree)
+{
+    const double far_steps = 2000;
+    double radius = tree->segments[reach_thinnest(tree)].radius_mm;
+    return radius < far_steps * mesh_grid(mesh_reach(tree));
+}
+
 Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *err)
 {
     if (meshreport_is_sound(report))
@@ -72,6 +84,8 @@ Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *e
         return err_set(err, STATUS_DIFFERS,
                        "%zu segments have no triangles, segment %u among them; nothing is written",
                        report->n_missing, tree->ids[report->missing[0]]);
+    if (report->crossings > 0 && is_far(tree))
+        return reach_refuse(tree, reach_thinnest(tree), mesh_grid(mesh_reach(tree)), err);
     return err_set(err, STATUS_DIFFERS,
                    "the surface is not sound: %zu parts for %zu trees, genus %zu, %zu open edges, "
                    "%zu crossing pairs of triangles, %zu bridges; nothing is written (a smaller "
@@ -353,7 +367,9 @@ static Status build_once(Build *build, int n_workers, int round, VesselMesh *mes
     TRY_GOTO(make_mesh(build, n_workers, mesh, report, err));
     TRY_GOTO(mem_calloc(&crossed, mesh->n_triangles, sizeof *crossed, "triangles", err));
     TRY_GOTO(fill_report(build, mesh, crossed, report, err));
-    *again = report->crossings > 0 && round < MOST_ROUNDS &&
+    /* where roundings fold many triangles over each other, smaller ones only make it worse */
+    bool hopeless = is_far(build->tree) && report->crossings > mesh->n_triangles / FOLDED_PART;
+    *again = report->crossings > 0 && round < MOST_ROUNDS && !hopeless &&
              refine_crossed(build, mesh, crossed, round + 1);
 done:
     free(crossed);

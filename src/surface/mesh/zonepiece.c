@@ -6,6 +6,7 @@
 
 #include "surface/mesh/nearpairs.h"
 #include "surface/mesh/patchcross.h"
+#include "surface/mesh/reach.h"
 #include <stdlib.h>
 
 #define NONE UINT32_MAX
@@ -28,6 +29,7 @@ typedef struct Maker {
     const VesselTree *tree;
     const ZonePlan *plan;
     ZonePiece *piece;
+    PatchCrossing *crossing; /* of the last attempt */
     Err *err;
 } Maker;
 
@@ -314,10 +316,11 @@ static Status finish(const Maker *maker, const ZoneFineness *fineness, uint8_t *
     TRY(refine_make(&worker->refiner, maker->plan, &worker->tree, fineness->split, &worker->patch,
                     &maker->piece->off, maker->err));
     TRY(prove(maker, sound));
-    bool crossing = false;
+    *maker->crossing = PATCHCROSS_NONE;
     if (*sound && worker->patch.n_points > n_points)
-        TRY(patchcross_find(&worker->patch, n_points, fineness->grid_mm, &crossing, maker->err));
-    *sound = *sound && !crossing;
+        TRY(patchcross_find(&worker->patch, n_points, fineness->grid_mm, maker->crossing,
+                            maker->err));
+    *sound = *sound && *maker->crossing == PATCHCROSS_NONE;
     return STATUS_OK;
 }
 
@@ -330,7 +333,7 @@ static Status attempt(const Maker *maker, const ZoneFineness *fineness, uint8_t 
     TRY(zonetree_build(&worker->tree, maker->plan, &fineness->cells, maker->err));
     TRY(lattice_make(&worker->lattice, &worker->tree, maker->plan, &worker->patch, maker->err));
     TRY(finish(maker, fineness, fates, sound));
-    if (*sound)
+    if (*sound || *maker->crossing == PATCHCROSS_ROUNDING)
         return STATUS_OK;
     TRY(mend_make(&worker->mender, &worker->lattice, &worker->tree, maker->plan, fineness->farthest,
                   &worker->patch, hole, maker->err));
@@ -432,10 +435,12 @@ static Status keep_patch(ZoneWorker *worker, double grid, ZonePiece *piece, Err 
     return STATUS_OK;
 }
 
-static Status refuse(const Maker *maker, Err *err)
+static Status refuse(const Maker *maker, double grid_mm, Err *err)
 {
     const uint32_t *ids = maker->tree->ids;
-    uint32_t pair[2];
+    uint32_t pair[2], first = maker->plan->field.terms[0].segment;
+    if (*maker->crossing == PATCHCROSS_ROUNDING)
+        return reach_refuse(maker->tree, first, grid_mm, err);
     if (maker->worker->patch.n_triangles == 0)
         return err_set(err, STATUS_INFEASIBLE,
                        "segment %u, and what it meets, is so short for its radius that it has no "
@@ -468,11 +473,14 @@ static void make_finer(ZoneFineness *fineness, double factor)
 
 /* How many steps finer the cells of the next attempt are; 0: none would help. A wide hole is there
  * for good, unless it is closed by a gap that cells are too wide for. So is any hole that finer
- * cells have left as wide, where vessels overlap that do not blend. */
+ * cells have left as wide, where vessels overlap that do not blend, and crossings that only the
+ * rounding of points makes: the smaller the triangles, the more of them. */
 static int steps_finer(const Maker *maker, double hole, double before, double cell, int left)
 {
     uint32_t pair[2];
     bool is_wide = hole > wide_hole * cell;
+    if (*maker->crossing == PATCHCROSS_ROUNDING)
+        return 0;
     if (left == 0 || (!is_wide && hole <= lasting * before))
         return left > 0;
     double gap = find_gap(maker, pair);
@@ -534,7 +542,8 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
                       const ZoneFineness *fineness, ZonePiece *piece, uint8_t *fates, Err *err)
 {
     ZonePiece made = {0};
-    const Maker maker = {worker, tree, plan, &made, err};
+    PatchCrossing crossing = PATCHCROSS_NONE;
+    const Maker maker = {worker, tree, plan, &made, &crossing, err};
     ZoneFineness used = *fineness;
     bool sound = false;
     Status status;
@@ -542,7 +551,7 @@ Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan
     if (sound)
         TRY_GOTO(come_near(&maker, &used, fates));
     if (!sound || made.off.ratio > farthest_off)
-        TRY_GOTO(refuse(&maker, err));
+        TRY_GOTO(refuse(&maker, fineness->grid_mm, err));
     TRY_GOTO(keep_patch(worker, fineness->grid_mm, &made, err));
     *piece = made;
     made = (ZonePiece){0};

@@ -12,6 +12,7 @@
 
 #include "surface/mesh/freeends.h"
 #include "surface/mesh/nearpairs.h"
+#include "surface/mesh/reach.h"
 #include <stdlib.h>
 
 /* Of the radius: what a plane needs to move in, and what is left between two then; the step in
@@ -401,6 +402,7 @@ Status zones_find(const VesselTree *tree, const NumberLists *incident, const Num
     size_t n_pairs = 0;
     Divider divider = {.tree = tree, .incident = incident, .blending = blending};
     Status status;
+    TRY_GOTO(reach_check(tree, params->reach_mm, err));
     TRY_GOTO(mem_calloc(&zones.plane, tree->n_segments, sizeof *zones.plane, "segments", err));
     TRY_GOTO(mem_calloc(&zones.is_tube, tree->n_segments, sizeof *zones.is_tube, "segments", err));
     TRY_GOTO(

@@ -4,8 +4,8 @@
  * for crossings, for which it is searched as a whole. */
 #include "surface/print/print.h"
 
-#include "surface/mesh/assemble.h"
 #include "surface/mesh/meshcheck.h"
+#include "surface/mesh/reach.h"
 #include "surface/print/base.h"
 #include "surface/print/block.h"
 #include "surface/print/leastgap.h"
