@@ -161,6 +161,8 @@ static void add_scale(Values *values, const Appearance *appearance)
         text_number(bounds, scale->bounds[i]);
         text_puts(bounds, ", ");
     }
+    put_value_part(add_value(values, "value_part"), scale);
+    put_value_map(add_value(values, "value_map"), scale);
     text_printf(add_value(values, "count"), "%d",
                 colorscale_counts(scale) ? colorscale_steps(scale) : 0);
 }

@@ -196,6 +196,25 @@ sphere { Tree_Center, 0.1 pigment { gradient x color_map { Value_Color_Map } } }
     grep -q '^0.000 0.000 0.000; 8.500 -29.875 0.000; length mm 1.000; 3$' own.log || fail "got $(grep ';' own.log)"
 }
 
+# A value that lies on a bound has the place of the class above, as in render.
+test_the_place_of_a_value_is_the_middle_of_its_class() {
+    local options expected
+    while IFS=: read -r options expected; do
+        # shellcheck disable=SC2086
+        run_ok corcast scene "$DATA/bifurcation.swc" --quiet --color-by length $options -o tree.pov
+        own_scene own tree "#debug concat(\"\n:\", vstr(4, <Value_Place(1), Value_Place(2), Value_Place(3), Value_Place(4)>, \" \", 0, 3), \"\n\")"
+        draw own
+        [ "$(sed -n 's/^://p' own.log)" = "$expected" ] || fail "expected '$expected' with $options, got $(grep '^:' own.log)"
+    done <<'CASES'
+--range 1,4 --classes 3:0.167 0.500 0.833 0.833
+--range 1,8 --classes 3 --log:0.167 0.500 0.500 0.833
+--classes 2,4:0.167 0.500 0.500 0.833
+--range 1,4:0.000 0.333 0.667 1.000
+--range=-1,4:0.400 0.600 0.800 1.000
+--colormap Set1 --color-by strahler:0.056 0.167 0.278 0.389
+CASES
+}
+
 # What a clock drives draws without a warning in every model, and is not the picture without it.
 test_the_clock_turns_and_grows_the_tree() {
     local model
