@@ -356,12 +356,14 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Shar
 static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
 {
     const RenderParams *params = drawing->params;
+    Drawing lit = *drawing;
+    /* Planes alone may have another engine than colours, which asks for rays. */
+    TRY(prepare_caster(renderer, &lit, err));
     TRY(prepare_view(renderer, drawing, err));
     double start_s = clock_seconds();
     bool codes = params->codes_suffice && params->antialias == 1 && renderer->engine->makes_codes;
     TRY(make_planes(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
     SharedLight *shared = NULL;
-    Drawing lit = *drawing;
     Status status = STATUS_OK;
     if (!drawing->shared) {
         status = share(renderer, drawing, RENDER_BAND_STEP, &shared, err);
