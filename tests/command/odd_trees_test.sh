@@ -131,9 +131,43 @@ test_two_hundred_segments_at_one_place() {
     rows '1 3 0 0 0 1 -1'
     seq -f '%g 3 5 1.25 2 1 1' 2 200 >>tree.swc
     each_way draws
+    run_ok corcast scene tree.swc --model blob -o scene.pov
+    rows '1 3 0 0 0 1 -1'
+    seq 2 200 | awk '{ print $1, 3, 5, 1.25, 2 + $1 / 1e4, 1, 1 }' >>tree.swc
     run corcast scene tree.swc --model blob -o scene.pov
     expect_status 2
     expect_sentence '[0-9]+ segments lie in one another at \('
+}
+
+# wall_rows MODEL ...: how many of 300 rows, 0.01 mm each, across the middle of the vessel show a wall.
+wall_rows() {
+    run_ok corcast render tree.swc --input-unit mm --model "$@" --exact --antialias 1 --size 2x300 --location 5,0,50 \
+        --look-at 5,0,0 --up 0,1,0 --height 3 --planes id -o p.ppm
+    pamcut -left 1 -width 1 p.id.ppm | pnmtoplainpnm | tail -n +4 | tr -s ' ' '\n' | grep . | paste - - - |
+        grep -vc '^0[[:space:]]0[[:space:]]0$'
+}
+
+# Segments between the same two points: sisters, sisters whose first node is there twice, one that leads back, each in
+# both orders. Every model draws the thickest of them and says that it leaves the other out.
+test_of_segments_between_the_same_two_points_the_thickest_is_drawn_in_every_model() {
+    local model radii tree rows
+    for radii in '1 1.4' '1.4 1'; do
+        set -- $radii
+        for tree in "2 3 10 0 0 $1 1|3 3 10 0 0 $2 1" "2 3 10 0 0 $1 1|3 3 0 0 0 $1 1|4 3 10 0 0 $2 3" \
+            "2 3 10 0 0 $1 1|3 3 0 0 0 $2 2"; do
+            printf '1 3 0 0 0 1 -1\n%s\n' "${tree//|/$'\n'}" >tree.swc
+            for model in cylinders joined rounded blob mesh isosurface 'isosurface --potential graph'; do
+                # shellcheck disable=SC2086
+                rows=$(wall_rows $model)
+                [ "$rows" -ge 278 ] && [ "$rows" -le 281 ] || fail "expected 280 rows of $model from $tree, got $rows"
+                grep -q "corcast: 1 of [23] segments lie within others between the same two points and are not drawn" stderr ||
+                    fail "expected $model to name the segment it leaves out of $tree$(said)"
+            done
+            run_ok corcast export tree.swc --input-unit mm -o tree.stl
+            grep -q "corcast: 1 segments lie within others between the same two points and are left out" stderr ||
+                fail "expected export to name the segment it leaves out of $tree$(said)"
+        done
+    done
 }
 
 test_a_vessel_that_turns_back_into_itself() {

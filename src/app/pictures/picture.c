@@ -320,6 +320,11 @@ static Status warn_of_losses(const Geometry *geometry, const StageReport *report
         fprintf(stderr,
                 "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
                 report->dropped, segments);
+    if (report->covered)
+        fprintf(stderr,
+                "corcast: %zu of %zu segments lie within others between the same two points "
+                "and are not drawn\n",
+                report->covered, segments);
     if (hidden)
         fprintf(stderr,
                 "corcast: %zu of %zu segments are too short for their radius: the potential is "
