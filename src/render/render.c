@@ -160,6 +160,11 @@ RenderKernels render_fastest_kernels(void)
     return (RenderKernels)kernels_usable();
 }
 
+double render_nearest_mm(const Geometry *geometry)
+{
+    return caster_nearest_mm(geometry);
+}
+
 static Status check_kernels(RenderKernels kernels, Err *err)
 {
     int usable = kernels_usable();

@@ -49,6 +49,9 @@ RenderStats renderer_stats(const Renderer *renderer);
 MUST_CHECK Status render(const Scene *scene, const RenderParams *params, Frame *frame,
                          RenderStats *stats, Err *err);
 
+/* Returns how near to the camera vessels of this geometry are not seen, mm: POV-Ray's limit. */
+double render_nearest_mm(const Geometry *geometry);
+
 /* The fastest instructions that this processor has; never KERNELS_FASTEST. */
 RenderKernels render_fastest_kernels(void);
 
