@@ -161,6 +161,8 @@ static void add_scale(Values *values, const Appearance *appearance)
         text_number(bounds, scale->bounds[i]);
         text_puts(bounds, ", ");
     }
+    put_value_part(add_value(values, "value_part"), scale);
+    put_value_map(add_value(values, "value_map"), scale);
     text_printf(add_value(values, "count"), "%d",
                 colorscale_counts(scale) ? colorscale_steps(scale) : 0);
 }
@@ -276,15 +278,28 @@ static Status put_vessels(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/include.inc", out, err);
 }
 
-static void add_camera(Values *values, const Camera *camera)
+/* Returns the point in the middle of the picture at the depth of the vessels' middle. */
+static Vec3 looked_at(const Scene *scene)
 {
-    text_printf(add_value(values, "width"), "%d", camera->width);
-    text_printf(add_value(values, "height"), "%d", camera->height);
-    add_flag(values, "perspective", camera->projection == PROJECTION_PERSPECTIVE);
-    put_vector(add_value(values, "location"), camera->location);
-    put_vector(add_value(values, "right"), camera->right);
-    put_vector(add_value(values, "up"), camera->up);
-    put_vector(add_value(values, "direction"), camera->direction);
+    const Camera *camera = &scene->view.camera;
+    const Box *box = &scene->geometry.bounds;
+    double depth = vec3_dot(vec3_sub(box_center(*box), camera->location), camera->direction);
+    depth = depth > 0 ? depth : vec3_distance(box->low, box->high);
+    return vec3_add_scaled(camera->location, camera->direction, depth);
+}
+
+static Status put_camera(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Camera *camera = &geometry->scene->view.camera;
+    Values values = {0};
+    add_flag(&values, "perspective", camera->projection == PROJECTION_PERSPECTIVE);
+    put_vector(add_value(&values, "location"), camera->location);
+    put_vector(add_value(&values, "look_at"), looked_at(geometry->scene));
+    put_vector(add_value(&values, "right"), camera->right);
+    put_vector(add_value(&values, "up"), camera->up);
+    put_vector(add_value(&values, "direction"), camera->direction);
+    return values_expand(&values, geometry->params, "povray/camera.inc", out, err);
 }
 
 /* What render adds to the picture and POV-Ray does not, as a line of the header. */
@@ -312,7 +327,9 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
                   params->second_file ? params->second_file : "the last part of this file");
     add_about(&values, params, scene->geometry.bounds, scene->geometry.origin);
     put_effects(add_value(&values, "effects"), &scene->view.effects);
-    add_camera(&values, &scene->view.camera);
+    text_printf(add_value(&values, "width"), "%d", scene->view.camera.width);
+    text_printf(add_value(&values, "height"), "%d", scene->view.camera.height);
+    add_part(&values, "camera", put_camera, geometry);
     add_flag(&values, "shadows", params->shadows);
     add_float(&values, "background_red", scene->view.background.r);
     add_float(&values, "background_green", scene->view.background.g);

@@ -12,20 +12,48 @@ bool povray_blends(const PovrayGeometry *geometry)
     return scene->appearance.places && model_has(scene->geometry.model, MODEL_FIELD);
 }
 
-/* The place on the colour map of the place x on the scale. */
-static void put_map(Text *text, const ColorScale *scale)
+void put_value_part(Text *text, const ColorScale *scale)
 {
-    if (scale->n_bounds == 0) {
-        text_puts(text, "min(max(x, 0), 1)");
-        return;
-    }
+    char low[NUMBER_TEXT_SIZE], width[NUMBER_TEXT_SIZE];
+    const double *range = scale->range;
+    number_text(range[0], low);
+    number_text(scale->log ? log(range[1]) - log(range[0]) : range[1] - range[0], width);
+    if (colorscale_counts(scale))
+        text_puts(text, "x");
+    else if (!(range[1] > range[0]))
+        text_printf(text, "x - (%s) + 0.5", low);
+    else if (scale->log)
+        text_printf(text, "ln(max(x, %s) / %s) / %s", low, low, width);
+    else
+        text_printf(text, "(x - (%s)) / %s", low, width);
+}
+
+static void put_bounds(Text *text, const ColorScale *scale)
+{
     text_puts(text, "(0.5");
     for (int i = 0; i < scale->n_bounds; i++) {
         text_puts(text, " + select(x - (");
-        text_number(text, colorscale_place(scale, scale->bounds[i]));
+        text_number(text, colorscale_bound(scale, i));
         text_puts(text, "), 0, 1)");
     }
     text_printf(text, ") / %d", scale->n_bounds + 1);
+}
+
+/* POV-Ray rounds the ends of a colour map's steps to single precision, so a class is given the
+ * middle of its step. */
+void put_value_map(Text *text, const ColorScale *scale)
+{
+    char slack[NUMBER_TEXT_SIZE];
+    const int n = colorscale_steps(scale);
+    number_text(colorscale_slack(scale), slack);
+    if (scale->n_bounds)
+        put_bounds(text, scale);
+    else if (colorscale_counts(scale))
+        text_printf(text, "(mod(mod(floor(x) - 1, %d) + %d, %d) + 0.5) / %d", n, n, n, n);
+    else if (n > 0)
+        text_printf(text, "(0.5 + min(max(floor((x + %s) * %d), 0), %d)) / %d", slack, n, n - 1, n);
+    else
+        text_puts(text, "min(max(x, 0), 1)");
 }
 
 static void put_own(Text *text, const ScaleColor *own)
@@ -56,7 +84,6 @@ Status put_blend_macros(Text *out, void *context, Err *err)
         return err_set(err, STATUS_USAGE,
                        "`color_blend`: in a scene of POV-Ray colours that change with time do not "
                        "blend; `moment` chooses one moment");
-    put_map(add_value(&values, "map"), scale);
     add_number(&values, "lowest", scale->under.given ? colorscale_lowest(scale) : -never);
     add_number(&values, "highest", scale->over.given ? colorscale_highest(scale) : never);
     add_flag(&values, "own", scale->under.given || scale->over.given || !all_are_known(appearance));

@@ -5,6 +5,19 @@
 #include "emit/rows.h"
 #include "emit/values.h"
 
+/* Straight from the front; the width and height of the box are those of the picture. */
+static Status put_camera(Text *out, void *context, Err *err)
+{
+    Values values = {0};
+    add_flag(&values, "perspective", false);
+    text_puts(add_value(&values, "location"), "Glow_Center + z * vlength(Glow_Size)");
+    text_puts(add_value(&values, "look_at"), "Glow_Center");
+    text_puts(add_value(&values, "right"), "x * Glow_Size.x");
+    text_puts(add_value(&values, "up"), "y * Glow_Size.y");
+    text_puts(add_value(&values, "direction"), "-z");
+    return values_expand(&values, context, "povray/camera.inc", out, err);
+}
+
 Status emit_density(const EmitParams *params, const DensityBox *density, Text *out, Err *err)
 {
     const int64_t *n = density->n;
@@ -21,5 +34,7 @@ Status emit_density(const EmitParams *params, const DensityBox *density, Text *o
     add_number(&values, "emission", 1 / density->thickest_mm);
     put_vector(add_value(&values, "low"), density->box.low);
     put_vector(add_value(&values, "high"), density->box.high);
+    EmitParams for_camera = *params;
+    add_part(&values, "camera", put_camera, &for_camera);
     return values_expand(&values, params, "povray/density.pov", out, err);
 }

@@ -47,6 +47,11 @@ Status put_cell_macros(Text *out, void *geometry, Err *err);
  * paint them. */
 Status put_blob_macros(Text *out, void *geometry, Err *err);
 Status put_mesh_macros(Text *out, void *geometry, Err *err);
+/* Appends the part of the scale's range below the value x, as an expression of POV-Ray's functions
+ * [colorscale_place]; of a scale that counts colours, x itself. */
+void put_value_part(Text *text, const ColorScale *scale);
+/* Appends the place on Value_Color_Map, 0 to 1, of a part x of the range, as such an expression. */
+void put_value_map(Text *text, const ColorScale *scale);
 /* Whether colours blend, and what blends them, if they do. */
 bool povray_blends(const PovrayGeometry *geometry);
 Status put_blend_macros(Text *out, void *geometry, Err *err);

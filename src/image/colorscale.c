@@ -66,14 +66,28 @@ double colorscale_place(const ColorScale *scale, double value)
     return width > 0 ? above / width : above + 0.5;
 }
 
+/* Large beside the rounding of a mean of places, which is about 1e-15, and too small to be seen. A
+ * range without width has places in units of the value. */
+double colorscale_slack(const ColorScale *scale)
+{
+    const double part = 1e-6;
+    return scale->range[1] > scale->range[0] ? part : part * fabs(scaled(scale, scale->range[0]));
+}
+
+double colorscale_bound(const ColorScale *scale, int i)
+{
+    return colorscale_place(scale, scale->bounds[i]) - colorscale_slack(scale);
+}
+
 double colorscale_lowest(const ColorScale *scale)
 {
-    return scale->n_bounds ? colorscale_place(scale, scale->bounds[0]) : 0;
+    return scale->n_bounds ? colorscale_bound(scale, 0) : -colorscale_slack(scale);
 }
 
 double colorscale_highest(const ColorScale *scale)
 {
-    return scale->n_bounds ? colorscale_place(scale, scale->bounds[scale->n_bounds - 1]) : 1;
+    return scale->n_bounds ? colorscale_bound(scale, scale->n_bounds - 1)
+                           : 1 + colorscale_slack(scale);
 }
 
 static bool is_below(const ColorScale *scale, double place)
@@ -84,7 +98,8 @@ static bool is_below(const ColorScale *scale, double place)
 /* A value on a bound belongs to the class above. */
 static bool is_above(const ColorScale *scale, double place)
 {
-    return scale->n_bounds ? place >= colorscale_highest(scale) : place > 1;
+    double highest = colorscale_highest(scale);
+    return scale->n_bounds ? place >= highest : place > highest;
 }
 
 ScaleOutside colorscale_outside(const ColorScale *scale, const double *values, size_t n)
@@ -121,13 +136,15 @@ void colorscale_step_color(const ColorScale *scale, int step, float rgb[3])
         colormap_linear(&scale->map, (double)step / (colorscale_steps(scale) - 1), rgb);
 }
 
-/* The step of a place, unless a separate map has the say. */
+/* Returns the step of a place on a scale that has classes or bounds. */
 static int step_at(const ColorScale *scale, double place)
 {
     int step = 0;
-    if (!scale->n_bounds)
-        return (int)fmin(fmax(floor(place * scale->classes), 0), scale->classes - 1);
-    while (step < scale->n_bounds && colorscale_place(scale, scale->bounds[step]) <= place)
+    if (!scale->n_bounds) {
+        double part = place + colorscale_slack(scale);
+        return (int)fmin(fmax(floor(part * scale->classes), 0), scale->classes - 1);
+    }
+    while (step < scale->n_bounds && colorscale_bound(scale, step) <= place)
         step++;
     return step;
 }

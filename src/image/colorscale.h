@@ -31,7 +31,14 @@ typedef struct ColorScale {
 /* The place of a value on the scale, 0 and 1 at the ends of the range; NAN for one that cannot be
  * shown, which is NAN or with `log` not above 0. A range without width has 0.5 at its one value. */
 double colorscale_place(const ColorScale *scale, double value);
-/* Between these places values have neither the colour `under` nor `over`. */
+/* Returns how far below a bound of two classes, and how far outside the range, a place still counts
+ * as on the bound or in the range. A mean of places that are all on a bound is rounded to either
+ * side of the bound; every comparison with a bound allows for this much. */
+double colorscale_slack(const ColorScale *scale);
+/* Returns the place from which on values belong to the class above bounds[i], slack included. */
+double colorscale_bound(const ColorScale *scale, int i);
+/* Values between these two places have neither the colour `under` nor the colour `over`. Both
+ * include the slack. */
 double colorscale_lowest(const ColorScale *scale);
 double colorscale_highest(const ColorScale *scale);
 
@@ -60,8 +67,8 @@ void colorscale_step_color(const ColorScale *scale, int step, float rgb[3]);
 /* Whether whole numbers count the colours of a separate map, from 1 on, round and round. */
 bool colorscale_counts(const ColorScale *scale);
 
-/* The linear colour of a place on a scale that does not count colours. A value on a bound belongs
- * to the class above. */
+/* Writes the linear colour of a place on a scale that does not count colours. A value on a bound,
+ * or up to colorscale_slack below the bound, belongs to the class above. */
 void colorscale_at(const ColorScale *scale, double place, float rgb[3]);
 /* The linear colour of a value. */
 void colorscale_linear(const ColorScale *scale, double value, float rgb[3]);

@@ -73,8 +73,8 @@ typedef struct RenderStats {
                            threads */
     size_t rays;        /* primary */
     const char *engine; /* that drew the last rows: "field", "raster", "zbuffer" or "trace" */
-    size_t preparations; /* how often camera, lights or antialiasing were not those of the rows
-                            before */
+    size_t preparations; /* how often something was prepared anew for a view: for another camera,
+                            lights, ground plane or antialiasing, or for colours after planes */
 } RenderStats;
 
 /* Adds what another renderer has done, whose engine drew last; preparations stay those of *all. */

@@ -1,7 +1,8 @@
 /* What the geometry alone decides, the search structure of rays (Caster), is made once and kept.
- * What a view decides, an engine's lists of tiles, is kept until a camera, lights or an
- * antialiasing come that are not the same to the last bit, or another engine. An appearance decides
- * nothing but colours.
+ * What a view decides, an engine's lists of tiles and of what lights see, is kept until a camera,
+ * lights, a ground plane or an antialiasing come that are not the same to the last bit, or another
+ * engine, or until colours are wanted of what was prepared for planes of geometry alone. An
+ * appearance decides nothing but colours.
  *
  * Where vessels thinner than a pixel are drawn by coverage, the colours are those of a renderer of
  * the other vessels alone, and the thin ones are laid over them [thin/thinvessels.h]. The lights
@@ -42,13 +43,15 @@ struct Renderer {
     const Geometry *occluders; /* what the sky is hidden by */
     Beams beams;               /* of that; none until there is occlusion */
     RenderStats stats;
-    /* What is kept while engine, camera, lights and antialiasing are these. */
+    /* What is kept while engine, camera, lights, ground and antialiasing are these. */
     const Engine *engine; /* NULL: nothing is */
     void *prepared;       /* the engine's */
     Camera camera;
     Light lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
+    Ground ground;
     int antialias;
+    bool has_color; /* it was prepared for colours, which need shadows, and serves planes too */
     /* What is kept while thin vessels are drawn for one camera. */
     ThinVessels thin;
     Geometry rest_geometry; /* without the thin ones */
@@ -157,6 +160,11 @@ RenderKernels render_fastest_kernels(void)
     return (RenderKernels)kernels_usable();
 }
 
+double render_nearest_mm(const Geometry *geometry)
+{
+    return caster_nearest_mm(geometry);
+}
+
 static Status check_kernels(RenderKernels kernels, Err *err)
 {
     int usable = kernels_usable();
@@ -224,12 +232,22 @@ static bool has_lights(const View *view, const Light *lights, size_t n)
     return view->n_lights == n && memcmp(view->lights, lights, n * sizeof *lights) == 0;
 }
 
+/* Returns true if the ground planes are equal. The plane decides which lights see all vessels. */
+static bool is_same_plane(const Ground *a, const Ground *b)
+{
+    return a->present == b->present &&
+           (!a->present || (memcmp(&a->normal, &b->normal, sizeof a->normal) == 0 &&
+                            memcmp(&a->offset_mm, &b->offset_mm, sizeof a->offset_mm) == 0));
+}
+
 static bool is_prepared(const Renderer *renderer, const Engine *engine, const Drawing *drawing)
 {
     const View *view = drawing->view;
     return renderer->engine == engine && renderer->antialias == drawing->params->antialias &&
+           (renderer->has_color || !drawing->params->want_color) &&
            memcmp(&renderer->camera, &view->camera, sizeof view->camera) == 0 &&
-           has_lights(view, renderer->lights, renderer->n_lights);
+           has_lights(view, renderer->lights, renderer->n_lights) &&
+           is_same_plane(&renderer->ground, &view->ground);
 }
 
 /* Frees what was prepared for another view, and prepares this. */
@@ -248,7 +266,9 @@ static Status prepare_view(Renderer *renderer, const Drawing *drawing, Err *err)
     memcpy(&renderer->camera, &view->camera, sizeof view->camera);
     memcpy(renderer->lights, view->lights, view->n_lights * sizeof *view->lights);
     renderer->n_lights = view->n_lights;
+    renderer->ground = view->ground;
     renderer->antialias = drawing->params->antialias;
+    renderer->has_color = drawing->params->want_color;
     renderer->stats.preparations++;
     renderer->stats.prepare_s += clock_seconds() - start_s;
     return STATUS_OK;
@@ -341,12 +361,14 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Shar
 static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
 {
     const RenderParams *params = drawing->params;
+    Drawing lit = *drawing;
+    /* Planes alone may have another engine than colours, which asks for rays. */
+    TRY(prepare_caster(renderer, &lit, err));
     TRY(prepare_view(renderer, drawing, err));
     double start_s = clock_seconds();
     bool codes = params->codes_suffice && params->antialias == 1 && renderer->engine->makes_codes;
     TRY(make_planes(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
     SharedLight *shared = NULL;
-    Drawing lit = *drawing;
     Status status = STATUS_OK;
     if (!drawing->shared) {
         status = share(renderer, drawing, RENDER_BAND_STEP, &shared, err);

@@ -29,8 +29,9 @@ void renderer_free(Renderer *renderer);
  * RENDER_BAND_STEP, and so is `rows` unless they end with the picture.
  *
  * What the view needs of the geometry is prepared with its first rows and kept for the next ones as
- * long as camera and lights, bit by bit, and antialiasing stay the same. Another appearance, ground
- * or background costs its pixels alone, a transparent view, whose frame has alpha, twice. Neither
+ * long as camera, lights and ground plane, bit by bit, and antialiasing stay the same. Another
+ * appearance or background costs its pixels alone, a transparent view, whose frame has alpha,
+ * twice. The planes of geometry that are wanted beside colours do not change the colours. Neither
  * view nor appearance is kept. Not to be called by two threads at once. STATUS_MEMORY when the
  * planes do not fit; STATUS_USAGE when the method cannot draw this view (RENDER_ZBUFFER from among
  * the vessels, RENDER_RASTER of more than 524,280 pixels a side). */
@@ -47,6 +48,9 @@ RenderStats renderer_stats(const Renderer *renderer);
  * STATUS_MEMORY when the planes do not fit. `stats` may be NULL. */
 MUST_CHECK Status render(const Scene *scene, const RenderParams *params, Frame *frame,
                          RenderStats *stats, Err *err);
+
+/* Returns how near to the camera vessels of this geometry are not seen, mm: POV-Ray's limit. */
+double render_nearest_mm(const Geometry *geometry);
 
 /* The fastest instructions that this processor has; never KERNELS_FASTEST. */
 RenderKernels render_fastest_kernels(void);

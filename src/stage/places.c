@@ -1,6 +1,7 @@
-/* Nodes joined by segments of no length are one place. A segment that shares both ends with a
- * sister at least as thick lies inside her and is left out; measured trees hold such pairs. Their
- * distal nodes are one place, too. */
+/* Nodes joined by segments of no length are one place. Of segments between the same two points the
+ * thinner ones lie inside the thickest and are left out; measured trees hold such pairs. They are
+ * sisters, which begin at one node and whose distal nodes are one place; or one of them returns
+ * from the other's distal node to the other's proximal place. */
 #include "stage/places.h"
 
 #include <stdlib.h>
@@ -16,11 +17,13 @@ bool segment_can_be_drawn(const Tree *tree, size_t i)
     return tree_is_segment(tree, i) && tree->radius_mm[i] > 0 && has_length(tree, i);
 }
 
-/* Uncovered segments in lists, each the latest first: those that begin at one node together, or
- * where they are more than FEW also by the cell of space they end in, so that a node may have any
- * number of daughters. */
+/* Uncovered segments in lists, each the latest first: those that begin at one place together, or
+ * where they are more than FEW also by the cell of space they end in, so that a place may have any
+ * number of daughters. All arrays are owned. */
 typedef struct Bins {
-    int32_t *daughters; /* of each node, drawn or not; owned, as the next */
+    int32_t *start;     /* by segment: the first of the nodes, joined by segments of no length, that
+                         * the segment begins at */
+    int32_t *daughters; /* by such first node: the segments that begin there, drawn or not */
     int32_t *first;     /* one a node, and then one a bin of cells; below 0: none */
     int32_t *next;      /* one a node */
     size_t n;           /* nodes */
@@ -33,9 +36,9 @@ enum { FEW = 8 };
  * one. */
 static const double cell_mm = 16e-9;
 
-static size_t bin_of(const Bins *bins, int32_t parent, const double cell[3])
+static size_t bin_of(const Bins *bins, int32_t start, const double cell[3])
 {
-    uint64_t hash = (uint64_t)parent;
+    uint64_t hash = (uint64_t)start;
     for (int axis = 0; axis < 3; axis++) {
         uint64_t bits;
         memcpy(&bits, &cell[axis], sizeof bits);
@@ -57,23 +60,23 @@ static void find_cell(Vec3 point, double by, double cell[3])
 static int32_t *find_in(const Tree *tree, const Bins *bins, size_t bin, size_t i, int32_t *found)
 {
     for (int32_t *link = &bins->first[bin]; *link >= 0; link = &bins->next[*link])
-        if (tree->parent[*link] == tree->parent[i] && (!found || *link > *found) &&
+        if (bins->start[*link] == bins->start[i] && (!found || *link > *found) &&
             vec3_distance(tree->position[i], tree->position[*link]) <= SHORTEST_MM)
             found = link;
     return found;
 }
 
-static bool has_few_sisters(const Tree *tree, const Bins *bins, size_t i)
+static bool has_few_sisters(const Bins *bins, size_t i)
 {
-    return bins->daughters[tree->parent[i]] <= FEW;
+    return bins->daughters[bins->start[i]] <= FEW;
 }
 
 /* What leads to the latest of the sisters in the lists that end where segment i does; NULL:
  * none. */
 static int32_t *find_sister(const Tree *tree, const Bins *bins, size_t i)
 {
-    if (has_few_sisters(tree, bins, i))
-        return find_in(tree, bins, (size_t)tree->parent[i], i, NULL);
+    if (has_few_sisters(bins, i))
+        return find_in(tree, bins, (size_t)bins->start[i], i, NULL);
     double ends[2][3], cell[3];
     int32_t *found = NULL;
     for (int end = 0; end < 2; end++)
@@ -86,7 +89,7 @@ static int32_t *find_sister(const Tree *tree, const Bins *bins, size_t i)
             again = again || (end && ends[0][axis] == ends[1][axis]);
         }
         if (!again)
-            found = find_in(tree, bins, bin_of(bins, tree->parent[i], cell), i, found);
+            found = find_in(tree, bins, bin_of(bins, bins->start[i], cell), i, found);
     }
     return found;
 }
@@ -94,11 +97,11 @@ static int32_t *find_sister(const Tree *tree, const Bins *bins, size_t i)
 /* Puts segment i into its list. */
 static void put(const Tree *tree, Bins *bins, size_t i)
 {
-    size_t bin = (size_t)tree->parent[i];
-    if (!has_few_sisters(tree, bins, i)) {
+    size_t bin = (size_t)bins->start[i];
+    if (!has_few_sisters(bins, i)) {
         double cell[3];
         find_cell(tree->position[i], 0, cell);
-        bin = bin_of(bins, tree->parent[i], cell);
+        bin = bin_of(bins, bins->start[i], cell);
     }
     bins->next[i] = bins->first[bin];
     bins->first[bin] = (int32_t)i;
@@ -124,6 +127,14 @@ static void find_covers(const Tree *tree, Bins *bins, int32_t *cover)
     }
 }
 
+/* Whether segment i leads from the end of its parent's segment back to where that one begins. */
+static bool returns(const Tree *tree, const int32_t *cover, size_t i)
+{
+    const int32_t parent = tree->parent[i];
+    return cover[i] != PLACES_CANNOT_DRAW && cover[parent] != PLACES_CANNOT_DRAW &&
+           vec3_distance(tree->position[i], tree->position[tree->parent[parent]]) <= SHORTEST_MM;
+}
+
 /* The last of the sisters that cover each other from `self` on; shortens the way there. */
 static int32_t outermost(int32_t *cover, int32_t self)
 {
@@ -133,10 +144,50 @@ static int32_t outermost(int32_t *cover, int32_t self)
     return self;
 }
 
+/* Compares each segment that returns with the thickest of those that it returns along. */
+static void find_returning_covers(const Tree *tree, int32_t *cover)
+{
+    for (size_t i = 0; i < tree->n; i++) {
+        if (!returns(tree, cover, i) || cover[i] != PLACES_UNCOVERED)
+            continue;
+        int32_t along = outermost(cover, tree->parent[i]);
+        bool is_thicker = tree->radius_mm[i] > tree->radius_mm[along];
+        cover[is_thicker ? along : (int32_t)i] = PLACES_COVERED_BACKWARDS;
+    }
+}
+
+/* The place of node i, those of the nodes before it being known. */
+static int32_t place_of(const Tree *tree, const Places *found, size_t i)
+{
+    const int32_t parent = tree->parent[i];
+    if (tree_is_segment(tree, i) && !has_length(tree, i) && !places_can_draw(found, i))
+        return found->place[parent];
+    if (returns(tree, found->cover, i))
+        return found->place[tree->parent[parent]];
+    return outermost(found->cover, (int32_t)i);
+}
+
+/* Finds where each segment begins, and counts those that begin together. */
+static void find_starts(const Tree *tree, Bins *bins)
+{
+    for (size_t i = 0; i < tree->n; i++) {
+        const int32_t parent = tree->parent[i];
+        bins->start[i] = (int32_t)i;
+        if (!tree_is_segment(tree, i))
+            continue;
+        const bool joined =
+            tree_is_segment(tree, (size_t)parent) && !has_length(tree, (size_t)parent);
+        bins->start[i] = joined ? bins->start[parent] : parent;
+        bins->daughters[bins->start[i]]++;
+    }
+}
+
 static Status init_bins(const Tree *tree, Bins *bins, Err *err)
 {
     size_t many = 0, count = 1;
-    TRY(tree_child_counts(tree, &bins->daughters, err));
+    TRY(mem_calloc(&bins->start, tree->n, sizeof *bins->start, "nodes", err));
+    TRY(mem_calloc(&bins->daughters, tree->n, sizeof *bins->daughters, "nodes", err));
+    find_starts(tree, bins);
     for (size_t i = 0; i < tree->n; i++)
         many += bins->daughters[i] > FEW ? (size_t)bins->daughters[i] : 0;
     while (count < many)
@@ -157,12 +208,11 @@ Status places_find(const Tree *tree, Places *places, Err *err)
     TRY_GOTO(mem_calloc(&found.cover, tree->n, sizeof *found.cover, "nodes", err));
     TRY_GOTO(mem_calloc(&found.place, tree->n, sizeof *found.place, "nodes", err));
     find_covers(tree, &bins, found.cover);
-    for (size_t i = 0; i < tree->n; i++) {
-        bool joined =
-            !places_can_draw(&found, i) && tree_is_segment(tree, i) && !has_length(tree, i);
-        found.place[i] = joined ? found.place[tree->parent[i]] : outermost(found.cover, (int32_t)i);
-    }
+    find_returning_covers(tree, found.cover);
+    for (size_t i = 0; i < tree->n; i++)
+        found.place[i] = place_of(tree, &found, i);
 done:
+    free(bins.start);
     free(bins.daughters);
     free(bins.first);
     free(bins.next);
@@ -171,6 +221,19 @@ done:
     else
         places_release(&found);
     return status;
+}
+
+StageReport places_count(const Tree *tree, const Places *places)
+{
+    StageReport report = {0};
+    for (size_t i = 0; i < tree->n; i++) {
+        if (!tree_is_segment(tree, i))
+            continue;
+        report.drawn += places_can_draw(places, i);
+        report.dropped += !places_can_draw(places, i);
+        report.covered += places_can_draw(places, i) && !places_draw(places, i);
+    }
+    return report;
 }
 
 void places_release(Places *places)

@@ -10,11 +10,11 @@
 #include "stage/solids.h"
 #include <stdlib.h>
 
-static Status add_field(const Tree *tree, Geometry *geometry, Err *err)
+static Status add_field(const Tree *tree, const Places *places, Geometry *geometry, Err *err)
 {
     TRY(mem_calloc(&geometry->segments, tree->n, sizeof *geometry->segments, "segments", err));
     for (size_t i = 0; i < tree->n; i++)
-        if (segment_can_be_drawn(tree, i))
+        if (places_draw(places, i))
             geometry->segments[geometry->n_segments++] =
                 (FieldSegment){.a = tree->position[tree->parent[i]],
                                .b = tree->position[i],
@@ -27,8 +27,7 @@ static Status add_field(const Tree *tree, Geometry *geometry, Err *err)
 static Status add_graph(const Tree *tree, Geometry *geometry, Err *err)
 {
     VesselTree vessels;
-    size_t dropped;
-    TRY(stage_vessels(tree, &vessels, &dropped, err));
+    TRY(stage_vessels(tree, &vessels, NULL, err));
     Status status = vesseltree_blend(&vessels, &geometry->blend, err);
     geometry->segments = vessels.segments;
     geometry->n_segments = vessels.n_segments;
@@ -57,8 +56,7 @@ static Status add_mesh(const Tree *tree, const GeometryParams *params, Geometry 
                        StageReport *counted, Err *err)
 {
     VesselTree vessels;
-    size_t dropped;
-    TRY(stage_vessels(tree, &vessels, &dropped, err));
+    TRY(stage_vessels(tree, &vessels, NULL, err));
     free(vessels.segments);
     vessels.segments = geometry->segments;
     Status status = wall_vessels(&vessels, params, &geometry->mesh, counted, err);
@@ -67,24 +65,19 @@ static Status add_mesh(const Tree *tree, const GeometryParams *params, Geometry 
     return status;
 }
 
-static Status add_model(const Tree *tree, const GeometryParams *params, Geometry *geometry,
-                        StageReport *report, Err *err)
+static Status add_model(const Tree *tree, const Places *places, const GeometryParams *params,
+                        Geometry *geometry, StageReport *report, Err *err)
 {
     if (model_has(geometry->model, MODEL_TRIANGLES))
         return add_graph(tree, geometry, err);
     if (model_has(geometry->model, MODEL_FIELD))
-        return params->graph ? add_graph(tree, geometry, err) : add_field(tree, geometry, err);
+        return params->graph ? add_graph(tree, geometry, err)
+                             : add_field(tree, places, geometry, err);
     TRY(mem_calloc(&geometry->primitives, 2 * tree->n, sizeof *geometry->primitives, "primitives",
                    err));
-    Places places = {0};
-    TRY(places_find(tree, &places, err));
-    Status status = STATUS_OK;
-    if (model_has(geometry->model, MODEL_JOINTS))
-        status = joints_add(tree, &places, params->joints, geometry, report, err);
-    else
-        status = solids_add(tree, &places, params, geometry, err);
-    places_release(&places);
-    return status;
+    return model_has(geometry->model, MODEL_JOINTS)
+               ? joints_add(tree, places, params->joints, geometry, report, err)
+               : solids_add(tree, places, params, geometry, err);
 }
 
 /* ---- what all models have -------------------------------------------------------------------- */
@@ -143,32 +136,29 @@ Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *
                       StageReport *report, Err *err)
 {
     Geometry built = {.model = params->model, .open_joints = params->joints == JOINTS_PAPER};
-    StageReport counted = {0};
-    for (size_t i = 0; i < tree->n; i++) {
-        if (segment_can_be_drawn(tree, i))
-            counted.drawn++;
-        else if (tree_is_segment(tree, i))
-            counted.dropped++;
-    }
-    if (counted.drawn == 0)
-        return err_set(err, STATUS_INPUT,
-                       "the tree has nothing to draw: no segment is longer than %g mm and has a "
-                       "radius above 0",
-                       SHORTEST_MM);
-    built.drawn = counted.drawn;
+    Places places = {0};
     Status status;
+    TRY(places_find(tree, &places, err));
+    StageReport counted = places_count(tree, &places);
+    if (counted.drawn == 0)
+        TRY_GOTO(err_set(err, STATUS_INPUT,
+                         "the tree has nothing to draw: no segment is longer than %g mm and has a "
+                         "radius above 0",
+                         SHORTEST_MM));
+    built.drawn = counted.drawn;
     TRY_GOTO(copy_ids(tree, &built, err));
-    TRY_GOTO(add_model(tree, params, &built, &counted, err));
+    TRY_GOTO(add_model(tree, &places, params, &built, &counted, err));
     TRY_GOTO(geometry_check(&built, err));
     find_bounds(&built);
     move_to_origin(&built);
     if (model_has(built.model, MODEL_TRIANGLES))
         TRY_GOTO(add_mesh(tree, params, &built, &counted, err));
     *geometry = built;
+    built = (Geometry){0};
     if (report)
         *report = counted;
-    return STATUS_OK;
 done:
+    places_release(&places);
     geometry_release(&built);
     return status;
 }

@@ -135,6 +135,8 @@ ViewParams view_defaults(void);
 typedef struct StageReport {
     size_t drawn;   /* segments that the geometry stands for */
     size_t dropped; /* segments without length or radius, which cannot be drawn */
+    size_t covered; /* of those in `drawn`: segments that lie within a twin, a segment between the
+                     * same two points that is at least as thick; no model draws them */
     size_t thinned; /* segments that part_overlaps thinned */
     /* Of a joined model. The construction of joints breaks down at a place if a vessel is too short
      * for its joints; else if a vessel turns back too sharply; or it is not tried, because too many
@@ -153,9 +155,11 @@ MUST_CHECK Status stage_geometry(const Tree *tree, const GeometryParams *params,
                                  StageReport *report, Err *err);
 
 /* The vessels of a tree for the triangulation of their surface, in *vessels (owned): its segments
- * that can be drawn, nodes at one place being one. Coordinates are the tree's. *dropped counts the
- * others. STATUS_INPUT when none can be drawn. */
-MUST_CHECK Status stage_vessels(const Tree *tree, VesselTree *vessels, size_t *dropped, Err *err);
+ * that can be drawn and do not lie within a twin, nodes at one place being one. Coordinates are the
+ * tree's. *report, unless it is NULL, gets the counts `drawn`, `dropped` and `covered`.
+ * STATUS_INPUT when none can be drawn. */
+MUST_CHECK Status stage_vessels(const Tree *tree, VesselTree *vessels, StageReport *report,
+                                Err *err);
 
 /* How the tree hangs together, in *anatomy (owned; anatomy_release), `origin` being that of the
  * Geometry. O(n) of n nodes. */

@@ -152,6 +152,11 @@ static double framing_distance(const Framed *framed, const Camera *camera, doubl
 }
 
 /* Where an aimed orthographic camera stands and how much it shows. */
+/* An orthographic camera may stand anywhere before the vessels. It stands at least this far from
+ * their middle, as POV-Ray does not see what is nearer to a camera than 0.01 mm [docs/POVRAY.md,
+ * sections 4 and 6]. */
+static const double least_distance_mm = 0.05;
+
 static void place_orthographic(const ViewParams *params, const Framed *framed, Camera *camera)
 {
     double aspect = (double)params->width / params->height, used = 1 - 2 * params->margin;
@@ -173,8 +178,8 @@ static void place_orthographic(const ViewParams *params, const Framed *framed, C
     x += room_x / 2 * height * aspect;
     y -= room_y / 2 * height;
     Vec3 middle = vec3_add_scaled(vec3_scale(right, x), up, y);
-    middle = vec3_add_scaled(middle, direction,
-                             vec3_dot(center, direction) - vec3_distance(all.low, all.high));
+    double distance = fmax(vec3_distance(all.low, all.high), least_distance_mm);
+    middle = vec3_add_scaled(middle, direction, vec3_dot(center, direction) - distance);
     camera->location = params->has_location ? params->location : middle;
     camera->right = vec3_scale(right, height * aspect);
     camera->up = vec3_scale(up, height);

@@ -1,5 +1,5 @@
 /* A tree as lines with radii; see stage_vessels. Nodes that segments of no length join are one, and
- * what lies within a sister is left out [places.h], so that no two segments coincide. */
+ * what lies within a twin is left out [places.h], so that no two segments coincide. */
 #include "stage/places.h"
 #include "stage/stage.h"
 
@@ -22,26 +22,26 @@ static void add_segment(const Tree *tree, const Places *places, size_t i, Vessel
     vessels->ids[n] = (uint32_t)tree->id[i];
 }
 
-Status stage_vessels(const Tree *tree, VesselTree *vessels, size_t *dropped, Err *err)
+Status stage_vessels(const Tree *tree, VesselTree *vessels, StageReport *report, Err *err)
 {
     VesselTree made = {.n_nodes = tree->n};
     Places places = {0};
-    size_t segments = 0;
+    StageReport counted;
     Status status;
     TRY_GOTO(places_find(tree, &places, err));
     TRY_GOTO(reserve(tree, &made, err));
-    for (size_t i = 0; i < tree->n; i++) {
-        segments += tree_is_segment(tree, i);
+    counted = places_count(tree, &places);
+    for (size_t i = 0; i < tree->n; i++)
         if (places_draw(&places, i))
             add_segment(tree, &places, i, &made);
-    }
     if (made.n_segments == 0)
         TRY_GOTO(
             err_set(err, STATUS_INPUT,
                     "the tree has no surface: no segment is longer than %g mm and has a radius "
                     "above 0",
                     SHORTEST_MM));
-    *dropped = segments - made.n_segments;
+    if (report)
+        *report = counted;
     *vessels = made;
     made = (VesselTree){0};
 done:

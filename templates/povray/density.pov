@@ -30,12 +30,10 @@ global_settings { assumed_gamma 1.0 max_trace_level 5 }
 #declare Glow_Center = (Glow_Low + Glow_High) / 2;
 
 // ---- camera ---------------------------------------------------------------------------------
-#ifndef (Camera_Location)  #declare Camera_Location  = Glow_Center + z * vlength(Glow_Size); #end
-#ifndef (Camera_Right)     #declare Camera_Right     = x * Glow_Size.x; #end // full width
-#ifndef (Camera_Up)        #declare Camera_Up        = y * Glow_Size.y; #end // full height
-#ifndef (Camera_Direction) #declare Camera_Direction = -z; #end
-camera {
-  orthographic
+#local Picture_Width  = image_width;
+#local Picture_Height = image_height;
+${camera}camera {
+  #if (Camera_Perspective) perspective #else orthographic #end
   location  Camera_Location
   direction Camera_Direction
   right     Camera_Right

@@ -6,7 +6,8 @@
 //
 // Geometry stands in ${geometry_file}; this file is the stage: camera, lights, background.
 // Units are millimetres. The camera is given by its own vectors, so that the world is right-handed:
-// seen from the front, x runs to the right, y up, and z towards the viewer.
+// seen from the front, x runs to the right, y up, and z towards the viewer. Camera_Location, Camera_Look_At and
+// others, below, set another one.
 // Extent: ${extent}
 ${effects}//
 // Render: povray +I${input} +O${output} +W${width} +H${height} -D
@@ -27,12 +28,6 @@ global_settings {
 }
 
 // ---- camera ---------------------------------------------------------------------------------
-#ifndef (Camera_Perspective) #declare Camera_Perspective = ${perspective}; #end
-#ifndef (Camera_Location)    #declare Camera_Location    = ${location}; #end
-#ifndef (Camera_Right)       #declare Camera_Right       = ${right}; #end     // full width
-#ifndef (Camera_Up)          #declare Camera_Up          = ${up}; #end        // full height
-#ifndef (Camera_Direction)   #declare Camera_Direction   = ${direction}; #end // unit
-
 // A part of the picture is the picture of a smaller camera: rows 128 to 191, say, of ${width}x${height} are
 // +W${width} +H64 Declare=Picture_Height=${height} Declare=Part_Top=128, and columns likewise. It has the whole's
 // pixels, to the code, with antialiasing too if that is without jitter and not +AM1 with a threshold above 0.
@@ -40,7 +35,8 @@ global_settings {
 #ifndef (Picture_Height) #declare Picture_Height = image_height; #end
 #ifndef (Part_Left)      #declare Part_Left      = 0; #end            // where the part begins, pixels
 #ifndef (Part_Top)       #declare Part_Top       = 0; #end
-#local Part_Place = Camera_Right * ((Part_Left + image_width / 2) / Picture_Width - 0.5)
+
+${camera}#local Part_Place = Camera_Right * ((Part_Left + image_width / 2) / Picture_Width - 0.5)
                   - Camera_Up * ((Part_Top + image_height / 2) / Picture_Height - 0.5);
 
 camera {

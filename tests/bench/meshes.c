@@ -33,10 +33,9 @@ static Status measure(const char *path, Err *err)
     Ruler ruler;
     Random random;
     struct rusage used;
-    size_t dropped;
     const MeshParams params = {.tolerance = 0.02};
     TRY(tree_read(&tree, path, err));
-    TRY(stage_vessels(&tree, &vessels, &dropped, err));
+    TRY(stage_vessels(&tree, &vessels, NULL, err));
     double start = seconds();
     TRY(vesselmesh_build(&vessels, &params, &mesh, &report, err));
     double end = seconds();

@@ -131,9 +131,90 @@ test_two_hundred_segments_at_one_place() {
     rows '1 3 0 0 0 1 -1'
     seq -f '%g 3 5 1.25 2 1 1' 2 200 >>tree.swc
     each_way draws
+    run_ok corcast scene tree.swc --model blob -o scene.pov
+    rows '1 3 0 0 0 1 -1'
+    seq 2 200 | awk '{ print $1, 3, 5, 1.25, 2 + $1 / 1e4, 1, 1 }' >>tree.swc
     run corcast scene tree.swc --model blob -o scene.pov
     expect_status 2
     expect_sentence '[0-9]+ segments lie in one another at \('
+}
+
+# scaled POWER: a tree of the size 2^POWER times 9 mm.
+scaled() {
+    awk -v k="$(awk "BEGIN { printf \"%.20g\", 2 ^ $1 }")" 'BEGIN {
+        n = split("0 0 0 1 -1;0 -6 0 1 1;3 -9 2 0.8 2;-3 -9 -1 0.7 2", rows, ";")
+        for (i = 1; i <= n; i++) {
+            split(rows[i], f, " ")
+            printf "%d 3 %.17g %.17g %.17g %.17g %d\n", i, f[1] * k, f[2] * k, f[3] * k, f[4] * k, f[5]
+        }
+    }' >tree.swc
+}
+
+# vessel_pixels OPTION ...: how many pixels of a picture without light show the tree.
+vessel_pixels() {
+    run_ok corcast render tree.swc --input-unit mm --look flat --size 48x48 --antialias 1 "$@" -o p.ppm
+    tail -c 6912 p.ppm | od -An -v -tu1 -w3 | grep -vc '255 255 255'
+}
+
+# Lengths below which POV-Ray sees nothing do not grow less with the tree. The framed camera keeps clear of them.
+test_a_tree_of_a_millionth_of_a_millimetre_is_drawn_like_a_large_one() {
+    local model power large
+    for model in cylinders joined rounded isosurface blob mesh; do
+        scaled 0
+        large=$(vessel_pixels --model $model)
+        for power in -12 -24; do
+            scaled $power
+            [ "$(vessel_pixels --model $model)" -eq "$large" ] ||
+                fail "expected $large pixels of $model at 2^$power, got $(vessel_pixels --model $model)"
+            [ $model = rounded ] || [ "$(vessel_pixels --model $model --exact)" -eq "$large" ] ||
+                fail "expected $large exact pixels of $model at 2^$power"
+        done
+    done
+}
+
+test_what_the_limits_of_povray_hide_of_a_tiny_tree_is_named() {
+    scaled -14
+    run corcast render tree.swc --input-unit mm --model blob --projection perspective --size 48x48 -o p.png
+    expect_status 2
+    expect_sentence 'all of the tree is nearer to the camera than 0.01 mm, where neither POV-Ray nor render sees it'
+    run_ok corcast render tree.swc --input-unit mm --model joined --shadows on --size 48x48 -o p.png
+    grep -q 'what is nearer to a lit point than 0.001 mm casts no shadow on it' stderr || fail "expected shadows to be named$(said)"
+    scaled -18
+    run_ok corcast render tree.swc --input-unit mm --model rounded --exact --size 48x48 -o p.png
+    grep -q '[1-9] balls of at most 1e-05 mm are not seen' stderr || fail "expected balls to be named$(said)"
+    run_ok corcast render tree.swc --input-unit mm --model cylinders --projection perspective --size 48x48 -o p.png
+    grep -q 'what is nearer to the camera than 0.0001 mm is not seen' stderr || fail "expected the camera's limit$(said)"
+}
+
+# wall_rows MODEL ...: how many of 300 rows, 0.01 mm each, across the middle of the vessel show a wall.
+wall_rows() {
+    run_ok corcast render tree.swc --input-unit mm --model "$@" --exact --antialias 1 --size 2x300 --location 5,0,50 \
+        --look-at 5,0,0 --up 0,1,0 --height 3 --planes id -o p.ppm
+    pamcut -left 1 -width 1 p.id.ppm | pnmtoplainpnm | tail -n +4 | tr -s ' ' '\n' | grep . | paste - - - |
+        grep -vc '^0[[:space:]]0[[:space:]]0$'
+}
+
+# Segments between the same two points: sisters, sisters whose first node is there twice, one that leads back, each in
+# both orders. Every model draws the thickest of them and says that it leaves the other out.
+test_of_segments_between_the_same_two_points_the_thickest_is_drawn_in_every_model() {
+    local model radii tree rows
+    for radii in '1 1.4' '1.4 1'; do
+        set -- $radii
+        for tree in "2 3 10 0 0 $1 1|3 3 10 0 0 $2 1" "2 3 10 0 0 $1 1|3 3 0 0 0 $1 1|4 3 10 0 0 $2 3" \
+            "2 3 10 0 0 $1 1|3 3 0 0 0 $2 2"; do
+            printf '1 3 0 0 0 1 -1\n%s\n' "${tree//|/$'\n'}" >tree.swc
+            for model in cylinders joined rounded blob mesh isosurface 'isosurface --potential graph'; do
+                # shellcheck disable=SC2086
+                rows=$(wall_rows $model)
+                [ "$rows" -ge 278 ] && [ "$rows" -le 281 ] || fail "expected 280 rows of $model from $tree, got $rows"
+                grep -q "corcast: 1 of [23] segments lie within others between the same two points and are not drawn" stderr ||
+                    fail "expected $model to name the segment it leaves out of $tree$(said)"
+            done
+            run_ok corcast export tree.swc --input-unit mm -o tree.stl
+            grep -q "corcast: 1 segments lie within others between the same two points and are left out" stderr ||
+                fail "expected export to name the segment it leaves out of $tree$(said)"
+        done
+    done
 }
 
 test_a_vessel_that_turns_back_into_itself() {

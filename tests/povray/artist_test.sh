@@ -196,6 +196,72 @@ sphere { Tree_Center, 0.1 pigment { gradient x color_map { Value_Color_Map } } }
     grep -q '^0.000 0.000 0.000; 8.500 -29.875 0.000; length mm 1.000; 3$' own.log || fail "got $(grep ';' own.log)"
 }
 
+# declared NAME: the vector that ball.pov declares unless NAME is declared before, as X,Y,Z.
+declared() {
+    sed -n "s/^#ifndef ($1) .*<\(.*\)>; #end.*/\1/p" ball.pov
+}
+
+# own_camera DECLARATIONS RENDER_OPTION...: POV-Ray draws ball.pov after the declarations as render draws it with the
+# options. Lights of render turn with the camera, so the look has none.
+own_camera() {
+    local declarations=$1
+    shift
+    printf '#version 3.7;\n%s\n#include "ball.pov"\n' "$declarations" >own.pov
+    draw own +A0.0 +AM1 +R2 -J
+    expect_no_warning own
+    run_ok corcast render tree.swc --quiet --exact --antialias 2 --model rounded --look flat --color-by level --size 60x45 "$@" -o own.ppm
+    [ "$(pngtopnm own.png | pnmtoplainpnm | tail -n +4 | tr -s ' ' '\n' | sort -u | wc -l)" -gt 30 ] ||
+        fail "expected more than a blank picture with $declarations"
+    run corcast compare own.png own.ppm
+    expect_status 0
+}
+
+test_a_camera_of_ones_own_draws_the_view_that_was_asked_for() {
+    local written height width angle at from
+    cp "$DATA/coronary.swc" tree.swc
+    for written in orthographic perspective; do
+        run_ok corcast scene tree.swc --quiet --model rounded --look flat --color-by level --size 60x45 --projection $written -o ball.pov
+        at=$(declared Camera_Look_At) from=$(declared Camera_Location)
+        height=$(declared Camera_Up | cut -d , -f 2) width=$(declared Camera_Right | cut -d , -f 1)
+        own_camera '#declare Camera_Perspective = 1; #declare Camera_Location = <40,130,190>; #declare Camera_Angle = 33;' \
+            --projection perspective --location 40,130,190 --look-at="$at" --up 0,1,0 --angle 33
+        own_camera '#declare Camera_Look_At = <-117,60,-83>; #declare Camera_Up = <0.3,1,0.5>; #declare Camera_Angle = 25; #declare Camera_Perspective = 1;' \
+            --projection perspective --location="$from" --look-at=-117,60,-83 --up 0.3,1,0.5 --angle 25
+        # As much of the middle of the picture is seen without an angle, whatever the projection.
+        angle=$(echo "$width $at $from $written" | tr ',' ' ' | awk '{
+            d = sqrt(($2 - $5)^2 + ($3 - $6)^2 + ($4 - $7)^2)
+            print 360 / atan2(0, -1) * atan2($8 == "perspective" ? $1 / 2 : $1 / 2 / d, 1) }')
+        own_camera '#declare Camera_Location = <-117,330,-83>; #declare Camera_Look_At = <-117,10,-83>; #declare Camera_Perspective = 0;' \
+            --location=-117,330,-83 --look-at=-117,10,-83 --up 0,0,-1 \
+            --height "$([ $written = orthographic ] && echo "$height" || awk "BEGIN { print 320 * $height }")"
+        own_camera '#declare Camera_Perspective = 1;' \
+            $([ $written = perspective ] || echo --projection perspective --location="$from" --look-at="$at" --up 0,1,0 --angle "$angle") \
+            $([ $written = orthographic ] || echo --projection perspective)
+    done
+    printf '#declare Camera_Angle = 190;\n#include "ball.pov"\n' >own.pov
+    ! povray +Iown.pov +Oown.png +W60 +H45 -D >own.log 2>&1 && grep -q 'Camera_Angle is not between 0 and 180 degrees' own.log ||
+        fail "expected the angle to be refused"
+}
+
+# A value that lies on a bound has the place of the class above, as in render.
+test_the_place_of_a_value_is_the_middle_of_its_class() {
+    local options expected
+    while IFS=: read -r options expected; do
+        # shellcheck disable=SC2086
+        run_ok corcast scene "$DATA/bifurcation.swc" --quiet --color-by length $options -o tree.pov
+        own_scene own tree "#debug concat(\"\n:\", vstr(4, <Value_Place(1), Value_Place(2), Value_Place(3), Value_Place(4)>, \" \", 0, 3), \"\n\")"
+        draw own
+        [ "$(sed -n 's/^://p' own.log)" = "$expected" ] || fail "expected '$expected' with $options, got $(grep '^:' own.log)"
+    done <<'CASES'
+--range 1,4 --classes 3:0.167 0.500 0.833 0.833
+--range 1,8 --classes 3 --log:0.167 0.500 0.500 0.833
+--classes 2,4:0.167 0.500 0.500 0.833
+--range 1,4:0.000 0.333 0.667 1.000
+--range=-1,4:0.400 0.600 0.800 1.000
+--colormap Set1 --color-by strahler:0.056 0.167 0.278 0.389
+CASES
+}
+
 # What a clock drives draws without a warning in every model, and is not the picture without it.
 test_the_clock_turns_and_grows_the_tree() {
     local model

@@ -105,6 +105,21 @@ test_colours_that_blend_agree_to_the_last_of_16_bits() {
     done
 }
 
+# A grown tree's Strahler orders lie exactly on the bounds of these classes: each vessel has one colour in both pictures.
+# The look is flat, so a picture has the background, the classes, and what --over and --under add.
+test_values_on_the_bounds_of_classes_have_one_colour_in_both_pictures() {
+    local model classes
+    tree_3d 30
+    for model in isosurface blob; do
+        for classes in '--classes 2' '--classes 3,5' '--classes 4 --range 2,4 --under red --over blue'; do
+            # shellcheck disable=SC2086
+            run_ok corcast verify tree.swc --look flat --antialias 1 --size 80x60 -o report --model $model \
+                --color-by strahler --color-blend blended $classes
+            expect_json report/report.json '.planes.color.differing_pixels == 0'
+        done
+    done
+}
+
 test_a_blob_whose_numbers_are_in_matrices_agrees() {
     local blend
     run_ok corcast grow --terminals 1537 --seed 3 -o tree.swc --quiet

@@ -37,6 +37,14 @@ assert worst < 0.07 * 0.002, f"a pixel is off by {worst / 0.07} mm"
 assert abs(light / way - 1) < 1e-4, light / way
 assert abs(way / 0.07 * 0.9 * 0.8 / said["union_mm3"] - 1) < 1e-3
 END
+    # From the other side the glow is the mirror picture; in perspective it is another one.
+    sed -i 's|^#include|#declare Camera_Location = <0, 0, -200>;\n#declare Camera_Look_At = <0, 0, 0>;\n#include|' glow.pov
+    { cat t.pov; echo '#debug concat("\n:", vstr(3, Camera_Right, " ", 0, 6), "; ", vstr(3, Camera_Direction, " ", 0, 3), "\n")'; } >debug.pov
+    sed -i 's|t.pov|debug.pov|' glow.pov
+    povray +Iglow.pov +Oback.png +W40 +H40 -D >back.log 2>&1
+    grep -qE '^:-[0-9.]+ 0.000000 0.000000; 0.000 0.000 1.000$' back.log || fail "expected the camera to look along z: $(grep '^:' back.log)"
+    povray +Iglow.pov +Onear.png +W40 +H40 -D Declare=Camera_Perspective=1 >near.log 2>&1
+    expect_differing 100 1600 back.png near.png
 }
 
 run_tests "$@"

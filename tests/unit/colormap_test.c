@@ -265,6 +265,40 @@ static void bounds_part_classes_that_are_open_at_both_ends(void **state)
     colormap_release(&scale.map);
 }
 
+/* A mean of places that are all on a bound is rounded to either side of the bound. */
+static void a_value_on_a_bound_may_be_rounded_to_either_side(void **state)
+{
+    (void)state;
+    const double rounded = 1e-15, too_low = 1e-4;
+    ColorScale ranges[] = {ramp(false, 3, 2, 5), ramp(true, 3, 2, 16)};
+    ColorScale bounds = ramp(false, 0, 2, 5), one = ramp(false, 0, 3e-9, 3e-9);
+    for (int i = 0; i < 2; i++) {
+        assert_place(&ranges[i], ranges[i].log ? 4 - rounded : 3 - rounded, 0.5);
+        assert_place(&ranges[i], ranges[i].log ? 4 - too_low : 3 - too_low, 0);
+        ranges[i].over = ranges[i].under = (ScaleColor){true, {0.25f, 0.25f, 0.25f}};
+        assert_place(&ranges[i], ranges[i].range[0] - rounded, 0);
+        assert_place(&ranges[i], ranges[i].range[1] * (1 + rounded), 1);
+        const double outside[] = {2 - too_low, 2 - rounded, 16 * (1 + rounded), 16 + too_low};
+        assert_int_equal(colorscale_outside(&ranges[i], outside, 4).below, 1);
+        assert_int_equal(colorscale_outside(&ranges[i], outside, 4).above, ranges[i].log ? 1 : 2);
+        colormap_release(&ranges[i].map);
+    }
+    bounds.bounds[0] = 2.1;
+    bounds.bounds[1] = 4.7;
+    one.bounds[0] = 3e-9;
+    one.bounds[1] = 4e-9;
+    bounds.n_bounds = one.n_bounds = 2;
+    assert_place(&bounds, 2.1 - rounded, 0.5);
+    assert_place(&bounds, 2.1 - too_low, 0);
+    assert_place(&bounds, 4.7 - rounded, 1);
+    assert_place(&bounds, 4.7 - too_low, 0.5);
+    assert_place(&one, 2.9e-9, 0);
+    assert_place(&one, 3e-9, 0.5);
+    assert_place(&one, 3.9e-9, 0.5);
+    colormap_release(&bounds.map);
+    colormap_release(&one.map);
+}
+
 /* A ramp of 256 entries, between which the mixture is linear and not of codes. */
 static void a_ramp_has_the_colours_of_the_map(void **state)
 {
@@ -387,6 +421,7 @@ int main(void)
         cmocka_unit_test(a_scale_is_linear_in_values_or_in_their_logarithms),
         cmocka_unit_test(classes_are_equal_steps_that_use_the_whole_map),
         cmocka_unit_test(bounds_part_classes_that_are_open_at_both_ends),
+        cmocka_unit_test(a_value_on_a_bound_may_be_rounded_to_either_side),
         cmocka_unit_test(a_ramp_has_the_colours_of_the_map),
         cmocka_unit_test(whole_numbers_count_separate_colours_round_and_round),
         cmocka_unit_test(values_outside_may_have_colours_of_their_own),

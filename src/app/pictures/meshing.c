@@ -37,12 +37,17 @@ const char *const vessel_body_names[] = {
 
 static Status take_vessels(Meshing *made, VesselBody body, Err *err)
 {
-    size_t dropped;
-    TRY(stage_vessels(&made->of->tree, &made->vessels, &dropped, err));
+    StageReport report;
+    TRY(stage_vessels(&made->of->tree, &made->vessels, &report, err));
     made->vessels.body = body;
-    if (dropped)
+    if (report.dropped)
         fprintf(stderr, "corcast: %zu segments have no length or no radius and are left out\n",
-                dropped);
+                report.dropped);
+    if (report.covered)
+        fprintf(stderr,
+                "corcast: %zu segments lie within others between the same two points and are "
+                "left out\n",
+                report.covered);
     return STATUS_OK;
 }
 

@@ -320,6 +320,11 @@ static Status warn_of_losses(const Geometry *geometry, const StageReport *report
         fprintf(stderr,
                 "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
                 report->dropped, segments);
+    if (report->covered)
+        fprintf(stderr,
+                "corcast: %zu of %zu segments lie within others between the same two points "
+                "and are not drawn\n",
+                report->covered, segments);
     if (hidden)
         fprintf(stderr,
                 "corcast: %zu of %zu segments are too short for their radius: the potential is "
@@ -342,6 +347,71 @@ static Status warn_of_losses(const Geometry *geometry, const StageReport *report
             "corcast: at %zu places too many vessels meet to be joined; these are drawn round\n",
             report->places_crowded);
     return STATUS_OK;
+}
+
+/* Returns the farthest distance of a corner of the box from the camera, along rays. */
+static double farthest_corner(const Camera *camera, const Box *box)
+{
+    double farthest = 0;
+    for (int i = 0; i < 8; i++) {
+        const Vec3 corner = {i & 1 ? box->low.x : box->high.x, i & 2 ? box->low.y : box->high.y,
+                             i & 4 ? box->low.z : box->high.z};
+        const Vec3 from = vec3_sub(corner, camera->location);
+        farthest = fmax(farthest, camera->projection == PROJECTION_ORTHOGRAPHIC
+                                      ? vec3_dot(from, camera->direction)
+                                      : vec3_length(from));
+    }
+    return farthest;
+}
+
+/* Refuses a tiny tree of which POV-Ray's least distance from the camera hides everything, and
+ * reports one of which it hides a part. */
+static Status check_distance(const Scene *scene, bool quiet, Err *err)
+{
+    const Box *box = &scene->geometry.bounds;
+    const double least = render_nearest_mm(&scene->geometry);
+    const double size = vec3_distance(box->low, box->high);
+    double near_mm, far_mm;
+    if (size > 10 * least)
+        return STATUS_OK;
+    camera_depth_range(&scene->view.camera, *box, &near_mm, &far_mm);
+    if (farthest_corner(&scene->view.camera, box) <= least)
+        return err_set(err, STATUS_INPUT,
+                       "all of the tree is nearer to the camera than %g mm, where neither POV-Ray "
+                       "nor render sees it; a larger --input-unit or another camera shows it",
+                       least);
+    if (near_mm < least && !quiet)
+        fprintf(stderr,
+                "corcast: what is nearer to the camera than %g mm is not seen, as by POV-Ray; a "
+                "larger --input-unit or another camera shows all of the tree\n",
+                least);
+    return STATUS_OK;
+}
+
+/* Reports what POV-Ray's lengths below which it sees nothing, which render keeps to, hide of a tiny
+ * tree. */
+static void warn_of_limits(const Geometry *geometry, bool shadows)
+{
+    const double ball_mm = 1e-5, shadow_mm = fmax(render_nearest_mm(geometry), 1e-3);
+    double thickest = 0;
+    size_t balls = 0;
+    for (size_t i = 0; i < geometry->n_primitives; i++) {
+        thickest = fmax(thickest, geometry->primitives[i].radius_mm);
+        balls += geometry->primitives[i].kind == PRIMITIVE_SPHERE &&
+                 geometry->primitives[i].radius_mm <= ball_mm;
+    }
+    for (size_t i = 0; i < geometry->n_segments; i++)
+        thickest = fmax(thickest, geometry->segments[i].radius_mm);
+    if (balls)
+        fprintf(stderr,
+                "corcast: %zu balls of at most %g mm are not seen, as by POV-Ray; a larger "
+                "--input-unit shows them\n",
+                balls, ball_mm);
+    if (shadows && 2 * thickest < shadow_mm)
+        fprintf(stderr,
+                "corcast: what is nearer to a lit point than %g mm casts no shadow on it, as in "
+                "POV-Ray, and no vessel is as thick\n",
+                shadow_mm);
 }
 
 static bool is_xray(const Look *look)
@@ -569,6 +639,10 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
     StageReport staged;
     Scene made = {0};
     Status status = make_scene(options, source, &parsed->common, &made, &staged, err);
+    if (status == STATUS_OK)
+        status = check_distance(&made, parsed->common.quiet, err);
+    if (status == STATUS_OK && !parsed->common.quiet)
+        warn_of_limits(&made.geometry, options->stage.shadows);
     if (status == STATUS_OK && !parsed->common.quiet)
         status = warn_of_losses(&made.geometry, &staged, (JointForm)options->joints,
                                 source->of.pruned, err);

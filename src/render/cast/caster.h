@@ -11,6 +11,12 @@
 /* Of a blob neither is seen nor casts a shadow what is nearer than this. */
 #define BLOB_NEAREST_MM 1e-2
 
+/* Returns how near to the start of a ray crossings are not seen in this geometry. */
+static inline double caster_nearest_mm(const Geometry *geometry)
+{
+    return model_has(geometry->model, MODEL_BLOB) ? BLOB_NEAREST_MM : NEAREST_SEEN_MM;
+}
+
 /* Constant once built, but for the workspaces of its threads. */
 typedef struct Caster Caster;
 

@@ -386,8 +386,7 @@ static Status prepare_pass(const Drawing *drawing, int n, const double *offsets,
     const RenderParams *params = drawing->params;
     const Camera *camera = &drawing->view->camera;
     int width = camera->width * n, height = camera->height * n;
-    double nearest =
-        model_has(drawing->geometry->model, MODEL_BLOB) ? BLOB_NEAREST_MM : NEAREST_SEEN_MM;
+    double nearest = caster_nearest_mm(drawing->geometry);
     TRY(mem_calloc(&pass->columns, (size_t)width, sizeof *pass->columns, "columns", err));
     TRY(mem_calloc(&pass->rows, (size_t)height, sizeof *pass->rows, "rows", err));
     for (int i = 0; i < width; i++)
