@@ -20,6 +20,9 @@
 /* Liberation Sans, regular and bold, of templates/fonts: no other font is looked for. */
 typedef struct FigureFonts FigureFonts;
 
+/* Their files in the folder of templates; NULL ends the list. */
+extern const char *const figure_font_files[];
+
 /* Loads them from the folder of templates, in *out (owned). STATUS_IO naming the file that is
  * missing or no font. */
 MUST_CHECK Status figurefonts_load(const char *templates, FigureFonts **out, Err *err);

@@ -15,6 +15,10 @@ struct FigureFonts {
     FT_Face face[FACES];
 };
 
+const char *const figure_font_files[] = {[REGULAR] = "fonts/LiberationSans-Regular.ttf",
+                                         [BOLD] = "fonts/LiberationSans-Bold.ttf",
+                                         [FACES] = NULL};
+
 static Status load_face(FigureFonts *fonts, int i, const char *path, Err *err)
 {
     FT_Error failed = FT_New_Face(fonts->library, path, 0, &fonts->face[i]);
@@ -27,14 +31,12 @@ static Status load_face(FigureFonts *fonts, int i, const char *path, Err *err)
 
 static Status load(FigureFonts *fonts, const char *templates, Err *err)
 {
-    static const char *const files[FACES] = {"fonts/LiberationSans-Regular.ttf",
-                                             "fonts/LiberationSans-Bold.ttf"};
     Status status = STATUS_OK;
     if (FT_Init_FreeType(&fonts->library))
         return mem_out_of("to read", "fonts", err);
     for (int i = 0; i < FACES && status == STATUS_OK; i++) {
         char *path = NULL;
-        TRY(file_join(templates, files[i], &path, err));
+        TRY(file_join(templates, figure_font_files[i], &path, err));
         status = load_face(fonts, i, path, err);
         free(path);
     }
