@@ -196,9 +196,9 @@ test_failed_allocations_in_commands() {
     fail_here study plan.ini -o o --commands
 }
 
-# A PDF is cairo's, which is not safe from them.
 test_failed_allocations_in_pages() {
     inputs
+    fail_each 1 one render ../tree.swc --size 21x15 --antialias 1 --model cylinders --letter a --text-size 2 -o o.pdf
     fail_each 5 one render ../tree.swc --size 121x115 --color-by flow --legend --scale-bar 20 --text-size 2 -o o.png
     fail_each 9 one render ../tree.swc --size 21x15 --color-by flow --letter a --text-size 2 -o o.svg
     printf '[figure]\nsize = 40x30\ntext-size = 2\n[panel a]\ngrow = --terminals 3\n[inset i]\nof = a
