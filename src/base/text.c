@@ -138,6 +138,21 @@ size_t utf8_length(const char *bytes)
     return 0;
 }
 
+/* Returns true if the UTF-8 character of this length controls how text is laid out instead of being
+ * part of it: C0 and C1 controls, and the controls of bidirectional text, by which a name could be
+ * shown as another one. */
+static bool is_control(const char *chars, size_t length)
+{
+    const unsigned char *at = (const unsigned char *)chars;
+    if (length == 2) /* U+0080 to U+009F, U+061C */
+        return (at[0] == 0xc2 && at[1] < 0xa0) || (at[0] == 0xd8 && at[1] == 0x9c);
+    if (length == 3 && at[0] == 0xe2) /* U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069 */
+        return (at[1] == 0x80 &&
+                (at[2] == 0x8e || at[2] == 0x8f || (at[2] >= 0xaa && at[2] <= 0xae))) ||
+               (at[1] == 0x81 && at[2] >= 0xa6 && at[2] <= 0xa9);
+    return at[0] < ' ' || at[0] == 0x7f;
+}
+
 /* Appends `chars` as UTF-8, with `as_line` control characters as blanks. */
 static void put_utf8(Text *text, const char *chars, bool as_line)
 {
@@ -145,10 +160,7 @@ static void put_utf8(Text *text, const char *chars, bool as_line)
         text->failed = ENOMEM;
     while (chars && *chars) {
         size_t length = utf8_length(chars);
-        bool control = (unsigned char)*chars < ' ' || *chars == '\x7f' ||
-                       (length == 2 && (unsigned char)chars[0] == 0xc2 &&
-                        (unsigned char)chars[1] < 0xa0); /* U+0080 to U+009F */
-        if (as_line && control)
+        if (as_line && is_control(chars, length))
             text_puts(text, " ");
         else if (length == 0)
             text_puts(text, UTF8_REPLACEMENT);

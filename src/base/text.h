@@ -32,8 +32,8 @@ void text_puts(Text *text, const char *chars);
 /* Appends a whole text; one that failed makes `text` fail. */
 void text_add(Text *text, const Text *part);
 void text_printf(Text *text, const char *format, ...) PRINTF_LIKE(2, 3);
-/* Appends text from outside, say a file's name, as part of one line of UTF-8: a control character
- * becomes a blank, and a byte that is no UTF-8 becomes U+FFFD. */
+/* Appends text from outside, say a file's name, as part of one line of UTF-8: a control character,
+ * also one of bidirectional text, becomes a blank, and a byte that is no UTF-8 becomes U+FFFD. */
 void text_put_line(Text *text, const char *chars);
 /* Appends a word as a shell reads it: in quotes where the shell would take it apart. */
 void text_put_shell_word(Text *text, const char *word);

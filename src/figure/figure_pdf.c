@@ -64,29 +64,59 @@ static void put_ramp(const Canvas *canvas, const FigureItem *item)
     cairo_pattern_destroy(ramp);
 }
 
+/* Glyphs of one size, which cairo draws at once. */
+typedef struct Run {
+    const Glyph *glyph;
+    size_t n;
+    const char *text; /* that the glyphs stand for */
+    int bytes;        /* of the text */
+} Run;
+
+/* Returns the run at the beginning of `n` glyphs, whose text begins at `text`. */
+static Run first_run(const Glyph *glyph, size_t n, const char *text)
+{
+    Run run = {.glyph = glyph, .text = text};
+    while (run.n < n && glyph[run.n].scale == glyph->scale)
+        run.bytes += glyph[run.n++].bytes;
+    return run;
+}
+
 /* A cluster says which bytes of the text a glyph stands for, so that it can be searched. */
-static Status show_glyphs(const Canvas *canvas, const FigureItem *item, const Glyphs *glyphs,
-                          Err *err)
+static Status show_run(const Canvas *canvas, const FigureItem *item, const Run *run, Err *err)
 {
     const double size = item->size_pt * MM_PER_POINT;
     cairo_glyph_t *glyph = NULL;
     cairo_text_cluster_t *cluster = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&glyph, glyphs->n, sizeof *glyph, "letters", err));
-    TRY_GOTO(mem_calloc(&cluster, glyphs->n, sizeof *cluster, "letters", err));
-    for (size_t i = 0; i < glyphs->n; i++) {
-        const Glyph *from = &glyphs->glyph[i];
-        glyph[i] = (cairo_glyph_t){from->index, item->box.left + from->x * size, item->at[0].y};
+    TRY_GOTO(mem_calloc(&glyph, run->n, sizeof *glyph, "letters", err));
+    TRY_GOTO(mem_calloc(&cluster, run->n, sizeof *cluster, "letters", err));
+    for (size_t i = 0; i < run->n; i++) {
+        const Glyph *from = &run->glyph[i];
+        glyph[i] = (cairo_glyph_t){from->index, item->box.left + from->x * size,
+                                   item->at[0].y - from->rise * size};
         cluster[i] = (cairo_text_cluster_t){from->bytes, 1};
     }
     cairo_set_font_face(canvas->cairo, canvas->face[item->bold ? BOLD : REGULAR]);
-    cairo_set_font_size(canvas->cairo, size);
-    cairo_show_text_glyphs(canvas->cairo, item->text, -1, glyph, (int)glyphs->n, cluster,
-                           (int)glyphs->n, 0);
+    cairo_set_font_size(canvas->cairo, size * run->glyph->scale);
+    cairo_show_text_glyphs(canvas->cairo, run->text, run->bytes, glyph, (int)run->n, cluster,
+                           (int)run->n, 0);
 done:
     free(glyph);
     free(cluster);
     return status;
+}
+
+static Status show_glyphs(const Canvas *canvas, const FigureItem *item, const Glyphs *glyphs,
+                          Err *err)
+{
+    const char *text = item->text;
+    for (size_t i = 0; i < glyphs->n;) {
+        const Run run = first_run(&glyphs->glyph[i], glyphs->n - i, text);
+        TRY(show_run(canvas, item, &run, err));
+        i += run.n;
+        text += run.bytes;
+    }
+    return STATUS_OK;
 }
 
 static Status put_text(const Canvas *canvas, const FigureItem *item, Err *err)

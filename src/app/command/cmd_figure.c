@@ -246,7 +246,9 @@ static Status fill_page(Figure *figure, Err *err)
     for (size_t i = 0; i < figure->plan.n; i++)
         if (figure->plan.sections[i]->kind == SECTION_TEXT)
             TRY(put_text(figure, figure->plan.sections[i], err));
-    return figure_check(&figure->sheet.page, err);
+    TRY(figure_check(&figure->sheet.page, err));
+    figure_warn(&figure->sheet.page, "corcast figure", figure->parsed->common.quiet);
+    return STATUS_OK;
 }
 
 /* ---- files ----------------------------------------------------------------------------------- */
