@@ -7,6 +7,7 @@
 #include "base/hash.h"      // IWYU pragma: export
 #include "base/ini.h"       // IWYU pragma: export
 #include "base/interrupt.h" // IWYU pragma: export
+#include "base/isolated.h"  // IWYU pragma: export
 #include "base/json.h"      // IWYU pragma: export
 #include "base/logcurve.h"  // IWYU pragma: export
 #include "base/memory.h"    // IWYU pragma: export

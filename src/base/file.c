@@ -305,6 +305,18 @@ Status file_read(const char *path, const FileForm *form, char **bytes, size_t *s
     return status;
 }
 
+Status file_hash(const char *path, Hash *hash, Err *err)
+{
+    static const FileForm any = {.name = "a file", .most_bytes = 16e9};
+    char *bytes;
+    size_t size;
+    TRY(file_read(path, &any, &bytes, &size, err));
+    hash_add(hash, &size, sizeof size);
+    hash_add(hash, bytes, size);
+    free(bytes);
+    return STATUS_OK;
+}
+
 Status file_check_regular(const char *path, Err *err)
 {
     struct stat about;

@@ -2,6 +2,7 @@
 #ifndef CORCAST_BASE_FILE_H
 #define CORCAST_BASE_FILE_H
 
+#include "base/hash.h"
 #include "base/text.h"
 #include <stdbool.h>
 #include <stddef.h>
@@ -23,6 +24,8 @@ typedef struct FileForm {
  * STATUS_MEMORY naming the file. */
 MUST_CHECK Status file_read(const char *path, const FileForm *form, char **bytes, size_t *size,
                             Err *err);
+/* Adds the size and the bytes of a file to `hash`. Errors as file_read. */
+MUST_CHECK Status file_hash(const char *path, Hash *hash, Err *err);
 /* Makes a text of what was read as bytes, as file_read does; `path` and `form` are for the
  * sentence. */
 MUST_CHECK Status file_to_text(const char *path, const FileForm *form, char *bytes, size_t *size,

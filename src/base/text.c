@@ -138,20 +138,19 @@ size_t utf8_length(const char *bytes)
     return 0;
 }
 
-/* Whether a UTF-8 character is one that controls a terminal or the direction of text: U+0000 to
- * U+001F, U+007F to U+009F, U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069. The latter
- * can make a name read as another. */
+/* Returns true if the UTF-8 character of this length controls how text is laid out instead of being
+ * part of it: C0 and C1 controls, and the controls of bidirectional text, by which a name could be
+ * shown as another one. */
 static bool is_control(const char *chars, size_t length)
 {
     const unsigned char *at = (const unsigned char *)chars;
-    if (length < 2)
-        return *at < ' ' || *at == 0x7f;
-    if (length == 2)
+    if (length == 2) /* U+0080 to U+009F, U+061C */
         return (at[0] == 0xc2 && at[1] < 0xa0) || (at[0] == 0xd8 && at[1] == 0x9c);
-    return length == 3 && at[0] == 0xe2 &&
-           ((at[1] == 0x80 &&
-             (at[2] == 0x8e || at[2] == 0x8f || (at[2] >= 0xaa && at[2] <= 0xae))) ||
-            (at[1] == 0x81 && at[2] >= 0xa6 && at[2] <= 0xa9));
+    if (length == 3 && at[0] == 0xe2) /* U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069 */
+        return (at[1] == 0x80 &&
+                (at[2] == 0x8e || at[2] == 0x8f || (at[2] >= 0xaa && at[2] <= 0xae))) ||
+               (at[1] == 0x81 && at[2] >= 0xa6 && at[2] <= 0xa9);
+    return at[0] < ' ' || at[0] == 0x7f;
 }
 
 /* Appends `chars` as UTF-8, with `as_line` control characters as blanks. */
@@ -246,7 +245,7 @@ void text_escaped(Text *text, const char *chars)
             text_puts(text, entity);
         else if (length == 0)
             text_puts(text, UTF8_REPLACEMENT);
-        else if (!is_control(chars, length) || *chars == '\n' || *chars == '\t')
+        else if ((unsigned char)*chars >= ' ' || *chars == '\n' || *chars == '\t')
             text_append(text, chars, length);
         chars += length ? length : 1;
     }

@@ -32,9 +32,8 @@ void text_puts(Text *text, const char *chars);
 /* Appends a whole text; one that failed makes `text` fail. */
 void text_add(Text *text, const Text *part);
 void text_printf(Text *text, const char *format, ...) PRINTF_LIKE(2, 3);
-/* Appends text from outside, say a file's name, as part of one line of UTF-8: a control character
- * becomes a blank, as does one that sets the direction of text (U+202E and its kin), and a byte
- * that is no UTF-8 becomes U+FFFD. */
+/* Appends text from outside, say a file's name, as part of one line of UTF-8: a control character,
+ * also one of bidirectional text, becomes a blank, and a byte that is no UTF-8 becomes U+FFFD. */
 void text_put_line(Text *text, const char *chars);
 /* Appends a word as a shell reads it: in quotes where the shell would take it apart. */
 void text_put_shell_word(Text *text, const char *word);
@@ -80,9 +79,8 @@ size_t utf8_length(const char *bytes);
 /* Appends `chars` as UTF-8: each byte that is of no well-formed character becomes U+FFFD. For names
  * of files, which may be any bytes, where UTF-8 is promised. */
 void text_utf8(Text *text, const char *chars);
-/* Appends `chars` with & < > " and ' as entities, without control characters and characters that
- * set the direction of text, and with U+FFFD for what is not UTF-8: for HTML and XML, in elements
- * and attributes. */
+/* Appends `chars` with & < > " and ' as entities, without control characters, and with U+FFFD for
+ * what is not UTF-8: for HTML and XML, in elements and attributes. */
 void text_escaped(Text *text, const char *chars);
 
 /* Appends `size` bytes in base64 [RFC 4648]. Pieces of one text of base64 have sizes that 3

@@ -160,8 +160,10 @@ Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err)
         return STATUS_OK;
     Text able = TEXT_INIT;
     models_of(emitter->elements, &able);
-    Status status = err_set(err, STATUS_USAGE, "`model` %s: %s holds %s", models[model].name,
-                            emitter->description, text_chars(&able));
+    Status status = text_check(&able, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE, "`model` %s: %s holds %s", models[model].name,
+                         emitter->description, text_chars(&able));
     text_release(&able);
     return status;
 }

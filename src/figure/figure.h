@@ -20,6 +20,9 @@
 /* Liberation Sans, regular and bold, of templates/fonts: no other font is looked for. */
 typedef struct FigureFonts FigureFonts;
 
+/* Their files in the folder of templates; NULL ends the list. */
+extern const char *const figure_font_files[];
+
 /* Loads them from the folder of templates, in *out (owned). STATUS_IO naming the file that is
  * missing or no font. */
 MUST_CHECK Status figurefonts_load(const char *templates, FigureFonts **out, Err *err);
@@ -27,6 +30,16 @@ void figurefonts_free(FigureFonts *fonts);
 
 /* The width of a line of UTF-8, in mm. */
 double figure_text_width(const FigureFonts *fonts, const char *text, double size_pt, bool bold);
+
+/* Letters that the font lacks, each once, in the order of the texts; the first FIGURE_LETTERS of
+ * each kind. */
+enum { FIGURE_LETTERS = 8 };
+typedef struct FigureLetters {
+    uint32_t substituted[FIGURE_LETTERS]; /* drawn by other letters: superscripts and subscripts by
+                                             small ones */
+    uint32_t boxed[FIGURE_LETTERS];       /* drawn as a box */
+    int n_substituted, n_boxed;
+} FigureLetters;
 
 /* ---- a page ---------------------------------------------------------------------------------- */
 
@@ -79,8 +92,8 @@ typedef struct FigurePage {
     const FigureFonts *fonts; /* borrowed */
     FigureItem *items;        /* owned */
     size_t n, capacity;
-    bool failed;     /* memory ran out while something was added */
-    uint32_t letter; /* the first that the fonts do not have; 0: they have all */
+    bool failed;            /* memory ran out while something was added */
+    FigureLetters replaced; /* letters of all texts that the font lacks */
 } FigurePage;
 
 /* *page without items, of a size in mm; the fonts are borrowed. */
@@ -105,7 +118,7 @@ void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at
                         FigureColor color);
 
 typedef struct FigureText {
-    const char *text; /* one line of UTF-8; copied */
+    const char *text; /* one line of UTF-8; copied; control characters become blanks */
     double x, y;      /* of the baseline */
     double size_pt;
     bool bold;
@@ -114,9 +127,11 @@ typedef struct FigureText {
 } FigureText;
 void figure_add_text(FigurePage *page, const FigureText *text);
 
-/* STATUS_MEMORY when something could not be added; STATUS_USAGE, naming it, when a text has a
- * letter that the fonts do not have. */
+/* STATUS_MEMORY when something could not be added. */
 MUST_CHECK Status figure_check(const FigurePage *page, Err *err);
+/* Prints a warning on standard error for letters that the font lacks: one line for boxes and,
+ * unless `quiet`, one for substitutes. Each line begins with `command`. */
+void figure_warn(const FigurePage *page, const char *command, bool quiet);
 
 /* What the items from number `first` on cover, and moves them. Not for pictures. */
 FigureBox figure_bounds(const FigurePage *page, size_t first);

@@ -1,5 +1,9 @@
 /* A page as PDF, through cairo: text as text, in subsets of the two fonts, and no date but one that
- * is always the same. */
+ * is always the same.
+ *
+ * cairo 1.16 ignores some failed allocations and crashes by others, and it keeps the fonts for as
+ * long as the process lives. So it runs in a process of its own, and what it writes is checked
+ * before the file is. */
 #include "figure/fonts.h"
 
 #include <cairo-ft.h>
@@ -60,29 +64,59 @@ static void put_ramp(const Canvas *canvas, const FigureItem *item)
     cairo_pattern_destroy(ramp);
 }
 
+/* Glyphs of one size, which cairo draws at once. */
+typedef struct Run {
+    const Glyph *glyph;
+    size_t n;
+    const char *text; /* that the glyphs stand for */
+    int bytes;        /* of the text */
+} Run;
+
+/* Returns the run at the beginning of `n` glyphs, whose text begins at `text`. */
+static Run first_run(const Glyph *glyph, size_t n, const char *text)
+{
+    Run run = {.glyph = glyph, .text = text};
+    while (run.n < n && glyph[run.n].scale == glyph->scale)
+        run.bytes += glyph[run.n++].bytes;
+    return run;
+}
+
 /* A cluster says which bytes of the text a glyph stands for, so that it can be searched. */
-static Status show_glyphs(const Canvas *canvas, const FigureItem *item, const Glyphs *glyphs,
-                          Err *err)
+static Status show_run(const Canvas *canvas, const FigureItem *item, const Run *run, Err *err)
 {
     const double size = item->size_pt * MM_PER_POINT;
     cairo_glyph_t *glyph = NULL;
     cairo_text_cluster_t *cluster = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&glyph, glyphs->n, sizeof *glyph, "letters", err));
-    TRY_GOTO(mem_calloc(&cluster, glyphs->n, sizeof *cluster, "letters", err));
-    for (size_t i = 0; i < glyphs->n; i++) {
-        const Glyph *from = &glyphs->glyph[i];
-        glyph[i] = (cairo_glyph_t){from->index, item->box.left + from->x * size, item->at[0].y};
+    TRY_GOTO(mem_calloc(&glyph, run->n, sizeof *glyph, "letters", err));
+    TRY_GOTO(mem_calloc(&cluster, run->n, sizeof *cluster, "letters", err));
+    for (size_t i = 0; i < run->n; i++) {
+        const Glyph *from = &run->glyph[i];
+        glyph[i] = (cairo_glyph_t){from->index, item->box.left + from->x * size,
+                                   item->at[0].y - from->rise * size};
         cluster[i] = (cairo_text_cluster_t){from->bytes, 1};
     }
     cairo_set_font_face(canvas->cairo, canvas->face[item->bold ? BOLD : REGULAR]);
-    cairo_set_font_size(canvas->cairo, size);
-    cairo_show_text_glyphs(canvas->cairo, item->text, -1, glyph, (int)glyphs->n, cluster,
-                           (int)glyphs->n, 0);
+    cairo_set_font_size(canvas->cairo, size * run->glyph->scale);
+    cairo_show_text_glyphs(canvas->cairo, run->text, run->bytes, glyph, (int)run->n, cluster,
+                           (int)run->n, 0);
 done:
     free(glyph);
     free(cluster);
     return status;
+}
+
+static Status show_glyphs(const Canvas *canvas, const FigureItem *item, const Glyphs *glyphs,
+                          Err *err)
+{
+    const char *text = item->text;
+    for (size_t i = 0; i < glyphs->n;) {
+        const Run run = first_run(&glyphs->glyph[i], glyphs->n - i, text);
+        TRY(show_run(canvas, item, &run, err));
+        i += run.n;
+        text += run.bytes;
+    }
+    return STATUS_OK;
 }
 
 static Status put_text(const Canvas *canvas, const FigureItem *item, Err *err)
@@ -208,8 +242,10 @@ static Status put_page(const Canvas *canvas, Err *err)
     for (size_t i = 0; i < page->n; i++)
         if (page->items[i].kind == FIGURE_PICTURE)
             TRY(put_picture(canvas, &page->items[i], err));
-    for (size_t i = 0; i < page->n; i++)
+    for (size_t i = 0; i < page->n; i++) {
         TRY(put_item(canvas, &page->items[i], err));
+        TRY(check(cairo_status(canvas->cairo), err));
+    }
     return STATUS_OK;
 }
 
@@ -233,12 +269,14 @@ static bool has_object(const Text *pdf, size_t table, size_t i)
     return at + length <= pdf->length && strncmp(bytes + at, head, length) == 0;
 }
 
-/* cairo 1.16 does not tell that memory has run out while it ended a page: then its table of objects
- * is missing, or some of these are. */
+/* Returns true if the file is complete: its end, its table of objects, and every object of the
+ * table are there. */
 static bool is_whole(const Text *pdf)
 {
     static const char begin[] = "startxref\n", end[] = "%%EOF\n";
     const char *bytes = text_chars(pdf);
+    if (!bytes)
+        return false;
     size_t at = pdf->length < 40 ? 0 : pdf->length - 40, n = 0;
     int length = 0;
     if (at == 0 || strcmp(bytes + pdf->length - strlen(end), end) != 0)
@@ -265,42 +303,44 @@ static void set_notes(cairo_surface_t *pdf, const FigureNotes *notes)
     cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_MOD_DATE, date);
 }
 
-/* What is drawn with a font, cairo keeps: the fonts are to outlive it, and it is given up here. */
-static void release_fonts(const Canvas *canvas)
+/* What the child process draws. */
+typedef struct PdfWork {
+    const FigurePage *page;
+    const FigureNotes *notes;
+} PdfWork;
+
+/* Ends the page and the file, and returns the first error of both. */
+static cairo_status_t finish(cairo_t *cairo, cairo_surface_t *pdf)
 {
-    for (int i = 0; i < FACES; i++)
-        cairo_font_face_destroy(canvas->face[i]);
-    cairo_debug_reset_static_data();
+    cairo_show_page(cairo);
+    cairo_status_t failed = cairo_status(cairo);
+    cairo_surface_finish(pdf);
+    return failed == CAIRO_STATUS_SUCCESS ? cairo_surface_status(pdf) : failed;
 }
 
-static Status put_pdf(const FigurePage *page, const FigureNotes *notes, Text *bytes, Err *err)
+/* An IsolatedWork: the process ends when this returns, so that nothing is released. */
+static Status put_pdf(const void *context, Text *bytes, Err *err)
 {
+    const PdfWork *work = context;
+    const FigurePage *page = work->page;
     cairo_surface_t *pdf = cairo_pdf_surface_create_for_stream(
         take_bytes, bytes, page->width_mm / MM_PER_POINT, page->height_mm / MM_PER_POINT);
     Canvas canvas = {.cairo = cairo_create(pdf), .page = page};
-    set_notes(pdf, notes);
+    set_notes(pdf, work->notes);
     cairo_scale(canvas.cairo, 1 / MM_PER_POINT, 1 / MM_PER_POINT);
-    Status status = set_fonts(&canvas, err);
-    if (status == STATUS_OK)
-        status = put_page(&canvas, err);
-    cairo_show_page(canvas.cairo);
-    cairo_status_t failed = cairo_status(canvas.cairo);
-    cairo_destroy(canvas.cairo);
-    cairo_surface_finish(pdf);
-    if (failed == CAIRO_STATUS_SUCCESS)
-        failed = cairo_surface_status(pdf);
-    cairo_surface_destroy(pdf);
-    release_fonts(&canvas);
-    TRY(status);
-    TRY(check(failed, err));
-    return is_whole(bytes) ? STATUS_OK : mem_out_of("for", "the page", err);
+    TRY(set_fonts(&canvas, err));
+    TRY(put_page(&canvas, err));
+    return check(finish(canvas.cairo, pdf), err);
 }
 
 Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, const char *path,
                         Err *err)
 {
+    const PdfWork work = {page, notes};
     Text bytes = TEXT_INIT;
-    Status status = put_pdf(page, notes, &bytes, err);
+    Status status = isolated_run(put_pdf, &work, "the page", &bytes, err);
+    if (status == STATUS_OK && !is_whole(&bytes))
+        status = mem_out_of("for", "the page", err);
     if (status == STATUS_OK)
         status = file_write_text(path, &bytes, err);
     text_release(&bytes);

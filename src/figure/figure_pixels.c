@@ -168,11 +168,11 @@ static Status draw_glyph(Target *target, FT_Face face, const Glyph *glyph, Figur
     if (FT_Load_Glyph(face, glyph->index, FT_LOAD_NO_SCALE))
         return mem_out_of("for", "letters", err);
     FT_Outline *outline = &face->glyph->outline;
-    const double scale = size / face->units_per_EM;
+    const double scale = glyph->scale * size / face->units_per_EM;
     for (int i = 0; i < outline->n_points; i++) {
         FT_Vector *point = &outline->points[i];
         *point = vector_of(target, at.x + glyph->x * size + (double)point->x * scale,
-                           at.y - (double)point->y * scale);
+                           at.y - glyph->rise * size - (double)point->y * scale);
     }
     return fill(target, outline, err);
 }

@@ -15,6 +15,10 @@ struct FigureFonts {
     FT_Face face[FACES];
 };
 
+const char *const figure_font_files[] = {[REGULAR] = "fonts/LiberationSans-Regular.ttf",
+                                         [BOLD] = "fonts/LiberationSans-Bold.ttf",
+                                         [FACES] = NULL};
+
 static Status load_face(FigureFonts *fonts, int i, const char *path, Err *err)
 {
     FT_Error failed = FT_New_Face(fonts->library, path, 0, &fonts->face[i]);
@@ -27,14 +31,12 @@ static Status load_face(FigureFonts *fonts, int i, const char *path, Err *err)
 
 static Status load(FigureFonts *fonts, const char *templates, Err *err)
 {
-    static const char *const files[FACES] = {"fonts/LiberationSans-Regular.ttf",
-                                             "fonts/LiberationSans-Bold.ttf"};
     Status status = STATUS_OK;
     if (FT_Init_FreeType(&fonts->library))
         return mem_out_of("to read", "fonts", err);
     for (int i = 0; i < FACES && status == STATUS_OK; i++) {
         char *path = NULL;
-        TRY(file_join(templates, files[i], &path, err));
+        TRY(file_join(templates, figure_font_files[i], &path, err));
         status = load_face(fonts, i, path, err);
         free(path);
     }
@@ -93,22 +95,86 @@ static uint32_t character(const char *at, size_t length)
     return code;
 }
 
+/* ---- letters that the font lacks ------------------------------------------------------------- */
+
+typedef enum SubstituteForm { SAME_SIZE, RAISED, LOWERED } SubstituteForm;
+
+/* How a letter that the font lacks is drawn by one that it has. */
+typedef struct Substitute {
+    uint32_t letter, drawn;
+    SubstituteForm form;
+} Substitute;
+
+static const Substitute substitutes[] = {
+    {0x2011, '-', SAME_SIZE},  {0x2070, '0', RAISED},    {0x2071, 'i', RAISED},
+    {0x207a, '+', RAISED},     {0x207b, 0x2212, RAISED}, {0x207c, '=', RAISED},
+    {0x207d, '(', RAISED},     {0x207e, ')', RAISED},    {0x208a, '+', LOWERED},
+    {0x208b, 0x2212, LOWERED}, {0x208c, '=', LOWERED},   {0x208d, '(', LOWERED},
+    {0x208e, ')', LOWERED},    {0x2095, 'h', LOWERED},   {0x2096, 'k', LOWERED},
+    {0x2097, 'l', LOWERED},    {0x2098, 'm', LOWERED},   {0x2099, 'n', LOWERED},
+    {0x209a, 'p', LOWERED},    {0x209b, 's', LOWERED},   {0x209c, 't', LOWERED},
+    {0x2c7c, 'j', LOWERED},
+};
+
+/* Size and baseline of Liberation Sans's own superscript and subscript digits, so that both kinds
+ * stand side by side: U+2074 is 812 units high beside 1409 of a 4 and stands 525 of 2048 units
+ * above the line, U+2084 175 below. */
+static const double small_scale = 0.576, raised_by = 0.256, lowered_by = -0.085;
+
+static void list_letter(uint32_t *list, int *n, uint32_t letter)
+{
+    for (int i = 0; i < *n; i++)
+        if (list[i] == letter)
+            return;
+    if (*n < FIGURE_LETTERS)
+        list[(*n)++] = letter;
+}
+
+void letters_add(FigureLetters *to, const FigureLetters *from)
+{
+    for (int i = 0; i < from->n_substituted; i++)
+        list_letter(to->substituted, &to->n_substituted, from->substituted[i]);
+    for (int i = 0; i < from->n_boxed; i++)
+        list_letter(to->boxed, &to->n_boxed, from->boxed[i]);
+}
+
+/* Returns the glyph of a letter with its form, and lists the letter if the font lacks it. */
+static Glyph find_glyph(FT_Face face, uint32_t letter, FigureLetters *replaced)
+{
+    Glyph glyph = {.index = FT_Get_Char_Index(face, letter), .scale = 1};
+    if (glyph.index)
+        return glyph;
+    for (size_t i = 0; i < sizeof substitutes / sizeof *substitutes; i++) {
+        const Substitute *by = &substitutes[i];
+        if (by->letter != letter)
+            continue;
+        list_letter(replaced->substituted, &replaced->n_substituted, letter);
+        glyph.index = FT_Get_Char_Index(face, by->drawn);
+        glyph.scale = by->form == SAME_SIZE ? 1 : small_scale;
+        glyph.rise = by->form == RAISED ? raised_by : by->form == LOWERED ? lowered_by : 0;
+        return glyph;
+    }
+    list_letter(replaced->boxed, &replaced->n_boxed, letter);
+    return glyph;
+}
+
+/* ---- lines ----------------------------------------------------------------------------------- */
+
 /* FreeType fails here only where memory does. */
 static Status add_letter(FT_Face face, uint32_t letter, int bytes, Glyphs *glyphs, Err *err)
 {
     const double em = face->units_per_EM;
-    const unsigned before = glyphs->n ? glyphs->glyph[glyphs->n - 1].index : 0;
-    const unsigned index = FT_Get_Char_Index(face, letter);
+    const Glyph *before = glyphs->n ? &glyphs->glyph[glyphs->n - 1] : NULL;
+    Glyph glyph = find_glyph(face, letter, &glyphs->replaced);
     FT_Vector pair = {0, 0};
-    if (before && index)
-        (void)!FT_Get_Kerning(face, before, index, FT_KERNING_UNSCALED, &pair);
-    if (!index && !glyphs->missing)
-        glyphs->missing = letter;
-    if (FT_Load_Glyph(face, index, FT_LOAD_NO_SCALE))
+    if (before && before->index && glyph.index && before->scale == 1 && glyph.scale == 1)
+        (void)!FT_Get_Kerning(face, before->index, glyph.index, FT_KERNING_UNSCALED, &pair);
+    if (FT_Load_Glyph(face, glyph.index, FT_LOAD_NO_SCALE))
         return mem_out_of("for", "letters", err);
-    glyphs->glyph[glyphs->n++] =
-        (Glyph){.index = index, .bytes = bytes, .x = glyphs->width + (double)pair.x / em};
-    glyphs->width += ((double)pair.x + (double)face->glyph->advance.x) / em;
+    glyph.bytes = bytes;
+    glyph.x = glyphs->width + (double)pair.x / em;
+    glyphs->width += ((double)pair.x + glyph.scale * (double)face->glyph->advance.x) / em;
+    glyphs->glyph[glyphs->n++] = glyph;
     return STATUS_OK;
 }
 

@@ -6,21 +6,27 @@
 #include <ft2build.h>
 #include FT_FREETYPE_H
 
-/* A letter of a line. */
+/* A letter of a line. Lengths are in sizes of the font. */
 typedef struct Glyph {
-    unsigned index;
-    int bytes; /* of the text */
-    double x;  /* from where the line begins, in sizes of the font */
+    unsigned index; /* 0: the font's box for a letter that it lacks */
+    int bytes;      /* of the text */
+    double x;       /* from where the line begins */
+    double scale;   /* of the glyph: 1, or less for a substitute of a superscript or subscript */
+    double rise;    /* of the glyph's baseline above the line's */
 } Glyph;
 
 typedef struct Glyphs {
     Glyph *glyph; /* owned */
     size_t n;
-    double width;     /* in sizes of the font */
-    uint32_t missing; /* the first letter that the font lacks; 0: none */
+    double width;           /* in sizes of the font */
+    FigureLetters replaced; /* letters of the text that the font lacks */
 } Glyphs;
 
-/* STATUS_MEMORY; *out is owned (glyphs_release). */
+/* Adds those letters of `from` that `to` does not list yet. */
+void letters_add(FigureLetters *to, const FigureLetters *from);
+
+/* Lays out a line of text. A letter that the font lacks becomes a substitute or a box.
+ * STATUS_MEMORY; *out is owned (glyphs_release). */
 MUST_CHECK Status fonts_shape(const FigureFonts *fonts, const char *text, bool bold, Glyphs *out,
                               Err *err);
 void glyphs_release(Glyphs *glyphs);

@@ -3,6 +3,7 @@
 #include "figure/fonts.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -113,19 +114,14 @@ void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at
                            .strokes = strokes});
 }
 
-/* The item of a line of these glyphs. */
-static void add_line_of_text(FigurePage *page, const FigureText *text, const Glyphs *glyphs)
+/* Appends the item of a line of these glyphs; takes `chars`, also on failure. */
+static void add_line_of_text(FigurePage *page, const FigureText *text, char *chars,
+                             const Glyphs *glyphs)
 {
     const double size = text->size_pt * MM_PER_POINT, width = glyphs->width * size;
     const double before[] = {[ALIGN_LEFT] = 0, [ALIGN_CENTER] = width / 2, [ALIGN_RIGHT] = width};
     const double left = text->x - before[text->align];
-    char *copy = NULL;
-    if (!page->letter)
-        page->letter = glyphs->missing;
-    if (mem_strdup(&copy, text->text, NULL) != STATUS_OK) {
-        page->failed = true;
-        return;
-    }
+    letters_add(&page->replaced, &glyphs->replaced);
     if (!add(page, (FigureItem){.kind = FIGURE_TEXT,
                                 .box = {left, text->y - FONT_CAPITALS * size, left + width,
                                         text->y + FONT_DESCENT * size},
@@ -135,30 +131,49 @@ static void add_line_of_text(FigurePage *page, const FigureText *text, const Gly
                                 .align = text->align,
                                 .bold = text->bold,
                                 .size_pt = text->size_pt,
-                                .text = copy}))
-        free(copy);
+                                .text = chars}))
+        free(chars);
 }
 
 void figure_add_text(FigurePage *page, const FigureText *text)
 {
+    Text clean = TEXT_INIT;
     Glyphs glyphs;
-    if (fonts_shape(page->fonts, text->text, text->bold, &glyphs, NULL) != STATUS_OK) {
+    char *chars = NULL;
+    text_put_line(&clean, text->text);
+    if (text_take(&clean, &chars, NULL) != STATUS_OK ||
+        fonts_shape(page->fonts, chars, text->bold, &glyphs, NULL) != STATUS_OK) {
+        free(chars);
         page->failed = true;
-        return;
+    } else {
+        add_line_of_text(page, text, chars, &glyphs);
+        glyphs_release(&glyphs);
     }
-    add_line_of_text(page, text, &glyphs);
-    glyphs_release(&glyphs);
+    text_release(&clean);
 }
 
 Status figure_check(const FigurePage *page, Err *err)
 {
-    if (page->failed)
-        return mem_out_of("for", "the page", err);
-    if (page->letter)
-        return err_set(err, STATUS_USAGE,
-                       "a text has the letter U+%04X, which the font Liberation Sans lacks",
-                       (unsigned)page->letter);
-    return STATUS_OK;
+    return page->failed ? mem_out_of("for", "the page", err) : STATUS_OK;
+}
+
+static void print_letters(const char *command, const uint32_t *letters, int n, const char *drawn)
+{
+    if (n == 0)
+        return;
+    fprintf(stderr, "%s: the font Liberation Sans lacks", command);
+    for (int i = 0; i < n; i++)
+        fprintf(stderr, "%s U+%04X", i ? "," : "", (unsigned)letters[i]);
+    fprintf(stderr, "; %s\n", drawn);
+}
+
+void figure_warn(const FigurePage *page, const char *command, bool quiet)
+{
+    const FigureLetters *replaced = &page->replaced;
+    print_letters(command, replaced->boxed, replaced->n_boxed, "a box is drawn in place of each");
+    if (!quiet)
+        print_letters(command, replaced->substituted, replaced->n_substituted,
+                      "ordinary letters are drawn, small and raised or lowered");
 }
 
 FigureBox figure_bounds(const FigurePage *page, size_t first)

@@ -204,12 +204,14 @@ static Status no_layer(const Exr *self, int parts, Err *err)
     for (int i = 0; i < parts; i++)
         text_printf(&names, "%s'%s'", i ? ", " : "", part_name(self, i));
     const char *layer = self->file.layer;
-    Status status =
-        !layer || parts > 1
-            ? err_set(err, STATUS_INPUT, "%s: has %d parts, %s; %s%s%s", self->file.name, parts,
-                      text_chars(&names), layer ? "none has the name or the layer '" : "name one",
-                      layer ? layer : "", layer ? "'" : "")
-            : err_set(err, STATUS_INPUT, "%s: has no layer '%s'", self->file.name, layer);
+    Status status = text_check(&names, err);
+    if (status == STATUS_OK)
+        status = !layer || parts > 1
+                     ? err_set(err, STATUS_INPUT, "%s: has %d parts, %s; %s%s%s", self->file.name,
+                               parts, text_chars(&names),
+                               layer ? "none has the name or the layer '" : "name one",
+                               layer ? layer : "", layer ? "'" : "")
+                     : err_set(err, STATUS_INPUT, "%s: has no layer '%s'", self->file.name, layer);
     text_release(&names);
     return status;
 }

@@ -55,12 +55,20 @@ static bool lasting;
 static bool counting;
 static atomic_ulong *count_of_run; /* shared with the run */
 
+/* A process that the program forks counts on from where it was forked, beside the program itself. */
+static void raise_to(atomic_ulong *count, unsigned long number)
+{
+    unsigned long before = atomic_load(count);
+    while (before < number && !atomic_compare_exchange_weak(count, &before, number))
+        ;
+}
+
 static bool fails(void)
 {
     if (!counting)
         return false;
     unsigned long number = atomic_fetch_add(&allocations, 1) + 1;
-    atomic_store(count_of_run, number);
+    raise_to(count_of_run, number);
     if (!failing || (lasting ? number < failing : number != failing))
         return false;
     errno = ENOMEM;

@@ -196,9 +196,9 @@ test_failed_allocations_in_commands() {
     fail_here study plan.ini -o o --commands
 }
 
-# A PDF is cairo's, which is not safe from them.
 test_failed_allocations_in_pages() {
     inputs
+    fail_each 1 one render ../tree.swc --size 21x15 --antialias 1 --model cylinders --letter a --text-size 2 -o o.pdf
     fail_each 5 one render ../tree.swc --size 121x115 --color-by flow --legend --scale-bar 20 --text-size 2 -o o.png
     fail_each 9 one render ../tree.swc --size 21x15 --color-by flow --letter a --text-size 2 -o o.svg
     printf '[figure]\nsize = 40x30\ntext-size = 2\n[panel a]\ngrow = --terminals 3\n[inset i]\nof = a
@@ -293,6 +293,10 @@ test_failed_allocations_in_wrong_use() {
     fail_each 1 one render tree.swc --model nosuch -o o.png
     fail_each 1 one grow --domain nosuch:3 -o o.swc
     fail_each 1 one render "$DATA/bifurcation.swc" --color-by nosuch -o o.png
+    fail_each 1 one render "$DATA/bifurcation.swc" --model mesh --method zbuffer -o o.png
+    fail_each 1 one scene "$DATA/bifurcation.swc" --model mesh -o o.tachyon
+    fail_each 1 one scene "$DATA/bifurcation.swc" -o o.nosuch
+    fail_each 1 one convert "$DATA/images/parts.exr" o.ppm
 }
 
 run_tests "$@"

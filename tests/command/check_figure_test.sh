@@ -77,6 +77,46 @@ test_figures_and_pages_of_several_parts_go_by_presets() {
     taken springer two.tif
 }
 
+# drawn PIXELS LINES [OPTION...]: a figure whose [figure] has these lines has so many pixels.
+drawn() {
+    printf "[figure]\n$2\n[panel a]\ntree = tree.swc\nantialias = 1\n" >given.ini
+    run_ok corcast figure given.ini "${@:3}" -o given.tif
+    oiiotool --info given.tif | grep -q " $1," ||
+        fail "expected $1 pixels of '$2' ${*:3}, got $(oiiotool --info given.tif)"
+}
+
+test_what_is_given_wins_over_a_preset_in_every_order() {
+    grow_tree 3
+    drawn '72 x  *35' 'size = 183mmx90mm\npreset = nature\ndpi = 10'
+    drawn '72 x  *35' 'preset = nature\ndpi = 10\nsize = 183mmx90mm'
+    drawn '72 x  *35' 'column = double\npreset = plos\nsize = 183mmx90mm' --dpi 10
+    drawn '72 x  *35' 'size = 183mmx90mm\ndpi = 10' --preset nature
+    drawn '72 x  *35' 'preset = nature' --size 183mmx90mm --dpi 10
+    drawn '72 x  *35' 'preset = nature\nsize = 20mmx20mm\ndpi = 90' --size 183mmx90mm --dpi 10
+    drawn '35 x  *35' 'preset = nature\ndpi = 10' --quiet
+    drawn '72 x  *67' 'preset = nature\ndpi = 10' --column double
+    drawn '72 x  *67' 'column = double\ndpi = 10' --preset nature
+    drawn '72 x  *35' 'size = 183mmx90mm\npreset = plos\ndpi = 10\ncompression = none'
+    oiiotool --info -v given.tif | grep -q 'ompression.*none' || fail "expected what the recipe compresses by"
+    run_ok corcast figure given.ini --preset nature --size 90mmx30mm --dpi 10 --dump-recipe -o a.tif
+    mkdir again
+    cp tree.swc again
+    mv stdout again/given.ini
+    run_ok corcast figure again/given.ini -o b.tif
+    expect_same a.tif b.tif
+}
+
+test_a_text_size_of_all_panels_wins_over_the_page() {
+    grow_tree 3
+    printf '[panels]\ntree = tree.swc\nscale-bar = 9\ntext-size = 11\n[panel a]\n' >sized.ini
+    run_ok corcast figure sized.ini -o sized.svg
+    grep '>9 mm<' sized.svg | grep -q '3\.881' || fail "expected 11 points: $(grep '>9 mm<' sized.svg)"
+    printf '[panel a]\ntree = tree.swc\npreset = plos\n' >panel.ini
+    run corcast figure panel.ini -o panel.svg
+    expect_status 2
+    expect_sentence "panel.ini:3: 'preset' is not a key of"
+}
+
 # A picture of 300 dpi, 80 x 60 mm, that all take.
 fine() {
     ppmmake rgb:80/20/20 945 709 >fine.ppm

@@ -117,6 +117,36 @@ test_an_inset_shows_the_part_of_its_frame_larger() {
     expect_differing 0 60 expected.ppm inset.ppm
 }
 
+# The letters are in the text of the page, whatever is drawn for them.
+test_a_letter_that_the_font_lacks_is_drawn_by_another_and_told() {
+    run_ok corcast grow --terminals 3 --quiet -o t.swc
+    printf '[panel a]\ntree = t.swc\nantialias = 1\ntitle = %s\n[figure]\ndpi = 60\n' 'flow 10⁻³ m⁻² 日 ₚ' >letters.ini
+    for form in pdf svg png; do
+        run_ok corcast figure letters.ini --quiet -o letters.$form
+        expect_sentence 'the font Liberation Sans lacks U\+65E5; a box'
+        run_ok corcast figure letters.ini -o letters.$form
+        grep -q 'lacks U+207B, U+209A; ordinary letters' stderr || fail "expected a warning, got $(cat stderr)"
+    done
+    pdftotext letters.pdf - | grep -q '10⁻³ m⁻² 日 ₚ' || fail "expected the letters, got $(pdftotext letters.pdf -)"
+    grep -q '10⁻³ m⁻² 日 ₚ' letters.svg || fail "expected the letters in the SVG"
+    run_ok corcast render t.swc --size 40x40 --letter '⁻日' --text-size 3 -o r.pdf
+    grep -q 'corcast render: .* lacks U+65E5; a box' stderr || fail "expected a warning of render, got $(cat stderr)"
+}
+
+test_controls_of_bidirectional_text_are_blanks() {
+    local name
+    name=$(printf 't\342\200\256gnp.ini')
+    run_ok corcast grow --terminals 3 --quiet -o t.swc
+    printf '[panel a]\ntree = t.swc\nantialias = 1\ntitle = a\342\200\256b\342\201\246c\330\234d\n[figure]\ndpi = 60\n' >"$name"
+    for form in svg pdf; do
+        run_ok corcast figure "$name" -o "title.$form"
+        [ ! -s stderr ] || fail "expected nothing to be said, got $(cat stderr)"
+    done
+    grep -q '>a b c d<' title.svg || fail "expected blanks: $(grep '>a' title.svg)"
+    ! grep -q "$(printf '\342\200\256')" title.svg || fail "expected no control in the SVG"
+    pdfinfo title.pdf | grep -q 'figure t gnp.ini' || fail "expected a blank in the PDF's title: $(pdfinfo title.pdf)"
+}
+
 # refused LINES PATTERN: a recipe of these lines is refused so.
 refused() {
     printf "$1" >r.ini

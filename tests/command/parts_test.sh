@@ -138,6 +138,50 @@ test_resume_draws_what_is_not_there_or_not_right() {
     expect_same whole.png merged.png
 }
 
+# drawn_anew CHANGE OPTION...: a picture of two that is there is kept, until a shell's command has changed one of the
+# files that it is made from.
+drawn_anew() {
+    local change=$1
+    shift
+    rm -f kept*.png
+    run_ok corcast render tree.swc --size 75x60 --antialias 1 --resume "$@"
+    run_ok corcast render tree.swc --size 75x60 --antialias 1 --resume "$@"
+    grep -q ' is there$' stderr || fail "expected the picture to be kept before: $change"
+    eval "$change"
+    run_ok corcast render tree.swc --size 75x60 --antialias 1 --resume "$@"
+    ! grep -q ' is there$' stderr || fail "expected a new picture after: $change"
+}
+
+test_resume_draws_anew_what_was_made_from_a_file_that_has_changed() {
+    local template=${CORCAST_TEMPLATES:-$REPO/templates}
+    make_tree
+    cp -r "$template" own
+    export CORCAST_TEMPLATES=$PWD/own
+    cp own/looks/journal.ini look.ini
+    cp own/colormaps/viridis.txt map.txt
+    cp own/presets/nature.ini preset.ini
+    printf 'id,a\n2,1\n3,2\n' >values.csv
+    printf 'id,0,0.5\n2,1,2\n3,4,5\n' >frames.csv
+    printf 'id,flow\n%s\n' "$(awk '!/^#/ { print $1 ",1" }' tree.swc)" >flows.csv
+    mkdir steps
+    echo 1 2 >steps/segment2_flow.dat
+    printf '[render]\nmodel = joined\n' >recipe.ini
+    drawn_anew 'echo 4,9 >>values.csv' --color-by values.csv:a -o kept.png
+    drawn_anew 'echo 4,9,9 >>frames.csv' --color-by frames.csv --moment 1 -o kept.png
+    drawn_anew 'echo 5,9,8 >>frames.csv' --color-by frames.csv --frames all --only 2 -o kept%d.png
+    drawn_anew 'sed -i "\$s/1\$/7/" flows.csv' --color-by flow --terminal-flow flows.csv -o kept.png
+    drawn_anew 'echo 3 >steps/segment2_flow.dat' --color-by steps:flow --moment 1 -o kept.png
+    drawn_anew 'sed -i "s/^ambient = .*/ambient = 0.5/" look.ini' --look ./look.ini -o kept.png
+    drawn_anew 'sed -i "s/^ambient = .*/ambient = 0.5/" own/looks/journal.ini' --look journal -o kept.png
+    drawn_anew 'echo "; seen" >>own/looks/cast.ini' -o kept.png
+    drawn_anew 'echo >>map.txt' --color-by radius --colormap ./map.txt -o kept.png
+    drawn_anew 'echo >>own/colormaps/viridis.txt' --color-by radius -o kept.png
+    drawn_anew 'echo "; seen" >>preset.ini' --preset ./preset.ini -o kept.png
+    drawn_anew 'sed -i s/joined/blob/ recipe.ini' --recipe recipe.ini -o kept.png
+    drawn_anew 'sed -i "s/^# domain: .*/# domain: disc:90/" tree.swc' --frame domain -o kept.png
+    drawn_anew 'cp own/fonts/LiberationSans-Bold.ttf own/fonts/LiberationSans-Regular.ttf' --letter a --text-size 3 -o kept.png
+}
+
 test_commands_run_from_any_folder_under_any_name() {
     make_tree
     mkdir "it's a \$folder"
@@ -188,4 +232,4 @@ test_parallel_goes_on_where_a_worker_was_killed() {
     expect_same whole.png merged.png
 }
 
-run_tests
+run_tests "$@"

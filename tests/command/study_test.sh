@@ -69,6 +69,32 @@ test_what_is_there_and_right_is_kept() {
     [ ! -e all.csv ] || fail "expected no table"
 }
 
+# grown_anew CHANGE LINE...: a study of one run is kept, until a shell's command has changed a file of its plan.
+grown_anew() {
+    local change=$1
+    shift
+    rm -rf anew
+    { printf '[grow]\nterminals = 12\n'; printf '%s\n' "$@"; } >anew.ini
+    run_ok corcast study anew.ini -o anew
+    run_ok corcast study anew.ini -o anew
+    grep -qx '1 run: 0 grown, 1 there already' stderr || fail "expected the run to be kept before: $change"
+    eval "$change"
+    run_ok corcast study anew.ini -o anew
+    grep -qx '1 run: 1 grown, 0 there already' stderr || fail "expected a new run after: $change"
+}
+
+test_a_run_is_grown_anew_when_a_file_has_changed() {
+    grow_tree 5
+    ppmmake white 40 40 >mask.ppm
+    ppmmake white 40 40 >demand.ppm
+    grown_anew 'ppmmake white 40 39 >mask.ppm' 'domain = mask:mask.ppm,2'
+    grown_anew 'pnmgamma 2 demand.ppm | ppmdim 0.5 >other; mv other demand.ppm' 'domain = disc:15' \
+        'demand = demand.ppm,2'
+    grown_anew 'sed -i "s/^\(2 .*\) \([^ ]*\) \([^ ]*\)\$/\1 0.5 \3/" tree.swc' 'from = tree.swc'
+    grow_tree 5
+    grown_anew 'corcast grow --terminals 5 --seed 4 -o tree.swc' 'domain = hull:tree.swc,30'
+}
+
 # More values, and one in front: what has been grown stays, and only its place is another.
 test_a_plan_may_grow() {
     make_plan
@@ -186,4 +212,4 @@ test_parallel_grows_a_study_on_after_a_worker_was_killed() {
     expect_same runs/study.csv all.csv
 }
 
-run_tests
+run_tests "$@"

@@ -79,18 +79,67 @@ static void a_line_is_as_wide_as_its_letters_moved_together(void **state)
     assert_true(figure_text_width(fonts, "AV", 12, true) > both);
 }
 
-static void a_letter_that_the_fonts_lack_is_told(void **state)
+/* Only superscripts and subscripts that the font lacks have a substitute; each letter is listed
+ * once. */
+static void a_letter_that_the_font_lacks_is_drawn_by_another_and_listed(void **state)
 {
     FigurePage page;
     Err err;
     (void)state;
     figure_init(&page, 30, 20, 300, fonts);
-    figure_add_text(&page, &(FigureText){.text = "\xC2\xB5m \xE2\x88\x92", .size_pt = 7});
+    figure_add_text(
+        &page, &(FigureText){.text = "\xC2\xB5m \xE2\x88\x92\xC2\xB2\xE2\x82\x84", .size_pt = 7});
+    assert_int_equal(page.replaced.n_boxed + page.replaced.n_substituted, 0);
+    for (int i = 0; i < 2; i++)
+        figure_add_text(
+            &page, &(FigureText){.text = "m\xE2\x81\xBB\xC2\xB2 a\xE6\x97\xA5z", .size_pt = 7});
     assert_int_equal(figure_check(&page, &err), STATUS_OK);
-    figure_add_text(&page, &(FigureText){.text = "a\xE6\x97\xA5z", .size_pt = 7});
-    assert_int_equal(figure_check(&page, &err), STATUS_USAGE);
-    assert_non_null(strstr(err.text, "U+65E5"));
+    assert_int_equal(page.replaced.n_boxed, 1);
+    assert_int_equal(page.replaced.boxed[0], 0x65e5);
+    assert_int_equal(page.replaced.n_substituted, 1);
+    assert_int_equal(page.replaced.substituted[0], 0x207b);
     figure_release(&page);
+}
+
+/* The rows of a page of 300 dpi that a text of 20 points, whose line is at 10 mm, has ink in. */
+static void rows_with_ink(const char *text, int *top, int *bottom)
+{
+    FigurePage page;
+    Picture picture;
+    Err err;
+    figure_init(&page, 20, 16, 300, fonts);
+    figure_add_text(&page, &(FigureText){.text = text, .x = 5, .y = 10, .size_pt = 20});
+    assert_int_equal(picture_init(&picture, 236, 189, 3, 8, &err), STATUS_OK);
+    memset(picture.codes8, 255, (size_t)picture.height * picture_stride(&picture));
+    assert_int_equal(figure_draw(&page, 0, &picture, &err), STATUS_OK);
+    *top = picture.height;
+    *bottom = -1;
+    for (int y = 0; y < picture.height; y++)
+        for (size_t i = 0; i < picture_stride(&picture); i++)
+            if (picture.codes8[(size_t)y * picture_stride(&picture) + i] < 128) {
+                *top = *top < y ? *top : y;
+                *bottom = y;
+            }
+    picture_release(&picture);
+    figure_release(&page);
+}
+
+/* A minus, raised, stands in the middle of a raised 4, and a lowered one in that of a lowered 4. */
+static void substitutes_stand_beside_the_fonts_own(void **state)
+{
+    static const struct {
+        const char *own, *substitute;
+    } pairs[] = {{"\xE2\x81\xB4", "\xE2\x81\xBB"}, {"\xE2\x82\x84", "\xE2\x82\x8B"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        int own[2], by[2];
+        rows_with_ink(pairs[i].own, &own[0], &own[1]);
+        rows_with_ink(pairs[i].substitute, &by[0], &by[1]);
+        assert_true(by[0] > own[0] && by[1] < own[1]);
+        assert_true(abs(by[0] + by[1] - own[0] - own[1]) <= 6);
+    }
+    assert_true(figure_text_width(fonts, "\xE2\x81\xBB", 10, false) <
+                0.7 * figure_text_width(fonts, "\xE2\x88\x92", 10, false));
 }
 
 static void text_stands_where_its_alignment_says(void **state)
@@ -307,7 +356,8 @@ int main(void)
         cmocka_unit_test(ticks_of_a_logarithm_are_powers_of_ten_where_there_are_two),
         cmocka_unit_test(ticks_of_whole_numbers_are_whole),
         cmocka_unit_test(a_line_is_as_wide_as_its_letters_moved_together),
-        cmocka_unit_test(a_letter_that_the_fonts_lack_is_told),
+        cmocka_unit_test(a_letter_that_the_font_lacks_is_drawn_by_another_and_listed),
+        cmocka_unit_test(substitutes_stand_beside_the_fonts_own),
         cmocka_unit_test(text_stands_where_its_alignment_says),
         cmocka_unit_test(rows_are_the_same_whatever_parts_the_page_is_drawn_in),
         cmocka_unit_test(sixteen_bits_are_the_eight_to_rounding),

@@ -92,7 +92,7 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
     number_text(options->text_pt, pt);
     TRY(set_key(&section->render, "size", size, err));
     TRY(set_key(&section->render, "dpi", dpi, err));
-    if (!options_typed(&section->render, "text-size"))
+    if (!options_said(&section->render, "text-size"))
         TRY(set_key(&section->render, "text-size", pt, err));
     for (size_t k = 0; k < section->render.n_settings; k++)
         section->render.settings[k].typed = false;
@@ -246,7 +246,9 @@ static Status fill_page(Figure *figure, Err *err)
     for (size_t i = 0; i < figure->plan.n; i++)
         if (figure->plan.sections[i]->kind == SECTION_TEXT)
             TRY(put_text(figure, figure->plan.sections[i], err));
-    return figure_check(&figure->sheet.page, err);
+    TRY(figure_check(&figure->sheet.page, err));
+    figure_warn(&figure->sheet.page, "corcast figure", figure->parsed->common.quiet);
+    return STATUS_OK;
 }
 
 /* ---- files ----------------------------------------------------------------------------------- */
@@ -389,15 +391,22 @@ static Status draw_in_folder(Figure *figure, const char *recipe, Err *err)
 
 /* ---- the command ----------------------------------------------------------------------------- */
 
-static Status check_output(const FigureOptions *options, const Parsed *parsed, Err *err)
+static Status check_output(const FigureOptions *options, Err *err)
 {
     static const char *const known[] = {"pdf", "svg", "png", "tif", "tiff", "jpg", "jpeg", NULL};
-    if (frames_is_page(options->output))
-        return press_refuse_packing(parsed, "is for pictures; a page holds one of 8 bits", err);
     if (is_one_of(file_extension(options->output), known))
-        return press_check(&options->press, options->output, parsed, err);
+        return STATUS_OK;
     return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pdf, .svg, .png, .tif or .jpg",
                    options->output);
+}
+
+/* Checks the options of the command line against the output file. The recipe has been read: an
+ * option may need one that the recipe gives. */
+static Status check_press(const FigureOptions *options, const Parsed *parsed, Err *err)
+{
+    if (frames_is_page(options->output))
+        return press_refuse_packing(parsed, "is for pictures; a page holds one of 8 bits", err);
+    return press_check(&options->press, options->output, parsed, err);
 }
 
 static Status make_figure(Figure *figure, const char *recipe, Err *err)
@@ -406,6 +415,7 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
     const int *pixels = options->size.pixels;
     TRY(figureplan_read(recipe, figure->parsed, &figure->plan, err));
     TRY(options_settle(figure->parsed, err));
+    TRY(check_press(options, figure->parsed, err));
     TRY(picture_fits(pixels[0], pixels[1], 12, err));
     TRY(sheet_open(&figure->sheet, err));
     sheet_begin(&figure->sheet, pixels, options->size.dpi > 0 ? options->size.dpi : 300);
@@ -432,7 +442,7 @@ static Status run_figure(void *options, Parsed *parsed, Err *err)
 {
     Figure figure = {.options = options, .parsed = parsed};
     char *recipe = NULL;
-    TRY(check_output(options, parsed, err));
+    TRY(check_output(options, err));
     TRY(find_recipe(parsed->operands[0], &recipe, err));
     Status status = make_figure(&figure, recipe, err);
     figure_done(&figure);

@@ -175,6 +175,7 @@ static Status draw_pictures(RenderOptions *options, Parsed *parsed, RenderParams
     form->colors = scene.appearance.said;
     if (is_on_sheet(options)) {
         TRY_GOTO(fill_sheet(options, source.of.path, &scene, line, &sheet, err));
+        figure_warn(&sheet.page, "corcast render", parsed->common.quiet);
         form->page = &sheet.page;
         form->notes = &sheet.notes;
     }

@@ -106,12 +106,14 @@ static const Command kinds[] = {
 
 /* ---- keys ------------------------------------------------------------------------------------ */
 
-/* Whether an option of `render` is a key of panels. */
+/* Returns true if an option of `render` is a key of panels. How the file is packed and which preset
+ * it follows are keys of the page. */
 static bool is_of_panels(const Option *option)
 {
     static const char *const of_page[] = {"size", "dpi", "seed", NULL};
     return !option->aside && option->group != GROUP_FILES && option->group != GROUP_ANIMATION &&
-           option->group != GROUP_PARTS && !is_one_of(option->name, of_page);
+           option->group != GROUP_PARTS && option->group != GROUP_PRESS &&
+           !is_one_of(option->name, of_page);
 }
 
 /* Whether an option of a section's own command, or of `figure`, is a key. */
@@ -169,7 +171,7 @@ static Status read_value(Setting *setting, const char *value, bool twice, Err *e
     if (setting->typed && !twice)
         return err_set(err, STATUS_USAGE, "'%s' is given twice", setting->option->name);
     TRY(setting_read(setting, value, err));
-    setting->typed = true;
+    setting->typed = setting->said = true;
     return STATUS_OK;
 }
 
@@ -288,7 +290,8 @@ static Status begin_section(Reading *reading, const char *head, Err *err)
                    head);
 }
 
-/* The command line takes precedence; `said` marks what the recipe has given. */
+/* The command line takes precedence over the recipe, and both over what a preset implies. `said`
+ * marks the keys that the recipe has given, so that a key that is given twice is found. */
 static Status take_figure_key(Reading *reading, const char *name, const char *value, Err *err)
 {
     Setting *setting = find_key(reading->figure, is_own, name);
@@ -296,6 +299,7 @@ static Status take_figure_key(Reading *reading, const char *name, const char *va
     if (!setting)
         return unknown_key(name, "figure", reading->figure, &(Parsed){0}, err);
     TRY(read_value(said, value, false, err));
+    setting->said = true;
     return setting->typed ? STATUS_OK : setting_read(setting, value, err);
 }
 

@@ -78,8 +78,11 @@ static Status find_shard(const Film *film, FramesForm *form, int number, Text *n
                          Err *err)
 {
     Shard shard = film->shard;
-    const Tree *tree = &film->subject.source->of.tree;
-    TRY(shard_hash(&shard, film->parsed, form->provenance, tree, number, err));
+    const ShardSource source = {.line = form->provenance,
+                                .tree = &film->subject.source->of.tree,
+                                .domain = film->subject.source->domain,
+                                .has_text = form->page != NULL};
+    TRY(shard_hash(&shard, film->parsed, &source, number, err));
     shard_put(&shard, note);
     TRY(text_check(note, err));
     form->shard = text_chars(note);

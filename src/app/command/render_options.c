@@ -133,8 +133,10 @@ static Status check_method(const RenderOptions *options, Err *err)
         return STATUS_OK;
     Text able = TEXT_INIT;
     models_of(elements, &able);
-    Status status = err_set(err, STATUS_USAGE, "--method %s is for %s, not for %s",
-                            methods[options->method], text_chars(&able), models[model].name);
+    Status status = text_check(&able, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE, "--method %s is for %s, not for %s",
+                         methods[options->method], text_chars(&able), models[model].name);
     text_release(&able);
     return status;
 }

@@ -22,8 +22,10 @@ Status scene_files_find(const char *output, bool of_meshes, const Emitter **emit
         volumes_extensions(&extensions);
         text_puts(&extensions, ", or for a page .html");
     }
-    Status status =
-        err_set(err, STATUS_USAGE, "-o: '%s' does not end in %s", output, text_chars(&extensions));
+    Status status = text_check(&extensions, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in %s", output,
+                         text_chars(&extensions));
     text_release(&extensions);
     return status;
 }

@@ -53,7 +53,7 @@ static const Option rows[] = {
      .help = "colours that the press has not: all make way, or they alone"},
 };
 
-/* What nobody has said is as the preset says. */
+/* Sets an option to the preset's value, unless the command line or a recipe gives the option. */
 static Status imply(const Parsed *parsed, const char *name, const char *value, Err *err)
 {
     const Setting *setting = parsed_find(parsed, name, strlen(name));

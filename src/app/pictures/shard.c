@@ -7,6 +7,8 @@
 #include "app/pictures/shard.h"
 
 #include "app/run/output.h"
+#include "app/run/templates.h"
+#include "figure/figure.h"
 #include "render/render.h"
 #include <stdlib.h>
 #include <string.h>
@@ -124,37 +126,33 @@ Status shard_of_tile(const char *tile, int height, Shard *shard, Err *err)
 
 /* ---- what it was made from ------------------------------------------------------------------- */
 
-/* Adds the bytes of a file that the option names, if it names one that pictures depend on. */
-static Status hash_file(const Setting *setting, Hash *hash, Err *err)
+/* Adds the bytes of the fonts, whose letters are pixels of the picture. */
+static Status hash_fonts(Hash *hash, Err *err)
 {
-    static const FileForm any = {.name = "a file", .most_bytes = 16e9};
-    const Option *option = setting->option;
-    bool is_read = option->kind == OPTION_INPUT || option->kind == OPTION_LOOKUP;
-    const char *path = is_read ? *(const char *const *)(setting->base + option->where) : NULL;
-    if (!path || option->aside || (option->kind == OPTION_LOOKUP && !strchr(path, '/')))
-        return STATUS_OK;
-    char *bytes;
-    size_t size;
-    TRY(file_read(path, &any, &bytes, &size, err));
-    hash_add_text(hash, option->name);
-    hash_add(hash, &size, sizeof size);
-    hash_add(hash, bytes, size);
-    free(bytes);
-    return STATUS_OK;
+    Status status = STATUS_OK;
+    for (size_t i = 0; figure_font_files[i] && status == STATUS_OK; i++) {
+        char *path = NULL;
+        TRY(templates_path(figure_font_files[i], &path, err));
+        status = file_hash(path, hash, err);
+        free(path);
+    }
+    return status;
 }
 
-Status shard_hash(Shard *shard, const Parsed *parsed, const char *line, const Tree *tree,
-                  int number, Err *err)
+Status shard_hash(Shard *shard, const Parsed *parsed, const ShardSource *source, int number,
+                  Err *err)
 {
     Hash hash;
     hash_begin(&hash);
     hash_add_text(&hash, GENERATOR);
-    hash_add_text(&hash, line);
+    hash_add_text(&hash, source->line);
     hash_add_text(&hash, shard->kernels);
     hash_add(&hash, &number, sizeof number);
-    tree_hash(tree, &hash);
-    for (size_t i = 0; i < parsed->n_settings; i++)
-        TRY(hash_file(&parsed->settings[i], &hash, err));
+    tree_hash(source->tree, &hash);
+    hash_add(&hash, &source->domain, sizeof source->domain);
+    TRY(hash_option_files(parsed, &hash, err));
+    if (source->has_text)
+        TRY(hash_fonts(&hash, err));
     shard->made_from = hash_text(&hash);
     return STATUS_OK;
 }

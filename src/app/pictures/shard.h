@@ -38,10 +38,19 @@ MUST_CHECK Status shard_check(const ShardOptions *options, bool animated, const 
  * what is allowed, when there is no such tile. */
 MUST_CHECK Status shard_of_tile(const char *tile, int height, Shard *shard, Err *err);
 
+/* What the pictures of one command are made from, besides the files that options name. All is
+ * borrowed. */
+typedef struct ShardSource {
+    const char *line; /* the command line */
+    const Tree *tree; /* as it was read, with the values and flows that options name */
+    Box domain;       /* that is framed; zeros if the domain is not framed */
+    bool has_text;    /* letters are drawn */
+} ShardSource;
+
 /* Hashes what picture `number` is made from into the shard: program, command line, instructions,
- * the tree as it was read, and the files that options name. STATUS_INPUT when one cannot be read.
- */
-MUST_CHECK Status shard_hash(Shard *shard, const Parsed *parsed, const char *line, const Tree *tree,
+ * source, the files that options name, templates that they choose by name, and the fonts if there
+ * is text. STATUS_INPUT when a file cannot be read. */
+MUST_CHECK Status shard_hash(Shard *shard, const Parsed *parsed, const ShardSource *source,
                              int number, Err *err);
 
 /* Appends the note of a file, "Shard". */

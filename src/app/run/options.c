@@ -402,6 +402,12 @@ bool options_typed(const Parsed *parsed, const char *name)
     return setting && setting->typed;
 }
 
+bool options_said(const Parsed *parsed, const char *name)
+{
+    const Setting *setting = find(parsed, name, strlen(name));
+    return setting && setting->said;
+}
+
 Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *err)
 {
     for (const OptionNeed *need = needs; need->name; need++)

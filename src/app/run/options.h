@@ -273,6 +273,8 @@ MUST_CHECK Status options_settle(const Parsed *parsed, Err *err);
 
 /* Whether the option stands on the command line. */
 bool options_typed(const Parsed *parsed, const char *name);
+/* Returns true if the option was given, on the command line or in a recipe. */
+bool options_said(const Parsed *parsed, const char *name);
 
 /* STATUS_USAGE for the first option of the command line whose need is not met: it would have no
  * effect. A recipe's options are defaults for many runs, and may be without effect in this one. */

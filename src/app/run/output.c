@@ -2,6 +2,8 @@
  * of the options' values rather than of what was typed, so that a recipe, the order of the options
  * and what does not matter leave no trace; names for people; JSON. */
 #include "app/run/output.h"
+
+#include "app/run/templates.h"
 #include "treeio/treeio.h"
 
 #include <errno.h>
@@ -179,6 +181,32 @@ Status command_again(const Parsed *parsed, const char *const *without, Text *tex
     }
     parsed_release(&plain);
     return text_check(text, err);
+}
+
+/* Adds the bytes of the file that a value of OPTION_LOOKUP names. */
+static Status hash_lookup(const Option *option, const char *value, Hash *hash, Err *err)
+{
+    const char *extension = strcmp(option->list, "colormaps") == 0 ? ".txt" : ".ini";
+    char *path = NULL;
+    TRY(template_file(option->name, option->list, value, extension, &path, err));
+    Status status = file_hash(path, hash, err);
+    free(path);
+    return status;
+}
+
+Status hash_option_files(const Parsed *parsed, Hash *hash, Err *err)
+{
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Option *option = parsed->settings[i].option;
+        const bool is_lookup = option->kind == OPTION_LOOKUP;
+        if (option->aside || (option->kind != OPTION_INPUT && !is_lookup))
+            continue;
+        const char *value = *(const char *const *)(parsed->settings[i].base + option->where);
+        hash_add_text(hash, value ? option->name : "");
+        if (value)
+            TRY(is_lookup ? hash_lookup(option, value, hash, err) : file_hash(value, hash, err));
+    }
+    return STATUS_OK;
 }
 
 Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err)

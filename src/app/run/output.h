@@ -31,6 +31,11 @@ MUST_CHECK Status command_line_text(const Parsed *parsed, char **out, Err *err);
 MUST_CHECK Status command_again(const Parsed *parsed, const char *const *without, Text *text,
                                 Err *err);
 
+/* Adds to `hash` the bytes of each file that an option names and the result depends on: files of
+ * the user's, and files of templates/ that are chosen by name. Errors as file_read and
+ * template_file. */
+MUST_CHECK Status hash_option_files(const Parsed *parsed, Hash *hash, Err *err);
+
 /* Adds the command line to those that a tree's file says. */
 MUST_CHECK Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err);
 

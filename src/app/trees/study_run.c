@@ -33,20 +33,6 @@ static void release(Run *run)
     free(run->tree);
 }
 
-static Status hash_file(Hash *hash, const char *path, Err *err)
-{
-    static const FileForm any = {.name = "a file", .most_bytes = 16e9};
-    char *bytes;
-    size_t size;
-    if (!path)
-        return STATUS_OK;
-    TRY(file_read(path, &any, &bytes, &size, err));
-    hash_add(hash, &size, sizeof size);
-    hash_add(hash, bytes, size);
-    free(bytes);
-    return STATUS_OK;
-}
-
 static Status hash_run(Run *run, Err *err)
 {
     const Growing *growing = &run->growth->growing;
@@ -54,8 +40,13 @@ static Status hash_run(Run *run, Err *err)
     hash_begin(&hash);
     hash_add_text(&hash, GENERATOR);
     hash_add_text(&hash, run->command);
-    TRY(hash_file(&hash, growing->from_path, err));
-    TRY(hash_file(&hash, growing->domain.file, err));
+    TRY(hash_option_files(&run->parsed, &hash, err));
+    if (growing->params.from)
+        tree_hash(growing->params.from, &hash);
+    if (growing->domain.file)
+        TRY(file_hash(growing->domain.file, &hash, err));
+    if (growing->demand)
+        TRY(file_hash(demand_file(growing->demand), &hash, err));
     run->made_from = hash_text(&hash);
     return STATUS_OK;
 }
@@ -89,7 +80,7 @@ static Status hash_of_tree(const char *path, HashText *text, Err *err)
 {
     Hash hash;
     hash_begin(&hash);
-    Status status = hash_file(&hash, path, err);
+    Status status = file_hash(path, &hash, err);
     *text = hash_text(&hash);
     return status;
 }

@@ -1,0 +1,101 @@
+/* The child sends its status and its sentence first, then the bytes, through a pipe. */
+#include "base/isolated.h"
+
+#include "base/memory.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdbool.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* What the child sends first. */
+typedef struct Report {
+    Status status;
+    Err err;
+    size_t length; /* of the bytes that follow */
+} Report;
+
+static bool send_all(int handle, const void *from, size_t size)
+{
+    for (size_t done = 0; done < size;) {
+        ssize_t count = write(handle, (const char *)from + done, size - done);
+        if (count < 0 && errno != EINTR)
+            return false;
+        done += count > 0 ? (size_t)count : 0;
+    }
+    return true;
+}
+
+static bool receive(int handle, void *to, size_t size)
+{
+    for (size_t done = 0; done < size;) {
+        ssize_t count = read(handle, (char *)to + done, size - done);
+        if (count == 0 || (count < 0 && errno != EINTR))
+            return false;
+        done += count > 0 ? (size_t)count : 0;
+    }
+    return true;
+}
+
+static void work_in_child(IsolatedWork *work, const void *context, const char *subject, int handle)
+{
+    Report report = {.status = STATUS_OK};
+    Text bytes = TEXT_INIT;
+    errno = 0;
+    report.status = work(context, &bytes, &report.err);
+    if (report.status == STATUS_OK && (errno == ENOMEM || !text_chars(&bytes)))
+        report.status = mem_out_of("for", subject, &report.err);
+    report.length = report.status == STATUS_OK ? bytes.length : 0;
+    bool sent = send_all(handle, &report, sizeof report) &&
+                (report.length == 0 || send_all(handle, text_chars(&bytes), report.length));
+    _exit(sent ? 0 : 1);
+}
+
+/* Appends `length` bytes of the pipe to the text. */
+static bool receive_text(int handle, size_t length, Text *bytes)
+{
+    char block[1 << 14];
+    for (size_t done = 0; done < length;) {
+        size_t count = length - done < sizeof block ? length - done : sizeof block;
+        if (!receive(handle, block, count))
+            return false;
+        text_append(bytes, block, count);
+        done += count;
+    }
+    return true;
+}
+
+/* Reads what the child sends. A child that ends early sends too little. */
+static Status hear_child(int handle, const char *subject, Text *bytes, Err *err)
+{
+    Report report;
+    if (!receive(handle, &report, sizeof report))
+        return mem_out_of("for", subject, err);
+    if (report.status != STATUS_OK)
+        return err_set(err, report.status, "%s", report.err.text);
+    Text heard = TEXT_INIT;
+    bool whole = receive_text(handle, report.length, &heard);
+    if (whole)
+        text_add(bytes, &heard);
+    text_release(&heard);
+    return whole && text_chars(bytes) ? STATUS_OK : mem_out_of("for", subject, err);
+}
+
+Status isolated_run(IsolatedWork *work, const void *context, const char *subject, Text *bytes,
+                    Err *err)
+{
+    int pipe_ends[2];
+    if (pipe2(pipe_ends, O_CLOEXEC) != 0)
+        return err_set(err, STATUS_IO, "no process for %s: %s", subject, strerror(errno));
+    pid_t child = fork();
+    if (child == 0)
+        work_in_child(work, context, subject, pipe_ends[1]);
+    close(pipe_ends[1]);
+    Status status =
+        child > 0 ? hear_child(pipe_ends[0], subject, bytes, err) : mem_out_of("for", subject, err);
+    close(pipe_ends[0]);
+    while (child > 0 && waitpid(child, NULL, 0) < 0 && errno == EINTR)
+        ;
+    return status;
+}
