@@ -390,10 +390,35 @@ test_noisy_pictures_are_tested_at_a_rate_of_false_alarms() {
     expect_status 1
     expect_json stdout '.verdict == "differ" and .gain > 1.006 and .gain < 1.018 and .alarm_rate == 0.01'
     oiiotool --create 64x48 3 --addc 0.0009 -d float -o v.exr
-    run_ok corcast compare r4.exr r5.exr --noise v.exr --alarms 0.001
+    run_ok corcast compare r4.exr r5.exr --variance v.exr --alarms 0.001
+    run corcast compare r4.exr biased.exr --variance v.exr
+    expect_status 1
     run corcast compare r4.exr r5.exr --alarms 0.001
     expect_status 2
-    expect_sentence '--alarms needs --noise'
+    expect_sentence '--alarms needs --noise or --variance'
+}
+
+test_a_rendering_is_not_taken_for_a_variance() {
+    local i name
+    for i in 1 2 3 4 5; do
+        oiiotool --create 64x48 3 --addc 0.4 --noise:type=gaussian:mean=0:stddev=0.03:seed=$i -d uint8 -o r$i.png
+    done
+    oiiotool r5.png --mulc 1.05 -d uint8 -o biased.png
+    oiiotool r1.png -d float -o r1.exr
+    for name in r1.png r1.exr r1.png, ,r1.png ''; do
+        run corcast compare r4.png biased.png --noise "$name"
+        expect_status 2
+        expect_sentence '--noise is .* must name at least 2 more renderings'
+    done
+    run corcast compare r4.png biased.png --variance r1.png
+    expect_status 2
+    expect_sentence 'r1\.png: holds integers of 8 bits; --variance needs floats'
+    run corcast compare r4.png biased.png --variance r1.exr --noise r1.png,r2.png
+    expect_status 2
+    expect_sentence '--variance and --noise both give the variance'
+    run corcast compare r4.png biased.png --noise r1.png,r2.png,r3.png
+    expect_status 1
+    run_ok corcast compare r4.png r5.png --noise r1.png,r2.png,r3.png
 }
 
 test_sides_beyond_all_bounds_are_refused() {

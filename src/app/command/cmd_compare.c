@@ -416,7 +416,7 @@ static Status run_compare(void *options, Parsed *parsed, Err *err)
     TRY(compare_check_folders(own_options, parsed, err));
     if (own_options->reference)
         return compare_folders(own_options, parsed, err);
-    if (own_options->noise)
+    if (own_options->noise || own_options->variance)
         return compare_noisy(own_options, parsed, err);
     PlaneKind kind =
         own_options->kind == PLANE_KINDS ? kind_of(parsed->operands[0]) : own_options->kind;
