@@ -114,6 +114,40 @@ test_the_verdict_names_its_tier() {
     expect_stdout '^agree \(tier given\): 1 of 20'
 }
 
+# grey WIDTH HEIGHT LEVEL...: a grey PPM of code 100, its first pixels of the levels given.
+grey() {
+    awk -v n=$(($1 * $2)) -v levels="${*:3}" 'BEGIN {
+        split(levels, level); for (i = 1; i <= n; i++) { v = i in level ? level[i] : 100; print v, v, v } }' |
+        cat <(printf 'P3 %d %d 255\n' "$1" "$2") - | pnmtopnm -plain
+}
+
+test_tier_a_spares_one_pixel_by_one_level_in_a_picture_that_is_not_tiny() {
+    local case
+    for case in 'a 40 25' 'one 40 25 101' 'down 40 25 99' 'two 40 25 101 101' 'far 40 25 102' 'tiny 37 26' 'tinier 37 26 101'; do
+        set -- $case
+        grey "${@:2}" >"$1.ppm"
+    done
+    run_ok corcast compare a.ppm one.ppm
+    expect_stdout '^agree \(tier A\): 1 of 1000 pixels differ$'
+    run_ok corcast compare a.ppm down.ppm
+    for case in 'a two' 'a far' 'tiny tinier'; do
+        set -- $case
+        run corcast compare "$1.ppm" "$2.ppm"
+        expect_status 1
+    done
+    for case in '--ppm 2' '--levels 0' '--tolerance own.ini'; do
+        printf 'color_ppm = 2\n' >own.ini
+        run corcast compare a.ppm one.ppm $case
+        expect_status 1
+    done
+    oiiotool a.ppm -d uint16 -o a16.png
+    oiiotool one.ppm -d uint16 -o one16.png
+    run_ok corcast compare a16.png one16.png
+    oiiotool one.ppm -d uint16 --addc 0.00002 -o off16.png
+    run corcast compare a16.png off16.png
+    expect_status 1
+}
+
 test_parts_and_layers_of_openexr_are_read_by_name() {
     picture 100 >a.ppm
     picture 155 >b.ppm

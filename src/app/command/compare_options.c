@@ -157,6 +157,8 @@ Status compare_tolerance(const JudgeOptions *options, double depth_mm, Tolerance
                                         : tolerance_none();
     if (options->tolerance)
         TRY(tolerance_read(tolerance, name, options->tolerance, err));
+    if (options->has_levels || options->has_ppm)
+        tolerance->spare_levels = 0;
     if (options->has_levels) {
         tolerance->color_levels = options->levels;
         tolerance->interior_levels = (double)INFINITY;
