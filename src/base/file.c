@@ -14,6 +14,7 @@
 #include "base/number.h"
 #include "base/threads.h"
 #include <assert.h>
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -23,6 +24,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -49,6 +51,25 @@ static void give_up(char *name)
     }
 }
 
+/* Removes a temporary folder and the files in it: a program that was given the folder may have
+ * written more files than it was asked for. Calls only what a signal handler may call, which
+ * readdir is not. */
+static void remove_folder(const char *name)
+{
+    char block[4096] __attribute__((aligned(8)));
+    int folder = open(name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (folder < 0)
+        return;
+    for (long size; (size = syscall(SYS_getdents64, folder, block, sizeof block)) > 0;)
+        for (long at = 0; at < size;) {
+            const struct dirent64 *entry = (const struct dirent64 *)(block + at);
+            unlinkat(folder, entry->d_name, 0);
+            at += entry->d_reclen;
+        }
+    close(folder);
+    rmdir(name);
+}
+
 static void remove_temporaries(int signal_number)
 {
     for (int i = 0; i < MAX_GROUPS; i++) {
@@ -64,7 +85,7 @@ static void remove_temporaries(int signal_number)
     for (int i = 0; i < MAX_TEMPORARIES; i++) {
         char *name = atomic_load(&temporaries[i]);
         if (name)
-            rmdir(name); /* empty by now */
+            remove_folder(name);
     }
     raise(signal_number); /* SA_RESETHAND: the default action ends the program */
 }
@@ -446,7 +467,8 @@ void file_forget(char *temporary)
 {
     if (!temporary)
         return;
-    remove(temporary);
+    if (remove(temporary) != 0)
+        remove_folder(temporary);
     give_up(temporary);
     free(temporary);
 }

@@ -73,8 +73,8 @@ MUST_CHECK Status file_write_text(const char *path, const Text *text, Err *err);
  * component followed. STATUS_IO when they lead in a circle. */
 MUST_CHECK Status file_resolve(const char *path, char **out, Err *err);
 
-/* A new empty folder beside `path`, for another program to write to, in *folder (owned). It is
- * removed, when it is empty, by file_forget or by a signal. */
+/* A new empty folder beside `path`, for another program to write to, in *folder (owned).
+ * file_forget, or a signal that ends the program, removes it with all files in it. */
 MUST_CHECK Status file_temporary_folder(const char *path, char **folder, Err *err);
 /* Registers `name` for clean-up: file_forget, or a signal that ends the program, removes the file
  * if it exists. Takes ownership of `name`, which is freed with free(), unless it fails: STATUS_IO

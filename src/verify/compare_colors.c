@@ -71,7 +71,7 @@ static void measure(const Plane *a, const Plane *b, CompareResult *result)
     }
     result->classes[PIXEL_IDENTICAL] -= unsound;
     double samples = (double)result->judged_pixels * (double)channels;
-    result->max_abs = worst;
+    result->max_abs = result->unsettled_max_abs = worst;
     result->mean_abs = samples > 0 ? sum / samples : 0;
     result->rmse = samples > 0 ? sqrt(squares / samples) : 0;
     result->psnr_db = result->rmse > 0 ? 20 * log10(255 / result->rmse) : (double)INFINITY;

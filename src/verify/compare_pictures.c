@@ -10,6 +10,7 @@ static void take_color(const Sums *sums, double code_levels, int channels, Compa
     double samples = (double)result->pixels * channels;
     result->max_code = sums->max;
     result->max_abs = sums->max * code_levels;
+    result->unsettled_max_abs = sums->unsettled_max * code_levels;
     result->mean_abs = (double)sums->abs / samples * code_levels;
     result->rmse = sqrt((double)sums->squares / samples) * code_levels;
     result->psnr_db = result->rmse > 0 ? 20 * log10(255 / result->rmse) : (double)INFINITY;

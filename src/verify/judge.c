@@ -92,6 +92,17 @@ static void add_segment_rules(CompareResult *result)
     add_rule(result, offset, tolerance->offset_levels, "distance of the offset from 0");
 }
 
+/* Limit of the pixels that are off, in ppm: the tolerance's, or one pixel where the only one that
+ * is off may be spared. */
+static double allowed_beyond_ppm(const CompareResult *result)
+{
+    const Tolerance *tolerance = &result->tolerance;
+    bool spares = result->beyond_pixels <= 1 && result->judged_pixels >= SPARE_OF &&
+                  result->unsettled_max_abs <= tolerance->spare_levels;
+    return spares ? fmax(tolerance->color_ppm, ppm(1, result->judged_pixels))
+                  : tolerance->color_ppm;
+}
+
 static void add_color_rules(CompareResult *result)
 {
     const Tolerance *tolerance = &result->tolerance;
@@ -109,7 +120,7 @@ static void add_color_rules(CompareResult *result)
                        result->worst, worst};
     snprintf(worst, sizeof worst, "the worst, %.4g levels, is", result->max_abs);
     snprintf(name, sizeof name, "pixels off by more than %.3g levels", levels);
-    add_rule(result, beyond, tolerance->color_ppm, name);
+    add_rule(result, beyond, allowed_beyond_ppm(result), name);
     if (result->has_mask) {
         add_rule(result, furthest, tolerance->interior_levels, "largest difference off the edges");
         snprintf(name, sizeof name, "pixels off the edges, off by more than %.3g levels", levels);

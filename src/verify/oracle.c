@@ -1,6 +1,6 @@
 /* POV-Ray writes all it has to say to standard error: progress as "Rendered 120 of 400 pixels
  * (30%)" ended by carriage returns, a banner with its version, and the reason of a failure
- * somewhere between statistics. */
+ * near the end, between statistics. */
 #include "verify/oracle.h"
 #include "verify/tool.h"
 
@@ -9,6 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+
+/* The banner begins with this, and the version follows. */
+static const char banner_mark[] = "Ray Tracer Version ";
 
 static int bits_of(const OracleParams *params)
 {
@@ -80,17 +83,50 @@ Status oracle_command(const OracleParams *params, char **out, Err *err)
     return status;
 }
 
-/* What POV-Ray said of a failure: from its first line with one of the marks on, as one
- * sentence, with `scene` in the place of the name that POV-Ray was given for it. */
+/* Returns the start of the last line that holds `mark`, or NULL. */
+static const char *last_line_with(const char *said, const char *mark)
+{
+    const char *found = NULL;
+    for (const char *at = said; (at = strstr(at, mark)); at++)
+        found = at;
+    while (found && found > said && found[-1] != '\n')
+        found--;
+    return found;
+}
+
+/* Returns the start of the last LAST_LINES lines that are not empty. */
+static const char *last_lines(const char *said)
+{
+    enum { LAST_LINES = 3 };
+    const char *start = said + strlen(said);
+    int lines = 0;
+    while (start > said && lines < LAST_LINES) {
+        const char *end = start;
+        start--;
+        while (start > said && start[-1] != '\n')
+            start--;
+        lines += end - start > 1;
+    }
+    return start;
+}
+
+/* POV-Ray begins with complaints about its settings and a banner, which give no reason. The last
+ * error is the one that ended it. Without an error, what it said last is all that is known. */
+static const char *start_of_reason(const char *said)
+{
+    static const char *const marks[] = {"rror:", "Fatal error", "annot "};
+    const char *banner = strstr(said, banner_mark), *start = NULL;
+    for (size_t i = 0; !start && i < sizeof marks / sizeof *marks; i++)
+        start = last_line_with(banner ? banner : said, marks[i]);
+    return start ? start : last_lines(said);
+}
+
+/* Writes the reason of a failure as one sentence, with `scene` in the place of the name that
+ * POV-Ray was given for it. */
 static void reason_of_failure(const Text *log, const char *scene, char *reason, size_t size)
 {
     static const char given[] = TOOL_FOLDER TOOL_SCENE;
-    static const char *const marks[] = {"Error", "rror:", "Fatal error", "cannot"};
-    const char *said = text_chars(log), *start = NULL;
-    for (size_t i = 0; !start && i < sizeof marks / sizeof *marks; i++)
-        start = strstr(said, marks[i]);
-    while (start && start > said && start[-1] != '\n')
-        start--;
+    const char *said = text_chars(log), *start = said ? start_of_reason(said) : NULL;
     size_t length = 0;
     for (; start && *start && length + 1 < size; start++) {
         if (*start == '\n') {
@@ -107,16 +143,17 @@ static void reason_of_failure(const Text *log, const char *scene, char *reason, 
             reason[length++] = *start;
         }
     }
+    while (length > 0 && reason[length - 1] == ' ')
+        length--;
     reason[length] = '\0';
 }
 
 static void read_version(const Text *log, char *version, size_t size)
 {
-    static const char mark[] = "Ray Tracer Version ";
-    const char *start = strstr(text_chars(log), mark);
+    const char *start = strstr(text_chars(log), banner_mark);
     snprintf(version, size, "unknown");
     if (start) {
-        start += sizeof mark - 1;
+        start += sizeof banner_mark - 1;
         size_t length =
             strspn(start, "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-_+");
         snprintf(version, size, "%.*s", (int)length, start);

@@ -29,7 +29,8 @@ typedef struct OracleParams {
     int bits;            /* of the colour plane: 8, sRGB, or 16, linear */
     bool alpha;          /* of the colour plane: transparent where the scene's background is */
     double clock;        /* of the scene, 0 to 1 */
-    double patience_s;   /* POV-Ray is ended after this many seconds without output; 0: never */
+    double patience_s;   /* POV-Ray is ended after this many seconds without output, and after five
+                          * times as many without progress; 0: never */
     void (*progress)(double fraction, void *context); /* may be NULL */
     void *progress_context;
 } OracleParams;

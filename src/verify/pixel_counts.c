@@ -94,6 +94,8 @@ static void count_pixel(const Counting *counting, const Row *row, int x, Sums *s
     sums->interior_beyond += beyond && !band;
     if (!band && !settled && difference > sums->interior_max)
         sums->interior_max = difference;
+    if (!settled && difference > sums->unsettled_max)
+        sums->unsettled_max = difference;
     if (difference > sums->max) {
         sums->max = difference;
         sums->worst = (PixelPlace){.x = x, .y = row->y};
@@ -166,7 +168,7 @@ static void count_colors(const Counting *counting, const Row *row, int from, int
     Differences differences;
     unsigned rounding = 0, shading = 0, common = 0, in_band = 0, brighter = 0, darker = 0;
     unsigned beyond = 0, band_beyond = 0, interior_beyond = 0;
-    int interior_max = sums->interior_max;
+    int interior_max = sums->interior_max, unsettled_max = sums->unsettled_max;
     if (channels == 3)
         take_differences(a, b, n, 3, &differences, sums);
     else
@@ -184,6 +186,7 @@ static void count_colors(const Counting *counting, const Row *row, int from, int
         band_beyond += is_beyond & band[x];
         interior_beyond += is_beyond & !band[x];
         interior_max = off_band > interior_max ? off_band : interior_max;
+        unsettled_max = difference > unsettled_max ? difference : unsettled_max;
     }
     sums->classes[PIXEL_ROUNDING] += rounding;
     sums->classes[PIXEL_SHADING] += shading;
@@ -197,6 +200,7 @@ static void count_colors(const Counting *counting, const Row *row, int from, int
     sums->band_beyond += band_beyond;
     sums->interior_beyond += interior_beyond;
     sums->interior_max = interior_max;
+    sums->unsettled_max = unsettled_max;
     note_worst(&differences, from, n, row->y, sums);
 }
 
@@ -335,6 +339,8 @@ static void add_sums(Sums *to, const Sums *from)
     to->dd += from->dd;
     if (from->interior_max > to->interior_max)
         to->interior_max = from->interior_max;
+    if (from->unsettled_max > to->unsettled_max)
+        to->unsettled_max = from->unsettled_max;
     if (from->max > to->max) {
         to->max = from->max;
         to->worst = from->worst;

@@ -12,7 +12,7 @@ typedef struct Sums {
     size_t differing, beyond, settled;
     size_t brighter, darker; /* pixels, by the sum of their channels */
     size_t classes[PIXEL_CLASSES];
-    int max, interior_max; /* codes */
+    int max, interior_max, unsettled_max; /* codes; unsettled_max leaves settled pixels out */
     PixelPlace worst;
     size_t common, missing, extra, band, band_differs, band_beyond, interior_beyond;
     uint64_t silhouette; /* sides of A's pixels that part something from nothing */

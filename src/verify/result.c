@@ -47,6 +47,7 @@ CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane 
                            .nan_at = nowhere,
                            .worst = nowhere,
                            .max_abs = unknown,
+                           .unsettled_max_abs = unknown,
                            .mean_abs = unknown,
                            .rmse = unknown,
                            .max_code = unknown,

@@ -34,6 +34,9 @@ void suite_release(Suite *suite)
 
 static const char mask_suffix[] = ".mask.png";
 
+/* Links between folders can repeat a picture any number of times. */
+enum { MOST_CASES = 1000000 };
+
 static bool ends_with(const char *name, const char *suffix)
 {
     size_t length = strlen(name), tail = strlen(suffix);
@@ -52,6 +55,11 @@ static bool is_picture_name(const char *name)
 
 static Status add_case(Suite *suite, const char *name, bool is_reference, Err *err)
 {
+    if (suite->n == MOST_CASES)
+        return err_set(err, STATUS_INPUT,
+                       "there are more than %d pictures to compare; links to "
+                       "folders may repeat them",
+                       MOST_CASES);
     TRY(mem_reserve(&suite->cases, &suite->capacity, suite->n + 1, sizeof *suite->cases, "cases",
                     err));
     SuiteCase *added = &suite->cases[suite->n];
@@ -61,35 +69,61 @@ static Status add_case(Suite *suite, const char *name, bool is_reference, Err *e
     return STATUS_OK;
 }
 
-static Status list_folder(Suite *suite, const char *top, const char *below, bool is_reference,
+/* One of the two folders that cases are listed from. */
+typedef struct Top {
+    const char *path;
+    bool is_reference;
+} Top;
+
+/* A folder that is being listed, and the folders that contain it. */
+typedef struct Level {
+    const struct Level *parent; /* NULL for the top folder */
+    dev_t device;
+    ino_t inode;
+} Level;
+
+/* Returns true if a folder is one of those being listed: a link leads back to it. */
+static bool is_listed(const Level *level, const struct stat *facts)
+{
+    for (; level; level = level->parent)
+        if (level->device == facts->st_dev && level->inode == facts->st_ino)
+            return true;
+    return false;
+}
+
+static Status list_folder(Suite *suite, const Top *top, const char *below, const Level *parent,
                           Err *err);
 
-/* `below` is the path of a file or folder below `top`. */
-static Status list_entry(Suite *suite, const char *top, const char *below, bool is_reference,
+/* `below` is the path of a file or folder below the top folder. A link to a folder that contains
+ * the link counts as another file. */
+static Status list_entry(Suite *suite, const Top *top, const char *below, const Level *level,
                          Err *err)
 {
     char *path = NULL;
     struct stat facts;
-    TRY(file_join(top, below, &path, err));
-    bool known = stat(path, &facts) == 0;
+    TRY(file_join(top->path, below, &path, err));
+    bool is_folder = stat(path, &facts) == 0 && S_ISDIR(facts.st_mode);
     free(path);
-    if (known && S_ISDIR(facts.st_mode))
-        return list_folder(suite, top, below, is_reference, err);
-    if (is_picture_name(below))
-        return add_case(suite, below, is_reference, err);
+    if (is_folder && !is_listed(level, &facts))
+        return list_folder(suite, top, below, level, err);
+    if (!is_folder && is_picture_name(below))
+        return add_case(suite, below, top->is_reference, err);
     suite->others += !ends_with(below, mask_suffix) && strcmp(below, "accepted.tsv") != 0;
     return STATUS_OK;
 }
 
-static Status list_folder(Suite *suite, const char *top, const char *below, bool is_reference,
+static Status list_folder(Suite *suite, const Top *top, const char *below, const Level *parent,
                           Err *err)
 {
     char *path = NULL;
-    TRY(file_join(top, below, &path, err));
+    struct stat facts = {0};
+    TRY(file_join(top->path, below, &path, err));
     DIR *folder = opendir(path);
-    Status status = folder ? STATUS_OK
-                           : err_set(err, STATUS_IO, "%s: cannot be read as a folder: %s", path,
-                                     strerror(errno));
+    Status status =
+        folder && fstat(dirfd(folder), &facts) == 0
+            ? STATUS_OK
+            : err_set(err, STATUS_IO, "%s: cannot be read as a folder: %s", path, strerror(errno));
+    const Level level = {parent, facts.st_dev, facts.st_ino};
     for (struct dirent *entry; status == STATUS_OK && (entry = readdir(folder));) {
         char *name = NULL;
         if (*entry->d_name == '.')
@@ -97,7 +131,7 @@ static Status list_folder(Suite *suite, const char *top, const char *below, bool
         status = *below ? file_join(below, entry->d_name, &name, err)
                         : mem_strdup(&name, entry->d_name, err);
         if (status == STATUS_OK)
-            status = list_entry(suite, top, name, is_reference, err);
+            status = list_entry(suite, top, name, &level, err);
         free(name);
     }
     if (folder)
@@ -131,6 +165,17 @@ static void join_pairs(Suite *suite)
     suite->n = kept;
 }
 
+/* Lists the cases of both folders by name; of the pictures alone where `reference` is NULL. */
+static Status list_cases(Suite *suite, const char *reference, const char *pictures, Err *err)
+{
+    const Top references = {reference, true}, drawn = {pictures, false};
+    if (reference)
+        TRY(list_folder(suite, &references, "", NULL, err));
+    TRY(list_folder(suite, &drawn, "", NULL, err));
+    join_pairs(suite);
+    return STATUS_OK;
+}
+
 /* ---- one case -------------------------------------------------------------------------------- */
 
 typedef struct Judging {
@@ -157,13 +202,21 @@ static void held_release(Held *held)
     picture_release(&held->mask);
 }
 
+/* Reads a file of a suite. A pipe would be waited for without end. */
+static Status read_regular(const char *path, const FileForm *form, char **bytes, size_t *size,
+                           Err *err)
+{
+    TRY(file_check_regular(path, err));
+    return file_read(path, form, bytes, size, err);
+}
+
 static Status have_same_bytes(const Held *held, bool *same, Err *err)
 {
     char *bytes[2] = {NULL, NULL};
     size_t size[2];
-    Status status = file_read(held->paths[0], &any_file, &bytes[0], &size[0], err);
+    Status status = read_regular(held->paths[0], &any_file, &bytes[0], &size[0], err);
     if (status == STATUS_OK)
-        status = file_read(held->paths[1], &any_file, &bytes[1], &size[1], err);
+        status = read_regular(held->paths[1], &any_file, &bytes[1], &size[1], err);
     *same = status == STATUS_OK && size[0] == size[1] && memcmp(bytes[0], bytes[1], size[0]) == 0;
     free(bytes[0]);
     free(bytes[1]);
@@ -221,6 +274,7 @@ static Status read_pair(const Judging *judging, Held *held, SuiteCase *entry, Er
     TRY(file_with_suffix(held->paths[0], mask_suffix, &held->mask_path, err));
     if (access(held->mask_path, F_OK) != 0)
         return STATUS_OK;
+    TRY(file_check_regular(held->mask_path, err));
     TRY(picture_read(&held->mask, held->mask_path, err));
     return apply_mask(held, entry, err);
 }
@@ -292,9 +346,7 @@ Status suite_judge(Suite *suite, const char *reference, const char *pictures,
 {
     Suite made = {0};
     Judging judging = {&made, {reference, pictures}, tolerance, background};
-    Status status = list_folder(&made, reference, "", true, err);
-    if (status == STATUS_OK)
-        status = list_folder(&made, pictures, "", false, err);
+    Status status = list_cases(&made, reference, pictures, err);
     if (status == STATUS_OK && made.n == 0)
         status = err_set(err, STATUS_INPUT, "%s: there is no picture in it, nor in %s", reference,
                          pictures);
@@ -302,7 +354,6 @@ Status suite_judge(Suite *suite, const char *reference, const char *pictures,
         suite_release(&made);
         return status;
     }
-    join_pairs(&made);
     threads_for(made.n, threads, judge_case, &judging);
     for (size_t i = 0; i < made.n; i++)
         made.count[made.cases[i].state]++;
@@ -324,7 +375,7 @@ static Status log_acceptance(const char *reference, const char *name, const char
     Status status = STATUS_OK;
     TRY_GOTO(file_join(reference, "accepted.tsv", &path, err));
     if (access(path, F_OK) == 0)
-        TRY_GOTO(file_read(path, &form, &old, &size, err));
+        TRY_GOTO(read_regular(path, &form, &old, &size, err));
     text_printf(&text, "%s%s\t%s\t%s\n", old ? old : "case\tsha256\treason\n", name, hash, reason);
     status = file_write_text(path, &text, err);
 done:
@@ -339,7 +390,7 @@ static Status copy_file(const char *from, const char *to, HashText *hash_out, Er
     char *bytes = NULL, *folder = NULL;
     size_t size;
     Hash hash;
-    Status status = file_read(from, &any_file, &bytes, &size, err);
+    Status status = read_regular(from, &any_file, &bytes, &size, err);
     if (status == STATUS_OK)
         status = mem_strdup(&folder, to, err);
     if (status == STATUS_OK) {
@@ -358,23 +409,50 @@ static Status copy_file(const char *from, const char *to, HashText *hash_out, Er
     return status;
 }
 
-Status suite_accept(const char *reference, const char *pictures, const char *name,
-                    const char *reason, Err *err)
+/* Returns the case of this name, or NULL. */
+static const SuiteCase *find_case(const Suite *suite, const char *name)
+{
+    for (size_t i = 0; i < suite->n; i++)
+        if (strcmp(suite->cases[i].name, name) == 0)
+            return &suite->cases[i];
+    return NULL;
+}
+
+/* The name of a case is one that the folders were found to hold, so it leads to no other folder. */
+static Status accept_case(const SuiteCase *entry, const char *reference, const char *pictures,
+                          const char *reason, Err *err)
 {
     char *paths[2] = {NULL, NULL};
     HashText hash = {.hex = "removed"};
     Status status = STATUS_OK;
-    TRY_GOTO(file_join(reference, name, &paths[0], err));
-    TRY_GOTO(file_join(pictures, name, &paths[1], err));
-    if (access(paths[1], F_OK) == 0)
+    TRY_GOTO(file_join(reference, entry->name, &paths[0], err));
+    TRY_GOTO(file_join(pictures, entry->name, &paths[1], err));
+    if (entry->is_picture)
         TRY_GOTO(copy_file(paths[1], paths[0], &hash, err));
     else if (unlink(paths[0]) != 0)
-        TRY_GOTO(err_set(err, STATUS_INPUT, "there is no case '%s' in %s, nor in %s", name,
-                         pictures, reference));
-    status = log_acceptance(reference, name, hash.hex, reason, err);
+        TRY_GOTO(err_set(err, STATUS_IO, "%s: cannot be removed: %s", paths[0], strerror(errno)));
+    status = log_acceptance(reference, entry->name, hash.hex, reason, err);
 done:
     free(paths[0]);
     free(paths[1]);
+    return status;
+}
+
+Status suite_accept(const char *reference, const char *pictures, const char *name,
+                    const char *reason, Err *err)
+{
+    Suite suite = {0};
+    bool is_first = access(reference, F_OK) != 0 && errno == ENOENT;
+    Status status = list_cases(&suite, is_first ? NULL : reference, pictures, err);
+    const SuiteCase *entry = status == STATUS_OK ? find_case(&suite, name) : NULL;
+    if (entry)
+        status = accept_case(entry, reference, pictures, reason, err);
+    else if (status == STATUS_OK)
+        status = err_set(err, STATUS_INPUT,
+                         "there is no case '%s' in %s, nor in %s; a case is a picture that compare "
+                         "lists without --accept",
+                         name, pictures, reference);
+    suite_release(&suite);
     return status;
 }
 

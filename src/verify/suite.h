@@ -48,7 +48,7 @@ void suite_release(Suite *suite);
 
 /* Makes the picture of a case its reference, or removes the reference where there is no picture,
  * and appends case, hash of the new file and reason, separated by tabs, to reference/accepted.tsv.
- * STATUS_INPUT when neither is there. */
+ * STATUS_INPUT when `name` is not the name of a case that suite_judge would list. */
 MUST_CHECK Status suite_accept(const char *reference, const char *pictures, const char *name,
                                const char *reason, Err *err);
 

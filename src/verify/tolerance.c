@@ -81,6 +81,7 @@ Tolerance tolerance_identity(double depth_step_mm)
     tolerance.color_levels = 1 / 257.0;
     tolerance.color_ppm = 2;
     tolerance.interior_levels = 1;
+    tolerance.spare_levels = 1;
     tolerance.id_ppm = 2;
     tolerance.depth_max_mm = depth_step_mm;
     tolerance.depth_ppm = 2;
@@ -218,6 +219,7 @@ Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *
         return status;
     }
     *tolerance = reader.tolerance;
+    tolerance->spare_levels = 0; /* the file says how many pixels may be off */
     tolerance->tier = reader.name;
     *name = reader.name;
     return STATUS_OK;

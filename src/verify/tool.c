@@ -11,8 +11,8 @@
  * itself: a script that stands for it may have more to do.
  *
  * The program is a process group of its own, a script that stands for it included. It is killed
- * when a signal ends this process, before its files are removed, and when it falls silent; if this
- * process is killed, the program itself dies with it. */
+ * when a signal ends this process, before its files are removed, when it falls silent, and when it
+ * reports no progress for long; if this process is killed, the program itself dies with it. */
 #include "verify/tool.h"
 
 #include <errno.h>
@@ -127,8 +127,11 @@ enum { LOG_BEGIN = 1 << 16, LOG_END = 1 << 20 };
 static const double log_most = 1e9; /* bytes, after which it is ended */
 
 typedef struct Log {
-    Text text;    /* lines end in line feeds */
-    double bytes; /* heard in all */
+    Text text;         /* lines end in line feeds */
+    double bytes;      /* number of bytes read so far */
+    double heard_s;    /* time of the last output */
+    double progress_s; /* time at which `progress` changed, or the program began */
+    char progress[80]; /* the last line with a percentage, up to the percentage */
 } Log;
 
 static void add_to_log(Log *log, char *block, size_t size)
@@ -143,25 +146,39 @@ static void add_to_log(Log *log, char *block, size_t size)
         text_cut(text, LOG_BEGIN, text->length - LOG_BEGIN - LOG_END);
 }
 
-/* The last "(30%)" among the `size` bytes that came last, or a little before them. */
-static void report_progress(const Tool *tool, const Text *log, size_t size)
+/* Notes whether the line that ends in the percentage at `at` is another one than the last. It also
+ * holds the number of pixels, which changes in pictures that take hours for a percent. */
+static void note_progress(Log *log, const char *at)
+{
+    const char *start = at, *said = text_chars(&log->text);
+    while (start > said && start[-1] != '\n' && at - start < (ptrdiff_t)sizeof log->progress - 1)
+        start--;
+    size_t length = (size_t)(at - start);
+    if (strncmp(log->progress, start, length) != 0 || log->progress[length])
+        log->progress_s = clock_seconds();
+    memcpy(log->progress, start, length);
+    log->progress[length] = '\0';
+}
+
+/* Reports the last "(30%)" among the `size` bytes that came last, or a little before them. */
+static void report_progress(const Tool *tool, Log *log, size_t size)
 {
     enum { LONGEST = 8 };
-    const char *chars = text_chars(log);
-    if (!tool->progress || !chars)
+    const char *chars = text_chars(&log->text);
+    size_t length = log->text.length, first = length > size + LONGEST ? length - size - LONGEST : 0;
+    size_t at = chars ? length : first;
+    while (at > first && chars[at - 1] != '(')
+        at--;
+    int percent;
+    if (at == first || sscanf(chars + at, "%d%%)", &percent) != 1)
         return;
-    size_t first = log->length > size + LONGEST ? log->length - size - LONGEST : 0;
-    for (size_t i = log->length; i > first; i--)
-        if (chars[i - 1] == '(') {
-            int percent;
-            if (sscanf(chars + i, "%d%%)", &percent) == 1)
-                tool->progress(percent / 100.0, tool->progress_context);
-            return;
-        }
+    note_progress(log, chars + at);
+    if (tool->progress)
+        tool->progress(percent / 100.0, tool->progress_context);
 }
 
 /* Reads once if there is something within `wait_ms`; false at the end of all. */
-static bool hear(const Tool *tool, int handle, int wait_ms, Log *log, double *heard_s)
+static bool hear(const Tool *tool, int handle, int wait_ms, Log *log)
 {
     char block[1 << 14];
     struct pollfd event = {.fd = handle, .events = POLLIN};
@@ -171,8 +188,8 @@ static bool hear(const Tool *tool, int handle, int wait_ms, Log *log, double *he
     if (count < 0)
         return errno == EINTR;
     add_to_log(log, block, (size_t)count);
-    report_progress(tool, &log->text, (size_t)count);
-    *heard_s = clock_seconds();
+    report_progress(tool, log, (size_t)count);
+    log->heard_s = clock_seconds();
     return count > 0;
 }
 
@@ -196,37 +213,52 @@ static bool is_done(const Tool *tool, pid_t child, const Text *said, const char 
     return strcmp(file_name(path), tool->process) == 0;
 }
 
+/* Returns an error for a program that has said too much, nothing for too long, or much that is no
+ * progress for longer yet: a program that hangs may go on to talk. */
+static Status check_life(const Tool *tool, const Log *log, Err *err)
+{
+    enum { PATIENCE_WITHOUT_PROGRESS = 5 }; /* POV-Ray reports no progress while it parses */
+    double now_s = clock_seconds(), patience_s = tool->patience_s;
+    if (log->bytes > log_most)
+        return err_set(err, STATUS_TOOL, "%s was ended: it has said more than %.0f MB about %s",
+                       tool->name, log_most * 1e-6, tool->scene);
+    if (patience_s > 0 && now_s - log->heard_s > patience_s)
+        return err_set(err, STATUS_TOOL,
+                       "%s was ended: it has said nothing for %g s about %s; "
+                       "%s=SECONDS gives it longer, 0 for ever",
+                       tool->name, patience_s, tool->scene, tool->patience);
+    if (patience_s > 0 && now_s - log->progress_s > PATIENCE_WITHOUT_PROGRESS * patience_s)
+        return err_set(err, STATUS_TOOL,
+                       "%s was ended: it has reported no progress for %g s on %s, although it goes "
+                       "on to write; %s=SECONDS gives it %d times as many seconds, 0 for ever",
+                       tool->name, PATIENCE_WITHOUT_PROGRESS * patience_s, tool->scene,
+                       tool->patience, PATIENCE_WITHOUT_PROGRESS);
+    return STATUS_OK;
+}
+
 /* Waits for the program itself: what it has started may live on and keep the pipe open, and it may
  * close the pipe and live on. What is in the pipe when it ends is still read. */
 static Status attend(const Tool *tool, pid_t child, int handle, const char *picture, Log *log,
                      int *ended, Err *err)
 {
     enum { WAIT_MS = 100, SHORT_WAIT_MS = 2, LAST_READS = 8 };
-    double heard_s = clock_seconds();
     bool open = true;
+    log->heard_s = log->progress_s = clock_seconds();
     while (waitpid(child, ended, WNOHANG) == 0) {
         if (open)
-            open = hear(tool, handle, WAIT_MS, log, &heard_s);
+            open = hear(tool, handle, WAIT_MS, log);
         else
             poll(NULL, 0, SHORT_WAIT_MS);
         if (is_done(tool, child, &log->text, picture)) {
             *ended = 0;
             return end_program(child, text_check(&log->text, err));
         }
-        if (log->bytes > log_most)
-            return end_program(child, err_set(err, STATUS_TOOL,
-                                              "%s was ended: it has said more than %.0f MB "
-                                              "about %s",
-                                              tool->name, log_most * 1e-6, tool->scene));
-        if (tool->patience_s > 0 && clock_seconds() - heard_s > tool->patience_s)
-            return end_program(child,
-                               err_set(err, STATUS_TOOL,
-                                       "%s was ended: it has said nothing for %g s about %s; "
-                                       "%s=SECONDS gives it longer, 0 for ever",
-                                       tool->name, tool->patience_s, tool->scene, tool->patience));
+        Status status = check_life(tool, log, err);
+        if (status != STATUS_OK)
+            return end_program(child, status);
     }
     for (int i = 0; open && i < LAST_READS; i++)
-        open = hear(tool, handle, 0, log, &heard_s);
+        open = hear(tool, handle, 0, log);
     return text_check(&log->text, err);
 }
 

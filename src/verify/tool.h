@@ -28,7 +28,8 @@ typedef struct Tool {
     const char *scene;    /* a regular file, under any name */
     const char *output;   /* the picture, likewise */
     const char *patience; /* the variable that sets patience_s */
-    double patience_s; /* the program is ended after this many seconds without output; 0: never */
+    double patience_s;    /* the program is ended after this many seconds without output, and after
+                           * five times as many without progress; 0: never */
     void (*progress)(double fraction, void *context); /* told of each "(30%)"; may be NULL */
     void *progress_context;
     /* Adds the program and its arguments; `scene` and `picture` are how it is to call them. */
@@ -46,7 +47,8 @@ typedef struct Tool {
 
 /* Has the program draw. The picture appears under its name only when it is whole. What the program
  * has said is appended to *said, its lines ended by line feeds; *seconds is the wall clock, parsing
- * included. STATUS_TOOL when it is missing or fails, falls silent or never stops talking;
+ * included. STATUS_TOOL when it is missing or fails, falls silent, makes no
+ * progress or never stops talking;
  * STATUS_INPUT when the scene is no regular file. */
 MUST_CHECK Status tool_draw(const Tool *tool, Text *said, double *seconds, Err *err);
 

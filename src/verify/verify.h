@@ -20,7 +20,8 @@ const char *plane_kind_name(PlaneKind kind);
 
 /* What is still agreement. A limit in parts per million is of the pixels judged; INFINITY (SIZE_MAX
  * for a count) leaves a rule unjudged. A NaN is never tolerated. Tolerances name a tier:
- * A, identity: what two renderers that do the same arithmetic can keep.
+ * A, identity: what two renderers that do the same arithmetic can keep. Where both round one value
+ * exactly between two codes, one of them may round it the other way.
  * B, tolerant: what one keeps that does it in another precision; local faults cannot hide in it,
  * because it judges what lies on the edges apart from what lies within them, signed differences,
  * and every segment for itself.
@@ -58,17 +59,24 @@ typedef struct Tolerance {
     size_t region_pixels;  /* largest 8-connected region of missing, or of extra, pixels */
     double pixelmatch;     /* threshold of pixelmatch, in [0, 1]; NAN: not counted */
     double pixelmatch_ppm; /* pixels that it finds different */
+    /* In a picture of at least SPARE_OF pixels, one pixel may be off by up to this many 8-bit
+     * levels and is not counted in color_ppm: 2 pixels in a million are less than one in most
+     * pictures. 0: none. In no file. */
+    double spare_levels;
     const char *title; /* of what is compared, in verdicts; NULL: the plane's name. Borrowed ... */
     /* SettledCause of each pixel; no limit counts those that are settled. NULL: none is. Borrowed,
      * and both in no file. */
     const uint8_t *settled;
 } Tolerance;
 
+enum { SPARE_OF = 1000 };
+
 /* Nothing is judged but NaN; `tier` is "none". */
 Tolerance tolerance_none(void);
-/* Tier A, identity: but for 2 pixels in a million colours are off by no code of 8 bits and by at
- * most one of 16, ids are equal, depth is within one step of the reference's quantisation and
- * normals within 0.03 degrees; and off the edges no colour is off by more than a level. */
+/* Tier A, identity: except for 2 pixels in a million, and for one pixel that is off by one level
+ * (spare_levels), colours are off by no code of 8 bits and by at most one of 16, ids are equal,
+ * depth is within one step of the reference's quantisation and normals within 0.03 degrees; and off
+ * the edges no colour is off by more than a level. */
 Tolerance tolerance_identity(double depth_step_mm);
 /* Tier B: what a renderer in single precision keeps, whatever the scene. */
 Tolerance tolerance_tolerant(double depth_step_mm);
@@ -176,8 +184,9 @@ typedef struct CompareResult {
 
     /* Colour, in 8-bit levels whatever the depth (a 16-bit code is 1/257 level). */
     double max_abs, mean_abs, rmse;
-    double max_code; /* in codes */
-    double psnr_db;  /* INFINITY for equal pictures */
+    double unsettled_max_abs; /* largest difference of a pixel that is not settled */
+    double max_code;          /* in codes */
+    double psnr_db;           /* INFINITY for equal pictures */
     double bias_levels;
     double sign_sigma; /* signed: positive where B is brighter more often than darker */
     size_t classes[PIXEL_CLASSES];

@@ -114,6 +114,40 @@ test_the_verdict_names_its_tier() {
     expect_stdout '^agree \(tier given\): 1 of 20'
 }
 
+# grey WIDTH HEIGHT LEVEL...: a grey PPM of code 100, its first pixels of the levels given.
+grey() {
+    awk -v n=$(($1 * $2)) -v levels="${*:3}" 'BEGIN {
+        split(levels, level); for (i = 1; i <= n; i++) { v = i in level ? level[i] : 100; print v, v, v } }' |
+        cat <(printf 'P3 %d %d 255\n' "$1" "$2") - | pnmtopnm -plain
+}
+
+test_tier_a_spares_one_pixel_by_one_level_in_a_picture_that_is_not_tiny() {
+    local case
+    for case in 'a 40 25' 'one 40 25 101' 'down 40 25 99' 'two 40 25 101 101' 'far 40 25 102' 'tiny 37 26' 'tinier 37 26 101'; do
+        set -- $case
+        grey "${@:2}" >"$1.ppm"
+    done
+    run_ok corcast compare a.ppm one.ppm
+    expect_stdout '^agree \(tier A\): 1 of 1000 pixels differ$'
+    run_ok corcast compare a.ppm down.ppm
+    for case in 'a two' 'a far' 'tiny tinier'; do
+        set -- $case
+        run corcast compare "$1.ppm" "$2.ppm"
+        expect_status 1
+    done
+    for case in '--ppm 2' '--levels 0' '--tolerance own.ini'; do
+        printf 'color_ppm = 2\n' >own.ini
+        run corcast compare a.ppm one.ppm $case
+        expect_status 1
+    done
+    oiiotool a.ppm -d uint16 -o a16.png
+    oiiotool one.ppm -d uint16 -o one16.png
+    run_ok corcast compare a16.png one16.png
+    oiiotool one.ppm -d uint16 --addc 0.00002 -o off16.png
+    run corcast compare a16.png off16.png
+    expect_status 1
+}
+
 test_parts_and_layers_of_openexr_are_read_by_name() {
     picture 100 >a.ppm
     picture 155 >b.ppm
@@ -390,10 +424,35 @@ test_noisy_pictures_are_tested_at_a_rate_of_false_alarms() {
     expect_status 1
     expect_json stdout '.verdict == "differ" and .gain > 1.006 and .gain < 1.018 and .alarm_rate == 0.01'
     oiiotool --create 64x48 3 --addc 0.0009 -d float -o v.exr
-    run_ok corcast compare r4.exr r5.exr --noise v.exr --alarms 0.001
+    run_ok corcast compare r4.exr r5.exr --variance v.exr --alarms 0.001
+    run corcast compare r4.exr biased.exr --variance v.exr
+    expect_status 1
     run corcast compare r4.exr r5.exr --alarms 0.001
     expect_status 2
-    expect_sentence '--alarms needs --noise'
+    expect_sentence '--alarms needs --noise or --variance'
+}
+
+test_a_rendering_is_not_taken_for_a_variance() {
+    local i name
+    for i in 1 2 3 4 5; do
+        oiiotool --create 64x48 3 --addc 0.4 --noise:type=gaussian:mean=0:stddev=0.03:seed=$i -d uint8 -o r$i.png
+    done
+    oiiotool r5.png --mulc 1.05 -d uint8 -o biased.png
+    oiiotool r1.png -d float -o r1.exr
+    for name in r1.png r1.exr r1.png, ,r1.png ''; do
+        run corcast compare r4.png biased.png --noise "$name"
+        expect_status 2
+        expect_sentence '--noise is .* must name at least 2 more renderings'
+    done
+    run corcast compare r4.png biased.png --variance r1.png
+    expect_status 2
+    expect_sentence 'r1\.png: holds integers of 8 bits; --variance needs floats'
+    run corcast compare r4.png biased.png --variance r1.exr --noise r1.png,r2.png
+    expect_status 2
+    expect_sentence '--variance and --noise both give the variance'
+    run corcast compare r4.png biased.png --noise r1.png,r2.png,r3.png
+    expect_status 1
+    run_ok corcast compare r4.png r5.png --noise r1.png,r2.png,r3.png
 }
 
 test_sides_beyond_all_bounds_are_refused() {

@@ -75,6 +75,21 @@ test_a_renderer_that_does_not_repeat_itself_raises_a_false_alarm() {
     expect_stdout '^false alarm: yours calls two drawings of the same scene different$'
 }
 
+test_nothing_is_left_of_a_measurement_that_ends_early() {
+    local signal
+    for signal in TERM INT HUP; do
+        hearing "$CORCAST" power --quiet --render 'echo a >{}.part; echo b >{}; echo c >started; sleep 60; true {}' &
+        wait_for 10 test -e started || fail "expected the renderer to start"
+        kill -$signal $!
+        wait $!
+        rm started
+        expect_only
+    done
+    run corcast power --quiet --render 'echo a >{}.part; exit 7'
+    expect_status 3
+    expect_only
+}
+
 test_what_cannot_be_asked_is_refused() {
     run corcast power
     expect_status 2

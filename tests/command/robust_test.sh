@@ -114,6 +114,41 @@ test_a_povray_that_falls_silent_is_ended() {
     expect_sentence "CORCAST_POVRAY_PATIENCE: 'soon' is not a number of seconds"
 }
 
+test_a_povray_that_talks_without_progress_is_ended() {
+    local seconds=$SECONDS
+    stand_in 'while :; do echo "Rendered 5 of 200 pixels (2%)"; sleep 0.1; done'
+    run env CORCAST_POVRAY_PATIENCE=0.3 timeout 30 "$CORCAST" povray scene.pov -o picture.png
+    expect_status 3
+    expect_sentence 'POV-Ray was ended: it has reported no progress for 1.5 s on scene.pov'
+    stand_in 'for i in {1..300}; do echo "warning $i"; sleep 0.1; done'
+    run env CORCAST_POVRAY_PATIENCE=0.3 timeout 30 "$CORCAST" povray scene.pov -o picture.png
+    expect_status 3
+    expect_sentence 'POV-Ray was ended: it has reported no progress for 1.5 s on scene.pov'
+    [ $((SECONDS - seconds)) -lt 12 ] || fail "expected it to be ended soon"
+    good_picture
+    stand_in 'for i in {1..22}; do echo "Rendered $i of 200 pixels (0%)"; sleep 0.1; done; cp good.png "$picture"'
+    run env CORCAST_POVRAY_PATIENCE=0.3 timeout 30 "$CORCAST" povray scene.pov -o picture.png
+    expect_status 0
+}
+
+test_the_reason_of_a_povray_that_fails_is_what_it_said_last() {
+    local start='echo "povray: cannot open the user configuration file x" >&2
+        echo "Persistence of Vision(tm) Ray Tracer Version 3.7.0.10.unofficial" >&2; echo "POV-Ray is based on DKBTrace" >&2'
+    stand_in "$start; echo 'Possible Parse Error: Cannot find it'; echo 'Parse Error: No such colour'; echo 'Fatal error in parser: Cannot parse input.'
+        echo 'Render failed'; exit 1"
+    run corcast povray scene.pov -o picture.png
+    expect_sentence '\(exit status 1\): Parse Error: No such colour$'
+    stand_in "$start; echo 'Cannot create render state output file.'; echo '  Bounding Time:    0 hours'; echo 'Render failed'; exit 1"
+    run corcast povray scene.pov -o picture.png
+    expect_sentence '\(exit status 1\): Cannot create render state output file\.   Bounding Time: '
+    stand_in "$start; printf 'Rendered 5 of 200 pixels (2%%)\n\n'; kill -SEGV \$\$"
+    run corcast povray scene.pov -o picture.png
+    expect_sentence '\(exit status -1\): .*DKBTrace Rendered 5 of 200 pixels \(2%\)$'
+    stand_in 'exit 4'
+    run corcast povray scene.pov -o picture.png
+    expect_sentence '\(exit status 4\): it gave no reason$'
+}
+
 test_a_child_that_povray_leaves_behind_is_not_waited_for() {
     local seconds=$SECONDS
     good_picture

@@ -67,6 +67,64 @@ test_what_is_accepted_agrees_afterwards_and_has_its_reason() {
     expect_sentence '--accept and --reason go together'
 }
 
+test_only_a_case_that_compare_lists_is_accepted() {
+    local name
+    folders
+    mkdir victim
+    picture 7 >victim/v.ppm
+    cp victim/v.ppm kept.ppm
+    cp drawn/a.ppm v.ppm
+    for name in ../victim/v.ppm ../v.ppm "$PWD/victim/v.ppm" ./a.ppm views/../a.ppm views//same.ppm notes.txt ../drawn/notes.txt \
+        accepted.tsv views '' .; do
+        run corcast compare --reference stored drawn --accept "$name" --reason 'x'
+        expect_status 2
+    done
+    expect_same victim/v.ppm kept.ppm
+    [ ! -e stored/accepted.tsv ] || fail "expected nothing to be accepted: $(cat stored/accepted.tsv)"
+    run corcast compare --reference victim drawn --accept ../stored/a.ppm --reason 'x'
+    expect_sentence "there is no case '\.\./stored/a\.ppm' in drawn, nor in victim"
+}
+
+test_the_first_picture_may_be_accepted_before_there_are_references() {
+    folders
+    run_ok corcast compare --reference none drawn --accept views/same.ppm --reason 'first'
+    expect_same none/views/same.ppm drawn/views/same.ppm
+    run corcast compare --reference stored nothing-drawn --accept a.ppm --reason 'x'
+    expect_status 3
+    expect_file stored/a.ppm
+}
+
+test_a_pipe_is_a_broken_case_and_is_not_waited_for() {
+    mkdir stored drawn
+    picture 100 | tee stored/a.ppm stored/b.ppm >drawn/a.ppm
+    picture 101 >drawn/b.ppm
+    mkfifo stored/p.png drawn/p.png stored/q.png stored/b.mask.png
+    cp drawn/a.ppm drawn/q.png
+    run timeout 20 "$CORCAST" compare --reference stored drawn
+    expect_status 1
+    expect_stdout '^broken  b\.ppm: stored/b\.mask\.png: .*is a pipe'
+    expect_stdout '^broken  p\.png: stored/p\.png: .*is a pipe'
+    expect_stdout '^broken  q\.png: stored/q\.png: .*is a pipe'
+    run timeout 20 "$CORCAST" compare --reference stored drawn --accept p.png --reason 'x'
+    expect_status 2
+    expect_sentence 'drawn/p\.png: .*is a pipe'
+    mkfifo stored/accepted.tsv
+    run timeout 20 "$CORCAST" compare --reference stored drawn --accept a.ppm --reason 'x'
+    expect_status 2
+    expect_sentence 'accepted\.tsv: .*is a pipe'
+}
+
+test_a_link_to_a_folder_around_it_is_not_followed() {
+    mkdir -p stored/views drawn/views elsewhere
+    picture 100 | tee stored/a.ppm drawn/a.ppm stored/views/b.ppm drawn/views/b.ppm >elsewhere/c.ppm
+    ln -s .. drawn/views/loop
+    ln -s . drawn/again
+    ln -s ../elsewhere stored/linked
+    ln -s ../elsewhere drawn/linked
+    run_ok corcast compare --reference stored drawn
+    expect_stdout '^agree: 3 cases: 3 same; 2 other files$'
+}
+
 test_what_is_masked_is_not_judged() {
     mkdir stored drawn
     picture 100 >stored/a.ppm

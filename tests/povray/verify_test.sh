@@ -38,6 +38,22 @@ agrees() {
         expect_json report/report.json '.surface.verdict == "agree" and .surface.common_pixels > 100'
 }
 
+# Outlines, cuts and equally near surfaces of these lie exactly at pixel centres of a picture whose frame is theirs.
+test_tubes_tees_and_crosses_on_integers_agree() {
+    local case
+    printf '1 1 0 0 0 1 -1\n2 3 0 10 0 1 1\n' >tube.swc
+    printf '1 1 0 0 0 1 -1\n2 3 0 2 0 1 1\n3 3 -1 2 0 1 2\n4 3 1 2 0 1 2\n' >tee.swc
+    printf '1 1 0 0 0 1 -1\n2 3 0 4 0 1 1\n3 3 -3 4 0 1 2\n4 3 3 4 0 1 2\n5 3 0 8 0 1 2\n' >cross.swc
+    for case in 'tube cylinders 100x100' 'tube joined 100x100' 'tube rounded 100x100' 'tube blob 100x100' \
+        'tube isosurface 60x60' 'tube mesh 100x100' 'tee cylinders 500x500' 'tee joined 100x100' 'tee rounded 300x300' \
+        'tee blob 100x100' 'tee isosurface 100x100' 'cross cylinders 100x100 --view left' 'cross joined 50x50' \
+        'cross rounded 200x100 --antialias 2' 'cross blob 50x50' 'cross cylinders 160x120 --projection perspective'; do
+        set -- $case
+        run corcast verify "$1.swc" --model "$2" --size "$3" "${@:4}" -o report
+        [ "$status" -eq 0 ] || fail "expected agreement of $case, got: $(cat stdout)"
+    done
+}
+
 test_joined_trees_of_least_length_agree() {
     run_ok corcast grow --terminals 150 --seed 3 --lambda 0 -o tree.swc
     agrees joined --view iso --shadows on

@@ -422,7 +422,7 @@ static Status run_compare(void *options, Parsed *parsed, Err *err)
     TRY(compare_check_folders(own_options, parsed, err));
     if (own_options->reference)
         return compare_folders(own_options, parsed, err);
-    if (own_options->noise)
+    if (own_options->noise || own_options->variance)
         return compare_noisy(own_options, parsed, err);
     PlaneKind kind =
         own_options->kind == PLANE_KINDS ? kind_of(parsed->operands[0]) : own_options->kind;
@@ -460,7 +460,8 @@ const Command command_compare = {
         "  corcast compare --reference references drawn --tier B --junit junit.xml\n"
         "  corcast compare --reference references drawn --accept a.png --reason 'new lamp'\n"
         "\ntiers of agreement:\n"
-        "  A        identity: on all but 2 pixels in a million the same colours, ids and depths\n"
+        "  A        identity: on all but 2 pixels in a million the same colours, ids and depths;\n"
+        "           fewer than 500,000 pixels: on all, except for one pixel by one 8-bit level\n"
         "  B        what a renderer in single precision keeps: a few pixels at edges, no bias,\n"
         "           no segment missing, moved or of another colour\n"
         "  surface  what iteration towards a surface keeps: 99.5 % of colours within 2 levels,\n"

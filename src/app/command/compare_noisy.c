@@ -1,4 +1,4 @@
-/* Pictures of path tracers: the test of verify, and the variance that it takes, from a plane or
+/* Compares pictures of path tracers. The variance of their noise comes from a file of variances or
  * from several renderings. */
 #include "app/command/compare_options.h"
 #include "app/run/output.h"
@@ -21,10 +21,10 @@ static Status read_colors(Plane *plane, const char *path, Err *err)
     return status;
 }
 
-/* `names` is one plane of variances, or renderings with commas between them. */
-static Status read_noise(Plane *variance, const char *names, Err *err)
+/* Computes the variance of each value from renderings, whose names are separated by commas. */
+static Status variance_of_renderings(Plane *variance, const char *names, Err *err)
 {
-    enum { MOST = 64 };
+    enum { FEWEST = 2, MOST = 64 };
     Plane planes[MOST] = {{0}};
     size_t n = 0;
     char *copy = NULL, *rest = NULL;
@@ -35,18 +35,33 @@ static Status read_noise(Plane *variance, const char *names, Err *err)
                           : err_set(err, STATUS_USAGE, "--noise takes at most %d files", MOST);
         n += status == STATUS_OK;
     }
-    if (status == STATUS_OK && n == 0)
-        status = err_set(err, STATUS_USAGE, "--noise names no file");
-    if (status == STATUS_OK && n > 1)
+    if (status == STATUS_OK && n < FEWEST)
+        status = err_set(err, STATUS_USAGE,
+                         "--noise is '%s'; it must name at least %d more renderings of the scene, "
+                         "with commas between them; a file of variances is given by --variance",
+                         names, FEWEST);
+    if (status == STATUS_OK)
         status = noise_of_renderings(planes, n, variance, err);
-    if (status == STATUS_OK && n == 1) {
-        *variance = planes[0];
-        planes[0] = (Plane){0};
-    }
     for (size_t i = 0; i < n; i++)
         plane_release(&planes[i]);
     free(copy);
     return status;
+}
+
+/* Reads the variance of each value. Codes of 8 or 16 bits are a picture, not variances. */
+static Status read_variance(Plane *variance, const char *path, Err *err)
+{
+    Image image = {0};
+    TRY(image_read(&image, path, err));
+    if (image.plane.values) {
+        *variance = image.plane;
+        return STATUS_OK;
+    }
+    int bits = image.picture.bits;
+    image_release(&image);
+    return err_set(err, STATUS_INPUT,
+                   "%s: holds integers of %d bits; --variance needs floats (PFM, OpenEXR or TIFF)",
+                   path, bits);
 }
 
 static Status print_noise(const NoiseResult *result, bool json, bool quiet, Err *err)
@@ -81,7 +96,10 @@ Status compare_noisy(const CompareOptions *options, const Parsed *parsed, Err *e
     Status status = STATUS_OK;
     TRY_GOTO(read_colors(&a, parsed->operands[0], err));
     TRY_GOTO(read_colors(&b, parsed->operands[1], err));
-    TRY_GOTO(read_noise(&variance, options->noise, err));
+    if (options->variance)
+        TRY_GOTO(read_variance(&variance, options->variance, err));
+    else
+        TRY_GOTO(variance_of_renderings(&variance, options->noise, err));
     TRY_GOTO(compare_noise(&a, &b, &variance, options->alarms, &result, err));
     TRY_GOTO(print_noise(&result, options->json, parsed->common.quiet, err));
     status = result.agrees ? STATUS_OK : STATUS_DIFFERS;

@@ -20,14 +20,20 @@ static const Option own[] = {
     {.name = "noise",
      SETS(TEXT, CompareOptions, noise),
      .group = GROUP_JUDGE,
-     .argument = "V.exr|R1,R2,...",
-     .help = "test whether two noisy pictures have one mean; the variance of a pixel is V, or "
-             "that of several renderings"},
+     .argument = "R1,R2,...",
+     .help = "test whether two noisy pictures have the same mean; the variance of each pixel is "
+             "measured from these other renderings, at least two"},
+    {.name = "variance",
+     SETS(INPUT, CompareOptions, variance),
+     .group = GROUP_JUDGE,
+     .argument = "V.exr",
+     .help = "test as with --noise; the variance of each pixel of one rendering is read from this "
+             "file of floats"},
     {.name = "alarms",
      SETS(NUMBER, CompareOptions, alarms),
      FROM_TO(1e-9, 0.5),
      .group = GROUP_JUDGE,
-     .help = "rate of false alarms of --noise"},
+     .help = "rate of false alarms of --noise and --variance"},
     {.name = "reference",
      SETS(TEXT, CompareOptions, reference),
      .argument = "DIR",
@@ -151,6 +157,8 @@ Status compare_tolerance(const JudgeOptions *options, double depth_mm, Tolerance
                                         : tolerance_none();
     if (options->tolerance)
         TRY(tolerance_read(tolerance, name, options->tolerance, err));
+    if (options->has_levels || options->has_ppm)
+        tolerance->spare_levels = 0;
     if (options->has_levels) {
         tolerance->color_levels = options->levels;
         tolerance->interior_levels = (double)INFINITY;

@@ -24,7 +24,7 @@ typedef struct CompareOptions {
     const char *junit, *layer;
     int bits; /* index of bit_counts */
     const char *heat, *difference, *flicker, *ledger, *page, *report;
-    const char *reference, *accept, *reason, *noise;
+    const char *reference, *accept, *reason, *noise, *variance;
     double alarms;
     char *line; /* owned; the command */
     bool json, metrics, has_metrics;
