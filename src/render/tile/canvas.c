@@ -104,7 +104,7 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
                  .look = tilelook_of(drawing->view, &appearance->finish, eye),
                  .ground_look = tilelook_of(drawing->view, &drawing->view->ground.finish, eye),
                  .needs_places = needs_places(drawing->view) || drawing->mean || drawing->shared ||
-                                 drawing->view->ground.present,
+                                 drawing->thin || drawing->view->ground.present,
                  .wants_color = frame->color.values || frame->codes.codes8,
                  .wants_geometry = planes_want_geometry(frame)};
     TRY(make_background(canvas, err));
@@ -308,6 +308,27 @@ float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
         shade_ground(canvas, seen, shadowed, own);
     if (canvas->frame->color.values)
         canvas->kernels->clear(seen->hits->state, canvas->background, own->color);
+    return own->color;
+}
+
+float (*canvas_cover(const Canvas *canvas, int worker, const SeenTile *seen, const ThinCells *cells,
+                     int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES]
+{
+    CanvasWorker *own = &canvas->each[worker];
+    if (cells->n == 0)
+        return color;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        const int step = cells->columns / TILE_SIDE;
+        const int column = tile_sample_x(sample), row = tile_sample_y(sample);
+        const bool hit = seen->hits && seen->hits->state[sample] == TILE_HIT;
+        float over[3];
+        for (int c = 0; c < 3; c++)
+            over[c] = color ? color[c][sample] : canvas->background[c];
+        thincells_over(cells, column * step + x, row * step + y,
+                       hit ? (float)seen->hits->z[sample] : HUGE_VALF, over);
+        for (int c = 0; c < 3; c++)
+            own->color[c][sample] = over[c];
+    }
     return own->color;
 }
 
