@@ -558,6 +558,10 @@ static Status sampled_rows(Renderer *renderer, const View *view, const Appearanc
 
 /* ---- thin vessels ---------------------------------------------------------------------------- */
 
+/* Vessels are thin if they are narrower than a pixel, and than this many distances of its samples.
+ */
+static const double most_samples = 3;
+
 /* The camera of the samples that thin vessels are drawn over: with effects samples are pixels of a
  * finer picture. */
 static Camera camera_of_samples(const View *view, const RenderParams *params)
@@ -575,16 +579,16 @@ static Camera camera_of_samples(const View *view, const RenderParams *params)
 static Status find_thin(Renderer *covering, const View *view, Err *err)
 {
     const RenderParams *params = &covering->params;
-    const bool effects = effects_present(&view->effects);
+    const int pixel = effects_present(&view->effects) ? params->antialias : 1;
     Camera camera = camera_of_samples(view, params);
     if (memcmp(&covering->thin.camera, &camera, sizeof camera) == 0)
         return STATUS_OK;
     double start_s = clock_seconds();
     forget_view(covering);
     thinvessels_release(&covering->thin);
-    TRY(thinvessels_find(covering->geometry, &camera, effects ? 1 : 1.0 / params->antialias,
-                         params->least_px * (effects ? params->antialias : 1), params->threads,
-                         &covering->thin, err));
+    TRY(thinvessels_find(covering->geometry, &camera,
+                         pixel * fmin(1, most_samples / params->antialias),
+                         pixel * params->least_px, params->threads, &covering->thin, err));
     covering->stats.prepare_s += clock_seconds() - start_s;
     return STATUS_OK;
 }

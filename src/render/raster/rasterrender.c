@@ -160,7 +160,8 @@ static void see_batch(const RasterPicture *picture, const RasterGrid *grid, int 
         tile->seen.hits = tile->visible ? &tile->surfels : NULL;
         if (tile->visible)
             kernels->resolve(&tile->raster, &tile->hits, &tile->surfels);
-        if (tile->visible && (picture->canvas.needs_places || picture->canvas.wants_geometry))
+        if (tile->visible &&
+            (picture->canvas.needs_places || picture->canvas.wants_geometry || tile->center.n > 0))
             measure_depths(tile);
         if (picture->canvas.drawing->view->ground.present)
             see_ground(picture, tile);

@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SHADED = 3, ROWS = 8 };
+enum { SHADED = 5, ROWS = 8 };
 static const double piece_px = 1.5;
 /* Height of shading points above the wall, in radii: less than a sample can tell, more than
  * rounding. */
@@ -508,6 +508,8 @@ static void draw_rows(size_t index, int worker, void *context)
     for (int row = 0; row < rows && cells->n > 0 && status == STATUS_OK; row++)
         for (int column = 0; column < camera->width; column++) {
             size_t pixel = (size_t)(first + row) * (size_t)camera->width + (size_t)column;
+            if (thincells_are_empty(cells, column, row))
+                continue;
             double depth = (double)job->frame->depth.values[pixel];
             double along = vec3_dot(camera_ray(camera, column, band->first + first + row).direction,
                                     camera->direction);

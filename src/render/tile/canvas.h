@@ -84,12 +84,10 @@ void canvas_see_ground(const Canvas *canvas, SeenTile *seen, TileHits *hits);
 float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
                      const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES];
 
-/* Draws thin vessels over the colours of a tile's samples, whose hits have depths.
- *
- * cells   of the tile. Sample (i, j) of the tile has cell (i * step + x, j * step + y), step being
- * the number of cells per sample. color   NULL: the background's.
- *
- * Returns the worker's colours, or `color` if no thin vessel touches the tile. */
+/* Draws thin vessels over the colours of a tile's samples, whose hits have depths. Sample (i, j) of
+ * the tile has cell (i * step + x, j * step + y) of `cells`, step being the number of cells per
+ * sample. `color` is the worker's, from canvas_shade; NULL: the background's. Returns the worker's
+ * colours, or `color` if no thin vessel touches the tile. */
 float (*canvas_cover(const Canvas *canvas, int worker, const SeenTile *seen, const ThinCells *cells,
                      int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES];
 

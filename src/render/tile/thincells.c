@@ -326,11 +326,9 @@ static const ThinFragment *next_behind(const ThinCells *cells, uint32_t first,
 
 void thincells_over(const ThinCells *cells, int column, int row, float z, float color[3])
 {
-    uint32_t first = cells->n > 0 ? cells->first[row * cells->columns + column] : 0;
+    const uint32_t first = cells->first[row * cells->columns + column];
     float clear = 1, sum[3] = {0};
     const ThinFragment *at = NULL;
-    if (first == 0)
-        return;
     while (clear > 0 && (at = next_behind(cells, first, at, z))) {
         float part = clear * least(1, at->area);
         for (int c = 0; c < 3; c++)

@@ -70,6 +70,12 @@ void thincells_release(ThinCells *cells);
 /* Drops all fragments. */
 void thincells_clear(ThinCells *cells);
 
+/* Returns true if a cell of the block has no fragment. */
+static inline bool thincells_are_empty(const ThinCells *cells, int column, int row)
+{
+    return cells->first[row * cells->columns + column] == 0;
+}
+
 /* Draws the fragments of cell (column, row) of the block over `color`, the linear colour that a
  * sample sees at the depth z along the view, mm. Fragments behind z are hidden. Runs are drawn from
  * front to back, each as if its area lay anyhow in the cell. */
