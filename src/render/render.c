@@ -370,10 +370,11 @@ static Status end_light(Renderer *renderer, const Drawing *drawing, Err *err)
     const RenderParams *params = drawing->params;
     if (!renderer->asked)
         return STATUS_OK;
+    const bool shared = share_is_wanted(view, params);
     for (size_t i = 0; i < view->n_lights && params->shadows; i++)
-        if (view->lights[i].casts_shadows && !light_is_soft(&view->lights[i]))
+        if (view->lights[i].casts_shadows && !(shared && light_is_soft(&view->lights[i])))
             TRY(ask_light(renderer, drawing, i, err));
-    if (params->occlusion > 0)
+    if (params->occlusion > 0 && shared)
         TRY(thinvessels_find_open(drawing, &renderer->beams, &renderer->thin, err));
     memcpy(&renderer->thin_lights, view, sizeof *view);
     renderer->asked = NULL;

@@ -198,16 +198,15 @@ static float (*color_tile(const FieldPicture *picture, int worker,
                           const BatchTile *tile))[TILE_SAMPLES]
 {
     const SeenTile *seen = &tile->seen;
-    if (picture->canvas.wholly_colored) {
-        float(*color)[TILE_SAMPLES] = picture->canvas.each[worker].color;
-        color_samples(picture, worker, seen, color);
-        return color;
-    }
     float(*color)[TILE_SAMPLES] = NULL;
-    if (seen->hits)
+    if (picture->canvas.wholly_colored) {
+        color = picture->canvas.each[worker].color;
+        color_samples(picture, worker, seen, color);
+    } else if (seen->hits) {
         color = canvas_shade(&picture->canvas, worker, seen,
                              picture->has_shadows ? (const uint8_t(*)[TILE_SAMPLES])tile->shadowed
                                                   : NULL);
+    }
     return canvas_cover(&picture->canvas, worker, seen, &tile->cells, 0, 0, color);
 }
 
