@@ -97,6 +97,9 @@ typedef struct Drawing {
     struct Caster *caster; /* for the rays that the engine asks for; NULL where it asks for none */
     const TermMean *mean;  /* of colours that blend; else NULL */
     const struct SharedLight *shared; /* what samples of a pixel share; NULL: nothing */
+    const bool *hidden; /* per primitive, or per segment of a field: the camera does not see it, lights
+                         * do; NULL: none is hidden */
+    const struct ThinLayer *thin; /* thin vessels that are drawn over each sample; NULL: none */
     Band band;
 } Drawing;
 

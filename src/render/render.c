@@ -4,10 +4,11 @@
  * engine, or until colours are wanted of what was prepared for planes of geometry alone. An
  * appearance decides nothing but colours.
  *
- * Where vessels thinner than a pixel are drawn by coverage, the colours are those of a renderer of
- * the other vessels alone, and the thin ones are laid over them [thin/thinvessels.h]. The lights
- * are asked once for all thin vessels, as they are for the others: area lights with the first rows
- * of these, for which they are looked from point by point, the rest after those.
+ * Where vessels thinner than the distance of samples are drawn by coverage, the colours come from a
+ * second renderer of the same geometry, whose camera does not see the thin vessels. They are drawn
+ * over each of its samples [thin/thinvessels.h]. Shadows and occlusion are those of all vessels.
+ * The lights are asked once for all thin vessels of a view: area lights with its first rows, for
+ * which they are looked from point by point, other lights after them.
  *
  * The first engine of the table that can draws: the special ones first, rays, which can draw
  * anything, last.
@@ -36,12 +37,11 @@ static const Engine *const engines[] = {&xray_engine, &field_engine, &raster_eng
 
 struct Renderer {
     const Geometry *geometry;
-    RenderParams params;       /* with the number of threads */
-    Caster *caster;            /* of the geometry; NULL until a view needs it */
-    TermMean *mean;            /* likewise; NULL until an appearance needs it */
-    RadiusTable radii;         /* likewise; empty until effects need it */
-    const Geometry *occluders; /* what the sky is hidden by */
-    Beams beams;               /* of that; none until there is occlusion */
+    RenderParams params; /* with the number of threads */
+    Caster *caster;      /* of the geometry; NULL until a view needs it */
+    TermMean *mean;      /* likewise; NULL until an appearance needs it */
+    RadiusTable radii;   /* likewise; empty until effects need it */
+    Beams beams;         /* likewise; none until there is occlusion */
     RenderStats stats;
     /* What is kept while engine, camera, lights, ground and antialiasing are these. */
     const Engine *engine; /* NULL: nothing is */
@@ -52,14 +52,13 @@ struct Renderer {
     Ground ground;
     int antialias;
     bool has_color; /* it was prepared for colours, which need shadows, and serves planes too */
-    /* What is kept while thin vessels are drawn for one camera. */
+    Renderer
+        *covering; /* draws colours where vessels are thin; NULL: there are none, or it is this */
+    /* Of a covering renderer, what is kept while the camera is that of `thin`. */
     ThinVessels thin;
-    Geometry rest_geometry; /* without the thin ones */
-    Renderer *rest;         /* of that; NULL: none is thin */
-    /* What of the lights reaches these, while lights and ground are the same. */
-    LonePlaces thin_places;
-    View thin_lights;  /* of this view's */
-    LonePlaces *asked; /* of another renderer, borrowed: places that ask area lights, too */
+    View thin_lights; /* whose lights and ground thin.lights and thin.open are for */
+    LonePlaces
+        *asked; /* those of `thin` while area lights are yet to be asked for them; borrowed */
 };
 
 /* ---- planes ------------------------------------------------------------------------------------
@@ -181,7 +180,7 @@ Status renderer_new(const Geometry *geometry, const RenderParams *params, Render
     double start_cpu_s = clock_cpu_seconds();
     TRY(check_kernels(params->kernels, err));
     TRY(mem_calloc(&renderer, 1, sizeof *renderer, "renderers", err));
-    renderer->geometry = renderer->occluders = geometry;
+    renderer->geometry = geometry;
     renderer->params = *params;
     if (params->threads <= 0)
         renderer->params.threads = threads_available();
@@ -204,21 +203,13 @@ static void forget_view(Renderer *renderer)
     renderer->engine = NULL;
 }
 
-static void forget_thin(Renderer *renderer)
-{
-    renderer_free(renderer->rest);
-    renderer->rest = NULL;
-    geometry_release(&renderer->rest_geometry);
-    loneplaces_release(&renderer->thin_places);
-    thinvessels_release(&renderer->thin);
-}
-
 void renderer_free(Renderer *renderer)
 {
     if (!renderer)
         return;
     forget_view(renderer);
-    forget_thin(renderer);
+    renderer_free(renderer->covering);
+    thinvessels_release(&renderer->thin);
     caster_free(renderer->caster);
     termmean_free(renderer->mean);
     radiustable_release(&renderer->radii);
@@ -277,15 +268,15 @@ static Status prepare_view(Renderer *renderer, const Drawing *drawing, Err *err)
 void renderer_antialias(Renderer *renderer, int antialias)
 {
     renderer->params.antialias = antialias;
-    if (renderer->rest)
-        renderer_antialias(renderer->rest, antialias);
+    if (renderer->covering)
+        renderer_antialias(renderer->covering, antialias);
 }
 
 RenderStats renderer_stats(const Renderer *renderer)
 {
     RenderStats stats = renderer->stats;
-    if (renderer->rest)
-        renderstats_add(&stats, &renderer->rest->stats);
+    if (renderer->covering)
+        renderstats_add(&stats, &renderer->covering->stats);
     return stats;
 }
 
@@ -347,7 +338,7 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Shar
     if (!share_is_wanted(drawing->view, params))
         return STATUS_OK;
     if (params->occlusion > 0 && !renderer->beams.capsules)
-        TRY(beams_new(renderer->occluders, &renderer->beams, err));
+        TRY(beams_new(renderer->geometry, &renderer->beams, err));
     const bool soft = params->shadows && view_has_soft_shadows(drawing->view);
     const Drawing wide = widened(drawing, margin, soft ? SHARE_BLOCK : 1);
     const LightSources from = {.see = see_vessels,
@@ -357,6 +348,68 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Shar
                                .lone = renderer->asked};
     return share_light(&wide, &from, out, err);
 }
+
+/* ---- light of thin vessels --------------------------------------------------------------------
+ */
+
+/* Has area lights asked for thin vessels with the rows to come, unless it is known what of the
+ * view's lights reaches them. */
+static Status begin_light(Renderer *renderer, const View *view, Err *err)
+{
+    const View *known = &renderer->thin_lights;
+    LonePlaces *places = &renderer->thin.lights;
+    if (places->n > 0 && has_lights(view, known->lights, known->n_lights) &&
+        memcmp(&view->ground, &known->ground, sizeof view->ground) == 0)
+        return STATUS_OK;
+    thinvessels_place(&renderer->thin);
+    renderer->thin_lights = (View){0};
+    renderer->asked = places;
+    return renderer->params.shadows ? loneplaces_init(view, places, err) : STATUS_OK;
+}
+
+/* Asks a light for the thin vessels as rows do, or by rays. */
+static Status ask_light(Renderer *renderer, const Drawing *drawing, size_t light, Err *err)
+{
+    const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
+    const Engine *engine = renderer->engine;
+    const void *shadow = engine->shadow ? engine->shadow(renderer->prepared, light) : NULL;
+    if (shadow)
+        return lonelight_look(drawing, engine->lights, shadow, &eye, light, renderer->asked, err);
+    Drawing casting = *drawing;
+    TRY(make_caster(renderer, err));
+    casting.caster = renderer->caster;
+    lonelight_cast(&casting, light, renderer->asked);
+    return STATUS_OK;
+}
+
+/* Finds what is not known yet of the light that reaches thin vessels, after area lights were asked.
+ */
+static Status end_light(Renderer *renderer, const Drawing *drawing, Err *err)
+{
+    const View *view = drawing->view;
+    const RenderParams *params = drawing->params;
+    if (!renderer->asked)
+        return STATUS_OK;
+    const bool shared = share_is_wanted(view, params);
+    for (size_t i = 0; i < view->n_lights && params->shadows; i++)
+        if (view->lights[i].casts_shadows && !(shared && light_is_soft(&view->lights[i])))
+            TRY(ask_light(renderer, drawing, i, err));
+    if (params->occlusion > 0 && shared)
+        TRY(thinvessels_find_open(drawing, &renderer->beams, &renderer->thin, err));
+    memcpy(&renderer->thin_lights, view, sizeof *view);
+    renderer->asked = NULL;
+    return STATUS_OK;
+}
+
+/* Sets the colours of the thin vessels of a band. */
+static Status light_thin(Renderer *renderer, const Drawing *drawing, Err *err)
+{
+    TRY(end_light(renderer, drawing, err));
+    thinvessels_color(drawing, &renderer->thin);
+    return STATUS_OK;
+}
+
+/* ---- rows ------------------------------------------------------------------------------------ */
 
 static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
 {
@@ -374,6 +427,8 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
         status = share(renderer, drawing, RENDER_BAND_STEP, &shared, err);
         lit.shared = shared;
     }
+    if (status == STATUS_OK && drawing->hidden)
+        status = light_thin(renderer, &lit, err);
     if (status == STATUS_OK)
         status = renderer->engine->rows(&lit, renderer->prepared, frame, err);
     sharedlight_free(shared);
@@ -414,6 +469,8 @@ static Status draw_samples(Renderer *renderer, const Drawing *fine, int first, i
                              .band = drawing.band,
                              .frame = &frame};
     Status status = frame.id.ids ? effects_draw(&samples, err) : STATUS_OK;
+    if (status == STATUS_OK && drawing.hidden)
+        status = thinvessels_draw(&drawing, &renderer->thin, &frame, err);
     if (status == STATUS_OK)
         effects_reduce(&samples, color, row);
     frame_release(&frame);
@@ -483,7 +540,8 @@ static Status draw_with_effects(Renderer *renderer, const Drawing *drawing, Fram
     return draw_effects(renderer, drawing, frame, err);
 }
 
-/* The rows as samples see all vessels. */
+/* The rows, with thin vessels drawn by coverage if this renderer covers, else as samples see all
+ * vessels. */
 static Status sampled_rows(Renderer *renderer, const View *view, const Appearance *appearance,
                            int first, int rows, Frame *frame, Err *err)
 {
@@ -491,6 +549,8 @@ static Status sampled_rows(Renderer *renderer, const View *view, const Appearanc
     const bool effects = params->want_color && effects_present(&view->effects);
     /* Adaptive antialiasing looks at neighbours. */
     const bool adaptive = !effects && params->antialias > 1 && params->antialias_threshold > 0;
+    const ThinVessels *thin = &renderer->thin;
+    const bool covers = thin->layer.n > 0;
     Frame made = {0};
     double start_cpu_s = clock_cpu_seconds();
     Drawing drawing = {
@@ -498,8 +558,12 @@ static Status sampled_rows(Renderer *renderer, const View *view, const Appearanc
         .view = view,
         .appearance = appearance,
         .params = params,
+        .hidden = covers ? thin->layer.is_thin : NULL,
+        .thin = covers && !effects ? &thin->layer : NULL,
         .band = band_between(first, rows, adaptive ? RENDER_BAND_STEP : 0, view->camera.height)};
     Status status = prepare_caster(renderer, &drawing, err);
+    if (status == STATUS_OK && covers)
+        status = begin_light(renderer, view, err);
     if (status == STATUS_OK)
         status = prepare_mean(renderer, &drawing, err);
     if (status == STATUS_OK)
@@ -517,93 +581,49 @@ static Status sampled_rows(Renderer *renderer, const View *view, const Appearanc
 
 /* ---- thin vessels ---------------------------------------------------------------------------- */
 
-/* Finds the thin vessels of another view, and a renderer of the rest. */
-static Status prepare_thin(Renderer *renderer, const Camera *camera, Err *err)
+/* Vessels are thin if they are narrower than a pixel, and than this many distances of its samples.
+ */
+static const double most_samples = 3;
+
+/* The camera of the samples that thin vessels are drawn over: with effects samples are pixels of a
+ * finer picture. */
+static Camera camera_of_samples(const View *view, const RenderParams *params)
 {
-    const RenderParams *params = &renderer->params;
-    if (memcmp(&renderer->thin.camera, camera, sizeof *camera) == 0)
+    Camera camera;
+    memcpy(&camera, &view->camera, sizeof camera);
+    if (effects_present(&view->effects)) {
+        camera.width *= params->antialias;
+        camera.height *= params->antialias;
+    }
+    return camera;
+}
+
+/* Finds the thin vessels of a view, unless they are those of the rows before. */
+static Status find_thin(Renderer *covering, const View *view, Err *err)
+{
+    const RenderParams *params = &covering->params;
+    const int pixel = effects_present(&view->effects) ? params->antialias : 1;
+    Camera camera = camera_of_samples(view, params);
+    if (memcmp(&covering->thin.camera, &camera, sizeof camera) == 0)
         return STATUS_OK;
     double start_s = clock_seconds();
-    forget_thin(renderer);
-    TRY(thinvessels_find(renderer->geometry, camera, params->least_px, params->threads,
-                         &renderer->thin, err));
-    if (renderer->thin.n > 0) {
-        RenderParams of_rest = *params;
-        of_rest.cover_thin = of_rest.codes_suffice = of_rest.want_normal = of_rest.want_id = false;
-        of_rest.want_depth = true;
-        TRY(thinvessels_rest(&renderer->thin, &renderer->rest_geometry, err));
-        TRY(renderer_new(&renderer->rest_geometry, &of_rest, &renderer->rest, err));
-        renderer->rest->occluders = renderer->geometry;
-    }
-    renderer->stats.prepare_s += clock_seconds() - start_s;
+    forget_view(covering);
+    thinvessels_release(&covering->thin);
+    TRY(thinvessels_find(covering->geometry, &camera,
+                         pixel * fmin(1, most_samples / params->antialias),
+                         pixel * params->least_px, params->threads, &covering->thin, err));
+    covering->stats.prepare_s += clock_seconds() - start_s;
     return STATUS_OK;
 }
 
-/* Has area lights asked for thin vessels with the next rows of the rest, unless it is known what of
- * the view's lights reaches them. */
-static Status begin_light(Renderer *renderer, const View *view, Err *err)
+/* Makes the renderer that draws thin vessels by coverage, and finds these. */
+static Status prepare_thin(Renderer *renderer, const View *view, Err *err)
 {
-    LonePlaces *places = &renderer->thin_places;
-    const View *known = &renderer->thin_lights;
-    if (!renderer->params.shadows ||
-        (places->n > 0 && has_lights(view, known->lights, known->n_lights) &&
-         memcmp(&view->ground, &known->ground, sizeof view->ground) == 0))
-        return STATUS_OK;
-    loneplaces_release(places);
-    *places = thinvessels_places(&renderer->thin);
-    renderer->thin_lights = (View){0};
-    renderer->rest->asked = places;
-    return loneplaces_init(view, places, err);
-}
-
-/* Asks a light for the thin vessels as the rows of the rest did, or by rays. */
-static Status ask_light(Renderer *renderer, Drawing *drawing, size_t light, Err *err)
-{
-    Renderer *rest = renderer->rest;
-    const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
-    const Engine *engine = rest->engine;
-    const void *shadow = engine->shadow ? engine->shadow(rest->prepared, light) : NULL;
-    if (shadow)
-        return lonelight_look(drawing, engine->lights, shadow, &eye, light, &renderer->thin_places,
-                              err);
-    TRY(make_caster(rest, err));
-    drawing->caster = rest->caster;
-    lonelight_cast(drawing, light, &renderer->thin_places);
-    return STATUS_OK;
-}
-
-/* Asks the lights that are not known yet, after rows of the rest. */
-static Status end_light(Renderer *renderer, Drawing *drawing, Err *err)
-{
-    const View *view = drawing->view;
-    const bool shared = share_is_wanted(view, drawing->params);
-    if (!renderer->rest->asked)
-        return STATUS_OK;
-    renderer->rest->asked = NULL;
-    for (size_t i = 0; i < view->n_lights; i++)
-        if (view->lights[i].casts_shadows && !(shared && light_is_soft(&view->lights[i])))
-            TRY(ask_light(renderer, drawing, i, err));
-    memcpy(&renderer->thin_lights, view, sizeof *view);
-    return STATUS_OK;
-}
-
-/* Draws the thin vessels over the rows of the rest. */
-static Status cover_rows(Renderer *renderer, const View *view, const Appearance *appearance,
-                         int first, Frame *frame, Err *err)
-{
-    Renderer *rest = renderer->rest;
-    Drawing drawing = {.geometry = &renderer->rest_geometry,
-                       .view = view,
-                       .appearance = appearance,
-                       .params = &rest->params,
-                       .band = {.first = first, .rows = frame->color.height}};
-    double start_s = clock_seconds(), start_cpu_s = clock_cpu_seconds();
-    TRY(end_light(renderer, &drawing, err));
-    TRY(thinvessels_draw(&renderer->thin, rest->params.shadows ? &renderer->thin_places : NULL,
-                         &drawing, frame, err));
-    rest->stats.trace_s += clock_seconds() - start_s;
-    rest->stats.cpu_s += clock_cpu_seconds() - start_cpu_s;
-    return STATUS_OK;
+    RenderParams colors = renderer->params;
+    colors.codes_suffice = colors.want_depth = colors.want_normal = colors.want_id = false;
+    if (!renderer->covering)
+        TRY(renderer_new(renderer->geometry, &colors, &renderer->covering, err));
+    return find_thin(renderer->covering, view, err);
 }
 
 /* The planes that samples of all vessels find, beside colours that are there. */
@@ -612,7 +632,6 @@ static Status add_planes(Renderer *renderer, const View *view, const Appearance 
 {
     RenderParams *params = &renderer->params;
     Frame planes;
-    plane_release(&frame->depth);
     if (!params->want_depth && !params->want_normal && !params->want_id)
         return STATUS_OK;
     params->want_color = false;
@@ -630,11 +649,8 @@ static Status covered_rows(Renderer *renderer, const View *view, const Appearanc
                            int first, int rows, Frame *frame, Err *err)
 {
     Frame made;
-    TRY(begin_light(renderer, view, err));
-    TRY(sampled_rows(renderer->rest, view, appearance, first, rows, &made, err));
-    Status status = cover_rows(renderer, view, appearance, first, &made, err);
-    if (status == STATUS_OK)
-        status = add_planes(renderer, view, appearance, first, &made, err);
+    TRY(sampled_rows(renderer->covering, view, appearance, first, rows, &made, err));
+    Status status = add_planes(renderer, view, appearance, first, &made, err);
     if (status == STATUS_OK)
         *frame = made;
     else
@@ -642,18 +658,25 @@ static Status covered_rows(Renderer *renderer, const View *view, const Appearanc
     return status;
 }
 
+/* Whether vessels that are thin in this view, if there are any, are drawn by coverage. */
+static bool may_cover(const Renderer *renderer, const View *view)
+{
+    const RenderParams *params = &renderer->params;
+    const Drawing drawing = {.geometry = renderer->geometry, .view = view, .params = params};
+    return params->cover_thin && params->want_color && !effects_have_shape(&view->effects) &&
+           engine_for(&drawing)->covers;
+}
+
 static Status opaque_rows(Renderer *renderer, const View *view, const Appearance *appearance,
                           int first, int rows, Frame *frame, Err *err)
 {
     assert(first >= 0 && rows > 0 && first + rows <= view->camera.height &&
            first % RENDER_BAND_STEP == 0);
-    bool covers = renderer->params.cover_thin && renderer->params.want_color &&
-                  !effects_have_shape(&view->effects);
+    const bool covers = may_cover(renderer, view);
     if (covers)
-        TRY(prepare_thin(renderer, &view->camera, err));
-    if (covers && renderer->rest)
-        return covered_rows(renderer, view, appearance, first, rows, frame, err);
-    return sampled_rows(renderer, view, appearance, first, rows, frame, err);
+        TRY(prepare_thin(renderer, view, err));
+    return (covers && renderer->covering->thin.layer.n > 0 ? covered_rows : sampled_rows)(
+        renderer, view, appearance, first, rows, frame, err);
 }
 
 /* ---- what is transparent --------------------------------------------------------------------- */

@@ -74,7 +74,7 @@ static double ink_of(Primitive *primitives, size_t n, double least_px)
     return sum;
 }
 
-/* The trunk that is never thin, beyond the right edge of the picture. */
+/* A wide vessel beyond the right edge of the picture. */
 static Primitive trunk(void)
 {
     return vessel(vec3(12, -3, 0), vec3(12, 3, 0), 1.5, 0);
@@ -122,15 +122,16 @@ static void vessels_end_to_end_are_one_run_however_many_they_are(void **state)
     for (int threads = 1; threads <= 3; threads += 2) {
         ThinVessels thin;
         assert_int_equal(
-            thinvessels_find(&scene.geometry, &scene.view.camera, 0, threads, &thin, &err),
+            thinvessels_find(&scene.geometry, &scene.view.camera, 1, 0, threads, &thin, &err),
             STATUS_OK);
-        assert_int_equal(thin.n, PIECES + 1);
+        const ThinStrip *strips = thin.layer.strips;
+        assert_int_equal(thin.layer.n, PIECES + 1);
         for (size_t i = 0; i < PIECES; i++) {
-            assert_int_equal(thin.strips[i].vessel, i + 1);
-            assert_int_equal(thin.strips[i].run, 1);
+            assert_int_equal(strips[i].vessel, i + 1);
+            assert_int_equal(strips[i].run, 1);
         }
-        assert_int_equal(thin.strips[PIECES].run, N - 1);
-        assert_false(thin.is_thin[0]);
+        assert_int_equal(strips[PIECES].run, N - 1);
+        assert_false(thin.layer.is_thin[0]);
         thinvessels_release(&thin);
     }
     free(vessels);

@@ -35,6 +35,7 @@ typedef struct BatchTile {
     SeenTile seen; /* its hits are these, or NULL */
     TileHits hits;
     uint8_t (*shadowed)[TILE_SAMPLES]; /* one a light; of the batch */
+    ThinCells cells;                   /* owned */
 } BatchTile;
 
 /* The tiles that a worker shades together, so that what many places ask of one tile of a light is
@@ -197,16 +198,16 @@ static float (*color_tile(const FieldPicture *picture, int worker,
                           const BatchTile *tile))[TILE_SAMPLES]
 {
     const SeenTile *seen = &tile->seen;
+    float(*color)[TILE_SAMPLES] = NULL;
     if (picture->canvas.wholly_colored) {
-        float(*color)[TILE_SAMPLES] = picture->canvas.each[worker].color;
+        color = picture->canvas.each[worker].color;
         color_samples(picture, worker, seen, color);
-        return color;
+    } else if (seen->hits) {
+        color = canvas_shade(&picture->canvas, worker, seen,
+                             picture->has_shadows ? (const uint8_t(*)[TILE_SAMPLES])tile->shadowed
+                                                  : NULL);
     }
-    if (!seen->hits)
-        return NULL;
-    return canvas_shade(&picture->canvas, worker, seen,
-                        picture->has_shadows ? (const uint8_t(*)[TILE_SAMPLES])tile->shadowed
-                                             : NULL);
+    return canvas_cover(&picture->canvas, worker, seen, &tile->cells, 0, 0, color);
 }
 
 /* Shades the tiles of the batch, and has `keep` store each. */
@@ -227,6 +228,25 @@ static Status shade_batch(const FieldPicture *picture, int worker,
     return STATUS_OK;
 }
 
+/* Finds the thin vessels of the tile that the batch gets next. */
+static void find_thin(const FieldPicture *picture, const SeenTile *seen, Batch *batch)
+{
+    const Canvas *canvas = &picture->canvas;
+    const int per_pixel = picture->pass->grid.n_columns / canvas->drawing->view->camera.width;
+    if (batch->status == STATUS_OK)
+        batch->status = thincells_fill(canvas->wants_color ? canvas->drawing->thin : NULL,
+                                       per_pixel, seen->column, seen->row, TILE_SIDE, TILE_SIDE,
+                                       &batch->tiles[batch->n_tiles].cells, &batch->err);
+}
+
+/* Whether the tile that the batch gets next has anything but the background's colour. */
+static bool shows_something(const FieldPicture *picture, const SeenTile *vessels,
+                            const Batch *batch)
+{
+    return vessels->hits || picture->canvas.drawing->view->ground.present ||
+           picture->canvas.wholly_colored || batch->tiles[batch->n_tiles].cells.n > 0;
+}
+
 /* Adds a tile to the batch, with the ground where the canvas shades that. */
 static void add_tile(const FieldPicture *picture, const SeenTile *vessels, Batch *batch)
 {
@@ -244,7 +264,7 @@ static void keep_center(const BatchTile *tile, float (*color)[TILE_SAMPLES], int
                         void *context)
 {
     const FieldPicture *picture = context;
-    if (tile->seen.hits || picture->canvas.wholly_colored)
+    if (tile->seen.hits || color)
         canvas_draw(&picture->canvas, worker, &tile->seen, color);
 }
 
@@ -252,8 +272,8 @@ static void visit_center(const SeenTile *vessels, int worker, void *context)
 {
     FieldPicture *picture = context;
     Batch *batch = &picture->batches[worker];
-    if (vessels->hits || picture->canvas.drawing->view->ground.present ||
-        picture->canvas.wholly_colored)
+    find_thin(picture, vessels, batch);
+    if (shows_something(picture, vessels, batch))
         add_tile(picture, vessels, batch);
     if (batch->n_tiles == picture->batch_size && batch->status == STATUS_OK)
         batch->status = shade_batch(picture, worker, keep_center, picture, &batch->err);
@@ -298,9 +318,9 @@ static void keep_further(const BatchTile *tile, float (*color)[TILE_SAMPLES], in
 static void visit_further(const SeenTile *vessels, int worker, void *context)
 {
     FurtherVisit *visit = context;
-    const Canvas *canvas = &visit->picture->canvas;
     Batch *batch = &visit->picture->batches[worker];
-    if (!vessels->hits && !canvas->drawing->view->ground.present && !canvas->wholly_colored) {
+    find_thin(visit->picture, vessels, batch);
+    if (!shows_something(visit->picture, vessels, batch)) {
         const BatchTile empty = {.seen = *vessels};
         keep_further(&empty, NULL, worker, visit);
         return;
@@ -393,7 +413,7 @@ static Status prepare_pass(const Drawing *drawing, int n, const double *offsets,
         pass->columns[i] = i / n + offsets[i % n];
     for (int j = 0; j < height; j++)
         pass->rows[j] = j / n + offsets[j % n];
-    pass->grid = (SampleGrid){pass->columns, pass->rows, width, height, 1.0 / n};
+    pass->grid = (SampleGrid){pass->columns, pass->rows, width, height, 1.0 / n, drawing->hidden};
     TRY(fieldtiles_new(drawing->geometry, camera, &pass->grid, nearest, params->threads,
                        &pass->tiles, err));
     fieldtiles_use_kernel(pass->tiles, fieldkernels_for(drawing->geometry, params->kernels)->trace);
@@ -476,8 +496,10 @@ static Status make_batches(FieldPicture *picture, Err *err)
     return STATUS_OK;
 }
 
-static void release_batch(Batch *batch)
+static void release_batch(Batch *batch, int n)
 {
+    for (int i = 0; batch->tiles && i < n; i++)
+        thincells_release(&batch->tiles[i].cells);
     free(batch->tiles);
     free(batch->shadowed);
     for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
@@ -513,7 +535,7 @@ static void release(FieldPicture *picture)
     }
     free(picture->further);
     for (int i = 0; picture->batches && i < picture->canvas.workers; i++)
-        release_batch(&picture->batches[i]);
+        release_batch(&picture->batches[i], picture->batch_size);
     free(picture->batches);
     canvas_release(&picture->canvas);
 }
@@ -566,6 +588,7 @@ static const void *shadow_of(const void *prepared, size_t light)
 
 const Engine field_engine = {.name = "field",
                              .makes_codes = true,
+                             .covers = true,
                              .can = can_draw,
                              .needs_rays = needs_rays,
                              .prepare = prepare,

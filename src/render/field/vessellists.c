@@ -103,7 +103,8 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
         out->sine = sqrt(out->axis.x * out->axis.x + out->axis.y * out->axis.y);
         out->per_sine = out->sine > 0 ? 1 / out->sine : 0;
         out->reach = reach_of(job->geometry, segment);
-        lists->segment_rows[i] = out->reach > 0 ? rows_of(lists, out) : NOWHERE;
+        const bool hidden = lists->grid.hidden && lists->grid.hidden[i];
+        lists->segment_rows[i] = out->reach > 0 && !hidden ? rows_of(lists, out) : NOWHERE;
     }
 }
 

@@ -12,6 +12,7 @@ typedef struct SampleGrid {
     const double *columns, *rows; /* borrowed */
     int n_columns, n_rows;
     double spacing;
+    const bool *hidden; /* per segment: not seen; NULL: none is hidden. Borrowed. */
 } SampleGrid;
 
 /* Numbers sorted into bins, ascending in each: those of bin i are

@@ -95,7 +95,7 @@ void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t 
     middle = viewpoint_place(&view->eye, middle);
     Vec3 span = viewpoint_to_frame(&view->eye, vec3_sub(primitive->b, primitive->a));
     double radius = max_of(primitive->radius_mm, primitive_radius_b(primitive));
-    if (rasterreach_misses(view, middle, span, radius)) {
+    if ((view->hidden && view->hidden[number]) || rasterreach_misses(view, middle, span, radius)) {
         item->rows = item->columns = rastertiles_of(NOWHERE);
         return;
     }

@@ -40,6 +40,7 @@ typedef struct BatchTile {
     uint64_t visible;                  /* bit i: sample i sees something */
     uint8_t (*shadowed)[TILE_SAMPLES]; /* one a light; of the batch */
     float sum[3][TILE_SAMPLES];        /* of all samples of a pixel */
+    ThinCells center, further;         /* of the centre samples, and of the further ones; owned */
 } BatchTile;
 
 /* The tiles that a worker draws together. */
@@ -159,7 +160,8 @@ static void see_batch(const RasterPicture *picture, const RasterGrid *grid, int 
         tile->seen.hits = tile->visible ? &tile->surfels : NULL;
         if (tile->visible)
             kernels->resolve(&tile->raster, &tile->hits, &tile->surfels);
-        if (tile->visible && (picture->canvas.needs_places || picture->canvas.wants_geometry))
+        if (tile->visible &&
+            (picture->canvas.needs_places || picture->canvas.wants_geometry || tile->center.n > 0))
             measure_depths(tile);
         if (picture->canvas.drawing->view->ground.present)
             see_ground(picture, tile);
@@ -183,6 +185,8 @@ static void draw_tile(const RasterPicture *picture, int worker, BatchTile *tile)
     float(*color)[TILE_SAMPLES] = NULL;
     if (tile->visible && canvas->wants_color)
         color = color_tile(picture, worker, tile);
+    if (canvas->wants_color)
+        color = canvas_cover(canvas, worker, &tile->seen, &tile->center, 0, 0, color);
     if (tile->visible && canvas->wants_geometry)
         face_viewer(tile);
     canvas_draw(canvas, worker, &tile->seen, color);
@@ -215,15 +219,19 @@ static void begin_sum(const Canvas *canvas, BatchTile *tile)
         }
 }
 
-static void add_to_sum(const RasterPicture *picture, int worker, BatchTile *tile)
+/* Adds the further samples of a pass to the tile's sums. */
+static void add_to_sum(const RasterPicture *picture, int worker, int pass, BatchTile *tile)
 {
-    if (!tile->visible) {
+    const int side = picture->canvas.more.side;
+    float(*color)[TILE_SAMPLES] = tile->visible ? color_tile(picture, worker, tile) : NULL;
+    color = canvas_cover(&picture->canvas, worker, &tile->seen, &tile->further, pass % side,
+                         pass / side, color);
+    if (!color) {
         for (int c = 0; c < 3; c++)
             for (int sample = 0; sample < TILE_SAMPLES; sample++)
                 tile->sum[c][sample] += picture->canvas.background[c];
         return;
     }
-    float(*color)[TILE_SAMPLES] = color_tile(picture, worker, tile);
     for (int c = 0; c < 3; c++)
         for (int sample = 0; sample < TILE_SAMPLES; sample++)
             tile->sum[c][sample] += color[c][sample];
@@ -251,7 +259,7 @@ static void resample_batch(const RasterPicture *picture, int worker, Batch *batc
     for (int pass = 0; pass < canvas->more.side * canvas->more.side; pass++) {
         see_batch(picture, &picture->prepared->further[pass], worker, batch);
         for (int i = 0; i < batch->n_tiles; i++)
-            add_to_sum(picture, worker, &batch->tiles[i]);
+            add_to_sum(picture, worker, pass, &batch->tiles[i]);
     }
     for (int i = 0; i < batch->n_tiles; i++)
         write_mean(canvas, &batch->tiles[i]);
@@ -285,6 +293,21 @@ static void begin_tile(const RasterPicture *picture, const RasterTile *raster, i
                             .middle_y = raster->y};
 }
 
+/* Finds the thin vessels of a tile. */
+static Status find_thin(const RasterPicture *picture, BatchTile *tile, Err *err)
+{
+    const ThinLayer *thin = picture->canvas.wants_color ? picture->canvas.drawing->thin : NULL;
+    const SeenTile *seen = &tile->seen;
+    const int side = picture->canvas.more.side, fine = side * TILE_SIDE;
+    TRY(thincells_fill(thin, 1, seen->column, seen->row, TILE_SIDE, TILE_SIDE, &tile->center, err));
+    if (side == 0 || tile->center.n == 0) {
+        thincells_clear(&tile->further);
+        return STATUS_OK;
+    }
+    return thincells_fill(thin, side, seen->column * side, seen->row * side, fine, fine,
+                          &tile->further, err);
+}
+
 static Status draw_row(void *context, int row, int rows, int worker, Err *err)
 {
     (void)rows; /* one */
@@ -295,7 +318,8 @@ static Status draw_row(void *context, int row, int rows, int worker, Err *err)
     const uint32_t *offsets = batch->row.offsets;
     for (int column = 0; column < bins->tile_columns; column++) {
         uint32_t n = offsets[column + 1] - offsets[column];
-        if (n == 0 && !picture->canvas.drawing->view->ground.present)
+        if (n == 0 && !picture->canvas.drawing->view->ground.present &&
+            thinlayer_misses(picture->canvas.drawing->thin, column, row))
             continue;
         BatchTile *tile = &batch->tiles[batch->n_tiles];
         RasterTile raster = rasterbins_tile(bins, column, row, batch->row.lists + offsets[column],
@@ -303,6 +327,7 @@ static Status draw_row(void *context, int row, int rows, int worker, Err *err)
         begin_tile(picture, &raster, column * TILE_SIDE, row * TILE_SIDE, tile);
         if (picture->second_round && !any_wants_more(&picture->canvas, &tile->seen))
             continue;
+        TRY(find_thin(picture, tile, err));
         if (++batch->n_tiles == picture->batch_size)
             draw_batch(picture, worker, batch);
     }
@@ -341,6 +366,7 @@ static Status prepare(const Drawing *drawing, void **prepared, Err *err)
     RasterPrepared *raster;
     RasterView view =
         rasterview_of_camera(&drawing->view->camera, drawing->geometry->bounds, params->antialias);
+    view.hidden = drawing->hidden;
     TRY(mem_calloc(&raster, 1, sizeof *raster, "tiles", err));
     TRY_GOTO(prepare_samples(params, &view, raster, err));
     raster->has_shadows = params->shadows && params->want_color;
@@ -384,6 +410,10 @@ static void release(RasterPicture *picture)
     for (int i = 0; picture->batches && i < picture->canvas.workers; i++) {
         Batch *batch = &picture->batches[i];
         rasterrow_release(&batch->row);
+        for (int k = 0; batch->tiles && k < picture->batch_size; k++) {
+            thincells_release(&batch->tiles[k].center);
+            thincells_release(&batch->tiles[k].further);
+        }
         free(batch->tiles);
         free(batch->shadowed);
         for (size_t light = 0; light < VIEW_MAX_LIGHTS; light++)
@@ -443,6 +473,7 @@ static const void *shadow_of(const void *prepared, size_t light)
 
 const Engine raster_engine = {.name = "raster",
                               .makes_codes = true,
+                              .covers = true,
                               .can = can_draw,
                               .needs_rays = needs_rays,
                               .prepare = prepare,

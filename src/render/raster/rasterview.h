@@ -20,8 +20,9 @@ typedef struct RasterView {
                                            * that places lie in, set before */
     double stray;    /* how far samples lie off the middles of their pixels, in pixels */
     double z_middle; /* depths in single precision are relative to it, mm */
-    bool many;  /* primitives, set by rasterbins_new: those that no sample sees are looked for */
-    bool light; /* of a light: its bins have boxes, and hulls instead of joints */
+    bool many; /* primitives, set by rasterbins_new: those that no sample sees are looked for */
+    const bool *hidden; /* per primitive: not seen; NULL: none is hidden. Borrowed. */
+    bool light;         /* of a light: its bins have boxes, and hulls instead of joints */
 } RasterView;
 
 /* That of a camera, for what is in `bounds`; `antialias` as in RenderParams. */

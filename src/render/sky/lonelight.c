@@ -52,10 +52,11 @@ static void ask_places(const Asking *asking, size_t from, size_t to, void *queue
 {
     const LonePlaces *places = asking->places;
     const TileKernels *kernels = tilekernels[kernels_kind(asking->drawing->params->kernels)];
+    const Light *light = &asking->drawing->view->lights[asking->light];
     SeenPlaces seen = {.x = {0}};
     uint64_t wanted = 0;
     for (size_t i = 0; i < TILE_SAMPLES && from + i < to; i++) {
-        Vec3 at = viewpoint_place(asking->frame, places->at(places->context, from + i));
+        Vec3 at = viewpoint_place(asking->frame, places->at(places->context, light, from + i));
         seen.x[i] = at.x;
         seen.y[i] = at.y;
         seen.z[i] = at.z;
@@ -116,7 +117,7 @@ static void cast_run(size_t run, int worker, void *context)
     const LonePlaces *places = asking->places;
     const Light *light = &drawing->view->lights[asking->light];
     for (size_t i = run * RUN; i < end_of(places, run); i++) {
-        Vec3 point = places->at(places->context, i);
+        Vec3 point = places->at(places->context, light, i);
         uint16_t seen = 0;
         for (int k = 0; k < light_points(light); k++) {
             LightWay way = light_way_to_point(light, k, point);

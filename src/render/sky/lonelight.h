@@ -9,8 +9,9 @@
 /* Places of the world, and how many points of each light reach them. */
 typedef struct LonePlaces {
     size_t n;
-    Vec3 (*at)(const void *context, size_t number); /* a place below n; of several threads */
-    const void *context;                            /* borrowed */
+    /* Returns place `number` < n, as this light is asked from it. Called by several threads. */
+    Vec3 (*at)(const void *context, const Light *light, size_t number);
+    const void *context;              /* borrowed */
     uint16_t *reach[VIEW_MAX_LIGHTS]; /* owned; of each place; NULL: the light casts no shadows */
 } LonePlaces;
 

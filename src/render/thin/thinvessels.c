@@ -1,29 +1,28 @@
 /* Samples miss what is narrower than their distance, or hit it by chance: a tree of 10^6 terminals
- * at 640 pixels becomes noise. A vessel of less than a pixel is drawn as a strip of its own width
- * instead, by the area that the strip has in each pixel.
+ * at 640 pixels becomes noise. Vessels that narrow are strips instead, drawn by the area that they
+ * have in each sample's cell [tile/thincells.h]. Wider vessels are sampled, which is right wherever
+ * it is fine enough.
  *
- * The strip is LINES lines side by side, or as many a pixel; the area that a line stands for in a
- * pixel is its length there times their distance. Areas of vessels that follow one another end to
- * end (a run) add up, since they lie side by side; those of different runs cover each other by
- * chance: the transparencies multiply, and the colour is the mean by area. What is behind a sampled
- * surface is left out, pixel by pixel, by the depth of the centre ray. Strips end flat, are not
- * sorted among themselves, and cast no shadows.
- *
- * The colour of a vessel is the mean of the shading model over the visible half of its wall, at
- * normals in the middle of SHADED strips of equal width. As the wall is less than a pixel wide, all
- * of it has the shadows of one place: the middle of the wall towards the viewer.
- *
- * Blocks of ROWS rows, which begin where bands may, are the unit of work; each goes through the
- * vessels that touch it in their order, so that the picture depends neither on the number of
- * threads nor on the bands. */
+ * A strip is cut into pieces of about PIECE_PX pixels. A piece has one colour: the mean of the
+ * shading model over the visible half of the wall, at normals in the middle of SHADED parts of
+ * equal width. The light visibility of a piece is that of the point of its wall that faces the
+ * light. The point that faces the viewer would not do: where the light comes from behind, the
+ * vessel itself hides the light from that point, but not from the lit sides of the visible half.
+ * The ambient visibility is that of the point that faces the viewer. */
 #include "render/thin/thinvessels.h"
 
+#include "render/cast/caster.h"
 #include "render/light/shade.h"
+#include "render/sky/skylight.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINES = 4, SHADED = 3, ROWS = 8 };
+enum { SHADED = 5, ROWS = 8 };
+static const double piece_px = 1.5;
+/* Height of shading points above the wall, in radii: less than a sample can tell, more than
+ * rounding. */
+static const double lift = 0.05;
 
 /* ---- which are thin -------------------------------------------------------------------------- */
 
@@ -52,25 +51,27 @@ static Vessel vessel_at(const Geometry *geometry, size_t i)
     return (Vessel){s->a, s->b, s->radius_mm, s->radius_mm, s->segment, true};
 }
 
-/* The greater width of the vessel in pixels; infinite if an end is not in front of the camera. */
-static double widest(const Vessel *vessel, const CameraPoint *a, const CameraPoint *b)
+/* The part of a vessel between two places, 0..1 from its first end. */
+static Vessel vessel_part(const Vessel *vessel, double from, double to)
 {
-    if (!(a->per_mm > 0) || !(b->per_mm > 0))
+    Vec3 span = vec3_sub(vessel->b, vessel->a);
+    double widening = vessel->radius_b - vessel->radius_a;
+    Vessel part = *vessel;
+    part.a = vec3_add_scaled(vessel->a, span, from);
+    part.b = vec3_add_scaled(vessel->a, span, to);
+    part.radius_a = vessel->radius_a + from * widening;
+    part.radius_b = vessel->radius_a + to * widening;
+    return part;
+}
+
+/* The greater width of the vessel in pixels; infinite if an end is not in front of a perspective
+ * camera. */
+static double widest(const Vessel *vessel, const Camera *camera)
+{
+    const CameraPoint a = camera_point(camera, vessel->a), b = camera_point(camera, vessel->b);
+    if (!(a.per_mm > 0) || !(b.per_mm > 0))
         return HUGE_VAL;
-    return 2 * fmax(vessel->radius_a * a->per_mm, vessel->radius_b * b->per_mm);
-}
-
-static double width_of(const Geometry *geometry, const Camera *camera, size_t i)
-{
-    const Vessel vessel = vessel_at(geometry, i);
-    const CameraPoint a = camera_point(camera, vessel.a), b = camera_point(camera, vessel.b);
-    return widest(&vessel, &a, &b);
-}
-
-/* Below which width a vessel is thin. */
-static double limit_px(double least_px)
-{
-    return least_px > 1 ? least_px : 1;
+    return 2 * fmax(vessel->radius_a * a.per_mm, vessel->radius_b * b.per_mm);
 }
 
 /* Vessels in chunks, which threads work on side by side. */
@@ -79,9 +80,9 @@ enum { CHUNK = 1 << 14 };
 typedef struct Search {
     ThinVessels *thin;
     const Camera *camera;
+    double below_px, least_px;
     size_t n, n_chunks; /* vessels */
-    double *most;       /* by chunk: the greatest width; owned */
-    size_t *first;      /* by chunk: its number of strips, and then where they begin; owned */
+    size_t *first; /* per chunk: its number of strips, then the index of its first strip; owned */
 } Search;
 
 static size_t chunk_end(const Search *search, size_t chunk)
@@ -89,55 +90,107 @@ static size_t chunk_end(const Search *search, size_t chunk)
     return (chunk + 1) * CHUNK < search->n ? (chunk + 1) * CHUNK : search->n;
 }
 
-static void measure_chunk(size_t chunk, int worker, void *context)
+/* Cuts [*from, *to] down to where a value that is `a` at 0 and `b` at 1 is not below 0. */
+static void clip_above(double a, double b, double *from, double *to)
 {
-    (void)worker;
-    const Search *search = context;
-    double most = 0;
-    for (size_t i = chunk * CHUNK; i < chunk_end(search, chunk); i++)
-        most = fmax(most, width_of(search->thin->whole, search->camera, i));
-    search->most[chunk] = most;
+    if (a < 0 && b < 0)
+        *to = -1;
+    else if (a < 0)
+        *from = fmax(*from, a / (a - b));
+    else if (b < 0)
+        *to = fmin(*to, a / (a - b));
+}
+
+/* Cuts [*from, *to] of a vessel down to what lies in front of an orthographic camera. */
+static void clip_at_camera(const Vessel *vessel, const Camera *camera, double *from, double *to)
+{
+    if (camera->projection == PROJECTION_ORTHOGRAPHIC)
+        clip_above(camera_point(camera, vessel->a).depth_mm - NEAREST_SEEN_MM,
+                   camera_point(camera, vessel->b).depth_mm - NEAREST_SEEN_MM, from, to);
+}
+
+static double depth_along_view(const Camera *camera, Vec3 point)
+{
+    return vec3_dot(vec3_sub(point, camera->location), camera->direction);
+}
+
+/* Makes the strip of a vessel, clipped to the camera's plane and to the picture with a margin of
+ * the strip's width. Returns false if nothing is left. */
+static bool make_strip(const Search *search, uint32_t number, ThinStrip *strip)
+{
+    const Camera *camera = search->camera;
+    const Vessel whole = vessel_at(search->thin->whole, number);
+    double near = 0, far = 1, from = 0, to = 1;
+    clip_at_camera(&whole, camera, &near, &far);
+    if (!(near < far))
+        return false;
+    const Vessel vessel = vessel_part(&whole, near, far);
+    const CameraPoint a = camera_point(camera, vessel.a), b = camera_point(camera, vessel.b);
+    const double width =
+        fmax(vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm, search->least_px);
+    const double z[2] = {depth_along_view(camera, vessel.a) - vessel.radius_a,
+                         depth_along_view(camera, vessel.b) - vessel.radius_b};
+    clip_above(a.x + width, b.x + width, &from, &to);
+    clip_above(camera->width + width - a.x, camera->width + width - b.x, &from, &to);
+    clip_above(a.y + width, b.y + width, &from, &to);
+    clip_above(camera->height + width - a.y, camera->height + width - b.y, &from, &to);
+    if (!(from < to))
+        return false;
+    const double length = hypot(b.x - a.x, b.y - a.y) * (to - from);
+    *strip = (ThinStrip){.z = {(float)z[0], (float)z[1]},
+                         .part = {(float)near, (float)far},
+                         .width = (float)width,
+                         .vessel = number,
+                         .run = number,
+                         .n_pieces = (uint32_t)ceil(fmax(length / piece_px, 1))};
+    const double ends[2] = {from, to};
+    float depths[2], parts[2];
+    for (int end = 0; end < 2; end++) {
+        double s = ends[end];
+        double inverse = (1 - s) / z[0] + s / z[1];
+        strip->x[end] = (float)(a.x + s * (b.x - a.x));
+        strip->y[end] = (float)(a.y + s * (b.y - a.y));
+        depths[end] =
+            (float)(search->thin->layer.perspective ? 1 / inverse : z[0] + s * (z[1] - z[0]));
+        parts[end] = (float)thinstrip_part(&search->thin->layer, strip, s);
+    }
+    memcpy(strip->z, depths, sizeof depths);
+    memcpy(strip->part, parts, sizeof parts);
+    return true;
+}
+
+static bool has_strip(const Search *search, size_t i, ThinStrip *strip)
+{
+    return search->thin->layer.is_thin[i] && vessel_at(search->thin->whole, i).has_length &&
+           make_strip(search, (uint32_t)i, strip);
 }
 
 static void mark_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
     const Search *search = context;
-    const ThinVessels *thin = search->thin;
     size_t count = 0;
     for (size_t i = chunk * CHUNK; i < chunk_end(search, chunk); i++) {
-        thin->is_thin[i] = width_of(thin->whole, search->camera, i) < thin->below_px;
-        count += thin->is_thin[i] && vessel_at(thin->whole, i).has_length;
+        const Vessel vessel = vessel_at(search->thin->whole, i);
+        ThinStrip strip;
+        search->thin->layer.is_thin[i] =
+            widest(&vessel, search->camera) < fmax(search->below_px, search->least_px);
+        count += has_strip(search, i, &strip);
     }
     search->first[chunk] = count;
-}
-
-static ThinStrip strip_of(const Vessel *vessel, const Camera *camera, uint32_t number)
-{
-    const CameraPoint a = camera_point(camera, vessel->a), b = camera_point(camera, vessel->b);
-    return (ThinStrip){
-        .x = {(float)a.x, (float)b.x},
-        .y = {(float)a.y, (float)b.y},
-        .depth_mm = {(float)(a.depth_mm - vessel->radius_a),
-                     (float)(b.depth_mm - vessel->radius_b)},
-        .width = (float)(vessel->radius_a * a.per_mm + vessel->radius_b * b.per_mm),
-        .vessel = number,
-        .run = number,
-    };
 }
 
 static void take_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
     const Search *search = context;
-    const ThinVessels *thin = search->thin;
-    ThinStrip *first = thin->strips + search->first[chunk], *strip = first;
+    ThinStrip *first = search->thin->layer.strips + search->first[chunk], *strip = first, made;
     Vec3 end = {0};
     for (size_t i = chunk * CHUNK; i < chunk_end(search, chunk); i++) {
-        const Vessel vessel = vessel_at(thin->whole, i);
-        if (!thin->is_thin[i] || !vessel.has_length)
+        if (!has_strip(search, i, &made))
             continue;
-        *strip = strip_of(&vessel, search->camera, (uint32_t)i);
+        const Vessel vessel = vessel_at(search->thin->whole, i);
+        *strip = made;
         if (strip > first && vec3_distance(end, vessel.a) == 0)
             strip->run = strip[-1].run;
         strip++;
@@ -148,251 +201,235 @@ static void take_chunk(size_t chunk, int worker, void *context)
 /* Runs that go on in the next chunk are one. */
 static void join_runs(const Search *search)
 {
-    const ThinVessels *thin = search->thin;
+    const ThinLayer *layer = &search->thin->layer;
+    const Geometry *whole = search->thin->whole;
     for (size_t chunk = 1; chunk < search->n_chunks; chunk++) {
         size_t at = search->first[chunk];
-        if (at == 0 || at == thin->n)
+        if (at == 0 || at == layer->n)
             continue;
-        const ThinStrip *before = &thin->strips[at - 1], first = thin->strips[at];
-        if (vec3_distance(vessel_at(thin->whole, before->vessel).b,
-                          vessel_at(thin->whole, first.vessel).a) > 0)
+        const ThinStrip *before = &layer->strips[at - 1], first = layer->strips[at];
+        if (vec3_distance(vessel_at(whole, before->vessel).b, vessel_at(whole, first.vessel).a) > 0)
             continue;
-        for (; at < thin->n && thin->strips[at].run == first.run; at++)
-            thin->strips[at].run = before->run;
+        for (; at < layer->n && layer->strips[at].run == first.run; at++)
+            layer->strips[at].run = before->run;
     }
 }
 
-/* Sets below_px, and marks what is thin. */
-static Status mark(Search *search, int threads, Err *err)
-{
-    ThinVessels *thin = search->thin;
-    double most = 0;
-    TRY(mem_calloc(&search->most, search->n_chunks, sizeof *search->most, "vessels", err));
-    TRY(mem_calloc(&search->first, search->n_chunks, sizeof *search->first, "vessels", err));
-    TRY(mem_calloc(&thin->is_thin, search->n, sizeof *thin->is_thin, "vessels", err));
-    threads_for(search->n_chunks, threads, measure_chunk, search);
-    for (size_t chunk = 0; chunk < search->n_chunks; chunk++)
-        most = fmax(most, search->most[chunk]);
-    thin->below_px = fmin(most, limit_px(thin->least_px));
-    threads_for(search->n_chunks, threads, mark_chunk, search);
-    return STATUS_OK;
-}
-
-/* Makes strips of what is marked. */
+/* Makes strips of what is marked, and numbers their pieces. */
 static Status take(Search *search, int threads, Err *err)
 {
     ThinVessels *thin = search->thin;
+    ThinLayer *layer = &thin->layer;
     for (size_t chunk = 0; chunk < search->n_chunks; chunk++) {
         size_t count = search->first[chunk];
-        search->first[chunk] = thin->n;
-        thin->n += count;
+        search->first[chunk] = layer->n;
+        layer->n += count;
     }
-    TRY(mem_calloc(&thin->strips, thin->n, sizeof *thin->strips, "thin vessels", err));
+    TRY(mem_calloc(&layer->strips, layer->n, sizeof *layer->strips, "thin vessels", err));
     threads_for(search->n_chunks, threads, take_chunk, search);
     join_runs(search);
-    return STATUS_OK;
+    for (size_t i = 0; i < layer->n; i++) {
+        layer->strips[i].first_piece = (uint32_t)layer->n_pieces;
+        layer->n_pieces += layer->strips[i].n_pieces;
+    }
+    TRY(mem_calloc(&thin->piece_strips, layer->n_pieces, sizeof *thin->piece_strips, "thin vessels",
+                   err));
+    TRY(mem_calloc(&layer->colors, layer->n_pieces, sizeof *layer->colors, "thin vessels", err));
+    for (size_t i = 0; i < layer->n; i++)
+        for (uint32_t k = 0; k < layer->strips[i].n_pieces; k++)
+            thin->piece_strips[layer->strips[i].first_piece + k] = (uint32_t)i;
+    return thinlayer_sort(layer, search->camera, err);
+}
+
+static Status find(Search *search, int threads, Err *err)
+{
+    ThinVessels *thin = search->thin;
+    thin->layer.perspective = search->camera->projection == PROJECTION_PERSPECTIVE;
+    TRY(mem_calloc(&search->first, search->n_chunks, sizeof *search->first, "vessels", err));
+    TRY(mem_calloc(&thin->layer.is_thin, search->n, sizeof *thin->layer.is_thin, "vessels", err));
+    threads_for(search->n_chunks, threads, mark_chunk, search);
+    return take(search, threads, err);
 }
 
 void thinvessels_release(ThinVessels *thin)
 {
-    free(thin->is_thin);
-    free(thin->strips);
+    thinlayer_release(&thin->layer);
+    loneplaces_release(&thin->lights);
+    free(thin->piece_strips);
+    free(thin->open);
     *thin = (ThinVessels){0};
 }
 
-Status thinvessels_find(const Geometry *whole, const Camera *camera, double least_px, int threads,
-                        ThinVessels *thin, Err *err)
+Status thinvessels_find(const Geometry *whole, const Camera *camera, double below_px,
+                        double least_px, int threads, ThinVessels *thin, Err *err)
 {
-    ThinVessels made = {.whole = whole, .least_px = least_px};
-    memcpy(&made.camera, camera, sizeof made.camera);
+    *thin = (ThinVessels){.whole = whole};
     size_t n = model_has(whole->model, MODEL_TRIANGLES) ? 0 : count_vessels(whole);
-    Search search = {.thin = &made, .camera = camera, .n = n, .n_chunks = (n + CHUNK - 1) / CHUNK};
-    Status status = mark(&search, threads, err);
-    if (status == STATUS_OK)
-        status = take(&search, threads, err);
-    free(search.most);
+    Search search = {.thin = thin,
+                     .camera = camera,
+                     .below_px = below_px,
+                     .least_px = least_px,
+                     .n = n,
+                     .n_chunks = (n + CHUNK - 1) / CHUNK};
+    Status status = find(&search, threads, err);
     free(search.first);
-    if (status == STATUS_OK)
-        memcpy(thin, &made, sizeof made); /* and what is between the members of the camera */
-    else
-        thinvessels_release(&made);
-    return status;
-}
-
-/* ---- the others ------------------------------------------------------------------------------ */
-
-/* Numbers of the vessels that are not thin, by rising number, in *rest (owned). */
-static Status list_rest(const ThinVessels *thin, uint32_t **rest, size_t *n, Err *err)
-{
-    const Geometry *whole = thin->whole;
-    TRY(mem_calloc(rest, count_vessels(whole), sizeof **rest, "vessels", err));
-    *n = 0;
-    for (size_t i = 0; i < count_vessels(whole); i++)
-        if (!thin->is_thin[i])
-            (*rest)[(*n)++] = (uint32_t)i;
-    return STATUS_OK;
-}
-
-static Status primitives_part(const Geometry *whole, const uint32_t *rest, size_t n, Geometry *part,
-                              Err *err)
-{
-    Geometry made = *whole;
-    made.ids = NULL;
-    made.axes = NULL;
-    TRY(mem_calloc(&made.primitives, n, sizeof *made.primitives, "primitives", err));
-    size_t first_end = whole->n_primitives - whole->n_ends;
-    made.n_ends = 0;
-    for (size_t i = 0; i < n; i++) {
-        made.primitives[i] = whole->primitives[rest[i]];
-        made.n_ends += rest[i] >= first_end;
-    }
-    made.n_primitives = made.drawn = n;
-    *part = made;
-    return STATUS_OK;
-}
-
-static Status copy_ids(const Geometry *whole, Geometry *part, Err *err)
-{
-    TRY(mem_calloc(&part->ids, whole->n_ids, sizeof *part->ids, "ids", err));
-    memcpy(part->ids, whole->ids, whole->n_ids * sizeof *part->ids);
-    part->n_ids = whole->n_ids;
-    return STATUS_OK;
-}
-
-Status thinvessels_rest(const ThinVessels *thin, Geometry *thick, Err *err)
-{
-    const Geometry *whole = thin->whole;
-    uint32_t *rest = NULL;
-    size_t n = 0;
-    Geometry made = {0};
-    TRY(list_rest(thin, &rest, &n, err));
-    Status status = whole->n_primitives ? primitives_part(whole, rest, n, &made, err)
-                                        : geometry_part(whole, rest, n, &made, err);
-    if (status == STATUS_OK)
-        status = copy_ids(whole, &made, err);
-    free(rest);
-    if (status == STATUS_OK)
-        *thick = made;
-    else
-        geometry_release(&made);
+    memcpy(&thin->camera, camera, sizeof thin->camera);
+    if (status != STATUS_OK)
+        thinvessels_release(thin);
     return status;
 }
 
 /* ---- their walls ----------------------------------------------------------------------------- */
 
-/* The middle of a vessel as the camera sees it. */
+/* The middle of a piece. */
 typedef struct Wall {
     Vec3 middle;      /* of its axis */
+    Vec3 axis;        /* unit */
     Vec3 direction;   /* of the line of sight there */
     Vec3 front, side; /* unit, square to the axis: towards the viewer, and across the view */
     double radius;
+    uint32_t segment;
 } Wall;
 
-static Wall wall_of(const Vessel *vessel, const Camera *camera)
+static Wall wall_of(const ThinVessels *thin, size_t piece)
 {
-    Wall wall = {.middle = vec3_scale(vec3_add(vessel->a, vessel->b), 0.5),
+    const Camera *camera = &thin->camera;
+    const ThinStrip *strip = &thin->layer.strips[thin->piece_strips[piece]];
+    const Vessel whole = vessel_at(thin->whole, strip->vessel);
+    const double s = ((double)(piece - strip->first_piece) + 0.5) / strip->n_pieces;
+    const double part = thinstrip_part(&thin->layer, strip, s);
+    const Vessel at = vessel_part(&whole, part, part);
+    Wall wall = {.middle = at.a,
+                 .axis = vec3_normalized(vec3_sub(whole.b, whole.a)),
                  .direction = camera->direction,
-                 .radius = (vessel->radius_a + vessel->radius_b) / 2};
-    Vec3 axis = vec3_normalized(vec3_sub(vessel->b, vessel->a));
+                 .radius = at.radius_a,
+                 .segment = whole.segment};
     if (camera->projection == PROJECTION_PERSPECTIVE)
         wall.direction = vec3_normalized(vec3_sub(wall.middle, camera->location));
-    Vec3 side = vec3_cross(axis, wall.direction), other;
+    Vec3 side = vec3_cross(wall.axis, wall.direction), other;
     if (vec3_length(side) > 1e-9)
         wall.side = vec3_normalized(side);
     else
-        vec3_across(axis, &wall.side, &other);
-    wall.front = vec3_cross(axis, wall.side);
+        vec3_across(wall.axis, &wall.side, &other);
+    wall.front = vec3_cross(wall.axis, wall.side);
     if (vec3_dot(wall.front, wall.direction) > 0)
         wall.front = vec3_scale(wall.front, -1);
     return wall;
 }
 
-static Vec3 lone_place(const void *context, size_t number)
+static Vec3 above_wall(const Wall *wall, Vec3 normal)
 {
-    const ThinVessels *thin = context;
-    const Vessel vessel = vessel_at(thin->whole, thin->strips[number].vessel);
-    const Wall wall = wall_of(&vessel, &thin->camera);
-    return vec3_add_scaled(wall.middle, wall.front, wall.radius);
+    return vec3_add_scaled(wall->middle, normal, (1 + lift) * wall->radius);
 }
 
-LonePlaces thinvessels_places(const ThinVessels *thin)
+/* LonePlaces.at: the point of a piece that faces the light. */
+static Vec3 lit_point(const void *context, const Light *light, size_t piece)
 {
-    return (LonePlaces){.n = thin->n, .at = lone_place, .context = thin};
+    const Wall wall = wall_of(context, piece);
+    Vec3 towards = light_way(light, wall.middle).towards;
+    Vec3 across = vec3_add_scaled(towards, wall.axis, -vec3_dot(towards, wall.axis));
+    return above_wall(&wall, vec3_length(across) > 1e-6 ? vec3_normalized(across) : wall.front);
 }
 
-/* ---- coverage -------------------------------------------------------------------------------- */
-
-/* In place of fminf and fmaxf, which are calls: nothing here is NaN. */
-static float least(float a, float b)
+void thinvessels_place(ThinVessels *thin)
 {
-    return a < b ? a : b;
+    loneplaces_release(&thin->lights);
+    thin->lights = (LonePlaces){.n = thin->layer.n_pieces, .at = lit_point, .context = thin};
 }
 
-static float greatest(float a, float b)
+/* ---- ambient visibility ---------------------------------------------------------------------- */
+
+/* Columns of a picture of one row whose pixels are pieces. Runs are apart by more than the pixels
+ * that share answers [sky/skylight.c], as their walls have nothing in common. Sets *n to the number
+ * of columns. */
+static Status place_pieces(const ThinVessels *thin, uint32_t **columns, size_t *n, Err *err)
 {
-    return a > b ? a : b;
+    enum { APART = 4 };
+    const ThinLayer *layer = &thin->layer;
+    size_t at = 0;
+    TRY(mem_calloc(columns, layer->n_pieces, sizeof **columns, "occlusion", err));
+    for (size_t i = 0; i < layer->n; i++) {
+        const ThinStrip *strip = &layer->strips[i];
+        if (i > 0 && strip->run != strip[-1].run)
+            at = (at / APART + 2) * APART;
+        for (uint32_t k = 0; k < strip->n_pieces; k++)
+            (*columns)[strip->first_piece + k] = (uint32_t)at++;
+    }
+    *n = at;
+    return STATUS_OK;
 }
 
-/* What has been drawn over a pixel. */
-typedef struct Cover {
-    float clear;    /* the part that other runs than the last have left free */
-    float run_part; /* the part that the last run covers */
-    uint32_t run;   /* the last one */
-    float area;     /* of all strips */
-    float color[3]; /* sum of theirs, each times its area */
-} Cover;
-
-typedef struct ThinPicture {
-    const ThinVessels *thin;
-    const LonePlaces *lone;
-    const Drawing *drawing;
-    Frame *frame;
-    Cover *covers;     /* of each worker: the block that it draws, row by row */
-    size_t n_blocks;   /* of the band */
-    NumberLists lists; /* of each block: the strips that touch it */
-} ThinPicture;
-
-/* A strip on its way through some rows of the picture. */
-typedef struct Brush {
-    const ThinPicture *picture;
-    const ThinStrip *strip;
-    Cover *covers;          /* of the rows */
-    int first_row, end_row; /* rows of the picture */
-    float line_width;       /* that a line stands for, pixels */
-    bool has_color;
-    Rgb color;
-} Brush;
-
-/* Sets the parts of the lights that reach the vessel; below 0 of those that cast no shadows. */
-static void find_parts(const Brush *brush, float parts[VIEW_MAX_LIGHTS])
+static Status make_picture(const Drawing *drawing, const ThinVessels *thin, const uint32_t *columns,
+                           SharedLight *light, Err *err)
 {
-    const View *view = brush->picture->drawing->view;
-    const LonePlaces *lone = brush->picture->lone;
-    size_t number = (size_t)(brush->strip - brush->picture->thin->strips);
+    size_t n = thin->layer.n_pieces;
+    TRY(mem_alloc(&light->numbers, (size_t)light->width, sizeof *light->numbers, "occlusion", err));
+    TRY(mem_calloc(&light->places, n, sizeof *light->places, "occlusion", err));
+    memset(light->numbers, 0xff, (size_t)light->width * sizeof *light->numbers); /* PLACE_NONE */
+    for (size_t piece = 0; piece < n; piece++) {
+        const Wall wall = wall_of(thin, piece);
+        double t = vec3_distance(wall.middle, drawing->view->camera.location);
+        light->numbers[columns[piece]] = (uint32_t)piece;
+        light->places[piece] =
+            sharedlight_place(light, PLACE_VESSEL, above_wall(&wall, wall.front), wall.front,
+                              sharedlight_pixel_mm(&drawing->view->camera, t));
+    }
+    return STATUS_OK;
+}
+
+Status thinvessels_find_open(const Drawing *drawing, const Beams *beams, ThinVessels *thin,
+                             Err *err)
+{
+    SharedLight *light = NULL;
+    uint32_t *columns = NULL;
+    size_t width = 0;
+    Status status;
+    TRY_GOTO(mem_calloc(&light, 1, sizeof *light, "occlusion", err));
+    TRY_GOTO(place_pieces(thin, &columns, &width, err));
+    light->width = (int)width;
+    light->rows = light->side = 1;
+    light->origin = beams->origin;
+    TRY_GOTO(make_picture(drawing, thin, columns, light, err));
+    TRY_GOTO(skylight_find(drawing, beams, light, err));
+    free(thin->open);
+    TRY_GOTO(mem_calloc(&thin->open, thin->layer.n_pieces, sizeof *thin->open, "occlusion", err));
+    for (size_t piece = 0; piece < thin->layer.n_pieces; piece++)
+        thin->open[piece] = light->open[columns[piece]];
+done:
+    sharedlight_free(light);
+    free(columns);
+    return status;
+}
+
+/* ---- colours --------------------------------------------------------------------------------- */
+
+/* Sets the visibility of each light at a piece; below 0 of lights that cast no shadows. */
+static void find_parts(const ThinVessels *thin, const View *view, size_t piece,
+                       float parts[VIEW_MAX_LIGHTS])
+{
     for (size_t i = 0; i < view->n_lights; i++)
-        parts[i] = lone && lone->reach[i]
-                       ? (float)lone->reach[i][number] / (float)light_points(&view->lights[i])
+        parts[i] = thin->lights.reach[i]
+                       ? (float)thin->lights.reach[i][piece] / (float)light_points(&view->lights[i])
                        : -1;
 }
 
-/* The mean colour of the half of the vessel's wall that is seen. */
-static Rgb wall_color(const Brush *brush, const Vessel *vessel)
+/* The mean colour of the visible half of a piece's wall. */
+static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const Wall *wall,
+                      size_t piece)
 {
-    const Drawing *drawing = brush->picture->drawing;
-    const Wall wall = wall_of(vessel, &drawing->view->camera);
     float parts[VIEW_MAX_LIGHTS];
     Rgb sum = {0};
-    find_parts(brush, parts);
+    find_parts(thin, drawing->view, piece, parts);
     for (int k = 0; k < SHADED; k++) {
         double across = (2 * k + 1.0) / SHADED - 1;
         Vec3 normal =
-            vec3_add_scaled(vec3_scale(wall.front, sqrt(1 - across * across)), wall.side, across);
+            vec3_add_scaled(vec3_scale(wall->front, sqrt(1 - across * across)), wall->side, across);
         const ShadePoint at = {.finish = &drawing->appearance->finish,
-                               .pigment = appearance_color(drawing->appearance, vessel->segment),
-                               .point = vec3_add_scaled(wall.middle, normal, wall.radius),
+                               .pigment = appearance_color(drawing->appearance, wall->segment),
+                               .point = vec3_add_scaled(wall->middle, normal, wall->radius),
                                .normal = normal,
-                               .direction = wall.direction,
-                               .open = 1,
+                               .direction = wall->direction,
+                               .open = thin->open ? (double)thin->open[piece] : 1,
                                .parts = parts};
         Rgb one = shade(drawing->view, &at, NULL, NULL);
         sum = (Rgb){sum.r + one.r / SHADED, sum.g + one.g / SHADED, sum.b + one.b / SHADED};
@@ -400,214 +437,102 @@ static Rgb wall_color(const Brush *brush, const Vessel *vessel)
     return sum;
 }
 
-static void find_color(Brush *brush)
+static Rgb piece_color(const Drawing *drawing, const ThinVessels *thin, size_t piece)
 {
-    const View *view = brush->picture->drawing->view;
-    const Vessel vessel = vessel_at(brush->picture->thin->whole, brush->strip->vessel);
-    double depth = (double)(brush->strip->depth_mm[0] + brush->strip->depth_mm[1]) / 2;
-    brush->color = wall_color(brush, &vessel);
-    if (effects_present(&view->effects))
-        brush->color =
-            rgb_mixed(brush->color, view->background, fade_at(&view->effects.fade, depth));
-    brush->has_color = true;
+    const View *view = drawing->view;
+    const Wall wall = wall_of(thin, piece);
+    Rgb color = wall_color(drawing, thin, &wall, piece);
+    if (!effects_present(&view->effects))
+        return color;
+    double depth = camera_point(&thin->camera, wall.middle).depth_mm - wall.radius;
+    return rgb_mixed(color, view->background, fade_at(&view->effects.fade, depth));
 }
 
-static void cover(Brush *brush, int column, int row, float length, float depth_mm)
+typedef struct ThinJob {
+    const Drawing *drawing;
+    const ThinVessels *thin;
+    Frame *frame;
+    ThinCells *cells; /* one a worker; owned, as is `status` */
+    Status *status;
+} ThinJob;
+
+/* Whether the strip may touch the rows of a band. */
+static bool touches_band(const ThinStrip *strip, const Band *band)
 {
-    const Drawing *drawing = brush->picture->drawing;
-    size_t width = (size_t)drawing->view->camera.width;
-    size_t pixel = (size_t)(row - drawing->band.first) * width + (size_t)column;
-    Cover *at = &brush->covers[(size_t)(row - brush->first_row) * width + (size_t)column];
-    if (depth_mm > brush->picture->frame->depth.values[pixel])
-        return;
-    if (!brush->has_color)
-        find_color(brush);
-    float area = length * brush->line_width;
-    if (at->run != brush->strip->run) {
-        at->clear *= 1 - at->run_part;
-        at->run_part = 0;
-        at->run = brush->strip->run;
-    }
-    at->run_part = least(1, at->run_part + area);
-    at->area += area;
-    at->color[0] += area * brush->color.r;
-    at->color[1] += area * brush->color.g;
-    at->color[2] += area * brush->color.b;
+    float top = (float)(band->first - TILE_SIDE) - strip->width;
+    float bottom = (float)(band->first + band->rows + TILE_SIDE) + strip->width;
+    return (strip->y[0] > top || strip->y[1] > top) &&
+           (strip->y[0] < bottom || strip->y[1] < bottom);
 }
 
-/* Cuts the part [*from, *to] of a line down to where start + t * step lies in [low, high]. */
-static bool clip(float start, float step, float low, float high, float *from, float *to)
-{
-    if (step == 0)
-        return start >= low && start < high;
-    float a = (low - start) / step, b = (high - start) / step;
-    *from = greatest(*from, least(a, b));
-    *to = least(*to, greatest(a, b));
-    return *from < *to;
-}
+enum { STRIPS_AT_ONCE = 256 };
 
-/* Where, as t, start + t * step leaves the cell of a number. */
-static float leaves(float start, float step, int cell)
+static void color_strips(size_t index, int worker, void *context)
 {
-    if (step == 0)
-        return INFINITY;
-    return ((float)(step > 0 ? cell + 1 : cell) - start) / step;
-}
-
-static int cell_of(float at, int first, int end)
-{
-    int cell = (int)floorf(at);
-    return cell < first ? first : cell >= end ? end - 1 : cell;
-}
-
-/* One line of a strip of this length, beside its axis by (aside_x, aside_y), from pixel to pixel.
- */
-static void draw_line(Brush *brush, float length, float aside_x, float aside_y)
-{
-    const ThinStrip *strip = brush->strip;
-    int width = brush->picture->drawing->view->camera.width;
-    float x = strip->x[0] + aside_x, y = strip->y[0] + aside_y;
-    float step_x = strip->x[1] - strip->x[0], step_y = strip->y[1] - strip->y[0];
-    float t = 0, end = 1;
-    if (!clip(x, step_x, 0, (float)width, &t, &end) ||
-        !clip(y, step_y, (float)brush->first_row, (float)brush->end_row, &t, &end))
-        return;
-    int column = cell_of(x + t * step_x, 0, width);
-    int row = cell_of(y + t * step_y, brush->first_row, brush->end_row);
-    while (t < end && column >= 0 && column < width && row >= brush->first_row &&
-           row < brush->end_row) {
-        float out_x = leaves(x, step_x, column), out_y = leaves(y, step_y, row);
-        float next = least(end, least(out_x, out_y));
-        float middle = (t + next) / 2;
-        if (next > t)
-            cover(brush, column, row, (next - t) * length,
-                  strip->depth_mm[0] + middle * (strip->depth_mm[1] - strip->depth_mm[0]));
-        t = greatest(t, next);
-        if (out_x <= out_y)
-            column += step_x > 0 ? 1 : -1;
-        else
-            row += step_y > 0 ? 1 : -1;
-    }
-}
-
-/* The width that a strip is drawn with, pixels. */
-static float drawn_width(const ThinVessels *thin, const ThinStrip *strip)
-{
-    return greatest(strip->width, (float)thin->least_px);
-}
-
-static void draw_strip(Brush *brush)
-{
-    const ThinStrip *strip = brush->strip;
-    float wide = drawn_width(brush->picture->thin, strip);
-    float step_x = strip->x[1] - strip->x[0], step_y = strip->y[1] - strip->y[0];
-    float length = hypotf(step_x, step_y);
-    if (!(length > 0))
-        return;
-    int lines = wide > 1 ? (int)ceilf(LINES * wide) : LINES;
-    brush->line_width = wide / (float)lines;
-    for (int k = 0; k < lines; k++) {
-        float aside = ((float)k + 0.5f) / (float)lines - 0.5f;
-        draw_line(brush, length, -step_y / length * aside * wide, step_x / length * aside * wide);
-    }
-}
-
-static void put_over(float *color, const Cover *at)
-{
-    float clear = at->clear * (1 - at->run_part);
-    for (int c = 0; c < 3 && at->area > 0; c++)
-        color[c] = color[c] * clear + at->color[c] / at->area * (1 - clear);
-}
-
-static void draw_block(size_t index, int worker, void *context)
-{
-    const ThinPicture *picture = context;
-    const Band *band = &picture->drawing->band;
-    size_t width = (size_t)picture->drawing->view->camera.width;
-    int first = (int)index * ROWS, end = first + ROWS < band->rows ? first + ROWS : band->rows;
-    size_t pixels = (size_t)(end - first) * width;
-    Cover *covers = &picture->covers[(size_t)worker * ROWS * width];
-    float *colors = &picture->frame->color.values[3 * (size_t)first * width];
-    for (size_t i = 0; i < pixels; i++)
-        covers[i] = (Cover){.clear = 1, .run = UINT32_MAX};
-    for (uint32_t i = picture->lists.first[index]; i < picture->lists.first[index + 1]; i++) {
-        Brush brush = {.picture = picture,
-                       .strip = &picture->thin->strips[picture->lists.items[i]],
-                       .covers = covers,
-                       .first_row = band->first + first,
-                       .end_row = band->first + end};
-        draw_strip(&brush);
-    }
-    for (size_t i = 0; i < pixels; i++)
-        put_over(&colors[3 * i], &covers[i]);
-}
-
-/* ---- which strips touch which blocks --------------------------------------------------------- */
-
-/* A block of a row, those above and below the band being its first and last. */
-static size_t block_of(const ThinPicture *picture, float y)
-{
-    const Band *band = &picture->drawing->band;
-    float within = least(greatest(y - (float)band->first, 0), (float)(band->rows - 1));
-    return (size_t)within / ROWS;
-}
-
-/* The blocks that a strip touches: *first <= *last, or none. */
-static bool blocks_of(const ThinPicture *picture, const ThinStrip *strip, size_t *first,
-                      size_t *last)
-{
-    const Band *band = &picture->drawing->band;
-    float reach = drawn_width(picture->thin, strip);
-    float top = least(strip->y[0], strip->y[1]) - reach;
-    float bottom = greatest(strip->y[0], strip->y[1]) + reach;
-    *first = block_of(picture, top);
-    *last = block_of(picture, bottom);
-    return bottom > (float)band->first && top < (float)(band->first + band->rows);
-}
-
-/* Appends the numbers of the strips to the lists of their blocks; ends[b] is where that of block b
- * ends. Without items they are only counted. */
-static void list_strips(ThinPicture *picture, uint32_t *ends)
-{
-    for (size_t i = 0; i < picture->thin->n; i++) {
-        size_t first, last;
-        if (!blocks_of(picture, &picture->thin->strips[i], &first, &last))
-            continue;
-        for (size_t block = first; block <= last; block++) {
-            if (picture->lists.items)
-                picture->lists.items[ends[block]] = (uint32_t)i;
-            ends[block]++;
+    (void)worker;
+    const ThinJob *job = context;
+    const ThinLayer *layer = &job->thin->layer;
+    size_t end = (index + 1) * STRIPS_AT_ONCE;
+    for (size_t i = index * STRIPS_AT_ONCE; i < end && i < layer->n; i++) {
+        const ThinStrip *strip = &layer->strips[i];
+        for (uint32_t k = 0; k < strip->n_pieces && touches_band(strip, &job->drawing->band); k++) {
+            size_t piece = strip->first_piece + k;
+            Rgb color = piece_color(job->drawing, job->thin, piece);
+            memcpy(layer->colors[piece], (float[]){color.r, color.g, color.b},
+                   sizeof *layer->colors);
         }
     }
 }
 
-static Status sort_strips(ThinPicture *picture, Err *err)
+void thinvessels_color(const Drawing *drawing, const ThinVessels *thin)
 {
-    NumberLists *lists = &picture->lists;
-    size_t n = picture->n_blocks;
-    TRY(mem_calloc(&lists->first, n + 2, sizeof *lists->first, "thin vessels", err));
-    list_strips(picture, lists->first + 2);
-    for (size_t block = 2; block < n + 2; block++)
-        lists->first[block] += lists->first[block - 1];
-    TRY(mem_calloc(&lists->items, lists->first[n + 1], sizeof *lists->items, "thin vessels", err));
-    list_strips(picture, lists->first + 1);
-    return STATUS_OK;
+    ThinJob job = {.drawing = drawing, .thin = thin};
+    threads_for((thin->layer.n + STRIPS_AT_ONCE - 1) / STRIPS_AT_ONCE, drawing->params->threads,
+                color_strips, &job);
 }
 
-Status thinvessels_draw(const ThinVessels *thin, const LonePlaces *lone, const Drawing *drawing,
-                        Frame *frame, Err *err)
+/* ---- over samples ---------------------------------------------------------------------------- */
+
+static void draw_rows(size_t index, int worker, void *context)
 {
-    ThinPicture picture = {.thin = thin, .lone = lone, .drawing = drawing, .frame = frame};
-    int threads = drawing->params->threads;
-    size_t a_worker = ROWS * (size_t)drawing->view->camera.width;
-    picture.n_blocks = ((size_t)drawing->band.rows + ROWS - 1) / ROWS;
-    Status status = sort_strips(&picture, err);
-    if (status == STATUS_OK)
-        status = mem_calloc(&picture.covers, (size_t)threads * a_worker, sizeof *picture.covers,
-                            "thin vessels", err);
-    if (status == STATUS_OK)
-        threads_for(picture.n_blocks, threads, draw_block, &picture);
-    numberlists_release(&picture.lists);
-    free(picture.covers);
+    const ThinJob *job = context;
+    const Band *band = &job->drawing->band;
+    const Camera *camera = &job->drawing->view->camera;
+    const int first = (int)index * ROWS,
+              rows = band->rows - first < ROWS ? band->rows - first : ROWS;
+    ThinCells *cells = &job->cells[worker];
+    Status status = thincells_fill(&job->thin->layer, 1, 0, band->first + first, camera->width,
+                                   rows, cells, NULL);
+    if (status != STATUS_OK)
+        job->status[worker] = status;
+    for (int row = 0; row < rows && cells->n > 0 && status == STATUS_OK; row++)
+        for (int column = 0; column < camera->width; column++) {
+            size_t pixel = (size_t)(first + row) * (size_t)camera->width + (size_t)column;
+            if (thincells_are_empty(cells, column, row))
+                continue;
+            double depth = (double)job->frame->depth.values[pixel];
+            double along = vec3_dot(camera_ray(camera, column, band->first + first + row).direction,
+                                    camera->direction);
+            thincells_over(cells, column, row, (float)(depth * along),
+                           &job->frame->color.values[3 * pixel]);
+        }
+}
+
+Status thinvessels_draw(const Drawing *drawing, const ThinVessels *thin, Frame *frame, Err *err)
+{
+    const int workers = drawing->params->threads;
+    ThinJob job = {.drawing = drawing, .thin = thin, .frame = frame};
+    Status status;
+    TRY_GOTO(mem_calloc(&job.cells, (size_t)workers, sizeof *job.cells, "thin vessels", err));
+    TRY_GOTO(mem_calloc(&job.status, (size_t)workers, sizeof *job.status, "thin vessels", err));
+    threads_for(((size_t)drawing->band.rows + ROWS - 1) / ROWS, workers, draw_rows, &job);
+    for (int i = 0; i < workers; i++)
+        if (job.status[i] != STATUS_OK)
+            TRY_GOTO(err_set(err, job.status[i], "out of memory: no room for thin vessels"));
+done:
+    for (int i = 0; job.cells && i < workers; i++)
+        thincells_release(&job.cells[i]);
+    free(job.cells);
+    free(job.status);
     return status;
 }

@@ -1,53 +1,52 @@
-/* Vessels thinner than a pixel, drawn by the part of each pixel that they cover. */
+/* Vessels that are narrower than the distance of samples. They are drawn by the area that they
+ * cover [render/tile/thincells.h]. */
 #ifndef CORCAST_RENDER_THINVESSELS_H
 #define CORCAST_RENDER_THINVESSELS_H
 
 #include "base/base.h"
-#include "image/image.h"
 #include "render/job.h"
+#include "render/sky/beams.h"
 #include "render/sky/lonelight.h"
-#include "scene/scene.h"
+#include "render/tile/thincells.h"
 
-/* A vessel as the picture shows it: a strip about a line, in pixels from the left and the top. */
-typedef struct ThinStrip {
-    float x[2], y[2], depth_mm[2]; /* of both ends of its axis; depth as planes have it */
-    float width;                   /* of the vessel, pixels */
-    uint32_t vessel;               /* index of its primitive, or of its segment of a field */
-    uint32_t run;                  /* the same for vessels that follow one another end to end */
-} ThinStrip;
-
-/* The thin vessels of a geometry in one view. */
+/* The thin vessels of a geometry in one view, and the light that reaches them. */
 typedef struct ThinVessels {
-    const Geometry *whole; /* borrowed */
-    Camera camera;         /* bit by bit as it was given */
-    bool *is_thin;         /* owned; by vessel, as strips have it */
-    ThinStrip *strips;     /* owned; by rising vessel */
-    size_t n;
-    double least_px; /* strips are drawn at least so wide; 0: as wide as they are */
-    double below_px; /* narrower vessels are thin */
+    const Geometry *whole;  /* borrowed */
+    Camera camera;          /* a bitwise copy of the one given */
+    ThinLayer layer;        /* has no colours before thinvessels_color */
+    uint32_t *piece_strips; /* per piece: index of its strip; owned */
+    LonePlaces lights;      /* shading points of the pieces; no lights before loneplaces_init */
+    float *open;            /* per piece: ambient visibility; NULL: 1. Owned. */
 } ThinVessels;
 
+/* Finds the vessels that are narrower than max(below_px, least_px) pixels in this view. Triangles
+ * are never thin, and neither is a vessel with an end behind a perspective camera. Other vessels do
+ * not matter.
+ *
+ * whole     borrowed.
+ * least_px  minimum drawn width, pixels; 0 draws true widths.
+ * thin      receives the vessels; release it with thinvessels_release.
+ * Errors    STATUS_MEMORY.
+ * Cost      O(n); the result does not depend on `threads`. */
+MUST_CHECK Status thinvessels_find(const Geometry *whole, const Camera *camera, double below_px,
+                                   double least_px, int threads, ThinVessels *thin, Err *err);
 void thinvessels_release(ThinVessels *thin);
 
-/* The vessels of `whole` that the camera sees in front of it narrower than a pixel, or than
- * `least_px` if that is more, in *thin (owned); `whole` is borrowed. At least the widest of all
- * vessels is not among them. Triangles are never thin. Of a `least_px` from 0 to 64. O(n), on so
- * many threads, which do not change the result. STATUS_MEMORY. */
-MUST_CHECK Status thinvessels_find(const Geometry *whole, const Camera *camera, double least_px,
-                                   int threads, ThinVessels *thin, Err *err);
+/* Finds the ambient visibility of the pieces, by `drawing->params->occlusion` occlusion directions.
+ * Errors   STATUS_MEMORY. */
+MUST_CHECK Status thinvessels_find_open(const Drawing *drawing, const Beams *beams,
+                                        ThinVessels *thin, Err *err);
 
-/* The geometry without the thin vessels, and without balls as thin as they, in *thick (owned):
- * with the ids and the bounds of the whole. O(n log n). STATUS_MEMORY. */
-MUST_CHECK Status thinvessels_rest(const ThinVessels *thin, Geometry *thick, Err *err);
+/* Sets the colours of the pieces of those strips that may touch the drawing's band, by the light
+ * found so far. */
+void thinvessels_color(const Drawing *drawing, const ThinVessels *thin);
 
-/* What asks the lights for the thin vessels: a place of each strip, which borrow *thin, and no
- * lights yet. */
-LonePlaces thinvessels_places(const ThinVessels *thin);
+/* Points thin->lights to the shading points of the pieces; it has no lights yet. */
+void thinvessels_place(ThinVessels *thin);
 
-/* Draws the thin vessels over the band's colours, where they lie in front of its depths. `lone` has
- * the lights that reach the places of theirs; NULL: nothing casts shadows. STATUS_MEMORY.
- * O(vessels + what they cover). */
-MUST_CHECK Status thinvessels_draw(const ThinVessels *thin, const LonePlaces *lone,
-                                   const Drawing *drawing, Frame *frame, Err *err);
+/* Draws the vessels over the colours of a frame that has depths along the rays. The frame has the
+ * drawing's band, one sample per pixel. Errors   STATUS_MEMORY. */
+MUST_CHECK Status thinvessels_draw(const Drawing *drawing, const ThinVessels *thin, Frame *frame,
+                                   Err *err);
 
 #endif

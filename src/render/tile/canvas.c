@@ -311,6 +311,35 @@ float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
     return own->color;
 }
 
+/* Draws the thin vessels of a cell over a sample. */
+static void cover_sample(const SeenTile *seen, const ThinCells *cells, int column, int row,
+                         int sample, float color[3][TILE_SAMPLES])
+{
+    const bool hit = seen->hits && seen->hits->state[sample] == TILE_HIT;
+    float over[3] = {color[0][sample], color[1][sample], color[2][sample]};
+    thincells_over(cells, column, row, hit ? (float)seen->hits->z[sample] : HUGE_VALF, over);
+    for (int c = 0; c < 3; c++)
+        color[c][sample] = over[c];
+}
+
+float (*canvas_cover(const Canvas *canvas, int worker, const SeenTile *seen, const ThinCells *cells,
+                     int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES]
+{
+    CanvasWorker *own = &canvas->each[worker];
+    const int step = cells->columns / TILE_SIDE;
+    if (cells->n == 0)
+        return color;
+    for (int c = 0; c < 3 && !color; c++)
+        for (int sample = 0; sample < TILE_SAMPLES; sample++)
+            own->color[c][sample] = canvas->background[c];
+    for (int j = 0; j < TILE_SIDE; j++)
+        for (int i = 0; i < TILE_SIDE; i++)
+            if (!thincells_are_empty(cells, i * step + x, j * step + y))
+                cover_sample(seen, cells, i * step + x, j * step + y, tile_sample_at(i, j),
+                             own->color);
+    return own->color;
+}
+
 /* ---- pixels ---------------------------------------------------------------------------------- */
 
 void canvas_store(const Canvas *canvas, int columns, int rows, float color[3][TILE_SAMPLES],

@@ -5,6 +5,7 @@
 
 #include "render/light/resample.h"
 #include "render/planes.h"
+#include "render/tile/thincells.h"
 #include "render/tile/tilekernels.h"
 #include "render/tile/viewpoint.h"
 
@@ -82,6 +83,13 @@ void canvas_see_ground(const Canvas *canvas, SeenTile *seen, TileHits *hits);
  * the light; NULL: none is. The colours are the worker's until the next call. */
 float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
                      const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES];
+
+/* Draws thin vessels over the colours of a tile's samples, whose hits have depths. Sample (i, j) of
+ * the tile has cell (i * step + x, j * step + y) of `cells`, step being the number of cells per
+ * sample. `color` is the worker's, from canvas_shade; NULL: the background's. Returns the worker's
+ * colours, or `color` if no thin vessel touches the tile. */
+float (*canvas_cover(const Canvas *canvas, int worker, const SeenTile *seen, const ThinCells *cells,
+                     int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES];
 
 /* Stores a tile of the centre samples in the planes of the frame; tiles go row by row, and
  * from left to right. `color` NULL: the background's. */
