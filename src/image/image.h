@@ -13,7 +13,7 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 8, IMAGE_MAX_ID = 0xffffff };
+enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 9, IMAGE_MAX_ID = 0xffffff };
 
 /* A rectangle of pixels; `left` and `top` count from 0. */
 typedef struct PixelRect {
