@@ -120,13 +120,19 @@ static int count_channels(const exr_attr_chlist_t *list, const char *prefix, con
 
 static Status no_channels(const Exr *self, const exr_attr_chlist_t *list, Err *err)
 {
-    const char *first = list->num_channels ? list->entries[0].name.str : "none";
+    enum { SHOWN = 8 };
+    char names[200] = "";
+    for (int i = 0; i < list->num_channels && i < SHOWN; i++) {
+        size_t length = strlen(names);
+        snprintf(names + length, sizeof names - length, "%s%s", i ? ", " : "",
+                 list->entries[i].name.str);
+    }
+    image_plain_text(names);
     return err_set(err, STATUS_INPUT,
-                   "%s: has %d channels; only R G B, X Y Z or a single one, with an A or "
-                   "without, can be read%s%s",
-                   self->file.name, list->num_channels,
-                   strchr(first, '.') ? ", or those of one layer; the first channel is " : "",
-                   strchr(first, '.') ? first : "");
+                   "%s: has the channels %s%s; only R G B, X Y Z or a single one, with an A or "
+                   "without, can be read%s",
+                   self->file.name, names, list->num_channels > SHOWN ? ", ..." : "",
+                   strchr(names, '.') ? ", or those of one layer" : "");
 }
 
 /* Which channels make the plane. */

@@ -13,7 +13,7 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 8, IMAGE_MAX_ID = 0xffffff };
+enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 9, IMAGE_MAX_ID = 0xffffff };
 
 /* A rectangle of pixels; `left` and `top` count from 0. */
 typedef struct PixelRect {
@@ -267,15 +267,16 @@ typedef struct Image {
 void image_release(Image *image);
 
 /* Reads a file, whose format is recognised by its first bytes; "-" is standard input.
- * Codes: PPM/PGM (P2, P3, P5, P6, maxval up to 65535, '#' comments; a maxval other than 255 and
- * 65535 is rescaled to 8 bits below 255 and to 16 above), PNG (8 and 16 bit, grey, RGB, palette;
- * gamma by gAMA, unless sRGB says otherwise; 0.4550 to 0.4560 is sRGB's), TIFF (8 and 16 bit, grey
- * and RGB, interleaved; turned as Orientation says). Floats: PFM (both byte orders, scale 1),
- * OpenEXR (half and float; channels R G B and any others, X Y Z or a single one; the display
- * window, 0 outside the data window), TIFF (32 bit). Lossy: JPEG (grey and colours), WebP.
- * Infinities and NaN are kept. An alpha channel is refused unless opaque throughout, and so are
- * colours of another space than sRGB (profiles, primaries), animations and TIFF files of several
- * pages. STATUS_INPUT with a sentence naming the file on truncated, corrupt and other files. */
+ *
+ * docs/FORMATS.md, section Pictures, lists the forms of each format that are read. PNM, PNG, JPEG,
+ * WebP and TIFF of integers give codes of 8 or 16 bits; PFM, OpenEXR and TIFF of floats give
+ * floats, infinities and NaN included. A maxval other than 255 and 65535 is rescaled, to 8 bits
+ * below 255 and to 16 above.
+ *
+ * Errors   STATUS_INPUT with a sentence that names the file and the property that cannot be read,
+ * such as an alpha channel that is not opaque throughout, colours of another space than sRGB
+ *          (profiles, primaries), animations and several pages, or that says what is truncated or
+ *          corrupt. STATUS_MEMORY. */
 MUST_CHECK Status image_read(Image *image, const char *path, Err *err);
 /* As image_read, but a picture or plane that is transparent anywhere keeps its alpha as the last
  * channel: pictures have 4 then, their colours not multiplied by it, planes 2 or 4, whose colours

@@ -34,9 +34,10 @@ static const char *name_of(const char *path)
 static Status read_image(Image *image, const char *path, const char *layer, ImageAlpha alpha,
                          Err *err)
 {
-    static const FileForm form = {.name = "a PPM, PGM, PFM, PNG, TIFF, OpenEXR, JPEG or WebP file",
-                                  .most_bytes = 16e9,
-                                  .begins = is_known};
+    static const FileForm form = {
+        .name = "a PBM, PGM, PPM, PAM, PFM, PNG, TIFF, OpenEXR, JPEG or WebP file",
+        .most_bytes = 16e9,
+        .begins = is_known};
     char *bytes;
     size_t size;
     TRY(file_read(path, &form, &bytes, &size, err));

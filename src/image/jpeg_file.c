@@ -98,11 +98,10 @@ static Status check_header(Reader *self, Err *err)
                            "read",
                            name, orientation_of(marker));
     bool grey = jpeg->jpeg_color_space == JCS_GRAYSCALE;
+    bool inks = jpeg->jpeg_color_space == JCS_CMYK || jpeg->jpeg_color_space == JCS_YCCK;
     if (!grey && jpeg->jpeg_color_space != JCS_YCbCr && jpeg->jpeg_color_space != JCS_RGB)
-        return err_set(err, STATUS_INPUT,
-                       "%s: is of inks or of unknown colours; only grey and "
-                       "RGB can be read",
-                       name);
+        return err_set(err, STATUS_INPUT, "%s: has %s; only grey and RGB can be read", name,
+                       inks ? "the colours of inks (CMYK)" : "colours of an unknown kind");
     if (jpeg_read_icc_profile(jpeg, &self->profile, &size))
         TRY(image_check_profile(name, self->profile, size, err));
     jpeg->out_color_space = grey ? JCS_GRAYSCALE : JCS_RGB;

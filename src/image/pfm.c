@@ -37,6 +37,10 @@ static Status pfm_decode(const ImageBytes *file, Image *image, Err *err)
     long long width, height;
     double scale;
     char word[32];
+    if (file->size > 2 && file->bytes[2] == '4')
+        return err_set(err, STATUS_INPUT,
+                       "%s: is a PF4 file, of four channels; only PF and Pf can be read",
+                       file->name);
     TRY(header_integer(&cursor, "width", 1, IMAGE_MAX_SIDE, &width, err));
     TRY(header_integer(&cursor, "height", 1, IMAGE_MAX_SIDE, &height, err));
     header_word(&cursor, word, sizeof word);

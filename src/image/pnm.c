@@ -1,36 +1,86 @@
-/* PPM and PGM, binary and plain (netpbm's ppm(5) and pgm(5)). Of binary files the size must agree
- * to the byte; of plain ones every sample takes two characters at least, which bounds what a header
- * may claim before anything is allocated. */
+/* PBM, PGM, PPM and PAM, binary and plain (netpbm's pbm(5), pgm(5), ppm(5) and pam(5)). Of binary
+ * files the size must agree to the byte. Of plain ones every sample takes two characters at least,
+ * of a plain PBM one, which bounds what a header may claim before anything is allocated. */
 #include "image/formats.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
 static bool pnm_is(const ImageBytes *file)
 {
-    return file->size >= 2 && file->bytes[0] == 'P' && memchr("2356", file->bytes[1], 4);
+    return file->size >= 2 && file->bytes[0] == 'P' && memchr("1234567", file->bytes[1], 7);
 }
 
 typedef struct PnmHeader {
     int width, height, channels;
     unsigned maximum; /* maxval */
     bool plain;
+    bool bits; /* PBM: a bit per pixel, 1 for black */
 } PnmHeader;
 
 static Status read_header(HeaderCursor *cursor, PnmHeader *header, Err *err)
 {
     char kind = (char)cursor->file.bytes[1];
     cursor->at = 2;
-    long long width, height, maximum;
+    long long width, height, maximum = 1;
+    const bool bits = kind == '1' || kind == '4';
     TRY(header_integer(cursor, "width", 1, IMAGE_MAX_SIDE, &width, err));
     TRY(header_integer(cursor, "height", 1, IMAGE_MAX_SIDE, &height, err));
-    TRY(header_integer(cursor, "largest value", 1, 65535, &maximum, err));
+    if (!bits)
+        TRY(header_integer(cursor, "largest value", 1, 65535, &maximum, err));
     *header = (PnmHeader){.width = (int)width,
                           .height = (int)height,
-                          .channels = kind == '2' || kind == '5' ? 1 : 3,
+                          .channels = kind == '3' || kind == '6' ? 3 : 1,
                           .maximum = (unsigned)maximum,
-                          .plain = kind == '2' || kind == '3'};
+                          .plain = kind <= '3',
+                          .bits = bits};
     return STATUS_OK;
+}
+
+/* Takes the number of a line of a PAM's header. */
+static Status read_key(HeaderCursor *cursor, const char *key, PnmHeader *header, Err *err)
+{
+    static const char *const keys[] = {"WIDTH", "HEIGHT", "DEPTH", "MAXVAL"};
+    long long value;
+    size_t i = 0;
+    while (i < 4 && strcmp(key, keys[i]) != 0)
+        i++;
+    if (i == 4)
+        return err_set(err, STATUS_INPUT, "%s: its header has the line \"%s\", which PAM has not",
+                       cursor->file.name, key);
+    TRY(header_integer(cursor, key, 1, i < 2 ? IMAGE_MAX_SIDE : i == 2 ? 4 : 65535, &value, err));
+    if (i == 3)
+        header->maximum = (unsigned)value;
+    else
+        *(int *[]){&header->width, &header->height, &header->channels}[i] = (int)value;
+    return STATUS_OK;
+}
+
+static Status read_pam_header(HeaderCursor *cursor, PnmHeader *header, Err *err)
+{
+    char key[32], type[32] = "";
+    cursor->at = 2;
+    *header = (PnmHeader){0};
+    for (header_word(cursor, key, sizeof key); *key && strcmp(key, "ENDHDR") != 0;
+         header_word(cursor, key, sizeof key))
+        if (strcmp(key, "TUPLTYPE") == 0)
+            header_word(cursor, type, sizeof type);
+        else
+            TRY(read_key(cursor, key, header, err));
+    if (!header->width || !header->height || !header->channels || !header->maximum)
+        return err_set(err, STATUS_INPUT,
+                       "%s: its header lacks WIDTH, HEIGHT, DEPTH, MAXVAL or ENDHDR",
+                       cursor->file.name);
+    static const char *const types[] = {NULL, "GRAYSCALE", "GRAYSCALE_ALPHA", "RGB", "RGB_ALPHA"};
+    const char *plain = strncmp(type, "BLACKANDWHITE", 13) == 0 ? type + 13 : type;
+    const char *expected = plain == type ? types[header->channels] : types[header->channels] + 9;
+    if (*type ? strcmp(plain, expected) == 0 : header->channels % 2 == 1)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "%s: has %d samples per pixel of the kind \"%s\"; only GRAYSCALE, RGB, "
+                   "BLACKANDWHITE and these with _ALPHA can be read",
+                   cursor->file.name, header->channels, type);
 }
 
 static size_t sample_count(const PnmHeader *header)
@@ -38,10 +88,24 @@ static size_t sample_count(const PnmHeader *header)
     return (size_t)header->width * (size_t)header->height * (size_t)header->channels;
 }
 
+static size_t bytes_of_pixels(const PnmHeader *header)
+{
+    if (header->bits)
+        return ((size_t)header->width + 7) / 8 * (size_t)header->height;
+    return sample_count(header) * (header->maximum > 255 ? 2 : 1);
+}
+
 static Status read_binary(HeaderCursor *cursor, const PnmHeader *header, Picture *picture, Err *err)
 {
     const uint8_t *at = cursor->file.bytes + cursor->at;
-    size_t n = sample_count(header);
+    size_t n = sample_count(header), row_bytes = ((size_t)header->width + 7) / 8;
+    if (header->bits) {
+        for (size_t i = 0; i < n; i++) {
+            size_t x = i % (size_t)header->width, y = i / (size_t)header->width;
+            picture_set(picture, i, at[y * row_bytes + x / 8] >> (7 - x % 8) & 1 ? 0 : 1);
+        }
+        return STATUS_OK;
+    }
     if (header->maximum == 255) {
         memcpy(picture->codes8, at, n);
         return STATUS_OK;
@@ -56,12 +120,29 @@ static Status read_binary(HeaderCursor *cursor, const PnmHeader *header, Picture
     return STATUS_OK;
 }
 
+/* The next digit of a plain PBM, which needs no blank before it. */
+static Status read_digit(HeaderCursor *cursor, long long *code, Err *err)
+{
+    const ImageBytes *file = &cursor->file;
+    while (cursor->at < file->size && isspace(file->bytes[cursor->at]))
+        cursor->at++;
+    if (cursor->at == file->size)
+        return err_set(err, STATUS_INPUT, "%s: ends before the value of a pixel", file->name);
+    char digit = (char)file->bytes[cursor->at++];
+    if (digit != '0' && digit != '1')
+        return err_set(err, STATUS_INPUT, "%s: the value of a pixel must be 0 or 1", file->name);
+    *code = digit == '0';
+    return STATUS_OK;
+}
+
 static Status read_plain(HeaderCursor *cursor, const PnmHeader *header, Picture *picture, Err *err)
 {
     size_t n = sample_count(header);
     for (size_t i = 0; i < n; i++) {
         long long code;
-        TRY(header_integer(cursor, "value of a pixel", 0, header->maximum, &code, err));
+        TRY(header->bits
+                ? read_digit(cursor, &code, err)
+                : header_integer(cursor, "value of a pixel", 0, header->maximum, &code, err));
         picture_set(picture, i, (uint16_t)code);
     }
     char word[32];
@@ -88,11 +169,12 @@ static Status pnm_decode(const ImageBytes *file, Image *image, Err *err)
 {
     HeaderCursor cursor = {.file = *file};
     PnmHeader header;
-    TRY(read_header(&cursor, &header, err));
+    TRY(file->bytes[1] == '7' ? read_pam_header(&cursor, &header, err)
+                              : read_header(&cursor, &header, err));
     size_t n = sample_count(&header);
     if (!header.plain)
-        TRY(header_end(&cursor, header.maximum > 255 ? 2 * n : n, err));
-    else if (file->size - cursor.at < 2 * n)
+        TRY(header_end(&cursor, bytes_of_pixels(&header), err));
+    else if (file->size - cursor.at < (header.bits ? n : 2 * n))
         return err_set(err, STATUS_INPUT,
                        "%s: its header announces %zu values, more than its %zu bytes can hold",
                        file->name, n, file->size);

@@ -1,8 +1,11 @@
-/* TIFF through libtiff, from the file in memory: a single page in strips or tiles, grey or RGB, 8
- * or 16 bits or 32-bit floats, however it is compressed. Its Orientation is undone on the way: the
- * place of a pixel is a linear function of its column and row in the file. */
+/* TIFF through libtiff, from the file in memory: a single page in strips or tiles, its samples
+ * interleaved or in planes, however it is compressed. Grey codes and palettes of 1, 2 and 4 bits
+ * become codes of 8 bits, floats of 16 and 64 bits floats of 32. The Orientation is undone on the
+ * way: the position of a pixel is a linear function of its column and row in the file. */
+#define IMATH_HALF_NO_LOOKUP_TABLE /* whose table is in a library of its own */
 #include "image/tiff_stream.h"
 
+#include <Imath/half.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,8 +15,12 @@ typedef struct Tiff {
     ImageBytes file;
     TiffStream tiff;
     uint32_t width, height; /* in the file */
-    int samples, bits;
-    bool floats;
+    int samples, bits;      /* per pixel, per sample, in the file */
+    int planes;             /* 1: samples are interleaved; else as many as samples */
+    int channels;           /* of the image */
+    bool floats, min_is_white;
+    const uint16_t *palette[3];       /* borrowed; NULL: none. Red, green, blue of 2^bits codes */
+    int palette_shift;                /* to make 8 bits of its numbers */
     bool swapped;                     /* its rows are columns */
     int64_t origin, across, down;     /* the pixel of column 0, row 0; how far the next ones are */
     uint32_t part_width, part_height; /* of a tile, or of a row */
@@ -60,6 +67,100 @@ static void set_places(Tiff *self, int orientation)
     }
 }
 
+/* What a file has that cannot be read is named. */
+static Status refuse(const Tiff *self, const char *what, Err *err)
+{
+    return err_set(err, STATUS_INPUT,
+                   "%s: has %s, which cannot be read; grey, RGB and palettes of 1, 2, 4, 8 or 16 "
+                   "bits can, and grey and RGB floats of 16, 32 or 64 bits",
+                   self->file.name, what);
+}
+
+static const char *photometric_name(uint16_t photometric)
+{
+    static const struct {
+        uint16_t photometric;
+        const char *name;
+    } names[] = {{PHOTOMETRIC_MASK, "a mask for a picture"},
+                 {PHOTOMETRIC_SEPARATED, "the colours of inks (CMYK)"},
+                 {PHOTOMETRIC_YCBCR, "YCbCr colours without JPEG compression"},
+                 {PHOTOMETRIC_CIELAB, "CIELAB colours"},
+                 {PHOTOMETRIC_ICCLAB, "ICCLAB colours"},
+                 {PHOTOMETRIC_ITULAB, "ITULAB colours"},
+                 {PHOTOMETRIC_CFA, "the raw colours of a camera (CFA)"},
+                 {PHOTOMETRIC_LOGL, "LogL light"},
+                 {PHOTOMETRIC_LOGLUV, "LogLuv colours"}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (names[i].photometric == photometric)
+            return names[i].name;
+    return "colours of an unknown kind (PhotometricInterpretation)";
+}
+
+static Status check_samples(Tiff *self, uint16_t format, Err *err)
+{
+    static const char *const types[] = {[SAMPLEFORMAT_INT] = "signed integers",
+                                        [SAMPLEFORMAT_VOID] = "samples of no known type",
+                                        [SAMPLEFORMAT_COMPLEXINT] = "complex integers",
+                                        [SAMPLEFORMAT_COMPLEXIEEEFP] = "complex floats"};
+    const int bits = self->bits;
+    char what[64];
+    if (format < sizeof types / sizeof *types && types[format])
+        return refuse(self, types[format], err);
+    self->floats = format == SAMPLEFORMAT_IEEEFP;
+    if (self->floats && bits != 16 && bits != 32 && bits != 64)
+        snprintf(what, sizeof what, "floats of %d bits", bits);
+    else if (!self->floats && bits != 1 && bits != 2 && bits != 4 && bits != 8 && bits != 16)
+        snprintf(what, sizeof what, "integers of %d bits", bits);
+    else
+        return STATUS_OK;
+    return refuse(self, what, err);
+}
+
+/* Palettes hold numbers of 16 bits; those of some old programs hold numbers of 8 bits. */
+static Status take_palette(Tiff *self, Err *err)
+{
+    uint16_t *red, *green, *blue;
+    if (!TIFFGetField(self->tiff.handle, TIFFTAG_COLORMAP, &red, &green, &blue) || self->bits > 8)
+        return refuse(self, "a palette of more than 8 bits, or none", err);
+    self->palette[0] = red;
+    self->palette[1] = green;
+    self->palette[2] = blue;
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < 1 << self->bits; i++)
+            if (self->palette[c][i] > 255)
+                self->palette_shift = 8;
+    return STATUS_OK;
+}
+
+/* Only grey and RGB have alpha; libtiff makes JPEG's YCbCr colours RGB. */
+static Status check_colors_of_samples(Tiff *self, uint16_t photometric, Err *err)
+{
+    const int samples = self->samples;
+    uint16_t compression;
+    TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_COMPRESSION, &compression);
+    if (photometric == PHOTOMETRIC_YCBCR && compression == COMPRESSION_JPEG &&
+        TIFFSetField(self->tiff.handle, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB))
+        photometric = PHOTOMETRIC_RGB;
+    if (compression == COMPRESSION_JPEG)
+        self->image.lossy = "JPEG";
+    bool grey = photometric == PHOTOMETRIC_MINISBLACK || photometric == PHOTOMETRIC_MINISWHITE;
+    bool is_palette = photometric == PHOTOMETRIC_PALETTE;
+    self->min_is_white = photometric == PHOTOMETRIC_MINISWHITE;
+    self->channels = is_palette ? 3 : samples;
+    if (!grey && !is_palette && photometric != PHOTOMETRIC_RGB)
+        return refuse(self, photometric_name(photometric), err);
+    if ((self->min_is_white || is_palette) && (samples != 1 || self->floats))
+        return refuse(self,
+                      is_palette ? "a palette with alpha or of floats"
+                                 : "white as the lowest value with alpha or of floats",
+                      err);
+    if (samples == (grey || is_palette ? 1 : 3) || samples == (grey ? 2 : 4))
+        return is_palette ? take_palette(self, err) : STATUS_OK;
+    char what[64];
+    snprintf(what, sizeof what, "%d samples per pixel", samples);
+    return refuse(self, what, err);
+}
+
 static Status check_form(Tiff *self, Err *err)
 {
     uint16_t samples, bits, format, planar, photometric = PHOTOMETRIC_MINISBLACK;
@@ -70,19 +171,15 @@ static Status check_form(Tiff *self, Err *err)
     TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_PLANARCONFIG, &planar);
     self->samples = samples;
     self->bits = bits;
-    self->floats = format == SAMPLEFORMAT_IEEEFP;
-    bool depth =
-        self->floats ? bits == 32 : format == SAMPLEFORMAT_UINT && (bits == 8 || bits == 16);
-    bool color = photometric == PHOTOMETRIC_RGB
-                     ? samples == 3 || samples == 4
-                     : photometric == PHOTOMETRIC_MINISBLACK && (samples == 1 || samples == 2);
-    if (depth && color && (planar == PLANARCONFIG_CONTIG || samples == 1))
-        return STATUS_OK;
-    return err_set(
-        err, STATUS_INPUT,
-        "%s: has %d samples a pixel of %d bits in a form that cannot be read; grey or RGB "
-        "of 8 or 16 bits or 32-bit floats, interleaved, can",
-        self->file.name, samples, bits);
+    self->planes = planar == PLANARCONFIG_CONTIG ? 1 : samples;
+    TRY(check_samples(self, format, err));
+    return check_colors_of_samples(self, photometric, err);
+}
+
+/* Bits of a sample of the image that is made. */
+static int image_bits(const Tiff *self)
+{
+    return self->floats ? 32 : self->bits <= 8 ? 8 : 16;
 }
 
 /* The bytes that a file of this size can hold, with much to spare. Blank pictures shrink 1400-fold
@@ -96,14 +193,16 @@ static size_t most_bytes(const Tiff *self)
     bool common = compression == COMPRESSION_NONE || compression == COMPRESSION_LZW ||
                   compression == COMPRESSION_PACKBITS || compression == COMPRESSION_DEFLATE ||
                   compression == COMPRESSION_ADOBE_DEFLATE;
-    return common ? self->file.size * COMMON_RATIO : self->file.size * RATIO + BLANK_STRIP;
+    size_t unpacked = self->bits < 8 ? 8 / (size_t)self->bits : 1;
+    return common ? self->file.size * COMMON_RATIO * unpacked
+                  : self->file.size * RATIO * unpacked + BLANK_STRIP;
 }
 
 /* `width` x `height` pixels, of the whole or of a tile. */
 static Status check_claim(const Tiff *self, uint32_t width, uint32_t height, Err *err)
 {
     TRY(image_check_sides(self->file.name, width, height, err));
-    size_t pixel = (size_t)self->samples * (size_t)(self->bits / 8);
+    size_t pixel = (size_t)self->channels * (size_t)(image_bits(self) / 8);
     return image_check_claim(&self->file, width, height, pixel * width * height, most_bytes(self),
                              err);
 }
@@ -119,8 +218,8 @@ static Status set_parts(Tiff *self, Err *err)
         TIFFGetField(self->tiff.handle, TIFFTAG_TILELENGTH, &self->part_height);
         TRY(check_claim(self, self->part_width, self->part_height, err));
     }
-    self->part_bytes = (size_t)self->part_width * self->part_height * (size_t)self->samples *
-                       (size_t)(self->bits / 8);
+    const size_t row_samples = (size_t)self->part_width * (size_t)(self->samples / self->planes);
+    self->part_bytes = (row_samples * (size_t)self->bits + 7) / 8 * self->part_height;
     TRY(image_check_memory((int)self->part_width, (int)self->part_height, self->part_bytes, err));
     if ((size_t)(tiled ? TIFFTileSize(self->tiff.handle) : TIFFScanlineSize(self->tiff.handle)) !=
         self->part_bytes)
@@ -141,7 +240,7 @@ static Status check_colors(Tiff *self, Err *err)
     if (TIFFGetField(self->tiff.handle, TIFFTAG_WHITEPOINT, &white))
         for (int i = 0; i < 2; i++)
             xy[6 + i] = (double)white[i];
-    if (self->samples >= 3 && !image_is_srgb(xy))
+    if (self->channels >= 3 && !image_is_srgb(xy))
         return image_other_colors(self->file.name, "PrimaryChromaticities or WhitePoint", err);
     if (!self->floats && TIFFGetField(self->tiff.handle, TIFFTAG_ICCPROFILE, &size, &profile))
         return image_check_profile(self->file.name, profile, size, err);
@@ -161,47 +260,75 @@ static Status read_header(Tiff *self, Err *err)
     return set_parts(self, err);
 }
 
-/* `n` pixels of row `y` of the file, from column `x` on, at `values`. */
-static void take_codes(const Tiff *self, const uint8_t *values, uint32_t x, uint32_t y, uint32_t n,
-                       Picture *picture)
+static unsigned integer_at(const uint8_t *row, size_t i, int bits)
 {
-    const uint16_t *deep = (const void *)values;
+    if (bits == 8)
+        return row[i];
+    if (bits == 16)
+        return ((const uint16_t *)(const void *)row)[i];
+    size_t first = i * (size_t)bits;
+    return row[first / 8] >> (8 - (size_t)bits - first % 8) & ((1u << bits) - 1);
+}
+
+static float float_at(const uint8_t *row, size_t i, int bits)
+{
+    double value;
+    float single;
+    if (bits == 16)
+        return imath_half_to_float(((const imath_half_bits_t *)(const void *)row)[i]);
+    memcpy(&value, row + 8 * i, bits == 64 ? sizeof value : 0);
+    memcpy(&single, row + 4 * i, bits == 32 ? sizeof single : 0);
+    return bits == 64 ? (float)value : single;
+}
+
+/* Sets the codes of the pixel of index `pixel`: those of a palette, or one from channel `c` on. */
+static void set_code(const Tiff *self, unsigned value, size_t pixel, int c, Picture *picture)
+{
+    const size_t first = pixel * (size_t)self->channels;
+    const unsigned most = (1u << self->bits) - 1;
+    if (self->palette[0]) {
+        for (size_t i = 0; i < 3; i++)
+            picture_set(picture, first + i,
+                        (uint16_t)(self->palette[i][value] >> self->palette_shift));
+        return;
+    }
+    if (self->min_is_white)
+        value = most - value;
+    picture_set(picture, first + (size_t)c,
+                (uint16_t)(self->bits < 8 ? value * 255 / most : value));
+}
+
+/* Takes `n` pixels of row `y` of the file, from column `x` on, whose samples are at `row`: all
+ * samples, or those of one plane. */
+static void take_row(const Tiff *self, const uint8_t *row, uint32_t x, uint32_t y, uint32_t n,
+                     int plane, Image *image)
+{
+    const int samples = self->samples / self->planes;
     size_t at = 0;
     for (uint32_t i = 0; i < n; i++) {
-        int64_t place = self->origin + (x + i) * self->across + y * self->down;
-        for (int c = 0; c < self->samples; c++, at++)
-            picture_set(picture, (size_t)(place * self->samples + c),
-                        self->bits == 8 ? values[at] : deep[at]);
+        size_t pixel = (size_t)(self->origin + (x + i) * self->across + y * self->down);
+        for (int c = plane; c < plane + samples; c++, at++)
+            if (self->floats)
+                image->plane.values[pixel * (size_t)self->channels + (size_t)c] =
+                    float_at(row, at, self->bits);
+            else
+                set_code(self, integer_at(row, at, self->bits), pixel, c, &image->picture);
     }
 }
 
-static void take_floats(const Tiff *self, const uint8_t *values, uint32_t x, uint32_t y, uint32_t n,
-                        Plane *plane)
+/* Reads the part of the file, or of one plane, that begins at column `x`, row `y`. */
+static Status read_part(Tiff *self, uint32_t x, uint32_t y, int plane, Image *image, Err *err)
 {
-    size_t size = (size_t)self->samples * sizeof *plane->values;
-    for (uint32_t i = 0; i < n; i++) {
-        int64_t place = self->origin + (x + i) * self->across + y * self->down;
-        memcpy(plane->values + place * self->samples, values + i * size, size);
-    }
-}
-
-/* The part of the file that begins at column `x`, row `y`. */
-static Status read_part(Tiff *self, uint32_t x, uint32_t y, Image *image, Err *err)
-{
-    bool read = TIFFIsTiled(self->tiff.handle)
-                    ? TIFFReadTile(self->tiff.handle, self->part, x, y, 0, 0) >= 0
-                    : TIFFReadScanline(self->tiff.handle, self->part, y, 0) == 1;
+    TIFF *handle = self->tiff.handle;
+    bool read = TIFFIsTiled(handle)
+                    ? TIFFReadTile(handle, self->part, x, y, 0, (uint16_t)plane) >= 0
+                    : TIFFReadScanline(handle, self->part, y, (uint16_t)plane) == 1;
     if (!read)
         return unsound(self, err);
     uint32_t n = self->part_width < self->width - x ? self->part_width : self->width - x;
     size_t row_bytes = self->part_bytes / self->part_height;
-    for (uint32_t row = 0; row < self->part_height && y + row < self->height; row++) {
-        const uint8_t *values = (const uint8_t *)self->part + row * row_bytes;
-        if (self->floats)
-            take_floats(self, values, x, y + row, n, &image->plane);
-        else
-            take_codes(self, values, x, y + row, n, &image->picture);
-    }
+    for (uint32_t row = 0; row < self->part_height && y + row < self->height; row++)
+        take_row(self, (const uint8_t *)self->part + row * row_bytes, x, y + row, n, plane, image);
     return STATUS_OK;
 }
 
@@ -233,9 +360,10 @@ static void settle_colors(const Tiff *self, Image *image)
 
 static Status read_parts(Tiff *self, Image *image, Err *err)
 {
-    for (uint32_t y = 0; y < self->height; y += self->part_height)
-        for (uint32_t x = 0; x < self->width; x += self->part_width)
-            TRY(read_part(self, x, y, image, err));
+    for (int plane = 0; plane < self->planes; plane++)
+        for (uint32_t y = 0; y < self->height; y += self->part_height)
+            for (uint32_t x = 0; x < self->width; x += self->part_width)
+                TRY(read_part(self, x, y, plane, image, err));
     if (self->samples == 2 || self->samples == 4)
         settle_colors(self, image);
     return STATUS_OK;
@@ -267,9 +395,9 @@ static Status decode(void *work, Err *err)
     int width = (int)(self->swapped ? self->height : self->width);
     int height = (int)(self->swapped ? self->width : self->height);
     if (self->floats)
-        TRY(plane_init(&image->plane, width, height, self->samples, err));
+        TRY(plane_init(&image->plane, width, height, self->channels, err));
     else
-        TRY(picture_init(&image->picture, width, height, self->samples, self->bits, err));
+        TRY(picture_init(&image->picture, width, height, self->channels, image_bits(self), err));
     TRY(read_parts(self, image, err));
     return check_single(self, err);
 }

@@ -137,7 +137,7 @@ test_files_that_cannot_be_of_their_kind_are_refused_before_they_are_read() {
         expect_sentence 't\.swc: is larger than 20\.0 GB, the most that an SWC file may have'
         run timeout 5 "$CORCAST" compare p.png p.png
         expect_status 2
-        expect_sentence 'p\.png: is not a PPM'
+        expect_sentence 'p\.png: is not a PBM'
         run timeout 5 "$CORCAST" grow --recipe r.ini -o o.swc
         expect_sentence 'r\.ini: is larger than 1\.0 MB'
         for name in mesh:m.stl mesh:m.obj polygon:ring.txt mask:m.nii; do
@@ -157,7 +157,7 @@ test_input_without_end_is_refused() {
     expect_sentence 'standard input: is not a tree file'
     run timeout 5 "$CORCAST" compare - "$DATA/bifurcation.swc" </dev/zero
     expect_status 2
-    expect_sentence 'standard input: is not a PPM'
+    expect_sentence 'standard input: is not a PBM'
     run timeout 5 "$CORCAST" grow --recipe - -o t.swc < <(yes "seed = 4")
     expect_status 2
     expect_sentence 'standard input: is larger than 1\.0 MB, the most that a recipe may have'

@@ -108,7 +108,7 @@ test_what_cannot_be_asked_is_refused() {
     expect_sentence '--render: the command fails \(exit status 7\)'
     run corcast power --quiet --render 'echo text >{}'
     expect_status 3
-    expect_sentence '--render: .*is not a PPM'
+    expect_sentence '--render: .*is not a PBM'
     run corcast power --quiet --render 'true {}'
     expect_status 3
     expect_sentence '--render: '

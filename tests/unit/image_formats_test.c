@@ -30,8 +30,8 @@ static void reads_tiff_codes_however_compressed(void **state)
     static const struct {
         const char *name;
         int bits, factor;
-    } files[] = {{"rgb8-lzw.tif", 8, 1}, {"rgb16-zip.tif", 16, 257}};
-    for (size_t i = 0; i < 2; i++) {
+    } files[] = {{"rgb8-lzw.tif", 8, 1}, {"rgb16-zip.tif", 16, 257}, {"planes-be.tif", 16, 257}};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         char path[128];
         Picture picture;
         path_of(files[i].name, path);
@@ -53,8 +53,9 @@ static void reads_tiff_codes_however_compressed(void **state)
 static void reads_floats_of_every_kind(void **state)
 {
     (void)state;
-    static const char *const names[] = {"float.tif", "half-zip.exr", "float-piz.exr"};
-    for (size_t i = 0; i < 3; i++) {
+    static const char *const names[] = {"float.tif", "half-zip.exr", "float-piz.exr",
+                                        "half-rgba.exr", "raw-b44.exr"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char path[128];
         Plane plane;
         path_of(names[i], path);
@@ -71,6 +72,19 @@ static void reads_floats_of_every_kind(void **state)
             }
         plane_release(&plane);
     }
+}
+
+static void reads_tiff_floats_of_16_bits(void **state)
+{
+    (void)state;
+    Plane plane;
+    assert_int_equal(plane_read(&plane, "tests/data/images/half.tif", &err), STATUS_OK);
+    size_t at = 0;
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            for (int c = 0; c < 3; c++, at++)
+                assert_float_equal(plane.values[at], (float)level_at(x, y, c) / 256, 0);
+    plane_release(&plane);
 }
 
 static void keeps_infinity_and_nan_of_a_single_channel(void **state)
@@ -316,7 +330,8 @@ static char *sample(size_t i, size_t *size)
         "rgb8-lzw.tif",     "rgb16-zip.tif", "float.tif",      "half-zip.exr", "float-piz.exr",
         "depth.exr",        "tiled.exr",     "tiles-8.tif",    "turned-6.tif", "pages.tif",
         "srgb-profile.png", "gamma-0.5.png", "window-4-3.exr", "aces.exr",     "parts.exr",
-        "lossy.jpg",        "lossy.webp"};
+        "lossy.jpg",        "lossy.webp",    "planes-be.tif",  "palette.tif",  "bilevel.tif",
+        "half.tif",         "half-rgba.exr", "raw-b44.exr"};
     char path[128] = "build/image_formats_test.png", *bytes;
     if (i < sizeof names / sizeof *names) {
         path_of(names[i], path);
@@ -331,7 +346,7 @@ static char *sample(size_t i, size_t *size)
     assert_int_equal(file_read(path, &any_file, &bytes, size, &err), STATUS_OK);
     return bytes;
 }
-enum { SAMPLES = 19 };
+enum { SAMPLES = 25 };
 
 static void names_the_end_that_a_png_lacks(void **state)
 {
@@ -405,6 +420,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_tiff_codes_however_compressed),
         cmocka_unit_test(reads_floats_of_every_kind),
+        cmocka_unit_test(reads_tiff_floats_of_16_bits),
         cmocka_unit_test(keeps_infinity_and_nan_of_a_single_channel),
         cmocka_unit_test(turns_a_tiff_as_its_orientation_says),
         cmocka_unit_test(reads_tiles_as_strips),

@@ -212,7 +212,9 @@ static const struct {
     FileKind kind;
 } images[] = {{"png", FILE_PICTURE},  {"ppm", FILE_PICTURE}, {"pgm", FILE_PICTURE},
               {"tif", FILE_PICTURE},  {"pfm", FILE_PLANE},   {"exr", FILE_PLANE},
-              {"tiff", FILE_PICTURE}, {"jpg", FILE_PICTURE}, {"jpeg", FILE_PICTURE}};
+              {"tiff", FILE_PICTURE}, {"jpg", FILE_PICTURE}, {"jpeg", FILE_PICTURE},
+              {"webp", FILE_PICTURE}, {"pbm", FILE_PICTURE}, {"pam", FILE_PICTURE},
+              {"pnm", FILE_PICTURE}};
 
 enum { N_IMAGES = sizeof images / sizeof *images };
 
@@ -234,7 +236,8 @@ static Status unknown_kind(const char *path, Err *err)
     if (status == STATUS_OK)
         status = err_set(err, STATUS_USAGE,
                          "'%s' has an unknown extension; known are %s for trees, and .png, .ppm, "
-                         ".pgm, .tif, .pfm and .exr for images, and .jpg for one that is written",
+                         ".pgm, .tif, .jpg, .pfm and .exr for images, and .webp, .pbm, .pam and "
+                         ".pnm for one that is read",
                          path, text_chars(&trees));
     text_release(&trees);
     if (status != STATUS_USAGE)

@@ -50,6 +50,7 @@ static const struct {
     {LAYER_ALPHA, {"A", false}},   {FILE_DEPTH, {"Z", true}},     {FILE_NORMAL, {"N.X", false}},
     {FILE_NORMAL, {"N.Y", false}}, {FILE_NORMAL, {"N.Z", false}}, {FILE_ID, {"id", true}}};
 enum { LAYERS = sizeof layers / sizeof *layers };
+_Static_assert(sizeof layers / sizeof *layers <= IMAGE_MAX_CHANNELS, "a plane holds all layers");
 
 struct FramesWriter {
     const FramesForm *form;
