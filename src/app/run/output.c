@@ -234,7 +234,7 @@ static void print_merged(const char *command, const TreeLosses *lost)
     if (lost->merged)
         fprintf(stderr,
                 "corcast %s: nodes that lie where others do: %zu; the format tells nodes by their "
-                "places, so that such a segment comes back as none, or closes a loop\n",
+                "places, so that such a segment may come back as none\n",
                 command, lost->merged);
 }
 

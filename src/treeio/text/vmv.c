@@ -256,6 +256,7 @@ Status vmv_read(Graph *graph, char *bytes, size_t size, Err *err)
     (void)size;
     Reader reader = {.graph = graph, .vertices = -1, .strands = -1, .names = {.what = "vertex"}};
     graph->unit = LENGTH_UM;
+    graph->is_named = true;
     for (int section = RADIUS; section < SECTIONS; section++)
         reader.series[section].said = -1;
     Status status = lines_read(graph->name, bytes, read_line, &reader, err);
