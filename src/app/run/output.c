@@ -215,9 +215,10 @@ static void print_left_out(const char *command, const Tree *tree, const char *pa
                   {lost->flow_shares, "the flow shares"},
                   {lost->terminal_flow, "the key terminal_flow"},
                   {lost->root_values, "the roots' values"},
-                  {lost->root_radii, "the roots' own radii"}};
+                  {lost->root_radii, "the roots' own radii"},
+                  {lost->lone_roots, "the roots without segments"}};
     if (!lost->columns && !lost->types && !lost->flow_shares && !lost->terminal_flow &&
-        !lost->root_values && !lost->root_radii)
+        !lost->root_values && !lost->root_radii && !lost->lone_roots)
         return;
     fprintf(stderr, "corcast %s: ", command);
     for (size_t k = 0, n = 0; k < tree->n_columns; k++)
