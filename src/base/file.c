@@ -111,7 +111,7 @@ void file_hold_standard_streams(void)
             return;
 }
 
-/* Every line end becomes LF; the byte order mark goes. */
+/* Every line end becomes LF; the byte order mark goes, as does a Ctrl-Z at the end. */
 static void tidy_lines(char *bytes, size_t *size)
 {
     static const char byte_order_mark[] = "\xef\xbb\xbf";
@@ -130,6 +130,11 @@ static void tidy_lines(char *bytes, size_t *size)
         from = cr + 1;
         from += *from == '\n';
     }
+    char *last = to;
+    while (last > bytes && strchr(" \t\n", last[-1]))
+        last--;
+    while (last > bytes && last[-1] == '\x1a') /* how DOS ends a text */
+        to = --last;
     *to = '\0';
     *size = (size_t)(to - bytes);
 }

@@ -169,6 +169,36 @@ static const Rule rules[] = {
     {"swc: ids from 0, a title, and junk behind the end of a row", "swc",
      "n type x y z radius parent\n0 1 0 0 0 2 -1 # soma\n1 3 0 0 8 1 0\n", 0,
      "1 1 0 0 0 2 -1\n2 3 0 0 8 1 1\n"},
+    {"vmv: keywords have no case, blanks behind the sign, and a text behind the end", "vmv",
+     "$param_begin\nnum_verts 2\nnum_strands 1\n$param_end\n$ Vert_List_Begin\n1 0 0 0 1000\n"
+     "2 0 0 9000 1000\n$Vert_List_End\n$strands_list_begin\n1 1 2\n$strands_list_end\nthe end\n",
+     0, "1 3 0 0 0 1 -1\n2 3 0 0 9 1 1\n"},
+    {"vita: titles have no case", "cco",
+     "*TREE\n1\n*vessels\n1\n7 0 0 0 0 0 9 0 0 0 0 0 1.5 0 0 0 0 0 0 0 0\n*CONNECTIVITY\n7 -1\n", 0,
+     "1 3 0 0 0 1.5 -1\n2 3 0 0 9 1.5 1\n"},
+    {"secomb: a text behind the tables", "dat",
+     SECOMB "1 segments\nname type from to diam\n1 5 1 2 2000\n2 nodes\nname x y z\n1 0 0 0\n"
+            "2 0 0 1000\n0 boundary nodes\nname\nthe end, 9 nodes\n",
+     0, "1 3 0 0 0 1 -1\n2 3 0 0 1 1 1\n"},
+    {"amira: words have no case", "am",
+     "# amiramesh ASCII 2.0\nDEFINE lines 2\nDEFINE vertices 2\nparameters {\n"
+     "contenttype \"hxlineset\"\n}\nlines { INT lineidx } @1\nvertices { FLOAT[3] coordinates } "
+     "@2\n"
+     "vertices { Float radius } @3\n@1\n0 1\n@2\n0 0 0\n0 0 10\n@3\n3 3\n",
+     0, "1 3 0 0 0 0.003 -1\n2 3 0 0 0.01 0.003 1\n"},
+    {"in: cards have no case", "in",
+     "node 0 0 0 0\nNode 1 0 0 2\nsegment a 0 2 5 0 1 9 3.141592653589793 0 M NONE 0 0 0 NOBOUND "
+     "NONE\n",
+     0, "1 3 0 0 0 10 -1\n2 3 0 0 20 10 1\n"},
+    {"swc: lines of DOS, and its end of a text", "swc",
+     "# a\r\n1 1 0 0 0 2 -1\r\n2 3 0 0 8 1 1\r\n\x1a", 0, "1 1 0 0 0 2 -1\n2 3 0 0 8 1 1\n"},
+    {"csv: titles have no case, and blanks about them", "csv",
+     "X0, Y0, Z0, X1, Y1, Z1, Radius\n0, 0, 0, 0, 0, 8, 0.5\n", 0,
+     "1 3 0 0 0 0.5 -1\n2 3 0 0 8 0.5 1\n"},
+    {"vtk: keywords have no case", "vtk",
+     "# VTK datafile version 3.0\nx\nascii\ndataset polydata\npoints 2 FLOAT\n0 0 0\n0 0 8\n"
+     "lines 1 3\n2 0 1\ncell_data 1\nscalars radius Float\nlookup_table default\n3\n",
+     0, "1 3 0 0 0 3 -1\n2 3 0 0 8 3 1\n"},
     {"swc: a root may have the parent 0", "swc", "1 1 0 0 0 2 0\n2 3 0 0 8 1 1\n", 0,
      "1 1 0 0 0 2 -1\n2 3 0 0 8 1 1\n"},
 };
