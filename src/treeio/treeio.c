@@ -562,13 +562,21 @@ static bool reads_tree(const Source *source, const ReadOptions *options)
            options->radius_mm == 0 && !options->repair_radii;
 }
 
-/* Returns whether the program grew the tree: its files state lengths in the unit of their format.
- */
-static bool is_own(const Tree *tree)
+static bool begins(const char *text, const char *with)
 {
-    static const char name[] = "corcast ";
-    const char *generator = tree->meta.text[META_GENERATOR];
-    return generator && strncmp(generator, name, sizeof name - 1) == 0;
+    return text && strncmp(text, with, strlen(with)) == 0;
+}
+
+/* Returns whether the program made the tree, as its generator or its first command says: the
+ * lengths are in the unit of the format then. */
+static bool is_own(const TreeMeta *meta)
+{
+    size_t i = 0;
+    while (i < meta->n_lines && meta->line[i].key != META_COMMAND)
+        i++;
+    const char *command = i < meta->n_lines ? meta->line[i].text : NULL;
+    return begins(meta->text[META_GENERATOR], "corcast ") || begins(command, "corcast grow ") ||
+           begins(command, "corcast bifurcation ");
 }
 
 static Status read_source(const Source *source, Tree *tree, const ReadOptions *options,
@@ -593,7 +601,7 @@ static Status read_source(const Source *source, Tree *tree, const ReadOptions *o
         status = tree_check(&made, err);
     if (status == STATUS_OK)
         status = reading_measure(reading, &made, err);
-    reading->unit_said = reading->unit_said || is_own(&made);
+    reading->unit_said = reading->unit_said || is_own(&made.meta);
     if (status == STATUS_OK)
         *tree = made;
     else

@@ -189,6 +189,11 @@ test_the_unit_of_the_programs_own_trees_is_known() {
     run_ok corcast info --json large.swc
     [ ! -s stderr ] || fail "expected no report: $(cat stderr)"
     expect_json stdout '.reading.unit_said and .reading.unit == "mm" and .reading.median_radius_mm > 2.5'
+    run_ok corcast bifurcation --quiet --radii 30 -o large.swc
+    run_ok corcast info large.swc
+    [ ! -s stderr ] || fail "expected no report: $(cat stderr)"
+    run_ok corcast figure fig2 -o fig2.pdf
+    [ ! -s stderr ] || fail "expected no report: $(cat stderr)"
 }
 
 # A file of a few kilobytes that claims, honestly, three million points and as many numbers.
