@@ -582,20 +582,31 @@ static Status add_columns(const Graph *graph, TreeBuilder *builder, Err *err)
     return status;
 }
 
-/* The points by their ids, 0 where none has it, in *order (owned), *last the largest. */
-static Status order_points(const Building *building, const int32_t *id, uint32_t **order,
-                           size_t *last, Err *err)
+/* A kept point and its id. */
+typedef struct Numbered {
+    int32_t id;
+    uint32_t point;
+} Numbered;
+
+static int by_id(const void *a, const void *b)
 {
-    size_t n = building->graph->n_points, largest = 0;
-    uint32_t *made = NULL;
-    for (size_t i = 0; i < n; i++)
-        largest = (size_t)id[i] > largest ? (size_t)id[i] : largest;
-    TRY(mem_calloc(&made, largest + 1, sizeof *made, "ids", err));
-    for (uint32_t i = 0; i < n; i++)
+    const Numbered *one = a, *other = b;
+    return (one->id > other->id) - (one->id < other->id);
+}
+
+/* The kept points, which have ids above 0, by their ids, in *order (owned). */
+static Status order_points(const Building *building, const int32_t *id, Numbered **order, size_t *n,
+                           Err *err)
+{
+    Numbered *made = NULL;
+    size_t count = 0;
+    TRY(mem_calloc(&made, building->graph->n_points, sizeof *made, "ids", err));
+    for (uint32_t i = 0; i < building->graph->n_points; i++)
         if (id[i] > 0)
-            made[id[i]] = i + 1;
+            made[count++] = (Numbered){id[i], i};
+    qsort(made, count, sizeof *made, by_id);
     *order = made;
-    *last = largest;
+    *n = count;
     return STATUS_OK;
 }
 
@@ -610,13 +621,12 @@ static Status add_nodes(const Building *building, TreeBuilder *builder, const in
                 TRY(add_node(building, builder, i, id, err));
         return STATUS_OK;
     }
-    uint32_t *order = NULL;
-    size_t last = 0;
-    TRY(order_points(building, id, &order, &last, err));
+    Numbered *order = NULL;
+    size_t count = 0;
+    TRY(order_points(building, id, &order, &count, err));
     Status status = STATUS_OK;
-    for (size_t k = 1; k <= last && status == STATUS_OK; k++)
-        if (order[k])
-            status = add_node(building, builder, order[k] - 1, id, err);
+    for (size_t k = 0; k < count && status == STATUS_OK; k++)
+        status = add_node(building, builder, order[k].point, id, err);
     free(order);
     return status;
 }

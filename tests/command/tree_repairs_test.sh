@@ -223,6 +223,26 @@ PY
     done
 }
 
+test_memory_is_for_the_rows_and_not_for_the_largest_id() {
+    printf '1 1 0 0 0 2 -1\n100000000 3 0 0 8 1 1\n' >far.swc
+    run_ok corcast convert --quiet far.swc near.gxl
+    printf 'id,parent,x_mm,y_mm,z_mm,radius_mm\n1,,0,0,0,2\n100000000,1,0,0,8,1\n' >far.csv
+    local format file
+    for format in vtk vtp graphml; do
+        run_ok corcast convert --quiet far.swc near.$format
+    done
+    sed 's/<data key="v4">2</<data key="v4">100000000</' near.graphml >far.graphml
+    for file in far.*; do
+        (ulimit -v 250000 && exec "$CORCAST" info --json "$file") >stdout 2>stderr
+        status=$? command_line="info $file"
+        expect_status 0
+        expect_json stdout '.segments == 1'
+    done
+    printf '100000000 3 0 0 9 1 1\n' >>far.swc
+    run corcast info far.swc
+    expect_sentence 'far.swc:3: the id 100000000 is already that of line 2'
+}
+
 test_names_do_not_turn_the_text_around() {
     local name=$'a\xe2\x80\xaeb\xe2\x81\xa6c.txt'
     printf '0 0\n40 0\n40 40\n0 40\n' >"$name"
