@@ -133,7 +133,7 @@ void file_hold_standard_streams(void)
 }
 
 /* Turns every line end into LF. Drops a byte order mark, and the Control-Z that CP/M and DOS wrote
- * behind a text. */
+ * behind a text, with the blanks after it. */
 static void tidy_lines(char *bytes, size_t *size)
 {
     enum { CONTROL_Z = 0x1a };
@@ -153,8 +153,11 @@ static void tidy_lines(char *bytes, size_t *size)
         from = cr + 1;
         from += *from == '\n';
     }
-    while (to > bytes && to[-1] == CONTROL_Z)
-        to--;
+    char *last = to;
+    while (last > bytes && strchr(" \t\n", last[-1]))
+        last--;
+    while (last > bytes && last[-1] == CONTROL_Z)
+        to = --last;
     *to = '\0';
     *size = (size_t)(to - bytes);
 }

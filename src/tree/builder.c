@@ -1,11 +1,12 @@
-/* Rows are kept as given until all are there. Then parents are found in a direct table of ids, and
+/* Rows are kept as given until all are there. Then parents are found in an index of ids, and
  * rows placed: from each row not yet placed, the walk towards the root collects the ancestors that
  * are not placed either, and they go before it. Rows with parents first keep their order, every row
  * is walked over twice at most, and a walk that meets itself is a cycle. Rows that are in order
  * all become the tree without a copy, and rows with the ids 1, 2, ... and parents first, as those
- * of most large files, without a table of ids. */
+ * of most large files, without an index of ids. */
 #include "tree/builder.h"
 
+#include "tree/idindex.h"
 #include "tree/tree.h"
 #include <math.h>
 #include <stdlib.h>
@@ -133,8 +134,6 @@ Status builder_node(TreeBuilder *builder, const BuilderNode *node, Err *err)
     builder->position[i] = node->position;
     builder->radius_mm[i] = radius_mm;
     builder->row_record[i] = node->record;
-    if (node->id > builder->last_id)
-        builder->last_id = (int32_t)node->id;
     return STATUS_OK;
 }
 
@@ -208,35 +207,30 @@ Status builder_pair(TreeBuilder *builder, int64_t id, int64_t other, size_t reco
     return STATUS_OK;
 }
 
-/* Index + 1 of the row of every id up to the largest, 0 where there is none, in *table (owned). */
-static Status index_ids(const TreeBuilder *builder, int32_t **table, Err *err)
+/* Indexes the rows by their ids, which must differ. */
+static Status index_ids(const TreeBuilder *builder, IdIndex *index, Err *err)
 {
-    int32_t *made = NULL;
-    TRY(mem_calloc(&made, (size_t)builder->last_id + 1, sizeof *made, "table entries for ids",
-                   err));
-    for (size_t i = 0; i < builder->n; i++) {
-        int32_t *entry = &made[builder->id[i]];
-        if (*entry) {
-            size_t first = builder->row_record[*entry - 1];
-            free(made);
+    TRY(idindex_make(index, builder->id, builder->n, err));
+    for (size_t i = 0; i < builder->n && index->has_twins; i++) {
+        size_t first = idindex_find(index, builder->id[i]) - 1;
+        if (first != i)
             return builder_blame(builder, builder->row_record[i],
                                  err_set(err, STATUS_INPUT,
                                          "the id %d is already that of %s %zu; every node needs "
                                          "its own",
                                          builder->id[i], builder->record ? builder->record : "line",
-                                         first),
+                                         builder->row_record[first]),
                                  err);
-        }
-        *entry = (int32_t)i + 1;
     }
-    *table = made;
     return STATUS_OK;
 }
 
-/* Without a table, ids are 1, 2, ... NO_ROW where there is none. */
-static int32_t row_of(const TreeBuilder *builder, const int32_t *table, int32_t id)
+/* Without an index, ids are 1, 2, ... NO_ROW where there is none. */
+static int32_t row_of(const TreeBuilder *builder, const IdIndex *index, int32_t id)
 {
-    return id > builder->last_id ? NO_ROW : (table ? table[id] : id) - 1;
+    if (index->n > 0)
+        return (int32_t)idindex_find(index, id) - 1;
+    return id > (int32_t)builder->n ? NO_ROW : id - 1;
 }
 
 /* Whether the rows have the ids 1, 2, ... and parents before them. */
@@ -249,13 +243,13 @@ static bool are_numbered(const TreeBuilder *builder)
 }
 
 /* Makes the rows' parents, which are ids, indices. */
-static Status find_parents(TreeBuilder *builder, const int32_t *table, Err *err)
+static Status find_parents(TreeBuilder *builder, const IdIndex *index, Err *err)
 {
     for (size_t i = 0; i < builder->n; i++) {
         int32_t id = builder->parent[i];
         if (id == TREE_NO_PARENT)
             continue;
-        builder->parent[i] = row_of(builder, table, id);
+        builder->parent[i] = row_of(builder, index, id);
         if (builder->parent[i] == NO_ROW)
             return builder_blame(builder, builder->row_record[i], unknown_parent(id, err), err);
     }
@@ -372,7 +366,7 @@ static Status check_rule(const TreeBuilder *builder, Err *err)
 }
 
 /* A share is above 0, so a node that has one is a node that was named. */
-static Status fill_shares(const TreeBuilder *builder, const int32_t *table, const int32_t *place,
+static Status fill_shares(const TreeBuilder *builder, const IdIndex *index, const int32_t *place,
                           Tree *tree, Err *err)
 {
     TRY(check_rule(builder, err));
@@ -380,7 +374,7 @@ static Status fill_shares(const TreeBuilder *builder, const int32_t *table, cons
         TRY(tree_add_flow_shares(tree, err));
     for (size_t k = 0; k < builder->n_shares; k++) {
         const BuilderShare *said = &builder->share[k];
-        int32_t row = row_of(builder, table, said->id);
+        int32_t row = row_of(builder, index, said->id);
         Status status = STATUS_OK;
         if (row == NO_ROW)
             status = unknown_share(said->id, err);
@@ -394,11 +388,11 @@ static Status fill_shares(const TreeBuilder *builder, const int32_t *table, cons
 }
 
 /* Finds the nodes of pair k; `number` are those of the pairs before. */
-static Status find_pair(const TreeBuilder *builder, const int32_t *table, const int32_t *place,
+static Status find_pair(const TreeBuilder *builder, const IdIndex *index, const int32_t *place,
                         size_t k, double *number, Err *err)
 {
     for (int side = 0; side < 2; side++) {
-        int32_t id = builder->pair[k].id[side], row = row_of(builder, table, id);
+        int32_t id = builder->pair[k].id[side], row = row_of(builder, index, id);
         if (row == NO_ROW)
             return unknown_pair(id, err);
         size_t at = place_of(place, (size_t)row);
@@ -409,7 +403,7 @@ static Status find_pair(const TreeBuilder *builder, const int32_t *table, const 
     return STATUS_OK;
 }
 
-static Status fill_pairs(const TreeBuilder *builder, const int32_t *table, const int32_t *place,
+static Status fill_pairs(const TreeBuilder *builder, const IdIndex *index, const int32_t *place,
                          Tree *tree, Err *err)
 {
     double *number = NULL;
@@ -417,7 +411,7 @@ static Status fill_pairs(const TreeBuilder *builder, const int32_t *table, const
         TRY(tree_set_column(tree, tree_pairs_name, "", &number, err));
     for (size_t k = 0; k < builder->n_pairs; k++)
         TRY(builder_blame(builder, builder->pair[k].record,
-                          find_pair(builder, table, place, k, number, err), err));
+                          find_pair(builder, index, place, k, number, err), err));
     return STATUS_OK;
 }
 
@@ -426,13 +420,14 @@ Status builder_build(TreeBuilder *builder, Tree *out, Err *err)
     if (builder->n == 0)
         return err_set(err, STATUS_INPUT, "%s: the file has no nodes; a tree has at least one",
                        builder->name);
-    int32_t *table = NULL, *place = NULL;
+    IdIndex index = {0};
+    int32_t *place = NULL;
     Tree tree = {0};
     Status status = STATUS_OK;
     const bool numbered = are_numbered(builder);
     if (!numbered)
-        TRY_GOTO(index_ids(builder, &table, err));
-    TRY_GOTO(find_parents(builder, table, err));
+        TRY_GOTO(index_ids(builder, &index, err));
+    TRY_GOTO(find_parents(builder, &index, err));
     if (!numbered)
         TRY_GOTO(place_rows(builder, &place, err));
     if (are_in_order(builder, place))
@@ -440,15 +435,15 @@ Status builder_build(TreeBuilder *builder, Tree *out, Err *err)
     else
         TRY_GOTO(copy_nodes(builder, place, &tree, err));
     TRY_GOTO(fill_columns(builder, place, &tree, err));
-    TRY_GOTO(fill_shares(builder, table, place, &tree, err));
-    TRY_GOTO(fill_pairs(builder, table, place, &tree, err));
+    TRY_GOTO(fill_shares(builder, &index, place, &tree, err));
+    TRY_GOTO(fill_pairs(builder, &index, place, &tree, err));
     tree.meta = builder->meta;
     builder->meta = (TreeMeta){0};
     *out = tree;
 done:
     if (status != STATUS_OK)
         tree_release(&tree);
-    free(table);
+    idindex_release(&index);
     free(place);
     return status;
 }

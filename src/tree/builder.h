@@ -40,7 +40,6 @@ typedef struct TreeBuilder {
     double *radius_mm;
     size_t *row_record;
     size_t n, capacity; /* rows */
-    int32_t last_id;    /* the largest */
     struct BuilderColumn *column;
     size_t n_columns, columns_capacity;
     struct BuilderShare *share;
@@ -78,7 +77,7 @@ MUST_CHECK Status builder_pair(TreeBuilder *builder, int64_t id, int64_t other, 
 
 /* Makes the tree in *tree (owned; tree_release), which tree_check accepts: parents first and
  * otherwise in the order given, an ancestor that is given later just before its first descendant.
- * The meta moves to it. O(nodes + largest id). STATUS_INPUT when there is no node, an id is given
+ * The meta moves to it. O(nodes log nodes). STATUS_INPUT when there is no node, an id is given
  * twice, a parent is no node's id, nodes are their own ancestors, a share or a pair is
  * said of what is no node, or twice, or a share against the key terminal_flow. */
 MUST_CHECK Status builder_build(TreeBuilder *builder, Tree *tree, Err *err);

@@ -214,6 +214,59 @@ static void span(Building *building, size_t *kept)
     }
 }
 
+/* Makes the links, of points that are one where they lie at one place or where the file joins
+ * them. Replaces those of a call before. */
+static Status connect_points(Building *building, bool by_place, Err *err)
+{
+    free(building->place);
+    free(building->link);
+    building->place = NULL;
+    building->link = NULL;
+    building->n_links = building->reading->without_length = 0;
+    TRY(graph_merge(building->graph, by_place, &building->place, err));
+    TRY(link_lines(building, err));
+    return building->graph->is_tree ? STATUS_OK : drop_repeated(building, err);
+}
+
+/* Counts the links that close loops, and the components of the points that have links. */
+static Status count_loops(Building *building, size_t *loops, size_t *components, Err *err)
+{
+    size_t kept, nodes = 0;
+    bool *linked = NULL;
+    TRY(mem_calloc(&linked, building->graph->n_points, sizeof *linked, "points", err));
+    for (size_t i = 0; i < building->n_links; i++) {
+        nodes += !linked[building->link[i].a];
+        linked[building->link[i].a] = true;
+        nodes += !linked[building->link[i].b];
+        linked[building->link[i].b] = true;
+    }
+    free(linked);
+    span(building, &kept);
+    *loops = building->n_links - kept;
+    *components = nodes - kept;
+    return STATUS_OK;
+}
+
+/* Points at one place are one, unless that closes a loop in a file whose names make as many trees
+ * without loops: a vessel may end where another one passes. */
+static Status connect(Building *building, Err *err)
+{
+    Graph *graph = building->graph;
+    size_t loops, components, named_loops, named_components;
+    TRY(mem_calloc(&building->component, graph->n_points, sizeof *building->component, "components",
+                   err));
+    TRY(connect_points(building, !graph->is_tree, err));
+    if (!graph->is_named || graph->is_tree)
+        return STATUS_OK;
+    TRY(count_loops(building, &loops, &components, err));
+    if (loops == 0)
+        return STATUS_OK;
+    TRY(connect_points(building, false, err));
+    TRY(count_loops(building, &named_loops, &named_components, err));
+    return named_loops == 0 && named_components == components ? STATUS_OK
+                                                              : connect_points(building, true, err);
+}
+
 static Status refuse_loops(const Building *building, const Link *link, size_t loops, Err *err)
 {
     const Graph *graph = building->graph;
@@ -230,8 +283,6 @@ static Status refuse_loops(const Building *building, const Link *link, size_t lo
 static Status cut_loops(Building *building, Err *err)
 {
     size_t kept;
-    TRY(mem_calloc(&building->component, building->graph->n_points, sizeof *building->component,
-                   "components", err));
     span(building, &kept);
     size_t loops = building->reading->loops = building->n_links - kept;
     if (loops > 0 && !building->options->break_loops)
@@ -531,20 +582,31 @@ static Status add_columns(const Graph *graph, TreeBuilder *builder, Err *err)
     return status;
 }
 
-/* The points by their ids, 0 where none has it, in *order (owned), *last the largest. */
-static Status order_points(const Building *building, const int32_t *id, uint32_t **order,
-                           size_t *last, Err *err)
+/* A kept point and its id. */
+typedef struct Numbered {
+    int32_t id;
+    uint32_t point;
+} Numbered;
+
+static int by_id(const void *a, const void *b)
 {
-    size_t n = building->graph->n_points, largest = 0;
-    uint32_t *made = NULL;
-    for (size_t i = 0; i < n; i++)
-        largest = (size_t)id[i] > largest ? (size_t)id[i] : largest;
-    TRY(mem_calloc(&made, largest + 1, sizeof *made, "ids", err));
-    for (uint32_t i = 0; i < n; i++)
+    const Numbered *one = a, *other = b;
+    return (one->id > other->id) - (one->id < other->id);
+}
+
+/* The kept points, which have ids above 0, by their ids, in *order (owned). */
+static Status order_points(const Building *building, const int32_t *id, Numbered **order, size_t *n,
+                           Err *err)
+{
+    Numbered *made = NULL;
+    size_t count = 0;
+    TRY(mem_calloc(&made, building->graph->n_points, sizeof *made, "ids", err));
+    for (uint32_t i = 0; i < building->graph->n_points; i++)
         if (id[i] > 0)
-            made[id[i]] = i + 1;
+            made[count++] = (Numbered){id[i], i};
+    qsort(made, count, sizeof *made, by_id);
     *order = made;
-    *last = largest;
+    *n = count;
     return STATUS_OK;
 }
 
@@ -559,13 +621,12 @@ static Status add_nodes(const Building *building, TreeBuilder *builder, const in
                 TRY(add_node(building, builder, i, id, err));
         return STATUS_OK;
     }
-    uint32_t *order = NULL;
-    size_t last = 0;
-    TRY(order_points(building, id, &order, &last, err));
+    Numbered *order = NULL;
+    size_t count = 0;
+    TRY(order_points(building, id, &order, &count, err));
     Status status = STATUS_OK;
-    for (size_t k = 1; k <= last && status == STATUS_OK; k++)
-        if (order[k])
-            status = add_node(building, builder, order[k] - 1, id, err);
+    for (size_t k = 0; k < count && status == STATUS_OK; k++)
+        status = add_node(building, builder, order[k].point, id, err);
     free(order);
     return status;
 }
@@ -669,12 +730,9 @@ static Status build(Building *building, TreeBuilder *builder, Err *err)
                        graph->name);
     describe(graph, building->options, building->reading);
     graph_scale(graph);
-    TRY(graph_merge(graph, &building->place, err));
+    TRY(connect(building, err));
     for (size_t i = 0; i < graph->n_points; i++)
         graph->point[building->place[i]].is_inlet |= graph->point[i].is_inlet;
-    TRY(link_lines(building, err));
-    if (!graph->is_tree)
-        TRY(drop_repeated(building, err));
     if (building->n_links == 0 && !graph->is_tree)
         return err_set(err, STATUS_INPUT, "%s: all lines begin and end at one place", graph->name);
     TRY(cut_loops(building, err));

@@ -182,7 +182,7 @@ static Status join_points(const Graph *graph, uint32_t *place, Err *err)
     return STATUS_OK;
 }
 
-Status graph_merge(const Graph *graph, uint32_t **place, Err *err)
+Status graph_merge(const Graph *graph, bool by_place, uint32_t **place, Err *err)
 {
     uint32_t *made = NULL;
     Status status = STATUS_OK;
@@ -192,7 +192,7 @@ Status graph_merge(const Graph *graph, uint32_t **place, Err *err)
     TRY_GOTO(join_points(graph, made, err));
     for (uint32_t i = 0; i < graph->n_points; i++)
         made[i] = made[made[i]]; /* a chain leads to lower numbers, which are settled */
-    if (!graph->is_tree)
+    if (by_place)
         TRY_GOTO(merge_places(graph, graph->options ? graph->options->merge_tolerance_mm : 0, made,
                               err));
     *place = made;
@@ -210,7 +210,7 @@ Status graph_count_merged(const Tree *tree, size_t *n, Err *err)
     TRY(mem_calloc(&graph.point, tree->n, sizeof *graph.point, "points", err));
     for (size_t i = 0; i < tree->n; i++)
         graph.point[i].position = tree->position[i];
-    TRY_GOTO(graph_merge(&graph, &place, err));
+    TRY_GOTO(graph_merge(&graph, true, &place, err));
     *n = 0;
     for (size_t i = 0; i < tree->n; i++)
         *n += place[i] != i;

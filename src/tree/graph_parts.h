@@ -18,9 +18,10 @@ typedef struct GraphJoin {
 /* Scales points and lines to mm. */
 void graph_scale(Graph *graph);
 
-/* The point that each point becomes, the first of those that are joined or lie where it does, in
- * *place (owned). STATUS_INPUT for a join of a point that there is not. O(points). */
-MUST_CHECK Status graph_merge(const Graph *graph, uint32_t **place, Err *err);
+/* The point that each point becomes, the first of those that are joined or, with `by_place`, lie
+ * where it does, in *place (owned). STATUS_INPUT for a join of a point that there is not.
+ * O(points). */
+MUST_CHECK Status graph_merge(const Graph *graph, bool by_place, uint32_t **place, Err *err);
 
 /* Counts the ends that lie within their reach of a point of another component, and finds the widest
  * of these gaps, in *reading. `part` is the component of each point, 0 of points that are left out;

@@ -303,16 +303,23 @@ static bool has_root_values(const Tree *tree)
     return false;
 }
 
-/* Whether a root is not as thick as the thickest segment that leaves it. */
-static Status has_own_root_radii(const Tree *tree, bool *has, Err *err)
+/* Finds whether a root is not as thick as the thickest segment that leaves it, and whether no
+ * segment leaves it. */
+static Status look_at_roots(const Tree *tree, TreeLosses *lost, Err *err)
 {
-    double *thickest;
+    double *thickest; /* per node: of the segments that leave it; -1: there are none */
     TRY(mem_calloc(&thickest, tree->n, sizeof *thickest, "radii", err));
-    for (size_t i = 0; i < tree->n; i++)
+    for (size_t i = 0; i < tree->n; i++) {
+        thickest[i] = -1;
         if (tree_is_segment(tree, i))
             thickest[tree->parent[i]] = fmax(thickest[tree->parent[i]], tree->radius_mm[i]);
-    for (size_t i = 0; i < tree->n; i++)
-        *has = *has || (!tree_is_segment(tree, i) && tree->radius_mm[i] != thickest[i]);
+    }
+    for (size_t i = 0; i < tree->n; i++) {
+        bool root = !tree_is_segment(tree, i);
+        lost->lone_roots = lost->lone_roots || (root && thickest[i] < 0);
+        lost->root_radii =
+            lost->root_radii || (root && thickest[i] >= 0 && tree->radius_mm[i] != thickest[i]);
+    }
     free(thickest);
     return STATUS_OK;
 }
@@ -342,7 +349,7 @@ Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, E
     for (size_t k = 0; k < tree->n_columns; k++)
         lost.columns += !tree_format_keeps(path, &tree->column[k]);
     if (loses & LOSES_ROOT_RADII)
-        TRY(has_own_root_radii(tree, &lost.root_radii, err));
+        TRY(look_at_roots(tree, &lost, err));
     if (loses & LOSES_IDS)
         TRY(graph_count_merged(tree, &lost.merged, err));
     *out = lost;
@@ -555,13 +562,21 @@ static bool reads_tree(const Source *source, const ReadOptions *options)
            options->radius_mm == 0 && !options->repair_radii;
 }
 
-/* Returns whether the program grew the tree: its files state lengths in the unit of their format.
- */
-static bool is_own(const Tree *tree)
+static bool begins(const char *text, const char *with)
 {
-    static const char name[] = "corcast ";
-    const char *generator = tree->meta.text[META_GENERATOR];
-    return generator && strncmp(generator, name, sizeof name - 1) == 0;
+    return text && strncmp(text, with, strlen(with)) == 0;
+}
+
+/* Returns whether the program made the tree, as its generator or its first command says: the
+ * lengths are in the unit of the format then. */
+static bool is_own(const TreeMeta *meta)
+{
+    size_t i = 0;
+    while (i < meta->n_lines && meta->line[i].key != META_COMMAND)
+        i++;
+    const char *command = i < meta->n_lines ? meta->line[i].text : NULL;
+    return begins(meta->text[META_GENERATOR], "corcast ") || begins(command, "corcast grow ") ||
+           begins(command, "corcast bifurcation ");
 }
 
 static Status read_source(const Source *source, Tree *tree, const ReadOptions *options,
@@ -586,7 +601,7 @@ static Status read_source(const Source *source, Tree *tree, const ReadOptions *o
         status = tree_check(&made, err);
     if (status == STATUS_OK)
         status = reading_measure(reading, &made, err);
-    reading->unit_said = reading->unit_said || is_own(&made);
+    reading->unit_said = reading->unit_said || is_own(&made.meta);
     if (status == STATUS_OK)
         *tree = made;
     else
@@ -625,6 +640,12 @@ static Status write_to(const char *path, const Tree *tree, FILE *stream, Err *er
 {
     const Format *format = find_written(path);
     Tree written = *tree; /* borrows all */
+    size_t i = 0;
+    while (format->loses & LOSES_IDS && i < tree->n && !tree_is_segment(tree, i))
+        i++;
+    if (i == tree->n)
+        return err_set(err, STATUS_INPUT, "%s: %s holds segments alone, and the tree has none",
+                       path, format->form.name);
     if (loses_rule(format, tree))
         written.meta.known[META_TERMINAL_FLOW] = false;
     return format->write(&written, stream, err);

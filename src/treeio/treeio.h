@@ -21,6 +21,7 @@ typedef struct TreeLosses {
     bool types, flow_shares, terminal_flow;
     bool root_values; /* in columns, although those are not lost */
     bool root_radii;  /* which are not those of the thickest segments that leave the roots */
+    bool lone_roots;  /* roots without segments */
     size_t columns;   /* those that tree_format_keeps denies */
     size_t merged;    /* nodes where others lie, of which a reader makes one */
 } TreeLosses;
@@ -53,7 +54,8 @@ MUST_CHECK Status tree_read_as(Tree *tree, const char *path, const ReadOptions *
 
 /* Writes what is known of the tree, then its nodes in array order; every number reads back to the
  * same double. What tree_format_losses says is left out. STATUS_USAGE as
- * tree_format_check, STATUS_INPUT for a tree that tree_check refuses. */
+ * tree_format_check, STATUS_INPUT for a tree that tree_check refuses, or that has no segments where
+ * the format holds segments alone. */
 MUST_CHECK Status tree_write(const Tree *tree, const char *path, Err *err);
 
 /* Appends what tree_write would write to such a path to *out. As tree_write. */

@@ -188,7 +188,7 @@ test_what_a_format_has_no_place_for_is_said() {
         grep -q "^corcast convert: the roots' own radii are left out: " stderr || fail "got of $extension: $(cat stderr)"
         grep -q '^corcast convert: nodes that lie where others do: 2; ' stderr || fail "got of $extension: $(cat stderr)"
         run_ok corcast info --json "tree.$extension"
-        expect_json stdout '.segments == 2'
+        expect_json stdout '.segments == 4'
         run_ok corcast convert tree.swc "tree.$extension" --quiet
         [ ! -s stderr ] || fail "expected silence: $(cat stderr)"
     done

@@ -189,6 +189,11 @@ test_the_unit_of_the_programs_own_trees_is_known() {
     run_ok corcast info --json large.swc
     [ ! -s stderr ] || fail "expected no report: $(cat stderr)"
     expect_json stdout '.reading.unit_said and .reading.unit == "mm" and .reading.median_radius_mm > 2.5'
+    run_ok corcast bifurcation --quiet --radii 30 -o large.swc
+    run_ok corcast info large.swc
+    [ ! -s stderr ] || fail "expected no report: $(cat stderr)"
+    run_ok corcast figure fig2 -o fig2.pdf
+    [ ! -s stderr ] || fail "expected no report: $(cat stderr)"
 }
 
 # A file of a few kilobytes that claims, honestly, three million points and as many numbers.
@@ -216,6 +221,26 @@ PY
         expect_status 2
         expect_sentence "$file:.*a file of [0-9.]+ .B (holds|is unpacked to) at most"
     done
+}
+
+test_memory_is_for_the_rows_and_not_for_the_largest_id() {
+    printf '1 1 0 0 0 2 -1\n100000000 3 0 0 8 1 1\n' >far.swc
+    run_ok corcast convert --quiet far.swc near.gxl
+    printf 'id,parent,x_mm,y_mm,z_mm,radius_mm\n1,,0,0,0,2\n100000000,1,0,0,8,1\n' >far.csv
+    local format file
+    for format in vtk vtp graphml; do
+        run_ok corcast convert --quiet far.swc near.$format
+    done
+    sed 's/<data key="v4">2</<data key="v4">100000000</' near.graphml >far.graphml
+    for file in far.*; do
+        (ulimit -v 250000 && exec "$CORCAST" info --json "$file") >stdout 2>stderr
+        status=$? command_line="info $file"
+        expect_status 0
+        expect_json stdout '.segments == 1'
+    done
+    printf '100000000 3 0 0 9 1 1\n' >>far.swc
+    run corcast info far.swc
+    expect_sentence 'far.swc:3: the id 100000000 is already that of line 2'
 }
 
 test_names_do_not_turn_the_text_around() {

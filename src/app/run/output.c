@@ -243,9 +243,10 @@ static void print_left_out(const char *command, const Tree *tree, const char *pa
                   {lost->flow_shares, "the flow shares"},
                   {lost->terminal_flow, "the key terminal_flow"},
                   {lost->root_values, "the roots' values"},
-                  {lost->root_radii, "the roots' own radii"}};
+                  {lost->root_radii, "the roots' own radii"},
+                  {lost->lone_roots, "the roots without segments"}};
     if (!lost->columns && !lost->types && !lost->flow_shares && !lost->terminal_flow &&
-        !lost->root_values && !lost->root_radii)
+        !lost->root_values && !lost->root_radii && !lost->lone_roots)
         return;
     fprintf(stderr, "corcast %s: ", command);
     for (size_t k = 0, n = 0; k < tree->n_columns; k++)
@@ -262,7 +263,7 @@ static void print_merged(const char *command, const TreeLosses *lost)
     if (lost->merged)
         fprintf(stderr,
                 "corcast %s: nodes that lie where others do: %zu; the format tells nodes by their "
-                "places, so that such a segment comes back as none, or closes a loop\n",
+                "places, so that such a segment may come back as none\n",
                 command, lost->merged);
 }
 

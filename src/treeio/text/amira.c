@@ -180,7 +180,7 @@ static Status read_parameters(Reader *reader, const char *end, Err *err)
         depth -= strcmp(word, "}") == 0;
         if (strcasecmp(last, "ContentType") == 0)
             set_content(reader, word);
-        if (strcmp(last, "Coordinates") == 0)
+        if (strcasecmp(last, "Coordinates") == 0)
             take_unit(reader->graph, word);
     }
     return STATUS_OK;
@@ -220,7 +220,7 @@ static Status read_type(Field *field, const char *word, Err *err)
     snprintf(number, sizeof number, "%s", word[length] ? word + length + 1 : "1]");
     number[strcspn(number, "]")] = '\0';
     for (size_t i = 0; i < N_TYPES && !field->type; i++)
-        if (strlen(types[i].name) == length && strncmp(types[i].name, word, length) == 0)
+        if (strlen(types[i].name) == length && strncasecmp(types[i].name, word, length) == 0)
             field->type = vtk_type_of_legacy(types[i].legacy, strlen(types[i].legacy));
     if (!field->type || !integer_parse(number, 1, MOST_COMPONENTS, &components))
         return err_set(err, STATUS_INPUT, "'%.40s' is no type of numbers that is read", word);
@@ -240,7 +240,7 @@ static Status read_packing(Reader *reader, const char *end, Field *field, Err *e
         return err_set(err, STATUS_INPUT, "the block @%lld is packed in no way that is known",
                        field->block);
     for (int packing = BYTE_RLE; packing < N_PACKINGS; packing++)
-        if (strcmp(name, packing_names[packing]) == 0)
+        if (strcasecmp(name, packing_names[packing]) == 0)
             field->packing = (Packing)packing;
     field->packed = (size_t)size;
     if (field->packing == PLAIN)
@@ -605,7 +605,7 @@ static Status add_arrays(Reader *reader, const size_t *vertex, Err *err)
         Element of = reader->field[i].of;
         bool is_own = !reader->field[i].value || of == LINES || of == NEIGHBOURS || of == ORIGINS;
         for (size_t k = 0; k < sizeof own / sizeof *own && !is_own; k++)
-            is_own = strcmp(reader->field[i].name, own[k]) == 0;
+            is_own = strcasecmp(reader->field[i].name, own[k]) == 0;
         if (!is_own)
             TRY(add_array(reader, &reader->field[i], vertex, err));
     }

@@ -309,6 +309,7 @@ Status oned_read(Graph *graph, char *bytes, size_t size, Err *err)
                  .inlets = {.names = {.what = "JOINTINLET"}, .enters = true},
                  .outlets = {.names = {.what = "JOINTOUTLET"}}};
     graph->unit = LENGTH_CM;
+    graph->is_named = true;
     Status status = lines_read(graph->name, bytes, read_line, &deck, err);
     if (status == STATUS_OK)
         status = add_segments(&deck, err);

@@ -551,8 +551,13 @@ static Status read_vessel(Table *table, size_t line, Err *err)
     GraphLine vessel = {
         .a = graph->n_points, .b = graph->n_points + 1, .is_directed = true, .record = line};
     if (table->first_value > 0) {
-        ends[0].id = id_of(field_of(table, ROLE_PARENT));
-        ends[1].id = id_of(field_of(table, ROLE_ID));
+        char *id = field_of(table, ROLE_ID), *parent = field_of(table, ROLE_PARENT);
+        ends[0].id = id_of(parent);
+        ends[1].id = id_of(id);
+        TRY(names_add(table->nodes, id, vessel.b, line, err));
+        TRY(mem_reserve(&table->child, &table->children_capacity, table->n_children + 1,
+                        sizeof *table->child, "parents", err));
+        table->child[table->n_children++] = (Child){vessel.a, line, parent};
     }
     TRY(read_position(table, ROLE_X0, &ends[0].position, err));
     TRY(read_position(table, ROLE_X1, &ends[1].position, err));
@@ -634,6 +639,22 @@ static Status read_table(Table *table, char *bytes, Err *err)
 
 /* ---- what the rows mean ---- */
 
+/* The proximal end of a vessel is the distal end of its parent. A parent that is no vessel is a
+ * root, whose first mention stands for it. */
+static Status join_vessels(const Table *table, Err *err)
+{
+    table->graph->is_named = table->n_children > 0;
+    for (size_t i = 0; i < table->n_children; i++) {
+        const Child *child = &table->child[i];
+        size_t end;
+        if (names_find(table->nodes, child->parent, &end, NULL) != STATUS_OK)
+            TRY(names_add(table->nodes, child->parent, child->point, child->line, err));
+        else
+            TRY(graph_join(table->graph, end, child->point, err));
+    }
+    return STATUS_OK;
+}
+
 static Status add_parents(const Table *table, Err *err)
 {
     Graph *graph = table->graph;
@@ -690,6 +711,8 @@ static Status read_tables(Table *table, char *bytes, Err *err)
                        table->name);
     bool as_network = options && (options->merge_tolerance_mm > 0 || options->break_loops);
     graph->is_tree = table->kind == NODES && !edges && !as_network;
+    if (table->kind == VESSELS)
+        return join_vessels(table, err);
     return edges ? STATUS_OK : add_parents(table, err);
 }
 

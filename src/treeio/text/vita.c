@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 /* The numbers of a vessel. */
 typedef enum VesselField {
@@ -92,7 +93,7 @@ static Status connect(Reader *reader, char *const *field, size_t count, Err *err
 static Status begin_section(Reader *reader, const char *title, Err *err)
 {
     for (int section = TREE; section < N_SECTIONS; section++) {
-        if (strcmp(title, section_titles[section]) == 0) {
+        if (strcasecmp(title, section_titles[section]) == 0) {
             reader->section = (Section)section;
             return STATUS_OK;
         }
@@ -146,5 +147,5 @@ Status vita_read(Graph *graph, char *bytes, size_t size, Err *err)
 bool vita_detect(const char *start)
 {
     const char *title = section_titles[TREE];
-    return strncmp(text_first_row(start), title, strlen(title)) == 0;
+    return strncasecmp(text_first_row(start), title, strlen(title)) == 0;
 }

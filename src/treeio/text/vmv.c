@@ -15,6 +15,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 typedef enum Section {
     NONE,
@@ -65,14 +66,14 @@ static Status read_parameter(Reader *reader, char *line, Err *err)
     const char *name = text_field(&line), *value = text_field(&line);
     if (!name || !value)
         return STATUS_OK;
-    if (strcmp(name, "NUM_VERTS") == 0)
+    if (strcasecmp(name, "NUM_VERTS") == 0)
         return field_whole(name, value, 0, INT32_MAX, &reader->vertices, err);
-    if (strcmp(name, "NUM_STRANDS") == 0)
+    if (strcasecmp(name, "NUM_STRANDS") == 0)
         return field_whole(name, value, 0, INT32_MAX, &reader->strands, err);
     for (int section = RADIUS; section < SECTIONS; section++) {
         size_t length = strlen(sections[section].name);
-        if (strncmp(name, sections[section].name, length) == 0 &&
-            strcmp(name + length, "_TIME_STEPS") == 0)
+        if (strncasecmp(name, sections[section].name, length) == 0 &&
+            strcasecmp(name + length, "_TIME_STEPS") == 0)
             return field_whole(name, value, 0, INT32_MAX, &reader->series[section].said, err);
     }
     return STATUS_OK;
@@ -172,13 +173,14 @@ static Status read_values(Reader *reader, char *line, Err *err)
 /* "$NAME_BEGIN" or "$NAME_END". */
 static Status change_section(Reader *reader, const char *line, Err *err)
 {
+    const char *name = line + 1 + strspn(line + 1, TEXT_BLANKS);
     for (int section = PARAMETERS; section < SECTIONS; section++) {
         size_t length = strlen(sections[section].name);
-        if (strncmp(line + 1, sections[section].name, length) != 0)
+        if (strncasecmp(name, sections[section].name, length) != 0)
             continue;
-        const char *edge = line + 1 + length;
-        reader->section = strcmp(edge, "_BEGIN") == 0 ? (Section)section : NONE;
-        if (reader->section != NONE || strcmp(edge, "_END") == 0)
+        const char *edge = name + length;
+        reader->section = strcasecmp(edge, "_BEGIN") == 0 ? (Section)section : NONE;
+        if (reader->section != NONE || strcasecmp(edge, "_END") == 0)
             return STATUS_OK;
     }
     return err_set(err, STATUS_INPUT, "'%.40s' begins or ends no section of VMV", line);
@@ -191,7 +193,7 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
     if (*line == '#')
         return comment_read(&reader->graph->meta, line + 1, err);
     TRY(fields_check_commas(line, err));
-    if (reader->section == PARAMETERS && strncmp(line, "$NUM_", 5) == 0)
+    if (reader->section == PARAMETERS && strncasecmp(line, "$NUM_", 5) == 0)
         line++;
     if (*line == '$')
         return change_section(reader, line, err);
@@ -199,6 +201,8 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
         return STATUS_OK;
     switch (reader->section) {
     case NONE:
+        if (reader->n_strands > 0) /* behind the end */
+            return STATUS_OK;
         return err_set(err, STATUS_INPUT, "'%.40s' stands in no section of VMV", line);
     case PARAMETERS:
         return read_parameter(reader, line, err);
@@ -256,6 +260,7 @@ Status vmv_read(Graph *graph, char *bytes, size_t size, Err *err)
     (void)size;
     Reader reader = {.graph = graph, .vertices = -1, .strands = -1, .names = {.what = "vertex"}};
     graph->unit = LENGTH_UM;
+    graph->is_named = true;
     for (int section = RADIUS; section < SECTIONS; section++)
         reader.series[section].said = -1;
     Status status = lines_read(graph->name, bytes, read_line, &reader, err);

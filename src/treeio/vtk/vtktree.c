@@ -31,31 +31,52 @@ static Status read_remarks(const VtkArray *remarks, TreeBuilder *builder, Err *e
     return STATUS_OK;
 }
 
-/* Of each id that there may be: the point and the cell that have the node's values, + 1, and its
- * parent's id; 0 for none. */
+static int by_id(const void *a, const void *b)
+{
+    const int32_t *one = a, *other = b;
+    return (*one > *other) - (*one < *other);
+}
+
+/* The nodes by their ids. Per node: the point and the cell that have its values, + 1, and the id of
+ * its parent; 0 for none. */
 typedef struct Nodes {
+    int32_t *id; /* rising */
     uint32_t *point, *cell;
     int32_t *parent;
     size_t n;
 } Nodes;
 
+static int32_t id_at(const VtkMeaning *meaning, size_t point)
+{
+    return (int32_t)meaning->id->value[point];
+}
+
+/* The node of an id that is there: ids without gaps begin at 1. */
+static size_t node_of(const Nodes *nodes, int32_t id)
+{
+    if ((size_t)nodes->id[nodes->n - 1] == nodes->n)
+        return (size_t)id - 1;
+    const int32_t *found = bsearch(&id, nodes->id, nodes->n, sizeof id, by_id);
+    return (size_t)(found - nodes->id);
+}
+
 /* A node's values are at the end of the line to it, a root's at its first point. */
 static Status find_nodes(const VtkMeaning *meaning, const VtkData *data, const Graph *graph,
                          Nodes *nodes, Err *err)
 {
-    const double *id = meaning->id->value;
     for (size_t i = data->n_points; i-- > 0;)
-        nodes->point[(size_t)id[i]] = (uint32_t)i + 1;
+        nodes->point[node_of(nodes, id_at(meaning, i))] = (uint32_t)i + 1;
     for (size_t i = 0, at = 0; i < data->n_lines; at = data->end[i++])
         for (size_t k = at + 1; k < data->end[i]; k++) {
             size_t from = (size_t)data->corner[k - 1], to = (size_t)data->corner[k];
-            size_t node = (size_t)id[to];
+            size_t node = node_of(nodes, id_at(meaning, to));
             if (nodes->parent[node])
-                return graph_blame(
-                    graph, GRAPH_LINES, data->cell[i],
-                    err_set(err, STATUS_INPUT, "it leads to node %zu, as another line does", node),
-                    err);
-            nodes->parent[node] = (int32_t)id[from];
+                return graph_blame(graph, GRAPH_LINES, data->cell[i],
+                                   err_set(err, STATUS_INPUT,
+                                           "it leads to node %d, as another line does",
+                                           nodes->id[node]),
+                                   err);
+            nodes->parent[node] = id_at(meaning, from);
             nodes->point[node] = (uint32_t)to + 1;
             nodes->cell[node] = (uint32_t)data->cell[i] + 1;
         }
@@ -65,25 +86,30 @@ static Status find_nodes(const VtkMeaning *meaning, const VtkData *data, const G
 static Status make_nodes(const VtkMeaning *meaning, const VtkData *data, const Graph *graph,
                          Nodes *nodes, Err *err)
 {
-    for (size_t i = 0; i < meaning->id->n; i++)
-        if ((size_t)meaning->id->value[i] > nodes->n)
-            nodes->n = (size_t)meaning->id->value[i];
-    TRY(mem_calloc(&nodes->point, nodes->n + 1, sizeof *nodes->point, "nodes", err));
-    TRY(mem_calloc(&nodes->cell, nodes->n + 1, sizeof *nodes->cell, "nodes", err));
-    TRY(mem_calloc(&nodes->parent, nodes->n + 1, sizeof *nodes->parent, "nodes", err));
+    size_t points = meaning->id->n;
+    TRY(mem_calloc(&nodes->id, points, sizeof *nodes->id, "nodes", err));
+    for (size_t i = 0; i < points; i++)
+        nodes->id[i] = id_at(meaning, i);
+    qsort(nodes->id, points, sizeof *nodes->id, by_id);
+    for (size_t i = 0; i < points; i++)
+        if (i == 0 || nodes->id[i] != nodes->id[i - 1])
+            nodes->id[nodes->n++] = nodes->id[i];
+    TRY(mem_calloc(&nodes->point, nodes->n, sizeof *nodes->point, "nodes", err));
+    TRY(mem_calloc(&nodes->cell, nodes->n, sizeof *nodes->cell, "nodes", err));
+    TRY(mem_calloc(&nodes->parent, nodes->n, sizeof *nodes->parent, "nodes", err));
     return find_nodes(meaning, data, graph, nodes, err);
 }
 
 static Status add_node(const VtkMeaning *meaning, const VtkData *data, TreeBuilder *builder,
-                       const Nodes *nodes, size_t id, Err *err)
+                       const Nodes *nodes, size_t at, Err *err)
 {
-    size_t i = nodes->point[id] - 1;
+    size_t i = nodes->point[at] - 1;
     double type = meaning->type ? meaning->type->value[i] : TREE_VESSEL_TYPE;
     double share = meaning->share ? meaning->share->value[i] : 0;
     if (!(fabs(type) <= INT32_MAX))
         return err_set(err, STATUS_INPUT, "the type is %g, which is no whole number", type);
-    const BuilderNode node = {.id = (int64_t)id,
-                              .parent = nodes->parent[id] ? nodes->parent[id] : TREE_NO_PARENT,
+    const BuilderNode node = {.id = nodes->id[at],
+                              .parent = nodes->parent[at] ? nodes->parent[at] : TREE_NO_PARENT,
                               .type = (int32_t)type,
                               .position = vtk_position(data, i),
                               .radius_mm = meaning->radius->value[i],
@@ -126,11 +152,11 @@ static Status list_columns(const VtkMeaning *meaning, const VtkArrays *arrays, T
     return STATUS_OK;
 }
 
-static Status add_values_of(const Columns *columns, const Nodes *nodes, size_t id,
+static Status add_values_of(const Columns *columns, const Nodes *nodes, size_t node,
                             TreeBuilder *builder, Err *err)
 {
     for (size_t k = 0; k < columns->n; k++) {
-        size_t at = k < columns->of_points ? nodes->point[id] : nodes->cell[id];
+        size_t at = k < columns->of_points ? nodes->point[node] : nodes->cell[node];
         double value = at ? columns->array[k]->value[at - 1] : (double)NAN;
         if (!isnan(value))
             TRY(builder_value(builder, k, value, err));
@@ -148,12 +174,10 @@ static Status add_nodes(const VtkMeaning *meaning, const VtkData *data, TreeBuil
     TRY_GOTO(list_columns(meaning, &data->of_points, builder, &columns, err));
     columns.of_points = columns.n;
     TRY_GOTO(list_columns(meaning, &data->of_cells, builder, &columns, err));
-    for (size_t id = 1; id <= nodes->n; id++) {
-        if (!nodes->point[id])
-            continue;
-        status = add_node(meaning, data, builder, nodes, id, err);
-        TRY_GOTO(builder_blame(builder, nodes->point[id] - 1, status, err));
-        TRY_GOTO(add_values_of(&columns, nodes, id, builder, err));
+    for (size_t k = 0; k < nodes->n; k++) {
+        status = add_node(meaning, data, builder, nodes, k, err);
+        TRY_GOTO(builder_blame(builder, nodes->point[k] - 1, status, err));
+        TRY_GOTO(add_values_of(&columns, nodes, k, builder, err));
     }
 done:
     free(columns.array);
@@ -169,6 +193,7 @@ Status vtk_to_tree(const VtkMeaning *meaning, const VtkData *data, Graph *graph,
     Status status = make_nodes(meaning, data, graph, &nodes, err);
     if (status == STATUS_OK)
         status = add_nodes(meaning, data, builder, &nodes, err);
+    free(nodes.id);
     free(nodes.point);
     free(nodes.cell);
     free(nodes.parent);

@@ -1,0 +1,69 @@
+/* Most files have ids with few gaps: a table is fastest then. A file of two rows may have the ids 1
+ * and 100000000: entries sorted by id take their place where the table would be much longer than
+ * the file. */
+#include "tree/idindex.h"
+
+#include <stdlib.h>
+
+typedef struct IdEntry {
+    int32_t id;
+    uint32_t row; /* + 1 */
+} IdEntry;
+
+void idindex_release(IdIndex *index)
+{
+    free(index->table);
+    free(index->entry);
+    *index = (IdIndex){0};
+}
+
+static int by_id(const void *a, const void *b)
+{
+    const IdEntry *one = a, *other = b;
+    if (one->id != other->id)
+        return one->id < other->id ? -1 : 1;
+    return one->row < other->row ? -1 : one->row > other->row;
+}
+
+Status idindex_make(IdIndex *index, const int32_t *id, size_t n, Err *err)
+{
+    enum { WIDEST_GAPS = 16, SHORT_TABLE = 1 << 16 };
+    IdIndex made = {.n = n};
+    for (size_t i = 0; i < n; i++)
+        made.last = id[i] > made.last ? id[i] : made.last;
+    if ((size_t)made.last <= WIDEST_GAPS * n + SHORT_TABLE) {
+        TRY(mem_calloc(&made.table, (size_t)made.last + 1, sizeof *made.table,
+                       "table entries for ids", err));
+        for (size_t i = n; i-- > 0;) {
+            made.has_twins = made.has_twins || made.table[id[i]] > 0;
+            made.table[id[i]] = id[i] ? (uint32_t)i + 1 : 0;
+        }
+    } else {
+        TRY(mem_calloc(&made.entry, n, sizeof *made.entry, "entries for ids", err));
+        for (size_t i = 0; i < n; i++)
+            made.entry[i] = (IdEntry){id[i], (uint32_t)i + 1};
+        qsort(made.entry, n, sizeof *made.entry, by_id);
+        for (size_t i = 1; i < n; i++)
+            made.has_twins = made.has_twins ||
+                             (made.entry[i].id > 0 && made.entry[i].id == made.entry[i - 1].id);
+    }
+    *index = made;
+    return STATUS_OK;
+}
+
+size_t idindex_find(const IdIndex *index, int32_t id)
+{
+    if (id < 1 || id > index->last)
+        return 0;
+    if (index->table)
+        return index->table[id];
+    size_t low = 0, high = index->n; /* the first entry of the id is in [low, high) */
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (index->entry[middle].id < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < index->n && index->entry[low].id == id ? index->entry[low].row : 0;
+}
