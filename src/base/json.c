@@ -3,9 +3,11 @@
  * and tested once at the end. */
 #include "base/json.h"
 
+#include "base/number.h"
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
 
 json_t *json_number(double value)
 {
@@ -59,18 +61,92 @@ json_t *json_with_item(json_t *array, json_t *value)
     return whole_or_nothing(array, json_array_append_new(array, value) == 0);
 }
 
+/* Where a value stands in the text that is written. */
+typedef struct Place {
+    int indent, depth;
+} Place;
+
+static void put_line(Text *text, Place place)
+{
+    if (place.indent > 0)
+        text_printf(text, "\n%*s", place.indent * place.depth, "");
+}
+
 static int append_dump(const char *chars, size_t size, void *text)
 {
     text_append(text, chars, size);
     return 0;
 }
 
+/* Appends what is neither an array nor an object. A real is the shortest text that reads back to
+ * the same double, and keeps a decimal point or an exponent. */
+static void put_plain(Text *text, const json_t *json)
+{
+    char number[NUMBER_TEXT_SIZE];
+    if (json_is_real(json)) {
+        number_text(json_real_value(json), number);
+        text_puts(text, number);
+        if (!strpbrk(number, ".e"))
+            text_puts(text, ".0");
+    } else if (json_dump_callback(json, append_dump, text, JSON_ENCODE_ANY) != 0) {
+        text_puts(text, NULL);
+    }
+}
+
+static void put_value(Text *text, json_t *json, Place place);
+
+static void put_array(Text *text, json_t *json, Place place)
+{
+    const Place inner = {place.indent, place.depth + 1};
+    size_t i;
+    json_t *item;
+    text_puts(text, "[");
+    json_array_foreach(json, i, item)
+    {
+        text_puts(text, i ? "," : "");
+        put_line(text, inner);
+        put_value(text, item, inner);
+    }
+    if (json_array_size(json) > 0)
+        put_line(text, place);
+    text_puts(text, "]");
+}
+
+static void put_object(Text *text, json_t *json, Place place)
+{
+    const Place inner = {place.indent, place.depth + 1};
+    const char *key, *before = "";
+    json_t *value;
+    text_puts(text, "{");
+    json_object_foreach(json, key, value)
+    {
+        json_t *name = json_string(key);
+        text_puts(text, before);
+        put_line(text, inner);
+        put_value(text, name, inner);
+        text_puts(text, place.indent > 0 ? ": " : ":");
+        put_value(text, value, inner);
+        json_decref(name);
+        before = ",";
+    }
+    if (json_object_size(json) > 0)
+        put_line(text, place);
+    text_puts(text, "}");
+}
+
+static void put_value(Text *text, json_t *json, Place place)
+{
+    if (json_is_array(json))
+        put_array(text, json, place);
+    else if (json_is_object(json))
+        put_object(text, json, place);
+    else
+        put_plain(text, json);
+}
+
 void text_json(Text *text, json_t *json, int indent)
 {
-    /* A real is written with 17 digits, which is what reads back. */
-    size_t form = (indent ? JSON_INDENT((size_t)indent) : JSON_COMPACT) | JSON_REAL_PRECISION(17);
-    if (json_dump_callback(json, append_dump, text, form) != 0)
-        text_puts(text, NULL);
+    put_value(text, json, (Place){indent, 0});
     json_decref(json);
 }
 

@@ -38,8 +38,8 @@ json_t *json_read(const char *text, size_t size, size_t flags, json_error_t *err
                   bool *no_memory);
 
 /* Appends `json` as text, in lines with `indent` blanks a level or, with 0, in one, and lets go of
- * it. Numbers read back to the same double. The text fails when `json` is NULL or memory runs
- * out. */
+ * it. A real is the shortest text that reads back to the same double. The text fails when `json` is
+ * NULL or memory runs out. */
 void text_json(Text *text, json_t *json, int indent);
 
 #endif

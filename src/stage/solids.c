@@ -100,6 +100,14 @@ static Status flag_free_ends(const Solids *solids, Err *err)
     return STATUS_OK;
 }
 
+/* Whether segment i, rather than another, has the ball at a node that both meet: the thicker one,
+ * of equals the one with the lower id, so that the order of rows does not matter. */
+static bool is_before(const Tree *tree, size_t i, int32_t other)
+{
+    double own = tree->radius_mm[i], its = tree->radius_mm[other];
+    return own > its || (own == its && tree->id[i] < tree->id[other]);
+}
+
 static void find_thickest(const Solids *solids)
 {
     const Tree *tree = solids->tree;
@@ -111,7 +119,7 @@ static void find_thickest(const Solids *solids)
         if (!places_can_draw(places, i))
             continue;
         int32_t *best = &thickest[places->place[tree->parent[i]]];
-        if (*best < 0 || tree->radius_mm[i] > tree->radius_mm[*best])
+        if (*best < 0 || is_before(tree, i, *best))
             *best = (int32_t)i;
     }
     for (size_t i = 0; i < tree->n; i++)

@@ -27,7 +27,7 @@ Status voxelgrid_make(const Geometry *geometry, Vec3 step, VoxelGrid *out, Err *
 
 Status bodies_make(const Geometry *geometry, Bodies *out, Err *err)
 {
-    Bodies made = {.n = geometry->n_primitives};
+    Bodies made = {.n = geometry->n_primitives, .ids = geometry->ids};
     Box *boxes = NULL;
     Status status;
     TRY_GOTO(mem_calloc(&made.body, made.n, sizeof *made.body, "vessels", err));
@@ -80,7 +80,7 @@ uint32_t cell_owner(const Bodies *bodies, const uint32_t *list, size_t n, const 
     for (size_t i = 0; i < n; i++) {
         const Body *body = &bodies->body[list[i]];
         double part = n > 1 ? body_part(body, cell) : 0;
-        if (part > most || (part == most && body->segment < owner)) {
+        if (part > most || (part == most && bodies->ids[body->segment] < bodies->ids[owner])) {
             most = part;
             owner = body->segment;
         }

@@ -11,6 +11,7 @@ typedef struct Bodies {
     Body *body; /* owned */
     size_t n;
     BoxTree tree;
+    const uint32_t *ids; /* of segments, by number; borrowed from the geometry */
 } Bodies;
 
 MUST_CHECK Status bodies_make(const Geometry *geometry, Bodies *out, Err *err);
@@ -45,8 +46,8 @@ static inline int64_t grid_index(const VoxelGrid *grid, int axis, double x)
     return (int64_t)floor((x - first) / vec3_component(grid->step, axis) + 0.5);
 }
 
-/* The segment one of whose bodies fills the most of the cell, the first of equals, of bodies that
- * meet it. */
+/* Returns the segment whose body, of the n > 0 in the list, fills the most of the cell; of equals
+ * the one with the lowest id. */
 uint32_t cell_owner(const Bodies *bodies, const uint32_t *list, size_t n, const Cell *cell);
 
 #endif

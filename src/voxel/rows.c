@@ -186,19 +186,21 @@ static void fill_run(const Row *row, int64_t x, int64_t end)
 }
 
 /* Before which voxel a run of those that bodies hold ends that begins at x; x: there is none. Of
- * labels it is one voxel, and *owner the first segment that holds it. */
+ * labels it is one voxel, and *owner the segment of the lowest id that holds it. */
 static int64_t full_end(const Row *row, size_t n_active, int64_t x, uint32_t *owner)
 {
     const RowRoom *room = row->room;
+    const Bodies *bodies = row->source->bodies;
     int64_t end = x;
     *owner = UINT32_MAX;
     for (size_t i = 0; i < n_active; i++) {
         const Span *span = &room->spans[room->active[i]];
-        uint32_t segment = row->source->bodies->body[span->body].segment;
+        uint32_t segment = bodies->body[span->body].segment;
         if (span->full_first > x || span->full_end <= x)
             continue;
         end = span->full_end > end ? span->full_end : end;
-        *owner = segment < *owner ? segment : *owner;
+        if (*owner == UINT32_MAX || bodies->ids[segment] < bodies->ids[*owner])
+            *owner = segment;
     }
     return row->labels && end > x ? x + 1 : end;
 }

@@ -17,7 +17,7 @@ MUST_CHECK Status voxelgrid_make(const Geometry *geometry, Vec3 step, VoxelGrid 
 typedef struct VoxelEstimate {
     double voxels, walls; /* how many there are, and how many of them are partly filled */
     double bytes;         /* of all volumes, in files of these formats: about */
-    double memory;        /* bytes */
+    double memory;        /* bytes, of the whole program */
     double seconds;       /* on the threads asked for, of a processor of 2023 */
 } VoxelEstimate;
 

@@ -147,6 +147,65 @@ static void part_of_a_union_is_that_of_points_in_it(void **state)
     assert_true(sqrt(sum2 / 200) < 0.003);
 }
 
+/* The part of a union by eighths of eighths of the cell. */
+static double union_of_eighths(const Body *bodies, const uint32_t *list, size_t n,
+                               const Cell *whole, int depth, CoverRoom *room)
+{
+    Vec3 half = vec3_scale(whole->half, 0.5);
+    double part = 0;
+    if (depth == 0)
+        return cover_part(bodies, list, n, whole, room);
+    for (int i = 0; i < 8; i++) {
+        Vec3 move = {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
+        Cell eighth = {vec3_add(whole->center, move), half};
+        part += union_of_eighths(bodies, list, n, &eighth, depth - 1, room);
+    }
+    return part / 8;
+}
+
+/* A direction: every fourth one is an axis, every fourth one lies in a plane across an axis. */
+static Vec3 direction(Random *random)
+{
+    Vec3 way = point(random, 1);
+    double kind = random_uniform(random);
+    if (kind < 0.25)
+        return vec3(way.x > 0 ? 1 : -1, 0, 0);
+    if (kind < 0.5)
+        way.z = 0;
+    return vec3_normalized(way);
+}
+
+/* Of forks and bends of all widths, docs/VOXELS.md says how far the part of one voxel may be off.
+ */
+static void the_part_of_one_voxel_is_off_by_no_more_than_is_said(void **state)
+{
+    (void)state;
+    enum { BODIES = 4, FORKS = 400 };
+    const uint32_t list[BODIES] = {0, 1, 2, 3};
+    const Cell cube = {.center = {0.31, -0.17, 0.43}, .half = {0.5, 0.5, 0.5}};
+    Random random;
+    random_seed(&random, 17);
+    CoverRoom room = {0};
+    double worst = 0, sum2 = 0;
+    assert_int_equal(cover_reserve(&room, BODIES, NULL), STATUS_OK);
+    for (int i = 0; i < FORKS; i++) {
+        Body bodies[BODIES];
+        double radius = exp(number(&random, log(0.1), log(3)));
+        Vec3 node = vec3_add(cube.center, point(&random, 0.5 + 0.7 * radius));
+        bodies[3] = body_make(node, node, radius, 0);
+        for (uint32_t k = 0; k < 3; k++)
+            bodies[k] = body_make(node, vec3_add_scaled(node, direction(&random), 4 * radius),
+                                  k ? radius * number(&random, 0.3, 1) : radius, k);
+        double off = cover_part(bodies, list, BODIES, &cube, &room) -
+                     union_of_eighths(bodies, list, BODIES, &cube, 2, &room);
+        worst = fmax(worst, fabs(off));
+        sum2 += off * off;
+    }
+    cover_release(&room);
+    assert_true(worst < 0.03);
+    assert_true(sqrt(sum2 / FORKS) < 0.0015);
+}
+
 static void thin_vessels_that_meet_in_a_cell_have_their_volume(void **state)
 {
     (void)state;
@@ -172,6 +231,7 @@ int main(void)
         cmocka_unit_test(part_of_a_body_is_that_of_points_in_it),
         cmocka_unit_test(thin_vessel_in_a_cell_has_its_volume),
         cmocka_unit_test(part_of_a_union_is_that_of_points_in_it),
+        cmocka_unit_test(the_part_of_one_voxel_is_off_by_no_more_than_is_said),
         cmocka_unit_test(thin_vessels_that_meet_in_a_cell_have_their_volume),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

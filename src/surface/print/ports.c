@@ -23,6 +23,7 @@ static const double least_cosine = 0.5;
 
 typedef struct PortSearch {
     const VesselTree *tree;
+    BoxTree boxes; /* of the tree's segments; owned */
     NumberLists incident;
     const Casing *casing;
     const PrintBlock *block;
@@ -175,6 +176,11 @@ static bool is_apart(const FieldSegment *one, const FieldSegment *other)
            radii + free_part * fmin(one->radius_mm, other->radius_mm);
 }
 
+static Box box_of(const FieldSegment *segment, double radius_mm)
+{
+    return box_with_ball(box_with_ball(box_empty(), segment->a, radius_mm), segment->b, radius_mm);
+}
+
 enum { MOST_OWN = 64 };
 
 /* The vessels that a port goes on from: those within a few of its radii behind the rim. */
@@ -206,7 +212,42 @@ static bool is_own(const OwnVessels *own, uint32_t segment)
     return false;
 }
 
-/* Whether a way keeps off all vessels but its own, and all ports. */
+/* Whether a stretch of a way keeps off all vessels but its own. A vessel whose box it does not
+ * meet, widened by what is left free, is apart. */
+static bool is_off_vessels(const PortSearch *search, const FieldSegment *stretch,
+                           const OwnVessels *own)
+{
+    uint32_t k;
+    Box around = box_of(stretch, (1 + free_part) * stretch->radius_mm);
+    for (BoxWalk walk = boxwalk_box(&search->boxes, around); boxwalk_next(&walk, &k);)
+        if (!is_apart(stretch, &search->tree->segments[k]) && !is_own(own, k))
+            return false;
+    return true;
+}
+
+/* Whether a stretch of a way keeps off a port. */
+static bool is_off_port(const PortSearch *search, const FieldSegment *stretch, const Port *other)
+{
+    PortRing its_rim = rim_of(search->tree, other->end);
+    for (int i = 0; i < other->n_rings; i++) {
+        FieldSegment its = stretch_of(&its_rim, other, i);
+        if (!is_apart(stretch, &its))
+            return false;
+    }
+    return true;
+}
+
+/* Sets the box of a way and what is to be left free about it. */
+static void set_box(const PortRing *rim, Port *port)
+{
+    port->box = box_empty();
+    for (int i = 0; i < port->n_rings; i++) {
+        FieldSegment own = stretch_of(rim, port, i);
+        port->box = box_union(port->box, box_of(&own, (1 + free_part) * own.radius_mm));
+    }
+}
+
+/* Whether a way, whose box is set, keeps off all vessels but its own, and all ports. */
 static bool is_free(const PortSearch *search, const PortRing *rim, const Port *port)
 {
     OwnVessels vessels = {.n = 0};
@@ -214,20 +255,29 @@ static bool is_free(const PortSearch *search, const PortRing *rim, const Port *p
              own_radii * rim->radius_mm, &vessels);
     for (int i = 0; i < port->n_rings; i++) {
         FieldSegment own = stretch_of(rim, port, i);
-        for (uint32_t k = 0; k < search->tree->n_segments; k++)
-            if (!is_apart(&own, &search->tree->segments[k]) && !is_own(&vessels, k))
+        if (!is_off_vessels(search, &own, &vessels))
+            return false;
+    }
+    for (size_t p = 0; p < search->ports->n; p++) {
+        const Port *other = &search->ports->items[p];
+        if (!box_meets(port->box, other->box))
+            continue;
+        for (int i = 0; i < port->n_rings; i++) {
+            FieldSegment own = stretch_of(rim, port, i);
+            if (!is_off_port(search, &own, other))
                 return false;
-        for (size_t p = 0; p < search->ports->n; p++) {
-            const Port *other = &search->ports->items[p];
-            PortRing its_rim = rim_of(search->tree, other->end);
-            for (int j = 0; j < other->n_rings; j++) {
-                FieldSegment its = stretch_of(&its_rim, other, j);
-                if (!is_apart(&own, &its))
-                    return false;
-            }
         }
     }
     return true;
+}
+
+/* Whether there is a free way to the face, straight or bent. */
+static bool lay_way(const PortSearch *search, const PortRing *rim, int face, bool bent, Port *port)
+{
+    if (!(bent ? lay_bent : lay_straight)(search, rim, face, port))
+        return false;
+    set_box(rim, port);
+    return is_free(search, rim, port);
 }
 
 /* How far the axis leads until it is as far as the face; beyond a right angle, far. */
@@ -249,11 +299,22 @@ static bool find_way(const PortSearch *search, const PortRing *rim, Port *port)
                 best = face;
         tried[best] = true;
         for (int bent = 0; bent < 2 && casing_has_face(search->casing, best); bent++)
-            if ((bent ? lay_bent : lay_straight)(search, rim, best, port) &&
-                is_free(search, rim, port))
+            if (lay_way(search, rim, best, bent, port))
                 return true;
     }
     return false;
+}
+
+static Status build_boxes(PortSearch *search, Err *err)
+{
+    const VesselTree *tree = search->tree;
+    Box *boxes = NULL;
+    TRY(mem_calloc(&boxes, tree->n_segments, sizeof *boxes, "segments", err));
+    for (size_t i = 0; i < tree->n_segments; i++)
+        boxes[i] = box_of(&tree->segments[i], tree->segments[i].radius_mm);
+    Status status = boxtree_build(boxes, tree->n_segments, &search->boxes, err);
+    free(boxes);
+    return status;
 }
 
 Status ports_find(const VesselTree *tree, const CutEnds *ends, const Casing *casing,
@@ -263,6 +324,7 @@ Status ports_find(const VesselTree *tree, const CutEnds *ends, const Casing *cas
     PortSearch search = {.tree = tree, .casing = casing, .block = block, .ports = &made};
     Status status;
     TRY_GOTO(vesseltree_incident(tree, &search.incident, err));
+    TRY_GOTO(build_boxes(&search, err));
     TRY_GOTO(mem_calloc(&made.items, ends->n, sizeof *made.items, "ports", err));
     for (int inlets = 1; inlets >= 0; inlets--)
         for (size_t i = 0; i < ends->n; i++) {
@@ -278,6 +340,7 @@ Status ports_find(const VesselTree *tree, const CutEnds *ends, const Casing *cas
     *out = made;
 done:
     numberlists_release(&search.incident);
+    boxtree_release(&search.boxes);
     return status;
 }
 

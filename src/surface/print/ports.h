@@ -17,6 +17,7 @@ typedef struct Port {
     CutEnd *end;
     int face;
     int n_rings;
+    Box box;                    /* of its walls and of what is left free about them */
     PortRing rings[PORT_RINGS]; /* the last one lies in the face ... */
     bool is_straight;           /* ... and is the only one, an ellipse: the face cuts off a cone */
     uint32_t *points;           /* of the last ring in the solid; owned */
@@ -28,7 +29,7 @@ typedef struct Ports {
 } Ports;
 
 /* Finds a way out for each end that is to have one and can, and marks these ends as opened: ways
- * keep off all vessels and each other. O(ends segments). */
+ * keep off all vessels and each other. O(ends (log segments + ports)). */
 MUST_CHECK Status ports_find(const VesselTree *tree, const CutEnds *ends, const Casing *casing,
                              const PrintBlock *block, Ports *out, Err *err);
 void ports_release(Ports *ports);
