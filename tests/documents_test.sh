@@ -39,6 +39,15 @@ agree() {
     done
 }
 
+# A variable of a file that is not constant, and that signals or libraries leave no other place for.
+test_architecture_names_each_mutable_global() {
+    local file
+    cd "$REPO" || fail "no repository"
+    for file in $(grep -lE '^static (volatile|_Thread_local|struct sigaction|[a-z]+ [a-z_]+;)' -r src --include=*.c); do
+        grep -q "\`${file#src/}\`" docs/ARCHITECTURE.md || fail "docs/ARCHITECTURE.md does not name $file, which has a mutable global"
+    done
+}
+
 test_the_numbers_of_growth_are_those_of_the_source() {
     run_ok corcast grow --help
     expect_stdout 'nearest segments tried for each terminal; from 1 to 1000 \(8\)'

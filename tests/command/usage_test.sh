@@ -218,6 +218,22 @@ test_help_and_version_go_by_their_usual_names() {
     done
 }
 
+test_a_folder_of_templates_that_is_none_is_named() {
+    local folder
+    for folder in /no/such/folder /etc/passwd "$PWD"; do
+        run env CORCAST_TEMPLATES="$folder" "$CORCAST" render "$DATA/bifurcation.swc" -o x.png
+        expect_status 3
+        expect_sentence "CORCAST_TEMPLATES: '$folder' is not a folder of templates"
+    done
+    run_ok env CORCAST_TEMPLATES= "$CORCAST" render "$DATA/bifurcation.swc" --size 8x6 --quiet -o x.png
+}
+
+test_a_size_that_is_too_large_is_refused_in_few_digits() {
+    run corcast render "$DATA/bifurcation.swc" --size 1e300mm -o x.png
+    expect_status 2
+    expect_sentence '^.{20,100} are 1.181102362e\+301 pixels, not from 1 to 1048576$'
+}
+
 test_a_switch_without_a_value_is_on() {
     run_ok corcast grow --terminals 40 --domain ball:20 --seed 6 -o tree.swc
     run_ok corcast render --exact tree.swc --size 60x45 --shadows --quiet -o flag.ppm

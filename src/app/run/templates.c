@@ -20,11 +20,25 @@ static void cut_components(char *path, int n)
         *strrchr(path, '/') = '\0';
 }
 
+/* Takes the folder that CORCAST_TEMPLATES names, if looks are in it. */
+static Status take_given(const char *given, char **folder, Err *err)
+{
+    char *looks = NULL;
+    TRY(file_join(given, "looks", &looks, err));
+    const bool has_looks = is_folder(looks);
+    free(looks);
+    if (has_looks)
+        return mem_strdup(folder, given, err);
+    return err_set(err, STATUS_IO,
+                   "CORCAST_TEMPLATES: '%s' is not a folder of templates: it has no folder 'looks'",
+                   given);
+}
+
 Status templates_folder(char **folder, Err *err)
 {
     const char *given = getenv("CORCAST_TEMPLATES");
-    if (given)
-        return mem_strdup(folder, given, err);
+    if (given && *given)
+        return take_given(given, folder, err);
     char program[4096];
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     if (length > 0) {

@@ -4,8 +4,9 @@
 
 #include "base/base.h"
 
-/* The folder: CORCAST_TEMPLATES, or beside the build folder (../templates, ../../templates), or
- * installed (../share/corcast/templates); in *folder (owned). STATUS_IO when there is none. */
+/* The folder: CORCAST_TEMPLATES unless it is empty, or beside the build folder (../templates,
+ * ../../templates), or installed (../share/corcast/templates); in *folder (owned). STATUS_IO when
+ * there is none, or when CORCAST_TEMPLATES is not such a folder. */
 MUST_CHECK Status templates_folder(char **folder, Err *err);
 
 /* The path of what is called `name` in that folder, in *path (owned), whether it is there or not.
