@@ -308,14 +308,15 @@ Status picture_check_povray(const PictureOptions *options, Err *err)
 }
 
 /* What of the tree the picture cannot show. */
-static Status warn_of_losses(const Geometry *geometry, const StageReport *report, JointForm joints,
-                             size_t pruned, Err *err)
+static Status warn_of_losses(const Geometry *geometry, const PictureReport *told, Err *err)
 {
+    const StageReport *report = &told->staged;
     size_t hidden;
     TRY(surface_count_hidden(geometry, &hidden, err));
     size_t segments = report->dropped + report->drawn;
-    if (pruned)
-        fprintf(stderr, "corcast: %zu of %zu segments are pruned\n", pruned, pruned + segments);
+    if (told->pruned)
+        fprintf(stderr, "corcast: %zu of %zu segments are pruned\n", told->pruned,
+                told->pruned + segments);
     if (report->dropped)
         fprintf(stderr,
                 "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
@@ -335,7 +336,7 @@ static Status warn_of_losses(const Geometry *geometry, const StageReport *report
                 "corcast: at %zu places vessels are too short for joints, at %zu they turn too "
                 "sharply; these are %s\n",
                 report->places_short, report->places_sharp,
-                joints == JOINTS_PAPER ? "joined all the same" : "drawn round");
+                told->joints == JOINTS_PAPER ? "joined all the same" : "drawn round");
     if (report->places_crowded)
         fprintf(
             stderr,
@@ -553,27 +554,22 @@ static Status make_scene(const PictureOptions *options, const PictureSource *sou
 }
 
 Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene *scene,
-                     Anatomy *anatomy, StageReport *report, Err *err)
+                     PictureReport *report, Err *err)
 {
     PictureSource source;
     TRY(picture_read_source(options, parsed, &source, err));
-    Status status = picture_scene_of(options, &source, parsed, scene, anatomy, report, err);
+    Status status = picture_scene_of(options, &source, parsed, scene, NULL, report, err);
     picture_source_release(&source);
     return status;
 }
 
 Status picture_scene_of(const PictureOptions *options, const PictureSource *source,
-                        const Parsed *parsed, Scene *scene, Anatomy *anatomy, StageReport *report,
+                        const Parsed *parsed, Scene *scene, Anatomy *anatomy, PictureReport *report,
                         Err *err)
 {
-    StageReport staged;
+    PictureReport told = {.pruned = source->of.pruned, .joints = (JointForm)options->joints};
     Scene made = {0};
-    Status status = make_scene(options, source, &parsed->common, &made, &staged, err);
-    if (status == STATUS_OK && !parsed->common.quiet)
-        status = warn_of_losses(&made.geometry, &staged, (JointForm)options->joints,
-                                source->of.pruned, err);
-    if (status == STATUS_OK && !parsed->common.quiet)
-        coloring_say(&made.appearance);
+    Status status = make_scene(options, source, &parsed->common, &made, &told.staged, err);
     if (status == STATUS_OK && anatomy)
         status = stage_anatomy(&source->of.tree, made.geometry.origin, anatomy, err);
     if (status != STATUS_OK) {
@@ -581,8 +577,16 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
         return status;
     }
     *scene = made;
-    if (report)
-        *report = staged;
+    *report = told;
+    return STATUS_OK;
+}
+
+Status picture_say(const Scene *scene, const PictureReport *report, bool quiet, Err *err)
+{
+    if (quiet)
+        return STATUS_OK;
+    TRY(warn_of_losses(&scene->geometry, report, err));
+    coloring_say(&scene->appearance);
     return STATUS_OK;
 }
 

@@ -4,6 +4,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -20,11 +21,26 @@ static void cut_components(char *path, int n)
         *strrchr(path, '/') = '\0';
 }
 
+/* Takes the folder that the user names, if it has the templates of figures, looks and colour maps.
+ */
+static Status take_given(const char *given, char **folder, Err *err)
+{
+    char *maps = NULL;
+    TRY(file_join(given, "colormaps", &maps, err));
+    const bool found = is_folder(maps);
+    free(maps);
+    return found ? mem_strdup(folder, given, err)
+                 : err_set(err, STATUS_IO,
+                           "CORCAST_TEMPLATES is '%s', which is not the folder of corcast's "
+                           "templates: it has no folder colormaps",
+                           given);
+}
+
 Status templates_folder(char **folder, Err *err)
 {
     const char *given = getenv("CORCAST_TEMPLATES");
     if (given)
-        return mem_strdup(folder, given, err);
+        return take_given(given, folder, err);
     char program[4096];
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     if (length > 0) {
@@ -94,8 +110,8 @@ Status template_names(const char *folder, const char *extension, Text *lines, Er
     return text_check(lines, err);
 }
 
-/* What there is in place of a file that is not there. */
-static Status refuse_name(const char *option, const char *value, const char *folder,
+/* Lists the names that there are, in place of a file that is not there. */
+static Status refuse_name(const char *what, const char *value, const char *folder,
                           const char *extension, Err *err)
 {
     Text names = TEXT_INIT;
@@ -103,14 +119,14 @@ static Status refuse_name(const char *option, const char *value, const char *fol
     Status status = text_check(&names, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_USAGE,
-                         "--%s: '%s' is not %s, nor has it the '/' of a path to a file of your own",
-                         option, value, text_chars(&names));
+                         "%s '%s' is not %s, nor has it the '/' of a path to a file of your own",
+                         what, value, text_chars(&names));
     text_release(&names);
     return status;
 }
 
-Status template_file(const char *option, const char *folder, const char *value,
-                     const char *extension, char **path, Err *err)
+Status template_find(const char *what, const char *folder, const char *value, const char *extension,
+                     char **path, Err *err)
 {
     if (strchr(value, '/'))
         return mem_strdup(path, value, err);
@@ -122,7 +138,7 @@ Status template_file(const char *option, const char *folder, const char *value,
     TRY_GOTO(templates_path(folder, &place, err));
     TRY_GOTO(file_join(place, text_chars(&name), &found, err));
     if (access(found, R_OK) != 0) {
-        status = refuse_name(option, value, place, extension, err);
+        status = refuse_name(what, value, place, extension, err);
         goto done;
     }
     *path = found;
@@ -132,4 +148,12 @@ done:
     free(place);
     free(found);
     return status;
+}
+
+Status template_file(const char *option, const char *folder, const char *value,
+                     const char *extension, char **path, Err *err)
+{
+    char what[64];
+    snprintf(what, sizeof what, "--%s:", option);
+    return template_find(what, folder, value, extension, path, err);
 }

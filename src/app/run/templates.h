@@ -5,7 +5,8 @@
 #include "base/base.h"
 
 /* The folder: CORCAST_TEMPLATES, or beside the build folder (../templates, ../../templates), or
- * installed (../share/corcast/templates); in *folder (owned). STATUS_IO when there is none. */
+ * installed (../share/corcast/templates); in *folder (owned). STATUS_IO when there is none, or when
+ * CORCAST_TEMPLATES names a folder without templates. */
 MUST_CHECK Status templates_folder(char **folder, Err *err);
 
 /* The path of what is called `name` in that folder, in *path (owned), whether it is there or not.
@@ -15,6 +16,10 @@ MUST_CHECK Status templates_path(const char *name, char **path, Err *err);
 /* The file that an option's value names: the value itself when it has a '/', else value + extension
  * in a folder of templates/; in *path (owned). STATUS_USAGE when that does not exist. */
 MUST_CHECK Status template_file(const char *option, const char *folder, const char *value,
+                                const char *extension, char **path, Err *err);
+
+/* As template_file for a value that no option has: a sentence begins with `what`. */
+MUST_CHECK Status template_find(const char *what, const char *folder, const char *value,
                                 const char *extension, char **path, Err *err);
 
 /* Appends the names that template_file finds in a folder of templates/, sorted, one a line.
