@@ -192,6 +192,27 @@ test_one_line_is_said_when_a_figure_is_refused() {
     expect_sentence 'scale-bar: 7000 mm is longer'
 }
 
+# Numbers of any size are refused in a sentence of ordinary length.
+test_numbers_beyond_all_bounds_are_refused_in_a_short_sentence() {
+    run_ok corcast grow --terminals 4 --quiet -o t.swc
+    short() {
+        [ "$(wc -c <stderr)" -lt 300 ] || fail "expected a short sentence, got $(cat stderr)"
+    }
+    run corcast render t.swc --size 1e300mm -o x.png
+    expect_status 2
+    expect_sentence '1e\+300 mm at 300 dpi are 1.181102362e\+301 pixels'
+    short
+    run corcast figure fig1 --size 10mmx1e200in -o x.pdf
+    expect_status 2
+    short
+    for key in 'text b]\ntext = x\nat = 1e300,4' 'text b]\ntext = x\nat = 4,-1e5' \
+        'inset b]\nof = a\nplace = 0.5,0.5\nat = 1e300,0.5' 'inset b]\nof = a\nplace = 0.5,-1e9\nat = 0.5,0.5' \
+        'inset b]\nof = a\nplace = 0.5,0.5\nat = 0.5,0.5\nwidth = 1e300'; do
+        refused "[panel a]\ntree = t.swc\nantialias = 1\n[$key\n" 'x|b|width'
+        short
+    done
+}
+
 test_names_that_there_are_none_of() {
     run corcast figure nosuch -o x.pdf
     expect_status 2

@@ -226,6 +226,9 @@ static Status put_panel(Figure *figure, size_t i, int number, Err *err)
 
 /* ---- text ------------------------------------------------------------------------------------ */
 
+/* Larger coordinates are a mistake, and beyond what FreeType and cairo take. */
+static const double far_mm = 1e4;
+
 static Status put_text(Figure *figure, const Section *section, Err *err)
 {
     const TextOptions *options = section->own.options;
@@ -233,6 +236,9 @@ static Status put_text(Figure *figure, const Section *section, Err *err)
         return err_set(err, STATUS_USAGE,
                        "[text %s] needs 'text' and 'at', mm from the page's upper left corner",
                        section->name);
+    if (!(fabs(options->at.x) <= far_mm && fabs(options->at.y) <= far_mm))
+        return err_set(err, STATUS_USAGE, "[text %s]: at: %g,%g is more than %g mm off the page",
+                       section->name, options->at.x, options->at.y, far_mm);
     const FigureText text = {.text = options->text,
                              .x = options->at.x,
                              .y = options->at.y,

@@ -358,7 +358,7 @@ static Status settle_size(const Option *option, PictureSize *size, Err *err)
         double pixels = round(size->mm[i] / MM_PER_INCH * size->dpi);
         char range[RANGE_TEXT_SIZE];
         if (!range_has(*option_range(option), pixels))
-            return err_set(err, STATUS_USAGE, "--%s: %g mm at %g dpi are %.0f pixels, not %s",
+            return err_set(err, STATUS_USAGE, "--%s: %g mm at %g dpi are %.10g pixels, not %s",
                            option->name, size->mm[i], size->dpi, pixels,
                            range_text(*option_range(option), range));
         size->pixels[i] = (int)pixels;
