@@ -59,6 +59,8 @@ static void ticks_of_a_logarithm_are_powers_of_ten_where_there_are_two(void **st
     EXPECT_TICKS(3e-9, 2e6, true, false, 5, 1e-6, 1e-3, 1, 1e3, 1e6);
     EXPECT_TICKS(4.3, 38, true, false, 6, 5, 10, 20);
     EXPECT_TICKS(21, 29, true, false, 4, 22, 24, 26, 28);
+    EXPECT_TICKS(0.7, 300, true, false, 6, 1, 10, 100);
+    EXPECT_TICKS(0.9, 60, true, false, 6, 1, 2, 5, 10, 20, 50);
     EXPECT_TICKS(2, 90, true, false, 5, 2, 5, 10, 20, 50);
     EXPECT_TICKS(0.05, 2.5, true, false, 5, 0.05, 0.1, 0.2, 0.5, 1, 2);
     EXPECT_TICKS(1e-2, 1e7, true, false, 5, 1e-2, 1, 1e2, 1e4, 1e6);
