@@ -2,6 +2,7 @@
  * where it has some. Only what VP8 compressed is lossy; VP8L keeps every code. */
 #include "image/formats.h"
 
+#include <errno.h>
 #include <string.h>
 #include <webp/decode.h>
 
@@ -55,13 +56,15 @@ static Status webp_decode(const ImageBytes *file, Image *image, Err *err)
     TRY(check_features(file, &features, err));
     TRY(picture_init(&made, features.width, features.height, features.has_alpha ? 4 : 3, 8, err));
     size_t stride = picture_stride(&made), bytes = stride * (size_t)made.height;
+    errno = 0; /* libwebp does not tell a failed allocation from a broken file, but leaves ENOMEM */
     bool decoded =
         features.has_alpha
             ? WebPDecodeRGBAInto(file->bytes, file->size, made.codes8, bytes, (int)stride) != NULL
             : WebPDecodeRGBInto(file->bytes, file->size, made.codes8, bytes, (int)stride) != NULL;
     if (!decoded) {
+        const bool no_memory = errno == ENOMEM;
         picture_release(&made);
-        return unsound(file, err);
+        return no_memory ? mem_out_of("to decode", file->name, err) : unsound(file, err);
     }
     image->picture = made;
     image->lossy = features.format == 2 ? NULL : "WebP";

@@ -55,7 +55,8 @@ static bool lasting;
 static bool counting;
 static atomic_ulong *count_of_run; /* shared with the run */
 
-/* A process that the program forks counts on from where it was forked, beside the program itself. */
+/* A process that the program forks counts on from where it was forked, beside the program itself.
+ */
 static void raise_to(atomic_ulong *count, unsigned long number)
 {
     unsigned long before = atomic_load(count);

@@ -234,6 +234,7 @@ test_failed_allocations_in_compare() {
     fail_each 7 many compare ../a.png ../b.png --ids-a ../a.id.ppm --ids-b ../b.id.ppm --json --pixelmatch 0.1 \
         --junit o.xml -o o.png --difference d.png --flicker f.png --ledger l.csv
     fail_each 3 one compare ../a.depth.pfm ../b.depth.pfm --json
+    fail_each 1 one compare "$DATA/images/lossless.webp" "$DATA/images/lossless.webp"
     fail_each 3 one compare ../a.normal.pfm ../b.normal.pfm
     fail_each 3 one compare ../a.id.ppm ../b.id.ppm --metrics on
     fail_each 3 one compare "$DATA/images/half-zip.exr" "$DATA/images/half-zip.exr"

@@ -174,6 +174,61 @@ test_mistakes_are_named_with_file_and_line() {
     refused '[panel a]\nmodel = joined\n' 'r\.ini: \[panel a\] has no tree'
 }
 
+# Trees of a recipe's commands are files that nobody knows: neither warnings nor errors name them. fig2 has one whose
+# radii look like um.
+test_the_trees_of_a_recipe_are_not_named_by_their_files() {
+    run_ok corcast figure fig2 --dpi 30 -o fig2.png
+    ! grep -q 'unit\|/' stderr || fail "expected no word on a unit or a file, got $(cat stderr)"
+    refused '[panel a]\ngrow = --terminals 3\nprune-radius = 100\n' 'panel a\]: the tree of grow: all 5 segments are thinner'
+}
+
+test_one_line_is_said_when_a_figure_is_refused() {
+    run_ok corcast grow --terminals 4 --quiet -o t.swc
+    refused '[panel a]\ntree = t.swc\ncolor-by = flow\nscale-bar = 7000\nantialias = 1\n' 'scale-bar: 7000 mm is longer'
+    run corcast render t.swc --color-by flow --scale-bar 7000 -o x.png
+    expect_status 2
+    expect_sentence 'scale-bar: 7000 mm is longer'
+    run corcast render t.swc --color-by flow --scale-bar 7000 --size 60mm -o x.pdf
+    expect_sentence 'scale-bar: 7000 mm is longer'
+}
+
+# Numbers of any size are refused in a sentence of ordinary length.
+test_numbers_beyond_all_bounds_are_refused_in_a_short_sentence() {
+    run_ok corcast grow --terminals 4 --quiet -o t.swc
+    short() {
+        [ "$(wc -c <stderr)" -lt 300 ] || fail "expected a short sentence, got $(cat stderr)"
+    }
+    run corcast render t.swc --size 1e300mm -o x.png
+    expect_status 2
+    expect_sentence '1e\+300 mm at 300 dpi are 1.181102362e\+301 pixels'
+    short
+    run corcast figure fig1 --size 10mmx1e200in -o x.pdf
+    expect_status 2
+    short
+    for key in 'text b]\ntext = x\nat = 1e300,4' 'text b]\ntext = x\nat = 4,-1e5' \
+        'inset b]\nof = a\nplace = 0.5,0.5\nat = 1e300,0.5' 'inset b]\nof = a\nplace = 0.5,-1e9\nat = 0.5,0.5' \
+        'inset b]\nof = a\nplace = 0.5,0.5\nat = 0.5,0.5\nwidth = 1e300'; do
+        refused "[panel a]\ntree = t.swc\nantialias = 1\n[$key\n" 'x|b|width'
+        short
+    done
+}
+
+test_names_that_there_are_none_of() {
+    run corcast figure nosuch -o x.pdf
+    expect_status 2
+    expect_sentence "no such figure: 'nosuch' is not fig1, fig2, fig3 or fig4"
+    ! grep -q -- --figure stderr || fail "expected no option that there is none of: $(cat stderr)"
+    for word in --help -h; do
+        refused "[panel a]\ngrow = --terminals 3 $word\n" "panel a\]: grow: $word is for the command alone"
+        [ ! -s stdout ] || fail "expected no help, got $(head -1 stdout)"
+    done
+    run_ok corcast grow --terminals 4 --quiet -o t.swc
+    printf 'help = on\n' >help.ini
+    run corcast render t.swc --recipe help.ini -o x.png
+    expect_status 2
+    expect_sentence "help.ini:1: 'help' is not an option of render that a recipe may give"
+}
+
 test_what_cannot_be_drawn_is_named_with_its_section() {
     run_ok corcast grow --terminals 12 --quiet -o t.swc
     refused '[panel a]\ntree = u.swc\n' 'panel a\]: u\.swc'

@@ -241,6 +241,100 @@ static void bands_and_threads_change_no_byte(void **state)
     tree_release(&tree);
 }
 
+/* ---- numbers that METHODS 3.5 states --------------------------------------------------------- */
+
+/* Samples per millimetre of a picture of coins. */
+enum { COIN_SIDE = 240, COIN_PX_PER_MM = COIN_SIDE / 40 };
+static const double coin_mm = 2.385;
+
+/* A disc across the line of sight, `above` mm before a larger one: what is black and what has the
+ * sheet's colour within 8 mm of its middle, along the row through it, in mm. */
+static void draw_coins(const Look *look, double above, double *black, double *sheet)
+{
+    Tree tree;
+    assert_int_equal(tree_init(&tree, 4, NULL), STATUS_OK);
+    set_segment(&tree, 0, vec3(0, 0, -9), vec3(0, 0, 0), 12);
+    set_segment(&tree, 2, vec3(0, 0, -5), vec3(0, 0, above), coin_mm);
+    Scene scene = scene_of(&tree, look, COIN_SIDE);
+    Frame frame = draw(&scene, RENDER_TRACE, 4, 1);
+    *black = *sheet = 0;
+    for (int x = COIN_SIDE / 2 - 8 * COIN_PX_PER_MM; x < COIN_SIDE / 2 + 8 * COIN_PX_PER_MM; x++) {
+        const float *color = frame.color.values + 3 * (COIN_SIDE / 2 * COIN_SIDE + x);
+        *black += (1 - (double)color[2]) / COIN_PX_PER_MM;
+        *sheet += ((double)color[2] - (double)color[0]) / COIN_PX_PER_MM;
+    }
+    frame_release(&frame);
+    scene_release(&scene);
+    tree_release(&tree);
+}
+
+/* Widths of `mm` as looks have them: in thousandths of the picture's side. */
+static double look_width(double mm)
+{
+    return 1000 * mm / 40;
+}
+
+/* A line and a gap begin where what is behind lies deeper by `deeper` radii of the vessel in front.
+ */
+static void what_is_deeper_by_so_many_radii_has_a_line_and_a_gap(void **state)
+{
+    double black, sheet;
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        const double part = i ? 1.1 : 0.9;
+        Look look = plain_look();
+        look.effects.outline_width = look_width(0.8);
+        draw_coins(&look, part * look.effects.outline_deeper * coin_mm, &black, &sheet);
+        assert_true(fabs(black - (i ? 2 * 0.8 : 0)) < 0.1 && sheet < 1e-6);
+        look.effects.outline_width = 0;
+        look.effects.halo_width = look_width(0.8);
+        draw_coins(&look, part * look.effects.halo_deeper * coin_mm, &black, &sheet);
+        assert_true(fabs(sheet - (i ? 2 * 0.8 : 0)) < 0.1 && black < 1e-6);
+    }
+}
+
+/* Lines and gaps are at most so many radii of the front vessel wide. */
+static void lines_and_gaps_are_at_most_so_many_radii_wide(void **state)
+{
+    double black, sheet;
+    (void)state;
+    Look look = plain_look();
+    look.effects.outline_width = look.effects.halo_width = look_width(4);
+    look.effects.outline_radii = 0.5;
+    look.effects.halo_radii = 0.3;
+    draw_coins(&look, 3 * coin_mm, &black, &sheet);
+    assert_true(fabs(black - 2 * 0.5 * coin_mm) < 0.1);
+    assert_true(fabs(sheet - 2 * 0.3 * coin_mm) < 0.1);
+}
+
+/* A line covers what lies at most half of `deeper` radii behind its edge: of the wall of a tube
+ * that falls away from a disc on it, the part from x = 6.364 mm, where it is sqrt(81 - x^2) mm
+ * high, to where it is 0.9 mm lower. The tube's own edge, at 9 mm, has a line from 7.7 mm on. */
+static void a_line_ends_where_its_wall_falls_away(void **state)
+{
+    const double rim = 9 * sqrt(0.5), reach = sqrt(81 - pow(rim - 0.1 * 9, 2)) - rim;
+    const int first = (int)(rim * COIN_PX_PER_MM), last = (int)(7.6 * COIN_PX_PER_MM);
+    Tree tree;
+    Look look = plain_look();
+    double black = 0;
+    (void)state;
+    look.effects.outline_width = look_width(1.3);
+    look.effects.outline_deeper = 0.2;
+    look.effects.crease_deg = 30;
+    assert_int_equal(tree_init(&tree, 4, NULL), STATUS_OK);
+    set_segment(&tree, 0, vec3(0, -90, 0), vec3(0, 90, 0), 9);
+    set_segment(&tree, 2, vec3(rim - 1, 0, 0), vec3(rim - 1, 0, rim + 0.1), 1);
+    Scene scene = scene_of(&tree, &look, COIN_SIDE);
+    Frame frame = draw(&scene, RENDER_TRACE, 4, 1);
+    const float *row = frame.color.values + 3 * (COIN_SIDE / 2 * COIN_SIDE + COIN_SIDE / 2);
+    for (int x = first; x < last; x++)
+        black += (1 - (double)row[3 * x + 2]) / COIN_PX_PER_MM;
+    assert_true(fabs(black - reach) < 0.1);
+    frame_release(&frame);
+    scene_release(&scene);
+    tree_release(&tree);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -251,6 +345,9 @@ int main(void)
         cmocka_unit_test(vessels_that_touch_are_parted_where_their_walls_turn),
         cmocka_unit_test(vessels_fade_from_the_nearest_to_the_farthest),
         cmocka_unit_test(bands_and_threads_change_no_byte),
+        cmocka_unit_test(what_is_deeper_by_so_many_radii_has_a_line_and_a_gap),
+        cmocka_unit_test(lines_and_gaps_are_at_most_so_many_radii_wide),
+        cmocka_unit_test(a_line_ends_where_its_wall_falls_away),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,6 +46,10 @@ static void ticks_are_round_numbers_within_the_range(void **state)
     EXPECT_TICKS(0, 1, false, false, 5, 0, 0.2, 0.4, 0.6, 0.8, 1);
     EXPECT_TICKS(60.02, 98.8, false, false, 3, 80);
     EXPECT_TICKS(2.5e7, 9.9e7, false, false, 4, 4e7, 6e7, 8e7);
+    EXPECT_TICKS(0, 27, false, false, 6, 0, 5, 10, 15, 20, 25);
+    EXPECT_TICKS(-0.06, 0.11, false, false, 4, -0.05, 0, 0.05, 0.1);
+    EXPECT_TICKS(0, 13, false, false, 7, 0, 2, 4, 6, 8, 10, 12);
+    EXPECT_TICKS(300, 1500, false, true, 3, 500, 1000, 1500);
 }
 
 static void ticks_of_a_logarithm_are_powers_of_ten_where_there_are_two(void **state)
@@ -55,6 +59,12 @@ static void ticks_of_a_logarithm_are_powers_of_ten_where_there_are_two(void **st
     EXPECT_TICKS(3e-9, 2e6, true, false, 5, 1e-6, 1e-3, 1, 1e3, 1e6);
     EXPECT_TICKS(4.3, 38, true, false, 6, 5, 10, 20);
     EXPECT_TICKS(21, 29, true, false, 4, 22, 24, 26, 28);
+    EXPECT_TICKS(0.7, 300, true, false, 6, 1, 10, 100);
+    EXPECT_TICKS(0.9, 60, true, false, 6, 1, 2, 5, 10, 20, 50);
+    EXPECT_TICKS(2, 90, true, false, 5, 2, 5, 10, 20, 50);
+    EXPECT_TICKS(0.05, 2.5, true, false, 5, 0.05, 0.1, 0.2, 0.5, 1, 2);
+    EXPECT_TICKS(1e-2, 1e7, true, false, 5, 1e-2, 1, 1e2, 1e4, 1e6);
+    EXPECT_TICKS(1, 1e4, true, false, 5, 1, 10, 100, 1e3, 1e4);
 }
 
 static void ticks_of_whole_numbers_are_whole(void **state)
@@ -330,6 +340,120 @@ static void a_legend_of_classes_has_a_box_each(void **state)
     assert_int_equal(count_items(&legend, FIGURE_SHAPE), 2);
 }
 
+/* A number of a legend and how far along the bar, which is 30 mm long, its tick stands. */
+typedef struct Tick {
+    const char *label;
+    double along_mm;
+} Tick;
+
+/* Each tick is a line followed by its label. */
+static void expect_labels(const ColorScale *scale, bool across, const Tick *expected, size_t n)
+{
+    const FigureLegend legend = {
+        .scale = scale, .title = "q", .across = across, .length_mm = 30, .size_pt = 7};
+    FigurePage page;
+    size_t found = 0;
+    figure_init(&page, 80, 60, 300, fonts);
+    figure_add_legend(&page, &legend);
+    for (size_t i = 0; i + 1 < page.n; i++) {
+        if (page.items[i].kind != FIGURE_LINE)
+            continue;
+        const FigurePoint *at = page.items[i].at;
+        assert_true(found < n);
+        assert_string_equal(page.items[i + 1].text, expected[found].label);
+        assert_true(fabs((across ? at->x : -at->y) - expected[found].along_mm) < 1e-9);
+        found++;
+    }
+    assert_int_equal(found, n);
+    figure_release(&page);
+}
+
+#define EXPECT_LABELS(scale, ...)                                                                  \
+    for (int across = 0; across < 2; across++)                                                     \
+    expect_labels(&(scale), across, (const Tick[]){__VA_ARGS__},                                   \
+                  sizeof((const Tick[]){__VA_ARGS__}) / sizeof(Tick))
+
+static ColorScale plain_scale(double low, double high, bool log, int classes)
+{
+    return (ColorScale){.name = "q",
+                        .unit = "",
+                        .range = {low, high},
+                        .log = log,
+                        .classes = classes,
+                        .map = {two_colors, 2, false}};
+}
+
+static void a_bar_has_the_right_numbers_at_the_right_places(void **state)
+{
+    (void)state;
+    const ColorScale linear = plain_scale(-1, 2, false, 1), log = plain_scale(1, 1000, true, 1),
+                     near = plain_scale(2, 50, true, 1);
+    const double decade = 30 / log10(25);
+    EXPECT_LABELS(linear,
+                  {"\xE2\x88\x92"
+                   "1",
+                   0},
+                  {"0", 10}, {"1", 20}, {"2", 30});
+    EXPECT_LABELS(log, {"1", 0}, {"10", 10}, {"100", 20}, {"1000", 30});
+    EXPECT_LABELS(near, {"2", 0}, {"5", decade * log10(2.5)}, {"10", decade * log10(5)},
+                  {"20", decade}, {"50", 30});
+}
+
+static void classes_have_the_right_numbers_between_them(void **state)
+{
+    (void)state;
+    const ColorScale linear = plain_scale(0, 10, false, 4), decades = plain_scale(1, 1000, true, 3),
+                     halves = plain_scale(1, 100, true, 4);
+    ColorScale bounds = plain_scale(1, 100, false, 1);
+    bounds.n_bounds = 3;
+    bounds.bounds[0] = 5;
+    bounds.bounds[1] = 10;
+    bounds.bounds[2] = 50;
+    EXPECT_LABELS(linear, {"0.0", 0}, {"2.5", 7.5}, {"5.0", 15}, {"7.5", 22.5}, {"10.0", 30});
+    EXPECT_LABELS(decades, {"1", 0}, {"10", 10}, {"100", 20}, {"1000", 30});
+    EXPECT_LABELS(halves, {"1", 0}, {"3.162", 7.5}, {"10", 15}, {"31.62", 22.5}, {"100", 30});
+    EXPECT_LABELS(bounds, {"5", 7.5}, {"10", 15}, {"50", 22.5});
+}
+
+/* The boxes of a legend have the colours of values just below and just above the numbers between
+ * them. */
+static void expect_boxes(const ColorScale *scale, const double *inner, int n)
+{
+    const FigureLegend legend = {.scale = scale, .title = "q", .length_mm = 30, .size_pt = 7};
+    FigurePage page;
+    figure_init(&page, 80, 60, 300, fonts);
+    figure_add_legend(&page, &legend);
+    for (int i = 0; i < n; i++)
+        for (int above = 0; above < 2; above++) {
+            float linear[3];
+            colorscale_linear(scale, inner[i] * (above ? 1.01 : 0.99), linear);
+            const FigureItem *box = &page.items[i + above];
+            assert_int_equal(box->kind, FIGURE_SHAPE);
+            for (int c = 0; c < 3; c++)
+                assert_int_equal(box->color.rgb[c], image_code(linear[c], ENCODING_SRGB, 8));
+        }
+    assert_int_not_equal(page.items[0].color.rgb[0], page.items[1].color.rgb[0]);
+    figure_release(&page);
+}
+
+static void classes_have_the_colours_of_their_values(void **state)
+{
+    static const double linear[] = {2.5, 5, 7.5}, decades[] = {10, 100},
+                        halves[] = {3.1622776601683795, 10, 31.622776601683793},
+                        own[] = {5, 10, 50};
+    const ColorScale of_range = plain_scale(0, 10, false, 4),
+                     of_decades = plain_scale(1, 1000, true, 3),
+                     of_halves = plain_scale(1, 100, true, 4);
+    ColorScale of_bounds = plain_scale(1, 100, false, 1);
+    (void)state;
+    of_bounds.n_bounds = 3;
+    memcpy(of_bounds.bounds, own, sizeof own);
+    expect_boxes(&of_range, linear, 3);
+    expect_boxes(&of_decades, decades, 2);
+    expect_boxes(&of_halves, halves, 3);
+    expect_boxes(&of_bounds, own, 3);
+}
+
 static void a_legend_can_be_measured_and_moved(void **state)
 {
     const ColorScale scale = {
@@ -364,6 +488,9 @@ int main(void)
         cmocka_unit_test(boxes_and_ramps_cover_whole_pixels_in_their_own_colours),
         cmocka_unit_test(a_legend_has_points_and_a_swatch_only_for_values_that_need_them),
         cmocka_unit_test(a_legend_of_classes_has_a_box_each),
+        cmocka_unit_test(a_bar_has_the_right_numbers_at_the_right_places),
+        cmocka_unit_test(classes_have_the_right_numbers_between_them),
+        cmocka_unit_test(classes_have_the_colours_of_their_values),
         cmocka_unit_test(a_legend_can_be_measured_and_moved),
     };
     return cmocka_run_group_tests(tests, load_fonts, free_fonts);

@@ -1,4 +1,5 @@
 /* Vessels as lines on paper. */
+#include "render/ink/inkjoint.h"
 #include "render/render.h"
 #include "unit.h"
 
@@ -316,6 +317,150 @@ static void what_is_behind_the_camera_is_refused(void **state)
     assert_non_null(strstr(err.text, "is not in front of the camera"));
 }
 
+/* ---- numbers that METHODS 3.4 states --------------------------------------------------------- */
+
+/* A thin vessel across the picture behind an upright one, whose middle is at x. */
+static Strokes crossing(double x, double radius_mm)
+{
+    Sketch sketch;
+    begin(&sketch);
+    add(&sketch, vec3(-6, 0.5, -2), vec3(6, 0.5, -2), 0.031);
+    add(&sketch, vec3(x, -5, 3), vec3(x, 5, 3), radius_mm);
+    return drawn(&sketch, 1);
+}
+
+/* How far the nearest end of a thin vessel's line is from a place, mm of paper. */
+static double off_nearest_end(const Strokes *all, double x)
+{
+    double off = HUGE_VAL;
+    for (size_t i = 0; i < all->n; i++) {
+        const double *from = all->points[all->strokes[i].first];
+        const double *to = all->points[all->strokes[i].first + all->strokes[i].n - 1];
+        if (all->strokes[i].width_mm > LINE_MM)
+            off = fmin(off, fmin(fabs(from[0] - (x + 8) * SCALE), fabs(to[0] - (x + 8) * SCALE)));
+    }
+    return off;
+}
+
+/* A line ends within half of a hundredth of a line of where it is hidden: fewer halvings do not do.
+ */
+static void a_line_ends_within_a_hundredth_of_a_line(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (int i = 0; i < 24; i++) {
+        const double x = -3 + 0.2537 * i;
+        Strokes strokes = crossing(x, 0.9);
+        worst = fmax(worst,
+                     fmax(off_nearest_end(&strokes, x - 0.9), off_nearest_end(&strokes, x + 0.9)));
+        strokes_release(&strokes);
+    }
+    assert_true(worst > 0 && worst <= LINE_MM / 100 / 2);
+}
+
+/* Curves are followed in steps of half a line: no gap wider than that is stepped over. */
+static void no_gap_wider_than_half_a_line_is_missed(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 24; i++) {
+        const double x = -3 + 0.2537 * i, radius_mm = 0.55 * LINE_MM / SCALE / 2;
+        Strokes strokes = crossing(x, radius_mm);
+        assert_true(off_nearest_end(&strokes, x - radius_mm) < LINE_MM / 100);
+        assert_true(off_nearest_end(&strokes, x + radius_mm) < LINE_MM / 100);
+        strokes_release(&strokes);
+    }
+}
+
+/* Lines are looked at from 1e-6 radii beside a wall: the right line of a vessel is hidden by one
+ * before it that reaches farther than that. */
+static void a_wall_is_looked_at_a_millionth_of_its_radius_beside_it(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        const double beyond = i ? 1.2e-6 : 0.8e-6;
+        Sketch sketch;
+        begin(&sketch);
+        add(&sketch, vec3(0, -5, 0), vec3(0, 5, 0), 1);
+        add(&sketch, vec3(0.5 + beyond, -5, 3), vec3(0.5 + beyond, 5, 3), 0.5);
+        Strokes strokes = drawn(&sketch, 1);
+        double right = length_within(&strokes, 0.9, 1.1, -4, 4), each = 8 * SCALE;
+        assert_true(fabs(right - (i ? each : 2 * each)) < 0.05 * each);
+        strokes_release(&strokes);
+    }
+}
+
+/* A vessel no wider on paper than two lines is one line of its own width. */
+static void a_vessel_of_two_lines_is_the_limit(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        const double lines = i ? 2.1 : 1.9;
+        Sketch sketch;
+        begin(&sketch);
+        add(&sketch, vec3(-4, 1, 0), vec3(3, 1, 0), lines / 2 * LINE_MM / SCALE);
+        Strokes strokes = drawn(&sketch, 1);
+        assert_int_equal(strokes.n == 1, !i);
+        assert_true(fabs(strokes.strokes[0].width_mm - (i ? 1 : lines) * LINE_MM) < 1e-9);
+        strokes_release(&strokes);
+    }
+}
+
+/* The outline of a joint is followed over 16 of its ellipses: 15 points lie on each side between
+ * its ends. */
+static void a_joint_is_followed_over_16_ellipses(void **state)
+{
+    static const Vec3 axes[] = {{1, 0, 0}, {1, 0, 0}};
+    const Primitive joint = {.kind = PRIMITIVE_JOINT,
+                             .a = vec3(-2, 0, 0),
+                             .b = vec3(2, 0, 0),
+                             .radius_mm = 1,
+                             .radius_b_mm = 1,
+                             .axes = axes};
+    const InkParams params = {16 * SCALE, LINE_MM, 1};
+    Sketch sketch;
+    Strokes strokes;
+    int n = 0;
+    (void)state;
+    begin(&sketch);
+    sketch.primitives[0] = joint;
+    sketch.n = sketch.n_vessels = 1;
+    end(&sketch);
+    sketch.geometry.model = SCENE_JOINED;
+    assert_int_equal(ink_draw(&sketch.geometry, &sketch.view, &params, &strokes, &err), STATUS_OK);
+    for (size_t i = 0; i < strokes.n_points; i++) {
+        double step = (strokes.points[i][0] / SCALE - 6) / 4 * 16;
+        n += step > 0.01 && step < 15.99;
+        assert_true(fabs(step - round(step)) < 1e-6);
+    }
+    assert_int_equal(n, 2 * 15);
+    strokes_release(&strokes);
+}
+
+/* The walls of joints are seen edge-on where they are drawn: Newton's iteration ends there. */
+static void outlines_of_joints_are_seen_edge_on(void **state)
+{
+    const Vec3 center[] = {{0, 0, 0}, {0.4, 0.2, 2}};
+    const Vec3 axis[] = {{0, 0, 1}, vec3_normalized(vec3(0.5, 0.2, 1))};
+    const double radius[] = {1, 0.6};
+    const JointFrame joint = joint_frame(center, axis, radius);
+    int found = 0;
+    (void)state;
+    for (double turn = 0; turn < 3; turn += 0.37)
+        for (double way = 0; way <= 1; way += 0.25) {
+            const Camera camera = {.location = {20 * cos(turn), 20 * sin(turn), 5},
+                                   .direction = {0, 0, -1},
+                                   .projection = PROJECTION_PERSPECTIVE};
+            double angles[JOINT_OUTLINES], distance;
+            int n = joint_outline(&camera, &joint, way, angles);
+            for (int i = 0; i < n; i++, found++) {
+                Vec3 point = joint_point(&joint, cos(angles[i]), sin(angles[i]), way);
+                Vec3 towards = towards_viewer(&camera, point, &distance);
+                assert_true(fabs(vec3_dot(joint_normal(&joint, angles[i], way), towards)) < 1e-11);
+            }
+        }
+    assert_true(found >= 80);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -329,6 +474,12 @@ int main(void)
         cmocka_unit_test(lines_lie_where_pictures_change_from_vessel_to_vessel),
         cmocka_unit_test(the_number_of_threads_does_not_change_the_strokes),
         cmocka_unit_test(what_is_behind_the_camera_is_refused),
+        cmocka_unit_test(a_line_ends_within_a_hundredth_of_a_line),
+        cmocka_unit_test(no_gap_wider_than_half_a_line_is_missed),
+        cmocka_unit_test(a_wall_is_looked_at_a_millionth_of_its_radius_beside_it),
+        cmocka_unit_test(a_vessel_of_two_lines_is_the_limit),
+        cmocka_unit_test(a_joint_is_followed_over_16_ellipses),
+        cmocka_unit_test(outlines_of_joints_are_seen_edge_on),
     };
     return cmocka_run_group_tests_name("ink", tests, NULL, NULL);
 }

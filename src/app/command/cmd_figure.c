@@ -78,6 +78,15 @@ static Status set_key(Parsed *parsed, const char *name, const char *value, Err *
     return setting_read(parsed_find(parsed, name, strlen(name)), value, err);
 }
 
+/* A tree that a command makes is in mm, as corcast writes trees. */
+static void assume_mm(ReadOptions *reading)
+{
+    if (reading->has_unit)
+        return;
+    reading->has_unit = true;
+    reading->unit = LENGTH_MM;
+}
+
 /* What the page says of a panel's options. Those of the recipe are no longer typed, as in recipes
  * of commands: one that has no effect on this panel is not refused. */
 static Status set_options(const Figure *figure, size_t i, Err *err)
@@ -96,6 +105,8 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
         TRY(set_key(&section->render, "text-size", pt, err));
     for (size_t k = 0; k < section->render.n_settings; k++)
         section->render.settings[k].typed = false;
+    if (section->maker)
+        assume_mm(&section->render.reading);
     section->render.common.quiet = figure->parsed->common.quiet;
     section->render.common.threads = figure->parsed->common.threads;
     section->render.operands[0] =
@@ -120,6 +131,7 @@ static Status draw_panels(Figure *figure, Err *err)
         Status status = panel_draw(&section->render, panel, err);
         if (status != STATUS_OK) {
             options_name_fields(&section->render, err);
+            madetrees_name(&figure->plan, &figure->trees, i, err);
             err_prefix(err, "[panel %s]: ", section->name);
             return status;
         }
@@ -214,6 +226,9 @@ static Status put_panel(Figure *figure, size_t i, int number, Err *err)
 
 /* ---- text ------------------------------------------------------------------------------------ */
 
+/* Larger coordinates are a mistake, and beyond what FreeType and cairo take. */
+static const double far_mm = 1e4;
+
 static Status put_text(Figure *figure, const Section *section, Err *err)
 {
     const TextOptions *options = section->own.options;
@@ -221,6 +236,9 @@ static Status put_text(Figure *figure, const Section *section, Err *err)
         return err_set(err, STATUS_USAGE,
                        "[text %s] needs 'text' and 'at', mm from the page's upper left corner",
                        section->name);
+    if (!(fabs(options->at.x) <= far_mm && fabs(options->at.y) <= far_mm))
+        return err_set(err, STATUS_USAGE, "[text %s]: at: %g,%g is more than %g mm off the page",
+                       section->name, options->at.x, options->at.y, far_mm);
     const FigureText text = {.text = options->text,
                              .x = options->at.x,
                              .y = options->at.y,
@@ -231,6 +249,17 @@ static Status put_text(Figure *figure, const Section *section, Err *err)
                              .color = color_of(options->color)};
     figure_add_text(&figure->sheet.page, &text);
     return STATUS_OK;
+}
+
+/* Reports what the panels have lost of their trees and how they are coloured. */
+static Status say_panels(const Figure *figure, Err *err)
+{
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < figure->plan.n && status == STATUS_OK; i++)
+        if (figure_is_panel(figure, i))
+            status = picture_say(&figure->panels[i].scene, &figure->panels[i].made,
+                                 figure->parsed->common.quiet, err);
+    return status;
 }
 
 static Status fill_page(Figure *figure, Err *err)
@@ -248,7 +277,7 @@ static Status fill_page(Figure *figure, Err *err)
             TRY(put_text(figure, figure->plan.sections[i], err));
     TRY(figure_check(&figure->sheet.page, err));
     figure_warn(&figure->sheet.page, "corcast figure", figure->parsed->common.quiet);
-    return STATUS_OK;
+    return say_panels(figure, err);
 }
 
 /* ---- files ----------------------------------------------------------------------------------- */
@@ -336,7 +365,7 @@ static Status find_recipe(const char *name, char **path, Err *err)
 {
     if (strchr(name, '/') || strcmp(file_extension(name), "ini") == 0)
         return mem_strdup(path, name, err);
-    return template_file("figure", "figures", name, ".ini", path, err);
+    return template_find("no such figure:", "figures", name, ".ini", path, err);
 }
 
 /* Makes the folder of the recipe the current one; *home is the one before, to go back to. */

@@ -142,7 +142,7 @@ static Status draw_pictures(RenderOptions *options, Parsed *parsed, RenderParams
     PictureSource source = {0};
     Scene scene = {0};
     RenderStats stats = {0};
-    StageReport staged;
+    PictureReport made;
     Sheet sheet = {0};
     char *line = NULL;
     Progress progress;
@@ -162,7 +162,7 @@ static Status draw_pictures(RenderOptions *options, Parsed *parsed, RenderParams
         TRY_GOTO(sheet_open(&sheet, err));
     TRY_GOTO(picture_read_source(&options->picture, parsed, &source, err));
     TRY_GOTO(
-        render_make_scene(options, parsed, &source, sheet.fonts, &scene, &staged, animation, err));
+        render_make_scene(options, parsed, &source, sheet.fonts, &scene, &made, animation, err));
     if (form->id)
         TRY_GOTO(picture_check_ids(&scene.geometry, source.of.path, err));
     TRY_GOTO(note_files(animation, form, &parsed->files, err));
@@ -179,13 +179,14 @@ static Status draw_pictures(RenderOptions *options, Parsed *parsed, RenderParams
         form->page = &sheet.page;
         form->notes = &sheet.notes;
     }
+    TRY_GOTO(picture_say(&scene, &made, parsed->common.quiet, err));
     if (options->ink_mm > 0) {
         status = line_drawing_write(&scene, options->ink_mm, params->threads, form, err);
         goto done;
     }
     TRY_GOTO(film_draw(&film, form, &stats, err));
     if (options->json)
-        status = write_report(options->json, &scene, &stats, &staged, params->threads, err);
+        status = write_report(options->json, &scene, &stats, &made.staged, params->threads, err);
 done:
     free(line);
     sheet_release(&sheet);

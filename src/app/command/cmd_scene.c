@@ -134,9 +134,10 @@ static Status write_scene(const SceneOptions *options, const Emitter *emitter,
     Scene scene = {0};
     Anatomy anatomy = {0};
     EmitReport report = {0};
-    TRY(picture_scene_of(picture, source, parsed, &scene, &anatomy, NULL, err));
-    Status status = STATUS_OK;
-    if (emitter->has_view)
+    PictureReport made;
+    TRY(picture_scene_of(picture, source, parsed, &scene, &anatomy, &made, err));
+    Status status = picture_say(&scene, &made, parsed->common.quiet, err);
+    if (status == STATUS_OK && emitter->has_view)
         status = picture_say_effects(picture, &scene.view, "the scene is without them",
                                      parsed->common.quiet, err);
     const EmitParams params = {.scene = &scene,

@@ -320,8 +320,10 @@ static void move_off_ties(Camera *camera)
 static Status verify(Verification *v, int frame, Folder *folder, Parsed *parsed, Err *err)
 {
     TRY(claim_folder(folder, &parsed->files, err));
-    TRY(picture_scene(v->picture, parsed, &v->scene, NULL, NULL, err));
+    PictureReport made;
+    TRY(picture_scene(v->picture, parsed, &v->scene, &made, err));
     TRY(picture_check_ids(&v->scene.geometry, parsed->operands[0], err));
+    TRY(picture_say(&v->scene, &made, parsed->common.quiet, err));
     TRY(picture_say_effects(v->picture, &v->scene.view, "left out on both sides",
                             parsed->common.quiet, err));
     v->scene.view.effects = (Effects){0};

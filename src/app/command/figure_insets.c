@@ -15,6 +15,10 @@ static size_t find_section(const FigurePlan *plan, SectionKind kind, const char 
     return i;
 }
 
+/* An inset may lie beside its panel. What is farther off than this many sides of the panel is a
+ * mistake. */
+static const double far_sides = 10;
+
 static Status check_inset(const FigurePlan *plan, const Section *section, Err *err)
 {
     const InsetOptions *inset = section->own.options;
@@ -26,6 +30,13 @@ static Status check_inset(const FigurePlan *plan, const Section *section, Err *e
                        "[inset %s] needs 'at', the middle of what it shows, and 'place', where its "
                        "own middle lies, both over the panel's width and height, as in 0.3,0.6",
                        section->name);
+    const double all[] = {inset->at.x, inset->at.y, inset->place.x, inset->place.y};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (!(fabs(all[i]) <= far_sides))
+            return err_set(
+                err, STATUS_USAGE,
+                "[inset %s]: %s: %g is not over the panel's width or height, which are 1",
+                section->name, i < 2 ? "at" : "place", all[i]);
     return STATUS_OK;
 }
 

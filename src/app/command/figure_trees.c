@@ -49,7 +49,8 @@ static Status cut_words(const char *arguments, Words *words, Err *err)
 /* The tree goes where the page finds it. */
 static Status check_words(const Words *words, Err *err)
 {
-    static const char *const others[] = {"-o", "--output", "--json", "--stages", "--dump-recipe"};
+    static const char *const others[] = {"-o",     "--output",      "--json", "--stages",
+                                         "--help", "--dump-recipe", "-h"};
     for (int i = 0; i < words->n; i++)
         for (size_t k = 0; k < sizeof others / sizeof *others; k++)
             if (strncmp(words->word[i], others[k], strlen(others[k])) == 0)
@@ -73,13 +74,17 @@ static Status run_maker(const Section *section, int threads, char *file, Words *
     return command_run(section->maker, words->n, words->word, err);
 }
 
-static Status make_tree(const Section *section, int threads, char *file, Err *err)
+static Status make_tree(const FigurePlan *plan, int threads, const MadeTrees *trees, size_t i,
+                        Err *err)
 {
+    const Section *section = plan->sections[i];
     Words words = {0};
-    Status status = run_maker(section, threads, file, &words, err);
+    Status status = run_maker(section, threads, trees->files[i], &words, err);
     free(words.text);
-    if (status != STATUS_OK)
-        err_prefix(err, "[panel %s]: %s: ", section->name, section->maker->name);
+    if (status == STATUS_OK)
+        return STATUS_OK;
+    madetrees_name(plan, trees, i, err);
+    err_prefix(err, "[panel %s]: %s: ", section->name, section->maker->name);
     return status;
 }
 
@@ -139,13 +144,26 @@ Status madetrees_make(const FigurePlan *plan, int threads, const MadeTrees *tree
 {
     for (size_t i = 0; i < plan->n; i++)
         if (trees->files[i])
-            TRY(make_tree(plan->sections[i], threads, trees->files[i], err));
+            TRY(make_tree(plan, threads, trees, i, err));
     return STATUS_OK;
 }
 
 const char *madetrees_file(const FigurePlan *plan, const MadeTrees *trees, size_t i)
 {
     return trees->files[first_of(plan, i)];
+}
+
+void madetrees_name(const FigurePlan *plan, const MadeTrees *trees, size_t i, Err *err)
+{
+    const Section *section = plan->sections[i];
+    const char *file = section->maker ? madetrees_file(plan, trees, i) : NULL;
+    const char *at = file ? strstr(err->text, file) : NULL;
+    Err named = {{0}};
+    if (!at)
+        return;
+    (void)err_set(&named, STATUS_INPUT, "%.*sthe tree of %s%s", (int)(at - err->text), err->text,
+                  section->maker->name, at + strlen(file));
+    *err = named;
 }
 
 void madetrees_release(MadeTrees *trees)

@@ -20,6 +20,9 @@ MUST_CHECK Status madetrees_open(const FigurePlan *plan, const char *output, Mad
  * the commands have it. */
 MUST_CHECK Status madetrees_make(const FigurePlan *plan, int threads, const MadeTrees *trees,
                                  Err *err);
+/* Replaces the file of a section that has a maker, which nobody knows, in a sentence: "the tree of
+ * grow". */
+void madetrees_name(const FigurePlan *plan, const MadeTrees *trees, size_t i, Err *err);
 /* The file of a section that has a maker. */
 const char *madetrees_file(const FigurePlan *plan, const MadeTrees *trees, size_t i);
 void madetrees_release(MadeTrees *trees);

@@ -256,13 +256,13 @@ static Status check_effects(const RenderOptions *options, const View *view, Err 
 }
 
 Status render_make_scene(RenderOptions *options, Parsed *parsed, const PictureSource *source,
-                         const FigureFonts *fonts, Scene *scene, StageReport *staged,
+                         const FigureFonts *fonts, Scene *scene, PictureReport *made,
                          Animation *animation, Err *err)
 {
     PictureOptions *picture = &options->picture;
     picture->by_tiles = options->ink_mm == 0 &&
                         (options->method == RENDER_FASTEST || options->method == RENDER_RASTER);
-    TRY(picture_scene_of(picture, source, parsed, scene, NULL, staged, err));
+    TRY(picture_scene_of(picture, source, parsed, scene, NULL, made, err));
     TRY(animation_count(animation, &scene->appearance, err));
     TRY(pick_only(options->shard.only, animation, err));
     if (options->annotation.legend) {

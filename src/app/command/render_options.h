@@ -41,7 +41,7 @@ RenderParams render_params_of(const RenderOptions *options, int threads, CellPar
  * animation_count and annotation_make_room. */
 MUST_CHECK Status render_make_scene(RenderOptions *options, Parsed *parsed,
                                     const PictureSource *source, const FigureFonts *fonts,
-                                    Scene *scene, StageReport *staged, Animation *animation,
+                                    Scene *scene, PictureReport *made, Animation *animation,
                                     Err *err);
 
 #endif

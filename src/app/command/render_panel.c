@@ -88,7 +88,6 @@ Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
     const int *pixels = options->picture.size.pixels;
     PictureSource source = {0};
     Animation still = {.first = 1, .last = 1, .n = 1};
-    StageReport staged;
     Progress progress;
     panel->in_lines = options->ink_mm > 0;
     options->output = panel->in_lines ? "panel.pdf" : "panel"; /* pages hold lines */
@@ -104,8 +103,8 @@ Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
     TRY(picture_fits(pixels[0], pixels[1], 40, err));
     Status status = picture_read_source(&options->picture, parsed, &source, err);
     if (status == STATUS_OK)
-        status = render_make_scene(options, parsed, &source, panel->fonts, &panel->scene, &staged,
-                                   &still, err);
+        status = render_make_scene(options, parsed, &source, panel->fonts, &panel->scene,
+                                   &panel->made, &still, err);
     progress_start(&progress, "rendering", parsed->common.quiet);
     if (status == STATUS_OK)
         status = panel->in_lines ? draw_lines(options, params.threads, panel, err)

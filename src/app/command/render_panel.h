@@ -25,6 +25,7 @@ typedef struct Panel {
     Picture picture;       /* made, of 8 bits, unless in lines; owned */
     Strokes strokes;       /* made, in lines; owned */
     Scene scene;           /* made; owned */
+    PictureReport made;    /* what the scene has lost, to be reported by the caller */
     Annotation annotation; /* what the options ask for, to be drawn by the caller */
 } Panel;
 

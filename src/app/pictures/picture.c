@@ -308,14 +308,15 @@ Status picture_check_povray(const PictureOptions *options, Err *err)
 }
 
 /* What of the tree the picture cannot show. */
-static Status warn_of_losses(const Geometry *geometry, const StageReport *report, JointForm joints,
-                             size_t pruned, Err *err)
+static Status warn_of_losses(const Geometry *geometry, const PictureReport *told, Err *err)
 {
+    const StageReport *report = &told->staged;
     size_t hidden;
     TRY(surface_count_hidden(geometry, &hidden, err));
     size_t segments = report->dropped + report->drawn;
-    if (pruned)
-        fprintf(stderr, "corcast: %zu of %zu segments are pruned\n", pruned, pruned + segments);
+    if (told->pruned)
+        fprintf(stderr, "corcast: %zu of %zu segments are pruned\n", told->pruned,
+                told->pruned + segments);
     if (report->dropped)
         fprintf(stderr,
                 "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
@@ -340,7 +341,7 @@ static Status warn_of_losses(const Geometry *geometry, const StageReport *report
                 "corcast: at %zu places vessels are too short for joints, at %zu they turn too "
                 "sharply; these are %s\n",
                 report->places_short, report->places_sharp,
-                joints == JOINTS_PAPER ? "joined all the same" : "drawn round");
+                told->joints == JOINTS_PAPER ? "joined all the same" : "drawn round");
     if (report->places_crowded)
         fprintf(
             stderr,
@@ -364,36 +365,34 @@ static double farthest_corner(const Camera *camera, const Box *box)
     return farthest;
 }
 
-/* Refuses a tiny tree of which POV-Ray's least distance from the camera hides everything, and
- * reports one of which it hides a part. */
-static Status check_distance(const Scene *scene, bool quiet, Err *err)
+/* Returns true if the tree is so small that POV-Ray's least distance from the camera, which render
+ * keeps to, may hide it or a part of it. */
+static bool may_be_hidden(const Scene *scene)
 {
     const Box *box = &scene->geometry.bounds;
-    const double least = render_nearest_mm(&scene->geometry);
-    const double size = vec3_distance(box->low, box->high);
-    double near_mm, far_mm;
-    if (size > 10 * least)
-        return STATUS_OK;
-    camera_depth_range(&scene->view.camera, *box, &near_mm, &far_mm);
-    if (farthest_corner(&scene->view.camera, box) <= least)
-        return err_set(err, STATUS_INPUT,
-                       "all of the tree is nearer to the camera than %g mm, where neither POV-Ray "
-                       "nor render sees it; a larger --input-unit or another camera shows it",
-                       least);
-    if (near_mm < least && !quiet)
-        fprintf(stderr,
-                "corcast: what is nearer to the camera than %g mm is not seen, as by POV-Ray; a "
-                "larger --input-unit or another camera shows all of the tree\n",
-                least);
-    return STATUS_OK;
+    return vec3_distance(box->low, box->high) <= 10 * render_nearest_mm(&scene->geometry);
 }
 
-/* Reports what POV-Ray's lengths below which it sees nothing, which render keeps to, hide of a tiny
- * tree. */
-static void warn_of_limits(const Geometry *geometry, bool shadows)
+/* Refuses a tiny tree if POV-Ray's least distance from the camera hides all of it. */
+static Status check_distance(const Scene *scene, Err *err)
 {
-    const double ball_mm = 1e-5, shadow_mm = fmax(render_nearest_mm(geometry), 1e-3);
-    double thickest = 0;
+    const double least = render_nearest_mm(&scene->geometry);
+    if (!may_be_hidden(scene) ||
+        farthest_corner(&scene->view.camera, &scene->geometry.bounds) > least)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "all of the tree is nearer to the camera than %g mm, where neither POV-Ray "
+                   "nor render sees it; a larger --input-unit or another camera shows it",
+                   least);
+}
+
+/* Reports what POV-Ray's fixed lengths, below which it sees nothing, hide of a tiny tree. */
+static void warn_of_limits(const Scene *scene, bool shadows)
+{
+    const Geometry *geometry = &scene->geometry;
+    const double nearest_mm = render_nearest_mm(geometry);
+    const double ball_mm = 1e-5, shadow_mm = fmax(nearest_mm, 1e-3);
+    double thickest = 0, near_mm, far_mm;
     size_t balls = 0;
     for (size_t i = 0; i < geometry->n_primitives; i++) {
         thickest = fmax(thickest, geometry->primitives[i].radius_mm);
@@ -402,6 +401,12 @@ static void warn_of_limits(const Geometry *geometry, bool shadows)
     }
     for (size_t i = 0; i < geometry->n_segments; i++)
         thickest = fmax(thickest, geometry->segments[i].radius_mm);
+    camera_depth_range(&scene->view.camera, geometry->bounds, &near_mm, &far_mm);
+    if (may_be_hidden(scene) && near_mm < nearest_mm)
+        fprintf(stderr,
+                "corcast: what is nearer to the camera than %g mm is not seen, as by POV-Ray; a "
+                "larger --input-unit or another camera shows all of the tree\n",
+                nearest_mm);
     if (balls)
         fprintf(stderr,
                 "corcast: %zu balls of at most %g mm are not seen, as by POV-Ray; a larger "
@@ -623,31 +628,26 @@ static Status make_scene(const PictureOptions *options, const PictureSource *sou
 }
 
 Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene *scene,
-                     Anatomy *anatomy, StageReport *report, Err *err)
+                     PictureReport *report, Err *err)
 {
     PictureSource source;
     TRY(picture_read_source(options, parsed, &source, err));
-    Status status = picture_scene_of(options, &source, parsed, scene, anatomy, report, err);
+    Status status = picture_scene_of(options, &source, parsed, scene, NULL, report, err);
     picture_source_release(&source);
     return status;
 }
 
 Status picture_scene_of(const PictureOptions *options, const PictureSource *source,
-                        const Parsed *parsed, Scene *scene, Anatomy *anatomy, StageReport *report,
+                        const Parsed *parsed, Scene *scene, Anatomy *anatomy, PictureReport *report,
                         Err *err)
 {
-    StageReport staged;
+    PictureReport told = {.pruned = source->of.pruned,
+                          .joints = (JointForm)options->joints,
+                          .shadows = options->stage.shadows};
     Scene made = {0};
-    Status status = make_scene(options, source, &parsed->common, &made, &staged, err);
+    Status status = make_scene(options, source, &parsed->common, &made, &told.staged, err);
     if (status == STATUS_OK)
-        status = check_distance(&made, parsed->common.quiet, err);
-    if (status == STATUS_OK && !parsed->common.quiet)
-        warn_of_limits(&made.geometry, options->stage.shadows);
-    if (status == STATUS_OK && !parsed->common.quiet)
-        status = warn_of_losses(&made.geometry, &staged, (JointForm)options->joints,
-                                source->of.pruned, err);
-    if (status == STATUS_OK && !parsed->common.quiet)
-        coloring_say(&made.appearance);
+        status = check_distance(&made, err);
     if (status == STATUS_OK && anatomy)
         status = stage_anatomy(&source->of.tree, made.geometry.origin, anatomy, err);
     if (status != STATUS_OK) {
@@ -655,8 +655,17 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
         return status;
     }
     *scene = made;
-    if (report)
-        *report = staged;
+    *report = told;
+    return STATUS_OK;
+}
+
+Status picture_say(const Scene *scene, const PictureReport *report, bool quiet, Err *err)
+{
+    if (quiet)
+        return STATUS_OK;
+    warn_of_limits(scene, report->shadows);
+    TRY(warn_of_losses(&scene->geometry, report, err));
+    coloring_say(&scene->appearance);
     return STATUS_OK;
 }
 

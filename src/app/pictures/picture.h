@@ -108,16 +108,28 @@ MUST_CHECK Status picture_appearance(const PictureOptions *options, const Pictur
 MUST_CHECK Status picture_view(const PictureOptions *options, const PictureSource *source,
                                const Geometry *geometry, View *view, Err *err);
 
-/* Reads the tree and the look and makes all three. Says on standard error, unless quiet, how many
- * segments are pruned, cannot be drawn, or have no surface, and how many places are not joined.
- * `anatomy` and `report` may be NULL. */
-MUST_CHECK Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene *scene,
-                                Anatomy *anatomy, StageReport *report, Err *err);
+/* What a scene has lost of its tree. */
+typedef struct PictureReport {
+    StageReport staged;
+    size_t pruned; /* segments */
+    JointForm joints;
+    bool shadows; /* were asked for */
+} PictureReport;
 
-/* The same of a source that is there. */
+/* Reads the tree and the look and makes all three. */
+MUST_CHECK Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene *scene,
+                                PictureReport *report, Err *err);
+
+/* The same of a source that is there. `anatomy` may be NULL. */
 MUST_CHECK Status picture_scene_of(const PictureOptions *options, const PictureSource *source,
                                    const Parsed *parsed, Scene *scene, Anatomy *anatomy,
-                                   StageReport *report, Err *err);
+                                   PictureReport *report, Err *err);
+
+/* Reports on standard error, unless quiet, how many segments are pruned, cannot be drawn, or have
+ * no surface, how many places are not joined, and what the colours are. To be called when all that
+ * may be refused has been checked: a command that fails prints one line. */
+MUST_CHECK Status picture_say(const Scene *scene, const PictureReport *report, bool quiet,
+                              Err *err);
 
 /* Says on standard error, unless quiet, what of the look is no picture of POV-Ray's, and `what`
  * becomes of it. STATUS_USAGE when nothing would be left. */

@@ -126,9 +126,10 @@ static Status take_recipe_line(void *user, const char *section, const char *name
     if (!name)
         return STATUS_OK;
     Setting *setting = find(parsed, name, strlen(name));
-    if (!setting || strcmp(name, "recipe") == 0) {
-        (void)err_set(err, STATUS_USAGE, "'%s' is not an option of %s", name, command->name);
-        return suggest_option(parsed, name, strlen(name), "", err);
+    if (!setting || strcmp(name, "recipe") == 0 || strcmp(name, "help") == 0) {
+        (void)err_set(err, STATUS_USAGE, "'%s' is not an option of %s%s", name, command->name,
+                      setting ? " that a recipe may give" : "");
+        return setting ? STATUS_USAGE : suggest_option(parsed, name, strlen(name), "", err);
     }
     setting->said = true;
     return setting_read(setting, value, err);

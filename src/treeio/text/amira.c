@@ -519,7 +519,7 @@ static Status find_ends(const Reader *reader, const Field *counts, size_t **end,
         sum += count;
     }
     if (sum != (double)points)
-        return err_set(err, STATUS_INPUT, "%s: the edges have %.0f points together, POINT is %zu",
+        return err_set(err, STATUS_INPUT, "%s: the edges have %.15g points together, POINT is %zu",
                        reader->graph->name, sum, points);
     TRY(mem_calloc(&made, edges, sizeof *made, "edges", err));
     for (size_t i = 0; i < edges; i++)
