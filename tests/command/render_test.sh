@@ -662,4 +662,22 @@ test_a_pfm_that_fits_into_memory_goes_to_a_pipe() {
     expect_same file.pfm got.pfm
 }
 
+test_a_picture_that_shows_nothing_is_warned_of() {
+    local options away='--location 0,0,-5 --look-at 0,0,-9 --up 0,1,0 --height 10'
+    printf '1 1 0 0 0 1 -1\n2 3 0 4 0 1 1\n' >tree.swc
+    for options in '' '--antialias 1' --exact '--background none' '--bits 16' '--planes id' '--look wax'; do
+        run_ok corcast render tree.swc --size 20x20 $away $options -o a.png
+        expect_sentence '^corcast: a\.png shows no vessel: the camera looks past the tree, or the vessels are too small'
+        run_ok corcast render tree.swc --size 20x20 $options -o a.png
+        [ ! -s stderr ] || fail "expected no warning from $command_line$(said)"
+    done
+    run_ok corcast render tree.swc --size 20x20 $away --quiet -o a.png
+    [ ! -s stderr ] || fail "expected no warning with --quiet$(said)"
+    run_ok corcast render tree.swc --size 20x64 --tile 1/2 -o a.tif
+    [ ! -s stderr ] || fail "expected no warning of a tile$(said)"
+    awk '{ print $1, $2, 0, $4 * 2 ^ -21, 0, 2 ^ -21, $7 }' tree.swc >tiny.swc
+    run_ok corcast render tiny.swc --size 20x20 -o a.png
+    expect_sentence 'too small to be drawn$'
+}
+
 run_tests "$@"

@@ -54,6 +54,21 @@ test_tubes_tees_and_crosses_on_integers_agree() {
     done
 }
 
+test_a_picture_that_shows_nothing_is_no_agreement() {
+    local model away='--location 0,0,-5 --look-at 0,0,-9 --up 0,1,0 --height 10'
+    printf '1 1 0 0 0 1 -1\n2 3 0 4 0 1 1\n' >tree.swc
+    for model in cylinders mesh; do
+        run corcast verify tree.swc --model $model --size 20x20 $away -o report
+        expect_status 2
+        expect_sentence 'neither POV-Ray nor corcast shows a vessel of tree\.swc in this view, so nothing is verified'
+        [ ! -e report/report.json ] || fail "expected no verdict"
+    done
+    awk '{ print $1, $2, 0, $4 * 2 ^ -14, 0, 2 ^ -14, $7 }' tree.swc >tiny.swc
+    run corcast verify tiny.swc --input-unit mm --model blob --size 20x20 -o report
+    expect_status 2
+    expect_sentence 'the vessels are too small to be drawn$'
+}
+
 test_joined_trees_of_least_length_agree() {
     run_ok corcast grow --terminals 150 --seed 3 --lambda 0 -o tree.swc
     agrees joined --view iso --shadows on

@@ -316,6 +316,19 @@ static void move_off_ties(Camera *camera)
                                             vec3_scale(camera->up, up_px / camera->height)));
 }
 
+/* Returns STATUS_INPUT if neither side shows a vessel: their agreement would prove nothing. */
+static Status check_shows_something(const Verification *v, Err *err)
+{
+    const CompareResult *ids = &v->results[PLANE_ID];
+    if (ids->common_pixels + ids->missing_pixels + ids->extra_pixels + ids->settled_pixels > 0)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "neither POV-Ray nor corcast shows a vessel of %s in this view, so nothing is "
+                   "verified: the camera looks past the tree, or the vessels are too small to be "
+                   "drawn",
+                   v->tree);
+}
+
 /* Reads the tree, makes the folder, draws both sides and compares them. */
 static Status verify(Verification *v, int frame, Folder *folder, Parsed *parsed, Err *err)
 {
@@ -335,7 +348,8 @@ static Status verify(Verification *v, int frame, Folder *folder, Parsed *parsed,
     TRY(claim_folder(folder, &parsed->files, err));
     TRY(shown_name(v->tree, &v->name, err));
     TRY(verification_draw(v, err));
-    return verification_compare(v, err);
+    TRY(verification_compare(v, err));
+    return check_shows_something(v, err);
 }
 
 static Status run_verify(void *options, Parsed *parsed, Err *err)

@@ -42,10 +42,50 @@ int film_band_rows(const FramesForm *form, const RenderParams *params, const Vie
                                        : (int)rows / RENDER_BAND_STEP * RENDER_BAND_STEP;
 }
 
+/* Returns true if all pixels of a band show the background. */
+static bool shows_nothing(const Frame *band, const View *view)
+{
+    const Rgb paper = view->background;
+    const float colors[3] = {paper.r, paper.g, paper.b};
+    const Plane *color = &band->color, *alpha = &band->alpha;
+    const Picture *codes = &band->codes;
+    if (alpha->values) {
+        for (size_t i = 0; i < (size_t)alpha->width * (size_t)alpha->height; i++)
+            if (alpha->values[i] > 0)
+                return false;
+        return true;
+    }
+    for (size_t i = 0; color->values && i < 3 * (size_t)color->width * (size_t)color->height; i++)
+        if (color->values[i] != colors[i % 3])
+            return false;
+    if (color->values || !codes->codes8)
+        return color->values != NULL;
+    const uint8_t code[3] = {(uint8_t)image_code(paper.r, ENCODING_SRGB, 8),
+                             (uint8_t)image_code(paper.g, ENCODING_SRGB, 8),
+                             (uint8_t)image_code(paper.b, ENCODING_SRGB, 8)};
+    for (size_t i = 0; i < 3 * (size_t)codes->width * (size_t)codes->height; i++)
+        if (codes->codes8[i] != code[i % 3])
+            return false;
+    return true;
+}
+
+/* Warns of a whole picture that shows nothing. A tile or a moment of an animation may. */
+static void warn_of_nothing(const Film *film, const FramesForm *form)
+{
+    if (film->subject.common->quiet || film->shard.rows < film->shard.height ||
+        film->animation->kind != ANIMATION_NONE)
+        return;
+    fprintf(stderr,
+            "corcast: %s shows no vessel: the camera looks past the tree, or the vessels are too "
+            "small to be drawn\n",
+            form->path);
+}
+
 /* Draws the shard's rows band after band and writes each before the next. */
 static Status draw_bands(Renderer *renderer, const Scene *scene, const FramesForm *form,
                          FramesWriter *writer, const Film *film, Err *err)
 {
+    bool empty = true;
     const int end = film->shard.first + film->shard.rows;
     const int step = film_band_rows(form, film->params, &scene->view, film->memory_mb);
     if (step < film->shard.rows)
@@ -54,10 +94,13 @@ static Status draw_bands(Renderer *renderer, const Scene *scene, const FramesFor
         Frame band;
         int rows = step < end - first ? step : end - first;
         TRY(renderer_rows(renderer, &scene->view, &scene->appearance, first, rows, &band, err));
+        empty = empty && shows_nothing(&band, &scene->view);
         Status status = frames_rows(writer, &band, err);
         frame_release(&band);
         TRY(status);
     }
+    if (empty)
+        warn_of_nothing(film, form);
     return STATUS_OK;
 }
 
