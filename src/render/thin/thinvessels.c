@@ -22,7 +22,7 @@ enum { SHADED = 5, ROWS = 8 };
 static const double piece_px = 1.5;
 /* Height of shading points above the wall, in radii: less than a sample can tell, more than
  * rounding. */
-static const double lift = 0.05;
+static const double lift = 0.25;
 
 /* ---- which are thin -------------------------------------------------------------------------- */
 
