@@ -680,4 +680,26 @@ test_a_picture_that_shows_nothing_is_warned_of() {
     expect_sentence 'too small to be drawn$'
 }
 
+test_thin_vessels_behind_an_orthographic_camera_are_not_drawn() {
+    local how
+    rows '1 3 0 0 0 .05 -1' '2 3 4 3 0 .05 1' '3 3 0 -3 -8 2 -1' '4 3 1 -3 -8 2 3'
+    for how in "" --ao=16 --shadows; do
+        run_ok corcast render tree.swc --location 0,0,-4 --look-at 0,0,-8 --up 0,1,0 --height 12 --size 64x64 $how -o drawn.ppm
+        run_ok corcast render tree.swc --location 0,0,-4 --look-at 0,0,-8 --up 0,1,0 --height 12 --size 64x64 $how \
+            --method raster -o sampled.ppm
+        expect_differing 0 0 drawn.ppm sampled.ppm
+    done
+}
+
+test_a_vessel_outside_the_picture_does_not_change_it() {
+    local radius
+    for radius in .8 .015625; do
+        rows "1 3 -40 -10 0 $radius -1" "2 3 30 20 0 $radius 1"
+        run_ok corcast render tree.swc --location 0,0,300 --look-at 0,0,0 --up 0,1,0 --height 128 --size 64x64 -o alone.ppm
+        rows "1 3 -40 -10 0 $radius -1" "2 3 30 20 0 $radius 1" '3 3 500 0 0 2 -1' '4 3 501 0 0 2 3'
+        run_ok corcast render tree.swc --location 0,0,300 --look-at 0,0,0 --up 0,1,0 --height 128 --size 64x64 -o with.ppm
+        expect_same alone.ppm with.ppm
+    done
+}
+
 run_tests "$@"

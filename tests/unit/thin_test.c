@@ -3,7 +3,9 @@
 #include "render/thin/thinvessels.h"
 #include "unit.h"
 
+#include "test_grow.h"
 #include "test_scene.h"
+#include "test_stage.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -38,8 +40,8 @@ static void look_at_paper(Scene *scene, Primitive *primitives, size_t n, int sid
 
 static Primitive vessel(Vec3 a, Vec3 b, double radius_mm, uint32_t segment)
 {
-    return (Primitive){PRIMITIVE_CYLINDER, .a = a, .b = b, .radius_mm = radius_mm,
-                       .segment = segment};
+    return (Primitive){PRIMITIVE_CYLINDER, .a = a,         .b = b,        .radius_mm = radius_mm,
+                       .segment = segment, .free_a = true, .free_b = true};
 }
 
 static Frame drawn(Scene *scene, bool cover, double least_px, int antialias, int threads)
@@ -80,7 +82,7 @@ static Primitive trunk(void)
     return vessel(vec3(12, -3, 0), vec3(12, 3, 0), 1.5, 0);
 }
 
-static void covers_its_length_times_its_width_wherever_it_lies(void **state)
+static void covers_the_area_of_its_projection_wherever_it_lies(void **state)
 {
     (void)state;
     for (int k = 0; k < 23; k++) {
@@ -88,7 +90,8 @@ static void covers_its_length_times_its_width_wherever_it_lies(void **state)
         Vec3 a = vec3(0.17 * k - 2, 1.3 - 0.11 * k, 2);
         Vec3 b = vec3_add(a, vec3(3.7 * cos(turn), 3.7 * sin(turn), 1));
         Primitive vessels[] = {trunk(), vessel(a, b, width_px * PIXEL_MM / 2, 1)};
-        assert_true(fabs(ink_of(vessels, 2, 0) - 3.7 / PIXEL_MM * width_px) < 2e-3);
+        double ends = 0.785398 * width_px * width_px / hypot(3.7, 1);
+        assert_true(fabs(ink_of(vessels, 2, 0) - 3.7 / PIXEL_MM * width_px - ends) < 2e-3);
     }
 }
 
@@ -251,16 +254,209 @@ static void has_the_same_bytes_whatever_threads_and_bands(void **state)
     frame_release(&whole);
 }
 
+/* ---- where others are wrong easily ------------------------------------------------------------
+ */
+
+static void ends_at_the_plane_of_an_orthographic_camera(void **state)
+{
+    (void)state;
+    /* The camera is at z = 20. Half of the first vessel is in front of it, nothing of the second.
+     */
+    Primitive vessels[] = {vessel(vec3(-4, 0, 15), vec3(4, 1, 25), 0.2 * PIXEL_MM, 1),
+                           vessel(vec3(-4, -3, 21), vec3(4, -3, 22), 0.2 * PIXEL_MM, 2)};
+    double half = hypot(8, 1) / PIXEL_MM / 2;
+    assert_true(fabs(ink_of(vessels, 2, 0) - 0.4 * half) < 0.02 * half);
+    assert_true(ink_of(vessels + 1, 1, 0) == 0);
+    assert_true(ink_of(vessels + 1, 1, 3) == 0);
+}
+
+static void is_the_same_whatever_lies_outside_the_picture(void **state)
+{
+    (void)state;
+    Primitive vessels[] = {vessel(vec3(-5, -1, 0), vec3(4, 2.6, 0), 0.4 * PIXEL_MM, 1), trunk()};
+    Scene scene;
+    Frame frames[2];
+    for (size_t k = 0; k < 2; k++) {
+        look_at_paper(&scene, vessels, 1 + k, SIDE);
+        frames[k] = drawn(&scene, true, 0, 3, 1);
+    }
+    assert_memory_equal(frames[0].color.values, frames[1].color.values,
+                        3 * SIDE * SIDE * sizeof(float));
+    frame_release(&frames[0]);
+    frame_release(&frames[1]);
+}
+
+/* Each column of pixels that a vessel crosses has as much ink as the others. */
+static void of_equal_width_are_smooth(void **state)
+{
+    (void)state;
+    for (int antialias = 1; antialias <= 3; antialias++)
+        for (double width_px = 0.02; width_px < 1; width_px += 0.13) {
+            Primitive one = vessel(vec3(-9, -2, 0), vec3(9, 1.7, 0), width_px * PIXEL_MM / 2, 1);
+            Scene scene;
+            look_at_paper(&scene, &one, 1, SIDE);
+            Frame frame = drawn(&scene, true, 0, antialias, 1);
+            for (size_t x = 0; x < SIDE; x++) {
+                double sum = 0;
+                for (size_t y = 0; y < SIDE; y++)
+                    sum += 1 - (double)frame.color.values[3 * (y * SIDE + x)];
+                assert_true(fabs(sum - width_px * hypot(18, 3.7) / 18) < 0.03 * width_px);
+            }
+            frame_release(&frame);
+        }
+}
+
+/* A black vessel lies right behind a white one of the same width. */
+static void hides_what_lies_behind_it(void **state)
+{
+    (void)state;
+    Rgb colors[] = {{0, 0, 0}, {1, 1, 1}};
+    for (uint32_t nearer = 0; nearer < 2; nearer++) {
+        Primitive vessels[] = {
+            trunk(), vessel(vec3(-4, 0.3, 0), vec3(4, 1, 0), 0.45 * PIXEL_MM, nearer),
+            vessel(vec3(-4, 0.3, -2), vec3(4, 1, -2), 0.45 * PIXEL_MM, 1 - nearer)};
+        Scene scene;
+        look_at_paper(&scene, vessels, 3, SIDE);
+        scene.appearance.colors = colors;
+        Frame frame = drawn(&scene, true, 0, 3, 1);
+        double area = 0.9 * hypot(8, 0.7) / PIXEL_MM, black = ink(&frame);
+        assert_true(nearer == 0 ? fabs(black - area) < 0.02 * area : black < 0.35 * area);
+        frame_release(&frame);
+    }
+}
+
+/* A black vessel runs along the outline of a wide white one, half behind it. */
+static void are_hidden_sample_by_sample(void **state)
+{
+    (void)state;
+    Rgb colors[] = {{1, 1, 1}, {0, 0, 0}};
+    Vec3 a = vec3(-7, -3, 0), b = vec3(7, -1.1, 0);
+    Vec3 axis = vec3_normalized(vec3_sub(b, a));
+    Vec3 up = vec3(-2 * axis.y, 2 * axis.x, -3);
+    Primitive vessels[] = {vessel(a, b, 2, 0),
+                           vessel(vec3_add(a, up), vec3_add(b, up), 0.45 * PIXEL_MM, 1)};
+    Scene scene, fine_scene;
+    look_at_paper(&scene, vessels, 2, SIDE);
+    look_at_paper(&fine_scene, vessels, 2, SIDE * FINER);
+    scene.appearance.colors = fine_scene.appearance.colors = colors;
+    Frame fine = drawn(&fine_scene, false, 0, 1, 2);
+    Frame covered = drawn(&scene, true, 0, 3, 2), sampled = drawn(&scene, false, 0, 3, 2);
+    double by_cover = distance_from(&covered, &fine), by_samples = distance_from(&sampled, &fine);
+    print_message("off by %.4f, samples by %.4f\n", by_cover, by_samples);
+    assert_true(by_cover <= by_samples);
+    frame_release(&fine);
+    frame_release(&covered);
+    frame_release(&sampled);
+}
+
+/* ---- grown trees ------------------------------------------------------------------------------
+ */
+
+enum { GROWN = 64, GROWN_FINER = 6 };
+
+static const Look grown_look = {.color = {0.8f, 0.4f, 0.3f},
+                                .finish = {.ambient = 0.3f, .diffuse = 0.7f, .brilliance = 1}};
+
+static double code(double value)
+{
+    return 255 * (value <= 0.0031308 ? 12.92 * value : 1.055 * pow(value, 1 / 2.4) - 0.055);
+}
+
+static Frame draw_grown(const Tree *tree, int finer, bool cover, bool shadows, int occlusion)
+{
+    StageParams stage = stage_square(SCENE_ROUNDED, GROWN * finer);
+    RenderParams params = {.method = RENDER_FASTEST,
+                           .threads = 2,
+                           .antialias = 3,
+                           .cover_thin = cover,
+                           .shadows = shadows,
+                           .occlusion = occlusion,
+                           .want_color = true};
+    Scene scene;
+    Frame frame;
+    stage.view.shadows = shadows;
+    must(stage_all(tree, &grown_look, &stage, &scene, NULL, &err), &err);
+    Vec3 middle = box_center(scene.geometry.bounds);
+    scene.view.background = (Rgb){1, 1, 1};
+    scene.view.n_lights = 1;
+    scene.view.lights[0] = (Light){.location = vec3_add(middle, vec3(33, 57, 71)),
+                                   .target = middle,
+                                   .color = {1, 1, 1},
+                                   .parallel = true,
+                                   .casts_shadows = shadows};
+    must(render(&scene, &params, &frame, NULL, &err), &err);
+    scene_release(&scene);
+    return frame;
+}
+
+/* How far a picture is off from the mean of a finer one's pixels, in 8-bit levels. */
+typedef struct Off {
+    double bias, rms;
+} Off;
+
+static Off off_from(const Frame *frame, const Frame *fine)
+{
+    double sum = 0, squares = 0;
+    for (size_t i = 0; i < 3 * GROWN * GROWN; i++) {
+        size_t x = i / 3 % GROWN, y = i / 3 / GROWN;
+        double mean = 0;
+        for (size_t k = 0; k < GROWN_FINER * GROWN_FINER; k++)
+            mean += (double)fine->color
+                        .values[3 * ((y * GROWN_FINER + k / GROWN_FINER) * GROWN * GROWN_FINER +
+                                     x * GROWN_FINER + k % GROWN_FINER) +
+                                i % 3];
+        double off =
+            code((double)frame->color.values[i]) - code(mean / (GROWN_FINER * GROWN_FINER));
+        sum += off;
+        squares += off * off;
+    }
+    return (Off){sum / (3 * GROWN * GROWN), sqrt(squares / (3 * GROWN * GROWN))};
+}
+
+/* Beside 360 samples a pixel. */
+static void looks_right(const Tree *tree, bool shadows, int occlusion)
+{
+    Frame fine = draw_grown(tree, GROWN_FINER, false, shadows, occlusion);
+    Frame covered = draw_grown(tree, 1, true, shadows, occlusion);
+    Frame sampled = draw_grown(tree, 1, false, shadows, occlusion);
+    Off off = off_from(&covered, &fine), of_samples = off_from(&sampled, &fine);
+    print_message("bias %.2f, rms %.2f; ten samples: bias %.2f, rms %.2f\n", off.bias, off.rms,
+                  of_samples.bias, of_samples.rms);
+    assert_true(fabs(off.bias) < 0.6 && off.rms < of_samples.rms);
+    frame_release(&fine);
+    frame_release(&covered);
+    frame_release(&sampled);
+}
+
+static void of_trees_look_as_by_many_samples(void **state)
+{
+    (void)state;
+    const char *domains[] = {"disc:20", "ball:20"};
+    for (int k = 0; k < 2; k++) {
+        Tree tree = test_grown(domains[k], k ? 1200 : 500, 11);
+        looks_right(&tree, false, 0);
+        looks_right(&tree, true, 0);
+        looks_right(&tree, true, 16);
+        tree_release(&tree);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(covers_its_length_times_its_width_wherever_it_lies),
+        cmocka_unit_test(covers_the_area_of_its_projection_wherever_it_lies),
         cmocka_unit_test(covers_as_much_in_pieces_as_in_one),
         cmocka_unit_test(vessels_end_to_end_are_one_run_however_many_they_are),
         cmocka_unit_test(hides_behind_what_is_thicker),
         cmocka_unit_test(is_drawn_as_wide_as_is_asked_for),
         cmocka_unit_test(is_nearer_to_the_mean_of_many_samples_than_ten_samples_are),
         cmocka_unit_test(has_the_same_bytes_whatever_threads_and_bands),
+        cmocka_unit_test(ends_at_the_plane_of_an_orthographic_camera),
+        cmocka_unit_test(is_the_same_whatever_lies_outside_the_picture),
+        cmocka_unit_test(of_equal_width_are_smooth),
+        cmocka_unit_test(hides_what_lies_behind_it),
+        cmocka_unit_test(are_hidden_sample_by_sample),
+        cmocka_unit_test(of_trees_look_as_by_many_samples),
     };
     return cmocka_run_group_tests_name("thin", tests, NULL, NULL);
 }

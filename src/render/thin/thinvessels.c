@@ -22,7 +22,7 @@ enum { SHADED = 5, ROWS = 8 };
 static const double piece_px = 1.5;
 /* Height of shading points above the wall, in radii: less than a sample can tell, more than
  * rounding. */
-static const double lift = 0.05;
+static const double lift = 0.25;
 
 /* ---- which are thin -------------------------------------------------------------------------- */
 
@@ -215,6 +215,39 @@ static void join_runs(const Search *search)
     }
 }
 
+/* Returns by how much of its radius the end of a run is moved outwards, for what the vessel's end
+ * adds to the area of its strip: half a disc if the end is round, the visible half of an ellipse if
+ * it is flat. A run begins within another vessel unless its first cylinder has an end of its own.
+ */
+static double end_in_radii(const Search *search, const ThinStrip *strip, int end)
+{
+    const double quarter_turn = 0.78539816339744831;
+    const Geometry *whole = search->thin->whole;
+    const Vessel vessel = vessel_at(whole, strip->vessel);
+    const Primitive *one = whole->n_primitives ? &whole->primitives[strip->vessel] : NULL;
+    const bool is_round = one && (end ? one->round_b : one->round_a);
+    if (end == 0 && !is_round && !(one && one->free_a))
+        return 0;
+    const Vec3 axis = vec3_normalized(vec3_sub(vessel.b, vessel.a));
+    Vec3 sight = search->camera->direction;
+    if (search->thin->layer.perspective)
+        sight = vec3_normalized(vec3_sub(vessel.b, search->camera->location));
+    return quarter_turn * (is_round ? 1 : fabs(vec3_dot(axis, sight)));
+}
+
+static void extend_strip(const Search *search, ThinStrip *strip, bool is_first, bool is_last)
+{
+    const float x = strip->x[1] - strip->x[0], y = strip->y[1] - strip->y[0];
+    const float length = hypotf(x, y), radius = strip->width / 2;
+    const float toward[2] = {length > 0 ? x / length : 1, length > 0 ? y / length : 0};
+    const float before = is_first ? radius * (float)end_in_radii(search, strip, 0) : 0;
+    const float behind = is_last ? radius * (float)end_in_radii(search, strip, 1) : 0;
+    strip->x[0] -= before * toward[0];
+    strip->y[0] -= before * toward[1];
+    strip->x[1] += behind * toward[0];
+    strip->y[1] += behind * toward[1];
+}
+
 /* Makes strips of what is marked, and numbers their pieces. */
 static Status take(Search *search, int threads, Err *err)
 {
@@ -228,6 +261,11 @@ static Status take(Search *search, int threads, Err *err)
     TRY(mem_calloc(&layer->strips, layer->n, sizeof *layer->strips, "thin vessels", err));
     threads_for(search->n_chunks, threads, take_chunk, search);
     join_runs(search);
+    for (size_t i = 0; i < layer->n; i++) {
+        const ThinStrip *strip = &layer->strips[i];
+        extend_strip(search, &layer->strips[i], i == 0 || strip[-1].run != strip->run,
+                     i + 1 == layer->n || strip[1].run != strip->run);
+    }
     for (size_t i = 0; i < layer->n; i++) {
         layer->strips[i].first_piece = (uint32_t)layer->n_pieces;
         layer->n_pieces += layer->strips[i].n_pieces;
