@@ -53,7 +53,7 @@ static const double wall_s = 1e-6, voxel_s = 2.2e-9, body_s = 6e-5, deflated_zer
  * least those that its axis passes. */
 static double wall_voxels(const Geometry *geometry, Vec3 step)
 {
-    double h = cbrt(step.x * step.y * step.z), walls = 0;
+    double h = elementary_cbrt(step.x * step.y * step.z), walls = 0;
     for (size_t i = 0; i < geometry->n_primitives; i++) {
         const Primitive *primitive = &geometry->primitives[i];
         double r = primitive->radius_mm / h, l = vec3_distance(primitive->a, primitive->b) / h;
