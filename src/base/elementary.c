@@ -69,13 +69,16 @@ static inline Sum fast_sum(double a, double b)
     return (Sum){high, a - high + b};
 }
 
-/* Returns coefficient[0] + coefficient[1] x + ... with n coefficients. */
+/* Returns coefficient[0] + coefficient[1] x + ... with n coefficients, an even number: even and odd
+ * powers are summed side by side, which takes half the time of one sum. */
 static inline double polynomial(double x, const double *coefficient, int n)
 {
-    double sum = coefficient[n - 1];
-    for (int i = n - 2; i >= 0; i--)
-        sum = sum * x + coefficient[i];
-    return sum;
+    double square = x * x, even = coefficient[n - 2], odd = coefficient[n - 1];
+    for (int i = n - 4; i >= 0; i -= 2) {
+        even = even * square + coefficient[i];
+        odd = odd * square + coefficient[i + 1];
+    }
+    return even + x * odd;
 }
 
 /* Returns the logarithm of the positive number x, given by its bits, as a sum whose relative error
@@ -529,7 +532,7 @@ double elementary_acos(double x)
 /* erf(x) for |x| <= 1/2. */
 static double erf_near_0(double x)
 {
-    return x + x * polynomial(x * x, ERF_SERIES, 13);
+    return x + x * polynomial(x * x, ERF_SERIES, 14);
 }
 
 /* erfc(x) for x >= 1/2: exp(-x^2) times a function that hardly changes [Shepherd & Laframboise,

@@ -13,11 +13,10 @@
  * Errors are below these bounds, in units in the last place of the result, which docs/METHODS.md,
  * section 3.10, proves:
  *
- *     log, log2, log10   0.501     sin     0.9     atan2        1.7
- *     exp                0.508     cos     0.9     asin, acos   4
- *     pow, exp2          0.518     tan     3       erf          2.5
- *     cbrt, log1p        0.51      hypot   1.01    erfc         6
- *     expm1              1.3
+ *     log, log2, log10   0.501     expm1   1.1     hypot        1.5
+ *     exp                0.508     sin     1.1     atan2        2.8
+ *     pow, exp2          0.518     cos     0.65    asin, acos   5.5
+ *     cbrt, log1p        0.51      tan     4       erf          5, erfc 9
  */
 #ifndef CORCAST_BASE_ELEMENTARY_H
 #define CORCAST_BASE_ELEMENTARY_H

@@ -481,11 +481,11 @@ static const uint64_t TWO_OVER_PI[20] = {
 
 /* (erf(x) - x) / x as a polynomial of x^2, |x| <= 1/2. */
 
-static const double ERF_SERIES[13] = {
+static const double ERF_SERIES[14] = {
     0x1.06eba8214db69p-3,  -0x1.812746b0379e7p-2,  0x1.ce2f21a042be2p-4,  -0x1.b82ce31288b51p-6,
     0x1.565bcd0e6a53fp-8,  -0x1.c02db40040b86p-11, 0x1.f9a326f9b89b7p-14, -0x1.f4d25c3e0c2ebp-17,
     0x1.b9e6c9dc651a3p-20, -0x1.5f742ec43e71ap-23, 0x1.fcc5720624c1cp-27, -0x1.51d7181c5d36dp-30,
-    0x1.9e6ad5e55a730p-34,
+    0x1.9e6ad5e55a730p-34, -0x1.d8453cb0c46eap-38,
 };
 
 /* (1 + 2 x) exp(x^2) erfc(x) as a polynomial of (x - 3.75) / (x + 3.75), 1/2 <= x <= 28 [Shepherd &

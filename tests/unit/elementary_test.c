@@ -27,17 +27,17 @@ static const Function functions[] = {
     {"log2", 0.501, elementary_log2, log2, NULL, NULL},
     {"log10", 0.501, elementary_log10, log10, NULL, NULL},
     {"log1p", 0.51, elementary_log1p, log1p, NULL, NULL},
-    {"expm1", 1.3, elementary_expm1, expm1, NULL, NULL},
+    {"expm1", 1.1, elementary_expm1, expm1, NULL, NULL},
     {"cbrt", 0.51, elementary_cbrt, cbrt, NULL, NULL},
-    {"hypot", 1.01, NULL, NULL, elementary_hypot, hypot},
-    {"sin", 0.9, elementary_sin, sin, NULL, NULL},
-    {"cos", 0.9, elementary_cos, cos, NULL, NULL},
-    {"tan", 3, elementary_tan, tan, NULL, NULL},
-    {"atan2", 1.7, NULL, NULL, elementary_atan2, atan2},
-    {"asin", 4, elementary_asin, asin, NULL, NULL},
-    {"acos", 4, elementary_acos, acos, NULL, NULL},
-    {"erf", 2.5, elementary_erf, erf, NULL, NULL},
-    {"erfc", 6, elementary_erfc, erfc, NULL, NULL},
+    {"hypot", 1.5, NULL, NULL, elementary_hypot, hypot},
+    {"sin", 1.1, elementary_sin, sin, NULL, NULL},
+    {"cos", 0.65, elementary_cos, cos, NULL, NULL},
+    {"tan", 4, elementary_tan, tan, NULL, NULL},
+    {"atan2", 2.8, NULL, NULL, elementary_atan2, atan2},
+    {"asin", 5.5, elementary_asin, asin, NULL, NULL},
+    {"acos", 5.5, elementary_acos, acos, NULL, NULL},
+    {"erf", 5, elementary_erf, erf, NULL, NULL},
+    {"erfc", 9, elementary_erfc, erfc, NULL, NULL},
 };
 enum { N_FUNCTIONS = sizeof functions / sizeof *functions };
 
@@ -147,7 +147,7 @@ static void bits_are_those_recorded(void **state)
             hash_add(&hash, &result, sizeof result);
         }
     assert_string_equal(hash_text(&hash).hex,
-                        "e122b72630e6297e2ccb328010f4b82f48662739aa44f542e4755aea19682f23");
+                        "b6bc58a5e19ec24da41555648551105ff9dd7bdbb7fce954bcb9828a5aa6a8dd");
 }
 
 int main(void)

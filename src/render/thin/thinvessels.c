@@ -501,7 +501,7 @@ static void draw_strip(Brush *brush)
     const ThinStrip *strip = brush->strip;
     float wide = drawn_width(brush->picture->thin, strip);
     float step_x = strip->x[1] - strip->x[0], step_y = strip->y[1] - strip->y[0];
-    float length = hypotf(step_x, step_y);
+    float length = (float)elementary_hypot((double)step_x, (double)step_y);
     if (!(length > 0))
         return;
     int lines = wide > 1 ? (int)ceilf(LINES * wide) : LINES;
