@@ -32,6 +32,12 @@ test_continuous_integration_runs_the_test_command_of_the_readme() {
     grep -q 'make demo' "$REPO/README.md" || fail "expected README.md to name make demo"
 }
 
+test_the_tables_of_elementary_functions_are_those_of_their_script() {
+    "$REPO/tests/elementary/tables" 2>bounds | clang-format --style="file:$REPO/.clang-format" >tables.h
+    expect_same tables.h "$REPO/src/base/elementary_tables.h"
+    grep -q 'log <= 0.50001 ulp, exp <= 0.5079 ulp, pow <= 0.5172 ulp' bounds || fail "expected the bounds of METHODS.md 3.10, got: $(cat bounds)"
+}
+
 # So that no failed allocation is forgotten: whoever takes the characters of a text that failed gets NULL, and
 # JSON made of NULL is NULL.
 test_texts_and_json_are_made_by_the_functions_that_carry_a_failure_on() {

@@ -2,25 +2,26 @@
 #ifndef CORCAST_BASE_BASE_H
 #define CORCAST_BASE_BASE_H
 
-#include "base/clock.h"     // IWYU pragma: export
-#include "base/file.h"      // IWYU pragma: export
-#include "base/hash.h"      // IWYU pragma: export
-#include "base/ini.h"       // IWYU pragma: export
-#include "base/interrupt.h" // IWYU pragma: export
-#include "base/isolated.h"  // IWYU pragma: export
-#include "base/json.h"      // IWYU pragma: export
-#include "base/logcurve.h"  // IWYU pragma: export
-#include "base/memory.h"    // IWYU pragma: export
-#include "base/number.h"    // IWYU pragma: export
-#include "base/random.h"    // IWYU pragma: export
-#include "base/range.h"     // IWYU pragma: export
-#include "base/slab.h"      // IWYU pragma: export
-#include "base/sort.h"      // IWYU pragma: export
-#include "base/status.h"    // IWYU pragma: export
-#include "base/suggest.h"   // IWYU pragma: export
-#include "base/text.h"      // IWYU pragma: export
-#include "base/threads.h"   // IWYU pragma: export
-#include "base/units.h"     // IWYU pragma: export
-#include "base/version.h"   // IWYU pragma: export
+#include "base/clock.h"      // IWYU pragma: export
+#include "base/elementary.h" // IWYU pragma: export
+#include "base/file.h"       // IWYU pragma: export
+#include "base/hash.h"       // IWYU pragma: export
+#include "base/ini.h"        // IWYU pragma: export
+#include "base/interrupt.h"  // IWYU pragma: export
+#include "base/isolated.h"   // IWYU pragma: export
+#include "base/json.h"       // IWYU pragma: export
+#include "base/logcurve.h"   // IWYU pragma: export
+#include "base/memory.h"     // IWYU pragma: export
+#include "base/number.h"     // IWYU pragma: export
+#include "base/random.h"     // IWYU pragma: export
+#include "base/range.h"      // IWYU pragma: export
+#include "base/slab.h"       // IWYU pragma: export
+#include "base/sort.h"       // IWYU pragma: export
+#include "base/status.h"     // IWYU pragma: export
+#include "base/suggest.h"    // IWYU pragma: export
+#include "base/text.h"       // IWYU pragma: export
+#include "base/threads.h"    // IWYU pragma: export
+#include "base/units.h"      // IWYU pragma: export
+#include "base/version.h"    // IWYU pragma: export
 
 #endif

@@ -2,6 +2,7 @@
  * a tree are. A curve has few points, so the one below a place is found by looking at all. */
 #include "base/logcurve.h"
 
+#include "base/elementary.h"
 #include "base/number.h"
 #include <math.h>
 #include <string.h>
@@ -13,7 +14,8 @@ double logcurve_at(const LogCurve *curve, double place)
         k++;
     if (k == 0 || k == curve->n)
         return curve->value[k == 0 ? 0 : k - 1];
-    double low = curve->place[k - 1], part = log(place / low) / log(curve->place[k] / low);
+    double low = curve->place[k - 1],
+           part = elementary_log(place / low) / elementary_log(curve->place[k] / low);
     return curve->value[k - 1] + part * (curve->value[k] - curve->value[k - 1]);
 }
 

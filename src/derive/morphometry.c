@@ -151,7 +151,7 @@ static double misfit(const TreeStatistics *statistics, const Morphometry *table,
         double own = 2 * statistics->by_diameter_strahler.row[k].radius_mm.mean;
         if (k + shift < 0 || k + shift >= (int)table->n || !(own > 0))
             continue;
-        double off = log(own / table->row[k + shift].diameter_mm.mean);
+        double off = elementary_log(own / table->row[k + shift].diameter_mm.mean);
         sum += off * off;
         count++;
     }

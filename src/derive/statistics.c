@@ -137,7 +137,7 @@ static double growth_ratio(const StatisticsRow *row, size_t rows,
             continue;
         n++;
         mean_x += row[i].number;
-        mean_y += log(quantity(&row[i]));
+        mean_y += elementary_log(quantity(&row[i]));
     }
     mean_x /= n;
     mean_y /= n;
@@ -146,9 +146,9 @@ static double growth_ratio(const StatisticsRow *row, size_t rows,
             continue;
         double x = row[i].number - mean_x;
         xx += x * x;
-        xy += x * (log(quantity(&row[i])) - mean_y);
+        xy += x * (elementary_log(quantity(&row[i])) - mean_y);
     }
-    return n >= 2 ? exp(xy / xx) : (double)NAN;
+    return n >= 2 ? elementary_exp(xy / xx) : (double)NAN;
 }
 
 OrderRatios statistics_ratios(const StatisticsTable *table, int first, int last)

@@ -21,7 +21,7 @@ static void sum_segments(const Tree *tree, TreeSummary *summary)
         summary->total_length_mm += length;
         summary->volume_mm3 += PI * radius * radius * length;
         if (summary->has.target)
-            summary->target += length * pow(radius, summary->lambda);
+            summary->target += length * elementary_pow(radius, summary->lambda);
         summary->min_radius_mm = fmin(summary->min_radius_mm, radius);
     }
 }

@@ -271,7 +271,7 @@ static Status list_cells(Domain *domain, Err *err)
                       is_near(hull, vec3_add_scaled(hull->low, at, hull->edge), 0);
         }
     }
-    double cell = pow(hull->edge, domain->dimension);
+    double cell = elementary_pow(hull->edge, domain->dimension);
     domain->volume = cell * (double)hull->n_some * (double)inside / (double)of;
     return STATUS_OK;
 }

@@ -92,7 +92,8 @@ static Status put_preview_vertices(Text *out, void *context, Err *err)
         vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
         for (int k = 0; k < 2 * SIDES; k++) {
             double angle = FULL_TURN * k / SIDES;
-            Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle)));
+            Vec3 way = vec3_add(vec3_scale(u, elementary_cos(angle)),
+                                vec3_scale(v, elementary_sin(angle)));
             threemf_put_vertex(
                 vec3_add_scaled(k < SIDES ? segment->a : segment->b, way, segment->radius_mm), out);
         }

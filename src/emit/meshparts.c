@@ -59,7 +59,7 @@ void put_color_code(Text *out, const EmitParams *params, uint32_t segment)
  * Unreal Engine 4, 2013], and Blinn's of 4 n as Phong's of n. */
 double microfacet_roughness(const Finish *finish)
 {
-    return pow(2 / (4 * (double)finish->phong_size + 2), 0.25);
+    return elementary_pow(2 / (4 * (double)finish->phong_size + 2), 0.25);
 }
 
 Box box_with_vessel(Box box, const FieldSegment *segment)

@@ -53,7 +53,7 @@ static double gradient_at(const JointPlane *plane, double l, double s)
 {
     /* Half the diameter, and the change of the point (l, s) with l: J is their cross product. */
     double turn_x = (plane->bx - plane->ax) / 2 - 1, turn_z = (plane->bz - plane->az) / 2;
-    double half_x = 1 + l * turn_x, half_z = l * turn_z, half = hypot(half_x, half_z);
+    double half_x = 1 + l * turn_x, half_z = l * turn_z, half = elementary_hypot(half_x, half_z);
     double change_x = (plane->ax + plane->bx) / 2 + s * turn_x;
     double change_z = (plane->az + plane->bz) / 2 + s * turn_z;
     double along = (change_x * half_x + change_z * half_z) / half;
@@ -62,7 +62,8 @@ static double gradient_at(const JointPlane *plane, double l, double s)
     double by_s = 2 * axis * axis * s;
     double by_l = -2 * axis * (plane->ratio - 1) * (1 - s * s);
     double by_y = fmax(1, plane->ratio) + axis * sqrt(1 - s * s);
-    return hypot(area * by_y, hypot(by_s * area / half, by_l * half - by_s * along));
+    return elementary_hypot(area * by_y,
+                            elementary_hypot(by_s * area / half, by_l * half - by_s * along));
 }
 
 static double largest_gradient(const JointPlane *plane)
@@ -104,7 +105,8 @@ void put_joint(Text *text, const EmitParams *params, const Primitive *joint)
     Vec3 across = vec3_scale(frame.across, 1 / frame.radius);
     JointPlane plane = joint_plane(&frame, across, joint->axes[0]);
     /* The distances to the planes are not divided by the lengths of their normals, either. */
-    double sides = fmax(hypot(plane.ax + 1, plane.az), hypot(plane.bx - 1, plane.bz));
+    double sides =
+        fmax(elementary_hypot(plane.ax + 1, plane.az), elementary_hypot(plane.bx - 1, plane.bz));
     /* The function is that of the surface only where rulings do not cross. */
     bool folded = !primitive_joint_is_solid(joint);
     double steepest = fmax(fmax(1, 2 * plane.ratio), sides);

@@ -104,7 +104,7 @@ static Status draw_shape(Target *target, const FigureItem *item, Err *err)
 /* A part of a line with square ends. */
 static Status draw_stroke(Target *target, FigurePoint from, FigurePoint to, double width, Err *err)
 {
-    double x = to.x - from.x, y = to.y - from.y, length = hypot(x, y);
+    double x = to.x - from.x, y = to.y - from.y, length = elementary_hypot(x, y);
     if (!(length > 0))
         return STATUS_OK;
     x *= width / 2 / length;

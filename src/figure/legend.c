@@ -80,7 +80,7 @@ static int decimals_of(const double *values, int n)
         gap = fmin(gap, values[i] - values[i - 1]);
     for (int decimals = 0; decimals < 6; decimals++) {
         bool enough = true;
-        double unit = pow(10, -decimals);
+        double unit = elementary_pow(10, -decimals);
         for (int i = 0; i < n && enough; i++)
             enough = fabs(values[i] - round(values[i] / unit) * unit) <= gap / 100;
         if (enough)
@@ -163,7 +163,7 @@ static double bound_of(const ColorScale *scale, int step)
     if (scale->n_bounds)
         return scale->bounds[step - 1];
     double part = (double)step / scale->classes, low = scale->range[0], high = scale->range[1];
-    return scale->log ? low * pow(high / low, part) : low + part * (high - low);
+    return scale->log ? low * elementary_pow(high / low, part) : low + part * (high - low);
 }
 
 /* Classes of one height each; the numbers between them, as far as there is room for them, and of a

@@ -8,7 +8,7 @@
 /* The least of 1, 2, 5, 10, 20, ... times a power of ten that is not below `least`. */
 static double round_step(double least)
 {
-    double power = pow(10, floor(log10(least)));
+    double power = elementary_pow(10, floor(elementary_log10(least)));
     static const double digits[] = {1, 2, 5};
     for (size_t i = 0; i < sizeof digits / sizeof *digits; i++)
         if (digits[i] * power >= least * (1 - 1e-9))
@@ -33,9 +33,11 @@ static int powers(const double range[2], int apart, int digits, double ticks[FIG
 {
     static const double digit[] = {1, 2, 5};
     int n = 0;
-    for (int k = (int)floor(log10(range[0])); k <= (int)ceil(log10(range[1])); k++)
+    for (int k = (int)floor(elementary_log10(range[0])); k <= (int)ceil(elementary_log10(range[1]));
+         k++)
         for (int i = 0; i < digits && k % apart == 0; i++) {
-            double value = k < 0 ? digit[i] / pow(10, -k) : digit[i] * pow(10, k);
+            double value =
+                k < 0 ? digit[i] / elementary_pow(10, -k) : digit[i] * elementary_pow(10, k);
             if (value >= range[0] * (1 - 1e-9) && value <= range[1] * (1 + 1e-9) &&
                 n < FIGURE_TICKS)
                 ticks[n++] = value;
@@ -52,7 +54,7 @@ int figure_ticks(const ColorScale *scale, int most, bool whole, double ticks[FIG
     }
     if (!scale->log)
         return even(range, most, whole, ticks);
-    double decades = log10(range[1] / range[0]);
+    double decades = elementary_log10(range[1] / range[0]);
     int n = decades >= 2 ? powers(range, (int)ceil(decades / most), 1, ticks)
                          : powers(range, 1, 3, ticks);
     return n >= 2 ? n : even(range, most, whole, ticks);

@@ -3,6 +3,8 @@
 #ifndef CORCAST_GEOM_VEC3_H
 #define CORCAST_GEOM_VEC3_H
 
+#include "base/base.h"
+
 #include <math.h>
 
 typedef struct Vec3 {
@@ -79,9 +81,9 @@ static inline Vec3 vec3_normalized(Vec3 a)
 /* `a` turned about the unit vector `axis`, right-handed, by radians. */
 static inline Vec3 vec3_turned(Vec3 a, Vec3 axis, double angle)
 {
-    Vec3 result = vec3_scale(a, cos(angle));
-    result = vec3_add_scaled(result, vec3_cross(axis, a), sin(angle));
-    return vec3_add_scaled(result, axis, vec3_dot(axis, a) * (1 - cos(angle)));
+    Vec3 result = vec3_scale(a, elementary_cos(angle));
+    result = vec3_add_scaled(result, vec3_cross(axis, a), elementary_sin(angle));
+    return vec3_add_scaled(result, axis, vec3_dot(axis, a) * (1 - elementary_cos(angle)));
 }
 
 /* Two unit vectors across the unit vector `axis`, right-handed with it: u x v = axis. */

@@ -410,8 +410,8 @@ static double target_of(const Tree *tree)
 {
     double target = 0;
     for (size_t i = 0; i < tree->n; i++)
-        target +=
-            tree_segment_length(tree, i) * pow(tree->radius_mm[i], tree->meta.number[META_LAMBDA]);
+        target += tree_segment_length(tree, i) *
+                  elementary_pow(tree->radius_mm[i], tree->meta.number[META_LAMBDA]);
     return target;
 }
 

@@ -128,7 +128,7 @@ static double toss_distance_at(const Site *site, Vec3 point)
     if (!site->demand)
         return site->toss_distance;
     double share = demand_at(site->demand, point);
-    double spread = site->domain->dimension == 2 ? 1 / sqrt(share) : 1 / cbrt(share);
+    double spread = site->domain->dimension == 2 ? 1 / sqrt(share) : 1 / elementary_cbrt(share);
     return site->toss_distance * fmin(spread, most);
 }
 

@@ -92,7 +92,7 @@ Status weights_update(Network *net, const GrowParams *params, const double *flow
         double ratio = flow[i] / net->segment[i].terminals * viscosity / trait->weight;
         double gamma = logcurve_at(&params->gamma, radius[i]);
         *change = fmax(*change, fmax(fabs(ratio - 1), fabs(gamma - trait->gamma)));
-        trait->weight *= part == 1 ? ratio : pow(ratio, part);
+        trait->weight *= part == 1 ? ratio : elementary_pow(ratio, part);
         trait->gamma = part == 1 ? gamma : trait->gamma + part * (gamma - trait->gamma);
         if (net->segment[i].child[0] < 0)
             sum += viscosity;

@@ -39,7 +39,7 @@ static void lay_lattice(Survey *survey, double points)
     Vec3 size = vec3_sub(box.high, box.low);
     double share = survey->domain->volume / points; /* of a point */
     bool flat = survey->domain->dimension == 2;
-    double spacing = flat ? sqrt(share) : cbrt(share);
+    double spacing = flat ? sqrt(share) : elementary_cbrt(share);
     double most = LEAST_POINTS + POINTS_PER_ASKED * size.x * size.y * (flat ? 1 : size.z) / share;
     while ((size.x / spacing + 1) * (size.y / spacing + 1) * (size.z / spacing + 1) > most)
         spacing *= 1.25;

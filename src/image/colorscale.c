@@ -9,7 +9,7 @@
 /* NAN where the scale cannot show the value. */
 static double scaled(const ColorScale *scale, double value)
 {
-    return scale->log ? (value > 0 ? log(value) : (double)NAN) : value;
+    return scale->log ? (value > 0 ? elementary_log(value) : (double)NAN) : value;
 }
 
 /* Whether the value may set the ends of the range. */

@@ -121,7 +121,7 @@ static float decode(float encoded, double gamma)
 {
     return gamma == 0   ? srgb_decode(encoded)
            : gamma == 1 ? encoded
-                        : (float)pow((double)encoded, 1 / gamma);
+                        : (float)elementary_pow((double)encoded, 1 / gamma);
 }
 
 Status plane_from_picture(Plane *plane, const Picture *picture, Err *err)

@@ -315,7 +315,7 @@ Status look_read(Look *look, const char *path, Err *err)
 
 static double crease_cosine(double degrees)
 {
-    return degrees < 180 ? cos(degrees * DEGREE) : -1;
+    return degrees < 180 ? elementary_cos(degrees * DEGREE) : -1;
 }
 
 Effects look_effects(const Look *look, double thousandth_px, double diameter_mm)

@@ -29,7 +29,7 @@ static void set_axes(ViewParams *params, Axes axes)
 /* Of a perspective picture: its width, over the distance of what has it. */
 static double width_per_distance(const ViewParams *params)
 {
-    return 2 * tan(params->angle_deg * DEGREE / 2);
+    return 2 * elementary_tan(params->angle_deg * DEGREE / 2);
 }
 
 /* Height of the picture where it is looked at. */
@@ -117,7 +117,7 @@ void orbit_frame_turn(ViewParams *params, const Geometry *geometry)
     Vec3 right = vec3_normalized(vec3_cross(direction, up));
     up = vec3_cross(right, direction);
     double aspect = (double)params->width / params->height, used = 1 - 2 * params->margin;
-    double tan_x = tan(params->angle_deg * DEGREE / 2) * used, tan_y = tan_x / aspect;
+    double tan_x = elementary_tan(params->angle_deg * DEGREE / 2) * used, tan_y = tan_x / aspect;
     double slant_x = sqrt(1 + tan_x * tan_x), slant_y = sqrt(1 + tan_y * tan_y);
     double height = 0, distance = 0;
     for (size_t i = 0; i < framed_segments(&framed); i++) {

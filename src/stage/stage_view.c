@@ -188,7 +188,7 @@ static void place_orthographic(const ViewParams *params, const Framed *framed, C
 static void place_perspective(const ViewParams *params, const Framed *framed, Camera *camera)
 {
     double aspect = (double)params->width / params->height, used = 1 - 2 * params->margin;
-    double tan_x = tan(params->angle_deg * DEGREE / 2), tan_y = tan_x / aspect;
+    double tan_x = elementary_tan(params->angle_deg * DEGREE / 2), tan_y = tan_x / aspect;
     double room_x = (double)params->room[0] / params->width;
     double room_y = (double)params->room[1] / params->height;
     Vec3 target = params->has_look_at ? params->look_at : box_center(framed->box);

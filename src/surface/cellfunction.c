@@ -32,7 +32,7 @@ double cell_displacement(double radius_mm, ErfForm form)
  * square of how many different ones there are. */
 static Linear linear(Vec3 direction, double c, Vec3 origin)
 {
-    double unit = pow(10, 11 - floor(log10(c)));
+    double unit = elementary_pow(10, 11 - floor(elementary_log10(c)));
     Vec3 k = {round(direction.x * c * unit) / unit, round(direction.y * c * unit) / unit,
               round(direction.z * c * unit) / unit};
     return (Linear){{k.x, k.y, k.z, round(-vec3_dot(k, origin) * 1e10) / 1e10}};
@@ -66,13 +66,13 @@ static double step_form(double u, ErfForm form)
         form == ERF_FAST
             ? u * (u * u * k[1] + k[0])
             : u * ((((u * u * k[4] + k[3]) * u * u + k[2]) * u * u + k[1]) * u * u + k[0]);
-    return 1 / (exp(exponent) + 1);
+    return 1 / (elementary_exp(exponent) + 1);
 }
 
 double term_form_value(const TermForm *term, TermPart part, ErfForm form, Vec3 x)
 {
     double v = linear_at(&term->v, x), w = linear_at(&term->w, x);
-    double gauss = exp(-(v * v + w * w));
+    double gauss = elementary_exp(-(v * v + w * w));
     switch (part) {
     case TERM_BOTH_ENDS:
         return gauss * (step_form(linear_at(&term->start, x), form) +

@@ -116,12 +116,12 @@ static Box cube_box(const Cube *cube, double margin)
 /* The bound of s_min |grad (log form)| for potentials up to `phi`. */
 static double gradient_bound(const Builder *builder, const TermList *terms, double phi)
 {
-    double half_l2 = -log(phi), sum = 0;
+    double half_l2 = -elementary_log(phi), sum = 0;
     for (size_t i = terms->first; i < terms->first + terms->count; i++) {
         double ratio = terms->smallest_radius / builder->segments[builder->stack[i]].radius_mm;
-        sum += exp(ratio * ratio * half_l2);
+        sum += elementary_exp(ratio * ratio * half_l2);
     }
-    return sqrt(log(sum) / half_l2);
+    return sqrt(elementary_log(sum) / half_l2);
 }
 
 /* Pushes those terms of `from` whose bound in the box is above CELL_TERM_CUTOFF. */
@@ -144,7 +144,7 @@ static Status filter_terms(Builder *builder, const TermList *from, Box box, Term
         if (!(distance2 < support->reach2))
             continue;
         builder->stack[list.first + list.count++] = number;
-        double bound = support->peak * exp(-support->decay * distance2);
+        double bound = support->peak * elementary_exp(-support->decay * distance2);
         list.bound_sum += bound;
         list.smallest_radius = fmin(list.smallest_radius, segment->radius_mm);
         list.largest_radius = fmax(list.largest_radius, segment->radius_mm);
@@ -176,7 +176,8 @@ static CubeSum sum_in(const Builder *builder, const uint32_t *list, const uint32
         const FieldSegment *segment = &builder->segments[list[places ? places[i] : i]];
         double term = potential_term(segment, center);
         sum.phi += term;
-        sum.at_least += fmax(0, term - half_diagonal * exp(-0.5) * 2 / segment->radius_mm);
+        sum.at_least +=
+            fmax(0, term - half_diagonal * elementary_exp(-0.5) * 2 / segment->radius_mm);
     }
     return sum;
 }
@@ -211,14 +212,15 @@ static bool misses_surface(const Builder *builder, const TermList *terms, const 
     CubeSum sum = largest_sum(builder, terms, center, half_diagonal);
     if (sum.phi >= empty_below)
         return sum.at_least > full_above;
-    double rise = sqrt(-2 * log(fmax(sum.phi, DBL_MIN))) - sqrt(-2 * log(empty_below));
+    double rise =
+        sqrt(-2 * elementary_log(fmax(sum.phi, DBL_MIN))) - sqrt(-2 * elementary_log(empty_below));
     return rise * terms->smallest_radius / 2 > terms->steepness * half_diagonal;
 }
 
 /* x down (sign 1) or up (sign -1) to `decimals` places behind the point, which may be negative. */
 static double round_down(double x, int decimals, double sign)
 {
-    double unit = pow(10, abs(decimals));
+    double unit = elementary_pow(10, abs(decimals));
     return decimals < 0 ? sign * floor(sign * x / unit) * unit
                         : sign * floor(sign * x * unit) / unit;
 }
@@ -226,7 +228,7 @@ static double round_down(double x, int decimals, double sign)
 /* Decimals that keep `digits` digits of x > 0. */
 static int decimals_of(double x, int digits)
 {
-    return digits - 1 - (int)floor(log10(x));
+    return digits - 1 - (int)floor(elementary_log10(x));
 }
 
 double cell_accuracy(double radius)
@@ -421,7 +423,7 @@ static Status add_cell(Builder *builder, const TermList *candidates, const Cube 
                  .high = box.high,
                  .first = (uint32_t)tree->n_terms,
                  .count = (uint32_t)terms.count,
-                 .scale = exp2(floor(log2(terms.smallest_radius / 8))),
+                 .scale = elementary_exp2(floor(elementary_log2(terms.smallest_radius / 8))),
                  .accuracy = accuracy,
                  .largest = largest_in(builder, &terms, box)};
     TRY(push_terms(builder, &terms, box, err));
@@ -486,14 +488,14 @@ static double spacing_within(Box box, double root_side)
 {
     double farthest = fmax(fmax(fmax(-box.low.x, box.high.x), fmax(-box.low.y, box.high.y)),
                            fmax(-box.low.z, box.high.z));
-    return exp2(ilogb(farthest + 2 * root_side) + 2 - FLT_MANT_DIG);
+    return elementary_exp2(ilogb(farthest + 2 * root_side) + 2 - FLT_MANT_DIG);
 }
 
 static Support support_of(const FieldSegment *segment)
 {
     double peak = potential_term_peak(segment);
     double decay = 2 / (segment->radius_mm * segment->radius_mm);
-    return (Support){peak, decay, log(peak / CELL_TERM_CUTOFF) / decay};
+    return (Support){peak, decay, elementary_log(peak / CELL_TERM_CUTOFF) / decay};
 }
 
 static Status build(Builder *builder, size_t n_segments, Err *err)

@@ -13,8 +13,8 @@ FieldTube fieldtube_of(const FieldSegment *segment, uint32_t number)
     tube.k = potential_k(segment->radius_mm);
     tube.length_k = tube.k * tube.length;
     tube.peak = potential_term_peak(segment);
-    tube.log_peak = log(tube.peak);
-    tube.reach2 = tube.log_peak - log(RAY_TERM_CUTOFF);
+    tube.log_peak = elementary_log(tube.peak);
+    tube.reach2 = tube.log_peak - elementary_log(RAY_TERM_CUTOFF);
     return tube;
 }
 

@@ -29,16 +29,16 @@ static Place place_of(const FieldSegment *segment, Vec3 x)
 
 static double radial_factor(const Place *place)
 {
-    return exp(-place->k * place->k * vec3_dot(place->across, place->across));
+    return elementary_exp(-place->k * place->k * vec3_dot(place->across, place->across));
 }
 
 static double axial_factor(double u, double v)
 {
     if (u < 0)
-        return 0.5 * (erfc(-u) - erfc(v));
+        return 0.5 * (elementary_erfc(-u) - elementary_erfc(v));
     if (v < 0)
-        return 0.5 * (erfc(-v) - erfc(u));
-    return 0.5 * (erf(u) + erf(v));
+        return 0.5 * (elementary_erfc(-v) - elementary_erfc(u));
+    return 0.5 * (elementary_erf(u) + elementary_erf(v));
 }
 
 double potential_term(const FieldSegment *segment, Vec3 x)
@@ -52,7 +52,7 @@ double potential_term_gradient(const FieldSegment *segment, Vec3 x, Vec3 *gradie
     Place place = place_of(segment, x);
     double radial = radial_factor(&place);
     double term = radial * axial_factor(place.u, place.v);
-    double axial_slope = exp(-place.u * place.u) - exp(-place.v * place.v);
+    double axial_slope = elementary_exp(-place.u * place.u) - elementary_exp(-place.v * place.v);
     *gradient = vec3_add_scaled(vec3_scale(place.across, -2 * place.k * place.k * term), place.axis,
                                 place.k * inv_sqrt_pi * radial * axial_slope);
     return term;
@@ -107,7 +107,7 @@ double segment_box_distance2(const FieldSegment *segment, const Box *box)
 double potential_term_peak(const FieldSegment *segment)
 {
     double k = potential_k(segment->radius_mm);
-    return erf(0.5 * k * vec3_distance(segment->a, segment->b));
+    return elementary_erf(0.5 * k * vec3_distance(segment->a, segment->b));
 }
 
 /* Beside the segment the axial factor is largest half way, where it is erf(k l / 2). At e / k
@@ -116,10 +116,11 @@ double potential_term_peak(const FieldSegment *segment)
 double potential_term_bound(const FieldSegment *segment, Box box)
 {
     double k = potential_k(segment->radius_mm);
-    return exp(-k * k * segment_box_distance2(segment, &box)) * potential_term_peak(segment);
+    return elementary_exp(-k * k * segment_box_distance2(segment, &box)) *
+           potential_term_peak(segment);
 }
 
 double potential_log_form(double phi)
 {
-    return sqrt(-2 * log(fmin(fmax(phi, LOG_FORM_FLOOR), LOG_FORM_CEILING))) - 2;
+    return sqrt(-2 * elementary_log(fmin(fmax(phi, LOG_FORM_FLOOR), LOG_FORM_CEILING))) - 2;
 }

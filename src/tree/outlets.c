@@ -29,7 +29,7 @@ Status tree_part_flow_by_radius(Tree *tree, double gamma, Err *err)
     if (!(largest > 0))
         TRY_GOTO(err_set(err, STATUS_INPUT, "no terminal has a radius above 0 to part flow by"));
     for (size_t i = 0; i < tree->n; i++)
-        share[i] = share[i] > 0 ? pow(share[i] / largest, gamma) : 0;
+        share[i] = share[i] > 0 ? elementary_pow(share[i] / largest, gamma) : 0;
     tree_part_flow(tree, share);
     share = NULL;
 done:

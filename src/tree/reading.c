@@ -39,7 +39,7 @@ LengthScale length_scale(const ReadOptions *options, LengthUnit unit)
     if (options && options->has_voxel_size)
         scale.position = options->voxel_size;
     if (options && options->voxel_radii)
-        scale.radius = cbrt(scale.position.x * scale.position.y * scale.position.z);
+        scale.radius = elementary_cbrt(scale.position.x * scale.position.y * scale.position.z);
     double mm = length_unit_mm(options && options->has_unit ? options->unit : unit);
     return (LengthScale){vec3_scale(scale.position, mm), scale.radius * mm};
 }

@@ -2,6 +2,8 @@
  * which keeps its digits where C passes through zero, near a diameter of 8 micrometres. */
 #include "tree/viscosity.h"
 
+#include "base/base.h"
+
 #include <math.h>
 
 /* ((1 - H)^C - 1) / ((1 - 0.45)^C - 1): how the viscosity grows with the hematocrit. */
@@ -9,10 +11,10 @@ static double hematocrit_factor(double hematocrit, double exponent)
 {
     /* A number, as compilers that compute log(1 - 0.45) round it more exactly than the library. */
     const double log_reference = -0.5978370007556204;
-    double log_plasma = log1p(-hematocrit);
+    double log_plasma = elementary_log1p(-hematocrit);
     if (exponent == 0)
         return log_plasma / log_reference;
-    return expm1(exponent * log_plasma) / expm1(exponent * log_reference);
+    return elementary_expm1(exponent * log_plasma) / elementary_expm1(exponent * log_reference);
 }
 
 double viscosity_pries_pa_s(double radius_mm, double hematocrit, double plasma_viscosity_pa_s)
@@ -21,9 +23,10 @@ double viscosity_pries_pa_s(double radius_mm, double hematocrit, double plasma_v
     double diameter = 2e3 * radius_mm;
     if (!(diameter > wall_layer))
         return HUGE_VAL;
-    double at_45 = 6 * exp(-0.085 * diameter) + 3.2 - 2.44 * exp(-0.06 * pow(diameter, 0.645));
-    double e = 1 / (1 + 1e-11 * pow(diameter, 12));
-    double exponent = (0.8 + exp(-0.075 * diameter)) * (e - 1) + e;
+    double at_45 = 6 * elementary_exp(-0.085 * diameter) + 3.2 -
+                   2.44 * elementary_exp(-0.06 * elementary_pow(diameter, 0.645));
+    double e = 1 / (1 + 1e-11 * elementary_pow(diameter, 12));
+    double exponent = (0.8 + elementary_exp(-0.075 * diameter)) * (e - 1) + e;
     double narrowing = diameter / (diameter - wall_layer);
     double w = narrowing * narrowing;
     double relative = (1 + (at_45 - 1) * hematocrit_factor(hematocrit, exponent) * w) * w;

@@ -262,7 +262,7 @@ static void blur(Patches *patches, const float *side, double sigma)
     enum { REACH = 8 };
     float taps[2 * REACH + 1], sum = 0;
     for (int i = -REACH; i <= REACH; i++)
-        sum += taps[i + REACH] = (float)exp(-i * i / (2 * sigma * sigma));
+        sum += taps[i + REACH] = (float)elementary_exp(-i * i / (2 * sigma * sigma));
     for (int i = 0; i <= 2 * REACH; i++)
         taps[i] /= sum;
     for (int i = 0; i < patches->n; i++)

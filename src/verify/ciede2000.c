@@ -186,7 +186,8 @@ WIDE static void do_row_wide(size_t y, int worker, void *context)
 
 static float decode(double encoded)
 {
-    return (float)(encoded > 0.04045 ? pow((encoded + 0.055) / 1.055, 2.4) : encoded / 12.92);
+    return (float)(encoded > 0.04045 ? elementary_pow((encoded + 0.055) / 1.055, 2.4)
+                                     : encoded / 12.92);
 }
 
 Status de2000_compute(const Picture *a, const Picture *b, double *mean, double *max, Err *err)

@@ -11,7 +11,7 @@
 static double levels_of(float linear)
 {
     double x = fabs((double)linear);
-    double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
+    double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * elementary_pow(x, 1 / 2.4) - 0.055;
     return 255 * copysign(encoded, (double)linear);
 }
 
@@ -74,7 +74,8 @@ static void measure(const Plane *a, const Plane *b, CompareResult *result)
     result->max_abs = result->unsettled_max_abs = worst;
     result->mean_abs = samples > 0 ? sum / samples : 0;
     result->rmse = samples > 0 ? sqrt(squares / samples) : 0;
-    result->psnr_db = result->rmse > 0 ? 20 * log10(255 / result->rmse) : (double)INFINITY;
+    result->psnr_db =
+        result->rmse > 0 ? 20 * elementary_log10(255 / result->rmse) : (double)INFINITY;
     result->bias_levels = 0;
     for (size_t c = 0; c < channels && samples > 0; c++) {
         double mean = bias[c] / (double)result->judged_pixels;

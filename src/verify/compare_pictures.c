@@ -13,7 +13,8 @@ static void take_color(const Sums *sums, double code_levels, int channels, Compa
     result->unsettled_max_abs = sums->unsettled_max * code_levels;
     result->mean_abs = (double)sums->abs / samples * code_levels;
     result->rmse = sqrt((double)sums->squares / samples) * code_levels;
-    result->psnr_db = result->rmse > 0 ? 20 * log10(255 / result->rmse) : (double)INFINITY;
+    result->psnr_db =
+        result->rmse > 0 ? 20 * elementary_log10(255 / result->rmse) : (double)INFINITY;
     result->differing_pixels = sums->differing;
     result->beyond_pixels = sums->beyond;
     result->settled_pixels = sums->settled;

@@ -29,7 +29,7 @@ static void hdr_colors(const FlipPair *pair, int side, int exposure, int x, int 
     const Hdr *self = pair->context;
     const Plane *plane = self->planes[side];
     double step = (self->stop - self->start) / (self->exposures - 1);
-    float factor = (float)exp2(self->start + exposure * step);
+    float factor = (float)elementary_exp2(self->start + exposure * step);
     size_t channels = (size_t)plane->channels;
     const float *values = plane->values + ((size_t)y * (size_t)plane->width + (size_t)x) * channels;
     for (size_t i = 0; i < (size_t)n; i++)
@@ -81,8 +81,8 @@ static Status choose_exposures(Hdr *self, Err *err)
     free(luminance);
     if (!(most > 0))
         most = middle = bright; /* black: its exposure does not matter */
-    self->start = log2(bright / most);
-    self->stop = log2(bright / middle);
+    self->start = elementary_log2(bright / most);
+    self->stop = elementary_log2(bright / middle);
     self->exposures = (int)fmax(2, ceil(self->stop - self->start));
     return STATUS_OK;
 }

@@ -23,7 +23,7 @@ static double two_sided_limit(double rate)
     double low = 0, high = 40;
     for (int i = 0; i < 100; i++) {
         double middle = (low + high) / 2;
-        *(erfc(middle / sqrt(2)) > rate ? &low : &high) = middle;
+        *(elementary_erfc(middle / sqrt(2)) > rate ? &low : &high) = middle;
     }
     return high;
 }

@@ -61,8 +61,8 @@ static double turned(const Planting *p, int x, int y, int c)
 {
     double middle_x = (p->from->width - 1) / 2.0, middle_y = (p->from->height - 1) / 2.0;
     double angle = p->size * DEGREE, dx = x - middle_x, dy = y - middle_y;
-    return between(p->from, middle_x + cos(angle) * dx + sin(angle) * dy,
-                   middle_y - sin(angle) * dx + cos(angle) * dy, c);
+    return between(p->from, middle_x + elementary_cos(angle) * dx + elementary_sin(angle) * dy,
+                   middle_y - elementary_sin(angle) * dx + elementary_cos(angle) * dy, c);
 }
 
 static double larger(const Planting *p, int x, int y, int c)
@@ -84,7 +84,7 @@ static double blurred(const Planting *p, int x, int y, int c)
     double sum = 0, weights = 0;
     for (int j = -reach; j <= reach; j++)
         for (int i = -reach; i <= reach; i++) {
-            double weight = exp(-(i * i + j * j) / (2 * p->size * p->size));
+            double weight = elementary_exp(-(i * i + j * j) / (2 * p->size * p->size));
             sum += weight * at(p->from, x + i, y + j, c);
             weights += weight;
         }
@@ -115,7 +115,7 @@ static double darker_codes(const Planting *p, int x, int y, int c)
 
 static double gamma_off(const Planting *p, int x, int y, int c)
 {
-    return pow(at(p->from, x, y, c), 1 + p->size / 100);
+    return elementary_pow(at(p->from, x, y, c), 1 + p->size / 100);
 }
 
 /* The highlights are what is brighter than 0.8 of white, in light. */
@@ -132,18 +132,19 @@ static double noisy(const Planting *p, int x, int y, int c)
     random_seed(&random,
                 ((uint64_t)(unsigned)y << 34) + ((uint64_t)(unsigned)x << 2) + (uint64_t)c);
     double u = 1 - random_uniform(&random), v = random_uniform(&random);
-    return at(p->from, x, y, c) + p->size / 255 * sqrt(-2 * log(u)) * cos(FULL_TURN * v);
+    return at(p->from, x, y, c) +
+           p->size / 255 * sqrt(-2 * elementary_log(u)) * elementary_cos(FULL_TURN * v);
 }
 
 static double fewer_bits(const Planting *p, int x, int y, int c)
 {
-    double step = exp2(p->size) / 256;
+    double step = elementary_exp2(p->size) / 256;
     return floor(at(p->from, x, y, c) / step) * step;
 }
 
 static double gamma_22(const Planting *p, int x, int y, int c)
 {
-    return pow(light(at(p->from, x, y, c)), 1 / 2.2);
+    return elementary_pow(light(at(p->from, x, y, c)), 1 / 2.2);
 }
 
 static double unencoded(const Planting *p, int x, int y, int c)

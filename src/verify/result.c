@@ -126,5 +126,5 @@ double angle_deg(const float *a, const float *b)
     double ax = (double)a[0], ay = (double)a[1], az = (double)a[2];
     double bx = (double)b[0], by = (double)b[1], bz = (double)b[2];
     double x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
-    return atan2(sqrt(x * x + y * y + z * z), ax * bx + ay * by + az * bz) * 180 / PI;
+    return elementary_atan2(sqrt(x * x + y * y + z * z), ax * bx + ay * by + az * bz) * 180 / PI;
 }

@@ -167,7 +167,7 @@ static Status ssim_init(Ssim *ssim, int threads, Err *err)
 {
     double sum = 0;
     for (int k = 0; k < TAPS; k++)
-        sum += ssim->weights[k] = exp(-(k - RADIUS) * (k - RADIUS) / (2 * 1.5 * 1.5));
+        sum += ssim->weights[k] = elementary_exp(-(k - RADIUS) * (k - RADIUS) / (2 * 1.5 * 1.5));
     for (int k = 0; k < TAPS; k++)
         ssim->weights[k] /= sum;
     ssim->workspace_size = (2 * SPAN + MOMENTS) * (size_t)ssim->width + STRETCH;

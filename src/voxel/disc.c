@@ -6,6 +6,8 @@
  * nearest point. */
 #include "voxel/disc.h"
 
+#include "base/base.h"
+
 #include <math.h>
 #include <stdbool.h>
 
@@ -51,7 +53,7 @@ static void add_triangle(DiscPart *part, DiscPoint p, DiscPoint q)
 /* Between the directions of p and q, which are less than half a turn apart. */
 static void add_sector(DiscPart *part, DiscPoint p, DiscPoint q, double radius)
 {
-    double angle = atan2(cross(p, q), dot(p, q)), third = radius * radius * radius / 3;
+    double angle = elementary_atan2(cross(p, q), dot(p, q)), third = radius * radius * radius / 3;
     double to_p = third / sqrt(dot(p, p)), to_q = third / sqrt(dot(q, q));
     part->one += radius * radius * angle / 2;
     part->u += q.v * to_q - p.v * to_p;
@@ -83,9 +85,9 @@ static double shade_of_sector(DiscPoint p, DiscPoint q, double radius, double ab
     if (turn == 0)
         return 0;
     double h = fabs(turn) / length, pp = dot(p, p), qq = dot(q, q), d2 = above * above;
-    double at_p = atan2(above * dot(p, edge) / length, h * sqrt(d2 + pp));
-    double at_q = atan2(above * dot(q, edge) / length, h * sqrt(d2 + qq));
-    double angle = atan2(turn, dot(p, q)), r2 = radius * radius;
+    double at_p = elementary_atan2(above * dot(p, edge) / length, h * sqrt(d2 + pp));
+    double at_q = elementary_atan2(above * dot(q, edge) / length, h * sqrt(d2 + qq));
+    double angle = elementary_atan2(turn, dot(p, q)), r2 = radius * radius;
     return fmax(0, r2 - d2) * angle / 2 +
            r2 * radius * (angle / fmax(radius, above) - copysign(at_q - at_p, turn) / above);
 }

@@ -46,7 +46,7 @@ static void find_full(const VoxelGrid *grid, const Body *body, const Cell *cell,
 /* False when the body meets nothing of the row, whose first voxel is given. */
 static bool find_span(const VoxelGrid *grid, const Body *body, const Cell *cell, Span *span)
 {
-    double low, high, diagonal = hypot(cell->half.y, cell->half.z);
+    double low, high, diagonal = elementary_hypot(cell->half.y, cell->half.z);
     double longer = cell->half.y * fabs(body->axis.y) + cell->half.z * fabs(body->axis.z);
     if (!body_chord(body, cell->center, 0, diagonal, longer, &low, &high))
         return false;

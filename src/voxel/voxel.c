@@ -56,7 +56,7 @@ static const double own_bytes = 8e6, bytes_a_body = 420;
  * least those that its axis passes. */
 static double wall_voxels(const Geometry *geometry, Vec3 step)
 {
-    double h = cbrt(step.x * step.y * step.z), walls = 0;
+    double h = elementary_cbrt(step.x * step.y * step.z), walls = 0;
     for (size_t i = 0; i < geometry->n_primitives; i++) {
         const Primitive *primitive = &geometry->primitives[i];
         double r = primitive->radius_mm / h, l = vec3_distance(primitive->a, primitive->b) / h;

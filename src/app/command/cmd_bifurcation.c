@@ -91,7 +91,7 @@ static void find_radii(const BifurcationOptions *options, double radii[3])
         radii[i] = given->at[i];
     if (given->n == 3)
         return;
-    radii[1] = radii[0] * pow(1 + pow(options->ratio, gamma), -1 / gamma);
+    radii[1] = radii[0] * elementary_pow(1 + elementary_pow(options->ratio, gamma), -1 / gamma);
     radii[2] = radii[1] * options->ratio;
 }
 
@@ -101,7 +101,7 @@ static Status find_angles(const BifurcationOptions *options, const double radii[
 {
     double force[3];
     for (int i = 0; i < 3; i++)
-        force[i] = pow(radii[i] / radii[0], options->lambda);
+        force[i] = elementary_pow(radii[i] / radii[0], options->lambda);
     for (int i = 0; i < 2; i++) {
         double one = force[i + 1], other = force[2 - i];
         double cosine = (1 + one * one - other * other) / (2 * one);
@@ -110,7 +110,7 @@ static Status find_angles(const BifurcationOptions *options, const double radii[
                            "no angles make the target least for these radii and --lambda %g: one "
                            "vessel is as thick as the others together; give --angles",
                            options->lambda);
-        angles[i] = acos(cosine) / DEGREE;
+        angles[i] = elementary_acos(cosine) / DEGREE;
     }
     return STATUS_OK;
 }
@@ -155,10 +155,11 @@ static Status find_shape(const BifurcationOptions *options, double radii[3], dou
 static void fill(const double radii[3], const double lengths[3], const double angles[2], Tree *tree)
 {
     const double left = angles[0] * DEGREE, right = angles[1] * DEGREE;
-    const Vec3 places[] = {{0, lengths[0], 0},
-                           {0, 0, 0},
-                           {-lengths[1] * sin(left), -lengths[1] * cos(left), 0},
-                           {lengths[2] * sin(right), -lengths[2] * cos(right), 0}};
+    const Vec3 places[] = {
+        {0, lengths[0], 0},
+        {0, 0, 0},
+        {-lengths[1] * elementary_sin(left), -lengths[1] * elementary_cos(left), 0},
+        {lengths[2] * elementary_sin(right), -lengths[2] * elementary_cos(right), 0}};
     for (int i = 0; i < 4; i++) {
         tree->type[i] = TREE_VESSEL_TYPE;
         tree->parent[i] = i == 0 ? TREE_NO_PARENT : i == 1 ? 0 : 1;

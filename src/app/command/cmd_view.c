@@ -311,7 +311,7 @@ static Status on_drag(Viewer *viewer, const WindowEvent *event, Err *err)
 static Status on_wheel(Viewer *viewer, const WindowEvent *event, Err *err)
 {
     ViewParams stage = picture_view_params(viewer->options, &viewer->source);
-    orbit_zoom(&stage, pow(1.15, event->y));
+    orbit_zoom(&stage, elementary_pow(1.15, event->y));
     viewer->options->stage = stage;
     return aim(viewer, err);
 }

@@ -358,7 +358,7 @@ void coloring_say(const Appearance *appearance)
         appearance->scale.range[0] < 0 ||
         !colorscale_fit(&log, appearance->values, appearance->n_values))
         return;
-    double span = log10(log.range[1] / log.range[0]);
+    double span = elementary_log10(log.range[1] / log.range[0]);
     if (span > decades)
         fprintf(stderr, "corcast: the field %s spans %.1f decades, which --log shows evenly\n",
                 log.name, span);

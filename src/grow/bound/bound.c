@@ -90,7 +90,7 @@ static Status murray_target(const Search *search, const Law *law, double *target
             sum += reduced.cost;
     }
     free(below);
-    *target = sum * pow(drop, -problem->a);
+    *target = sum * elementary_pow(drop, -problem->a);
     return STATUS_OK;
 }
 

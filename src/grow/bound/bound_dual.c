@@ -31,7 +31,7 @@ void dual_release(Dual *dual)
 
 double dual_mm(double a, double flow, double charge)
 {
-    return (1 + a) * pow(flow * charge / a, a / (1 + a));
+    return (1 + a) * elementary_pow(flow * charge / a, a / (1 + a));
 }
 
 static double length_of(const State force)
@@ -94,7 +94,7 @@ static Sums add_up(Dual *dual, const Problem *problem, double grown)
 /* Keeps the proof, charges multiplied by `scale`. */
 static void keep(Dual *dual, const Problem *problem, double scale)
 {
-    const double pull_scale = pow(scale, problem->a / (1 + problem->a));
+    const double pull_scale = elementary_pow(scale, problem->a / (1 + problem->a));
     for (size_t i = 0; i < problem->n; i++) {
         const Joint *joint = &problem->joint[i];
         if (joint->outlet < 0)
@@ -113,8 +113,9 @@ void dual_take(Dual *dual, const Problem *problem, const Newton *newton, double 
     const double power = problem->a / (1 + problem->a);
     if (!(sums.pull > 0) || !(sums.charge > 0))
         return;
-    const double scale = pow(power * sums.pull / sums.charge, 1 + problem->a);
-    const double bound = (pow(scale, power) * sums.pull - scale * sums.charge) * (1 - margin);
+    const double scale = elementary_pow(power * sums.pull / sums.charge, 1 + problem->a);
+    const double bound =
+        (elementary_pow(scale, power) * sums.pull - scale * sums.charge) * (1 - margin);
     if (!(bound > dual->bound) || !isfinite(bound))
         return;
     dual->bound = bound;

@@ -59,7 +59,7 @@ static Status survey_node(const Tree *tree, Survey *survey, size_t i, Problem *p
     if (!isfinite(survey->drop[i]))
         return err_set(err, STATUS_INPUT, "node %d: radius %g mm lets too little blood through",
                        tree->id[i], radius);
-    problem->target += length * pow(radius, 4 * problem->a);
+    problem->target += length * elementary_pow(radius, 4 * problem->a);
     problem->mean_length += length;
     return STATUS_OK;
 }
@@ -100,7 +100,7 @@ static Joint *add_joint(Problem *problem, const Tree *tree, size_t i, int32_t pa
     const Vec3 at = tree->position[i];
     *joint = (Joint){.at = {at.x, at.y, at.z},
                      .flow = flow,
-                     .factor = pow(flow, problem->a),
+                     .factor = elementary_pow(flow, problem->a),
                      .parent = parent,
                      .outlet = -1};
     return joint;
@@ -146,9 +146,9 @@ static void gather(const Problem *problem, Hanging *hanging)
         if (!joint->is_free)
             at->least = joint->at[DROP];
         Reach reach = problem_reach(problem, i, smoothing);
-        at->weight = pow(joint->flow, a / (1 + a)) * sqrt(reach.length2);
+        at->weight = elementary_pow(joint->flow, a / (1 + a)) * sqrt(reach.length2);
         Hanging *above = &hanging[joint->parent];
-        above->costs += pow(at->weight + pow(at->costs, 1 / (1 + a)), 1 + a);
+        above->costs += elementary_pow(at->weight + elementary_pow(at->costs, 1 / (1 + a)), 1 + a);
         above->least = fmin(above->least, at->least);
     }
 }
@@ -161,7 +161,7 @@ static void start(Problem *problem, const Hanging *hanging)
         if (!joint->is_free)
             continue;
         const Hanging *at = &hanging[i];
-        double below = pow(at->costs, 1 / (1 + problem->a));
+        double below = elementary_pow(at->costs, 1 / (1 + problem->a));
         double from = problem->joint[joint->parent].at[DROP];
         joint->at[DROP] = from + (at->least - from) * at->weight / (at->weight + below);
     }

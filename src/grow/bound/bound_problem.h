@@ -69,7 +69,7 @@ static inline double problem_cost(const Problem *problem, size_t i, const Reach 
     if (reach->length2 == 0)
         return 0;
     double length = sqrt(reach->length2);
-    return problem->joint[i].factor * length * pow(length / reach->by[DROP], problem->a);
+    return problem->joint[i].factor * length * elementary_pow(length / reach->by[DROP], problem->a);
 }
 
 #endif

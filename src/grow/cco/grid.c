@@ -49,8 +49,8 @@ enum { CELLS_PER_ASKED = 8, LEAST_CELLS = 512 };
  * too many. */
 static double edge_for(Vec3 size, double cells)
 {
-    double edge =
-        size.z > 0 ? cbrt(size.x * size.y * size.z / cells) : sqrt(size.x * size.y / cells);
+    double edge = size.z > 0 ? elementary_cbrt(size.x * size.y * size.z / cells)
+                             : sqrt(size.x * size.y / cells);
     while ((size.x / edge + 1) * (size.y / edge + 1) * (size.z / edge + 1) >
            LEAST_CELLS + CELLS_PER_ASKED * cells)
         edge *= 1.25;

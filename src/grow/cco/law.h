@@ -26,6 +26,8 @@
 #ifndef CORCAST_GROW_LAW_H
 #define CORCAST_GROW_LAW_H
 
+#include "base/base.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -87,7 +89,7 @@ static inline double law_radius_unit(double viscosity, double flow, double drop)
     return sqrt(sqrt(8 * viscosity / PI * flow / drop));
 }
 
-/* x^lambda */
+/* x^lambda; 0, 1 and 2 need no function. */
 static inline double law_lambda_power(const Law *law, double x)
 {
     if (law->lambda == 2)
@@ -96,7 +98,7 @@ static inline double law_lambda_power(const Law *law, double x)
         return x;
     if (law->lambda == 0)
         return 1;
-    return pow(x, law->lambda);
+    return elementary_pow(x, law->lambda);
 }
 
 /* What hangs on the distal end, where the law is this, if the daughters' rho_gamma and cost add up
@@ -109,7 +111,7 @@ static inline Below law_gather(const Law *law, double rho_gamma, double cost)
         double p2 = rho_gamma * out.inverse;
         out.load = p2 * p2;
     } else if (rho_gamma > 0) {
-        double p = pow(rho_gamma, 1 / law->gamma), p2 = p * p;
+        double p = elementary_pow(rho_gamma, 1 / law->gamma), p2 = p * p;
         out.inverse = 1 / p;
         out.load = p2 * p2;
     }
@@ -123,8 +125,17 @@ static inline Reduced law_extend(const Law *law, double burden, double length, c
     Reduced out = {.below = *below};
     out.load = burden * length + below->load;
     out.rho = sqrt(sqrt(out.load));
-    out.rho_lambda = law_lambda_power(law, out.rho);
-    out.rho_gamma = law->gamma == 3 ? out.rho * out.rho * out.rho : pow(out.rho, law->gamma);
+    if (law->gamma == 3) {
+        out.rho_lambda = law_lambda_power(law, out.rho);
+        out.rho_gamma = out.rho * out.rho * out.rho;
+    } else if (law->lambda == 2 || law->lambda == 1 || law->lambda == 0) {
+        out.rho_lambda = law_lambda_power(law, out.rho);
+        out.rho_gamma = elementary_pow(out.rho, law->gamma);
+    } else {
+        Powers powers = elementary_powers(out.rho, law->lambda, law->gamma);
+        out.rho_lambda = powers.a;
+        out.rho_gamma = powers.b;
+    }
     out.cost = out.rho_lambda * length;
     if (below->rho_gamma > 0) {
         out.widening = out.rho * below->inverse;

@@ -321,8 +321,8 @@ static Status anneal(Refinement *refinement, bool *over, Err *err)
     const Cycle cycle = {search->tried, refinement->fraction};
     double unit = cost_of_segment(arbor);
     for (double part; (part = part_done(refinement, &cycle)) < 1 && !*over;) {
-        TRY(allow_faults(search, first_rate * pow(last_rate / first_rate, part), err));
-        TRY(shuffle(refinement, unit * hot * pow(cold / hot, part), over, err));
+        TRY(allow_faults(search, first_rate * elementary_pow(last_rate / first_rate, part), err));
+        TRY(shuffle(refinement, unit * hot * elementary_pow(cold / hot, part), over, err));
         TRY(sweep(refinement, over, err));
     }
     return STATUS_OK;
@@ -432,7 +432,7 @@ static void take_result(Tree *made, Tree *tree)
 /* The tree's target, mm^(1 + lambda). */
 static double target_of(const Arbor *arbor)
 {
-    return pow(arbor->radius_unit, arbor->law.lambda) * arbor_cost(arbor);
+    return elementary_pow(arbor->radius_unit, arbor->law.lambda) * arbor_cost(arbor);
 }
 
 static Status start(Refinement *refinement, const Domain *domain, const Tree *tree, Err *err)

@@ -269,7 +269,8 @@ static int choose(LocalSearch *search, const Candidate *candidate, int count, do
         return best;
     double weight[CANDIDATES], sum = 0;
     for (int k = 0; k < count; k++)
-        sum += weight[k] = exp((candidate[best].price - candidate[k].price) / temperature);
+        sum += weight[k] =
+            elementary_exp((candidate[best].price - candidate[k].price) / temperature);
     double left = random_uniform(&search->random) * sum;
     for (int k = 0; k < count; k++)
         if ((left -= weight[k]) < 0)
@@ -280,7 +281,7 @@ static int choose(LocalSearch *search, const Candidate *candidate, int count, do
 /* By how much the cost of a move may exceed what was expected of it, by Metropolis's rule. */
 static double tolerance(LocalSearch *search, double temperature)
 {
-    return -temperature * log(random_uniform(&search->random));
+    return -temperature * elementary_log(random_uniform(&search->random));
 }
 
 /* Connects `subtree`, which is pruned, as the candidate says, if S_root and penalties are then

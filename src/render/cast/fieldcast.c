@@ -60,9 +60,10 @@ static void add_term(const RayTerm *term, double t, RaySample *sample)
     double w = term->w0 + term->w1 * x;
     double u = term->u0 + term->u1 * x;
     double v = term->h - u;
-    double gauss = term->radial * exp(-w * w);
-    double ends = (u < saturated ? erf(u) : 1) + (v < saturated ? erf(v) : 1);
-    double end_slope = (u < saturated ? exp(-u * u) : 0) - (v < saturated ? exp(-v * v) : 0);
+    double gauss = term->radial * elementary_exp(-w * w);
+    double ends = (u < saturated ? elementary_erf(u) : 1) + (v < saturated ? elementary_erf(v) : 1);
+    double end_slope =
+        (u < saturated ? elementary_exp(-u * u) : 0) - (v < saturated ? elementary_exp(-v * v) : 0);
     sample->phi += 0.5 * gauss * ends;
     sample->slope += gauss * (inv_sqrt_pi * term->u1 * end_slope - w * term->w1 * ends);
     sample->convex += term->convex;

@@ -101,7 +101,7 @@ static bool pass_tube(const FieldTube *tube, Ray ray, RayTerm *term)
 static void bound_curvature(RayTerm *term)
 {
     double w1 = term->w1, u1 = fabs(term->u1);
-    term->radial = exp(-term->e2);
+    term->radial = elementary_exp(-term->e2);
     double both = 0.9682 * w1 * u1;
     term->convex = term->radial * (0.8926 * term->peak * w1 * w1 + both + 0.4840 * u1 * u1);
     term->concave = term->radial * (2 * term->peak * w1 * w1 + both + 0.9680 * u1 * u1);
@@ -215,7 +215,7 @@ bool rayterms_next_group(FieldScratch *scratch)
 bool rayterms_find_windows(FieldScratch *scratch)
 {
     bool any = false;
-    double log_share = log((double)scratch->n_group / FIELD_LEVEL);
+    double log_share = elementary_log((double)scratch->n_group / FIELD_LEVEL);
     for (size_t i = 0; i < scratch->n_group; i++) {
         RayTerm *term = scratch->group[i];
         double w2_max = log_share + term->log_peak - term->e2;

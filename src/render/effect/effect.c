@@ -183,7 +183,7 @@ static void spread(const Edges *edges, size_t edge, int column, size_t row, int 
     int last = column + half < width - 1 ? column + half : width - 1;
     for (int x = first; x <= last; x++) {
         double here = (double)depths[row * (size_t)width + (size_t)x];
-        double distance = hypot(x - column, down);
+        double distance = elementary_hypot(x - column, down);
         if (here >= nearest && here <= farthest)
             line[x] = raised(line[x], (double)edges->line[edge] - distance);
         else if (here > behind && isfinite(here) && edges->gap[edge] > 0)

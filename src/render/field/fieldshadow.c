@@ -186,7 +186,8 @@ static FieldTile tile_of(const FieldShadow *shadow, int number, LocalGroups *gro
                        .any_depth = true,
                        .middle_x = view->left + (column * TILE_SIDE + middle) * view->step_x,
                        .middle_y = view->top + (row * TILE_SIDE + middle) * view->step_y,
-                       .half_size = (float)(1.0001 * half * hypot(view->step_x, view->step_y)),
+                       .half_size =
+                           (float)(1.0001 * half * elementary_hypot(view->step_x, view->step_y)),
                        .z_min = HUGE_VAL};
 }
 

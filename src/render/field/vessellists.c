@@ -77,7 +77,7 @@ static double reach_of(const Geometry *geometry, const FieldSegment *segment)
         return blob_reach(&blob_shape) * segment->radius_mm;
     double k = potential_k(segment->radius_mm);
     double peak = min_of(1, 0.56418958354775628695 * k * vec3_distance(segment->a, segment->b));
-    return peak > TILE_TERM_CUTOFF ? sqrt(log(peak / TILE_TERM_CUTOFF)) / k : 0;
+    return peak > TILE_TERM_CUTOFF ? sqrt(elementary_log(peak / TILE_TERM_CUTOFF)) / k : 0;
 }
 
 typedef struct SegmentsJob {

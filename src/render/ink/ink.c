@@ -86,7 +86,8 @@ typedef struct Curve {
 static Vec3 circle_point(const Curve *curve, double t, double radii)
 {
     double angle = FULL_TURN * (curve->begin + t * curve->span);
-    Vec3 out = vec3_add_scaled(vec3_scale(curve->u, cos(angle)), curve->v, sin(angle));
+    Vec3 out = vec3_add_scaled(vec3_scale(curve->u, elementary_cos(angle)), curve->v,
+                               elementary_sin(angle));
     return vec3_add_scaled(curve->from, out, radii);
 }
 
@@ -97,7 +98,7 @@ static Vec3 ruled_point(const Hand *hand, const Curve *curve, double t, Vec3 *no
     double angle = curve->angle[0] + t * (curve->angle[1] - curve->angle[0]);
     angle = joint_outline_near(hand->camera, curve->joint, angle, way);
     *normal = joint_normal(curve->joint, angle, way);
-    return joint_point(curve->joint, cos(angle), sin(angle), way);
+    return joint_point(curve->joint, elementary_cos(angle), elementary_sin(angle), way);
 }
 
 static bool curve_is_seen(const Hand *hand, int worker, const Curve *curve, double t)
@@ -140,7 +141,8 @@ static Status add_piece(const Hand *hand, const Curve *curve, double t, double e
                         InkPieces *pieces, Err *err)
 {
     double radius_mm = curve->length_mm / curve->span / FULL_TURN;
-    double side = fmin(2 * acos(1 - fmin(SAGITTA_MM / radius_mm, 0.5)) / FULL_TURN, 0.125);
+    double side =
+        fmin(2 * elementary_acos(1 - fmin(SAGITTA_MM / radius_mm, 0.5)) / FULL_TURN, 0.125);
     int sides = curve->kind == CURVE_ARC ? (int)ceil((end - t) * curve->span / side) : 1;
     TRY(inkpieces_begin(pieces, curve->width_mm, err));
     for (int k = 0; k < sides; k++)
@@ -189,7 +191,7 @@ static Status draw_curve(const Hand *hand, int worker, const Curve *curve, InkPi
 
 static double distance_on_paper(const OnPaper *a, const OnPaper *b)
 {
-    return hypot(b->at[0] - a->at[0], b->at[1] - a->at[1]);
+    return elementary_hypot(b->at[0] - a->at[0], b->at[1] - a->at[1]);
 }
 
 /* The wall's normal that is nearest to the viewer's direction. */

@@ -21,7 +21,7 @@ Vec3 towards_viewer(const Camera *camera, Vec3 point, double *distance)
 
 Vec3 joint_normal(const JointFrame *joint, double angle, double way)
 {
-    const double c = cos(angle), s = sin(angle);
+    const double c = elementary_cos(angle), s = elementary_sin(angle);
     Vec3 across = vec3_add_scaled(joint->across, joint->across_change, way);
     double radius = joint->radius + way * joint->radius_change;
     Vec3 turn = vec3_add_scaled(vec3_scale(across, -s), joint->side, radius * c);
@@ -35,7 +35,7 @@ Vec3 joint_normal(const JointFrame *joint, double angle, double way)
 static double joint_slant(const Camera *camera, const JointFrame *joint, double angle, double way)
 {
     double distance;
-    Vec3 point = joint_point(joint, cos(angle), sin(angle), way);
+    Vec3 point = joint_point(joint, elementary_cos(angle), elementary_sin(angle), way);
     return vec3_dot(joint_normal(joint, angle, way), towards_viewer(camera, point, &distance));
 }
 
@@ -71,7 +71,7 @@ int joint_outline(const Camera *camera, const JointFrame *joint, double way,
 bool joint_edge_is_outline(const Camera *camera, const JointFrame *joint, int end, double angle)
 {
     double distance;
-    Vec3 point = joint_point(joint, cos(angle), sin(angle), end);
+    Vec3 point = joint_point(joint, elementary_cos(angle), elementary_sin(angle), end);
     Vec3 center = vec3_add_scaled(joint->base, joint->span, end);
     double slant = vec3_dot(vec3_sub(point, center), towards_viewer(camera, point, &distance));
     return (slant > 0) != (joint_slant(camera, joint, angle, end) > 0);

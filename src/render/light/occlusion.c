@@ -33,8 +33,8 @@ double occlusion_open(Caster *caster, int worker, const Ground *ground, Vec3 poi
         double part = (k + shift) / rays, radius = sqrt(part);
         double angle = FULL_TURN * (k * golden_part + turn);
         Vec3 direction = vec3_scale(normal, sqrt(1 - part));
-        direction = vec3_add_scaled(direction, axes.a, radius * cos(angle));
-        direction = vec3_add_scaled(direction, axes.b, radius * sin(angle));
+        direction = vec3_add_scaled(direction, axes.a, radius * elementary_cos(angle));
+        direction = vec3_add_scaled(direction, axes.b, radius * elementary_sin(angle));
         open += !caster_shadow(caster, worker, ground, point, vec3_normalized(direction), HUGE_VAL);
     }
     return (double)open / rays;

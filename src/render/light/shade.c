@@ -27,7 +27,8 @@ static double phong_intensity(const Finish *finish, Vec3 direction, Vec3 normal,
     double along = vec3_dot(direction, normal);
     Vec3 mirrored = vec3_add_scaled(direction, normal, -2 * along);
     double cosine = vec3_dot(mirrored, towards);
-    return cosine > 0 ? (double)finish->phong * pow(cosine, (double)finish->phong_size) : 0;
+    return cosine > 0 ? (double)finish->phong * elementary_pow(cosine, (double)finish->phong_size)
+                      : 0;
 }
 
 static double specular_intensity(const Finish *finish, Vec3 direction, Vec3 normal, Vec3 towards)
@@ -38,14 +39,15 @@ static double specular_intensity(const Finish *finish, Vec3 direction, Vec3 norm
         return 0;
     double cosine = vec3_dot(halfway, normal) / length;
     float exponent = 1 / finish->roughness;
-    return cosine > 0 ? (double)finish->specular * pow(cosine, (double)exponent) : 0;
+    return cosine > 0 ? (double)finish->specular * elementary_pow(cosine, (double)exponent) : 0;
 }
 
 static Rgb lit_by(Rgb light, const Finish *finish, Rgb pigment, Vec3 normal, Vec3 direction,
                   Vec3 towards, double cosine)
 {
     double diffuse = (double)finish->diffuse;
-    diffuse *= finish->brilliance == 1 ? cosine : pow(cosine, (double)finish->brilliance);
+    diffuse *=
+        finish->brilliance == 1 ? cosine : elementary_pow(cosine, (double)finish->brilliance);
     Rgb color = rgb_multiply(rgb_scale(pigment, diffuse), light);
     if (finish->phong > 0)
         color =

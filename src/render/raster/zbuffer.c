@@ -87,7 +87,7 @@ static void square_to(Vec3 axis, Vec3 *e, Vec3 *f)
 static Vec3 around(Vec3 e, Vec3 f, int i, int n)
 {
     double angle = FULL_TURN * i / n;
-    return vec3_add_scaled(vec3_scale(e, cos(angle)), f, sin(angle));
+    return vec3_add_scaled(vec3_scale(e, elementary_cos(angle)), f, elementary_sin(angle));
 }
 
 static void draw_cylinder(const Brush *brush, Vec3 a, Vec3 b, double radius)
@@ -119,11 +119,11 @@ static void draw_sphere(const Brush *brush, Vec3 center, double radius)
 {
     int rings = steps_through(brush, PI * radius);
     for (int ring = 0; ring <= rings; ring++) {
-        double angle = PI * ring / rings, part = sin(angle);
+        double angle = PI * ring / rings, part = elementary_sin(angle);
         int points = steps_through(brush, FULL_TURN * radius * part);
         for (int i = 0; i < points; i++) {
             Vec3 out = vec3_scale(around(vec3(1, 0, 0), vec3(0, 1, 0), i, points), part);
-            out.z = cos(angle);
+            out.z = elementary_cos(angle);
             put_point(brush, vec3_add_scaled(center, out, radius), out);
         }
     }
@@ -139,7 +139,8 @@ static void draw_joint(const Brush *brush, const JointFrame *joint)
     int turn = steps_through(brush, FULL_TURN * larger);
     int along = steps_through(brush, length);
     for (int i = 0; i < turn; i++) {
-        double angle = FULL_TURN * i / turn, cosine = cos(angle), sine = sin(angle);
+        double angle = FULL_TURN * i / turn, cosine = elementary_cos(angle),
+               sine = elementary_sin(angle);
         Vec3 run = vec3_add_scaled(joint->span, joint->across_change, cosine);
         run = vec3_add_scaled(run, joint->side, sine * joint->radius_change);
         for (int j = 0; j <= along; j++) {

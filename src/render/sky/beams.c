@@ -149,5 +149,6 @@ void beams_release(Beams *beams)
 Vec3 beams_line(int n, int k)
 {
     double z = 1 - (k + 0.5) / n, across = sqrt(1 - z * z);
-    return vec3(across * cos(golden_turn * k), across * sin(golden_turn * k), z);
+    return vec3(across * elementary_cos(golden_turn * k), across * elementary_sin(golden_turn * k),
+                z);
 }

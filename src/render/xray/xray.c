@@ -62,11 +62,11 @@ static Vec3 seen_from(const Camera *camera, Vec3 point)
  * for a picture at depth 1. */
 static double breadth(double *x, double z, double radius_mm, double scale)
 {
-    double across = *x / scale, far = hypot(across, z);
-    double angle = atan2(across, z), half = asin(fmin(radius_mm / far, 1));
+    double across = *x / scale, far = elementary_hypot(across, z);
+    double angle = elementary_atan2(across, z), half = elementary_asin(fmin(radius_mm / far, 1));
     if (!(fabs(angle) + half < 1.5))
         return HUGE_VAL;
-    double low = tan(angle - half) * scale, high = tan(angle + half) * scale;
+    double low = elementary_tan(angle - half) * scale, high = elementary_tan(angle + half) * scale;
     *x = (low + high) / 2;
     return (high - low) / 2;
 }
@@ -80,8 +80,8 @@ static double disc_about(const Camera *camera, Ball ball, double *x, double *y)
     *x = seen.x;
     *y = seen.y;
     if (camera->projection == PROJECTION_PERSPECTIVE)
-        radius = hypot(breadth(x, seen.z, ball.radius, scale_x),
-                       breadth(y, seen.z, ball.radius, scale_y));
+        radius = elementary_hypot(breadth(x, seen.z, ball.radius, scale_x),
+                                  breadth(y, seen.z, ball.radius, scale_y));
     else
         radius = ball.radius * fmax(scale_x, scale_y);
     *x += camera->width / 2.0 - 0.5;
@@ -168,7 +168,7 @@ static void store(const XrayBand *band, size_t pixel, double length_mm)
     const View *view = band->drawing->view;
     const Xray *xray = &view->effects.xray;
     const Rgb paper = view->background, dark = xray->color;
-    double through = exp(-xray->per_mm * length_mm);
+    double through = elementary_exp(-xray->per_mm * length_mm);
     planes_store_color(band->frame, pixel,
                        (Rgb){(float)((double)dark.r + (double)(paper.r - dark.r) * through),
                              (float)((double)dark.g + (double)(paper.g - dark.g) * through),

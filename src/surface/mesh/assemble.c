@@ -95,7 +95,8 @@ static RimPlace add_rim(Assembly *assembly, const FieldSegment *self, Vec3 at, d
     vec3_across(axis_of(self), &u, &v);
     for (uint32_t i = 0; i < rim.n; i++) {
         double angle = FULL_TURN * ((i + turn) / rim.n - 0.5);
-        Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle)));
+        Vec3 way =
+            vec3_add(vec3_scale(u, elementary_cos(angle)), vec3_scale(v, elementary_sin(angle)));
         assembly->rim_points[assembly->n_rim_points++] =
             add_point(assembly, vec3_add_scaled(at, way, self->radius_mm), way);
     }
@@ -128,7 +129,7 @@ static void find_angles(const Assembly *assembly, const FieldSegment *segment, R
     for (uint32_t i = 0; i < rim.n; i++) {
         const float *x = assembly->mesh->points[assembly->rim_points[rim.first + i]];
         Vec3 from = vec3_sub(vec3((double)x[0], (double)x[1], (double)x[2]), segment->a);
-        double angle = atan2(vec3_dot(from, v), vec3_dot(from, u));
+        double angle = elementary_atan2(vec3_dot(from, v), vec3_dot(from, u));
         before = angles[i] = angle - FULL_TURN * rint((angle - before) / FULL_TURN);
     }
 }
@@ -145,7 +146,7 @@ static void measure_rim(const Assembly *assembly, const double *angles, uint32_t
     double widest = 0;
     for (uint32_t i = 0; i < n; i++)
         widest = fmax(widest, turned_angle(angles, n, i + 1) - angles[i]);
-    double off = 1 - cos(widest / 2) + assembly->zones->moved;
+    double off = 1 - elementary_cos(widest / 2) + assembly->zones->moved;
     meshoff_add(assembly->off, radius * off, radius);
 }
 

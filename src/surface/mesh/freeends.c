@@ -104,18 +104,19 @@ static bool is_too_much(const EndSearch *search, size_t near, double mm, TooMuch
 {
     Vec3 u, v, center = place_at(search, mm);
     double radius = search->self->radius_mm;
-    double ceased =
-        search->tree->body == BODY_ROUND ? 0 : 0.5 * FIELD_LEVEL * erfc(sqrt(2) * mm / radius);
+    double ceased = search->tree->body == BODY_ROUND
+                        ? 0
+                        : 0.5 * FIELD_LEVEL * elementary_erfc(sqrt(2) * mm / radius);
     vec3_across(search->axis, &u, &v);
     for (size_t i = 0; i < CIRCLE_POINTS + near; i++) {
         double angle = FULL_TURN * (double)i / CIRCLE_POINTS;
         if (i >= CIRCLE_POINTS) {
             const ZoneTerm *other = &search->terms[i - CIRCLE_POINTS];
             Vec3 towards = vec3_sub(nearest_of(other, center), center);
-            angle = atan2(vec3_dot(towards, v), vec3_dot(towards, u));
+            angle = elementary_atan2(vec3_dot(towards, v), vec3_dot(towards, u));
         }
-        Vec3 x = vec3_add_scaled(center, u, radius * cos(angle));
-        x = vec3_add_scaled(x, v, radius * sin(angle));
+        Vec3 x = vec3_add_scaled(center, u, radius * elementary_cos(angle));
+        x = vec3_add_scaled(x, v, radius * elementary_sin(angle));
         if (too_much(search, sum_at(search->terms, near, x), ceased))
             return true;
     }

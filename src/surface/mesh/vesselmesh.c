@@ -114,7 +114,7 @@ static int workers_of(const MeshParams *params)
 /* The sides of a regular polygon that is within `sagitta` of its circle. */
 static uint32_t sides_of(double sagitta)
 {
-    return (uint32_t)fmax(8, ceil(PI / acos(1 - sagitta)));
+    return (uint32_t)fmax(8, ceil(PI / elementary_acos(1 - sagitta)));
 }
 
 /* Measured on grown trees of 200 to 20,000 segments at tolerances of 0.005 to 1.6, for each radius
@@ -193,7 +193,7 @@ static void note_failure(Build *build, size_t index, int worker, Status status, 
 static ZoneFineness fineness_in(const Build *build, size_t zone)
 {
     ZoneFineness fineness = build->fineness;
-    double factor = pow(finer, build->finer[zone]);
+    double factor = elementary_pow(finer, build->finer[zone]);
     fineness.cells.ratio *= factor;
     fineness.cells.bending *= factor * factor;
     fineness.sagitta *= factor * factor;

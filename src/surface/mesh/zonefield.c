@@ -486,5 +486,5 @@ FieldValue fieldpart_gradient(const ZoneField *field, const PartPool *pool, cons
 
 double field_height(double phi)
 {
-    return sqrt(-2 * log(fmin(fmax(phi, 1e-12), 0.9))) - 2;
+    return sqrt(-2 * elementary_log(fmin(fmax(phi, 1e-12), 0.9))) - 2;
 }

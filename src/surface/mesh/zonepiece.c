@@ -146,7 +146,7 @@ static double angle_of(const FieldSegment *segment, Vec3 x)
 {
     Vec3 u, v, from = vec3_sub(x, segment->a);
     vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
-    return atan2(vec3_dot(from, v), vec3_dot(from, u));
+    return elementary_atan2(vec3_dot(from, v), vec3_dot(from, u));
 }
 
 /* Puts the rim of an arm into the piece. The wall's own edges go about the axis one way at one end
@@ -229,7 +229,9 @@ static bool find_own_wall(const Maker *maker, const FieldPart *all, uint32_t num
     for (int i = 0; i < PLACES * ANGLES; i++) {
         double angle = FULL_TURN / ANGLES * (i % ANGLES);
         Vec3 from = vec3_add_scaled(segment->a, axis, (0.5 + i / ANGLES) / PLACES);
-        Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle))), gradient;
+        Vec3 way = vec3_add(vec3_scale(u, elementary_cos(angle)),
+                            vec3_scale(v, elementary_sin(angle))),
+             gradient;
         double low = 0, high = 2.5 * segment->radius_mm;
         if (fieldpart_value(&plan->field, &tree->stack, all, from).phi < FIELD_LEVEL)
             continue;
@@ -505,7 +507,7 @@ static Status make_sound(const Maker *maker, ZoneFineness *used, uint8_t *fates,
         if (steps && is_own_tunnel(maker, hole, before))
             used->farthest = most_stopped;
         before = hole;
-        make_finer(used, pow(finer, steps));
+        make_finer(used, elementary_pow(finer, steps));
     }
     return STATUS_OK;
 }

@@ -258,10 +258,10 @@ static double best_side(const ZonePlan *plan, double ratio)
     for (uint32_t i = 0; i < plan->field.n_terms; i++)
         widest = fmax(widest, plan->field.terms[i].radius_mm);
     for (int i = 0; i < 8; i++) {
-        double side = ratio * widest * exp2(-i / 8.0), cost = 0;
+        double side = ratio * widest * elementary_exp2(-i / 8.0), cost = 0;
         for (uint32_t j = 0; j < plan->field.n_terms; j++) {
             double suits = ratio * plan->field.terms[j].radius_mm;
-            double halvings = fmax(0, ceil(log2(side / suits)));
+            double halvings = fmax(0, ceil(elementary_log2(side / suits)));
             double over = suits / ldexp(side, -(int)halvings);
             cost += over * over;
         }
@@ -285,7 +285,7 @@ static void place_root(ZoneTree *tree, const ZonePlan *plan, double ratio)
     int axis = box_longest_axis(box);
     double extent = vec3_component(vec3_sub(box.high, box.low), axis);
     double side = best_side(plan, ratio);
-    tree->side = ldexp(side, (int)fmax(0, ceil(log2(extent / side))));
+    tree->side = ldexp(side, (int)fmax(0, ceil(elementary_log2(extent / side))));
     Vec3 center = box_center(box);
     tree->corner = vec3_sub(center, vec3(tree->side / 2, tree->side / 2, tree->side / 2));
 }

@@ -55,7 +55,7 @@ Status block_casing(const VesselTree *tree, const PrintBlock *block, Casing *out
         size[axis] = casing.is_round ? block->size_mm[across ? 0 : 1] : block->size_mm[axis];
         if (size[axis] == 0)
             size[axis] = least[axis];
-        half[axis] = 0.5 * size[axis] / (across ? cos(PI / CASING_SIDES) : 1);
+        half[axis] = 0.5 * size[axis] / (across ? elementary_cos(PI / CASING_SIDES) : 1);
     }
     for (int axis = 0; axis < 3; axis++)
         if (size[axis] < least[axis])

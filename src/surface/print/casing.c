@@ -108,8 +108,8 @@ static Status add_cylinder(const Enclosing *enclosing)
         for (int i = 0; i < CASING_SIDES; i++) {
             double at[3], angle = FULL_TURN * i / CASING_SIDES;
             at[axis] = face_place(casing, 2 * axis + end);
-            at[u] = vec3_component(middle, u) + radius_of(casing) * cos(angle);
-            at[v] = vec3_component(middle, v) + radius_of(casing) * sin(angle);
+            at[u] = vec3_component(middle, u) + radius_of(casing) * elementary_cos(angle);
+            at[v] = vec3_component(middle, v) + radius_of(casing) * elementary_sin(angle);
             TRY(add_corner(enclosing, at, &rings[end][i]));
         }
     TRY(solid_ring(enclosing->solid, rings[0], rings[1], CASING_SIDES, MESH_CAP | MESH_FRAME,

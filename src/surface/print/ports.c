@@ -350,7 +350,8 @@ static Vec3 turned_with(Vec3 across, Vec3 from, Vec3 to)
     Vec3 axis = vec3_cross(from, to);
     double sine = vec3_length(axis);
     if (sine > 1e-12)
-        across = vec3_turned(across, vec3_scale(axis, 1 / sine), atan2(sine, vec3_dot(from, to)));
+        across = vec3_turned(across, vec3_scale(axis, 1 / sine),
+                             elementary_atan2(sine, vec3_dot(from, to)));
     return vec3_normalized(vec3_add_scaled(across, to, -vec3_dot(across, to)));
 }
 
@@ -373,7 +374,8 @@ static Status add_ring(const PortRing *rim, const Port *port, int number, Vec3 u
     uint32_t n = port->end->n;
     for (uint32_t i = 0; i < n; i++) {
         double angle = FULL_TURN * ((i + 0.5) / n - 0.5);
-        Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle)));
+        Vec3 way =
+            vec3_add(vec3_scale(u, elementary_cos(angle)), vec3_scale(v, elementary_sin(angle)));
         Vec3 at = port->is_straight ? cut_of(rim, port, way)
                                     : vec3_add_scaled(ring->center, way, ring->radius_mm);
         TRY(solid_point(solid, at, vec3_scale(way, -1), &points[i], err));

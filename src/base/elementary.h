@@ -1,0 +1,61 @@
+/* Elementary functions that return the same bits on every processor, compiler and C library.
+ *
+ * A C library may choose its version of pow, exp or log by the processor, as glibc does where the
+ * processor has fused multiply-add, and two versions round differently. These functions use only
+ * additions, multiplications, divisions and square roots of doubles, which IEEE 754 defines to the
+ * last bit, and integers. Modules whose results reach a file call these functions, and no function
+ * of the C library that is not exactly rounded; tests/check-elementary reads the object files to
+ * hold this.
+ *
+ * Special values (0, infinities, NaN, subnormal numbers) are those of C11, annex F. The rounding
+ * mode must be to nearest. errno and the floating-point exception flags are not set.
+ *
+ * Errors are below these bounds, in units in the last place of the result, which docs/METHODS.md,
+ * section 3.10, proves:
+ *
+ *     log, log2, log10   0.501     expm1   1.1     hypot        1.5
+ *     exp                0.508     sin     1.1     atan2        2.8
+ *     pow, exp2          0.518     cos     0.65    asin, acos   5.5
+ *     cbrt, log1p        0.51      tan     4       erf          5, erfc 9
+ */
+#ifndef CORCAST_BASE_ELEMENTARY_H
+#define CORCAST_BASE_ELEMENTARY_H
+
+double elementary_exp(double x);
+double elementary_exp2(double x);
+/* Returns exp(x) - 1, which is accurate near 0, too. */
+double elementary_expm1(double x);
+double elementary_log(double x);
+double elementary_log2(double x);
+double elementary_log10(double x);
+/* Returns log(1 + x), which is accurate near 0, too. */
+double elementary_log1p(double x);
+/* Returns x to the power y. A result that is a double, such as 10^22 or an integer power of 2, is
+ * exact. */
+double elementary_pow(double x, double y);
+/* Two powers of one number, x^a and x^b. */
+typedef struct Powers {
+    double a, b;
+} Powers;
+
+/* Returns the bits of elementary_pow(x, a) and elementary_pow(x, b), at one and a half times the
+ * cost of one. */
+Powers elementary_powers(double x, double a, double b);
+double elementary_cbrt(double x);
+/* Returns sqrt(x^2 + y^2), without overflow or underflow on the way. */
+double elementary_hypot(double x, double y);
+/* Angles are radians of any size. */
+double elementary_sin(double x);
+double elementary_cos(double x);
+double elementary_tan(double x);
+/* Returns the angle of the vector (x, y) to the x axis, in [-pi, pi]. */
+double elementary_atan2(double y, double x);
+/* Return NaN outside [-1, 1]. */
+double elementary_asin(double x);
+double elementary_acos(double x);
+/* Error function, 2 / sqrt(pi) times the integral of exp(-t^2) from 0 to x. */
+double elementary_erf(double x);
+/* Returns 1 - erf(x), which is accurate where erf(x) is close to 1, too. */
+double elementary_erfc(double x);
+
+#endif
