@@ -17,7 +17,9 @@ void put_value_part(Text *text, const ColorScale *scale)
     char low[NUMBER_TEXT_SIZE], width[NUMBER_TEXT_SIZE];
     const double *range = scale->range;
     number_text(range[0], low);
-    number_text(scale->log ? log(range[1]) - log(range[0]) : range[1] - range[0], width);
+    number_text(scale->log ? elementary_log(range[1]) - elementary_log(range[0])
+                           : range[1] - range[0],
+                width);
     if (colorscale_counts(scale))
         text_puts(text, "x");
     else if (!(range[1] > range[0]))

@@ -121,7 +121,7 @@ static void say_radii(const char *path, const TreeReading *reading)
 /* Rounds up to two digits, so that a tolerance is not below the gap. */
 static double rounded_up(double gap)
 {
-    double unit = pow(10, floor(log10(gap)) - 1);
+    double unit = elementary_pow(10, floor(elementary_log10(gap)) - 1);
     return (floor(gap / unit) + 1) * unit;
 }
 

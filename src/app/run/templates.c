@@ -4,6 +4,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -108,8 +109,8 @@ Status template_names(const char *folder, const char *extension, Text *lines, Er
     return text_check(lines, err);
 }
 
-/* What there is in place of a file that is not there. */
-static Status refuse_name(const char *option, const char *value, const char *folder,
+/* Lists the names that there are, in place of a file that is not there. */
+static Status refuse_name(const char *what, const char *value, const char *folder,
                           const char *extension, Err *err)
 {
     Text names = TEXT_INIT;
@@ -117,14 +118,14 @@ static Status refuse_name(const char *option, const char *value, const char *fol
     Status status = text_check(&names, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_USAGE,
-                         "--%s: '%s' is not %s, nor has it the '/' of a path to a file of your own",
-                         option, value, text_chars(&names));
+                         "%s '%s' is not %s, nor has it the '/' of a path to a file of your own",
+                         what, value, text_chars(&names));
     text_release(&names);
     return status;
 }
 
-Status template_file(const char *option, const char *folder, const char *value,
-                     const char *extension, char **path, Err *err)
+Status template_find(const char *what, const char *folder, const char *value, const char *extension,
+                     char **path, Err *err)
 {
     if (strchr(value, '/'))
         return mem_strdup(path, value, err);
@@ -136,7 +137,7 @@ Status template_file(const char *option, const char *folder, const char *value,
     TRY_GOTO(templates_path(folder, &place, err));
     TRY_GOTO(file_join(place, text_chars(&name), &found, err));
     if (access(found, R_OK) != 0) {
-        status = refuse_name(option, value, place, extension, err);
+        status = refuse_name(what, value, place, extension, err);
         goto done;
     }
     *path = found;
@@ -146,4 +147,12 @@ done:
     free(place);
     free(found);
     return status;
+}
+
+Status template_file(const char *option, const char *folder, const char *value,
+                     const char *extension, char **path, Err *err)
+{
+    char what[64];
+    snprintf(what, sizeof what, "--%s:", option);
+    return template_find(what, folder, value, extension, path, err);
 }

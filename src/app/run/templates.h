@@ -18,6 +18,10 @@ MUST_CHECK Status templates_path(const char *name, char **path, Err *err);
 MUST_CHECK Status template_file(const char *option, const char *folder, const char *value,
                                 const char *extension, char **path, Err *err);
 
+/* As template_file for a value that no option has: a sentence begins with `what`. */
+MUST_CHECK Status template_find(const char *what, const char *folder, const char *value,
+                                const char *extension, char **path, Err *err);
+
 /* Appends the names that template_file finds in a folder of templates/, sorted, one a line.
  * STATUS_IO when there are no templates. */
 MUST_CHECK Status template_names(const char *folder, const char *extension, Text *lines, Err *err);

@@ -136,7 +136,7 @@ static bool make_strip(const Search *search, uint32_t number, ThinStrip *strip)
     clip_above(camera->height + width - a.y, camera->height + width - b.y, &from, &to);
     if (!(from < to))
         return false;
-    const double length = hypot(b.x - a.x, b.y - a.y) * (to - from);
+    const double length = elementary_hypot(b.x - a.x, b.y - a.y) * (to - from);
     *strip = (ThinStrip){.z = {(float)z[0], (float)z[1]},
                          .part = {(float)near, (float)far},
                          .width = (float)width,
@@ -238,7 +238,7 @@ static double end_in_radii(const Search *search, const ThinStrip *strip, int end
 static void extend_strip(const Search *search, ThinStrip *strip, bool is_first, bool is_last)
 {
     const float x = strip->x[1] - strip->x[0], y = strip->y[1] - strip->y[0];
-    const float length = hypotf(x, y), radius = strip->width / 2;
+    const float length = sqrtf(x * x + y * y), radius = strip->width / 2;
     const float toward[2] = {length > 0 ? x / length : 1, length > 0 ? y / length : 0};
     const float before = is_first ? radius * (float)end_in_radii(search, strip, 0) : 0;
     const float behind = is_last ? radius * (float)end_in_radii(search, strip, 1) : 0;

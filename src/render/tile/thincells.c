@@ -217,7 +217,7 @@ static void draw_line(Brush *brush, float length, float aside_x, float aside_y)
 static void draw_strip(Brush *brush)
 {
     float wide = brush->strip->width * (float)brush->cells->per_pixel;
-    float length = hypotf(brush->step_x, brush->step_y);
+    float length = sqrtf(brush->step_x * brush->step_x + brush->step_y * brush->step_y);
     if (!(length > 0))
         return;
     int lines = wide > 1 ? (int)ceilf(LINES * wide) : LINES;
