@@ -59,7 +59,10 @@ static void side_release(Side *side)
 
 static Rendering rendering(const Side *side)
 {
-    return (Rendering){&side->picture, &side->ids, &side->depth, &side->normal};
+    return (Rendering){.picture = &side->picture,
+                       .ids = &side->ids,
+                       .depth = &side->depth,
+                       .normal = &side->normal};
 }
 
 static CompareResult compare(const Side *a, const Side *b, Tolerance tolerance, Ledger *ledger)
