@@ -75,6 +75,18 @@ test_bad_radii_are_repaired_when_asked() {
     expect_json stdout '.min_radius_mm == 1 and .reading.repaired_radii == 1'
 }
 
+# A file of the program's own has a radius at each node.
+test_a_missing_radius_of_the_programs_own_files_is_refused_or_repaired() {
+    grow_tree 4
+    run_ok corcast convert --quiet tree.swc own.graphml
+    sed -i '0,/<data key="v3">[^<]*</s//<data key="v3">nan</' own.graphml
+    run corcast info own.graphml
+    expect_status 2
+    expect_sentence "own.graphml: .*the radius is 'nan'"
+    run_ok corcast info --quiet --json --repair-radii own.graphml
+    expect_json stdout '.segments == 7'
+}
+
 test_a_radius_is_given_to_vessels_without_one() {
     printf '1 1 0 0 0 0 -1\n2 3 0 10 0 0 1\n3 3 0 20 0 2 2\n' >a.swc
     vtk_lines $'0 0 0\n0 0 10\n0 0 20' $'2 0 1\n2 1 2' '' >a.vtk
