@@ -176,6 +176,21 @@ test_an_index_need_not_state_times() {
     expect_sentence 'two.pvd: 1 of 2 DataSets have no timestep'
 }
 
+test_radii_of_moments_are_given_and_repaired() {
+    vtk_lines $'0 0 0\n0 0 10\n0 0 20' $'2 0 1\n2 1 2' '' >none.vtk
+    vtk_lines $'0 0 0\n0 0 10\n0 0 20' $'2 0 1\n2 1 2' $'CELL_DATA 2\nSCALARS radius double\nLOOKUP_TABLE default\n2 nan' >bad.vtk
+    local name
+    for name in none bad; do
+        printf '<VTKFile type="Collection"><Collection><DataSet file="%s.vtk"/></Collection></VTKFile>\n' $name >$name.pvd
+        run corcast info $name.pvd
+        expect_status 2
+    done
+    run_ok corcast info --json --radius 0.25 none.pvd
+    expect_json stdout '.min_radius_mm == 0.25'
+    run_ok corcast info --json --repair-radii bad.pvd
+    expect_json stdout '.min_radius_mm == 2'
+}
+
 test_a_domain_in_a_header_is_no_standard_input() {
     grow_tree 4
     printf '# domain: mask:-,1\n' | cat - tree.swc | grep -v '# domain: disc' >piped.swc
