@@ -98,6 +98,15 @@ static Status check_node(const BuilderNode *node, Err *err)
     return STATUS_OK;
 }
 
+/* A node has a radius, or NAN where the options replace it afterwards. */
+static Status check_radius(const ReadOptions *options, double *radius_mm, Err *err)
+{
+    bool is_filled = options && (options->repair_radii || options->radius_mm > 0);
+    if (isnan(*radius_mm) && !is_filled)
+        return reading_refuse_radius("radius", "nan", err);
+    return reading_radius(options, radius_mm, err);
+}
+
 /* Makes room for one row more in every array. */
 static Status reserve_row(TreeBuilder *builder, Err *err)
 {
@@ -125,7 +134,7 @@ Status builder_node(TreeBuilder *builder, const BuilderNode *node, Err *err)
 {
     double radius_mm = node->radius_mm;
     TRY(check_node(node, err));
-    TRY(reading_radius(builder->options, &radius_mm, err));
+    TRY(check_radius(builder->options, &radius_mm, err));
     TRY(reserve_row(builder, err));
     size_t i = builder->n++;
     builder->id[i] = (int32_t)node->id;

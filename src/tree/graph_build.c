@@ -139,6 +139,11 @@ typedef struct LinkTable {
     size_t slots;        /* a power of two */
 } LinkTable;
 
+static bool joins_same(const Link *one, const Link *other)
+{
+    return (one->a == other->a && one->b == other->b) || (one->a == other->b && one->b == other->a);
+}
+
 /* Adds link `kept`, or returns false if it repeats a link of the table. */
 static bool take_link(const Building *building, LinkTable *table, size_t kept)
 {
@@ -146,7 +151,8 @@ static bool take_link(const Building *building, LinkTable *table, size_t kept)
     size_t n = describe_link(building, &link[kept], table->one);
     size_t at = hash_numbers(table->one, n) & (table->slots - 1);
     for (; table->slot[at]; at = (at + 1) & (table->slots - 1))
-        if (describe_link(building, &link[table->slot[at] - 1], table->other) == n &&
+        if (joins_same(&link[kept], &link[table->slot[at] - 1]) &&
+            describe_link(building, &link[table->slot[at] - 1], table->other) == n &&
             memcmp(table->one, table->other, n * sizeof *table->one) == 0)
             return false;
     table->slot[at] = (uint32_t)kept + 1;
@@ -668,43 +674,51 @@ static bool looks_like_voxels(const Graph *graph)
     return graph->n_points >= READ_FEW;
 }
 
-static int order_thickness(const void *a, const void *b)
-{
-    const Link *one = a, *other = b;
-    return number_order(one->thickness, other->thickness);
-}
-
-/* A gap at an end counts as one of rounding if it is below the radius and half the length of the
- * last line: a tolerance as wide as the gap joins no more than the ends. */
+/* A gap at an end counts as one of rounding if it is below the radius, and below half the last line
+ * or, in dense centre lines, a twentieth of the radius: a tolerance as wide as the gap joins little
+ * more than the ends. */
 static double reach_of(const Graph *graph, const Link *link)
 {
     double length = vec3_distance(graph->point[link->a].position, graph->point[link->b].position);
-    return fmin(link->thickness, length / 2);
+    return fmin(link->thickness, fmax(length / 2, link->thickness / 20));
+}
+
+static Status median_thickness(const Building *building, double *median, Err *err)
+{
+    double *thickness = NULL;
+    size_t n = building->n_links;
+    TRY(mem_calloc(&thickness, n, sizeof *thickness, "radii", err));
+    for (size_t i = 0; i < n; i++)
+        thickness[i] = building->link[i].thickness;
+    *median = select_number(thickness, n, n / 2);
+    free(thickness);
+    return STATUS_OK;
 }
 
 /* Looks for ends that nearly touch another component [reach_of]: the user may want them joined. */
 static Status find_near_ends(Building *building, Err *err)
 {
     Graph *graph = building->graph;
-    Link *link = NULL;
-    double *reach = NULL;
+    size_t nodes = 0;
+    double median = 0, *reach = NULL;
     uint32_t *part = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&link, building->n_links, sizeof *link, "lines", err));
+    for (size_t i = 0; i < graph->n_points; i++)
+        nodes += is_node(building, i);
+    if (nodes == building->n_links + 1) /* one component */
+        return STATUS_OK;
+    TRY(median_thickness(building, &median, err));
+    if (median == 0)
+        return STATUS_OK;
     TRY_GOTO(mem_calloc(&reach, graph->n_points, sizeof *reach, "reaches of ends", err));
     TRY_GOTO(mem_calloc(&part, graph->n_points, sizeof *part, "components", err));
-    memcpy(link, building->link, building->n_links * sizeof *link);
-    qsort(link, building->n_links, sizeof *link, order_thickness);
-    const double median = link[building->n_links / 2].thickness;
     for (uint32_t i = 0; i < graph->n_points; i++) {
         part[i] = is_node(building, i) ? graph_first(building->component, i) + 1 : 0;
         if (part[i] && building->degree[i] == 1)
             reach[i] = fmin(median, reach_of(graph, link_at(building, i, 0)));
     }
-    if (median > 0)
-        status = graph_near_ends(graph, part, reach, median, building->reading, err);
+    status = graph_near_ends(graph, part, reach, median, building->reading, err);
 done:
-    free(link);
     free(reach);
     free(part);
     return status;

@@ -75,6 +75,18 @@ test_bad_radii_are_repaired_when_asked() {
     expect_json stdout '.min_radius_mm == 1 and .reading.repaired_radii == 1'
 }
 
+# A file of the program's own has a radius at each node.
+test_a_missing_radius_of_the_programs_own_files_is_refused_or_repaired() {
+    grow_tree 4
+    run_ok corcast convert --quiet tree.swc own.graphml
+    sed -i '0,/<data key="v3">[^<]*</s//<data key="v3">nan</' own.graphml
+    run corcast info own.graphml
+    expect_status 2
+    expect_sentence "own.graphml: .*the radius is 'nan'"
+    run_ok corcast info --quiet --json --repair-radii own.graphml
+    expect_json stdout '.segments == 7'
+}
+
 test_a_radius_is_given_to_vessels_without_one() {
     printf '1 1 0 0 0 0 -1\n2 3 0 10 0 0 1\n3 3 0 20 0 2 2\n' >a.swc
     vtk_lines $'0 0 0\n0 0 10\n0 0 20' $'2 0 1\n2 1 2' '' >a.vtk
@@ -162,6 +174,21 @@ test_an_index_need_not_state_times() {
     sed -i 's/file="b/timestep="1" file="b/' two.pvd
     run corcast info two.pvd
     expect_sentence 'two.pvd: 1 of 2 DataSets have no timestep'
+}
+
+test_radii_of_moments_are_given_and_repaired() {
+    vtk_lines $'0 0 0\n0 0 10\n0 0 20' $'2 0 1\n2 1 2' '' >none.vtk
+    vtk_lines $'0 0 0\n0 0 10\n0 0 20' $'2 0 1\n2 1 2' $'CELL_DATA 2\nSCALARS radius double\nLOOKUP_TABLE default\n2 nan' >bad.vtk
+    local name
+    for name in none bad; do
+        printf '<VTKFile type="Collection"><Collection><DataSet file="%s.vtk"/></Collection></VTKFile>\n' $name >$name.pvd
+        run corcast info $name.pvd
+        expect_status 2
+    done
+    run_ok corcast info --json --radius 0.25 none.pvd
+    expect_json stdout '.min_radius_mm == 0.25'
+    run_ok corcast info --json --repair-radii bad.pvd
+    expect_json stdout '.min_radius_mm == 2'
 }
 
 test_a_domain_in_a_header_is_no_standard_input() {

@@ -110,8 +110,13 @@ static Status check_file(const char *path, Err *err)
                    path);
 }
 
-static Status read_moments(Collection *collection, Err *err)
+static Status read_moments(Collection *collection, const ReadOptions *options, Err *err)
 {
+    ReadOptions of_moments = {0}; /* units are applied to the tree that is made of all */
+    if (options) {
+        of_moments.radius_mm = options->radius_mm;
+        of_moments.repair_radii = options->repair_radii;
+    }
     if (collection->n == 0)
         return err_set(err, STATUS_INPUT, "%s: there is no DataSet in it", collection->name);
     if (collection->n_untimed > 0 && collection->n_untimed < collection->n)
@@ -126,7 +131,7 @@ static Status read_moments(Collection *collection, Err *err)
                            collection->name, moment->line, moment[-1].path, moment->time);
         Status status = check_file(moment->path, err);
         if (status == STATUS_OK)
-            status = tree_read(&moment->tree, moment->path, err);
+            status = tree_read_as(&moment->tree, moment->path, &of_moments, NULL, err);
         if (status != STATUS_OK)
             err_prefix(err, "%s:%zu: ", collection->name, moment->line);
         TRY(status);
@@ -222,7 +227,7 @@ Status pvd_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
     static const XmlHandlers handlers = {.begin = begin_element};
     Status status = xml_read(builder->name, bytes, size, &handlers, &collection, err);
     if (status == STATUS_OK)
-        status = read_moments(&collection, err);
+        status = read_moments(&collection, builder->options, err);
     if (status == STATUS_OK)
         status = build(builder, &collection, err);
     if (status == STATUS_OK && collection.n_untimed > 1)
