@@ -199,10 +199,11 @@ static json_t *manifest(const Meshing *made)
         {"self_intersections", json_count(report->crossings)},
         {"bridges", json_count(report->bridges)},
         {"segments", json_count(vessels->n_segments)},
-        {"segments_present",
-         json_count(vessels->n_segments - report->n_missing - report->n_swallowed)},
+        {"segments_present", json_count(vessels->n_segments - report->n_missing -
+                                        report->n_swallowed - report->n_slivers)},
         {"segments_missing", segment_ids(vessels, report->missing, report->n_missing)},
         {"segments_swallowed", segment_ids(vessels, report->swallowed, report->n_swallowed)},
+        {"segments_slivers", segment_ids(vessels, report->slivers, report->n_slivers)},
         {"segments_thinned", segment_ids(vessels, made->thinned, made->n_thinned)},
         {"segments_lengthened", segment_ids(vessels, made->longer, made->n_longer)},
         {"round_ends", segment_ids(vessels, report->round, report->n_round)},
