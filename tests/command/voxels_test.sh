@@ -138,6 +138,30 @@ END
     [ ! -e x.nii.gz ] || fail "expected no volume"
 }
 
+# chain N: a thick vessel that fills the most of all voxels of a row; N thin ones in it, each of two voxels, of which it
+# gets the second; and one in the last voxel alone, for which all N have to move on to their first.
+chain() {
+    {
+        printf '1 3 -30 0 0 0.4 -1\n2 3 300 0 0 0.4 1\n'
+        awk -v n="$1" 'BEGIN { for (k = 0; k < n; k++) printf "%d 3 %d 0 0 0.01 -1\n%d 3 %d 0 0 0.01 %d\n", 100 + 2 * k, k, 101 + 2 * k, k + 1, 100 + 2 * k }'
+        printf '900 3 %s 0 0 0.01 -1\n901 3 %s 0 0 0.01 900\n' "$(($1 - 1)).7" "$1.2"
+    } >chain.swc
+}
+
+test_labels_move_on_up_to_64_times_to_make_room() {
+    chain 64
+    run_ok corcast export chain.swc -o c.nii --voxel 1 --labels segment --quiet
+    expect_json c.nii.json '.labels_given_a_voxel == 65'
+    python <<'END'
+labels = volume("c.labels.nii")[0]
+assert set(numpy.unique(labels)) == {0, 2, 901} | set(range(101, 229, 2)), numpy.unique(labels)
+END
+    chain 65
+    run corcast export chain.swc -o d.nii --voxel 1 --labels segment --quiet
+    expect_status 2
+    grep -q 'segment 901, 0.5 mm long, has no voxel for its label' stderr || fail "$(cat stderr)"
+}
+
 test_a_voxel_is_labelled_by_what_fills_the_most_of_it() {
     printf '1 3 0 0 0 0.9 -1\n2 3 10 0 0 0.9 1\n3 3 20 0 0 0.6 2\n4 3 17 6 0 0.4 2\n' >y.swc
     run_ok corcast export y.swc -o y.nii.gz --voxel 0.5 --labels segment --quiet
