@@ -1,6 +1,8 @@
 /* The proofs of meshes and prints, shown false cases made by hand: for each condition one that no
  * other condition refuses. */
+#include "grow/cco/grid.h"
 #include "surface/mesh/meshcheck.h"
+#include "surface/mesh/nearpairs.h"
 #include "surface/print/proof.h"
 #include "unit.h"
 
@@ -279,6 +281,25 @@ static void a_solid_has_the_handles_of_its_graph_no_fewer_and_no_more(void **sta
     assert_false(meshreport_is_sound(&report));
 }
 
+/* Two segments that are 3 mm apart where the one is s of its way on and the other t, also close to
+ * an end, by both of the functions that proofs take the distance from. */
+static void segments_are_as_far_apart_as_where_they_cross(void **state)
+{
+    (void)state;
+    static const double parts[] = {0, 0.01, 0.07, 0.13, 0.5, 0.86, 0.95, 0.99, 1};
+    enum { PARTS = sizeof parts / sizeof *parts };
+    for (int k = 0; k < 2 * PARTS * PARTS; k++) {
+        double s = parts[k % PARTS], t = parts[k / PARTS % PARTS];
+        Vec3 one = vec3(10, 0, 0), other = vec3_scale(vec3(4, 9, 0), k < PARTS * PARTS ? 1 : -1);
+        Vec3 a = vec3_scale(one, -s), c = vec3_add_scaled(vec3(0, 0, 3), other, -t);
+        const FieldSegment first = {.a = a, .b = vec3_add(a, one)};
+        const FieldSegment second = {.a = c, .b = vec3_add(c, other)};
+        assert_true(fabs(segments_distance(&first, &second) - 3) < 1e-12);
+        assert_true(fabs(segments_distance(&second, &first) - 3) < 1e-12);
+        assert_true(fabs(segment_distance2(first.a, first.b, second.a, second.b) - 9) < 1e-11);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -289,6 +310,7 @@ int main(void)
         cmocka_unit_test(a_part_of_two_trees_is_a_bridge),
         cmocka_unit_test(parts_that_meet_cross),
         cmocka_unit_test(each_number_of_a_report_alone_makes_it_unsound),
+        cmocka_unit_test(segments_are_as_far_apart_as_where_they_cross),
         cmocka_unit_test(a_solid_has_the_handles_of_its_graph_no_fewer_and_no_more),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
