@@ -77,10 +77,15 @@ static bool is_binary_stl(const char *bytes, size_t size)
  * binary file. */
 static Status check_ascii_stl(const char *path, char *bytes, size_t *size, Err *err)
 {
-    while (*size > 0 && bytes[*size - 1] == '\0')
-        --*size;
-    if (!memchr(bytes, '\0', *size))
+    const char *word = bytes + strspn(bytes, TEXT_BLANKS "\r\n");
+    bool is_named = strncasecmp(word, "solid", strlen("solid")) == 0;
+    size_t length = *size;
+    while (is_named && length > 0 && bytes[length - 1] == '\0')
+        length--;
+    if (!memchr(bytes, '\0', length)) {
+        *size = length;
         return file_to_text(path, &stl_file, bytes, size, err);
+    }
     if (*size < STL_HEADER)
         return err_set(err, STATUS_INPUT,
                        "%s: has %zu bytes, fewer than the %d before the triangles of a binary STL "

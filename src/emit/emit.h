@@ -15,6 +15,7 @@ typedef enum EmitBeside {
     BESIDE_MANIFEST,
     BESIDE_ENDS,       /* a table of its ends */
     BESIDE_CENTERLINE, /* its tree */
+    BESIDE_GMSH,       /* its surfaces and volumes by name, for gmsh */
     BESIDES
 } EmitBeside;
 

@@ -52,6 +52,8 @@ enum { LEAST_WITH_FULL_CELLS = 1000 };
  * below the least thickness as lines; after LAST_PATIENCE points without one, the domain is full.
  */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
+/* Growth ends after so many rounds in a row that added nothing, whatever the reasons were. */
+enum { IDLE_ROUNDS = 5000 };
 static const double least_thickness = 1.0 / 64;
 /* Memory that growth needs for each terminal, as measured with 10^6 and with 10^7 terminals. */
 static const double bytes_per_terminal = 340;
@@ -73,6 +75,7 @@ typedef struct Growth {
     uint64_t tosses, rejected;
     double end_radius;       /* mm; the terminals' mean as of the last refresh */
     size_t crowded, outside; /* points far enough from the tree since one was connected */
+    size_t idle;             /* rounds since one was connected */
 } Growth;
 
 /* The most terminals that one round adds to a tree of `terminals`. */
@@ -255,7 +258,9 @@ static Status be_patient(Growth *growth, size_t made, Err *err)
         rules->thickness = rules->thickness > least_thickness ? rules->thickness / 2 : 0;
         TRY(round_use_grid(&growth->round, &growth->grid, err));
     }
-    if (troubled == 0 || growth->crowded + growth->outside < LAST_PATIENCE)
+    growth->idle = made > 0 ? 0 : growth->idle + 1;
+    bool is_patient = troubled == 0 || growth->crowded + growth->outside < LAST_PATIENCE;
+    if (is_patient && growth->idle < IDLE_ROUNDS)
         return STATUS_OK;
     size_t farthest = 0, outside = 0;
     double mm = 0;

@@ -2,12 +2,11 @@
 # What `export` writes for solvers, as gmsh fills it.
 . "$(dirname "$0")/../lib.sh"
 
-# Gmsh makes a surface of each solid, in their order, and keeps its triangles.
+# Gmsh makes a surface of each solid, in their order, keeps its triangles, and takes the names of t.geo.
 test_gmsh_fills_the_parts_of_an_stl_with_tetrahedra() {
     command -v gmsh >/dev/null || skip "gmsh is not installed"
     run_ok corcast grow --terminals 9 --domain ball:41 --seed 7 -o t.swc --quiet
     run_ok corcast export t.swc --parts --tolerance 0.05 -o t.stl --quiet
-    printf '%s\n' 'Merge "t.stl";' 'Surface Loop(1) = Surface{:};' 'Volume(1) = {1};' >t.geo
     run_ok timeout 300 gmsh -3 -format msh2 t.geo -o t.msh
     /usr/bin/python3 - >said <<'END' || fail "$(cat said)"
 import csv, json, sys
@@ -30,6 +29,10 @@ expect("surfaces", sorted(set(surface)) == list(range(1, len(ends) + 2)))
 areas = np.linalg.norm(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]), axis=1) / 2
 for end in ends:
     expect("area of " + end["name"], abs(areas[surface == int(end["face"])].sum() / float(end["area_mm2"]) - 1) < 1e-5)
+at = lines.index("$PhysicalNames") + 2
+named = {int(w[1]): (int(w[0]), w[2].strip('"')) for w in map(str.split, lines[at:lines.index("$EndPhysicalNames")])}
+expect("names of surfaces", [named[k + 1] for k in range(len(ends) + 1)] == [(2, n) for n in ["wall"] + [end["name"] for end in ends]])
+expect("name of the volume", [n for dimension, n in named.values() if dimension == 3] == ["blood"])
 _, x = corners(4, 4)
 expect("tetrahedra", len(x) > 3000)
 volumes = np.einsum("ij,ij->i", x[:, 1] - x[:, 0], np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 0])) / 6

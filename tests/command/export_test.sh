@@ -279,6 +279,42 @@ test_refuses_a_vessel_that_is_too_short_to_have_a_surface() {
     expect_only t.swc
 }
 
+test_counts_no_segment_as_present_whose_wall_has_no_triangle() {
+    local model mm
+    # A twig that comes out of its trunk by less than a triangle.
+    for model in rounded,0.92 isosurface,1.02; do
+        mm=${model#*,}
+        printf '1 3 0 0 0 1 -1\n2 3 5 0 0 1 1\n3 3 10 0 0 1 2\n4 3 5 %s 0 0.1 2\n' "$mm" >twig.swc
+        run_ok corcast export twig.swc --model "${model%,*}" --tolerance 0.1 -o m.stl --quiet
+        expect_json m.stl.json '.segments == 3 and .segments_present == 2 and .segments_slivers == [4]'
+        expect_json m.stl.json '.segments_missing == [] and .segments_swallowed == []'
+    done
+}
+
+# moved_by X: the tree of t.swc, X mm along x.
+moved_by() {
+    awk -v mm="$1" '!/^#/ { printf "%s %s %.17g %s %s %s %s\n", $1, $2, $3 + mm, $4, $5, $6, $7 }' t.swc >moved.swc
+}
+
+test_a_tree_too_far_from_the_origin_for_its_radii_is_refused_by_its_distance() {
+    local model
+    run_ok corcast grow --domain ball:20 --terminals 9 --seed 3 -o t.swc --quiet
+    for model in rounded isosurface; do
+        moved_by 1000
+        run_ok corcast export moved.swc --model $model --tolerance 0.1 -o m.stl --quiet
+        moved_by 1e6
+        run timeout 10 "$CORCAST" export moved.swc --model $model --tolerance 0.1 -o m.stl --quiet
+        expect_status 2
+        expect_sentence 'reaches 10000[0-9.]+ mm from the origin, where the single precision of a mesh places points to 0\.062 mm'
+        expect_sentence 'too coarse for the radius of segment [0-9]+, 0\.[0-9]+ mm; move the tree nearer'
+    done
+    # Two vessels that blend along their length: only roundings of their points cross.
+    printf '1 3 256 -252 -4096 .375 -1\n2 3 256 -260 -4096 .375 1\n3 3 256.25 -252 -4096 .1875 2\n4 3 258 -260 -4096 .1875 3\n' >far.swc
+    run timeout 20 "$CORCAST" export far.swc --model rounded -o m.stl --quiet
+    expect_status 2
+    expect_sentence 'reaches 4096\.[0-9]+ mm from the origin'
+}
+
 test_names_may_begin_with_a_hyphen() {
     cp "$DATA/bifurcation.swc" ./-t.swc
     run_ok corcast export -o -m.stl --quiet -- -t.swc

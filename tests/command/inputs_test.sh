@@ -239,6 +239,19 @@ test_a_mask_that_claims_more_voxels_than_its_file_has_is_refused_at_once() {
     )
 }
 
+test_a_mask_takes_bits_of_memory_for_its_voxels() {
+    # 27 million voxels, all of them tissue, in a file of 0.1 MB; dim[1..3] at 42: 300 each.
+    {
+        gunzip -c "$DATA/oblique.nii.gz" | head -c 42
+        printf '\054\001\054\001\054\001'
+        gunzip -c "$DATA/oblique.nii.gz" | head -c 352 | tail -c +49
+        yes | head -c 27000000
+    } | gzip -1 >mask.nii.gz
+    (ulimit -v 120000 && "$CORCAST" grow --domain mask:mask.nii.gz --terminals 5 --threads 1 --quiet -o t.swc) 2>stderr ||
+        fail "$(cat stderr)"
+    run_ok corcast info t.swc
+}
+
 test_a_mask_without_a_type_of_voxels_is_refused_in_one_sentence() {
     gunzip -c "$DATA/oblique.nii.gz" >mask.nii
     printf '\0\0\0\0' | dd of=mask.nii bs=1 seek=70 conv=notrunc status=none

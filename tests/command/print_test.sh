@@ -101,6 +101,22 @@ END
     run_ok corcast export "$DATA/bifurcation.swc" --print bed=33x23x6 -o m.stl --quiet
 }
 
+# The print is 21.306 x 32.330 x 4.763 mm; it may be turned about z, and not otherwise.
+test_a_print_fits_its_bed_to_a_hundredth_either_way_round() {
+    local bed
+    run_ok corcast export "$DATA/bifurcation.swc" --print bed=99x99x99 --tolerance 0.02 -o m.stl --quiet
+    expect_json m.stl.json '.print.size_mm | .[0] > 21.30 and .[0] < 21.31 and .[1] > 32.32 and .[1] < 32.34 and .[2] > 4.76 and .[2] < 4.77'
+    for bed in 21.31x32.34x4.77 32.34x21.31x4.77 21.31x99x4.77 99x21.31x4.77 32.34x99x4.77; do
+        run_ok corcast export "$DATA/bifurcation.swc" --print bed=$bed -o m.stl --quiet
+    done
+    for bed in 21.30x32.34x4.77 21.31x32.32x4.77 32.34x21.30x4.77 32.32x21.31x4.77 21.31x32.34x4.76 \
+        32.34x21.31x4.76 99x21.30x4.77 21.30x99x4.77 32.32x32.32x4.77 99x4.77x99 99x99x4.76; do
+        run corcast export "$DATA/bifurcation.swc" --print bed=$bed -o m.stl --quiet
+        expect_status 2
+        expect_sentence "does not fit the bed of [0-9.]* x [0-9.]* x [0-9.]* mm"
+    done
+}
+
 test_refuses_what_is_no_key_or_value() {
     refuses <<'END'
 walls=2|--print: 'walls' is not one of scale, .*; did you mean wall
@@ -174,6 +190,17 @@ test_a_base_holds_vessels_by_pins() {
     run_ok corcast export "$DATA/bifurcation.swc" --print base,wall=0.6 -o m.stl --quiet
     expect_solid m.stl 1
     expect_json m.stl.json '.print.openings == 3 and .genus == 2 + .print.pins - 1 and .segments == 3'
+}
+
+# Two ends hang down, at different heights; a third points up, and the trunk goes down to its fork.
+test_pins_leave_the_places_that_nothing_leads_down_from_and_no_others() {
+    printf '%s\n' '1 3 0 0 20 1 -1' '2 3 0 0 10 1 1' '3 3 10 0 5 .8 2' '4 3 -10 0 8 .8 2' '5 3 0 12 15 .8 2' >t.swc
+    run_ok corcast export t.swc --print base --tolerance 0.1 -o m.stl --quiet
+    expect_json m.stl.json '.print.pins == 2 and .print.hanging == 0'
+    # The same from below: the trunk alone stands.
+    awk '{ print $1, $2, $3, $4, -$5, $6, $7 }' t.swc >u.swc
+    run_ok corcast export u.swc --print base --tolerance 0.1 -o m.stl --quiet
+    expect_json m.stl.json '.print.pins == 2 and .print.hanging == 0'
 }
 
 # Flat, so that a pin leaves every node, and many are near others.

@@ -218,4 +218,24 @@ test_refuses_parts_where_a_format_has_no_names_of_parts() {
     expect_only
 }
 
+# gmsh itself is asked by tests/all/gmsh_test.sh.
+test_the_geometry_for_gmsh_names_every_surface_and_volume() {
+    local n
+    grown
+    run_ok corcast export t.swc --parts --tolerance 0.1 -o 'a "b.stl' --quiet
+    n=$(grep -c '^solid ' 'a "b.stl')
+    expect_same <(sed -n 's/^solid //p' 'a "b.stl' | nl -w1 -s ' ') \
+        <(sed -nE 's/^Physical Surface\("(.*)"\) = \{([0-9]+)\};$/\2 \1/p' 'a "b.geo')
+    expect_same <(printf '%s\n' "Surface Loop(1) = {$(seq -s ', ' "$n")};" 'Volume(1) = {1};' 'Physical Volume("blood") = {1};') \
+        <(tail -3 'a "b.geo')
+    [ "$(head -1 'a "b.geo')" = 'Merge "a \"b.stl";' ] || fail "$(head -1 'a "b.geo')"
+    run_ok corcast export t.swc --parts --wall 0.3 --part-overlaps --tolerance 0.1 -o h.stl --quiet
+    expect_same <(grep -n '^solid ' h.stl | cat -n | awk '!/_ring$|outer$/ { printf "%s%s", separator, $1; separator = ", " }') \
+        <(sed -nE 's/^Surface Loop\(1\) = \{(.*)\};$/\1/p' h.geo | tr -d '\n')
+    expect_same <(grep -n '^solid ' h.stl | cat -n | awk '/_ring$|outer$|lumen$/ { printf "%s%s", separator, $1; separator = ", " }') \
+        <(sed -nE 's/^Surface Loop\(2\) = \{(.*)\};$/\1/p' h.geo | tr -d '\n')
+    run_ok corcast export t.swc -o v.vtp --tolerance 0.1 --quiet
+    [ ! -e v.geo ] || fail "expected no geometry for gmsh beside a VTP"
+}
+
 run_tests "$@"

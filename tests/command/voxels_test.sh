@@ -138,6 +138,30 @@ END
     [ ! -e x.nii.gz ] || fail "expected no volume"
 }
 
+# chain N: a thick vessel that fills the most of all voxels of a row; N thin ones in it, each of two voxels, of which it
+# gets the second; and one in the last voxel alone, for which all N have to move on to their first.
+chain() {
+    {
+        printf '1 3 -30 0 0 0.4 -1\n2 3 300 0 0 0.4 1\n'
+        awk -v n="$1" 'BEGIN { for (k = 0; k < n; k++) printf "%d 3 %d 0 0 0.01 -1\n%d 3 %d 0 0 0.01 %d\n", 100 + 2 * k, k, 101 + 2 * k, k + 1, 100 + 2 * k }'
+        printf '900 3 %s 0 0 0.01 -1\n901 3 %s 0 0 0.01 900\n' "$(($1 - 1)).7" "$1.2"
+    } >chain.swc
+}
+
+test_labels_move_on_up_to_64_times_to_make_room() {
+    chain 64
+    run_ok corcast export chain.swc -o c.nii --voxel 1 --labels segment --quiet
+    expect_json c.nii.json '.labels_given_a_voxel == 65'
+    python <<'END'
+labels = volume("c.labels.nii")[0]
+assert set(numpy.unique(labels)) == {0, 2, 901} | set(range(101, 229, 2)), numpy.unique(labels)
+END
+    chain 65
+    run corcast export chain.swc -o d.nii --voxel 1 --labels segment --quiet
+    expect_status 2
+    grep -q 'segment 901, 0.5 mm long, has no voxel for its label' stderr || fail "$(cat stderr)"
+}
+
 test_a_voxel_is_labelled_by_what_fills_the_most_of_it() {
     printf '1 3 0 0 0 0.9 -1\n2 3 10 0 0 0.9 1\n3 3 20 0 0 0.6 2\n4 3 17 6 0 0.4 2\n' >y.swc
     run_ok corcast export y.swc -o y.nii.gz --voxel 0.5 --labels segment --quiet
@@ -153,6 +177,28 @@ orders, trees = volume("o.labels.nii.gz")[0], volume("f.labels.nii.gz")[0]
 assert set(numpy.unique(orders)) == {0, 1, 2} and (orders[labels == 2] == 2).all() and (orders[labels == 3] == 1).all()
 assert set(numpy.unique(trees)) == {0, 1}
 END
+}
+
+test_labels_do_not_depend_on_the_order_of_rows() {
+    local file
+    # All of one radius, so that balls and voxels about the fork have several equal owners.
+    printf '1 3 0 0 0 0.9 -1\n2 3 10 0 0 0.9 1\n3 3 17 6 0 0.9 2\n4 3 17 -6 0 0.9 2\n5 3 20 0 0 0.9 2\n' >a.swc
+    printf '1 3 0 0 0 0.9 -1\n2 3 10 0 0 0.9 1\n5 3 20 0 0 0.9 2\n4 3 17 -6 0 0.9 2\n3 3 17 6 0 0.9 2\n' >b.swc
+    # The ids do not rise from the root on.
+    printf '5 3 17 0 0 0.9 -1\n2 3 10 0 0 0.9 5\n3 3 17 6 0 0.9 2\n1 3 0 0 0 0.9 2\n' >c.swc
+    printf '5 3 17 0 0 0.9 -1\n2 3 10 0 0 0.9 5\n1 3 0 0 0 0.9 2\n3 3 17 6 0 0.9 2\n' >d.swc
+    for file in a b c d; do run_ok corcast export $file.swc -o $file.nii --voxel 0.5 --labels segment --quiet; done
+    expect_same a.labels.nii b.labels.nii
+    expect_same c.labels.nii d.labels.nii
+}
+
+test_memory_is_that_of_the_estimate() {
+    local said peak
+    run_ok corcast grow --terminals 8000 --domain ball:50 -o many.swc --quiet
+    /usr/bin/time -f '%M' -o peak "$CORCAST" export many.swc -o m.nii --voxel 40 --threads 1 2>said || fail "$(cat said)"
+    said=$(sed -nE 's/.* s, ([0-9.]+) MB of memory.*/\1/p' said)
+    awk -v said="$said" -v peak="$(cat peak)" 'BEGIN { exit !(peak / 1000 < 1.3 * said && said < 1.5 * peak / 1000) }' ||
+        fail "said $said MB, took $(cat peak) kB"
 }
 
 test_says_that_a_segment_with_the_ends_of_a_thicker_one_has_no_voxels() {
@@ -211,6 +257,13 @@ test_the_tree_stands_beside_as_csv() {
     expect_only t.swc t.csv t.nii.gz t.nii.gz.json
     run_ok corcast convert t.csv again.swc --quiet
     expect_same <(grep -v '^#' t.swc) <(grep -v '^#' again.swc)
+}
+
+test_the_manifest_has_integers_for_counts_and_the_shortest_numbers() {
+    grown
+    run_ok corcast export t.swc -o t.nii.gz --voxel 4,4.1,4.4 --quiet
+    tr -d ' \n' <t.nii.gz.json >line
+    grep -qE '"voxels":\[[0-9]+,[0-9]+,[0-9]+\],"voxel_mm":\[4\.0,4\.1,4\.4\]' line || fail "$(cat line)"
 }
 
 test_refuses_what_cannot_be() {

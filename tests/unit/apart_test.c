@@ -55,6 +55,32 @@ static void trees_are_as_far_apart_as_their_nearest_pair(void **state)
     }
 }
 
+/* Two segments, of two trees, that are 3 mm apart where the one is s of its way on and the other t:
+ * everywhere from end to end, also close to an end. */
+static void trees_are_nearest_wherever_their_segments_cross(void **state)
+{
+    (void)state;
+    static const double parts[] = {0, 0.01, 0.07, 0.13, 0.5, 0.86, 0.95, 0.99, 1};
+    enum { PARTS = sizeof parts / sizeof *parts };
+    for (int k = 0; k < 2 * PARTS * PARTS; k++) {
+        double s = parts[k % PARTS], t = parts[k / PARTS % PARTS];
+        Vec3 one = vec3(10, 0, 0), other = vec3_scale(vec3(4, 9, 0), k < PARTS * PARTS ? 1 : -1);
+        Vec3 a = vec3_scale(one, -s), c = vec3_add_scaled(vec3(0, 0, 3), other, -t);
+        Vec3 position[] = {a, vec3_add(a, one), c, vec3_add(c, other)};
+        int32_t id[] = {1, 2, 3, 4}, parent[] = {-1, 0, -1, 2};
+        double radius[] = {0.5, 0.5, 0.25, 0.25}, apart;
+        const Tree tree = {
+            .n = 4, .id = id, .parent = parent, .position = position, .radius_mm = radius};
+        size_t pair[2];
+        Err err = {""};
+        must(trees_apart(&tree, 50, &apart, pair, &err), &err);
+        assert_true(fabs(apart - 2.25) < 1e-12);
+        assert_int_equal(trees_prove_apart(&tree, 2.2, 50, "", &apart, &err), STATUS_OK);
+        assert_int_equal(trees_prove_apart(&tree, 2.3, 50, "", &apart, &err), STATUS_INFEASIBLE);
+        assert_non_null(strstr(err.text, "nodes 2 and 4, of different trees, are 2.25 mm apart"));
+    }
+}
+
 /* The clearance asked for is nearly all that the trees have, so that moves run into it. */
 static void refined_trees_keep_their_clearance(void **state)
 {
@@ -116,6 +142,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(trees_are_as_far_apart_as_their_nearest_pair),
+        cmocka_unit_test(trees_are_nearest_wherever_their_segments_cross),
         cmocka_unit_test(refined_trees_keep_their_clearance),
         cmocka_unit_test(trees_that_are_too_near_are_not_refined),
         cmocka_unit_test(vessels_that_overlap_are_less_than_nothing_apart),

@@ -320,20 +320,98 @@ static void turn_round(Nifti *nifti, size_t at, size_t size, size_t count)
         }
 }
 
-static void a_nifti_mask_may_be_big_endian(void **state)
+/* Turns the header's numbers, and the voxels of `size` bytes, to the other order of bytes. */
+static void turn_nifti_round(Nifti *nifti, size_t size, size_t voxels)
+{
+    turn_round(nifti, 0, 4, 1);
+    turn_round(nifti, 40, 2, 8);
+    turn_round(nifti, 70, 2, 2);
+    turn_round(nifti, 76, 4, 8);
+    turn_round(nifti, 108, 4, 3);
+    turn_round(nifti, 252, 2, 2);
+    turn_round(nifti, 256, 4, 18);
+    turn_round(nifti, NIFTI_HEADER, size, voxels);
+}
+
+/* Every type that a mask may have, of either order of bytes. The codes of some, read in the wrong
+ * order, are those of other types or of none. */
+static void a_nifti_mask_may_be_of_every_type_in_either_order(void **state)
+{
+    (void)state;
+    const struct Type {
+        int16_t code, bits;
+    } types[] = {{2, 8},  {256, 8}, {512, 16},  {4, 16},  {768, 32},
+                 {8, 32}, {16, 32}, {1280, 64}, {64, 64}, {1024, 64}};
+    const int16_t dim[8] = {3, 3, 2, 1, 1, 1, 1, 1};
+    for (size_t t = 0; t < sizeof types / sizeof *types; t++)
+        for (int turned_round = 0; turned_round < 2; turned_round++) {
+            Nifti nifti = new_nifti();
+            size_t size = (size_t)types[t].bits / 8;
+            put(&nifti, 40, dim, sizeof dim);
+            put(&nifti, 70, &types[t], sizeof types[t]);
+            memset(nifti.bytes + NIFTI_HEADER, 0, NIFTI_SIZE - NIFTI_HEADER);
+            const float one = 1;
+            const double one_double = 1;
+            for (size_t i = 0; i < 6; i += 4) { /* voxels 0 and 4: (0, 0) and (1, 1) */
+                char *voxel = nifti.bytes + NIFTI_HEADER + size * i;
+                *voxel = 1;
+                if (types[t].code == 16)
+                    memcpy(voxel, &one, sizeof one);
+                if (types[t].code == 64)
+                    memcpy(voxel, &one_double, sizeof one_double);
+            }
+            if (turned_round)
+                turn_nifti_round(&nifti, size, 6);
+            Domain domain = parse_nifti(&nifti);
+            assert_true(fabs(domain.volume - 2 * 15) < 1e-9);
+            assert_true(domain_inside(&domain, vec3(2, 3, 0), 0));
+            assert_false(domain_inside(&domain, vec3(2, 0, 0), 0));
+            domain_release(&domain);
+        }
+}
+
+static void a_nifti_mask_says_where_its_voxels_begin_or_they_follow_the_header(void **state)
 {
     (void)state;
     Nifti nifti = new_nifti();
-    turn_round(&nifti, 0, 4, 1);
-    turn_round(&nifti, 40, 2, 8);
-    turn_round(&nifti, 70, 2, 2);
-    turn_round(&nifti, 76, 4, 8);
-    turn_round(&nifti, 108, 4, 1);
-    turn_round(&nifti, NIFTI_HEADER, 2, NIFTI_VOXELS);
+    const float zero = 0, low = 348, part = 352.5F;
+    put(&nifti, 108, &zero, sizeof zero);
     Domain domain = parse_nifti(&nifti);
     assert_true(fabs(domain.volume - 16 * 15) < 1e-9);
     assert_true(domain_inside(&domain, vec3(0, 6, 0), 0));
     assert_false(domain_inside(&domain, vec3(6, 3, 0), 0));
+    domain_release(&domain);
+    const char extended = 1;
+    put(&nifti, 348, &extended, 1);
+    expect_bytes_refused("mask:a.nii", nifti.bytes, NIFTI_SIZE,
+                         "a.nii: its vox_offset is 0, but extensions follow the header");
+    put(&nifti, 108, &low, sizeof low);
+    expect_bytes_refused("mask:a.nii", nifti.bytes, NIFTI_SIZE,
+                         "a.nii: its vox_offset is 348; it must be 0 or an integer from 352 on");
+    put(&nifti, 108, &part, sizeof part);
+    expect_bytes_refused("mask:a.nii", nifti.bytes, NIFTI_SIZE, "its vox_offset is 352.5;");
+}
+
+/* Points are drawn from the voxels of tissue by their number: of many words of bits, each is drawn,
+ * and no other voxel. */
+static void points_are_drawn_from_every_voxel_of_tissue(void **state)
+{
+    (void)state;
+    enum { WIDE = 20, HIGH = 13 };
+    char text[2000] = "P2 20 13 1\n";
+    bool tissue[WIDE * HIGH], drawn[WIDE * HIGH] = {false};
+    for (int i = 0; i < WIDE * HIGH; i++) {
+        tissue[i] = i % 7 == 3 || (i > 128 && i < 200);
+        strcat(text, tissue[i] ? "1\n" : "0\n");
+    }
+    Domain domain = parse_text("mask:a.pgm,1", text);
+    Random random;
+    random_seed(&random, 4);
+    for (int k = 0; k < 5000; k++) {
+        Vec3 at = domain_sample(&domain, &random);
+        drawn[(int)floor(HIGH / 2.0 - at.y) * WIDE + (int)floor(at.x + WIDE / 2.0)] = true;
+    }
+    assert_memory_equal(drawn, tissue, sizeof drawn);
     domain_release(&domain);
 }
 
@@ -512,6 +590,161 @@ static void stl_and_obj_files_give_the_same_domain(void **state)
     text_release(&obj);
 }
 
+/* An ASCII STL of the tetrahedron, each keyword as the caller spells it. */
+typedef struct Spelling {
+    const char *solid, *facet, *outer, *vertex, *end_loop, *end_facet, *end_solid;
+} Spelling;
+
+static void put_stl(const Spelling *spelling, Text *out)
+{
+    text_printf(out, "%s t\n", spelling->solid);
+    for (size_t i = 0; i < 12; i++) {
+        if (i % 3 == 0)
+            text_printf(out, "%s normal 0 0 0\n %s loop\n", spelling->facet, spelling->outer);
+        Vec3 p = tetrahedron[i];
+        text_printf(out, "%s %g %g %g\n", spelling->vertex, p.x, p.y, p.z);
+        if (i % 3 == 2)
+            text_printf(out, "%s\n%s\n", spelling->end_loop, spelling->end_facet);
+    }
+    text_printf(out, "%s t\n", spelling->end_solid);
+}
+
+static void ascii_stl_files_may_be_spelled_as_old_programs_do(void **state)
+{
+    (void)state;
+    static const Spelling spellings[] = {
+        {"SOLID", "FACET", "OUTER", "VERTEX", "ENDLOOP", "ENDFACET", "ENDSOLID"},
+        {"solid", "facet", "outer", "vertex", "end loop", "end facet", "end solid"},
+        {"Solid", "\tFacet", "  Outer", "  Vertex ", "End  Loop", "END\tFACET", "End Solid"},
+    };
+    /* what stands behind the end: words, zero bytes, the end mark of CP/M */
+    static const char ends[][40] = {"", "made by hand\n\n-- end of file\n", "\x1a\x1a", {0}};
+    static const size_t sizes[] = {0, 29, 2, 40};
+    for (size_t i = 0; i < sizeof spellings / sizeof *spellings; i++)
+        for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+            Text text = TEXT_INIT;
+            put_stl(&spellings[i], &text);
+            text_append(&text, ends[k], sizes[k]);
+            write_bytes("a.stl", text.chars, text.length);
+            expect_tetrahedron("mesh:a.stl,10");
+            text_release(&text);
+        }
+    unlink("a.stl");
+    Text text = TEXT_INIT;
+    put_stl(&spellings[0], &text);
+    text_puts(&text, "solid u\nspline\n"); /* the end of one solid is not that of the file */
+    expect_text_refused("mesh:a.stl", text.chars, "'spline' is no word of an ASCII STL file");
+    text_release(&text);
+    expect_text_refused("mesh:a.stl", "solid\nfacet\nouter loop\nvertex 1,5 2 3\n",
+                        "a.stl:4: '1,5' has a comma; a vertex has three numbers, x y z, with "
+                        "decimal points");
+}
+
+static void a_binary_stl_may_have_more_behind_its_triangles(void **state)
+{
+    (void)state;
+    static char binary[84 + 4 * 50 + 17] = "Binary";
+    binary[80] = 4;
+    for (size_t i = 0; i < 12; i++) {
+        Vec3 p = tetrahedron[i];
+        const float xyz[3] = {(float)p.x, (float)p.y, (float)p.z};
+        memcpy(binary + 84 + 50 * (i / 3) + 12 + 12 * (i % 3), xyz, sizeof xyz);
+    }
+    write_bytes("a.stl", binary, sizeof binary);
+    expect_tetrahedron("mesh:a.stl,10");
+    unlink("a.stl");
+}
+
+static void faces_of_an_obj_file_may_go_on_over_lines(void **state)
+{
+    (void)state;
+    static const char text[] = "V 0 0 0\nV 2 0 0\nv 0 2 0\nv 0 0 2\nF 1 3 \\\n 2\nf \\\n1 2 4\n"
+                               "f 1 4 3 # \\\nf 2 \\  \n3 \\\n4\n";
+    write_bytes("a.obj", text, strlen(text));
+    expect_tetrahedron("mesh:a.obj,10");
+    unlink("a.obj");
+    expect_text_refused("mesh:a.obj", "v 0 0 0\nv 2 0 0\nf 1 \\\n2\n",
+                        "a.obj:4: 'f' is a face of fewer than three corners");
+}
+
+/* Appends a cube of this side about the origin, its faces to the outside or to the inside. */
+static void put_shell(Text *out, double side, Vec3 middle, bool inwards)
+{
+    static const int faces[6][4] = {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5},
+                                    {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}};
+    for (int i = 0; i < 8; i++)
+        text_printf(out, "v %g %g %g\n", middle.x + side * ((i & 1) - 0.5),
+                    middle.y + side * ((i >> 1 & 1) - 0.5), middle.z + side * ((i >> 2) - 0.5));
+    for (int i = 0; i < 6; i++) {
+        text_puts(out, "f");
+        for (int k = 0; k < 4; k++)
+            text_printf(out, " %d", faces[i][inwards ? 3 - k : k] - 9);
+        text_puts(out, "\n");
+    }
+}
+
+static Domain parse_shells(const double (*sides)[2], size_t n, double apart)
+{
+    Text text = TEXT_INIT;
+    for (size_t i = 0; i < n; i++)
+        put_shell(&text, sides[i][0], vec3(apart * (double)i, 0, 0), sides[i][1] < 0);
+    Domain domain = parse_text("mesh:a.obj", text.chars);
+    text_release(&text);
+    return domain;
+}
+
+static void shells_of_a_mesh_are_filled_or_hollow_by_the_way_they_are_turned(void **state)
+{
+    (void)state;
+    const Vec3 middle = vec3(0.1, 0.2, -0.3), wall = vec3(3.1, 0.2, 0.3);
+    Domain domain = parse_shells((const double[][2]){{10, 1}, {4, 1}}, 2, 0);
+    assert_true(domain_inside(&domain, middle, 0) && domain_inside(&domain, wall, 0));
+    assert_true(fabs(domain.volume - 1000) < 1e-9);
+    assert_true(domain_holds_segment(&domain, vec3(-4, 0.2, 0.3), vec3(4, 0.3, -0.1)));
+    domain_release(&domain);
+    domain = parse_shells((const double[][2]){{10, 1}, {4, -1}}, 2, 0);
+    assert_true(!domain_inside(&domain, middle, 0) && domain_inside(&domain, wall, 0));
+    assert_true(fabs(domain.volume - 936) < 1e-9);
+    assert_false(domain_holds_segment(&domain, vec3(-4, 0.2, 0.3), vec3(4, 0.3, -0.1)));
+    domain_release(&domain);
+    domain = parse_shells((const double[][2]){{10, 1}, {4, -1}, {2, 1}}, 3, 0);
+    assert_true(domain_inside(&domain, middle, 0) && fabs(domain.volume - 944) < 1e-9);
+    domain_release(&domain);
+    domain =
+        parse_shells((const double[][2]){{10, 1}, {10, 1}, {10, 1}}, 3, 0); /* thrice the same */
+    assert_true(domain_inside(&domain, middle, 0) && fabs(domain.volume - 1000) < 1e-9);
+    assert_false(domain_inside(&domain, vec3(5.1, 0, 0), 0));
+    domain_release(&domain);
+    domain = parse_shells((const double[][2]){{10, 1}, {10, 1}}, 2, 30);
+    assert_true(domain_inside(&domain, vec3(29, 1, 2), 0) && fabs(domain.volume - 2000) < 1e-9);
+    domain_release(&domain);
+    Text text = TEXT_INIT;
+    put_shell(&text, 10, vec3(0, 0, 0), false);
+    put_shell(&text, 4, vec3(30, 0, 0), true);
+    expect_text_refused("mesh:a.obj", text.chars,
+                        "a.obj: 1 of the mesh's 2 shells is inside out and within no other");
+    text_release(&text);
+}
+
+static void a_surface_whose_layer_is_nowhere_is_refused(void **state)
+{
+    (void)state;
+    /* A plate 1 mm thick, aslant, so that the box about it is thick. */
+    Text text = TEXT_INIT;
+    for (int i = 0; i < 8; i++) {
+        double x = 20 * ((i & 1) - 0.5), y = 20 * ((i >> 1 & 1) - 0.5), z = (i >> 2) - 0.5;
+        text_printf(&text, "v %.9g %.9g %.9g\n", 0.8 * x - 0.6 * z,
+                    0.6 * y + 0.8 * (0.6 * x + 0.8 * z), 0.8 * y - 0.6 * (0.6 * x + 0.8 * z));
+    }
+    text_puts(&text, "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n");
+    write_bytes("a.obj", text.chars, text.length);
+    expect_refused("surface:a.obj,3", STATUS_INPUT,
+                   "of 100000 points drawn in the domain none is inside it; the mesh may be "
+                   "thinner than twice its OFFSET");
+    unlink("a.obj");
+    text_release(&text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -522,12 +755,19 @@ int main(void)
         cmocka_unit_test(masks_that_hold_nothing_are_refused),
         cmocka_unit_test(a_nifti_mask_is_placed_by_sform_else_qform_else_voxel_size),
         cmocka_unit_test(a_nifti_mask_has_units_and_a_scale),
-        cmocka_unit_test(a_nifti_mask_may_be_big_endian),
+        cmocka_unit_test(a_nifti_mask_may_be_of_every_type_in_either_order),
+        cmocka_unit_test(a_nifti_mask_says_where_its_voxels_begin_or_they_follow_the_header),
+        cmocka_unit_test(points_are_drawn_from_every_voxel_of_tissue),
         cmocka_unit_test(a_compressed_mask_is_read_beside_one_that_is_not),
         cmocka_unit_test(nifti_files_that_are_no_mask_are_refused),
         cmocka_unit_test(meshes_that_enclose_nothing_are_refused),
         cmocka_unit_test(files_that_are_no_stl_are_refused),
         cmocka_unit_test(stl_and_obj_files_give_the_same_domain),
+        cmocka_unit_test(ascii_stl_files_may_be_spelled_as_old_programs_do),
+        cmocka_unit_test(a_binary_stl_may_have_more_behind_its_triangles),
+        cmocka_unit_test(faces_of_an_obj_file_may_go_on_over_lines),
+        cmocka_unit_test(shells_of_a_mesh_are_filled_or_hollow_by_the_way_they_are_turned),
+        cmocka_unit_test(a_surface_whose_layer_is_nowhere_is_refused),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);
 }

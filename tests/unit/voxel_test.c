@@ -224,6 +224,37 @@ static void thin_vessels_that_meet_in_a_cell_have_their_volume(void **state)
     cover_release(&room);
 }
 
+/* Bends and forks of vessels from a twentieth to a thousandth of the voxel: what a voxel of eighths
+ * has, to a part of the vessels themselves. */
+static void thin_vessels_in_a_large_cell_are_found_at_every_depth(void **state)
+{
+    (void)state;
+    enum { BODIES = 4 };
+    const uint32_t list[BODIES] = {0, 1, 2, 3};
+    Random random;
+    random_seed(&random, 19);
+    CoverRoom room = {0};
+    assert_int_equal(cover_reserve(&room, BODIES, NULL), STATUS_OK);
+    for (int i = 0; i < 40; i++) {
+        Body bodies[BODIES];
+        double radius = exp(number(&random, log(0.001), log(0.05)));
+        Vec3 node = vec3_add(cell.center, point(&random, 0.2));
+        bodies[3] = body_make(node, node, radius, 0);
+        double tubes = 0;
+        for (uint32_t k = 0; k < 3; k++) { /* no two of them nearly parallel */
+            Vec3 way = vec3_add_scaled(vec3(k == 0, k == 1, k == 2), point(&random, 1), 0.3);
+            bodies[k] = body_make(node, vec3_add_scaled(node, way, 0.2), radius, k);
+            tubes += acos(-1) * radius * radius * bodies[k].length;
+        }
+        double part = cover_part(bodies, list, BODIES, &cell, &room) * cell_volume(&cell);
+        /* Three tubes overlap about their node by no more than four balls. */
+        double overlap = 4 * 4.0 / 3 * acos(-1) * radius * radius * radius;
+        if (part > 1.01 * tubes + overlap || part < 0.99 * tubes - overlap)
+            fail_msg("radius %g: %g of tubes of %g, overlap %g", radius, part, tubes, overlap);
+    }
+    cover_release(&room);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -232,6 +263,7 @@ int main(void)
         cmocka_unit_test(thin_vessel_in_a_cell_has_its_volume),
         cmocka_unit_test(part_of_a_union_is_that_of_points_in_it),
         cmocka_unit_test(the_part_of_one_voxel_is_off_by_no_more_than_is_said),
+        cmocka_unit_test(thin_vessels_in_a_large_cell_are_found_at_every_depth),
         cmocka_unit_test(thin_vessels_that_meet_in_a_cell_have_their_volume),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

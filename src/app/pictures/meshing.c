@@ -204,10 +204,11 @@ static json_t *manifest(const Meshing *made)
         {"self_intersections", json_count(report->crossings)},
         {"bridges", json_count(report->bridges)},
         {"segments", json_count(vessels->n_segments)},
-        {"segments_present",
-         json_count(vessels->n_segments - report->n_missing - report->n_swallowed)},
+        {"segments_present", json_count(vessels->n_segments - report->n_missing -
+                                        report->n_swallowed - report->n_slivers)},
         {"segments_missing", segment_ids(vessels, report->missing, report->n_missing)},
         {"segments_swallowed", segment_ids(vessels, report->swallowed, report->n_swallowed)},
+        {"segments_slivers", segment_ids(vessels, report->slivers, report->n_slivers)},
         {"segments_thinned", segment_ids(vessels, made->thinned, made->n_thinned)},
         {"segments_lengthened", segment_ids(vessels, made->longer, made->n_longer)},
         {"round_ends", segment_ids(vessels, report->round, report->n_round)},
@@ -226,7 +227,7 @@ static json_t *manifest(const Meshing *made)
     return json_with(all, "print", printing_json(&print));
 }
 
-static Status write_beside(bool parts, Meshing *made, Err *err)
+static Status write_beside(bool parts, const char *output, Meshing *made, Err *err)
 {
     Text *beside = made->beside;
     text_json(&beside[BESIDE_MANIFEST], manifest(made), 2);
@@ -235,6 +236,8 @@ static Status write_beside(bool parts, Meshing *made, Err *err)
     if (!parts)
         return STATUS_OK;
     TRY(meshends_find(&made->mesh, &made->vessels, &made->ends, err));
+    solver_gmsh(&made->ends, file_name(output), &beside[BESIDE_GMSH]);
+    TRY(text_check(&beside[BESIDE_GMSH], err));
     TRY(solver_ends(&made->ends, &made->of->tree, &made->vessels, &beside[BESIDE_ENDS], err));
     return solver_centerline(&made->of->tree, &made->vessels, &beside[BESIDE_CENTERLINE], err);
 }
@@ -263,7 +266,7 @@ Status meshing_write(const Emitter *emitter, const MeshingOptions *options, cons
     Status status;
     TRY_GOTO(make(&parsed->common, options, emitter, &made, err));
     if (emitter->of_meshes)
-        TRY_GOTO(write_beside(emitter->has_parts, &made, err));
+        TRY_GOTO(write_beside(emitter->has_parts, output, &made, err));
     TRY_GOTO(command_line_text(parsed, &line, err));
     EmitParams params = {.mesh = &made.mesh,
                          .vessels = &made.vessels,

@@ -35,10 +35,12 @@ static const struct {
     const char *role, *suffix;
     bool keeps_extension; /* of the mesh, before the suffix */
     bool of_parts;
+    const char *of_extension; /* only beside a mesh of this extension; NULL: of any */
 } besides[BESIDES] = {
     [BESIDE_MANIFEST] = {"the manifest", ".json", .keeps_extension = true},
     [BESIDE_ENDS] = {"the table of ends", ".ends.csv", .of_parts = true},
     [BESIDE_CENTERLINE] = {"the centreline", ".centreline.vtp", .of_parts = true},
+    [BESIDE_GMSH] = {"the geometry for gmsh", ".geo", .of_parts = true, .of_extension = "stl"},
 };
 
 /* The files beside a scene or mesh; NULL where there is none. */
@@ -54,6 +56,14 @@ static void beside_release(Beside *beside)
         free(beside->of_mesh[i]);
 }
 
+/* Whether this stands beside a mesh of the emitter. */
+static bool is_beside(const Emitter *emitter, size_t i)
+{
+    const char *extension = besides[i].of_extension;
+    return emitter->of_meshes && (emitter->has_parts || !besides[i].of_parts) &&
+           (!extension || strcmp(emitter->extension, extension) == 0);
+}
+
 static Status find_beside(const Emitter *emitter, const char *path, bool settings, Beside *beside,
                           Err *err)
 {
@@ -64,7 +74,7 @@ static Status find_beside(const Emitter *emitter, const char *path, bool setting
         bool keeps = besides[i].keeps_extension;
         snprintf(suffix, sizeof suffix, "%s%s%s", keeps ? "." : "", keeps ? emitter->extension : "",
                  besides[i].suffix);
-        if (emitter->of_meshes && (emitter->has_parts || !besides[i].of_parts))
+        if (is_beside(emitter, i))
             TRY(file_with_suffix(path, suffix, &beside->of_mesh[i], err));
     }
     snprintf(suffix, sizeof suffix, ".%s", emitter->settings_extension);

@@ -77,3 +77,49 @@ done:
     free(drawn.position);
     return status;
 }
+
+/* A part by what it bounds: blood within the lumen, or the wall about it. */
+static bool bounds_blood(const MeshEnds *ends, size_t part)
+{
+    if (part < ends->n_walls)
+        return strcmp(ends->walls[part], "outer") != 0;
+    return !ends->ends[part - ends->n_walls].is_ring;
+}
+
+static bool bounds_wall(const MeshEnds *ends, size_t part)
+{
+    return part < ends->n_walls || ends->ends[part - ends->n_walls].is_ring;
+}
+
+/* gmsh numbers surfaces from 1 on, in the order of the file. */
+static void put_volume(const MeshEnds *ends, bool (*bounds)(const MeshEnds *, size_t),
+                       const char *name, int number, Text *out)
+{
+    const char *before = "";
+    text_printf(out, "Surface Loop(%d) = {", number);
+    for (size_t part = 0; part < meshends_parts(ends); part++) {
+        if (!bounds(ends, part))
+            continue;
+        text_printf(out, "%s%zu", before, part + 1);
+        before = ", ";
+    }
+    text_printf(out, "};\nVolume(%d) = {%d};\nPhysical Volume(\"%s\") = {%d};\n", number, number,
+                name, number);
+}
+
+void solver_gmsh(const MeshEnds *ends, const char *file, Text *out)
+{
+    bool is_hollow = false;
+    text_puts(out, "Merge \"");
+    for (const char *c = file; *c; c++)
+        text_printf(out, "%s%c", *c == '"' || *c == '\\' ? "\\" : "", *c);
+    text_puts(out, "\";\n");
+    for (size_t part = 0; part < meshends_parts(ends); part++) {
+        const char *name = meshends_part_name(ends, part);
+        is_hollow = is_hollow || strcmp(name, "outer") == 0;
+        text_printf(out, "Physical Surface(\"%s\") = {%zu};\n", name, part + 1);
+    }
+    put_volume(ends, bounds_blood, "blood", 1, out);
+    if (is_hollow)
+        put_volume(ends, bounds_wall, "wall", 2, out);
+}

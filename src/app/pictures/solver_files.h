@@ -15,4 +15,9 @@ MUST_CHECK Status solver_ends(const MeshEnds *ends, const Tree *tree, const Vess
 MUST_CHECK Status solver_centerline(const Tree *tree, const VesselTree *vessels, Text *out,
                                     Err *err);
 
+/* Appends a geometry for gmsh that reads the STL `file`, gives each surface the name of its part
+ * and makes volumes of them: "blood" and, of a hollow wall, "wall". The text fails when memory runs
+ * out. */
+void solver_gmsh(const MeshEnds *ends, const char *file, Text *out);
+
 #endif

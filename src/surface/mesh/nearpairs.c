@@ -118,3 +118,19 @@ Status nearpairs_find(const VesselTree *tree, int threads, NearPair **pairs, siz
     free(search);
     return status;
 }
+
+Box segment_box(const FieldSegment *segment, double radius_mm)
+{
+    return box_with_ball(box_with_ball(box_empty(), segment->a, radius_mm), segment->b, radius_mm);
+}
+
+Status segments_boxtree(const VesselTree *tree, BoxTree *out, Err *err)
+{
+    Box *boxes = NULL;
+    TRY(mem_calloc(&boxes, tree->n_segments, sizeof *boxes, "segments", err));
+    for (size_t i = 0; i < tree->n_segments; i++)
+        boxes[i] = segment_box(&tree->segments[i], tree->segments[i].radius_mm);
+    Status status = boxtree_build(boxes, tree->n_segments, out, err);
+    free(boxes);
+    return status;
+}

@@ -13,4 +13,9 @@ MUST_CHECK Status nearpairs_find(const VesselTree *tree, int threads, NearPair *
 double segment_distance_to(const FieldSegment *segment, Vec3 x);
 double segments_distance(const FieldSegment *a, const FieldSegment *b);
 
+/* Returns the box about a segment, `radius_mm` wider on all sides. */
+Box segment_box(const FieldSegment *segment, double radius_mm);
+/* Builds a tree of the boxes of all vessels of the tree, which must have one. STATUS_MEMORY. */
+MUST_CHECK Status segments_boxtree(const VesselTree *tree, BoxTree *out, Err *err);
+
 #endif

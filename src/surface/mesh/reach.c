@@ -36,7 +36,7 @@ Status reach_refuse(const VesselTree *tree, uint32_t segment, double grid_mm, Er
 {
     double radius = tree->segments[segment].radius_mm;
     return err_set(err, STATUS_INPUT,
-                   "the tree reaches %.6g mm from the origin, where the single precision of a mesh "
+                   "the tree reaches %.7g mm from the origin, where the single precision of a mesh "
                    "places points to %.2g mm; that is too coarse for the radius of segment %u, "
                    "%.4g mm; move the tree nearer to the origin",
                    mesh_reach(tree), grid_mm, tree->ids[segment], radius);

@@ -18,7 +18,7 @@ double mesh_grid(double reach_mm);
  *
  * reach_mm   0, or a coordinate farther from 0 of what the mesh is to be joined with.
  * Errors     STATUS_INPUT. */
-#define REACH_LEAST_STEPS 48
+#define REACH_LEAST_STEPS 16
 MUST_CHECK Status reach_check(const VesselTree *tree, double reach_mm, Err *err);
 
 /* Returns STATUS_INPUT: the segment's place is what makes its mesh unsound. The sentence names the

@@ -55,6 +55,7 @@ void meshreport_release(MeshReport *report)
 {
     free(report->missing);
     free(report->swallowed);
+    free(report->slivers);
     free(report->round);
     free(report->near);
     *report = (MeshReport){0};
@@ -255,6 +256,21 @@ static Status make_zones(Build *build, int n_workers, Err *err)
     return STATUS_OK;
 }
 
+/* Finds the segments that have a wall and yet no triangle of the mesh. */
+static Status find_slivers(Build *build, const VesselMesh *mesh, Err *err)
+{
+    bool *has_triangle = NULL;
+    size_t n = build->tree->n_segments;
+    TRY(mem_calloc(&has_triangle, n, sizeof *has_triangle, "segments", err));
+    for (size_t i = 0; i < mesh->n_triangles; i++)
+        has_triangle[mesh_segment(mesh, i)] = true;
+    for (size_t i = 0; i < n; i++)
+        if (build->fates[i] == SEGMENT_PRESENT && !has_triangle[i])
+            build->fates[i] = SEGMENT_SLIVER;
+    free(has_triangle);
+    return STATUS_OK;
+}
+
 /* The segments of one fate, in *list (owned). */
 static Status list_fate(const Build *build, SegmentFate fate, uint32_t **list, size_t *n, Err *err)
 {
@@ -297,7 +313,7 @@ static Status refuse_overlap(const Build *build, Err *err)
         ids[pair->segments[0]], ids[pair->segments[1]], -pair->gap_mm, build->zones.n_overlapping);
 }
 
-static Status fill_report(const Build *build, const VesselMesh *mesh, atomic_bool *crossed,
+static Status fill_report(Build *build, const VesselMesh *mesh, atomic_bool *crossed,
                           MeshReport *report, Err *err)
 {
     uint32_t *trees;
@@ -308,6 +324,8 @@ static Status fill_report(const Build *build, const VesselMesh *mesh, atomic_boo
     TRY(status);
     TRY(meshcheck_crossings(mesh, build->fineness.grid_mm, build->params->threads, crossed,
                             &report->crossings, err));
+    TRY(find_slivers(build, mesh, err));
+    TRY(list_fate(build, SEGMENT_SLIVER, &report->slivers, &report->n_slivers, err));
     TRY(list_fate(build, SEGMENT_MISSING, &report->missing, &report->n_missing, err));
     TRY(list_fate(build, SEGMENT_SWALLOWED, &report->swallowed, &report->n_swallowed, err));
     return build->tree->body != BODY_ROUND ? list_round(build, report, err) : STATUS_OK;

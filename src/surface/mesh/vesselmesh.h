@@ -55,8 +55,9 @@ typedef struct MeshReport {
     size_t bridges;     /* components that hold segments of several trees */
     size_t n_missing;   /* segments with a wall that has no triangle */
     size_t n_swallowed; /* segments that lie within others, so that they have no wall */
+    size_t n_slivers;   /* segments whose wall is so narrow that no triangle is their own */
     size_t n_round;     /* ends that could not be cut flat, because other vessels are in the way */
-    uint32_t *missing, *swallowed, *round; /* their segments; owned */
+    uint32_t *missing, *swallowed, *slivers, *round; /* their segments; owned */
     NearPair *near; /* owned; gaps below NEAR_GAP of the thinner radius, overlaps first */
     size_t n_near, n_overlapping;
     double volume_mm3;

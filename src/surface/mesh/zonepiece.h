@@ -38,7 +38,8 @@ void zonepiece_release(ZonePiece *piece);
 typedef enum SegmentFate {
     SEGMENT_MISSING, /* it has a wall, which is not in the mesh */
     SEGMENT_PRESENT,
-    SEGMENT_SWALLOWED /* it lies within others */
+    SEGMENT_SWALLOWED, /* it lies within others */
+    SEGMENT_SLIVER     /* it has a wall, but so narrow a one that no triangle is its own */
 } SegmentFate;
 
 typedef struct ZoneFineness {

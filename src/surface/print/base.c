@@ -27,7 +27,8 @@ typedef struct Foot {
 typedef struct Standing {
     VesselTree *tree;
     const PrintBase *base;
-    NumberLists incident;  /* of the tree as it was ... */
+    BoxTree boxes;         /* of the tree as it was; owned */
+    NumberLists incident;  /* likewise ... */
     size_t incident_nodes; /* ... which had so many nodes */
     Foot *feet;
     size_t n_feet, foot_capacity;
@@ -119,16 +120,30 @@ static Status add_segment(Standing *standing, FieldSegment segment, uint32_t fro
     return STATUS_OK;
 }
 
-/* Whether a pin keeps off all that does not end where it begins. */
+/* Whether a pin keeps off a vessel, unless that ends where the pin begins. */
+static bool is_off(const Standing *standing, const FieldSegment *pin, uint32_t node, size_t i)
+{
+    const VesselTree *tree = standing->tree;
+    const FieldSegment *other = &tree->segments[i];
+    double gap = segments_distance(pin, other) - pin->radius_mm - other->radius_mm;
+    return tree->nodes[i][0] == node || tree->nodes[i][1] == node ||
+           gap >= free_part * fmin(pin->radius_mm, other->radius_mm);
+}
+
+/* Whether a pin keeps off all that does not end where it begins. Vessels of the tree are found by
+ * their boxes as they were before any was cut, which only made them shorter. */
 static bool is_free(const Standing *standing, const FieldSegment *pin, uint32_t node)
 {
     const VesselTree *tree = standing->tree;
-    for (uint32_t i = 0; i < tree->n_segments; i++) {
-        const FieldSegment *other = &tree->segments[i];
-        double radii = pin->radius_mm + other->radius_mm;
-        double gap = segments_distance(pin, other) - radii;
-        if (tree->nodes[i][0] != node && tree->nodes[i][1] != node &&
-            gap < free_part * fmin(pin->radius_mm, other->radius_mm))
+    Box around = segment_box(pin, (1 + free_part) * pin->radius_mm);
+    uint32_t number;
+    for (BoxWalk walk = boxwalk_box(&standing->boxes, around); boxwalk_next(&walk, &number);)
+        if (!is_off(standing, pin, node, number))
+            return false;
+    for (size_t i = standing->pins.n_segments; i < tree->n_segments; i++) {
+        const FieldSegment *added = &tree->segments[i];
+        if (box_meets(around, segment_box(added, added->radius_mm)) &&
+            !is_off(standing, pin, node, i))
             return false;
     }
     return true;
@@ -294,6 +309,7 @@ Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, const M
                          .pins.n_segments = n,
                          .err = err};
     Status status;
+    TRY_GOTO(segments_boxtree(tree, &standing.boxes, err));
     TRY_GOTO(vesseltree_incident(tree, &standing.incident, err));
     TRY_GOTO(find_feet(&standing));
     standing.pins.top_mm = top_of(&standing);
@@ -303,6 +319,7 @@ Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, const M
     *out = standing.pins;
     standing.pins = (Pins){0};
 done:
+    boxtree_release(&standing.boxes);
     numberlists_release(&standing.incident);
     free(standing.feet);
     pins_release(&standing.pins);

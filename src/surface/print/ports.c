@@ -176,11 +176,6 @@ static bool is_apart(const FieldSegment *one, const FieldSegment *other)
            radii + free_part * fmin(one->radius_mm, other->radius_mm);
 }
 
-static Box box_of(const FieldSegment *segment, double radius_mm)
-{
-    return box_with_ball(box_with_ball(box_empty(), segment->a, radius_mm), segment->b, radius_mm);
-}
-
 enum { MOST_OWN = 64 };
 
 /* The vessels that a port goes on from: those within a few of its radii behind the rim. */
@@ -218,7 +213,7 @@ static bool is_off_vessels(const PortSearch *search, const FieldSegment *stretch
                            const OwnVessels *own)
 {
     uint32_t k;
-    Box around = box_of(stretch, (1 + free_part) * stretch->radius_mm);
+    Box around = segment_box(stretch, (1 + free_part) * stretch->radius_mm);
     for (BoxWalk walk = boxwalk_box(&search->boxes, around); boxwalk_next(&walk, &k);)
         if (!is_apart(stretch, &search->tree->segments[k]) && !is_own(own, k))
             return false;
@@ -243,7 +238,7 @@ static void set_box(const PortRing *rim, Port *port)
     port->box = box_empty();
     for (int i = 0; i < port->n_rings; i++) {
         FieldSegment own = stretch_of(rim, port, i);
-        port->box = box_union(port->box, box_of(&own, (1 + free_part) * own.radius_mm));
+        port->box = box_union(port->box, segment_box(&own, (1 + free_part) * own.radius_mm));
     }
 }
 
@@ -305,18 +300,6 @@ static bool find_way(const PortSearch *search, const PortRing *rim, Port *port)
     return false;
 }
 
-static Status build_boxes(PortSearch *search, Err *err)
-{
-    const VesselTree *tree = search->tree;
-    Box *boxes = NULL;
-    TRY(mem_calloc(&boxes, tree->n_segments, sizeof *boxes, "segments", err));
-    for (size_t i = 0; i < tree->n_segments; i++)
-        boxes[i] = box_of(&tree->segments[i], tree->segments[i].radius_mm);
-    Status status = boxtree_build(boxes, tree->n_segments, &search->boxes, err);
-    free(boxes);
-    return status;
-}
-
 Status ports_find(const VesselTree *tree, const CutEnds *ends, const Casing *casing,
                   const PrintBlock *block, Ports *out, Err *err)
 {
@@ -324,7 +307,7 @@ Status ports_find(const VesselTree *tree, const CutEnds *ends, const Casing *cas
     PortSearch search = {.tree = tree, .casing = casing, .block = block, .ports = &made};
     Status status;
     TRY_GOTO(vesseltree_incident(tree, &search.incident, err));
-    TRY_GOTO(build_boxes(&search, err));
+    TRY_GOTO(segments_boxtree(tree, &search.boxes, err));
     TRY_GOTO(mem_calloc(&made.items, ends->n, sizeof *made.items, "ports", err));
     for (int inlets = 1; inlets >= 0; inlets--)
         for (size_t i = 0; i < ends->n; i++) {

@@ -276,8 +276,9 @@ static void name_owners(Making *making, MeshReport *report)
 {
     const Pins *pins = &making->pins;
     VesselMesh *mesh = &making->solid.mesh;
-    uint32_t *const lists[] = {report->swallowed, report->round};
-    const size_t counts[] = {report->n_swallowed, report->n_round};
+    uint32_t *const lists[] = {report->swallowed, report->slivers, report->round};
+    const size_t counts[] = {report->n_swallowed, report->n_slivers, report->n_round};
+    enum { LISTS = sizeof counts / sizeof *counts };
     if (pins->n_added == 0)
         return;
     for (size_t i = 0; i < mesh->n_triangles; i++) {
@@ -286,7 +287,7 @@ static void name_owners(Making *making, MeshReport *report)
         mesh->labels[i] =
             (mesh->labels[i] & MESH_FLAGS) | pins_owner(pins, segment) | (is_own ? 0 : MESH_FRAME);
     }
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < LISTS; k++)
         for (size_t i = 0; i < counts[k]; i++)
             lists[k][i] = pins_owner(pins, lists[k][i]);
     for (size_t i = 0; i < report->n_near; i++)
