@@ -34,9 +34,9 @@ test_every_field_of_coloured_meshes() {
         run_ok corcast export tree.csv "${COLORED[@]}" --tube-edge 1 -o "x.$extension"
     done
     reads ply x.ply
-    reads obj x.obj
-    reads 3mf x.3mf
-    reads mesh2 x.inc
+    reads obj x.obj x.ply
+    reads 3mf x.3mf x.ply
+    reads mesh2 x.inc x.ply
 }
 
 test_every_field_of_a_glb() {

@@ -178,7 +178,8 @@ def read_glb(path, colored, phong_size, look):
         expect("COLOR_0", attributes["COLOR_0"][clear], expected, 3e-3)
 
 
-def read_ply(path):
+def ply_faces(path):
+    """The corners and the segment of each face of a PLY, and the whole of its vertices and faces."""
     head, body = open(path, "rb").read().split(b"end_header\n", 1)
     head = head.decode()
     check_text("head", head, "format binary_little_endian 1.0", "units=mm", "comment corcast ")
@@ -191,6 +192,22 @@ def read_ply(path):
                           n * vertices.itemsize)
     expect("length", len(body), n * vertices.itemsize + m * faces.itemsize)
     expect("corners", set(faces["n"].tolist()), {3})
+    return vertices, faces
+
+
+def check_like_ply(ply, points, triangles, codes):
+    """Each triangle has the colour of the segment that the PLY of the same mesh names for it."""
+    vertices, faces = ply_faces(ply)
+    key = lambda corners: tuple(sorted(map(tuple, np.float32(corners).tolist())))
+    known = {key(vertices["at"][face["v"]]): code(int(face["segment"])) for face in faces}
+    points = np.float32(points)
+    expect("triangles beside those of PLY", len(known), len(triangles))
+    wrong = sum(known.get(key(points[t])) != tuple(int(c) for c in paint) for t, paint in zip(triangles, codes))
+    expect("triangles of another colour than in PLY", wrong, 0)
+
+
+def read_ply(path):
+    vertices, faces = ply_faces(path)
     triangles = faces["v"]
     check_triangles(vertices["at"], triangles, faces["segment"], None, vertices["normal"][triangles])
     wall, _, _ = walls(vertices["at"].astype(float))
@@ -212,7 +229,7 @@ def check_caps(middle, cap, segments):
     expect("ends with caps", seen, FREE)
 
 
-def read_obj(path):
+def read_obj(path, ply):
     materials, name = {}, None
     for words in map(str.split, open(path[:-4] + ".mtl")):
         if words[:1] == ["newmtl"]:
@@ -241,6 +258,7 @@ def read_obj(path):
             corners.append([int(w.split("//")[1]) - 1 for w in words[1:]])
             colors.append(color)
             groups.append(group)
+    check_like_ply(ply, points, triangles, colors)
     wall = check_triangles(points, triangles, None, colors, np.array(normals)[corners])
     expected = [f"order_{ORDER[int(s)]}" for s in wall[wall > 0]]
     expect("groups", [g for g, s in zip(groups, wall) if s], expected)
@@ -271,14 +289,16 @@ def mesh_of(thing):
     return points, [[int(t.get(k)) for k in ("v1", "v2", "v3")] for t in thing.iter("triangle")]
 
 
-def read_3mf(path):
+def read_3mf(path, ply):
     root, group, colors, things = read_model(path)
     thing = things[root.find("build/item").get("objectid")]
     expect("type", thing.get("type"), "model")
     points, triangles = mesh_of(thing)
     paints = list(thing.iter("triangle"))
     expect("pid", {t.get("pid") for t in paints}, {group})
-    check_triangles(points, triangles, None, [colors[int(t.get("p1"))] for t in paints])
+    codes = [colors[int(t.get("p1"))] for t in paints]
+    check_triangles(points, triangles, None, codes)
+    check_like_ply(ply, points, triangles, codes)
 
 
 def read_lattice(path):
@@ -697,7 +717,7 @@ def read_csg(path, source):
         expect("its colour", c, np.array(code(thickest)) / 255, 2e-3)
 
 
-def read_mesh2(path):
+def read_mesh2(path, ply):
     """The meshes of an exported .inc, one for each tree, with paints and without; POV-Ray reads them in other tests."""
     points, painted, plain, all_paints = [], [], [], []
     for part in open(path).read().split("mesh2 {")[1:]:
@@ -723,6 +743,7 @@ def read_mesh2(path):
     expect("paints", all_paints, SEGMENTS)
     check_triangles(points, [row for row, _ in painted], [segment for _, segment in painted])
     expect("faces without paints", plain, [row for row, _ in painted])
+    check_like_ply(ply, points, plain, [code(segment) for _, segment in painted])
 
 
 def write_tree(folder):
