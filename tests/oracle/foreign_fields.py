@@ -746,6 +746,47 @@ def read_mesh2(path, ply):
     check_like_ply(ply, points, plain, [code(segment) for _, segment in painted])
 
 
+def read_tachyon(path):
+    """The look has the numbers below; the view is the front, so that the camera's axes are the world's."""
+    text = open(path).read()
+    origin = np.array([float(x) for x in re.search(r"about <(.*?)> of the tree", text)[1].split(",")])
+    numbers = lambda line: [float(x) for x in re.findall(r"(?<![\w])-?[0-9.]+(?:e-?\d+)?", line)]
+    line = lambda start: numbers(re.search(f"^ *{start} (.*)", text, re.M)[1])
+    expect("RESOLUTION", line("RESOLUTION"), [61, 43])
+    check_text("camera", text, "PROJECTION ORTHOGRAPHIC", "ANTIALIASING 3 ", "RAYDEPTH 1")
+    expect("VIEWDIR and UPDIR", [line("VIEWDIR"), line("UPDIR")], [[0, 0, -1], [0, 1, 0]])
+    right, left, bottom, top = line("FRUSTUM")
+    expect("FRUSTUM", (right - left) / (top - bottom), 61 / 43, 1e-6)
+    expect("BACKGROUND", line("BACKGROUND"), [0.25, 0.5, 0.75])
+    key = -np.array([-0.22, 0.3, 1])
+    expect("DIRECTIONAL_LIGHT", line("DIRECTIONAL_LIGHT"), [*key / np.linalg.norm(key), 0.9, 0.8, 0.7], 1e-6)
+    low = np.min([np.minimum(*ends(s)) - radius(s) for s in SEGMENTS], axis=0) - origin
+    high = np.max([np.maximum(*ends(s)) + radius(s) for s in SEGMENTS], axis=0) - origin
+    half = np.linalg.norm(high - low) / 2
+    expect("LIGHT", line("LIGHT"), [*(low + high) / 2 + half * np.array([3, 2, 5]), 0, 0.3, 0.4, 0.5], 1e-3)
+    expect("TEXDEF of the ground", line("TEXDEF ground"), [0.15, 0.55, 0, 1, 0, 40, 0.4, 0.6, 0.8, 0])
+    normal = np.array([0.1, 0.2, 1]) / np.linalg.norm([0.1, 0.2, 1])
+    offset = min((end - origin) @ normal - radius(s) for s in SEGMENTS for end in ends(s)) - 0.3 * half
+    expect("PLANE", line("PLANE"), [*offset * normal, *normal], 1e-3)
+    for segment in SEGMENTS:
+        expect("TEXDEF of a vessel", line(f"TEXDEF v{segment}"),
+               [0.2, 0.6, 0, 1, 0.3, 17, *linear(code(segment)), 0], 3e-3)
+    rows = re.findall(r"^(FCYLINDER|SPHERE|RING) (.*) v(\d+)$", text, re.M)
+    cylinders = [(numbers(row), int(i)) for kind, row, i in rows if kind == "FCYLINDER"]
+    expect("segments", [i for _, i in cylinders], SEGMENTS)
+    for row, i in cylinders:
+        expect("FCYLINDER", row, [*ends(i)[0] - origin, *ends(i)[1] - origin, radius(i)], 1e-5)
+    balls = [(numbers(row), int(i)) for kind, row, i in rows if kind == "SPHERE"]
+    expect("SPHERE", sorted(row for row, _ in balls), sorted(
+        [*(at(node) - origin).tolist(), max(radius(s) for s in SEGMENTS if node in (s, NODES[s][0]))] for node in NODES))
+    expect("radii of balls", [row[3] for row, _ in balls], [radius(i) for _, i in balls])
+    for row, i in [(numbers(row), int(i)) for kind, row, i in rows if kind == "RING"]:
+        a, b = ends(i)
+        out = (b - a) / np.linalg.norm(b - a)
+        at_end = min((a, b), key=lambda end: np.linalg.norm(end - origin - row[:3]))
+        expect("RING", [*row[:3], abs(np.dot(row[3:6], out)), *row[6:]], [*at_end - origin, 1, -1, radius(i)], 1e-5)
+
+
 def write_tree(folder):
     with open(folder + "/tree.csv", "w") as out:
         print("id,parent,x_mm,y_mm,z_mm,radius_mm,rank", file=out)
@@ -761,6 +802,7 @@ READERS = {
     "tree": write_tree, "ply": read_ply, "obj": read_obj, "3mf": read_3mf, "lattice": read_lattice, "stl": read_stl,
     "parts": read_parts, "vtp": read_vtp, "ends": read_ends, "usda": read_usda, "html": read_html,
     "volumes": read_volumes, "csg": read_csg, "mesh2": read_mesh2,
+    "tachyon": read_tachyon,
     "py": lambda path, phong: read_py(path, float(phong)),
     "glb": lambda path, phong: read_glb(path, True, float(phong), None),
     "glb-plain": lambda path, phong, *look: read_glb(path, False, float(phong), [float(x) for x in look]),
