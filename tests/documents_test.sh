@@ -118,6 +118,14 @@ within 10⁻⁴ r of the ray @ kernel_joint.h @ off_joint_line = 1e-4f;
 0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ slack_mm = 1e-3;
 within 1.16 radii of the scene's middle cast rays @ lightview.c @ least_radii = 1.16;
 at most a quarter of a pixel apart @ zbuffer.c @ pixels_apart = 0.25;
+nothing below the horizon covers it, and than 3.5 mean radii @ beams.c @ wide_in_radii = 3.5;
+and face within 60 degrees of where it does @ skylight.c @ least_cosine = 0.5f;
+each within 5 / 4 of a pixel of the other's tangent plane @ sharedlight.h @ most = 1.25f * a->size;
+else of the pixel within two @ sharedlight.c @ enum { SEARCHED = 2 };
+followed over 16 of its ellipses @ ink.c @ RULINGS = 16 };
+found on each by Newton's iteration @ inkjoint.c @ NEWTON = 4 };
+a ray from 10⁻⁶ radii beside it @ ink.c @ #define BESIDE 1e-6
+changes halved to a hundredth of it @ ink.c @ HALVINGS = 6,
 END
 }
 

@@ -45,6 +45,32 @@ test_a_drawing_lies_on_the_picture_of_the_same_view() {
     done
 }
 
+# Vessels behind a thick one: their lines end where its wall hides them, known to a hundredth of a line [METHODS 3.4].
+# Each begins elsewhere, so that the steps along it fall elsewhere.
+test_lines_end_where_a_vessel_in_front_begins() {
+    { printf '1 1 0 -14 5 3 -1\n2 3 0 14 5 3 1\n'
+      for k in 1 2 3 4 5 6 7; do
+          echo "$((10 * k)) 1 $(awk "BEGIN { print -10 - 0.37 * $k, 3 * $k - 12, -5 }") 0.8 -1"
+          echo "$((10 * k + 1)) 3 $(awk "BEGIN { print 10 + 0.53 * $k, 3 * $k - 12, -5 }") 0.8 $((10 * k))"
+      done; } >tree.swc
+    run_ok corcast render tree.swc --input-unit mm --model cylinders --ink 0.5 --size 60mm --location 0,0,50 --look-at 0,0,0 \
+        --up 0,1,0 --height 30 --quiet -o lines.svg
+    /usr/bin/python3 - >said 2>&1 <<'END' || fail "$(tail -1 said)"
+import re
+text = open("lines.svg").read()
+side = float(re.search(r'width="([0-9.]+)mm"', text)[1])
+walls = [side / 2 - 3 * side / 30, side / 2 + 3 * side / 30]
+ends = []
+for path in re.findall(r'<path d="([^"]*)"', text):
+    for part in path.split("M")[1:]:
+        points = [tuple(map(float, p.split(","))) for p in re.findall(r"[-0-9.]+,[-0-9.]+", part)]
+        ends += [p[0] for p in (points[0], points[-1]) if points[0] != points[-1]]
+near = [min(abs(x - wall) for wall in walls) for x in ends]
+assert len(ends) == 28, f"expected 28 ends, found {len(ends)}"
+assert max(near) <= 0.01 * 0.5 + 0.002, f"a line ends {max(near)} mm from the wall that hides it"
+END
+}
+
 # A panel in lines beside a picture, with an inset in lines: one picture, and lines in the panel's and the inset's paper.
 test_a_figure_has_panels_in_lines() {
     printf '%s\n' '[figure]' 'size = 90mmx45mm' 'columns = 2' '[panels]' 'grow = --terminals 20 --domain ball:20 --seed 4' \

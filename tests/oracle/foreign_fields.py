@@ -178,7 +178,8 @@ def read_glb(path, colored, phong_size, look):
         expect("COLOR_0", attributes["COLOR_0"][clear], expected, 3e-3)
 
 
-def read_ply(path):
+def ply_faces(path):
+    """The corners and the segment of each face of a PLY, and the whole of its vertices and faces."""
     head, body = open(path, "rb").read().split(b"end_header\n", 1)
     head = head.decode()
     check_text("head", head, "format binary_little_endian 1.0", "units=mm", "comment corcast ")
@@ -191,6 +192,22 @@ def read_ply(path):
                           n * vertices.itemsize)
     expect("length", len(body), n * vertices.itemsize + m * faces.itemsize)
     expect("corners", set(faces["n"].tolist()), {3})
+    return vertices, faces
+
+
+def check_like_ply(ply, points, triangles, codes):
+    """Each triangle has the colour of the segment that the PLY of the same mesh names for it."""
+    vertices, faces = ply_faces(ply)
+    key = lambda corners: tuple(sorted(map(tuple, np.float32(corners).tolist())))
+    known = {key(vertices["at"][face["v"]]): code(int(face["segment"])) for face in faces}
+    points = np.float32(points)
+    expect("triangles beside those of PLY", len(known), len(triangles))
+    wrong = sum(known.get(key(points[t])) != tuple(int(c) for c in paint) for t, paint in zip(triangles, codes))
+    expect("triangles of another colour than in PLY", wrong, 0)
+
+
+def read_ply(path):
+    vertices, faces = ply_faces(path)
     triangles = faces["v"]
     check_triangles(vertices["at"], triangles, faces["segment"], None, vertices["normal"][triangles])
     wall, _, _ = walls(vertices["at"].astype(float))
@@ -212,7 +229,7 @@ def check_caps(middle, cap, segments):
     expect("ends with caps", seen, FREE)
 
 
-def read_obj(path):
+def read_obj(path, ply):
     materials, name = {}, None
     for words in map(str.split, open(path[:-4] + ".mtl")):
         if words[:1] == ["newmtl"]:
@@ -241,6 +258,7 @@ def read_obj(path):
             corners.append([int(w.split("//")[1]) - 1 for w in words[1:]])
             colors.append(color)
             groups.append(group)
+    check_like_ply(ply, points, triangles, colors)
     wall = check_triangles(points, triangles, None, colors, np.array(normals)[corners])
     expected = [f"order_{ORDER[int(s)]}" for s in wall[wall > 0]]
     expect("groups", [g for g, s in zip(groups, wall) if s], expected)
@@ -271,14 +289,16 @@ def mesh_of(thing):
     return points, [[int(t.get(k)) for k in ("v1", "v2", "v3")] for t in thing.iter("triangle")]
 
 
-def read_3mf(path):
+def read_3mf(path, ply):
     root, group, colors, things = read_model(path)
     thing = things[root.find("build/item").get("objectid")]
     expect("type", thing.get("type"), "model")
     points, triangles = mesh_of(thing)
     paints = list(thing.iter("triangle"))
     expect("pid", {t.get("pid") for t in paints}, {group})
-    check_triangles(points, triangles, None, [colors[int(t.get("p1"))] for t in paints])
+    codes = [colors[int(t.get("p1"))] for t in paints]
+    check_triangles(points, triangles, None, codes)
+    check_like_ply(ply, points, triangles, codes)
 
 
 def read_lattice(path):
@@ -697,7 +717,7 @@ def read_csg(path, source):
         expect("its colour", c, np.array(code(thickest)) / 255, 2e-3)
 
 
-def read_mesh2(path):
+def read_mesh2(path, ply):
     """The meshes of an exported .inc, one for each tree, with paints and without; POV-Ray reads them in other tests."""
     points, painted, plain, all_paints = [], [], [], []
     for part in open(path).read().split("mesh2 {")[1:]:
@@ -723,6 +743,48 @@ def read_mesh2(path):
     expect("paints", all_paints, SEGMENTS)
     check_triangles(points, [row for row, _ in painted], [segment for _, segment in painted])
     expect("faces without paints", plain, [row for row, _ in painted])
+    check_like_ply(ply, points, plain, [code(segment) for _, segment in painted])
+
+
+def read_tachyon(path):
+    """The look has the numbers below; the view is the front, so that the camera's axes are the world's."""
+    text = open(path).read()
+    origin = np.array([float(x) for x in re.search(r"about <(.*?)> of the tree", text)[1].split(",")])
+    numbers = lambda line: [float(x) for x in re.findall(r"(?<![\w])-?[0-9.]+(?:e-?\d+)?", line)]
+    line = lambda start: numbers(re.search(f"^ *{start} (.*)", text, re.M)[1])
+    expect("RESOLUTION", line("RESOLUTION"), [61, 43])
+    check_text("camera", text, "PROJECTION ORTHOGRAPHIC", "ANTIALIASING 3 ", "RAYDEPTH 1")
+    expect("VIEWDIR and UPDIR", [line("VIEWDIR"), line("UPDIR")], [[0, 0, -1], [0, 1, 0]])
+    right, left, bottom, top = line("FRUSTUM")
+    expect("FRUSTUM", (right - left) / (top - bottom), 61 / 43, 1e-6)
+    expect("BACKGROUND", line("BACKGROUND"), [0.25, 0.5, 0.75])
+    key = -np.array([-0.22, 0.3, 1])
+    expect("DIRECTIONAL_LIGHT", line("DIRECTIONAL_LIGHT"), [*key / np.linalg.norm(key), 0.9, 0.8, 0.7], 1e-6)
+    low = np.min([np.minimum(*ends(s)) - radius(s) for s in SEGMENTS], axis=0) - origin
+    high = np.max([np.maximum(*ends(s)) + radius(s) for s in SEGMENTS], axis=0) - origin
+    half = np.linalg.norm(high - low) / 2
+    expect("LIGHT", line("LIGHT"), [*(low + high) / 2 + half * np.array([3, 2, 5]), 0, 0.3, 0.4, 0.5], 1e-3)
+    expect("TEXDEF of the ground", line("TEXDEF ground"), [0.15, 0.55, 0, 1, 0, 40, 0.4, 0.6, 0.8, 0])
+    normal = np.array([0.1, 0.2, 1]) / np.linalg.norm([0.1, 0.2, 1])
+    offset = min((end - origin) @ normal - radius(s) for s in SEGMENTS for end in ends(s)) - 0.3 * half
+    expect("PLANE", line("PLANE"), [*offset * normal, *normal], 1e-3)
+    for segment in SEGMENTS:
+        expect("TEXDEF of a vessel", line(f"TEXDEF v{segment}"),
+               [0.2, 0.6, 0, 1, 0.3, 17, *linear(code(segment)), 0], 3e-3)
+    rows = re.findall(r"^(FCYLINDER|SPHERE|RING) (.*) v(\d+)$", text, re.M)
+    cylinders = [(numbers(row), int(i)) for kind, row, i in rows if kind == "FCYLINDER"]
+    expect("segments", [i for _, i in cylinders], SEGMENTS)
+    for row, i in cylinders:
+        expect("FCYLINDER", row, [*ends(i)[0] - origin, *ends(i)[1] - origin, radius(i)], 1e-5)
+    balls = [(numbers(row), int(i)) for kind, row, i in rows if kind == "SPHERE"]
+    expect("SPHERE", sorted(row for row, _ in balls), sorted(
+        [*(at(node) - origin).tolist(), max(radius(s) for s in SEGMENTS if node in (s, NODES[s][0]))] for node in NODES))
+    expect("radii of balls", [row[3] for row, _ in balls], [radius(i) for _, i in balls])
+    for row, i in [(numbers(row), int(i)) for kind, row, i in rows if kind == "RING"]:
+        a, b = ends(i)
+        out = (b - a) / np.linalg.norm(b - a)
+        at_end = min((a, b), key=lambda end: np.linalg.norm(end - origin - row[:3]))
+        expect("RING", [*row[:3], abs(np.dot(row[3:6], out)), *row[6:]], [*at_end - origin, 1, -1, radius(i)], 1e-5)
 
 
 def write_tree(folder):
@@ -740,6 +802,7 @@ READERS = {
     "tree": write_tree, "ply": read_ply, "obj": read_obj, "3mf": read_3mf, "lattice": read_lattice, "stl": read_stl,
     "parts": read_parts, "vtp": read_vtp, "ends": read_ends, "usda": read_usda, "html": read_html,
     "volumes": read_volumes, "csg": read_csg, "mesh2": read_mesh2,
+    "tachyon": read_tachyon,
     "py": lambda path, phong: read_py(path, float(phong)),
     "glb": lambda path, phong: read_glb(path, True, float(phong), None),
     "glb-plain": lambda path, phong, *look: read_glb(path, False, float(phong), [float(x) for x in look]),

@@ -165,6 +165,34 @@ static void a_halo_parts_a_vessel_from_those_far_behind_it_alone(void **state)
     assert_true(gap_in_middle(1.4 * 2.385) == 0);
 }
 
+/* Black pixels of the middle column, where a thin tube lies `above` mm in front of a thick one. */
+static double line_in_middle(double above)
+{
+    Tree tree;
+    Look look = plain_look();
+    look.effects.outline_width = 1000 * 1.5 / 120;
+    make_crossing(&tree, above);
+    Scene scene = scene_of(&tree, &look, 120);
+    Frame frame = draw(&scene, RENDER_TRACE, 4, 1);
+    double black = black_in_column(&frame, 60);
+    frame_release(&frame);
+    scene_release(&scene);
+    tree_release(&tree);
+    return black;
+}
+
+/* The limits are those of plain_look, in radii of the vessel in front; a tenth less is too little.
+ */
+static void lines_and_gaps_lie_on_what_is_deeper_by_as_many_radii_as_asked(void **state)
+{
+    (void)state;
+    const double radius_mm = 2.385, line_at = 0.5 * radius_mm, gap_at = 1.5 * radius_mm;
+    assert_true(line_in_middle(0.5 * line_at) < 0.1);
+    assert_true(line_in_middle(1.1 * line_at) > 2.5);
+    assert_true(gap_in_middle(0.8 * gap_at) < 0.1);
+    assert_true(gap_in_middle(1.1 * gap_at) > 4);
+}
+
 static void vessels_that_touch_are_parted_where_their_walls_turn(void **state)
 {
     (void)state;
@@ -342,6 +370,7 @@ int main(void)
         cmocka_unit_test(a_picture_of_twice_the_pixels_looks_the_same),
         cmocka_unit_test(thin_vessels_have_thin_outlines),
         cmocka_unit_test(a_halo_parts_a_vessel_from_those_far_behind_it_alone),
+        cmocka_unit_test(lines_and_gaps_lie_on_what_is_deeper_by_as_many_radii_as_asked),
         cmocka_unit_test(vessels_that_touch_are_parted_where_their_walls_turn),
         cmocka_unit_test(vessels_fade_from_the_nearest_to_the_farthest),
         cmocka_unit_test(bands_and_threads_change_no_byte),
