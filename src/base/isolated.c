@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -38,10 +39,22 @@ static bool receive(int handle, void *to, size_t size)
     return true;
 }
 
+/* The parent's files are the parent's to remove: a signal just ends the child. */
+static void restore_signals(void)
+{
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU, SIGXFSZ};
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+        struct sigaction before;
+        if (sigaction(signals[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            signal(signals[i], SIG_DFL);
+    }
+}
+
 static void work_in_child(IsolatedWork *work, const void *context, const char *subject, int handle)
 {
     Report report = {.status = STATUS_OK};
     Text bytes = TEXT_INIT;
+    restore_signals();
     errno = 0;
     report.status = work(context, &bytes, &report.err);
     if (report.status == STATUS_OK && (errno == ENOMEM || !text_chars(&bytes)))

@@ -42,6 +42,44 @@ test_a_bad_value_is_refused_with_file_and_line() {
     expect_sentence 'tree\.ini:2.*terminals.*-3'
 }
 
+# drawn_alike OPTION...: render draws the picture that it drew before.
+drawn_alike() {
+    run_ok corcast render tree.swc --size 40x30 --quiet "$@" -o now.ppm
+    [ -e before.ppm ] || cp now.ppm before.ppm
+    expect_same before.ppm now.ppm
+}
+
+# What a look, --exact or a preset implies yields to what is given, on the command line or in a recipe, in any order.
+test_what_is_implied_yields_to_what_is_given() {
+    run_ok corcast grow --terminals 4 --quiet -o tree.swc
+    printf 'look = dark\nbackground = white\n' >first.ini
+    printf 'background = white\nlook = dark\n' >last.ini
+    printf 'background = white\n' >given.ini
+    printf 'look = dark\n' >implied.ini
+    drawn_alike --look dark --background white
+    drawn_alike --background white --look dark
+    drawn_alike --recipe first.ini
+    drawn_alike --recipe last.ini
+    drawn_alike --recipe given.ini --look dark
+    drawn_alike --recipe implied.ini --background white
+    rm before.ppm
+    printf 'antialias = 2\n' >given.ini
+    printf 'exact = on\n' >implied.ini
+    drawn_alike --exact --antialias 2
+    drawn_alike --recipe given.ini --exact
+    drawn_alike --recipe implied.ini --antialias 2
+    printf 'dpi = 40\nsize = 25.4mmx12.7mm\n' >given.ini
+    printf 'preset = nature\n' >implied.ini
+    rm before.ppm
+    drawn_alike --size 40x20 --preset nature
+    for options in '--recipe given.ini --preset nature' '--recipe implied.ini --dpi 40 --size 25.4mmx12.7mm' \
+        '--preset nature --dpi 40 --size 25.4mmx12.7mm'; do
+        # shellcheck disable=SC2086
+        run_ok corcast render tree.swc --quiet $options -o now.ppm
+        expect_same before.ppm now.ppm
+    done
+}
+
 test_a_missing_recipe_is_refused_by_name() {
     run corcast grow --recipe nowhere.ini -o tree.swc
     expect_status 2

@@ -110,4 +110,42 @@ test_without_the_viewer_a_page_is_refused_and_what_is_missing_named() {
     [ ! -e page.html ] || fail "expected no page"
 }
 
+# The page's own scale: round numbers, places, and colours of values, linear and logarithmic.
+test_the_scale_of_a_page_has_the_right_numbers() {
+    command -v node >node.path || skip "nodejs is not installed"
+    cp "$REPO/templates/viewer/colors.js" colors.mjs
+    cat >scale.mjs <<'END'
+import { Scale } from "./colors.mjs";
+const blue_to_yellow = { bytes: [0, 0, 255, 255, 255, 0], separate: false };
+const scale = (low, high, log, whole = false) => new Scale({ whole }, blue_to_yellow, log, [low, high]);
+const expect = (what, found, expected) => {
+  const near = found.length === expected.length &&
+    found.every((value, k) => Math.abs(value - expected[k]) <= 1e-9 * Math.max(1e-9, Math.abs(expected[k])));
+  if (!near) throw new Error(`${what}: expected ${expected}, got ${found}`);
+};
+const ticks = (low, high, log, whole, ...expected) =>
+  expect(`ticks of ${low} to ${high}`, scale(low, high, log, whole).ticks(), expected);
+ticks(0, 10, false, false, 0, 5, 10);
+ticks(0, 7, false, false, 0, 2, 4, 6);
+ticks(-0.3, 0.45, false, false, -0.2, 0, 0.2, 0.4);
+ticks(0, 4, false, false, 0, 1, 2, 3, 4);
+ticks(1, 7, false, true, 1, 2, 3, 4, 5, 6, 7);
+ticks(1, 40, false, true, 10, 20, 30, 40);
+ticks(1, 1000, true, false, 1, 10, 100, 1000);
+ticks(2, 50, true, false, 3, 10, 30);
+ticks(2, 12, true, false, 2, 3, 5, 7, 10);
+ticks(1e-6, 1e6, true, false, 1e-6, 1e-3, 1, 1e3, 1e6);
+for (const [low, high, log, place, value] of [[2, 10, false, 0.25, 4], [1, 1000, true, 1 / 3, 10], [4, 9, true, 0.5, 6]]) {
+  expect("place", [scale(low, high, log).place(value)], [place]);
+  expect("value", [scale(low, high, log).at(place)], [value]);
+}
+const color = [0, 0, 0];
+scale(1, 1000, true).put(10, color, 0);
+expect("colour", color, [85, 85, 170]);
+scale(0, 100, false).put(20, color, 0);
+expect("colour", color, [51, 51, 204]);
+END
+    run_ok node scale.mjs
+}
+
 run_tests "$@"

@@ -3,7 +3,9 @@
 #include "scratch.h"
 #include "unit.h"
 
+#include <errno.h>
 #include <math.h>
+#include <signal.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -652,6 +654,47 @@ static void text_that_is_no_curve_is_refused(void **state)
     assert_true(curve.n == 1 && curve.value[0] == 3);
 }
 
+/* Work in a process of its own. */
+
+typedef enum Fate { MAKES_BYTES, DIES, LACKS_MEMORY, REFUSES } Fate;
+
+static Status meet(const void *context, Text *bytes, Err *err)
+{
+    const Fate *fate = context;
+    for (int i = 0; i < 100000 && *fate != REFUSES; i++)
+        text_printf(bytes, "%d\n", i);
+    if (*fate == DIES)
+        raise(SIGKILL);
+    errno = *fate == LACKS_MEMORY ? ENOMEM : 0;
+    return *fate == REFUSES ? err_set(err, STATUS_USAGE, "no such work") : STATUS_OK;
+}
+
+static void isolated_work_gives_its_bytes_or_the_reason_why_not(void **state)
+{
+    static const struct {
+        Fate fate;
+        Status status;
+        const char *sentence;
+    } cases[] = {{DIES, STATUS_MEMORY, "no room for a thing"},
+                 {LACKS_MEMORY, STATUS_MEMORY, "no room for a thing"},
+                 {REFUSES, STATUS_USAGE, "no such work"}};
+    const Fate right = MAKES_BYTES;
+    Text bytes = TEXT_INIT;
+    Err err;
+    (void)state;
+    text_puts(&bytes, "before\n");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_int_equal(isolated_run(meet, &cases[i].fate, "a thing", &bytes, &err),
+                         cases[i].status);
+        assert_non_null(strstr(err.text, cases[i].sentence));
+        assert_string_equal(text_chars(&bytes), "before\n");
+    }
+    assert_int_equal(isolated_run(meet, &right, "a thing", &bytes, &err), STATUS_OK);
+    assert_int_equal(strlen(text_chars(&bytes)), 7 + 588890);
+    assert_non_null(strstr(text_chars(&bytes), "before\n0\n1\n"));
+    text_release(&bytes);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -687,6 +730,7 @@ int main(void)
         cmocka_unit_test(a_curve_reads_back_from_its_text),
         cmocka_unit_test(text_that_is_no_curve_is_refused),
         cmocka_unit_test(the_likeliest_name_is_suggested),
+        cmocka_unit_test(isolated_work_gives_its_bytes_or_the_reason_why_not),
         cmocka_unit_test(a_selected_number_is_that_of_its_rank_in_the_sorted_ones),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -124,6 +124,7 @@ static Status draw_panels(Figure *figure, Err *err)
         if (!figure_is_panel(figure, i))
             continue;
         panel->fonts = figure->sheet.fonts;
+        panel->made_tree = section->maker != NULL;
         panel->insets = figure->insets + first;
         TRY(figure_plan_insets(figure, i, first, &panel->n_insets, err));
         first += panel->n_insets;

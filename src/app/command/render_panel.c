@@ -101,7 +101,10 @@ Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
         return err_set(err, STATUS_USAGE, "an inset is a part of an orthographic picture");
     TRY(render_check(options, parsed, err));
     TRY(picture_fits(pixels[0], pixels[1], 40, err));
+    const bool quiet = parsed->common.quiet;
+    parsed->common.quiet = quiet || panel->made_tree;
     Status status = picture_read_source(&options->picture, parsed, &source, err);
+    parsed->common.quiet = quiet;
     if (status == STATUS_OK)
         status = render_make_scene(options, parsed, &source, panel->fonts, &panel->scene,
                                    &panel->made, &still, err);

@@ -21,6 +21,8 @@ typedef struct Panel {
     const FigureFonts *fonts; /* borrowed */
     PanelInset *insets;       /* borrowed */
     size_t n_insets;
+    bool made_tree; /* the tree is a command's, whose file nobody knows: nothing is said of how it
+                       reads */
     bool in_lines;
     Picture picture;       /* made, of 8 bits, unless in lines; owned */
     Strokes strokes;       /* made, in lines; owned */
