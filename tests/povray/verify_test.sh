@@ -677,7 +677,7 @@ test_a_missing_segment_is_found_out() {
 
 test_verify_writes_what_formats_says() {
     run_ok corcast verify "$DATA/bifurcation.swc" --quiet --model isosurface --size 40x30 -o report
-    sed -n '/^## What verify writes/,/^## /p' "$REPO/docs/FORMATS.md" | grep -v 'with `--witness' |
+    sed -n '/^## What verify writes/,/^## /p' "$REPO/docs/FORMATS.md" | grep -v 'with `--\(witness\|background\)' |
         sed -n 's/^| \(`[^|]*`\) |.*/\1/p' | tr -d '`,' | tr ' ' '\n' | sort >said
     ls report | sort >written
     expect_same said written
