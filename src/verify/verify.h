@@ -372,10 +372,11 @@ typedef struct ReportCase {
     size_t n_commands;
     const CompareResult *planes[PLANE_KINDS]; /* NULL where not compared; colour is required */
     const SurfaceCheck *surface;              /* of an implicit model; NULL: of no such model */
-    const CompareResult *alpha; /* of a transparent picture; NULL: of an opaque one */
-    const CompareResult *exact; /* of an implicit model, the colours of the surface where it is against A's */
-    const Settled *settled;     /* NULL: nobody was asked */
-    const Witness *witness;     /* NULL: there is none */
+    const CompareResult *alpha;               /* of a transparent picture; NULL: of an opaque one */
+    const CompareResult
+        *exact; /* of an implicit model, the colours of the surface where it is against A's */
+    const Settled *settled; /* NULL: nobody was asked */
+    const Witness *witness; /* NULL: there is none */
 } ReportCase;
 
 /* Whether every plane agrees, and the surface, not too much is settled, and no witness differs. */
