@@ -7,12 +7,15 @@
  *   region, which in A borders on background for three quarters of its rim (a cut end does, a worn
  *   outline borders on what is left), and next to nothing else differs.
  * - Outlines differ when the pixels that differ have neighbours of quite other colours in both
- *   pictures, and there are others within the outlines to tell: of things a few pixels wide nothing
- *   can be said.
+ *   pictures, and there are others within the outlines to tell, most of which have the
+ *   same codes: of things a few pixels wide nothing can be said.
  * - Highlights differ when the light in which the pictures differ is nearly white (a highlight has
  *   the lamp's colour, all else the surface's) on surfaces that are not. Of grey surfaces nothing
- *   can be said. * - Shading differs when nine tenths of that light are made of the surface's own
- * colour and white.
+ *   can be said.
+ * - Shading differs when that light is more, or less, of the surface's own colour and of white at
+ *   each pixel, but for a hundredth and for the rounding of codes. More of one and less of the
+ * other is another saturation, and anything else another hue: both are other colours, not other
+ * light.
  */
 #include "verify/cause.h"
 #include "verify/labels.h"
@@ -239,9 +242,9 @@ static int contrast(const Picture *picture, int x, int y)
 enum { LEVELS = 32, SLIGHT = 2, BLOCK = 64 };
 
 /* Pixels of a row that differ by more than SLIGHT, at edges and off them, and others off
- * edges and the background. */
+ * edges and the background, of which `changed` differ at all. */
 typedef struct RowOutlines {
-    size_t at_edges, off, inner;
+    size_t at_edges, off, inner, changed;
 } RowOutlines;
 
 typedef struct Outlines {
@@ -257,10 +260,15 @@ static bool is_edge(const Outlines *self, int x, int y)
     return contrast(self->a, x, y) >= LEVELS && contrast(self->b, x, y) >= LEVELS;
 }
 
-static bool is_slight(const Outlines *self, int x, int y)
+static int codes_off(const Outlines *self, int x, int y)
 {
     size_t pixel = (size_t)y * (size_t)self->a->width + (size_t)x;
-    return largest_difference(self->a, self->b, pixel) <= self->slight;
+    return largest_difference(self->a, self->b, pixel);
+}
+
+static bool is_slight(const Outlines *self, int x, int y)
+{
+    return codes_off(self, x, y) <= self->slight;
 }
 
 static void count_differing(size_t row, int worker, void *context)
@@ -284,9 +292,12 @@ static void count_inner(size_t row, int worker, void *context)
     const Outlines *self = context;
     bool known = self->labels.source == LABELS_BACKGROUND;
     int y = (int)row;
-    for (int x = 0; x < self->a->width && self->rows[y].inner < self->enough; x++)
-        self->rows[y].inner += (!known || is_seen(&self->labels, self->a, 0, x, y)) &&
-                               is_slight(self, x, y) && !is_edge(self, x, y);
+    for (int x = 0; x < self->a->width && self->rows[y].inner < self->enough; x++) {
+        bool inner = (!known || is_seen(&self->labels, self->a, 0, x, y)) &&
+                     is_slight(self, x, y) && !is_edge(self, x, y);
+        self->rows[y].inner += inner;
+        self->rows[y].changed += inner && codes_off(self, x, y) > 0;
+    }
 }
 
 /* Whether it is worth while to ask all pixels. */
@@ -306,6 +317,7 @@ static RowOutlines sum_rows(const Outlines *self)
         sum.at_edges += self->rows[y].at_edges;
         sum.off += self->rows[y].off;
         sum.inner += self->rows[y].inner;
+        sum.changed += self->rows[y].changed;
     }
     return sum;
 }
@@ -327,7 +339,7 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
     if (99 * sum.off <= sum.at_edges)
         threads_for(height, 0, count_inner, &self);
     sum = sum_rows(&self);
-    if (99 * sum.off <= sum.at_edges && sum.inner >= self.enough)
+    if (99 * sum.off <= sum.at_edges && sum.inner >= self.enough && 2 * sum.changed <= sum.inner)
         snprintf(out->text, out->size,
                  "only outlines differ by more than %d levels, by up to %.4g on %.3g %% of the "
                  "pixels",
@@ -339,28 +351,59 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
 /* ---- shading --------------------------------------------------------------------------------- */
 
 /* Of the light that B has more of than A, pixel by pixel: the squares, the part of them that lies
- * along white and along the colour of the pixel in A, and what no sum of white and the pixel's own
- * colour makes. */
+ * along white and along the colour of the pixel in A, what no more, or no less, of both makes, and
+ * what the rounding of codes makes. */
 typedef struct Light {
-    double squares, white, own, rest;
+    double squares, white, own, rest, rounding;
+    size_t pixels,
+        plain; /* that differ by more than rounding; of these, in white or own light alone */
 } Light;
 
-/* The square of what is left of `more` beside white and `color`. */
-static double rest_of(const double more[3], const double color[3], double squares, double white)
+/* The square of what is left of `more` beside `along`. */
+static double beside(const double more[3], const double along[3])
 {
-    const double normal[3] = {color[1] - color[2], color[2] - color[0], color[0] - color[1]};
-    double length = 0, along = 0;
+    double squares = 0, product = 0, length = 0;
     for (int c = 0; c < 3; c++) {
-        length += normal[c] * normal[c];
-        along += normal[c] * more[c];
+        squares += more[c] * more[c];
+        product += more[c] * along[c];
+        length += along[c] * along[c];
     }
-    return length > 0 ? along * along / length : squares - white;
+    return length > 0 ? squares - product * product / length : squares;
+}
+
+/* The square of what is left of `more` beside white and `color`, both of which count with the same
+ * sign: within the angle between them, or against it, only what is square to both is left. */
+static double rest_of(const double more[3], const double color[3])
+{
+    static const double white[3] = {1, 1, 1};
+    double cc = 0, cw = 0, mc = 0, mw = 0, normal[3], across = 0, length = 0;
+    for (int c = 0; c < 3; c++) {
+        cc += color[c] * color[c];
+        cw += color[c];
+        mc += more[c] * color[c];
+        mw += more[c];
+        normal[c] = color[(c + 1) % 3] - color[(c + 2) % 3];
+        across += normal[c] * more[c];
+        length += normal[c] * normal[c];
+    }
+    double of_color = 3 * mc - cw * mw, of_white = cc * mw - cw * mc;
+    if (length > 0 && of_color * of_white >= 0)
+        return across * across / length;
+    return fmin(beside(more, white), beside(more, color));
+}
+
+/* The variance of the light of a code that was rounded. */
+static double variance_of_code(const Plane *table, int code)
+{
+    int low = code > 0 ? code - 1 : 0, high = code + 1 < table->width ? code + 1 : code;
+    double step = (double)(table->values[high] - table->values[low]) / (high - low);
+    return step * step / 12;
 }
 
 static void add_light(const Plane *table, const Picture *a, const Picture *b, size_t at,
                       Light *light)
 {
-    double sum = 0, squares = 0, along = 0, norm = 0, more[3], color[3];
+    double sum = 0, squares = 0, along = 0, norm = 0, rounding = 0, more[3], color[3];
     for (int c = 0; c < 3; c++) {
         int code_a = picture_code(a, at + (size_t)c), code_b = picture_code(b, at + (size_t)c);
         if (code_a == table->width - 1 || code_b == table->width - 1)
@@ -372,11 +415,22 @@ static void add_light(const Plane *table, const Picture *a, const Picture *b, si
         squares += more[c] * more[c];
         along += more[c] * in_a;
         norm += in_a * in_a;
+        rounding += variance_of_code(table, code_a) + variance_of_code(table, code_b);
     }
     light->squares += squares;
     light->white += sum * sum / 3;
     light->own += norm > 0 ? along * along / norm : 0;
-    light->rest += rest_of(more, color, squares, sum * sum / 3);
+    if (squares > 0) {
+        light->rest += rest_of(more, color);
+        light->rounding += rounding;
+    }
+    static const double white[3] = {1, 1, 1};
+    bool colored = beside(color, white) > 0.02 * 4 * norm;
+    if (colored && squares > 10 * rounding) {
+        double least = fmin(beside(more, white), beside(more, color));
+        light->pixels++;
+        light->plain += least <= 0.01 * squares + rounding;
+    }
 }
 
 typedef struct Lights {
@@ -424,6 +478,9 @@ static Status sum_light(const Picture *a, const Picture *b, Light *all, Err *err
         all->white += self.lights[y].white;
         all->own += self.lights[y].own;
         all->rest += self.lights[y].rest;
+        all->rounding += self.lights[y].rounding;
+        all->pixels += self.lights[y].pixels;
+        all->plain += self.lights[y].plain;
     }
     plane_release(&self.table);
     free(self.lights);
@@ -466,7 +523,8 @@ Status cause_place(const Picture *a, const Picture *b, const Samples *samples,
         return STATUS_OK;
     Light light;
     TRY(sum_light(a, b, &light, err));
-    if (light.rest <= 0.1 * light.squares)
+    bool is_light = light.rest <= 0.01 * light.squares + light.rounding;
+    if (is_light && 3 * light.plain >= 2 * light.pixels)
         say_shading(result, &light, out);
     return STATUS_OK;
 }

@@ -247,8 +247,10 @@ static Sums sum_codes(const Meaning *meaning, const Codes *codes)
         sums.linear[1] += (double)meaning->linear[b];
         sums.level[0] += (double)meaning->level[a];
         sums.level[1] += (double)meaning->level[b];
-        sums.log_ab += (double)(meaning->log[a] * meaning->log[b]);
-        sums.log_aa += (double)(meaning->log[a] * meaning->log[a]);
+        /* The rounding of a code moves its logarithm by the less, the larger the code is. */
+        double weight = (double)(meaning->level[a] * meaning->level[a]);
+        sums.log_ab += weight * (double)(meaning->log[a] * meaning->log[b]);
+        sums.log_aa += weight * (double)(meaning->log[a] * meaning->log[a]);
     }
     return sums;
 }
@@ -293,14 +295,14 @@ static bool fits(const Fit *fit)
     return fit->beyond > 0 && 50 * fit->misfits <= fit->beyond;
 }
 
-/* The curve that fits the samples best; -1 when none fits. */
-static int best_curve(Meaning *meaning, const Codes *samples)
+/* The curve that fits the samples best, without those in `tried`; -1 when none fits. */
+static int best_curve(Meaning *meaning, const Codes *samples, const bool tried[KINDS])
 {
     const Sums sums = sum_codes(meaning, samples);
     Fit least = {0};
     int best = -1;
     for (int kind = 0; kind < ANY_CURVE; kind++) {
-        if (!isfinite(predict(meaning, kind, &sums)))
+        if (tried[kind] || !isfinite(predict(meaning, kind, &sums)))
             continue;
         Fit fit = fit_of(meaning, samples, kind);
         if (!fits(&fit) || (best >= 0 && fit.squares >= least.squares))
@@ -391,13 +393,14 @@ Status cause_tone(const Picture *a, const Picture *b, const Samples *samples, Se
     Meaning meaning = {0};
     TRY(meaning_init(&meaning, a, err));
     Codes few = codes_of(a, b, samples), all = codes_of(a, b, NULL);
-    int kind = best_curve(&meaning, &few);
-    if (kind >= 0) {
+    bool tried[KINDS] = {false};
+    for (int kind; !*out->text && (kind = best_curve(&meaning, &few, tried)) >= 0;) {
         const Sums sums = sum_codes(&meaning, &all);
         double number = predict(&meaning, kind, &sums);
         Fit fit = fit_of(&meaning, &all, kind);
         if (fits(&fit))
             say(&curves[kind], number, out);
+        tried[kind] = true;
     }
     Status status = STATUS_OK;
     if (!*out->text)

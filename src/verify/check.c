@@ -117,11 +117,11 @@ Check check_plane(const CompareResult *plane)
     return check;
 }
 
-static Check check_exact(const CompareResult *exact)
+/* The check of a second pair of pictures: its rules, and the sizes of its differences. */
+static Check check_pictures(const CompareResult *pictures, const char *table)
 {
-    const char *table = "Colours of the surface where it is";
-    Check check = start_plane(exact);
-    add_color_differences(&check, table, table, exact);
+    Check check = start_plane(pictures);
+    add_color_differences(&check, table, table, pictures);
     return check;
 }
 
@@ -186,10 +186,12 @@ int report_checks(const ReportCase *report, Check checks[CHECKS_MAX])
     for (PlaneKind kind = 0; kind < PLANE_KINDS; kind++)
         if (report->planes[kind])
             checks[n++] = check_plane(report->planes[kind]);
+    if (report->alpha)
+        checks[n++] = check_pictures(report->alpha, "Alpha");
     if (report->settled)
         checks[n++] = check_settled(report->settled);
     if (report->exact)
-        checks[n++] = check_exact(report->exact);
+        checks[n++] = check_pictures(report->exact, "Colours of the surface where it is");
     if (report->surface)
         checks[n++] = check_surface(report->surface);
     for (int pair = 0; report->witness && pair < WITNESS_PAIRS; pair++)

@@ -27,7 +27,7 @@ typedef struct Check {
     const Settled *settled; /* whose first pixels are listed; NULL in other checks. Borrowed */
 } Check;
 
-enum { CHECKS_MAX = PLANE_KINDS + 3 + WITNESS_PAIRS };
+enum { CHECKS_MAX = PLANE_KINDS + 4 + WITNESS_PAIRS };
 
 /* The check of one plane: its rules, and its measures that are known. */
 Check check_plane(const CompareResult *plane);

@@ -17,7 +17,12 @@ static int bits_of(const OracleParams *params)
 {
     if (params->plane == ORACLE_COLOR)
         return params->bits;
-    return params->plane == ORACLE_ID ? 8 : 16;
+    return params->plane == ORACLE_ID || params->plane == ORACLE_ALPHA ? 8 : 16;
+}
+
+static bool has_alpha(const OracleParams *params)
+{
+    return params->plane == ORACLE_ALPHA || (params->plane == ORACLE_COLOR && params->alpha);
 }
 
 /* Rows and columns are counted from 1; a number of 1 or less that ends them is a part of all. */
@@ -34,7 +39,8 @@ static Status add_arguments(const void *context, const char *scene, const char *
                             Arguments *arguments, Err *err)
 {
     const OracleParams *params = context;
-    bool color = params->plane == ORACLE_COLOR, deep = bits_of(params) == 16;
+    bool alpha = params->plane == ORACLE_ALPHA, color = params->plane == ORACLE_COLOR || alpha;
+    bool deep = bits_of(params) == 16;
     TRY(arguments_add(arguments, err, "%s", params->program ? params->program : "povray"));
     TRY(arguments_add(arguments, err, "+I%s", scene));
     TRY(arguments_add(arguments, err, "+O%s", output));
@@ -44,7 +50,10 @@ static Status add_arguments(const void *context, const char *scene, const char *
         TRY(add_part(&params->part, arguments, err));
     TRY(arguments_add(arguments, err, "+FN%d", deep ? 16 : 8));
     TRY(arguments_add(arguments, err, "File_Gamma=%s", color && !deep ? "srgb" : "1.0"));
-    TRY(arguments_add(arguments, err, "Declare=Corcast_Plane=%d", (int)params->plane));
+    TRY(arguments_add(arguments, err, "Declare=Corcast_Plane=%d",
+                      alpha ? (int)ORACLE_COLOR : (int)params->plane));
+    if (alpha)
+        TRY(arguments_add(arguments, err, "Declare=Background_Transmit=1"));
     if (color && params->antialias > 1) {
         TRY(arguments_add(arguments, err, "+A0.0"));
         TRY(arguments_add(arguments, err, "+AM1"));
@@ -53,7 +62,7 @@ static Status add_arguments(const void *context, const char *scene, const char *
     } else {
         TRY(arguments_add(arguments, err, "-A"));
     }
-    TRY(arguments_add(arguments, err, color && params->alpha ? "+UA" : "-UA"));
+    TRY(arguments_add(arguments, err, has_alpha(params) ? "+UA" : "-UA"));
     if (params->clock > 0) {
         char clock[NUMBER_TEXT_SIZE];
         TRY(arguments_add(arguments, err, "+K%s", number_text(params->clock, clock)));
@@ -178,7 +187,7 @@ static bool is_whole_picture(const char *path, const OracleParams *params)
     for (int i = 0; i < 8; i++)
         read = read && header[BEGIN + i] == (sides[i / 4] >> (24 - 8 * (i % 4)) & 255);
     return read && memcmp(header, begin, BEGIN) == 0 && header[BEGIN + 8] == bits_of(params) &&
-           header[BEGIN + 9] == (params->alpha ? RGBA : RGB) && memcmp(tail, end, END) == 0;
+           header[BEGIN + 9] == (has_alpha(params) ? RGBA : RGB) && memcmp(tail, end, END) == 0;
 }
 
 /* POV-Ray writes the picture, says how long it took, and ends 0.3 s later. */
@@ -203,7 +212,7 @@ static Status judge(const void *context, const Text *said, int exit_status, cons
         return err_set(err, STATUS_TOOL,
                        "POV-Ray ended without a picture of %s: no whole PNG of %d x %d pixels of "
                        "%d x %d bits",
-                       params->scene, params->width, params->height, params->alpha ? 4 : 3,
+                       params->scene, params->width, params->height, has_alpha(params) ? 4 : 3,
                        bits_of(params));
     reason_of_failure(said, file_name(params->scene), reason, sizeof reason);
     return err_set(err, STATUS_TOOL, "POV-Ray failed on %s (exit status %d): %s", params->scene,
@@ -313,6 +322,25 @@ Status oracle_read_ids(IdPlane *ids, const char *path, Err *err)
     Picture picture;
     TRY(picture_read(&picture, path, err));
     Status status = ids_take_picture(ids, &picture, err);
+    picture_release(&picture);
+    return status;
+}
+
+Status picture_take_alpha(Picture *alpha, const Picture *picture, Err *err)
+{
+    size_t channels = (size_t)picture->channels,
+           n = (size_t)picture->width * (size_t)picture->height;
+    TRY(picture_init(alpha, picture->width, picture->height, 1, 8, err));
+    for (size_t i = 0; i < n; i++)
+        alpha->codes8[i] = channels == 4 ? picture->codes8[channels * i + 3] : 255;
+    return STATUS_OK;
+}
+
+Status oracle_read_alpha(Picture *alpha, const char *path, Err *err)
+{
+    Picture picture;
+    TRY(picture_read_transparent(&picture, path, err));
+    Status status = picture_take_alpha(alpha, &picture, err);
     picture_release(&picture);
     return status;
 }

@@ -12,6 +12,7 @@ typedef enum OraclePlane {
     ORACLE_NORMAL,
     ORACLE_ID,
     ORACLE_DEPTH_ID, /* both of these, for ids up to ORACLE_MOST_ID */
+    ORACLE_ALPHA,    /* colours of 8 bits with alpha, before a background that is transparent */
     ORACLE_PLANES
 } OraclePlane;
 
@@ -23,7 +24,7 @@ typedef struct OracleParams {
     const char *output;  /* .png file, likewise */
     int width, height;   /* pixels */
     PixelRect part;      /* of the picture that is drawn, the rest is black; width 0: all of it */
-    int antialias;       /* of the colour plane: 1, or N for +A0.0 +AM1 +RN -J */
+    int antialias;       /* of colours and alpha: 1, or N for +A0.0 +AM1 +RN -J */
     int threads;         /* 0: POV-Ray's own choice */
     OraclePlane plane;   /* id alone is 8-bit linear, depth and normal are 16-bit linear */
     int bits;            /* of the colour plane: 8, sRGB, or 16, linear */
@@ -56,6 +57,10 @@ MUST_CHECK Status oracle_read_depth(Plane *depth, const char *path, double near_
                                     Err *err);
 MUST_CHECK Status oracle_read_normal(Plane *normal, const char *path, Err *err);
 MUST_CHECK Status oracle_read_ids(IdPlane *ids, const char *path, Err *err);
+/* Makes a grey picture of 8 bits of the alpha of a picture of 8 bits; white where it has none. */
+MUST_CHECK Status picture_take_alpha(Picture *alpha, const Picture *picture, Err *err);
+/* Alpha of a picture file alone, as a grey picture of 8 bits. */
+MUST_CHECK Status oracle_read_alpha(Picture *alpha, const char *path, Err *err);
 /* Depth and ids of one picture, as the former two. */
 MUST_CHECK Status oracle_read_depth_ids(Plane *depth, IdPlane *ids, const char *path,
                                         double near_mm, double far_mm, Err *err);

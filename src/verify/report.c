@@ -36,6 +36,8 @@ json_t *report_json(const ReportCase *report)
     json_t *json = json_with_members(json_object(), members, sizeof members / sizeof *members);
     if (report->surface)
         json = json_with(json, "surface", surface_check_json(report->surface));
+    if (report->alpha)
+        json = json_with(json, "alpha", compare_json(report->alpha));
     if (report->exact)
         json = json_with(json, "exact", compare_json(report->exact));
     if (report->witness)

@@ -61,7 +61,7 @@ void settled_note(Settled *settled, size_t index, const SettledPixel *pixel)
 
 size_t settled_allowed(const Settled *settled, SettledCause cause)
 {
-    size_t allowed = (size_t)(causes[cause].ppm * 1e-6 * (double)settled->pixels);
+    size_t allowed = (size_t)(causes[cause].ppm * (double)settled->pixels / 1e6);
     return allowed > causes[cause].few ? allowed : causes[cause].few;
 }
 

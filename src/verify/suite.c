@@ -189,6 +189,7 @@ typedef struct Judging {
 typedef struct Held {
     char *paths[2], *mask_path;
     Image images[2];
+    Picture alphas[2]; /* empty where the image is opaque */
     Picture mask;
 } Held;
 
@@ -197,6 +198,7 @@ static void held_release(Held *held)
     for (int side = 0; side < 2; side++) {
         free(held->paths[side]);
         image_release(&held->images[side]);
+        picture_release(&held->alphas[side]);
     }
     free(held->mask_path);
     picture_release(&held->mask);
@@ -224,9 +226,11 @@ static Status have_same_bytes(const Held *held, bool *same, Err *err)
 }
 
 /* As a picture, floats as sRGB's codes of 16 bits. */
-static Status read_image(Image *image, const char *path, const float background[3], Err *err)
+static Status read_image(Image *image, Picture *alpha, const char *path, const float background[3],
+                         Err *err)
 {
     TRY(image_read_transparent(image, path, err));
+    TRY(alpha_take(alpha, image, err));
     TRY(image_lay_on(image, background, err));
     if (!image->plane.values)
         return STATUS_OK;
@@ -260,8 +264,11 @@ static Status apply_mask(Held *held, SuiteCase *entry, Err *err)
         entry->masked += masked;
         for (size_t c = i * channels; masked && c < (i + 1) * channels; c++)
             picture_set(b, c, picture_code(a, c));
-        for (int side = 0; masked && side < 2; side++)
+        for (int side = 0; masked && side < 2; side++) {
             cover_pixel(&held->images[side].transparent, i, a);
+            if (held->alphas[side].codes16)
+                held->alphas[side].codes16[i] = UINT16_MAX;
+        }
     }
     return entry->masked < n ? STATUS_OK
                              : err_set(err, STATUS_INPUT, "the mask leaves no pixel to judge");
@@ -270,7 +277,8 @@ static Status apply_mask(Held *held, SuiteCase *entry, Err *err)
 static Status read_pair(const Judging *judging, Held *held, SuiteCase *entry, Err *err)
 {
     for (int side = 0; side < 2; side++)
-        TRY(read_image(&held->images[side], held->paths[side], judging->background, err));
+        TRY(read_image(&held->images[side], &held->alphas[side], held->paths[side],
+                       judging->background, err));
     TRY(file_with_suffix(held->paths[0], mask_suffix, &held->mask_path, err));
     if (access(held->mask_path, F_OK) != 0)
         return STATUS_OK;
@@ -292,6 +300,7 @@ static Status compare_pair(const Judging *judging, const Held *held, SuiteCase *
         return STATUS_OK;
     }
     TRY(status);
+    TRY(alpha_judge(&held->alphas[0], &held->alphas[1], &result, err));
     entry->differing = result.differing_pixels;
     entry->pixels = result.pixels;
     entry->state = !result.agrees            ? SUITE_CHANGED
@@ -300,7 +309,8 @@ static Status compare_pair(const Judging *judging, const Held *held, SuiteCase *
                                              : SUITE_SAME;
     if (result.agrees)
         return STATUS_OK;
-    TRY(compare_cause(a.picture, b.picture, &result, err));
+    if (!*result.cause)
+        TRY(compare_cause(a.picture, b.picture, &result, err));
     snprintf(entry->sentence, sizeof entry->sentence, "%s; %s", result.reason,
              *result.cause ? result.cause : "cause unknown");
     return STATUS_OK;

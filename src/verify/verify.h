@@ -244,6 +244,14 @@ unsigned pixel_beyond(const Rendering *a, const Rendering *b, size_t pixel,
 MUST_CHECK Status compare_pictures(const Rendering *a, const Rendering *b,
                                    const Tolerance *tolerance, CompareResult *result,
                                    Ledger *ledger, Err *err);
+/* Takes alpha of an image that image_read_transparent read, as a grey picture of 16 bits; leaves
+ * *alpha alone where the image is opaque. */
+MUST_CHECK Status alpha_take(Picture *alpha, const Image *image, Err *err);
+/* Judges alpha of two transparent pictures whose colours agree, by the tolerance of the colours:
+ * where it differs by more the result differs, with a reason and a cause. Where one of them is
+ * empty, an opaque picture is compared with one that was laid on a background, and alpha is not
+ * judged. */
+MUST_CHECK Status alpha_judge(const Picture *a, const Picture *b, CompareResult *result, Err *err);
 /* Adds FLIP, SSIM and CIEDE2000 of the two pictures compared. */
 MUST_CHECK Status compare_perception(const Picture *a, const Picture *b, CompareResult *result,
                                      Err *err);
@@ -367,9 +375,11 @@ typedef struct ReportCase {
     size_t n_commands;
     const CompareResult *planes[PLANE_KINDS]; /* NULL where not compared; colour is required */
     const SurfaceCheck *surface;              /* of an implicit model; NULL: of no such model */
-    const CompareResult *exact; /* likewise, the colours of the surface where it is against A's */
-    const Settled *settled;     /* NULL: nobody was asked */
-    const Witness *witness;     /* NULL: there is none */
+    const CompareResult *alpha;               /* of a transparent picture; NULL: of an opaque one */
+    const CompareResult
+        *exact; /* of an implicit model, the colours of the surface where it is against A's */
+    const Settled *settled; /* NULL: nobody was asked */
+    const Witness *witness; /* NULL: there is none */
 } ReportCase;
 
 /* Whether every plane agrees, and the surface, not too much is settled, and no witness differs. */

@@ -136,6 +136,45 @@ test_compare_lays_what_is_transparent_on_a_background() {
     expect_sentence 'background is for two pictures'
 }
 
+# half_transparent ALPHA: a PNG of 40 x 30 white pixels, half of them transparent, the first of the alpha given.
+half_transparent() {
+    awk -v first="$1" 'BEGIN { print "P2 40 30 255"; for (i = 0; i < 1200; i++) print i < 3 ? first : i % 2 ? 255 : 0 }' >alpha.pgm
+    pnmtopng -alpha=alpha.pgm <(awk 'BEGIN { print "P3 40 30 255"; for (i = 0; i < 3600; i++) print 255 }') 2>error
+}
+
+test_compare_judges_alpha_of_two_transparent_pictures() {
+    local ext
+    half_transparent 0 >a.png
+    half_transparent 128 >b.png
+    half_transparent 1 >c.png
+    run_ok corcast compare a.png a.png
+    run corcast compare a.png b.png
+    expect_status 1
+    expect_stdout '^differ \(tier A\): alpha: pixels off by more than .*; only alpha differs, on 3 pixels$'
+    run corcast compare a.png b.png --tier B --html page.html
+    expect_status 1
+    grep -q '<span class="bad">differ</span>' page.html || fail "expected the page to differ, too"
+    run corcast compare a.png c.png
+    expect_status 1
+    run_ok corcast compare a.png c.png --levels 1
+    run_ok corcast compare a.png b.png --tier none
+    for ext in exr tif; do
+        oiiotool a.png -d float -o a.$ext
+        oiiotool b.png -d float -o b.$ext
+        run corcast compare a.$ext b.$ext
+        expect_status 1
+        expect_stdout 'only alpha differs, on 3 pixels$'
+    done
+    mkdir stored drawn
+    cp a.png stored/v.png
+    cp b.png drawn/v.png
+    run corcast compare --reference stored drawn
+    expect_status 1
+    expect_stdout '^changed v\.png: alpha: .*; only alpha differs, on 3 pixels$'
+    pnmtopng <<<"P2 40 30 255 $(printf '9 9 9 %s' "$(printf '0 %.0s' {1..1197})")" >stored/v.mask.png
+    run_ok corcast compare --reference stored drawn
+}
+
 test_colours_have_the_names_of_css_and_codes() {
     local color codes
     cp "$DATA/bifurcation.swc" tree.swc

@@ -69,6 +69,38 @@ test_a_picture_that_shows_nothing_is_no_agreement() {
     expect_sentence 'the vessels are too small to be drawn$'
 }
 
+test_alpha_of_a_transparent_picture_is_judged() {
+    local antialias
+    cp "$DATA/bifurcation.swc" tree.swc
+    for antialias in 1 2; do
+        run_ok corcast verify tree.swc --background none --size 60x50 --antialias $antialias -o report
+        expect_stdout '^  alpha   agree  0 of 3000 pixels differ$'
+        expect_json report/report.json '.alpha.verdict == "agree" and .alpha.max_abs == 0'
+    done
+    expect_file report/povray.alpha.png
+    # A POV-Ray that is 2 % too transparent, and right in all else.
+    cat >povray.sh <<'END'
+#!/bin/bash
+for i; do
+    case $i in
+    +O*) picture=${i#+O} ;;
+    +UA) alpha=1 ;;
+    esac
+done
+povray "$@" || exit
+[ -z "${alpha-}" ] || oiiotool "$picture" --mulc 1,1,1,0.98 -o "$picture"
+END
+    chmod +x povray.sh
+    run env CORCAST_POVRAY="$PWD/povray.sh" "$CORCAST" verify tree.swc --background none --size 60x50 -o report
+    expect_status 1
+    expect_stdout '^  color   agree '
+    expect_stdout '^  alpha   differ alpha: pixels off by more than 0 levels: .* the worst, 5 levels, is at '
+    expect_json report/report.json '.verdict == "differ" and .alpha.verdict == "differ" and (.reason | startswith("alpha: "))'
+    run_ok corcast verify tree.swc --size 60x50 -o report
+    expect_json report/report.json 'has("alpha") | not'
+    [ ! -e report/povray.alpha.png ] || fail "expected no alpha of an opaque picture"
+}
+
 test_joined_trees_of_least_length_agree() {
     run_ok corcast grow --terminals 150 --seed 3 --lambda 0 -o tree.swc
     agrees joined --view iso --shadows on
@@ -660,7 +692,7 @@ test_a_missing_segment_is_found_out() {
 
 test_verify_writes_what_formats_says() {
     run_ok corcast verify "$DATA/bifurcation.swc" --quiet --model isosurface --size 40x30 -o report
-    sed -n '/^## What verify writes/,/^## /p' "$REPO/docs/FORMATS.md" | grep -v 'with `--witness' |
+    sed -n '/^## What verify writes/,/^## /p' "$REPO/docs/FORMATS.md" | grep -v 'with `--\(witness\|background\)' |
         sed -n 's/^| \(`[^|]*`\) |.*/\1/p' | tr -d '`,' | tr ' ' '\n' | sort >said
     ls report | sort >written
     expect_same said written

@@ -320,6 +320,32 @@ static void names_gain_offset_gamma_and_encoding(void **state)
     }
 }
 
+/* A number in parts of 256 for 255, or of a percent too few, has other digits at its end. */
+static void says_the_number_of_a_tone_to_its_last_digit(void **state)
+{
+    (void)state;
+    static const struct {
+        void (*spoil)(Picture *picture, double by);
+        double by, least, most;
+        const char *before;
+    } tones[] = {{offset, 40, 39.99, 40.01, "changed by "},
+                 {offset, -60, -60.01, -59.99, "changed by "},
+                 {gain_of_codes, 0.9, 0.897, 0.903, "sRGB codes are "},
+                 {gain_of_light, 0.75, 0.749, 0.751, "linear colours are "},
+                 {gamma_curve, 1.25, 1.248, 1.252, "power of "}};
+    for (size_t i = 0; i < sizeof tones / sizeof *tones; i++) {
+        const Shot shot = spoilt(tones[i].spoil, tones[i].by);
+        Picture b = shoot(&shot);
+        const CompareResult result = judge(&reference, &b);
+        const char *at = strstr(result.cause, tones[i].before);
+        double number = at ? strtod(at + strlen(tones[i].before), NULL) : 0;
+        if (!(number >= tones[i].least && number <= tones[i].most))
+            fail_msg("expected a number from %g to %g, got '%s'", tones[i].least, tones[i].most,
+                     result.cause);
+        picture_release(&b);
+    }
+}
+
 static void names_rows_and_channels_that_are_exchanged(void **state)
 {
     (void)state;
@@ -434,6 +460,7 @@ int main(void)
         cmocka_unit_test(names_a_move_to_a_tenth_of_a_pixel),
         cmocka_unit_test(names_a_blur_and_its_width),
         cmocka_unit_test(names_gain_offset_gamma_and_encoding),
+        cmocka_unit_test(says_the_number_of_a_tone_to_its_last_digit),
         cmocka_unit_test(names_rows_and_channels_that_are_exchanged),
         cmocka_unit_test(tells_highlights_from_other_shading),
         cmocka_unit_test(names_outlines_that_are_sampled_otherwise),

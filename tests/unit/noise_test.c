@@ -125,6 +125,45 @@ static void refuses_what_is_no_variance(void **state)
     plane_release(&variance);
 }
 
+/* A plane of one channel without noise, whose pixels in a box differ from the others by `more`. */
+static Plane boxed(int side, int left, int top, int box, double more)
+{
+    Plane plane;
+    assert_int_equal(plane_init(&plane, side, side, 1, &err), STATUS_OK);
+    for (int i = 0; i < side * side; i++) {
+        bool inside =
+            i % side >= left && i % side < left + box && i / side >= top && i / side < top + box;
+        plane.values[i] = (float)(0.5 + (inside ? more : 0));
+    }
+    return plane;
+}
+
+/* 6 sigmas in a tile of 32 are 3 in one of 64, and 12 in one of 16. */
+static void tiles_have_32_pixels_a_side(void **state)
+{
+    (void)state;
+    enum { SIDE = 192 };
+    const double v = 1e-4, one_sigma = sqrt(2 * v) / 32;
+    NoiseResult result;
+    Plane a = boxed(SIDE, 0, 0, 0, 0), b = boxed(SIDE, 96, 32, 32, 6 * one_sigma);
+    Plane variance = boxed(SIDE, 0, 0, 0, 0);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        variance.values[i] = (float)v;
+    assert_int_equal(compare_noise(&a, &b, &variance, 0.01, &result, &err), STATUS_OK);
+    assert_false(result.agrees);
+    assert_true(fabs(result.tile_sigmas - 6) < 0.05);
+    assert_true(fabs(result.sigmas - 1) < 0.02);
+    assert_int_equal(result.tile.x, 96);
+    assert_int_equal(result.tile.y, 32);
+    plane_release(&b);
+    b = boxed(SIDE, 96, 32, 32, 3.5 * one_sigma);
+    assert_int_equal(compare_noise(&a, &b, &variance, 0.01, &result, &err), STATUS_OK);
+    assert_true(result.agrees);
+    plane_release(&a);
+    plane_release(&b);
+    plane_release(&variance);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -132,6 +171,7 @@ int main(void)
         cmocka_unit_test(finds_a_bias_of_half_a_percent_under_noise),
         cmocka_unit_test(names_the_gain_and_the_tile),
         cmocka_unit_test(refuses_what_is_no_variance),
+        cmocka_unit_test(tiles_have_32_pixels_a_side),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Tiers, the ledger of segments, float colours, and tolerances as files. */
 #include "unit.h"
+#include "verify/result.h"
 #include "verify/verify.h"
 #include <math.h>
 #include <stdint.h>
@@ -643,6 +644,147 @@ static void a_flood_of_settled_pixels_is_a_difference(void **state)
     settled_release(&settled);
 }
 
+/* Each cause that was looked for has its own limit, the first and the last one too. */
+static void every_cause_of_settled_pixels_is_limited(void **state)
+{
+    (void)state;
+    static const struct {
+        SettledCause from, to, cause;
+        size_t allowed;
+    } cases[] = {{SETTLED_ROOT, SETTLED_SHADOW_ROOT, SETTLED_ROOT, 40},
+                 {SETTLED_ROOT, SETTLED_SHADOW_ROOT, SETTLED_INEXACT_ROOT, 40},
+                 {SETTLED_ROOT, SETTLED_SHADOW_ROOT, SETTLED_SHADOW_ROOT, 200},
+                 {SETTLED_SHADOW_CACHE, SETTLED_SHADOW_CACHE, SETTLED_SHADOW_CACHE, 1000}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Settled settled;
+        assert_int_equal(settled_init(&settled, 1000 * 1000, cases[i].from, cases[i].to, &err),
+                         STATUS_OK);
+        assert_int_equal(settled_allowed(&settled, cases[i].cause), cases[i].allowed);
+        settled.count[SETTLED_NOT] = 5000; /* judged by the limits of the tolerance */
+        settled.count[cases[i].cause] = cases[i].allowed;
+        settled_judge(&settled);
+        assert_true(settled.agrees);
+        settled.count[cases[i].cause]++;
+        settled_judge(&settled);
+        assert_false(settled.agrees);
+        assert_non_null(strstr(settled.reason, settled_cause_sentence(cases[i].cause)));
+        settled_release(&settled);
+    }
+    Settled small;
+    assert_int_equal(settled_init(&small, 100, SETTLED_ROOT, SETTLED_SHADOW_ROOT, &err), STATUS_OK);
+    assert_int_equal(settled_allowed(&small, SETTLED_ROOT), 6);
+    assert_int_equal(settled_allowed(&small, SETTLED_SHADOW_ROOT), 12);
+    settled_release(&small);
+}
+
+/* What a comparison found that every limit of 10 allows. */
+static CompareResult found_nothing(PlaneKind kind)
+{
+    const Tolerance none = tolerance_none();
+    static const IdPlane ids = {.width = 1000, .height = 1000};
+    CompareResult result = result_start(kind, 1000, 1000, &ids, &none);
+    Tolerance *tolerance = &result.tolerance;
+    *tolerance = (Tolerance){.tier = "all", .pixelmatch = 0.1, .color_levels = 1};
+    double *const limits[] = {&tolerance->color_ppm,
+                              &tolerance->interior_levels,
+                              &tolerance->interior_ppm,
+                              &tolerance->band_ppm,
+                              &tolerance->bias_levels,
+                              &tolerance->sign_sigma,
+                              &tolerance->gain,
+                              &tolerance->offset_levels,
+                              &tolerance->silhouette_px,
+                              &tolerance->segment_levels,
+                              &tolerance->segment_px,
+                              &tolerance->id_ppm,
+                              &tolerance->id_interior_ppm,
+                              &tolerance->id_band_ppm,
+                              &tolerance->depth_ppm,
+                              &tolerance->depth_p99_mm,
+                              &tolerance->depth_p99_part,
+                              &tolerance->normal_ppm,
+                              &tolerance->normal_median_deg,
+                              &tolerance->coverage_ppm,
+                              &tolerance->pixelmatch_ppm};
+    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++)
+        *limits[i] = 10;
+    tolerance->segments_missing = tolerance->region_pixels = 10;
+    result.bits = kind == PLANE_COLOR ? 8 : 32;
+    result.has_mask = true;
+    result.band_pixels = 500 * 1000;
+    result.gain = 1;
+    result.offset_levels = result.gain_error = result.offset_error = 0;
+    result.max_abs = result.unsettled_max_abs = result.interior_max_abs = result.bias_levels = 0;
+    result.sign_sigma = result.silhouette_px = result.segment_levels = result.segment_px = 0;
+    result.pixelmatch_pixels = result.median = result.p99 = result.p99_part = result.max = 0;
+    return result;
+}
+
+/* Each rule is broken by one finding that all other rules allow, upwards and downwards. */
+static void each_rule_of_a_tolerance_refuses_what_no_other_does(void **state)
+{
+    (void)state;
+    enum { COUNT, NUMBER };
+    static const struct {
+        PlaneKind kind;
+        int type;
+        size_t at;
+        double within, beyond;
+    } cases[] = {
+        {PLANE_COLOR, COUNT, offsetof(CompareResult, largest_region), 10, 11},
+        {PLANE_COLOR, COUNT, offsetof(CompareResult, segments_missing), 10, 11},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, silhouette_px), 10, 10.1},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, silhouette_px), -10, -10.1},
+        {PLANE_COLOR, COUNT, offsetof(CompareResult, beyond_pixels), 10, 11},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, interior_max_abs), 10, 10.1},
+        {PLANE_COLOR, COUNT, offsetof(CompareResult, interior_beyond), 5, 6},
+        {PLANE_COLOR, COUNT, offsetof(CompareResult, band_beyond), 5, 6},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, segment_px), 10, 10.1},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, segment_levels), 10, 10.1},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, gain), 11, 11.1},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, gain), -9, -9.1},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, offset_levels), 10, 10.1},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, offset_levels), -10, -10.1},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, bias_levels), 10, 10.1},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, bias_levels), -10, -10.1},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, sign_sigma), 10, 10.1},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, sign_sigma), -10, -10.1},
+        {PLANE_COLOR, NUMBER, offsetof(CompareResult, pixelmatch_pixels), 10, 11},
+        {PLANE_DEPTH, COUNT, offsetof(CompareResult, nan_pixels_a), 0, 1},
+        {PLANE_DEPTH, COUNT, offsetof(CompareResult, nan_pixels_b), 0, 1},
+        {PLANE_DEPTH, COUNT, offsetof(CompareResult, largest_region), 10, 11},
+        {PLANE_DEPTH, COUNT, offsetof(CompareResult, missing_pixels), 10, 11},
+        {PLANE_DEPTH, COUNT, offsetof(CompareResult, extra_pixels), 10, 11},
+        {PLANE_DEPTH, COUNT, offsetof(CompareResult, beyond_pixels), 10, 11},
+        {PLANE_DEPTH, NUMBER, offsetof(CompareResult, p99), 10, 10.1},
+        {PLANE_DEPTH, NUMBER, offsetof(CompareResult, p99_part), 10, 10.1},
+        {PLANE_NORMAL, COUNT, offsetof(CompareResult, nan_pixels_b), 0, 1},
+        {PLANE_NORMAL, COUNT, offsetof(CompareResult, extra_pixels), 10, 11},
+        {PLANE_NORMAL, COUNT, offsetof(CompareResult, beyond_pixels), 10, 11},
+        {PLANE_NORMAL, NUMBER, offsetof(CompareResult, median), 10, 10.1},
+        {PLANE_ID, COUNT, offsetof(CompareResult, beyond_pixels), 10, 11},
+        {PLANE_ID, COUNT, offsetof(CompareResult, interior_beyond), 5, 6},
+        {PLANE_ID, COUNT, offsetof(CompareResult, band_beyond), 5, 6},
+        {PLANE_ID, COUNT, offsetof(CompareResult, largest_region), 10, 11},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        for (int beyond = 0; beyond < 2; beyond++) {
+            CompareResult result = found_nothing(cases[i].kind);
+            char *field = (char *)&result + cases[i].at;
+            double value = beyond ? cases[i].beyond : cases[i].within;
+            int broken = 0;
+            if (cases[i].type == COUNT)
+                *(size_t *)(void *)field = (size_t)value;
+            else
+                *(double *)(void *)field = value;
+            result_finish(&result, NULL, NULL);
+            for (int k = 0; k < result.n_rules; k++)
+                broken += !result.rules[k].met;
+            if (result.agrees == (beyond == 1) || broken != beyond)
+                fail_msg("case %zu, %g: %d rules are broken: %s", i, value, broken, result.reason);
+        }
+}
+
 int main(void)
 {
     if (file_make_folder("build", &err) != STATUS_OK)
@@ -669,6 +811,8 @@ int main(void)
         cmocka_unit_test(a_settled_pixel_hides_no_other),
         cmocka_unit_test(tells_what_is_beyond_at_a_pixel),
         cmocka_unit_test(a_flood_of_settled_pixels_is_a_difference),
+        cmocka_unit_test(every_cause_of_settled_pixels_is_limited),
+        cmocka_unit_test(each_rule_of_a_tolerance_refuses_what_no_other_does),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,7 +16,8 @@
 typedef struct Sides {
     const char *paths[2];
     Image images[2];
-    IdPlane ids[2]; /* without ids unless they are given */
+    Picture alphas[2]; /* empty where the image is opaque */
+    IdPlane ids[2];    /* without ids unless they are given */
     CallResult results[4];
     const char *id_paths[2];
     const char *layer;   /* or NULL */
@@ -29,6 +30,7 @@ static void sides_release(Sides *sides)
 {
     for (int side = 0; side < 2; side++) {
         image_release(&sides->images[side]);
+        picture_release(&sides->alphas[side]);
         idplane_release(&sides->ids[side]);
     }
 }
@@ -79,12 +81,15 @@ static Status set_bits(Image *image, int bits, Err *err)
 }
 
 /* Of a plane of geometry every value counts: it has no alpha. */
-static Status read_side(const Sides *sides, const char *path, Image *image, Err *err)
+static Status read_side(const Sides *sides, const char *path, Image *image, Picture *alpha,
+                        Err *err)
 {
     TRY(image_read_layer(image, path, sides->layer, sides->color, err));
     if (!sides->color)
         return STATUS_OK;
-    Status status = image_lay_on(image, sides->background, err);
+    Status status = alpha_take(alpha, image, err);
+    if (status == STATUS_OK)
+        status = image_lay_on(image, sides->background, err);
     if (status == STATUS_OK && sides->bits)
         status = set_bits(image, sides->bits, err);
     if (status != STATUS_OK)
@@ -102,8 +107,9 @@ static void read_file(size_t index, int worker, void *context)
     if (!path)
         return;
     CallResult *result = &sides->results[index];
-    result->status = index < 2 ? read_side(sides, path, &sides->images[side], &result->err)
-                               : read_ids(&sides->ids[side], path, &result->err);
+    result->status =
+        index < 2 ? read_side(sides, path, &sides->images[side], &sides->alphas[side], &result->err)
+                  : read_ids(&sides->ids[side], path, &result->err);
 }
 
 /* Reads all files at once; of several errors the first file's is reported. */
@@ -237,7 +243,8 @@ static Status compare_codes(const CompareOptions *options, const Sides *sides,
     Picture shown[2] = {{0}, {0}};
     Status status = STATUS_OK;
     TRY_GOTO(compare_pictures(&a, &b, tolerance, result, &ledger, err));
-    if (!result->agrees)
+    TRY_GOTO(alpha_judge(&sides->alphas[0], &sides->alphas[1], result, err));
+    if (!result->agrees && !*result->cause)
         TRY_GOTO(compare_cause(a.picture, b.picture, result, err));
     TRY_GOTO(write_ledger(options->ledger, &ledger, err));
     bool coded = a.picture->gamma == 0; /* as a screen shows it */
@@ -267,11 +274,13 @@ static Status compare_linear(const CompareOptions *options, const Sides *sides,
     bool ids = options->ids_a != NULL;
     TRY(compare_colors(a, b, ids ? &sides->ids[0] : NULL, ids ? &sides->ids[1] : NULL, tolerance,
                        options->metrics || options->page || options->report, result, err));
+    TRY(alpha_judge(&sides->alphas[0], &sides->alphas[1], result, err));
     Picture clipped[2] = {{0}, {0}};
     Status status = STATUS_OK;
     bool pictures = options->heat || options->difference || options->flicker || options->page ||
                     options->report;
-    bool asks_cause = !result->agrees && result->nan_pixels_a + result->nan_pixels_b == 0;
+    bool asks_cause =
+        !result->agrees && !*result->cause && result->nan_pixels_a + result->nan_pixels_b == 0;
     if (pictures || asks_cause) {
         TRY_GOTO(picture_from_plane(&clipped[0], a, ENCODING_SRGB, 16, err));
         TRY_GOTO(picture_from_plane(&clipped[1], b, ENCODING_SRGB, 16, err));

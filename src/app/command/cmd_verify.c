@@ -19,13 +19,13 @@
 
 /* All that a verification leaves. The verdict comes first: what is interrupted leaves none. */
 static const char *const left[] = {
-    "report.html",         "report.json",       "junit.xml",         "diff.png",
-    "scene.pov",           "scene.inc",         "ids.pov",           "ids.inc",
-    "povray.png",          "povray.depth.png",  "povray.normal.png", "povray.id.png",
-    "povray.depth-id.png", "povray.depth.pfm",  "povray.normal.pfm", "povray.id.ppm",
-    "native.png",          "native.depth.pfm",  "native.normal.pfm", "native.id.ppm",
-    "exact.png",           "exact.depth.pfm",   "exact.normal.pfm",  "exact.id.ppm",
-    "scene.tachyon",       "tachyon.depth.ppm", "tachyon.id.ppm"};
+    "report.html",         "report.json",      "junit.xml",         "diff.png",
+    "scene.pov",           "scene.inc",        "ids.pov",           "ids.inc",
+    "povray.png",          "povray.depth.png", "povray.normal.png", "povray.id.png",
+    "povray.depth-id.png", "povray.alpha.png", "povray.depth.pfm",  "povray.normal.pfm",
+    "povray.id.ppm",       "native.png",       "native.depth.pfm",  "native.normal.pfm",
+    "native.id.ppm",       "exact.png",        "exact.depth.pfm",   "exact.normal.pfm",
+    "exact.id.ppm",        "scene.tachyon",    "tachyon.depth.ppm", "tachyon.id.ppm"};
 
 /* Likewise those of tiles, by the beginnings of their names. */
 static const char *const left_of_tiles[] = {
@@ -142,6 +142,7 @@ static Status write_report(Verification *v, bool as_json, bool *agrees, Err *err
     for (int kind = 0; kind < PLANE_KINDS; kind++)
         report.planes[kind] = &v->results[kind];
     report.surface = verification_takes_two_steps(v) ? &v->surface : NULL;
+    report.alpha = v->has_alpha ? &v->alpha : NULL;
     report.exact = verification_takes_two_steps(v) ? &v->exact_color : NULL;
     report.settled = v->asked ? &v->settled : NULL;
     report.witness = v->asks_witness ? &v->witness : NULL;
@@ -216,6 +217,11 @@ static Status print_verdict(const Verification *v, bool agrees, Err *err)
         else
             printf("%zu of %zu pixels differ\n", result->differing_pixels, result->pixels);
     }
+    if (v->has_alpha && v->alpha.agrees)
+        printf("  %-7s %-7s%zu of %zu pixels differ\n", "alpha", "agree", v->alpha.differing_pixels,
+               v->alpha.pixels);
+    else if (v->has_alpha)
+        printf("  %-7s %-7s%s\n", "alpha", "differ", v->alpha.reason);
     if (v->asked)
         TRY(print_settled(&v->settled, err));
     if (verification_takes_two_steps(v))
@@ -342,6 +348,7 @@ static Status verify(Verification *v, int frame, Folder *folder, Parsed *parsed,
     v->scene.view.effects = (Effects){0};
     if (!v->picture->stage.has_location)
         move_off_ties(&v->scene.view.camera);
+    v->has_alpha = v->scene.view.transparent;
     v->scene.view.transparent = false; /* shown over the look's background */
     TRY(verification_pick_frame(v, frame, err));
     TRY(file_make_folder(v->folder, err));

@@ -29,6 +29,7 @@ static const char *const plane_names[ORACLE_PLANES] = {
     [ORACLE_NORMAL] = "povray.normal",
     [ORACLE_ID] = "povray.id",
     [ORACLE_DEPTH_ID] = "povray.depth-id",
+    [ORACLE_ALPHA] = "povray.alpha",
 };
 
 /* The planes that are drawn, the colours first. */
@@ -38,14 +39,17 @@ typedef struct Planes {
 } Planes;
 
 /* Depth and ids share a picture where ids are small enough, which saves a run of POV-Ray. */
-static Planes planes_of(const Geometry *geometry)
+static Planes planes_of(const Geometry *geometry, bool alpha)
 {
     uint32_t most = 0;
     for (size_t i = 0; i < geometry->n_ids; i++)
         most = geometry->ids[i] > most ? geometry->ids[i] : most;
+    Planes planes = {{ORACLE_COLOR, ORACLE_DEPTH, ORACLE_NORMAL, ORACLE_ID}, 4};
     if (most <= ORACLE_MOST_ID)
-        return (Planes){{ORACLE_COLOR, ORACLE_DEPTH_ID, ORACLE_NORMAL}, 3};
-    return (Planes){{ORACLE_COLOR, ORACLE_DEPTH, ORACLE_NORMAL, ORACLE_ID}, 4};
+        planes = (Planes){{ORACLE_COLOR, ORACLE_DEPTH_ID, ORACLE_NORMAL}, 3};
+    if (alpha)
+        planes.plane[planes.n++] = ORACLE_ALPHA;
+    return planes;
 }
 
 /* ---- tiles ----------------------------------------------------------------------------------- */
@@ -446,6 +450,8 @@ static Status read_plane(Verification *v, OraclePlane plane, const char *path, E
         return oracle_read_ids(&v->povray.id, path, err);
     case ORACLE_DEPTH_ID:
         return oracle_read_depth_ids(&v->povray.depth, &v->povray.id, path, near_mm, far_mm, err);
+    case ORACLE_ALPHA:
+        return oracle_read_alpha(&v->povray_alpha, path, err);
     case ORACLE_PLANES:
         break;
     }
@@ -494,7 +500,8 @@ Status povray_side_prepare(Verification *v, PovraySide **side, Err *err)
     pthread_mutex_init(&made->runs.lock, NULL);
     TRY_GOTO(prepare_tiles(v, &made->tiles, err));
     v->n_tiles = made->tiles.n;
-    made->runs.planes = planes_of(&v->scene.geometry);
+    v->has_alpha = v->has_alpha && v->n_tiles == 1;
+    made->runs.planes = planes_of(&v->scene.geometry, v->has_alpha);
     made->at_once = runs_at_once(v, &made->tiles, &made->runs.planes);
     TRY_GOTO(prepare_runs(v, &made->tiles, made->at_once, &made->runs, err));
     *side = made;

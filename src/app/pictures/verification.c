@@ -23,6 +23,8 @@ void verification_release(Verification *v)
     witness_release(&v->witness);
     picture_release(&v->native_picture);
     picture_release(&v->povray_picture);
+    picture_release(&v->native_alpha);
+    picture_release(&v->povray_alpha);
     picture_release(&v->native_shown);
     settled_release(&v->settled);
     picture_release(&v->povray_shown);
@@ -96,9 +98,33 @@ static const CellParams *cells_of(const Verification *v)
     return verification_takes_two_steps(v) ? &v->cells : NULL;
 }
 
+/* Colours are judged before the look's background, as POV-Ray draws them, and alpha in a picture of
+ * its own. */
+static Status render_alpha(Verification *v, Err *err)
+{
+    RenderParams params = render_params(v, cells_of(v));
+    View view = v->scene.view;
+    Scene scene = v->scene;
+    Frame frame;
+    Picture picture;
+    params.want_depth = params.want_normal = params.want_id = false;
+    view.transparent = true;
+    scene.view = view;
+    TRY(render(&scene, &params, &frame, NULL, err));
+    Status status =
+        picture_from_transparent(&picture, &frame.color, &frame.alpha, ENCODING_SRGB, 8, err);
+    frame_release(&frame);
+    TRY(status);
+    status = picture_take_alpha(&v->native_alpha, &picture, err);
+    picture_release(&picture);
+    return status;
+}
+
 static Status render_native(Verification *v, Err *err)
 {
     TRY(render_frame(v, cells_of(v), &v->native, err));
+    if (v->has_alpha)
+        TRY(render_alpha(v, err));
     TRY(picture_from_plane(&v->native_picture, &v->native.color, encoding_of(v), v->bits, err));
     return verification_takes_two_steps(v) ? render_frame(v, NULL, &v->exact, err) : STATUS_OK;
 }
@@ -309,6 +335,15 @@ static Status compare_exact(Verification *v, const Rendering *povray, Err *err)
     return status;
 }
 
+static Status compare_alpha(Verification *v, const Tolerance *tolerance, Err *err)
+{
+    Tolerance of_alpha = *tolerance;
+    of_alpha.title = "alpha";
+    const Rendering a = {.picture = &v->povray_alpha, .ids = &v->povray.id};
+    const Rendering b = {.picture = &v->native_alpha, .ids = &v->native.id};
+    return compare_pictures(&a, &b, &of_alpha, &v->alpha, NULL, err);
+}
+
 static Status compare_witness(Verification *v, double depth_step_mm, Err *err)
 {
     const Testimony three[] = {{"POV-Ray", &v->povray.id, &v->povray.depth},
@@ -344,6 +379,8 @@ Status verification_compare(Verification *v, Err *err)
     TRY(compare_planes(PLANE_NORMAL, &v->povray.normal, &v->native.normal, a, b, &tolerance,
                        &v->results[PLANE_NORMAL], err));
     TRY(compare_ids(a, b, &tolerance, &v->results[PLANE_ID], err));
+    if (v->has_alpha)
+        TRY(compare_alpha(v, &tolerance, err));
     if (!verification_takes_two_steps(v))
         return STATUS_OK;
     TRY(compare_exact(v, &view_a, err));

@@ -31,6 +31,9 @@ typedef struct Verification {
     bool asked; /* whether anything was settled, or nothing had to be */
     SurfaceCheck surface;
     CompareResult exact_color;
+    bool has_alpha;                     /* the picture is transparent, and alpha is judged */
+    Picture native_alpha, povray_alpha; /* grey, of 8 bits */
+    CompareResult alpha;
     bool asks_witness; /* Tachyon draws the scene, too */
     Frame tachyon;     /* depth and ids of it */
     Witness witness;
