@@ -57,7 +57,7 @@ static void ask(const Geometry *geometry, const Camera *camera, int kernel, Answ
     const FieldKernels *kernels =
         fieldkernels_for(geometry, (RenderKernels)(KERNELS_PORTABLE + kernel));
     const double places[] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const SampleGrid grid = {places, places, 8, 8, 1};
+    const SampleGrid grid = {places, places, 8, 8, 1, NULL};
     FieldTiles *tiles;
     assert_int_equal(fieldtiles_new(geometry, camera, &grid, 1e-4, 1, &tiles, NULL), STATUS_OK);
     fieldtiles_use_kernel(tiles, kernels->trace);

@@ -53,7 +53,7 @@ static void keep_sight(const SeenTile *tile, int worker, void *context)
 static void look(const Geometry *geometry, const Camera *camera, Sight *sight)
 {
     const double places[] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const SampleGrid grid = {places, places, 8, 8, 1};
+    const SampleGrid grid = {places, places, 8, 8, 1, NULL};
     FieldTiles *tiles;
     *sight = (Sight){.seen = 0};
     assert_int_equal(fieldtiles_new(geometry, camera, &grid, 1e-4, 1, &tiles, NULL), STATUS_OK);

@@ -291,7 +291,7 @@ static void all_kernels_agree(void **state)
     double places[64];
     for (int i = 0; i < 64; i++)
         places[i] = i;
-    const SampleGrid grid = {places, places, 64, 64, 1};
+    const SampleGrid grid = {places, places, 64, 64, 1, NULL};
     int n_kernels = kernels_usable();
     static Tile tiles[KINDS_OF_KERNELS][64];
     for (int k = 0; k < n_kernels; k++) {

@@ -35,12 +35,16 @@ void thinlayer_release(ThinLayer *layer)
     *layer = (ThinLayer){0};
 }
 
-/* Cuts the part [*from, *to] of a line down to where start + t * step lies in [low, high]. */
-static bool clip(float start, float step, float low, float high, float *from, float *to)
+/* Returns 1 / step, finite. */
+static float inverse_of(float step)
 {
-    if (step == 0)
-        return start >= low && start < high;
-    float a = (low - start) / step, b = (high - start) / step;
+    return 1 / (fabsf(step) > 1e-30f ? step : 1e-30f);
+}
+
+/* Cuts the part [*from, *to] of a line down to where start + t * step lies in [low, high]. */
+static bool clip(float start, float inverse_step, float low, float high, float *from, float *to)
+{
+    const float a = (low - start) * inverse_step, b = (high - start) * inverse_step;
     *from = greatest(*from, least(a, b));
     *to = least(*to, greatest(a, b));
     return *from <= *to;
@@ -58,8 +62,8 @@ static TileSpan tiles_in_row(const ThinLayer *layer, const ThinStrip *strip, int
 {
     float reach = strip->width / 2 + 0.01f, t = 0, end = 1;
     float step_x = strip->x[1] - strip->x[0], top = (float)row * TILE_SIDE;
-    if (!clip(strip->y[0], strip->y[1] - strip->y[0], top - reach, top + TILE_SIDE + reach, &t,
-              &end))
+    if (!clip(strip->y[0], inverse_of(strip->y[1] - strip->y[0]), top - reach,
+              top + TILE_SIDE + reach, &t, &end))
         return (TileSpan){0, -1};
     float a = strip->x[0] + t * step_x, b = strip->x[0] + end * step_x;
     return tiles_between(least(a, b) - reach, greatest(a, b) + reach, layer->tile_columns);
@@ -128,10 +132,21 @@ typedef struct Brush {
     ThinCells *cells;
     float x, y;               /* first end of the axis */
     float along_x, along_y;   /* unit, from there to the second end */
+    float per_x, per_y;       /* 1 / along */
     float length, half_width; /* of the strip */
     float flat, slope;        /* of the projection of a cell across the axis [part_below] */
     Status status;
+    Err *err;
 } Brush;
+
+/* Makes room for one more fragment. */
+static Status make_room_for_one(ThinCells *cells, Err *err)
+{
+    TRY(mem_reserve(&cells->fragments, &cells->capacity, cells->n + 1, sizeof *cells->fragments,
+                    "thin vessels", err));
+    return mem_reserve(&cells->order, &cells->order_capacity, cells->n + 1, sizeof *cells->order,
+                       "thin vessels", err);
+}
 
 static ThinFragment *fragment_at(Brush *brush, uint32_t *first)
 {
@@ -139,16 +154,9 @@ static ThinFragment *fragment_at(Brush *brush, uint32_t *first)
     uint32_t run = brush->strip->run;
     if (*first > 0 && cells->fragments[*first - 1].run == run)
         return &cells->fragments[*first - 1];
-    if (cells->n == cells->capacity) {
-        size_t capacity = cells->capacity ? 2 * cells->capacity : 256;
-        ThinFragment *more = realloc(cells->fragments, capacity * sizeof *more);
-        if (!more) {
-            brush->status = STATUS_MEMORY;
-            return NULL;
-        }
-        cells->fragments = more;
-        cells->capacity = capacity;
-    }
+    brush->status = make_room_for_one(cells, brush->err);
+    if (brush->status != STATUS_OK)
+        return NULL;
     ThinFragment *fragment = &cells->fragments[cells->n++];
     *fragment = (ThinFragment){.run = run, .next = *first};
     *first = (uint32_t)cells->n;
@@ -171,13 +179,13 @@ static float part_below(const Brush *brush, float distance)
  */
 static float area_at_end(const Brush *brush, float x, float y)
 {
-    const int lines = 2 + (int)(LINES * least(1, brush->half_width));
+    const int lines = 1 + (int)(LINES * least(1, brush->half_width));
     float sum = 0;
     for (int k = 0; k < lines; k++) {
         const float aside = ((2 * (float)k + 1) / (float)lines - 1) * brush->half_width;
         float from = 0, to = brush->length;
-        if (clip(x - brush->along_y * aside, brush->along_x, 0, 1, &from, &to) &&
-            clip(y + brush->along_x * aside, brush->along_y, 0, 1, &from, &to))
+        if (clip(x - brush->along_y * aside, brush->per_x, 0, 1, &from, &to) &&
+            clip(y + brush->along_x * aside, brush->per_y, 0, 1, &from, &to))
             sum += to - from;
     }
     return least(1, sum * 2 * brush->half_width / (float)lines);
@@ -221,7 +229,7 @@ static void draw_strip(Brush *brush, int first_column, int end_column, int first
     const float reach = brush->half_width + 0.01f;
     for (int row = first_row; row < end_row; row++) {
         float from = 0, to = brush->length;
-        if (!clip(brush->y, brush->along_y, (float)row - reach, (float)row + 1 + reach, &from, &to))
+        if (!clip(brush->y, brush->per_y, (float)row - reach, (float)row + 1 + reach, &from, &to))
             continue;
         const float a = brush->x + from * brush->along_x, b = brush->x + to * brush->along_x;
         const int left = (int)greatest(least(a, b) - reach, (float)first_column);
@@ -275,16 +283,18 @@ static Status fill_tile(const ThinLayer *layer, int tile_column, int tile_row, i
             .y = (strip->y[0] - (float)(tile_row * TILE_SIDE)) * (float)side + (float)top,
             .along_x = x / length,
             .along_y = y / length,
+            .per_x = inverse_of(x / length),
+            .per_y = inverse_of(y / length),
             .length = length,
             .half_width = strip->width * (float)side / 2,
             .flat = (wide - narrow) / 2,
-            .slope = narrow};
+            .slope = narrow,
+            .err = err};
         draw_strip(&brush, left > 0 ? left : 0,
                    left + tile_side < cells->columns ? left + tile_side : cells->columns,
                    top > 0 ? top : 0,
                    top + tile_side < cells->rows ? top + tile_side : cells->rows);
-        if (brush.status != STATUS_OK)
-            return err_set(err, brush.status, "out of memory: no room for thin vessels");
+        TRY(brush.status);
     }
     return STATUS_OK;
 }
@@ -311,38 +321,38 @@ void thincells_release(ThinCells *cells)
 {
     free(cells->first);
     free(cells->fragments);
+    free(cells->order);
     *cells = (ThinCells){0};
 }
 
 /* ---- from front to back ---------------------------------------------------------------------- */
 
-/* The fragment that is nearest of those behind *last, and before z; NULL: none. Equal depths go by
- * their runs. */
-static const ThinFragment *next_behind(const ThinCells *cells, uint32_t first,
-                                       const ThinFragment *last, float z)
+/* Lists the fragments of a cell before z from front to back. Equal depths stay in the order of the
+ * list. Returns their number. Cells have few fragments. */
+static size_t sort_fragments(ThinCells *cells, uint32_t first, float z)
 {
-    const ThinFragment *next = NULL;
-    float next_z = z, last_z = last ? last->z / last->area : 0;
+    ThinDepth *order = cells->order;
+    size_t n = 0;
     for (uint32_t i = first; i > 0; i = cells->fragments[i - 1].next) {
         const ThinFragment *at = &cells->fragments[i - 1];
-        float at_z = at->z / at->area;
-        bool is_behind = !last || at_z > last_z || (at_z == last_z && at->run > last->run);
-        bool is_before = at_z < next_z || (at_z == next_z && (!next || at->run < next->run));
-        if (at->area > 0 && is_behind && is_before) {
-            next = at;
-            next_z = at_z;
-        }
+        const ThinDepth depth = {at->z / at->area, i - 1};
+        if (depth.z > z)
+            continue;
+        size_t to = n++;
+        for (; to > 0 && order[to - 1].z > depth.z; to--)
+            order[to] = order[to - 1];
+        order[to] = depth;
     }
-    return next;
+    return n;
 }
 
-void thincells_over(const ThinCells *cells, int column, int row, float z, float color[3])
+void thincells_over(ThinCells *cells, int column, int row, float z, float color[3])
 {
-    const uint32_t first = cells->first[row * cells->columns + column];
+    const size_t n = sort_fragments(cells, cells->first[row * cells->columns + column], z);
     float clear = 1, sum[3] = {0};
-    const ThinFragment *at = NULL;
-    while (clear > 0 && (at = next_behind(cells, first, at, z))) {
-        float part = clear * least(1, at->area);
+    for (size_t i = 0; i < n && clear > 0; i++) {
+        const ThinFragment *at = &cells->fragments[cells->order[i].index];
+        const float part = clear * least(1, at->area);
         for (int c = 0; c < 3; c++)
             sum[c] += part * at->color[c] / at->area;
         clear -= part;
