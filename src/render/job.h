@@ -52,11 +52,12 @@ typedef struct RenderParams {
     int occlusion;   /* 0: ambient light is the same everywhere; N: the part of it that reaches a
                       * point is found by N rays, or N beams a pixel, which no POV-Ray picture
                       * repeats */
-    bool cover_thin; /* vessels thinner than a pixel are drawn by the part of it that they cover,
-                      * and cast no shadows, which no POV-Ray picture repeats; else samples hit or
-                      * miss them. Planes of geometry have what samples hit in any case */
-    double
-        least_px; /* likewise: vessels are drawn at least so wide, from 0 to 64; 0: as they are */
+    bool cover_thin; /* vessels narrower than a pixel, and than three sample distances, are drawn by
+                      * the area that they cover of it, which no POV-Ray picture repeats; else
+                      * samples hit or miss them. Planes of geometry have what samples hit in any
+                      * case */
+    double least_px; /* minimum width that such vessels are drawn with, pixels, from 0 to 64; what
+                      * is narrower is drawn by area; 0 draws true widths */
     const CellParams *povray_cells; /* an isosurface is drawn where POV-Ray's root finder sees it in
                                      * these cells; NULL: where it is, by proof */
     bool codes_suffice; /* the frame may have 8-bit codes instead of colours, where that is faster,
@@ -97,8 +98,8 @@ typedef struct Drawing {
     struct Caster *caster; /* for the rays that the engine asks for; NULL where it asks for none */
     const TermMean *mean;  /* of colours that blend; else NULL */
     const struct SharedLight *shared; /* what samples of a pixel share; NULL: nothing */
-    const bool *hidden; /* per primitive, or per segment of a field: the camera does not see it, lights
-                         * do; NULL: none is hidden */
+    const bool *hidden; /* per primitive, or per segment of a field: the camera does not see it,
+                         * lights do; NULL: none is hidden */
     const struct ThinLayer *thin; /* thin vessels that are drawn over each sample; NULL: none */
     Band band;
 } Drawing;

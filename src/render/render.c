@@ -54,8 +54,10 @@ struct Renderer {
     bool has_color; /* it was prepared for colours, which need shadows, and serves planes too */
     Renderer
         *covering; /* draws colours where vessels are thin; NULL: there are none, or it is this */
-    /* Of a covering renderer, what is kept while the camera is that of `thin`. */
+    /* Of a covering renderer, what is kept while the camera is that of `thin`, and the antialiasing
+     * this. */
     ThinVessels thin;
+    int thin_antialias;
     View thin_lights; /* whose lights and ground thin.lights and thin.open are for */
     LonePlaces
         *asked; /* those of `thin` while area lights are yet to be asked for them; borrowed */
@@ -604,7 +606,8 @@ static Status find_thin(Renderer *covering, const View *view, Err *err)
     const RenderParams *params = &covering->params;
     const int pixel = effects_present(&view->effects) ? params->antialias : 1;
     Camera camera = camera_of_samples(view, params);
-    if (memcmp(&covering->thin.camera, &camera, sizeof camera) == 0)
+    if (covering->thin_antialias == params->antialias &&
+        memcmp(&covering->thin.camera, &camera, sizeof camera) == 0)
         return STATUS_OK;
     double start_s = clock_seconds();
     forget_view(covering);
@@ -612,6 +615,7 @@ static Status find_thin(Renderer *covering, const View *view, Err *err)
     TRY(thinvessels_find(covering->geometry, &camera,
                          pixel * fmin(1, most_samples / params->antialias),
                          pixel * params->least_px, params->threads, &covering->thin, err));
+    covering->thin_antialias = params->antialias;
     covering->stats.prepare_s += clock_seconds() - start_s;
     return STATUS_OK;
 }

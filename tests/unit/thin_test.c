@@ -300,7 +300,7 @@ static void of_equal_width_are_smooth(void **state)
                 double sum = 0;
                 for (size_t y = 0; y < SIDE; y++)
                     sum += 1 - (double)frame.color.values[3 * (y * SIDE + x)];
-                assert_true(fabs(sum - width_px * hypot(18, 3.7) / 18) < 0.03 * width_px);
+                assert_true(fabs(sum - width_px * hypot(18, 3.7) / 18) < 0.003 * width_px);
             }
             frame_release(&frame);
         }

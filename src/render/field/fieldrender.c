@@ -194,8 +194,7 @@ static void color_samples(const FieldPicture *picture, int worker, const SeenTil
 }
 
 /* The colours of a tile; NULL: the background's. */
-static float (*color_tile(const FieldPicture *picture, int worker,
-                          const BatchTile *tile))[TILE_SAMPLES]
+static float (*color_tile(const FieldPicture *picture, int worker, BatchTile *tile))[TILE_SAMPLES]
 {
     const SeenTile *seen = &tile->seen;
     float(*color)[TILE_SAMPLES] = NULL;
@@ -220,7 +219,7 @@ static Status shade_batch(const FieldPicture *picture, int worker,
     if (picture->has_shadows && !picture->canvas.wholly_colored && picture->canvas.wants_color)
         TRY(find_shadows(picture, worker, err));
     for (int i = 0; i < batch->n_tiles; i++) {
-        const BatchTile *tile = &batch->tiles[i];
+        BatchTile *tile = &batch->tiles[i];
         keep(tile, picture->canvas.wants_color ? color_tile(picture, worker, tile) : NULL, worker,
              context);
     }

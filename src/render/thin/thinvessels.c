@@ -128,12 +128,13 @@ static bool make_strip(const Search *search, uint32_t number, ThinStrip *strip)
     const CameraPoint a = camera_point(camera, vessel.a), b = camera_point(camera, vessel.b);
     const double width =
         fmax(vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm, search->least_px);
+    const double margin = width + 1; /* so that clipped ends are in no cell */
     const double z[2] = {depth_along_view(camera, vessel.a) - vessel.radius_a,
                          depth_along_view(camera, vessel.b) - vessel.radius_b};
-    clip_above(a.x + width, b.x + width, &from, &to);
-    clip_above(camera->width + width - a.x, camera->width + width - b.x, &from, &to);
-    clip_above(a.y + width, b.y + width, &from, &to);
-    clip_above(camera->height + width - a.y, camera->height + width - b.y, &from, &to);
+    clip_above(a.x + margin, b.x + margin, &from, &to);
+    clip_above(camera->width + margin - a.x, camera->width + margin - b.x, &from, &to);
+    clip_above(a.y + margin, b.y + margin, &from, &to);
+    clip_above(camera->height + margin - a.y, camera->height + margin - b.y, &from, &to);
     if (!(from < to))
         return false;
     const double length = elementary_hypot(b.x - a.x, b.y - a.y) * (to - from);

@@ -312,8 +312,8 @@ float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
 }
 
 /* Draws the thin vessels of a cell over a sample. */
-static void cover_sample(const SeenTile *seen, const ThinCells *cells, int column, int row,
-                         int sample, float color[3][TILE_SAMPLES])
+static void cover_sample(const SeenTile *seen, ThinCells *cells, int column, int row, int sample,
+                         float color[3][TILE_SAMPLES])
 {
     const bool hit = seen->hits && seen->hits->state[sample] == TILE_HIT;
     float over[3] = {color[0][sample], color[1][sample], color[2][sample]};
@@ -322,7 +322,7 @@ static void cover_sample(const SeenTile *seen, const ThinCells *cells, int colum
         color[c][sample] = over[c];
 }
 
-float (*canvas_cover(const Canvas *canvas, int worker, const SeenTile *seen, const ThinCells *cells,
+float (*canvas_cover(const Canvas *canvas, int worker, const SeenTile *seen, ThinCells *cells,
                      int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES]
 {
     CanvasWorker *own = &canvas->each[worker];

@@ -88,7 +88,7 @@ float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
  * the tile has cell (i * step + x, j * step + y) of `cells`, step being the number of cells per
  * sample. `color` is the worker's, from canvas_shade; NULL: the background's. Returns the worker's
  * colours, or `color` if no thin vessel touches the tile. */
-float (*canvas_cover(const Canvas *canvas, int worker, const SeenTile *seen, const ThinCells *cells,
+float (*canvas_cover(const Canvas *canvas, int worker, const SeenTile *seen, ThinCells *cells,
                      int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES];
 
 /* Stores a tile of the centre samples in the planes of the frame; tiles go row by row, and

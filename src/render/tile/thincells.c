@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Lines of a strip no wider than a cell; of wider ones, as many per cell. */
-enum { LINES = 3 };
+/* Lines per cell that the area of the end of a strip is added up along, for two cells' width. */
+enum { LINES = 24 };
 
 /* fminf and fmaxf are calls. No argument here is NaN. */
 static float least(float a, float b)
@@ -35,12 +35,16 @@ void thinlayer_release(ThinLayer *layer)
     *layer = (ThinLayer){0};
 }
 
-/* Cuts the part [*from, *to] of a line down to where start + t * step lies in [low, high]. */
-static bool clip(float start, float step, float low, float high, float *from, float *to)
+/* Returns 1 / step, finite. */
+static float inverse_of(float step)
 {
-    if (step == 0)
-        return start >= low && start <= high;
-    float a = (low - start) / step, b = (high - start) / step;
+    return 1 / (fabsf(step) > 1e-30f ? step : 1e-30f);
+}
+
+/* Cuts the part [*from, *to] of a line down to where start + t * step lies in [low, high]. */
+static bool clip(float start, float inverse_step, float low, float high, float *from, float *to)
+{
+    const float a = (low - start) * inverse_step, b = (high - start) * inverse_step;
     *from = greatest(*from, least(a, b));
     *to = least(*to, greatest(a, b));
     return *from <= *to;
@@ -58,8 +62,8 @@ static TileSpan tiles_in_row(const ThinLayer *layer, const ThinStrip *strip, int
 {
     float reach = strip->width / 2 + 0.01f, t = 0, end = 1;
     float step_x = strip->x[1] - strip->x[0], top = (float)row * TILE_SIDE;
-    if (!clip(strip->y[0], strip->y[1] - strip->y[0], top - reach, top + TILE_SIDE + reach, &t,
-              &end))
+    if (!clip(strip->y[0], inverse_of(strip->y[1] - strip->y[0]), top - reach,
+              top + TILE_SIDE + reach, &t, &end))
         return (TileSpan){0, -1};
     float a = strip->x[0] + t * step_x, b = strip->x[0] + end * step_x;
     return tiles_between(least(a, b) - reach, greatest(a, b) + reach, layer->tile_columns);
@@ -120,17 +124,29 @@ double thinstrip_part(const ThinLayer *layer, const ThinStrip *strip, double s)
     return (double)strip->part[0] + s * (double)(strip->part[1] - strip->part[0]);
 }
 
-/* A strip on its way through a rectangle of the block. Places are cells from the block's first
- * cell. */
+/* A strip while it is drawn into a block. Lengths are in cells, places from the block's first cell.
+ */
 typedef struct Brush {
     const ThinLayer *layer;
     const ThinStrip *strip;
     ThinCells *cells;
-    int first_column, end_column, first_row, end_row; /* of the rectangle */
-    float x, y, step_x, step_y; /* first end of the axis, and from there to the second */
-    float line_width;           /* that a line stands for, cells */
+    float x, y;               /* first end of the axis */
+    float along_x, along_y;   /* unit, from there to the second end */
+    float per_x, per_y;       /* 1 / along */
+    float length, half_width; /* of the strip */
+    float flat, slope;        /* of the projection of a cell across the axis [part_below] */
     Status status;
+    Err *err;
 } Brush;
+
+/* Makes room for one more fragment. */
+static Status make_room_for_one(ThinCells *cells, Err *err)
+{
+    TRY(mem_reserve(&cells->fragments, &cells->capacity, cells->n + 1, sizeof *cells->fragments,
+                    "thin vessels", err));
+    return mem_reserve(&cells->order, &cells->order_capacity, cells->n + 1, sizeof *cells->order,
+                       "thin vessels", err);
+}
 
 static ThinFragment *fragment_at(Brush *brush, uint32_t *first)
 {
@@ -138,93 +154,88 @@ static ThinFragment *fragment_at(Brush *brush, uint32_t *first)
     uint32_t run = brush->strip->run;
     if (*first > 0 && cells->fragments[*first - 1].run == run)
         return &cells->fragments[*first - 1];
-    if (cells->n == cells->capacity) {
-        size_t capacity = cells->capacity ? 2 * cells->capacity : 256;
-        ThinFragment *more = realloc(cells->fragments, capacity * sizeof *more);
-        if (!more) {
-            brush->status = STATUS_MEMORY;
-            return NULL;
-        }
-        cells->fragments = more;
-        cells->capacity = capacity;
-    }
+    brush->status = make_room_for_one(cells, brush->err);
+    if (brush->status != STATUS_OK)
+        return NULL;
     ThinFragment *fragment = &cells->fragments[cells->n++];
     *fragment = (ThinFragment){.run = run, .next = *first};
     *first = (uint32_t)cells->n;
     return fragment;
 }
 
-/* Adds the part of a line from `t` on that lies in a cell; `length` is in cells. */
-static void cover(Brush *brush, int column, int row, float length, float t)
+/* Returns the part of a cell that lies below a line along the strip at a distance from the cell's
+ * middle. Across the line, the cell is a trapezoid: as deep everywhere within `flat` of its middle,
+ * and falling to nothing at `flat + slope`. */
+static float part_below(const Brush *brush, float distance)
+{
+    const float flat = brush->flat, slope = brush->slope, deep = 1 / (2 * flat + slope);
+    const float off = fabsf(distance), left = greatest(flat + slope - off, 0);
+    const float above =
+        off > flat ? left * left / greatest(2 * slope, 1e-30f) * deep : 0.5f - off * deep;
+    return distance > 0 ? 1 - above : above;
+}
+
+/* Returns the area of the strip in a cell that one of its ends may lie in, by lines side by side.
+ */
+static float area_at_end(const Brush *brush, float x, float y)
+{
+    const int lines = 1 + (int)(LINES * least(1, brush->half_width));
+    float sum = 0;
+    for (int k = 0; k < lines; k++) {
+        const float aside = ((2 * (float)k + 1) / (float)lines - 1) * brush->half_width;
+        float from = 0, to = brush->length;
+        if (clip(x - brush->along_y * aside, brush->per_x, 0, 1, &from, &to) &&
+            clip(y + brush->along_x * aside, brush->per_y, 0, 1, &from, &to))
+            sum += to - from;
+    }
+    return least(1, sum * 2 * brush->half_width / (float)lines);
+}
+
+/* Adds what a strip covers of a cell. */
+static void cover(Brush *brush, int column, int row)
 {
     const ThinStrip *strip = brush->strip;
     ThinCells *cells = brush->cells;
-    ThinFragment *at = fragment_at(brush, &cells->first[row * cells->columns + column]);
-    uint32_t piece = (uint32_t)(t * (float)strip->n_pieces);
-    if (!at)
+    const float x = brush->x - (float)column, y = brush->y - (float)row;
+    const float across = (0.5f - y) * brush->along_x - (0.5f - x) * brush->along_y;
+    const float at = (0.5f - x) * brush->along_x + (0.5f - y) * brush->along_y;
+    const float reach = brush->flat + brush->slope; /* of the cell, across the axis and along it */
+    if (fabsf(across) >= brush->half_width + reach || at <= -reach || at >= brush->length + reach)
         return;
-    const float *color =
-        brush->layer->colors[strip->first_piece + (piece < strip->n_pieces ? piece : 0)];
-    float area = length * brush->line_width;
-    float z = brush->layer->perspective ? 1 / ((1 - t) / strip->z[0] + t / strip->z[1])
-                                        : strip->z[0] + t * (strip->z[1] - strip->z[0]);
-    at->area += area;
-    at->z += area * z;
+    const bool at_end = at < reach || at > brush->length - reach;
+    const float area = at_end ? area_at_end(brush, x, y)
+                              : part_below(brush, across + brush->half_width) -
+                                    part_below(brush, across - brush->half_width);
+    if (!(area > 0))
+        return;
+    ThinFragment *fragment = fragment_at(brush, &cells->first[row * cells->columns + column]);
+    if (!fragment)
+        return;
+    const float t = least(greatest(at / brush->length, 0), 1);
+    const uint32_t piece = (uint32_t)(t * (float)strip->n_pieces);
+    const uint32_t last = strip->n_pieces - 1;
+    const float *color = brush->layer->colors[strip->first_piece + (piece < last ? piece : last)];
+    const float z = brush->layer->perspective ? 1 / ((1 - t) / strip->z[0] + t / strip->z[1])
+                                              : strip->z[0] + t * (strip->z[1] - strip->z[0]);
+    fragment->area += area;
+    fragment->z += area * z;
     for (int c = 0; c < 3; c++)
-        at->color[c] += area * color[c];
+        fragment->color[c] += area * color[c];
 }
 
-/* Where, as t, start + t * step leaves the cell of a number. */
-static float leaves(float start, float step, int cell)
+/* Draws the strip into the cells of a rectangle that it may touch, row by row. */
+static void draw_strip(Brush *brush, int first_column, int end_column, int first_row, int end_row)
 {
-    if (step == 0)
-        return INFINITY;
-    return ((float)(step > 0 ? cell + 1 : cell) - start) / step;
-}
-
-static int cell_of(float at, int first, int end)
-{
-    int cell = (int)floorf(at);
-    return cell < first ? first : cell >= end ? end - 1 : cell;
-}
-
-/* Draws a line, beside the axis by (aside_x, aside_y), from cell to cell; `length` is the strip's,
- * in cells. */
-static void draw_line(Brush *brush, float length, float aside_x, float aside_y)
-{
-    float x = brush->x + aside_x, y = brush->y + aside_y, step_x = brush->step_x,
-          step_y = brush->step_y;
-    float t = 0, end = 1;
-    if (!clip(x, step_x, (float)brush->first_column, (float)brush->end_column, &t, &end) ||
-        !clip(y, step_y, (float)brush->first_row, (float)brush->end_row, &t, &end))
-        return;
-    int column = cell_of(x + t * step_x, brush->first_column, brush->end_column);
-    int row = cell_of(y + t * step_y, brush->first_row, brush->end_row);
-    while (t < end && column >= brush->first_column && column < brush->end_column &&
-           row >= brush->first_row && row < brush->end_row) {
-        float out_x = leaves(x, step_x, column), out_y = leaves(y, step_y, row);
-        float next = least(end, least(out_x, out_y));
-        if (next > t)
-            cover(brush, column, row, (next - t) * length, (t + next) / 2);
-        t = greatest(t, next);
-        if (out_x <= out_y)
-            column += step_x > 0 ? 1 : -1;
-        else
-            row += step_y > 0 ? 1 : -1;
-    }
-}
-
-static void draw_strip(Brush *brush)
-{
-    float wide = brush->strip->width * (float)brush->cells->per_pixel;
-    float length = sqrtf(brush->step_x * brush->step_x + brush->step_y * brush->step_y);
-    if (!(length > 0))
-        return;
-    int lines = wide > 1 ? (int)ceilf(LINES * wide) : LINES;
-    brush->line_width = wide / (float)lines;
-    for (int k = 0; k < lines; k++) {
-        float aside = (((float)k + 0.5f) / (float)lines - 0.5f) * wide / length;
-        draw_line(brush, length, -brush->step_y * aside, brush->step_x * aside);
+    const float reach = brush->half_width + 0.01f;
+    for (int row = first_row; row < end_row; row++) {
+        float from = 0, to = brush->length;
+        if (!clip(brush->y, brush->per_y, (float)row - reach, (float)row + 1 + reach, &from, &to))
+            continue;
+        const float a = brush->x + from * brush->along_x, b = brush->x + to * brush->along_x;
+        const int left = (int)greatest(least(a, b) - reach, (float)first_column);
+        const int right = (int)least(greatest(a, b) + reach, (float)(end_column - 1));
+        for (int column = left; column <= right; column++)
+            cover(brush, column, row);
     }
 }
 
@@ -258,21 +269,32 @@ static Status fill_tile(const ThinLayer *layer, int tile_column, int tile_row, i
         &layer->tiles.first[(size_t)tile_row * (size_t)layer->tile_columns + (size_t)tile_column];
     for (uint32_t i = list[0]; i < list[1]; i++) {
         const ThinStrip *strip = &layer->strips[layer->tiles.items[i]];
+        const float x = (strip->x[1] - strip->x[0]) * (float)side;
+        const float y = (strip->y[1] - strip->y[0]) * (float)side, length = sqrtf(x * x + y * y);
+        if (!(length > 0))
+            continue;
+        const float wide = greatest(fabsf(x), fabsf(y)) / length;
+        const float narrow = least(fabsf(x), fabsf(y)) / length;
         Brush brush = {
             .layer = layer,
             .strip = strip,
             .cells = cells,
-            .first_column = left > 0 ? left : 0,
-            .end_column = left + tile_side < cells->columns ? left + tile_side : cells->columns,
-            .first_row = top > 0 ? top : 0,
-            .end_row = top + tile_side < cells->rows ? top + tile_side : cells->rows,
             .x = (strip->x[0] - (float)(tile_column * TILE_SIDE)) * (float)side + (float)left,
             .y = (strip->y[0] - (float)(tile_row * TILE_SIDE)) * (float)side + (float)top,
-            .step_x = (strip->x[1] - strip->x[0]) * (float)side,
-            .step_y = (strip->y[1] - strip->y[0]) * (float)side};
-        draw_strip(&brush);
-        if (brush.status != STATUS_OK)
-            return err_set(err, brush.status, "out of memory: no room for thin vessels");
+            .along_x = x / length,
+            .along_y = y / length,
+            .per_x = inverse_of(x / length),
+            .per_y = inverse_of(y / length),
+            .length = length,
+            .half_width = strip->width * (float)side / 2,
+            .flat = (wide - narrow) / 2,
+            .slope = narrow,
+            .err = err};
+        draw_strip(&brush, left > 0 ? left : 0,
+                   left + tile_side < cells->columns ? left + tile_side : cells->columns,
+                   top > 0 ? top : 0,
+                   top + tile_side < cells->rows ? top + tile_side : cells->rows);
+        TRY(brush.status);
     }
     return STATUS_OK;
 }
@@ -299,38 +321,38 @@ void thincells_release(ThinCells *cells)
 {
     free(cells->first);
     free(cells->fragments);
+    free(cells->order);
     *cells = (ThinCells){0};
 }
 
 /* ---- from front to back ---------------------------------------------------------------------- */
 
-/* The fragment that is nearest of those behind *last, and before z; NULL: none. Equal depths go by
- * their runs. */
-static const ThinFragment *next_behind(const ThinCells *cells, uint32_t first,
-                                       const ThinFragment *last, float z)
+/* Lists the fragments of a cell before z from front to back. Equal depths stay in the order of the
+ * list. Returns their number. Cells have few fragments. */
+static size_t sort_fragments(ThinCells *cells, uint32_t first, float z)
 {
-    const ThinFragment *next = NULL;
-    float next_z = z, last_z = last ? last->z / last->area : 0;
+    ThinDepth *order = cells->order;
+    size_t n = 0;
     for (uint32_t i = first; i > 0; i = cells->fragments[i - 1].next) {
         const ThinFragment *at = &cells->fragments[i - 1];
-        float at_z = at->z / at->area;
-        bool is_behind = !last || at_z > last_z || (at_z == last_z && at->run > last->run);
-        bool is_before = at_z < next_z || (at_z == next_z && (!next || at->run < next->run));
-        if (at->area > 0 && is_behind && is_before) {
-            next = at;
-            next_z = at_z;
-        }
+        const ThinDepth depth = {at->z / at->area, i - 1};
+        if (depth.z > z)
+            continue;
+        size_t to = n++;
+        for (; to > 0 && order[to - 1].z > depth.z; to--)
+            order[to] = order[to - 1];
+        order[to] = depth;
     }
-    return next;
+    return n;
 }
 
-void thincells_over(const ThinCells *cells, int column, int row, float z, float color[3])
+void thincells_over(ThinCells *cells, int column, int row, float z, float color[3])
 {
-    const uint32_t first = cells->first[row * cells->columns + column];
+    const size_t n = sort_fragments(cells, cells->first[row * cells->columns + column], z);
     float clear = 1, sum[3] = {0};
-    const ThinFragment *at = NULL;
-    while (clear > 0 && (at = next_behind(cells, first, at, z))) {
-        float part = clear * least(1, at->area);
+    for (size_t i = 0; i < n && clear > 0; i++) {
+        const ThinFragment *at = &cells->fragments[cells->order[i].index];
+        const float part = clear * least(1, at->area);
         for (int c = 0; c < 3; c++)
             sum[c] += part * at->color[c] / at->area;
         clear -= part;

@@ -39,12 +39,19 @@ typedef struct ThinFragment {
     float color[3];     /* sum of colour times area */
 } ThinFragment;
 
+/* A fragment in the order of depth. */
+typedef struct ThinDepth {
+    float z;
+    uint32_t index;
+} ThinDepth;
+
 /* The fragments of a block of cells. */
 typedef struct ThinCells {
     int columns, rows, per_pixel; /* cells; cells per pixel across */
     uint32_t *first;              /* per cell: index + 1 of its latest fragment; 0: none. Owned. */
     ThinFragment *fragments;      /* owned */
-    size_t n, capacity, n_cells;
+    ThinDepth *order;             /* workspace of thincells_over, as long as `fragments`; owned */
+    size_t n, capacity, order_capacity, n_cells;
 } ThinCells;
 
 /* Lists the strips of each tile. Cost O(strips and the tiles that they touch).
@@ -79,6 +86,6 @@ static inline bool thincells_are_empty(const ThinCells *cells, int column, int r
 /* Draws the fragments of cell (column, row) of the block over `color`, the linear colour that a
  * sample sees at the depth z along the view, mm. Fragments behind z are hidden. Runs are drawn from
  * front to back, each as if its area lay anyhow in the cell. */
-void thincells_over(const ThinCells *cells, int column, int row, float z, float color[3]);
+void thincells_over(ThinCells *cells, int column, int row, float z, float color[3]);
 
 #endif
