@@ -127,7 +127,7 @@ static double most_numbers(const Reader *reader, const Array *of)
         return reader->points * (double)of->array.components;
     if (!of->is_text && of->section == CELL_DATA)
         return reader->cells * (double)of->array.components;
-    return fmin(100 * (reader->points + reader->cells) + 1e6, 4 * most_elements(reader->size));
+    return fmin(100 * (reader->points + reader->cells) + 1e6, 2 * most_elements(reader->size));
 }
 
 static Status begin_array(Reader *reader, Section section, const XmlElement *element, Err *err)
