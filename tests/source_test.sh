@@ -93,6 +93,14 @@ test_the_release_program_is_hardened() {
         fail "expected calls that check the size of their buffers, found $(grep -oE '__[a-z]+_chk@' symbols | sort -u | tr '\n' ' ')"
 }
 
+# Kernels for one kind of processor say themselves where they fuse.
+test_no_other_source_than_kernels_fuses_a_product_and_a_sum() {
+    [ -d "$REPO/build/release/src" ] || skip "this is not the release build"
+    find "$REPO/build/release/src" -name '*.o' ! -name '*_avx2.o' ! -name '*_avx512.o' -exec objdump -d --no-show-raw-insn {} + >code
+    grep -q mulsd code || fail "expected code to read"
+    ! grep -E '\bvfn?m(add|sub)' code >fused || fail "$(wc -l <fused) operations are fused: $(head -1 fused)"
+}
+
 # Both change what all threads share.
 test_no_source_changes_the_umask_or_the_locale() {
     [ -d "$REPO/build/release/src" ] || skip "this is not the release build"
