@@ -5,6 +5,7 @@
 # V=1      show the commands
 # JOBS     how many to run at once where the Makefile calls itself (all processors)
 # PREFIX   where `make install` puts things (/usr/local); DESTDIR goes in front of it
+# CFLAGS, CPPFLAGS, LDFLAGS   further flags, from the environment or the command line; they follow the Makefile's own
 
 MODE ?= release
 PREFIX ?= /usr/local
@@ -59,12 +60,26 @@ PACKAGE_LIBS := $(shell pkg-config --exists $(HEADERS) && pkg-config --libs $(PA
 NIFTI := /usr/include/nifti
 EXR := /usr/include/OpenEXR
 PLAIN_HEADERS := $(and $(wildcard $(NIFTI)/nifti2_io.h),$(wildcard $(EXR)/openexr.h))
-# Same seed, same bytes with every compiler: no contraction of a * b + c, no reassociation.
-CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -ffp-contract=off $(WARNINGS)
-CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-config --cflags $(PACKAGES) $(HEADERS) 2>/dev/null)
-LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE)))
+# Hardening of the program that users run: checks of the stack, of the C library's buffers, and tables of addresses that are
+# read-only before main. _FORTIFY_SOURCE needs optimisation, and a caller's own level is kept.
+HARDEN_release = -fstack-protector-strong $(if $(filter -O0,$(OPTIMISE_$(MODE)) $(CFLAGS))$(findstring _FORTIFY_SOURCE,$(CPPFLAGS) $(CFLAGS)),, \
+	-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
+# Same seed, same bytes with every compiler: no contraction of a * b + c, no reassociation. This flag comes last.
+EXACT := -ffp-contract=off
+INEXACT := $(filter -Ofast -ffast-math -funsafe-math-optimizations -fassociative-math -freciprocal-math -ffinite-math-only \
+	-fno-signed-zeros -ffp-model=fast -mrecip%,$(CC) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS))
+ifneq ($(INEXACT),)
+$(error $(INEXACT) changes results, which are to be the same bytes everywhere: leave it out of CC, CPPFLAGS, CFLAGS and LDFLAGS)
+endif
+# The Makefile's own flags; the caller's CFLAGS, CPPFLAGS and LDFLAGS follow them.
+VECTORS :=
+OWN_CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -fPIE $(WARNINGS)
+OWN_CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-config --cflags $(PACKAGES) $(HEADERS) 2>/dev/null)
+OWN_LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE))) -pie -Wl,-z,relro,-z,now,-z,noexecstack
+COMPILE = $(CC) $(OWN_CPPFLAGS) $(CPPFLAGS) $(OWN_CFLAGS) $(HARDEN_$(MODE)) $(VECTORS) $(CFLAGS) $(EXACT)
+LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := build/viewer/viewer.js
-LDLIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
+LIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
 .PHONY: all deps demo figures gallery validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
@@ -196,7 +211,7 @@ program: $(BUILD)/corcast ## the program of this MODE, build/MODE/corcast
 
 $(BUILD)/corcast: $(APP_OBJECTS) $(BUILD)/rooms.a
 	$(call say,LINK,$@)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(Q)$(LINK) -o $@ $^ $(LIBS)
 
 $(BUILD)/rooms.a: $(ROOM_OBJECTS)
 	$(call say,AR,$@)
@@ -209,51 +224,51 @@ $(BUILD)/app.a: $(filter-out %/main.o,$(APP_OBJECTS))
 $(BUILD)/%.o: %.c Makefile | packages
 	$(call say,CC,$<)
 	$(Q)mkdir -p $(@D)
-	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+	$(Q)$(COMPILE) -MMD -MP -c -o $@ $<
 
 $(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/app.a $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka
+	$(Q)$(LINK) -o $@ $^ $(LIBS) -lcmocka
 
 $(OPTIMA) $(FIT): %: %.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(Q)$(LINK) -o $@ $^ $(LIBS)
 
 $(FRAMES): $(BUILD)/tests/bench/frames.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(Q)$(LINK) -o $@ $^ $(LIBS)
 
 # Replayed from files, or driven by libFuzzer.
 $(FUZZ_PROGRAMS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/fuzz/fuzz.o \
 	$(if $(filter fuzz,$(MODE)),,$(BUILD)/tests/fuzz/replay.o) $(BUILD)/app.a $(BUILD)/rooms.a
 	$(call say,LINK,$@)
-	$(Q)$(CC) $(subst fuzzer-no-link,fuzzer,$(LDFLAGS)) -o $@ $^ $(LDLIBS)
+	$(Q)$(subst fuzzer-no-link,fuzzer,$(LINK)) -o $@ $^ $(LIBS)
 
 $(MESHES): $(BUILD)/tests/bench/meshes.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(Q)$(LINK) -o $@ $^ $(LIBS)
 
 # A peer to measure against; libembree-dev is a package of `make deps FOR=bench`.
 $(EMBREE): $(BUILD)/tests/bench/embree.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lembree3
+	$(Q)$(LINK) -o $@ $^ $(LIBS) -lembree3
 
 $(POWER): $(POWER_OBJECTS) $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(Q)$(LINK) -o $@ $^ $(LIBS)
 
 # The oracles stand alone: they share no code with the program they check.
 $(BUILD)/tests/%: tests/oracle/%.c Makefile
 	$(call say,CC,$<)
 	$(Q)mkdir -p $(@D)
-	$(Q)$(CC) -D_GNU_SOURCE $(CFLAGS) $(LDFLAGS) -o $@ $< -lm
+	$(Q)$(filter-out -Isrc,$(COMPILE)) $(OWN_LDFLAGS) $(LDFLAGS) -o $@ $< -lm
 
 # It reads nothing, and takes minutes to build with sanitizers.
 ifeq ($(MODE),fuzz)
-$(filter $(BUILD)/src/render/%,$(ROOM_OBJECTS)): CFLAGS := $(filter-out -fsanitize%,$(CFLAGS))
+$(filter $(BUILD)/src/render/%,$(ROOM_OBJECTS)): OWN_CFLAGS := $(filter-out -fsanitize%,$(OWN_CFLAGS))
 endif
 
 # What fails allocations is loaded before the program's own libraries, and is sanitized in no mode.
@@ -263,7 +278,7 @@ $(FAILING): tests/alloc/failing.c Makefile
 	$(Q)$(CC) -D_GNU_SOURCE -std=c11 -O1 -g $(WARNINGS) -fPIC -shared -o $@ $<
 
 # Loops over pixels gain from vectors, growth from square roots that set no errno.
-$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/sky/% $(BUILD)/src/surface/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): CFLAGS += $(VECTORS_$(MODE))
+$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/sky/% $(BUILD)/src/surface/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
 
 -include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 

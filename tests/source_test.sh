@@ -78,6 +78,70 @@ test_every_fault_of_make_power_changes_its_file() {
     done <faults
 }
 
+test_the_release_program_is_hardened() {
+    local program=$REPO/build/release/corcast
+    [ -f "$program" ] || skip "this is not the release build"
+    readelf -hlW "$program" >headers
+    readelf -dW "$program" >dynamic
+    readelf -sW --dyn-syms "$program" >symbols
+    grep -q 'Type: *DYN' headers || fail "expected a position-independent program"
+    grep -q 'FLAGS_1.*NOW.*PIE' dynamic || fail "expected all addresses to be bound at start"
+    grep -q GNU_RELRO headers || fail "expected tables of addresses that are read-only"
+    grep -qE 'GNU_STACK.* RW +0x' headers || fail "expected a stack that holds no code"
+    grep -q '__stack_chk_fail' symbols || fail "expected a check of the stack"
+    [ "$(grep -oE '__[a-z]+_chk@' symbols | grep -v stack | sort -u | wc -l)" -ge 4 ] ||
+        fail "expected calls that check the size of their buffers, found $(grep -oE '__[a-z]+_chk@' symbols | sort -u | tr '\n' ' ')"
+}
+
+# Kernels for one kind of processor say themselves where they fuse.
+test_no_other_source_than_kernels_fuses_a_product_and_a_sum() {
+    [ -d "$REPO/build/release/src" ] || skip "this is not the release build"
+    find "$REPO/build/release/src" -name '*.o' ! -name '*_avx2.o' ! -name '*_avx512.o' -exec objdump -d --no-show-raw-insn {} + >code
+    grep -q mulsd code || fail "expected code to read"
+    ! grep -E '\bvfn?m(add|sub)' code >fused || fail "$(wc -l <fused) operations are fused: $(head -1 fused)"
+}
+
+# Both change what all threads share.
+test_no_source_changes_the_umask_or_the_locale() {
+    [ -d "$REPO/build/release/src" ] || skip "this is not the release build"
+    ! find "$REPO/build/release/src" -name '*.o' -exec nm -A -u {} + | grep -E ' (umask|setlocale)$' >found ||
+        fail "expected no source to change what all threads share: $(cat found)"
+}
+
+# compile_with OPTION...: an object of growth, one of base and one of kernels that have AVX2, in ./built.
+compile_with() {
+    local object objects=()
+    for object in base/elementary grow/cco/grid render/sky/beamkernels_avx2; do
+        objects+=("$PWD/built/src/$object.o")
+    done
+    run make -C "$REPO" --no-print-directory V=1 MODE=release "BUILD=$PWD/built" "$@" "${objects[@]}"
+}
+
+test_flags_of_the_caller_follow_and_never_join_a_product_and_a_sum() {
+    local compiler
+    for compiler in gcc clang; do
+        rm -rf built
+        compile_with CC=$compiler CFLAGS='-O1 -march=haswell -ffp-contract=fast' CPPFLAGS=-DOF_THE_CALLER
+        expect_status 0
+        expect_stdout '-O2.* -O1 -march=haswell'
+        expect_stdout '-Isrc.*-DOF_THE_CALLER'
+        objdump -d --no-show-raw-insn built/src/*/*.o built/src/*/*/*.o >code
+        grep -q '%ymm\|vmulsd' code || fail "expected the caller's processor to be used by $compiler"
+        ! grep -E '\bvfn?m(add|sub)' code >fused || fail "$compiler fused $(wc -l <fused) operations: $(head -1 fused)"
+    done
+}
+
+test_flags_come_from_the_environment_and_inexact_ones_are_refused() {
+    export CFLAGS=-DOF_THE_ENVIRONMENT LDFLAGS=-Wl,--as-needed
+    run_ok make -C "$REPO" --no-print-directory -n V=1 "BUILD=$PWD/built" "$PWD/built/corcast"
+    expect_stdout '-DOF_THE_ENVIRONMENT -ffp-contract=off'
+    expect_stdout '-z,now.* -Wl,--as-needed -o'
+    export CFLAGS=-Ofast
+    run make -C "$REPO" --no-print-directory -n
+    expect_status 2
+    expect_sentence '-Ofast changes results'
+}
+
 test_make_help_names_every_public_target() {
     local target
     run_ok make -C "$REPO" --no-print-directory help

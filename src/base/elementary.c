@@ -23,7 +23,7 @@ static const double TO_INTEGER = 0x1.8p52;
 
 __extension__ typedef unsigned __int128 Wide;
 
-/* high + low, |low| being far smaller than |high|. */
+/* The number high + low, where |low| is far smaller than |high|. */
 typedef struct Sum {
     double high, low;
 } Sum;
@@ -48,13 +48,13 @@ static inline unsigned exponent_of(uint64_t bits)
     return (unsigned)(bits >> 52) & 0x7ff;
 }
 
-/* Returns x without its 27 last bits: the product of two such numbers is exact. */
+/* Returns x without its 27 last bits, which leaves 26. The product of two such numbers is exact. */
 static inline double upper_half(double x)
 {
     return of_bits(bits_of(x) & (UINT64_MAX << 27));
 }
 
-/* Returns a b exactly, unless it underflows. */
+/* Returns a b with a relative error below 2^-100, unless it underflows. */
 static inline Sum product(double a, double b)
 {
     double a1 = upper_half(a), a2 = a - a1, b1 = upper_half(b), b2 = b - b1;
@@ -85,8 +85,7 @@ static inline double polynomial(double x, const double *coefficient, int n)
  * is below 2^-69.7. |low| is at most 2^-18 |high|. */
 static inline Sum log_of_bits(uint64_t x)
 {
-    /* x = 2^k z, and z = c (1 + r) for the middle c of an interval: log x = k log 2 + log c + log(1
-     * + r). */
+    /* x = 2^k z and z = c (1 + r): log x = k log 2 + log c + log(1 + r). */
     uint64_t offset = x - LOG_START;
     const LogEntry *at = &LOG_TABLE[(offset >> 44) % 256];
     uint64_t z_bits = x - (offset & (0xfffull << 52));
@@ -108,9 +107,9 @@ static inline Sum log_of_bits(uint64_t x)
     return (Sum){high, low + r * square * series};
 }
 
-/* Returns 2^(k / 128) (1 + part) for the table's k: near the bounds of the doubles it is computed
- * 2^1022 too large, or 2^1009 too small, and scaled once. A result below the normal numbers is
- * rounded once, at the place of its last bit. */
+/* Returns scale (1 + part) near the bounds of the doubles. It is computed 2^1009 times too small or
+ * 2^1022 times too large, and scaled by one multiplication. A result below the normal numbers is
+ * rounded once, at its last bit: the addition of 1 gives the sum the same last bit. */
 static double exp_at_the_bounds(uint64_t scale_bits, bool large, double part)
 {
     if (large) {
@@ -125,8 +124,8 @@ static double exp_at_the_bounds(uint64_t scale_bits, bool large, double part)
     return 0x1p-1022 * y;
 }
 
-/* The exponential of x + low, |low| <= 0.001, is scale (1 + part); the bits of scale overflow
- * where large numbers do. */
+/* exp(x + low) as scale (1 + part), |low| <= 0.001. `scale` holds the bits of a double, whose
+ * exponent wraps around where the result is too large or too small for a double. */
 typedef struct Exponential {
     uint64_t scale;
     double part;
@@ -165,8 +164,8 @@ double elementary_exp(double x)
     return isnan(x) ? x + x : exp_of_sum(x, 0);
 }
 
-/* Returns the bits of a finite x > 0 as if its exponent had no lower bound: log_of_bits takes them
- * as those of a number below the normal ones. */
+/* Returns the bits that a finite x > 0 would have if exponents had no lower bound. log_of_bits
+ * accepts them although they are negative for subnormal numbers. */
 static uint64_t normal_bits(double x)
 {
     return x < DBL_MIN ? bits_of(x * 0x1p52) - (52ull << 52) : bits_of(x);
@@ -282,13 +281,13 @@ static inline double pow_of_log(Sum log, double y)
     return exp_of_sum(y1 * log1, y2 * log1 + y * log2);
 }
 
-/* Whether |y| is below 2^-65, or 2^64 or more. */
+/* Returns true if |y| is below 2^-65, or 2^64 or more. */
 static inline bool is_extreme(double y)
 {
     return exponent_of(bits_of(y)) - (1023 - 65) >= 65 + 64;
 }
 
-/* x^y where x is not a positive normal number, or y is extreme. */
+/* Returns x^y where x is not a positive normal number, or y is extreme. */
 static double pow_of_any(double x, double y)
 {
     if (x == 0 || !isfinite(x) || is_extreme(y))
@@ -335,7 +334,7 @@ double elementary_cbrt(double x)
         size = size < 1 ? size * 0x1p900 : size * 0x1p-900;
         y = elementary_pow(size, 1.0 / 3);
     }
-    /* One step of Newton, whose residual is exact. */
+    /* One step of Newton's method, whose residual is computed with twice the digits. */
     Sum square = product(y, y), cube = product(square.high, y);
     double residual = (size - cube.high) - (cube.low + square.low * y);
     return copysign(scale * (y + residual / (3 * square.high)), x);
@@ -351,69 +350,71 @@ double elementary_hypot(double x, double y)
         a /= scale;
         b /= scale;
     }
-    return scale * sqrt(a * a + b * b);
+    double root = sqrt(a * a + b * b);
+    if (root == 0 || isnan(root))
+        return root;
+    /* One step of Newton's method, whose residual is computed with twice the digits. */
+    Sum large = product(fmax(a, b), fmax(a, b)), small = product(fmin(a, b), fmin(a, b));
+    Sum square = product(root, root);
+    double residual =
+        (large.high - square.high + small.high) + (large.low - square.low + small.low);
+    return scale * (root + residual / (2 * root));
 }
 
-/* An angle less a multiple of pi / 2, in [-pi/4, pi/4] or closely beyond, and that multiple
+/* What is left of an angle when the nearest multiple of pi / 2 is subtracted, and the multiple
  * modulo 4. */
 typedef struct Quadrant {
     Sum angle;
     unsigned turn;
 } Quadrant;
 
-/* Multiplies the bits of x by those of 2 / pi [Payne & Hanek, SIGNUM 18 (1983) 19]; 2^20 <= x <
- * infinity. */
+/* Returns the 64 bits from bit `first` on, which counts from the highest bit of words[0]. */
+static uint64_t bits_from(const uint64_t *words, int first)
+{
+    int word = first / 64, used = first % 64;
+    return used > 0 ? words[word] << used | words[word + 1] >> (64 - used) : words[word];
+}
+
+/* Sets words[0..4] to the product of `mantissa` and 256 bits of 2 / pi, from bit `first` on. */
+static void multiply_by_two_over_pi(uint64_t mantissa, int first, uint64_t *words)
+{
+    words[0] = 0;
+    for (int i = 4; i > 0; i--) {
+        Wide part = (Wide)bits_from(TWO_OVER_PI, first + 64 * (i - 1)) * mantissa + words[0];
+        words[i] = (uint64_t)part;
+        words[0] = (uint64_t)(part >> 64);
+    }
+}
+
+/* Reduces a large angle by integers [Payne & Hanek, SIGNUM 18 (1983) 19]; 2^20 <= x < infinity. */
 static Quadrant reduced_large(double x)
 {
-    uint64_t bits = bits_of(x), mantissa = (bits & ((1ull << 52) - 1)) | (1ull << 52);
-    /* x = mantissa 2^shift. Bits of 2 / pi before `from` add multiples of 4 turns of a quarter. */
-    int shift = (int)exponent_of(bits) - 1075, from = shift - 2 > 0 ? shift - 2 : 0;
-    uint64_t window[4], carry = 0, parts[4];
-    for (int i = 0; i < 4; i++) {
-        int word = from / 64 + i, used = from % 64;
-        window[i] = TWO_OVER_PI[word] << used;
-        if (used > 0)
-            window[i] |= TWO_OVER_PI[word + 1] >> (64 - used);
-    }
-    for (int i = 3; i >= 0; i--) {
-        Wide part = (Wide)window[i] * mantissa + carry;
-        parts[i] = (uint64_t)part;
-        carry = (uint64_t)(part >> 64);
-    }
-    /* The product is (carry, parts) 2^(shift - from - 256): its point lies shift - from bits behind
-     * the start of parts, where shift - from is 2, or negative for a small x. */
-    int point = shift - from;
-    Wide whole_and_top = ((Wide)carry << 64) | parts[0];
-    uint64_t quarter, fraction, next;
-    if (point >= 0) {
-        quarter = (uint64_t)(whole_and_top >> (64 - point));
-        fraction = point > 0 ? parts[0] << point | parts[1] >> (64 - point) : parts[0];
-        next = point > 0 ? parts[1] << point | parts[2] >> (64 - point) : parts[1];
-    } else {
-        quarter = carry >> -point;
-        fraction = (uint64_t)(whole_and_top >> -point);
-        next = parts[0] << (64 + point) | parts[1] >> -point;
-    }
+    /* x = mantissa 2^shift. Bits of 2 / pi that add multiples of 4 quarters are skipped. */
+    uint64_t bits = bits_of(x), mantissa = (bits & ((1ull << 52) - 1)) | (1ull << 52), words[5];
+    int shift = (int)exponent_of(bits) - 1075, skipped = shift > 2 ? shift - 2 : 0;
+    multiply_by_two_over_pi(mantissa, skipped, words);
+    int point = 64 + shift - skipped;
+    uint64_t quarter = bits_from(words, point - 2) >> 62;
+    uint64_t fraction = bits_from(words, point), next = bits_from(words, point + 64);
+    /* From a half on, the next quarter is nearer: the fraction less 1, without its sign. */
     bool negative = fraction >> 63;
     if (negative) {
         quarter++;
         fraction = ~fraction;
         next = ~next;
     }
-    /* The fraction as a sum of doubles, the first two being exact, then its product by pi / 2. */
-    double top = (double)(fraction >> 32) * 0x1p-32,
-           middle = (double)(fraction & 0xffffffff) * 0x1p-64;
+    double top = (double)(fraction >> 32) * 0x1p-32;
+    double middle = (double)(fraction & 0xffffffff) * 0x1p-64;
     Sum turn = fast_sum(top, middle);
-    turn.low += (double)next * 0x1p-128;
-    turn = fast_sum(turn.high, turn.low);
+    turn = fast_sum(turn.high, turn.low + (double)next * 0x1p-128);
     Sum angle = product(turn.high, HALF_PI_HIGH);
-    angle = fast_sum(angle.high, angle.low + turn.high * HALF_PI_LOW + turn.low * HALF_PI_HIGH);
-    return negative ? (Quadrant){{-angle.high, -angle.low}, quarter % 4}
-                    : (Quadrant){angle, quarter % 4};
+    angle.low += turn.high * HALF_PI_LOW + turn.low * HALF_PI_HIGH;
+    double sign = negative ? -1 : 1;
+    return (Quadrant){fast_sum(sign * angle.high, sign * angle.low), quarter % 4};
 }
 
-/* Takes pi / 2 off in parts of 33, 33 and 53 bits, whose products with fewer than 2^20 quarters are
- * exact but for the last; x is finite. */
+/* Subtracts n pi / 2 from the finite x. pi / 2 is the sum of parts of 33, 33 and 53 bits. The
+ * products of the first two and n < 2^20 are exact. */
 static Quadrant reduced(double x)
 {
     if (fabs(x) >= 0x1p20) {
@@ -429,8 +430,8 @@ static Quadrant reduced(double x)
     return (Quadrant){fast_sum(high, low - n * HALF_PI_3), (unsigned)bits_of(shifted) % 4};
 }
 
-/* The next term of Taylor's series is below 2^-62 of the result up to pi / 4, here and of the
- * cosine. */
+/* Returns the sine of |x| <= pi / 4 by Taylor's series, whose next term is below 2^-62 of the
+ * result. */
 static double sine_of(Sum x)
 {
     static const double series[] = {
@@ -440,6 +441,8 @@ static double sine_of(Sum x)
     return x.high + (x.low * (1 - square / 2) + x.high * square * polynomial(square, series, 8));
 }
 
+/* Returns the cosine of |x| <= pi / 4 by Taylor's series, whose next term is below 2^-62 of the
+ * result. */
 static double cosine_of(Sum x)
 {
     static const double series[] = {
@@ -452,7 +455,7 @@ static double cosine_of(Sum x)
     return most + (1 - most - half + rest);
 }
 
-/* The sine of an angle that is `turn` quarters larger. */
+/* Returns the sine of the angle plus `turn` times pi / 2. */
 static double sine_in(Quadrant at, unsigned turn)
 {
     turn = (at.turn + turn) % 4;
@@ -482,8 +485,8 @@ double elementary_tan(double x)
     return sine_in(at, 0) / sine_in(at, 1);
 }
 
-/* atan(small / large), 0 <= small <= large, large > 0: that of i / 32 from a table, and a series
- * for the rest. */
+/* Returns atan(small / large), 0 <= small <= large, large > 0: the table's atan(i / 32) plus a
+ * series for the rest. */
 static Sum first_octant(double small, double large)
 {
     static const double series[] = {-1.0 / 3, 1.0 / 5, -1.0 / 7, 1.0 / 9, -1.0 / 11, 1.0 / 13};
@@ -529,14 +532,15 @@ double elementary_acos(double x)
     return elementary_atan2(sqrt((1 - x) * (1 + x)), x);
 }
 
-/* erf(x) for |x| <= 1/2. */
+/* Returns erf(x) for |x| <= 1/2. */
 static double erf_near_0(double x)
 {
     return x + x * polynomial(x * x, ERF_SERIES, 14);
 }
 
-/* erfc(x) for x >= 1/2: exp(-x^2) times a function that hardly changes [Shepherd & Laframboise,
- * Math. Comp. 36 (1981) 249]. */
+/* Returns erfc(x) for x >= 1/2: exp(-x^2) / (1 + 2 x) times a function of x that lies between 1.1
+ * and 1.3 and is approximated by a polynomial [Shepherd & Laframboise, Math. Comp. 36 (1981) 249].
+ */
 static double erfc_of_large(double x)
 {
     if (x > 28)

@@ -422,6 +422,16 @@ static Status temporary_file(const char *path, char **temporary, Err *err)
     int handle = mkstemp(name);
     if (handle >= 0)
         close(handle);
+    /* mkstemp lets only the owner read, as long as an old file is to be replaced. A new file gets
+     * its permissions by the umask, which the kernel applies: to read the umask is to change it,
+     * and that for all threads. */
+    struct stat old;
+    if (handle >= 0 && stat(path, &old) != 0) {
+        unlink(name);
+        handle = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (handle >= 0)
+            close(handle);
+    }
     TRY(keep_temporary(name, handle >= 0, path, err));
     *temporary = name;
     return STATUS_OK;
@@ -436,21 +446,17 @@ Status file_temporary_folder(const char *path, char **folder, Err *err)
     return STATUS_OK;
 }
 
-/* The owner and the permissions of the file at `path`, or those of a new file where there is none.
- * The owner comes first, as changing it may take permissions away; where not even the group can be
- * kept, it has no say. */
+/* Gives the file the owner and the permissions of the one at `path`, if there is one. The owner
+ * comes first, as changing it may take permissions away; where not even the group can be kept, it
+ * has no say. */
 static void take_after(const char *temporary, const char *path)
 {
     struct stat old;
-    if (stat(path, &old) == 0) {
-        bool kept = chown(temporary, old.st_uid, old.st_gid) == 0 ||
-                    chown(temporary, (uid_t)-1, old.st_gid) == 0;
-        chmod(temporary, old.st_mode & (kept ? 0777 : 0707));
-    } else {
-        mode_t mask = umask(0);
-        umask(mask);
-        chmod(temporary, 0666 & ~mask);
-    }
+    if (stat(path, &old) != 0)
+        return;
+    bool kept = chown(temporary, old.st_uid, old.st_gid) == 0 ||
+                chown(temporary, (uid_t)-1, old.st_gid) == 0;
+    chmod(temporary, old.st_mode & (kept ? 0777 : 0707));
 }
 
 Status file_rename(char *temporary, const char *path, Err *err)

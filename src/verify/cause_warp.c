@@ -382,7 +382,7 @@ static bool is_one_displacement(const Patches *patches)
     const double slack_px = 0.1;
     for (Part part = PART_LEFT; part < PARTS; part++) {
         double step[2];
-        if (find_step(patches, part, step) && !(hypot(step[0], step[1]) < slack_px))
+        if (find_step(patches, part, step) && !(elementary_hypot(step[0], step[1]) < slack_px))
             return false;
     }
     return true;

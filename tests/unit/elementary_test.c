@@ -29,7 +29,7 @@ static const Function functions[] = {
     {"log1p", 0.51, elementary_log1p, log1p, NULL, NULL},
     {"expm1", 1.1, elementary_expm1, expm1, NULL, NULL},
     {"cbrt", 0.51, elementary_cbrt, cbrt, NULL, NULL},
-    {"hypot", 1.5, NULL, NULL, elementary_hypot, hypot},
+    {"hypot", 0.51, NULL, NULL, elementary_hypot, hypot},
     {"sin", 1.1, elementary_sin, sin, NULL, NULL},
     {"cos", 0.65, elementary_cos, cos, NULL, NULL},
     {"tan", 4, elementary_tan, tan, NULL, NULL},
@@ -147,7 +147,7 @@ static void bits_are_those_recorded(void **state)
             hash_add(&hash, &result, sizeof result);
         }
     assert_string_equal(hash_text(&hash).hex,
-                        "b6bc58a5e19ec24da41555648551105ff9dd7bdbb7fce954bcb9828a5aa6a8dd");
+                        "50d0491df62d9ff3b58a56cc39510ca5707cabc2408c5d03d4c7ffb575c64ea5");
 }
 
 int main(void)
