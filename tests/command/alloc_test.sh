@@ -299,7 +299,7 @@ test_failed_allocations_in_wrong_use() {
     fail_each 1 one grow --domain nosuch:3 -o o.swc
     fail_each 1 one render "$DATA/bifurcation.swc" --color-by nosuch -o o.png
     fail_each 1 one render "$DATA/bifurcation.swc" --model mesh --method zbuffer -o o.png
-    fail_each 1 one scene "$DATA/bifurcation.swc" --model mesh -o o.tachyon
+    fail_each 1 one scene "$DATA/bifurcation.swc" --model joined -o o.tachyon
     fail_each 1 one scene "$DATA/bifurcation.swc" -o o.nosuch
     fail_each 1 one convert "$DATA/images/parts.exr" o.ppm
 }
