@@ -66,8 +66,10 @@ test_every_source_opens_with_its_design() {
 # So that `make power`, which takes long and is run rarely, still plants what it says.
 test_every_fault_of_make_power_changes_its_file() {
     local file edit
+    sed -n "/cat <<'FAULTS'/,/^FAULTS/p" "$REPO/tests/power/run-shared" | sed '1d;$d' >shared
+    ! awk -F '|' 'NF != 3' shared | grep . || fail "expected a name, a file and an edit without | in each line of run-shared"
     {
-        sed -n "/cat <<'FAULTS'/,/^FAULTS/p" "$REPO/tests/power/run-shared" | awk -F '|' 'NF == 3 { print $2 "|" $3 }'
+        cut -d '|' -f 2,3 shared
         sed -z 's/\\\n */ /g' "$REPO/tests/power/run" | sed -nE "s/^ *(mutant|faulty) \"[^\"]*\" (src[^ ]*) '([^']*)'.*/\2|\3/p
             s/^ *mutant [a-z]+ (src[^ ]*) '([^']*)'.*/\1|\2/p"
     } >faults

@@ -123,6 +123,51 @@ test_merge_names_the_tile_that_is_missing_broken_or_another() {
     expect_sentence 'p.tile-2.png. would be written over|are one file'
 }
 
+# retell FROM TO IN OUT: a PNG whose note of its part has TO where it had FROM.
+retell() {
+    python3 - "$@" <<'END'
+import struct
+import sys
+import zlib
+
+old, new, source, target = sys.argv[1:]
+data = open(source, "rb").read()
+with open(target, "wb") as out:
+    out.write(data[:8])
+    at = 8
+    while at < len(data):
+        end = at + 12 + struct.unpack(">I", data[at : at + 4])[0]
+        body = data[at + 4 : end - 4]
+        if body.startswith(b"tEXtShard"):
+            assert old.encode() in body
+            body = body.replace(old.encode(), new.encode())
+        out.write(struct.pack(">I", len(body) - 4) + body + struct.pack(">I", zlib.crc32(body)))
+        at = end
+END
+}
+
+test_tiles_that_differ_in_their_note_alone_are_refused_in_either_order() {
+    local own other hash
+    run_ok corcast bifurcation -o tree.swc
+    run_ok corcast render tree.swc --size 40x40 --quiet --antialias 1 --tile 1/2 -o 1.png
+    run_ok corcast render tree.swc --size 40x40 --quiet --antialias 1 --tile 2/2 -o 2.png
+    own=$(corcast version | awk '$1 == "kernels" { print $2 }')
+    retell "$own" "$own" 2.png same.png
+    run_ok corcast merge same.png 1.png -o merged.png
+    rm merged.png
+    for other in aaa zzz; do
+        retell ", $own," ", $other," 2.png kernels.png
+        merge_refuses 'kernels.png: is no tile .* other instructions drew it' 1.png kernels.png
+        merge_refuses '1.png: is no tile .* other instructions drew it' kernels.png 1.png
+    done
+    for other in 0 f; do
+        hash=$(grep -ao 'made from [0-9a-f]*' 2.png | cut -d ' ' -f 3)
+        retell "$hash" "$(printf '%064d' 0 | tr 0 $other)" 2.png from.png
+        merge_refuses 'from.png: is no tile .* it was made from another tree' 1.png from.png
+        merge_refuses '1.png: is no tile .* it was made from another tree' from.png 1.png
+    done
+}
+
 test_resume_draws_what_is_not_there_or_not_right() {
     make_tree
     draw_parts 4

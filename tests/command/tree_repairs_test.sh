@@ -56,6 +56,33 @@ test_trees_that_stand_apart_are_not_reported() {
     [ ! -s stderr ] || fail "expected no report: $(cat stderr)"
 }
 
+# reported GAP LENGTH RADIUS OTHER: whether an end is reported that misses the middle of another tree by GAP mm. The last
+# line before that end is LENGTH mm long and has a radius of RADIUS mm; the other tree's radius is OTHER mm.
+reported() {
+    vtk_lines "$(awk -v gap="$1" -v length_mm="$2" 'BEGIN {
+        printf "0 0 0\n0 0 %.9g\n0 0 10\n0 %.9g 10\n-5 %.9g 10\n5 %.9g 10\n9 %.9g 10\n", 10 - length_mm, gap, gap, gap, gap
+    }')" $'2 0 1\n2 1 2\n2 4 3\n2 3 5\n2 5 6' \
+        $'CELL_DATA 5\nSCALARS radius double\nLOOKUP_TABLE default\n'"$3 $3 $4 $4 $4" >gap.vtk
+    run corcast info gap.vtk
+    expect_status 0
+    grep -q 'miss another tree' stderr
+}
+
+# reported_below GAP LENGTH RADIUS OTHER: an end is reported that misses by GAP and a digit 9, and none by 3 % more.
+reported_below() {
+    local gap=$1
+    shift
+    reported "${gap}9" "$@" || fail "expected a report of a gap of ${gap}9 mm: $*"
+    ! reported "$(awk -v gap="${gap}9" 'BEGIN { print gap * 1.03 }')" "$@" || fail "expected no report of a gap above ${gap}9 mm: $*"
+}
+
+test_ends_are_near_within_the_radius_and_half_the_last_line() {
+    reported_below 0.49 3 0.5 0.5
+    reported_below 0.09 0.2 0.5 0.5
+    reported_below 0.0249 0.02 0.5 0.5
+    reported_below 0.19 3 0.5 0.2
+}
+
 test_bad_radii_are_repaired_when_asked() {
     printf '1 3 0 0 0 2 -1\n2 3 0 10 0 1.5 1\n3 3 0 20 0 -0.14 2\n4 3 5 20 0 NaN 3\n5 3 9 20 0 1 4\n' >bad.swc
     run corcast info bad.swc

@@ -53,6 +53,11 @@ static const Rule rules[] = {
      "2 0 0 9000 4000\n3 0 5000 9000 3000\n4 0 -5000 9000 1000\n$VERT_LIST_END\n"
      "$STRANDS_LIST_BEGIN\n1 1 2\n2 3 2\n3 2 4\n$STRANDS_LIST_END\n",
      0, "3 3 0 5 9 4 -1\n2 3 0 0 9 4 3\n1 3 0 0 0 1 2\n4 3 0 -5 9 1 2\n"},
+    {"vmv: where strands meet head on, another may lead to the root", "vmv",
+     "$PARAM_BEGIN\nNUM_VERTS 4\nNUM_STRANDS 3\n$PARAM_END\n$VERT_LIST_BEGIN\n1 0 0 0 1000\n"
+     "2 0 0 9000 4000\n3 0 5000 9000 3000\n4 0 -5000 9000 5000\n$VERT_LIST_END\n"
+     "$STRANDS_LIST_BEGIN\n1 1 2\n2 3 2\n3 2 4\n$STRANDS_LIST_END\n",
+     0, "4 3 0 -5 9 4 -1\n2 3 0 0 9 4 4\n1 3 0 0 0 1 2\n3 3 0 5 9 3 2\n"},
     /* VItA: a vessel begins where its parent ends. */
     {"vita: a vessel begins at the distal end of its parent", "cco",
      "*Tree\n1\n*Vessels\n2\n7 0 0 0 0 0 9 0 0 0 0 0 1.5 0 0 0 0 0 0 0 0\n"

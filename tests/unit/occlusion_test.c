@@ -2,7 +2,10 @@
 #include "render/light/occlusion.h"
 #include "unit.h"
 
+#include "render/job.h"
 #include "render/render.h"
+#include "render/sky/beamkernels.h"
+#include "render/sky/skylight.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -177,6 +180,102 @@ static void only_ambient_light_is_held_back(void **state)
     frame_release(&without);
 }
 
+/* Returns the part of an upward beam that a bar of radius 1 leaves free, `height` above its place.
+ * The bar is as long as any beam is wide. */
+static double free_under_a_bar(const BeamKernels *kernels, double height, float widening,
+                               double facing)
+{
+    FieldSegment bar = {.a = {-100, 0, 0}, .b = {100, 0, 0}, .radius_mm = 1};
+    const Geometry geometry = {.model = SCENE_ISOSURFACE, .segments = &bar, .n_segments = 1};
+    const BeamDirection up = {.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .widening = widening};
+    Beams beams;
+    BeamPlaces places = {0};
+    BeamWork work = {0};
+    uint8_t answer;
+    assert_int_equal(beams_new(&geometry, &beams, &err), STATUS_OK);
+    assert_int_equal(beamplaces_new(1, &places, &err), STATUS_OK);
+    assert_int_equal(beamwork_new(1, &work, &err), STATUS_OK);
+    places.at[2][0] = (float)-height;
+    places.normal[0][0] = (float)sqrt(1 - facing * facing);
+    places.normal[2][0] = (float)facing;
+    kernels->ask(&beams, &up, &places, &work, &answer);
+    beamwork_release(&work);
+    beamplaces_release(&places);
+    beams_release(&beams);
+    return (double)answer / BEAM_FREE;
+}
+
+/* The bar covers 1 / w of a beam whose half width is w. */
+static void a_beam_widens_to_three_and_a_half_radii(void **state)
+{
+    (void)state;
+    for (RenderKernels kind = KERNELS_PORTABLE; kind <= render_fastest_kernels(); kind++) {
+        const BeamKernels *kernels = beamkernels[kind - KERNELS_PORTABLE];
+        assert_true(free_under_a_bar(kernels, 8, 0.1F, 1) == 0);
+        for (double height = 15; height < 100; height += 10) {
+            double wide = fmin(0.1 * height, 3.5), low = fmin(0.04 * height, 3.5);
+            double all = free_under_a_bar(kernels, height, 0.1F, 1);
+            double near_horizon = free_under_a_bar(kernels, height, 0.1F, 0.04);
+            assert_true(fabs(all - (1 - 1 / wide)) <= 0.5 / BEAM_FREE + 1e-5);
+            assert_true(fabs(near_horizon - fmax(0, 1 - 1 / low)) <= 0.5 / BEAM_FREE + 1e-5);
+        }
+    }
+}
+
+/* Returns what is seen of the sky by the second of two places at one point that are neighbours in
+ * the picture. It faces so many degrees away from the first. A ball is below the horizon of the
+ * first place and above that of the second. */
+static double seen_by_the_second(double degrees)
+{
+    const double angle = degrees * 3.141592653589793 / 180, low = 3.141592653589793 / 7;
+    Primitive ball = {.kind = PRIMITIVE_SPHERE, .radius_mm = 3.5};
+    ball.a = ball.b = vec3(10 * cos(low), 0, -10 * sin(low));
+    const Geometry geometry = {.model = SCENE_ROUNDED, .primitives = &ball, .n_primitives = 1};
+    const View view = {.n_lights = 0};
+    const RenderParams params = {.threads = 1, .occlusion = 64};
+    const Drawing drawing = {.geometry = &geometry, .view = &view, .params = &params};
+    uint32_t numbers[2] = {0, 1};
+    SharedLight light = {.width = 2, .rows = 1, .side = 1, .numbers = numbers};
+    PixelPlace places[2] = {
+        sharedlight_place(&light, PLACE_VESSEL, vec3(0, 0, 0), vec3(0, 0, 1), 0.1),
+        sharedlight_place(&light, PLACE_VESSEL, vec3(0, 0, 0), vec3(sin(angle), 0, cos(angle)),
+                          0.1)};
+    Beams beams;
+    light.places = places;
+    assert_int_equal(beams_new(&geometry, &beams, &err), STATUS_OK);
+    assert_int_equal(skylight_find(&drawing, &beams, &light, &err), STATUS_OK);
+    double open = (double)light.open[1];
+    assert_true(light.open[0] == 1);
+    free(light.open);
+    beams_release(&beams);
+    return open;
+}
+
+static void a_place_asks_for_its_quad_up_to_60_degrees(void **state)
+{
+    (void)state;
+    assert_true(seen_by_the_second(58) == 1);
+    assert_true(seen_by_the_second(62) < 0.98);
+}
+
+/* Tries both orders of two places whose distance, in pixels, is across the surface of the first. */
+static void a_surface_ends_five_quarters_of_a_pixel_off_its_plane(void **state)
+{
+    (void)state;
+    const SharedLight light = {.side = 1};
+    const Vec3 slanted = vec3(0.6, 0, 0.8);
+    for (int outside = 0; outside < 2; outside++) {
+        double off = (outside ? 1.26 : 1.24) * 0.3;
+        PixelPlace one = sharedlight_place(&light, PLACE_VESSEL, vec3(0, 0, 0), vec3(0, 0, 1), 0.3);
+        PixelPlace other =
+            sharedlight_place(&light, PLACE_VESSEL, vec3(-off / 3, 5, off), slanted, 0.3);
+        assert_int_equal(places_are_of_one(&one, &other), !outside);
+        assert_int_equal(places_are_of_one(&other, &one), !outside);
+        other.kind = PLACE_GROUND;
+        assert_false(places_are_of_one(&one, &other));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -188,6 +287,9 @@ int main(void)
         cmocka_unit_test(turns_are_interleaved_gradient_noise),
         cmocka_unit_test(turns_are_spread_over_the_circle),
         cmocka_unit_test(only_ambient_light_is_held_back),
+        cmocka_unit_test(a_beam_widens_to_three_and_a_half_radii),
+        cmocka_unit_test(a_place_asks_for_its_quad_up_to_60_degrees),
+        cmocka_unit_test(a_surface_ends_five_quarters_of_a_pixel_off_its_plane),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -169,6 +169,42 @@ static void is_drawn_as_wide_as_is_asked_for(void **state)
     assert_true(fabs(ink_of(vessels, 2, 2.25) - 2.25 * length) < 0.02 * length);
 }
 
+/* The light stands behind the viewer. A highlight as narrow as this is at the middle one of the
+ * normals alone, and the colour is the mean of all. */
+static void is_shaded_at_five_normals(void **state)
+{
+    (void)state;
+    Primitive one = vessel(vec3(-9, 0.1, 0), vec3(9, 0.1, 0), 0.2 * PIXEL_MM, 1);
+    Scene scene;
+    look_at_paper(&scene, &one, 1, SIDE);
+    scene.appearance.color = (Rgb){1, 1, 1};
+    scene.appearance.finish = (Finish){.phong = 1, .phong_size = 5000, .brilliance = 1};
+    scene.view.n_lights = 1;
+    scene.view.lights[0] = (Light){.location = {0, 0, 1e7}, .color = {1, 1, 1}};
+    Frame frame = drawn(&scene, true, 0, 1, 1);
+    assert_true(fabs(ink(&frame) - 0.4 * SIDE * (1 - 1.0 / 5)) < 1e-3 * SIDE);
+    frame_release(&frame);
+}
+
+static void has_a_colour_of_its_own_each_pixel_and_a_half(void **state)
+{
+    (void)state;
+    for (int pieces = 1; pieces <= 30; pieces++)
+        for (int more = 0; more < 2; more++) {
+            const double length = (1.5 * pieces + (more ? 0.01 : -0.01)) * PIXEL_MM;
+            Primitive one = vessel(vec3(-5, 1, 0), vec3(length - 5, 1, 0), 0.2 * PIXEL_MM, 1);
+            Scene scene;
+            ThinVessels thin;
+            look_at_paper(&scene, &one, 1, SIDE);
+            assert_int_equal(
+                thinvessels_find(&scene.geometry, &scene.view.camera, 1, 0, 1, &thin, &err),
+                STATUS_OK);
+            assert_int_equal(thin.layer.n, 1);
+            assert_int_equal(thin.layer.strips[0].n_pieces, pieces + more);
+            thinvessels_release(&thin);
+        }
+}
+
 enum { CROWD = 250 };
 
 static void throw_vessels(Primitive vessels[CROWD])
@@ -449,6 +485,8 @@ int main(void)
         cmocka_unit_test(vessels_end_to_end_are_one_run_however_many_they_are),
         cmocka_unit_test(hides_behind_what_is_thicker),
         cmocka_unit_test(is_drawn_as_wide_as_is_asked_for),
+        cmocka_unit_test(is_shaded_at_five_normals),
+        cmocka_unit_test(has_a_colour_of_its_own_each_pixel_and_a_half),
         cmocka_unit_test(is_nearer_to_the_mean_of_many_samples_than_ten_samples_are),
         cmocka_unit_test(has_the_same_bytes_whatever_threads_and_bands),
         cmocka_unit_test(ends_at_the_plane_of_an_orthographic_camera),
