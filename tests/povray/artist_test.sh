@@ -240,7 +240,7 @@ test_a_camera_of_ones_own_draws_the_view_that_was_asked_for() {
     done
     printf '#declare Camera_Angle = 190;\n#include "ball.pov"\n' >own.pov
     ! povray +Iown.pov +Oown.png +W60 +H45 -D >own.log 2>&1 && grep -q 'Camera_Angle is not between 0 and 180 degrees' own.log ||
-        fail "expected the angle to be refused"
+        fail "expected the angle to be refused, got: $(tail -c 300 own.log | tr '\n' ' ')"
 }
 
 # A value that lies on a bound has the place of the class above, as in render.
