@@ -1,5 +1,5 @@
 /* Two pictures: the sums over all pixels (pixel_counts.c) become measures and a verdict. */
-#include "verify/pixel_counts.h"
+#include "verify/regression.h"
 #include "verify/result.h"
 
 #include <math.h>
@@ -48,23 +48,6 @@ static void take_mask(const Sums *sums, double code_levels, CompareResult *resul
     result->silhouette_px = sums->silhouette ? moved / (PX_PER_EDGE * (double)sums->silhouette) : 0;
 }
 
-/* b = gain a + offset by least squares: with d = b - a, gain - 1 = cov(a, d) / var(a). What is left
- * of d says how well both are known: a few pixels at the rims of shadows move them, too. */
-static void take_regression(const Sums *sums, double code_levels, CompareResult *result)
-{
-    double n = (double)sums->n, a = (double)sums->a, d = (double)sums->d;
-    double variance = n * (double)sums->aa - a * a;
-    if (!(variance > 0))
-        return;
-    double slope = (n * (double)sums->ad - a * d) / variance;
-    result->gain = 1 + slope;
-    result->offset_levels = (d - slope * a) / n * code_levels;
-    double rest = (double)sums->dd - d * d / n - slope * slope * variance / n;
-    double spread = sqrt(fmax(0, rest) / n);
-    result->gain_error = spread / sqrt(variance / n);
-    result->offset_error = spread * sqrt((1 + a * a / variance) / n) * code_levels;
-}
-
 static Status check_views(const Rendering *a, const Rendering *b, Err *err)
 {
     const Picture *in_a = a->picture, *in_b = b->picture;
@@ -93,7 +76,7 @@ static Status take_counts(const Counting *counting, CompareResult *result, Ledge
                            &result->largest_region, &result->largest_region_at, err));
     if (!counting->index)
         return STATUS_OK;
-    take_regression(counting->sums, code_levels, result);
+    TRY(regression_take(counting, code_levels, result, err));
     TRY(ledger_from_sums(ledger, counting->index, counting->segments, channels, code_levels, err));
     ledger_summarise(ledger, result);
     return STATUS_OK;

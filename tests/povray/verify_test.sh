@@ -45,7 +45,7 @@ test_tubes_tees_and_crosses_on_integers_agree() {
     printf '1 1 0 0 0 1 -1\n2 3 0 2 0 1 1\n3 3 -1 2 0 1 2\n4 3 1 2 0 1 2\n' >tee.swc
     printf '1 1 0 0 0 1 -1\n2 3 0 4 0 1 1\n3 3 -3 4 0 1 2\n4 3 3 4 0 1 2\n5 3 0 8 0 1 2\n' >cross.swc
     for case in 'tube cylinders 100x100' 'tube joined 100x100' 'tube rounded 100x100' 'tube blob 100x100' \
-        'tube isosurface 60x60' 'tube mesh 100x100' 'tee cylinders 500x500' 'tee joined 100x100' 'tee rounded 300x300' \
+        'tube isosurface 100x100' 'tube mesh 100x100' 'tee cylinders 500x500' 'tee joined 100x100' 'tee rounded 300x300' \
         'tee blob 100x100' 'tee isosurface 100x100' 'cross cylinders 100x100 --view left' 'cross joined 50x50' \
         'cross rounded 200x100 --antialias 2' 'cross blob 50x50' 'cross cylinders 160x120 --projection perspective'; do
         set -- $case

@@ -351,6 +351,51 @@ static void judges_surfaces_by_their_gain(void **state)
     pair_release(&pair);
 }
 
+/* Runs of pixels in this direction, all alike, whose codes in B are A's but for `off`, which is +1
+ * or -1 by the run. */
+static Pair make_repeating_pair(int side, int dx, int dy, int bits)
+{
+    Pair pair;
+    assert_int_equal(picture_init(&pair.a, side, side, 3, bits, &err), STATUS_OK);
+    assert_int_equal(picture_init(&pair.b, side, side, 3, bits, &err), STATUS_OK);
+    assert_int_equal(idplane_init(&pair.id_a, side, side, &err), STATUS_OK);
+    assert_int_equal(idplane_init(&pair.id_b, side, side, &err), STATUS_OK);
+    for (int y = 0; y < side; y++)
+        for (int x = 0; x < side; x++) {
+            size_t pixel = (size_t)(y * side + x);
+            int run = (x * dy - y * dx + 2 * side) % side;
+            int off = run * run % 7 % 2 ? 1 : -1;
+            pair.id_a.ids[pixel] = pair.id_b.ids[pixel] = 17;
+            for (size_t c = 0; c < 3; c++) {
+                int code = 60 + 3 * run + 11 * (int)c;
+                picture_set(&pair.a, 3 * pixel + c, (uint16_t)(code << (bits - 8)));
+                picture_set(&pair.b, 3 * pixel + c, (uint16_t)((code + off) << (bits - 8)));
+            }
+        }
+    return pair;
+}
+
+/* The same run a hundred times says no more than once, in whatever direction it goes: the errors of
+ * the line through a picture that repeats itself are those of one of its rows. */
+static void repeated_pixels_are_one_measurement(void **state)
+{
+    (void)state;
+    enum { SIDE = 40 };
+    static const int directions[][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
+    for (int bits = 8; bits <= 16; bits += 8)
+        for (int i = 0; i < 4; i++) {
+            Pair pair = make_repeating_pair(SIDE, directions[i][0], directions[i][1], bits);
+            CompareResult r = compare(&pair, true, tolerance_surface(0));
+            /* A residual of 1 code, and codes that are spread evenly over a range of 3 SIDE. */
+            double alike = 1 / (3 * SIDE / sqrt(12) * sqrt(3 * SIDE));
+            double lengths = i < 2 ? 1 : 2 / sqrt(3); /* diagonals are of all lengths to SIDE */
+            assert_true(r.gain_error > 0.8 * alike / lengths &&
+                        r.gain_error < 1.2 * alike * lengths);
+            assert_true(r.offset_error > r.gain_error * 100);
+            pair_release(&pair);
+        }
+}
+
 static void refuses_a_surface_with_a_hole_of_three_pixels(void **state)
 {
     (void)state;
@@ -624,6 +669,7 @@ int main(void)
         cmocka_unit_test(allows_no_pixel_off_the_edges_more_than_a_level),
         cmocka_unit_test(judges_surfaces_by_levels_off_the_edges),
         cmocka_unit_test(judges_surfaces_by_their_gain),
+        cmocka_unit_test(repeated_pixels_are_one_measurement),
         cmocka_unit_test(refuses_a_surface_with_a_hole_of_three_pixels),
         cmocka_unit_test(reports_sixteen_bit_pictures_in_eight_bit_levels),
         cmocka_unit_test(compares_single_pixels),

@@ -272,9 +272,11 @@ static void visit_center(const SeenTile *vessels, int worker, void *context)
     FieldPicture *picture = context;
     Batch *batch = &picture->batches[worker];
     find_thin(picture, vessels, batch);
+    if (batch->status != STATUS_OK)
+        return;
     if (shows_something(picture, vessels, batch))
         add_tile(picture, vessels, batch);
-    if (batch->n_tiles == picture->batch_size && batch->status == STATUS_OK)
+    if (batch->n_tiles == picture->batch_size)
         batch->status = shade_batch(picture, worker, keep_center, picture, &batch->err);
 }
 
@@ -319,13 +321,15 @@ static void visit_further(const SeenTile *vessels, int worker, void *context)
     FurtherVisit *visit = context;
     Batch *batch = &visit->picture->batches[worker];
     find_thin(visit->picture, vessels, batch);
+    if (batch->status != STATUS_OK)
+        return;
     if (!shows_something(visit->picture, vessels, batch)) {
         const BatchTile empty = {.seen = *vessels};
         keep_further(&empty, NULL, worker, visit);
         return;
     }
     add_tile(visit->picture, vessels, batch);
-    if (batch->n_tiles == visit->picture->batch_size && batch->status == STATUS_OK)
+    if (batch->n_tiles == visit->picture->batch_size)
         batch->status = shade_batch(visit->picture, worker, keep_further, visit, &batch->err);
 }
 

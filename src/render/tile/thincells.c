@@ -154,7 +154,8 @@ static ThinFragment *fragment_at(Brush *brush, uint32_t *first)
     uint32_t run = brush->strip->run;
     if (*first > 0 && cells->fragments[*first - 1].run == run)
         return &cells->fragments[*first - 1];
-    brush->status = make_room_for_one(cells, brush->err);
+    if (brush->status == STATUS_OK)
+        brush->status = make_room_for_one(cells, brush->err);
     if (brush->status != STATUS_OK)
         return NULL;
     ThinFragment *fragment = &cells->fragments[cells->n++];
