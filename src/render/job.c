@@ -34,5 +34,6 @@ void renderstats_add(RenderStats *all, const RenderStats *more)
     all->trace_s += more->trace_s;
     all->cpu_s += more->cpu_s;
     all->rays += more->rays;
-    all->engine = more->engine;
+    if (more->engine)
+        all->engine = more->engine;
 }

@@ -152,7 +152,9 @@ static Status put_program(Text *text, Err *err)
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     char *here = getcwd(NULL, 0);
     if (!here)
-        return err_set(err, STATUS_IO, "the working folder has no name: %s", strerror(errno));
+        return errno == ENOMEM
+                   ? err_set(err, STATUS_MEMORY, "out of memory: no room for a folder's name")
+                   : err_set(err, STATUS_IO, "the working folder has no name: %s", strerror(errno));
     text_puts(text, "cd ");
     text_put_shell_word(text, here);
     free(here);

@@ -181,21 +181,30 @@ static void mark_chunk(size_t chunk, int worker, void *context)
     search->first[chunk] = count;
 }
 
+/* Returns true if a strip adds its area to that of the strip before it: its vessel begins where the
+ * other vessel ends, and does not lead back over it in the picture. */
+static bool continues(const Search *search, const ThinStrip *before, const ThinStrip *strip)
+{
+    const Geometry *whole = search->thin->whole;
+    const Vec3 end = vessel_at(whole, before->vessel).b, start = vessel_at(whole, strip->vessel).a;
+    return vec3_distance(end, start) == 0 &&
+           (before->x[1] - before->x[0]) * (strip->x[1] - strip->x[0]) +
+                   (before->y[1] - before->y[0]) * (strip->y[1] - strip->y[0]) >=
+               0;
+}
+
 static void take_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
     const Search *search = context;
     ThinStrip *first = search->thin->layer.strips + search->first[chunk], *strip = first, made;
-    Vec3 end = {0};
     for (size_t i = chunk * CHUNK; i < chunk_end(search, chunk); i++) {
         if (!has_strip(search, i, &made))
             continue;
-        const Vessel vessel = vessel_at(search->thin->whole, i);
         *strip = made;
-        if (strip > first && vec3_distance(end, vessel.a) == 0)
+        if (strip > first && continues(search, strip - 1, strip))
             strip->run = strip[-1].run;
         strip++;
-        end = vessel.b;
     }
 }
 
@@ -203,13 +212,12 @@ static void take_chunk(size_t chunk, int worker, void *context)
 static void join_runs(const Search *search)
 {
     const ThinLayer *layer = &search->thin->layer;
-    const Geometry *whole = search->thin->whole;
     for (size_t chunk = 1; chunk < search->n_chunks; chunk++) {
         size_t at = search->first[chunk];
         if (at == 0 || at == layer->n)
             continue;
         const ThinStrip *before = &layer->strips[at - 1], first = layer->strips[at];
-        if (vec3_distance(vessel_at(whole, before->vessel).b, vessel_at(whole, first.vessel).a) > 0)
+        if (!continues(search, before, &first))
             continue;
         for (; at < layer->n && layer->strips[at].run == first.run; at++)
             layer->strips[at].run = before->run;
