@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "test_scene.h"
 
@@ -258,6 +259,25 @@ static void a_place_asks_for_its_quad_up_to_60_degrees(void **state)
     assert_true(seen_by_the_second(62) < 0.98);
 }
 
+/* One pixel alone sees something, which the sample sees, too. */
+static void a_sample_takes_light_from_up_to_two_pixels_away(void **state)
+{
+    (void)state;
+    enum { SIDE = 9 };
+    uint32_t numbers[SIDE * SIDE];
+    PixelPlace place = {.normal = {0, 0, 1}, .size = 0.1F};
+    const SharedLight light = {
+        .width = SIDE, .rows = SIDE, .side = 1, .numbers = numbers, .places = &place};
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            bool is_near = abs(x - 4) <= 2 && abs(y - 4) <= 2;
+            memset(numbers, 0xff, sizeof numbers); /* PLACE_NONE */
+            numbers[SIDE * y + x] = 0;
+            assert_int_equal(sharedlight_pixel(&light, 4, 4, &place),
+                             is_near ? (uint32_t)(SIDE * y + x) : PLACE_NONE);
+        }
+}
+
 /* Asks about one line, of which one quad of the nine says that it is free. */
 static void quads_weigh_by_their_distance_from_the_pixel(void **state)
 {
@@ -317,6 +337,7 @@ int main(void)
         cmocka_unit_test(a_place_asks_for_its_quad_up_to_60_degrees),
         cmocka_unit_test(a_surface_ends_five_quarters_of_a_pixel_off_its_plane),
         cmocka_unit_test(quads_weigh_by_their_distance_from_the_pixel),
+        cmocka_unit_test(a_sample_takes_light_from_up_to_two_pixels_away),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
