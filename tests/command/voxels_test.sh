@@ -179,6 +179,23 @@ assert set(numpy.unique(trees)) == {0, 1}
 END
 }
 
+# The daughters are stout, so that voxels about the fork lie wholly in both of them.
+test_of_equal_shares_the_lowest_id_labels_the_voxel() {
+    printf '7 3 0 0 0 2 -1\n5 3 12 8 0 2 7\n4 3 12 -8 0 2 7\n' >a.swc
+    printf '7 3 0 0 0 2 -1\n4 3 12 8 0 2 7\n5 3 12 -8 0 2 7\n' >b.swc
+    run_ok corcast export a.swc -o a.nii --voxel 0.5 --labels segment --quiet
+    run_ok corcast export b.swc -o b.nii --voxel 0.5 --labels segment --quiet
+    python <<'END'
+import json
+for name, side in (("a", 1), ("b", -1)):
+    labels, first = volume(name + ".labels.nii")[0], json.load(open(name + ".nii.json"))["first_voxel_mm"]
+    def at(x, y, z):
+        return labels[tuple(int(round((a - b) / 0.5)) for a, b in zip((x, y, z), first))]
+    assert at(1, 0.6, 0.3) == 4 and at(1, -0.6, 0.3) == 4, name
+    assert at(11, 8 * side, 0) == 5 and at(11, -8 * side, 0) == 4, name
+END
+}
+
 test_labels_do_not_depend_on_the_order_of_rows() {
     local file
     # All of one radius, so that balls and voxels about the fork have several equal owners.

@@ -654,6 +654,41 @@ static void colours_differences_by_fixed_steps(void **state)
     picture_release(&heat);
 }
 
+/* B = 1.5 A + 7 without rounding, in 8 bits and in 16. */
+static void measures_are_levels_of_255_to_the_last_digit(void **state)
+{
+    (void)state;
+    for (int bits = 8; bits <= 16; bits += 8) {
+        const double n = W * H;
+        const int per_level = bits == 8 ? 1 : 257;
+        double sum = 0, squares = 0;
+        Picture a, b;
+        CompareResult r;
+        IdPlane ids;
+        const Tolerance tolerance = tolerance_none();
+        const Rendering in_a = {.picture = &a, .ids = &ids}, in_b = {.picture = &b, .ids = &ids};
+        assert_int_equal(idplane_init(&ids, W, H, &err), STATUS_OK);
+        assert_int_equal(picture_init(&a, W, H, 1, bits, &err), STATUS_OK);
+        assert_int_equal(picture_init(&b, W, H, 1, bits, &err), STATUS_OK);
+        for (int i = 0; i < W * H; i++) {
+            ids.ids[i] = 1;
+            int k = 10 + 7 * i % 51, d = k + 7;
+            picture_set(&a, (size_t)i, (uint16_t)(2 * k * per_level));
+            picture_set(&b, (size_t)i, (uint16_t)((2 * k + d) * per_level));
+            sum += d;
+            squares += d * d;
+        }
+        assert_int_equal(compare_pictures(&in_a, &in_b, &tolerance, &r, NULL, &err), STATUS_OK);
+        assert_true(fabs(r.gain - 1.5) < 1e-9 && fabs(r.offset_levels - 7) < 1e-7);
+        assert_true(fabs(r.mean_abs - sum / n) < 1e-9 && fabs(r.bias_levels - sum / n) < 1e-9);
+        assert_true(fabs(r.rmse - sqrt(squares / n)) < 1e-9 && r.max_abs == 67);
+        assert_true(fabs(r.psnr_db - 10 * log10(255 * 255 / (squares / n))) < 1e-9);
+        idplane_release(&ids);
+        picture_release(&a);
+        picture_release(&b);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -681,6 +716,7 @@ int main(void)
         cmocka_unit_test(finds_nothing_in_common_with_an_empty_plane),
         cmocka_unit_test(keeps_the_keys_of_the_contract),
         cmocka_unit_test(colours_differences_by_fixed_steps),
+        cmocka_unit_test(measures_are_levels_of_255_to_the_last_digit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -436,6 +436,77 @@ static void expect_boxes(const ColorScale *scale, const double *inner, int n)
     figure_release(&page);
 }
 
+static void expect_color(const FigureItem *item, const float linear[3])
+{
+    for (int c = 0; c < 3; c++)
+        assert_int_equal(item->color.rgb[c], image_code(linear[c], ENCODING_SRGB, 8));
+}
+
+/* Values below, above and none have colours of their own, in this order. */
+static void what_is_outside_has_its_colour_at_its_end(void **state)
+{
+    ColorScale scale = plain_scale(3, 41, false, 1);
+    const float *colors[3] = {scale.under.rgb, scale.over.rgb, scale.none.rgb};
+    (void)state;
+    scale.under = (ScaleColor){.given = true, .rgb = {1, 0, 0}};
+    scale.over = (ScaleColor){.given = true, .rgb = {0, 1, 0}};
+    scale.none = (ScaleColor){.given = true, .rgb = {0, 1, 1}};
+    for (int across = 0; across < 2; across++) {
+        const FigureLegend legend = {.scale = &scale,
+                                     .title = "q",
+                                     .across = across,
+                                     .length_mm = 30,
+                                     .size_pt = 7,
+                                     .outside = {.below = 1, .above = 1, .none = 1}};
+        FigurePage page;
+        int found = 0;
+        figure_init(&page, 80, 60, 300, fonts);
+        figure_add_legend(&page, &legend);
+        for (size_t i = 0; i < page.n; i++) {
+            const FigureItem *item = &page.items[i];
+            double along = across ? item->at->x : -item->at->y;
+            if (item->kind != FIGURE_SHAPE)
+                continue;
+            assert_in_range(found, 0, 2);
+            expect_color(item, colors[found]);
+            if (found < 2)
+                assert_true(found == 0 ? along < 0 : along > 30);
+            found++;
+        }
+        assert_int_equal(found, 3);
+        figure_release(&page);
+    }
+}
+
+/* A swatch is followed by its number. */
+static void swatches_have_the_colours_of_their_numbers(void **state)
+{
+    static float colors[4][3] = {{0, 0, 1}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}};
+    const ColorScale scale = {
+        .name = "order", .unit = "", .range = {2, 4}, .map = {colors, 4, true}};
+    (void)state;
+    for (int across = 0; across < 2; across++) {
+        const FigureLegend legend = {
+            .scale = &scale, .title = "order", .across = across, .length_mm = 30, .size_pt = 7};
+        FigurePage page;
+        int found = 0;
+        figure_init(&page, 80, 60, 300, fonts);
+        figure_add_legend(&page, &legend);
+        for (size_t i = 0; i + 1 < page.n; i++) {
+            float linear[3];
+            if (page.items[i].kind != FIGURE_SHAPE)
+                continue;
+            int value = atoi(page.items[i + 1].text);
+            assert_int_equal(value, 2 + found++);
+            colorscale_linear(&scale, value, linear);
+            expect_color(&page.items[i], linear);
+            expect_color(&page.items[i], colors[value - 1]);
+        }
+        assert_int_equal(found, 3);
+        figure_release(&page);
+    }
+}
+
 static void classes_have_the_colours_of_their_values(void **state)
 {
     static const double linear[] = {2.5, 5, 7.5}, decades[] = {10, 100},
@@ -490,6 +561,8 @@ int main(void)
         cmocka_unit_test(a_legend_of_classes_has_a_box_each),
         cmocka_unit_test(a_bar_has_the_right_numbers_at_the_right_places),
         cmocka_unit_test(classes_have_the_right_numbers_between_them),
+        cmocka_unit_test(what_is_outside_has_its_colour_at_its_end),
+        cmocka_unit_test(swatches_have_the_colours_of_their_numbers),
         cmocka_unit_test(classes_have_the_colours_of_their_values),
         cmocka_unit_test(a_legend_can_be_measured_and_moved),
     };

@@ -3,6 +3,7 @@
 #include "grow/cco/grid.h"
 #include "surface/mesh/meshcheck.h"
 #include "surface/mesh/nearpairs.h"
+#include "surface/mesh/reach.h"
 #include "surface/print/proof.h"
 #include "unit.h"
 
@@ -300,6 +301,25 @@ static void segments_are_as_far_apart_as_where_they_cross(void **state)
     }
 }
 
+/* A vessel that ends at 2000 mm, where floats are 2^-13 mm apart; likewise with what its mesh is to
+ * be joined with. */
+static void a_radius_of_16_steps_of_the_mesh_is_enough(void **state)
+{
+    (void)state;
+    const double least = 16.0 / (1 << 13);
+    uint32_t ids[] = {7, 8};
+    Err err;
+    for (int far = 0; far < 2; far++)
+        for (int thin = 0; thin < 2; thin++) {
+            FieldSegment segments[] = {
+                {.a = {1, 2, 3}, .b = {1, 2, far ? 5 : -2000}, .radius_mm = 1},
+                {.a = {1, 2, 3}, .b = {4, 5, 6}, .radius_mm = least * (thin ? 0.99 : 1)}};
+            const VesselTree tree = {.segments = segments, .n_segments = 2, .ids = ids};
+            assert_int_equal(reach_check(&tree, far ? 2000 : 0, &err),
+                             thin ? STATUS_INPUT : STATUS_OK);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -312,6 +332,7 @@ int main(void)
         cmocka_unit_test(each_number_of_a_report_alone_makes_it_unsound),
         cmocka_unit_test(segments_are_as_far_apart_as_where_they_cross),
         cmocka_unit_test(a_solid_has_the_handles_of_its_graph_no_fewer_and_no_more),
+        cmocka_unit_test(a_radius_of_16_steps_of_the_mesh_is_enough),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -94,6 +94,22 @@ static void finds_a_bias_of_half_a_percent_under_noise(void **state)
     plane_release(&variance);
 }
 
+/* The picture takes half of the rate, its 4 x 2 tiles the other half; each is shared by three
+ * channels and all of them. */
+static void limits_share_the_rate(void **state)
+{
+    (void)state;
+    NoiseResult result;
+    Plane variance = known_variance(), a = render(3, 1, 0);
+    for (double rate = 0.3; rate > 1e-6; rate /= 7) {
+        assert_int_equal(compare_noise(&a, &a, &variance, rate, &result, &err), STATUS_OK);
+        assert_true(fabs(erfc(result.limit / sqrt(2)) / (rate / 8) - 1) < 1e-9);
+        assert_true(fabs(erfc(result.tile_limit / sqrt(2)) / (rate / 64) - 1) < 1e-9);
+    }
+    plane_release(&a);
+    plane_release(&variance);
+}
+
 static void names_the_gain_and_the_tile(void **state)
 {
     (void)state;
@@ -169,6 +185,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(raises_false_alarms_no_oftener_than_it_says),
         cmocka_unit_test(finds_a_bias_of_half_a_percent_under_noise),
+        cmocka_unit_test(limits_share_the_rate),
         cmocka_unit_test(names_the_gain_and_the_tile),
         cmocka_unit_test(refuses_what_is_no_variance),
         cmocka_unit_test(tiles_have_32_pixels_a_side),

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "test_scene.h"
 
@@ -258,6 +259,51 @@ static void a_place_asks_for_its_quad_up_to_60_degrees(void **state)
     assert_true(seen_by_the_second(62) < 0.98);
 }
 
+/* One pixel alone sees something, which the sample sees, too. */
+static void a_sample_takes_light_from_up_to_two_pixels_away(void **state)
+{
+    (void)state;
+    enum { SIDE = 9 };
+    uint32_t numbers[SIDE * SIDE];
+    PixelPlace place = {.normal = {0, 0, 1}, .size = 0.1F};
+    const SharedLight light = {
+        .width = SIDE, .rows = SIDE, .side = 1, .numbers = numbers, .places = &place};
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            bool is_near = abs(x - 4) <= 2 && abs(y - 4) <= 2;
+            memset(numbers, 0xff, sizeof numbers); /* PLACE_NONE */
+            numbers[SIDE * y + x] = 0;
+            assert_int_equal(sharedlight_pixel(&light, 4, 4, &place),
+                             is_near ? (uint32_t)(SIDE * y + x) : PLACE_NONE);
+        }
+}
+
+/* Asks about one line, of which one quad of the nine says that it is free. */
+static void quads_weigh_by_their_distance_from_the_pixel(void **state)
+{
+    (void)state;
+    static const double parts[2][3] = {{3, 4, 1}, {1, 4, 3}};
+    float towards[3][SUMMED] = {{0}, {0}, {1}};
+    const BeamLines lines = {.towards = {towards[0], towards[1], towards[2]}, .n = SUMMED};
+    const float normal[3] = {0, 0, 1};
+    uint8_t bytes[QUADS_ABOUT][SUMMED] = {{0}};
+    BeamAnswers answers = {.n = QUADS_ABOUT};
+    for (int quad = 0; quad < QUADS_ABOUT; quad++) {
+        answers.of[quad] = bytes[quad];
+        answers.quad[quad] = (uint8_t)quad;
+    }
+    for (RenderKernels kind = KERNELS_PORTABLE; kind <= render_fastest_kernels(); kind++)
+        for (int pixel = 0; pixel < QUAD; pixel++)
+            for (int quad = 0; quad < QUADS_ABOUT; quad++) {
+                double weight = parts[pixel % 2][quad % 3] * parts[pixel / 2][quad / 3];
+                bytes[quad][0] = BEAM_FREE;
+                double open = (double)beamkernels[kind - KERNELS_PORTABLE]->open(&lines, &answers,
+                                                                                 1, pixel, normal);
+                bytes[quad][0] = 0;
+                assert_true(fabs(open - weight / 64) < 1e-6);
+            }
+}
+
 /* Tries both orders of two places whose distance, in pixels, is across the surface of the first. */
 static void a_surface_ends_five_quarters_of_a_pixel_off_its_plane(void **state)
 {
@@ -290,6 +336,8 @@ int main(void)
         cmocka_unit_test(a_beam_widens_to_three_and_a_half_radii),
         cmocka_unit_test(a_place_asks_for_its_quad_up_to_60_degrees),
         cmocka_unit_test(a_surface_ends_five_quarters_of_a_pixel_off_its_plane),
+        cmocka_unit_test(quads_weigh_by_their_distance_from_the_pixel),
+        cmocka_unit_test(a_sample_takes_light_from_up_to_two_pixels_away),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

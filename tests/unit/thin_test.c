@@ -205,6 +205,57 @@ static void has_a_colour_of_its_own_each_pixel_and_a_half(void **state)
         }
 }
 
+/* Returns which part of a vessel's ink a wall leaves. The wall is white, and its front at y = 0 is
+ * at z = `front`. */
+static double part_before_a_wall(Primitive one, double front, Projection projection)
+{
+    Primitive vessels[] = {one, vessel(vec3(-200, 0, front - 60), vec3(200, 0, front - 60), 60, 2)};
+    Rgb colors[3] = {{1, 1, 1}, {0, 0, 0}, {1, 1, 1}};
+    double sums[2];
+    for (size_t walls = 0; walls < 2; walls++) {
+        Scene scene;
+        look_at_paper(&scene, vessels, 1 + walls, SIDE);
+        scene.geometry.bounds = (Box){{-200, -60, -120}, {200, 60, 20}};
+        scene.appearance.colors = colors;
+        if (projection == PROJECTION_PERSPECTIVE) {
+            scene.view.camera.projection = projection;
+            scene.view.camera.right = vec3(1, 0, 0);
+            scene.view.camera.up = vec3(0, 1, 0);
+        }
+        Frame frame = drawn(&scene, true, 0, 1, 1);
+        sums[walls] = ink(&frame);
+        frame_release(&frame);
+    }
+    return sums[1] / sums[0];
+}
+
+/* Each vessel goes through a wall, seen from its near end to its far one and the other way round.
+ * The expected parts are those of its length in the picture, by the ratio of x to depth: the camera
+ * is at z = 20. Vessels end in the picture, or beyond both of its edges. */
+static void goes_into_a_wall_where_it_is_as_deep(void **state)
+{
+    (void)state;
+    static const struct {
+        Projection projection;
+        double radius, front, part;
+        Vec3 near, far;
+    } cases[] = {
+        {PROJECTION_ORTHOGRAPHIC, 0.05, 0, 0.25, {-4, 0, 1}, {4, 0, -3}},
+        {PROJECTION_ORTHOGRAPHIC, 0.05, 0, 0.75, {-16, 0, 5}, {16, 0, -3}},
+        {PROJECTION_PERSPECTIVE, 0.01, 0, 0.857, {-2, 0, 15}, {16, 0, -20}},
+        {PROJECTION_PERSPECTIVE, 0.01, 8.257, 0.75, {-4, 0, 15}, {32, 0, -20}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        for (int turned = 0; turned < 2; turned++) {
+            Primitive one = vessel(turned ? cases[i].far : cases[i].near,
+                                   turned ? cases[i].near : cases[i].far, cases[i].radius, 1);
+            double part = part_before_a_wall(one, cases[i].front, cases[i].projection);
+            if (fabs(part - cases[i].part) > 0.02)
+                fail_msg("case %zu, turned %d: %g is before the wall, not %g", i, turned, part,
+                         cases[i].part);
+        }
+}
+
 enum { CROWD = 250 };
 
 static void throw_vessels(Primitive vessels[CROWD])
@@ -486,6 +537,7 @@ int main(void)
         cmocka_unit_test(hides_behind_what_is_thicker),
         cmocka_unit_test(is_drawn_as_wide_as_is_asked_for),
         cmocka_unit_test(is_shaded_at_five_normals),
+        cmocka_unit_test(goes_into_a_wall_where_it_is_as_deep),
         cmocka_unit_test(has_a_colour_of_its_own_each_pixel_and_a_half),
         cmocka_unit_test(is_nearer_to_the_mean_of_many_samples_than_ten_samples_are),
         cmocka_unit_test(has_the_same_bytes_whatever_threads_and_bands),

@@ -1,5 +1,6 @@
 #include "unit.h"
 #include "voxel/cover.h"
+#include "voxel/grid.h"
 #include "voxel/voxel.h"
 
 #include "base/base.h"
@@ -255,6 +256,25 @@ static void thin_vessels_in_a_large_cell_are_found_at_every_depth(void **state)
     cover_release(&room);
 }
 
+/* Two bodies at one place, in both orders of their ids and of the list. */
+static void of_equal_shares_the_lowest_id_owns_a_cell(void **state)
+{
+    (void)state;
+    Body bodies[3];
+    for (uint32_t k = 0; k < 3; k++) {
+        Vec3 across = vec3(0.9 * k, 0, 0);
+        bodies[k] = body_make(vec3_add(cell.center, k < 2 ? vec3(0, 0, 0) : across),
+                              vec3(0.4, 1, 2), 0.2, k);
+    }
+    for (int order = 0; order < 2; order++) {
+        uint32_t ids[3] = {order ? 9 : 5, order ? 5 : 9, 1};
+        const Bodies all = {.body = bodies, .n = 3, .ids = ids};
+        const uint32_t lists[2][3] = {{0, 1, 2}, {2, 1, 0}};
+        assert_int_equal(ids[cell_owner(&all, lists[0], 3, &cell)], 5);
+        assert_int_equal(ids[cell_owner(&all, lists[1], 3, &cell)], 5);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -264,6 +284,7 @@ int main(void)
         cmocka_unit_test(part_of_a_union_is_that_of_points_in_it),
         cmocka_unit_test(the_part_of_one_voxel_is_off_by_no_more_than_is_said),
         cmocka_unit_test(thin_vessels_in_a_large_cell_are_found_at_every_depth),
+        cmocka_unit_test(of_equal_shares_the_lowest_id_owns_a_cell),
         cmocka_unit_test(thin_vessels_that_meet_in_a_cell_have_their_volume),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
