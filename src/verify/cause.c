@@ -199,6 +199,34 @@ static double off_by(const Picture *a, const Picture *b, const Shift *shift, con
     return sum;
 }
 
+bool cause_is_same_saturation(double aa, double ab)
+{
+    const double enough = 1e4; /* the rounding of codes then moves the quotient by 0.5 % at most */
+    return aa < enough || fabs(ab / aa - 1) <= 0.03;
+}
+
+static bool has_shifted_saturation(const Picture *a, const Picture *b, const Shift *shift)
+{
+    const double level = a->bits == 8 ? 1 : 257;
+    double aa = 0, ab = 0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++) {
+            int u = x + shift->dx, v = y + shift->dy, sum_a = 0, sum_b = 0;
+            if (u < 0 || u >= b->width || v < 0 || v >= b->height)
+                continue;
+            for (int c = 0; c < a->channels; c++) {
+                int in_a = code_at(a, x, y, c), in_b = code_at(b, u, v, c);
+                sum_a += in_a;
+                sum_b += in_b;
+                aa += (double)in_a * in_a;
+                ab += (double)in_a * in_b;
+            }
+            aa -= (double)sum_a * sum_a / a->channels;
+            ab -= (double)sum_a * sum_b / a->channels;
+        }
+    return cause_is_same_saturation(aa / (level * level), ab / (level * level));
+}
+
 void cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
                  Sentence *out)
 {
@@ -210,7 +238,7 @@ void cause_shift(const Picture *a, const Picture *b, const Samples *samples, con
         return;
     before = off_by(a, b, &none, shift);
     double after = off_by(a, b, shift, shift);
-    if (leaves(before, after, 0.02))
+    if (leaves(before, after, 0.02) && (after == 0 || has_shifted_saturation(a, b, shift)))
         snprintf(out->text, out->size,
                  "B is %sA moved by (%d, %d) pixels, right and down being positive",
                  after > 0 ? "nearly " : "", shift->dx, shift->dy);

@@ -29,8 +29,13 @@ typedef struct Shift {
 /* The shift with the smallest mean difference of the samples that stay within the picture, three in
  * four of which have to; none where no shift makes the difference much smaller. */
 Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples);
+/* Whether colours are as far from grey as others, within 3 %: `aa` is the sum of the squares of
+ * what the channels of A have beside the mean of the pixel, levels, and `ab` that of the products
+ * with B's. True where A has too little colour to tell. */
+bool cause_is_same_saturation(double aa, double ab);
 /* Moved by whole pixels: the shift leaves less than a fiftieth of the differences where both
- * pictures have pixels. O(pixels) where the samples say so, else O(1). */
+ * pictures have pixels, and colours are as far from grey as before. O(pixels) where the samples say
+ * so, else O(1). */
 void cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
                  Sentence *out);
 /* Moved by parts of pixels (`start` is near), blurred or sharpened. O(1). */

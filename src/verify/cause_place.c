@@ -10,8 +10,8 @@
  *   pictures, and there are others within the outlines to tell, most of which have the
  *   same codes: of things a few pixels wide nothing can be said.
  * - Highlights differ when the light in which the pictures differ is nearly white (a highlight has
- *   the lamp's colour, all else the surface's) on surfaces that are not. Of grey surfaces nothing
- *   can be said.
+ *   the lamp's colour, all else the surface's), and the same at all pixels, on surfaces that are
+ *   not. Of grey surfaces nothing can be said.
  * - Shading differs when that light is more, or less, of the surface's own colour and of white at
  *   each pixel, but for a hundredth and for the rounding of codes. More of one and less of the
  * other is another saturation, and anything else another hue: both are other colours, not other
@@ -355,8 +355,12 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
  * what the rounding of codes makes. */
 typedef struct Light {
     double squares, white, own, rest, rounding;
-    size_t pixels,
-        plain; /* that differ by more than rounding; of these, in white or own light alone */
+    /* Of coloured pixels that differ by more than rounding: */
+    double moments[3][3];    /* products of the channels' light, summed */
+    double colored_rounding; /* what the rounding of their codes makes */
+    /* Of those so coloured that light midway between white and their own is neither: */
+    double telling;       /* squares */
+    size_t pixels, plain; /* all; in white or own light alone */
 } Light;
 
 /* The square of what is left of `more` beside `along`. */
@@ -425,12 +429,19 @@ static void add_light(const Plane *table, const Picture *a, const Picture *b, si
         light->rounding += rounding;
     }
     static const double white[3] = {1, 1, 1};
-    bool colored = beside(color, white) > 0.02 * 4 * norm;
-    if (colored && squares > 10 * rounding) {
-        double least = fmin(beside(more, white), beside(more, color));
-        light->pixels++;
-        light->plain += least <= 0.01 * squares + rounding;
-    }
+    const double chroma = beside(color, white) / (4 * norm), slack = 0.01; /* parts of squares */
+    if (!(chroma > 2 * slack) || squares <= 10 * rounding)
+        return;
+    light->colored_rounding += rounding;
+    for (int c = 0; c < 3; c++)
+        for (int d = 0; d < 3; d++)
+            light->moments[c][d] += more[c] * more[d];
+    if (!(chroma > 5 * slack))
+        return;
+    double least = fmin(beside(more, white), beside(more, color));
+    light->telling += squares;
+    light->pixels++;
+    light->plain += least <= slack * squares + rounding;
 }
 
 typedef struct Lights {
@@ -462,6 +473,22 @@ static Status light_of_codes(const Picture *picture, Plane *table, Err *err)
     return status;
 }
 
+static void add_lights(Light *to, const Light *from)
+{
+    to->squares += from->squares;
+    to->white += from->white;
+    to->own += from->own;
+    to->rest += from->rest;
+    to->rounding += from->rounding;
+    to->colored_rounding += from->colored_rounding;
+    to->telling += from->telling;
+    to->pixels += from->pixels;
+    to->plain += from->plain;
+    for (int c = 0; c < 3; c++)
+        for (int d = 0; d < 3; d++)
+            to->moments[c][d] += from->moments[c][d];
+}
+
 static Status sum_light(const Picture *a, const Picture *b, Light *all, Err *err)
 {
     Lights self = {.a = a, .b = b};
@@ -473,15 +500,8 @@ static Status sum_light(const Picture *a, const Picture *b, Light *all, Err *err
     Status status = mem_calloc(&self.lights, height, sizeof *self.lights, "light of rows", err);
     if (status == STATUS_OK)
         threads_for(height, 0, add_row_light, &self);
-    for (size_t y = 0; y < height && status == STATUS_OK; y++) {
-        all->squares += self.lights[y].squares;
-        all->white += self.lights[y].white;
-        all->own += self.lights[y].own;
-        all->rest += self.lights[y].rest;
-        all->rounding += self.lights[y].rounding;
-        all->pixels += self.lights[y].pixels;
-        all->plain += self.lights[y].plain;
-    }
+    for (size_t y = 0; y < height && status == STATUS_OK; y++)
+        add_lights(all, &self.lights[y]);
     plane_release(&self.table);
     free(self.lights);
     return status;
@@ -493,11 +513,46 @@ static bool has_equal_outlines(const CompareResult *result)
            !(result->edge_mismatch_fraction > 0) && result->classes[PIXEL_WRONG_SEGMENT] == 0;
 }
 
+/* Whether the light of coloured pixels is most of it and has one colour, the lamp's, but for a
+ * two-hundredth and for rounding. The light that another curve of tones takes from surfaces that
+ * are nearly grey is nearly white, too, but its colour is another at each brightness. */
+static bool has_one_color(const Light *light)
+{
+    enum { STEPS = 8 };
+    double along[3] = {1, 1, 1}, next[3], largest = 0;
+    double all = light->moments[0][0] + light->moments[1][1] + light->moments[2][2];
+    if (2 * all < light->squares)
+        return false;
+    for (int step = 0; step < STEPS; step++) { /* the power method */
+        double length = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+        largest = 0;
+        for (int c = 0; c < 3; c++) {
+            next[c] = 0;
+            for (int d = 0; d < 3; d++)
+                next[c] += light->moments[c][d] * along[d] / length;
+            largest += next[c] * along[c] / length;
+        }
+        for (int c = 0; c < 3; c++)
+            along[c] = next[c];
+    }
+    return all - largest <= 0.005 * all + light->colored_rounding;
+}
+
+/* Whether most of the light is of pixels that tell white from their own colour, and two in three of
+ * them have light of one or the other. */
+static bool is_plain(const Light *light)
+{
+    return 2 * light->telling >= light->squares && 3 * light->plain >= 2 * light->pixels;
+}
+
 /* Highlights are what white light explains, and more light of the surfaces' own colours does not.
  */
 static void say_shading(const CompareResult *result, const Light *light, Sentence *out)
 {
     bool highlights = light->white > 0.95 * light->squares && light->own < 0.95 * light->squares;
+    bool certain = highlights ? has_one_color(light) : is_plain(light);
+    if (!certain)
+        return;
     double all = sqrt((double)result->differing_pixels); /* sigmas, if all go one way */
     snprintf(out->text, out->size,
              "only %s, by up to %.4g levels on %.3g %% of the pixels, B %s; the outlines %s",
@@ -523,8 +578,7 @@ Status cause_place(const Picture *a, const Picture *b, const Samples *samples,
         return STATUS_OK;
     Light light;
     TRY(sum_light(a, b, &light, err));
-    bool is_light = light.rest <= 0.01 * light.squares + light.rounding;
-    if (is_light && 3 * light.plain >= 2 * light.pixels)
+    if (light.rest <= 0.01 * light.squares + light.rounding)
         say_shading(result, &light, out);
     return STATUS_OK;
 }

@@ -17,7 +17,9 @@
 #include <string.h>
 
 enum { PATCHES = 64, CORE = 32, MARGIN = 12, SIDE = CORE + 2 * MARGIN, CELLS = SIDE * SIDE };
-enum { ALL_CHANNELS = -1 };
+/* What of a pixel is looked at: the mean of its channels, a channel, or, from CHROMA on, what a
+ * channel has beside that mean. */
+enum { ALL_CHANNELS = -1, CHROMA = 3 };
 /* Pixels so near to an edge of the picture are mixed with what was made up beyond it. */
 enum { RIM = 6 };
 
@@ -26,14 +28,14 @@ typedef struct Patches {
     const Picture *a, *b;
     Shift start;
     const float *levels; /* of each code, parts of 1: of light, or of the code itself */
-    int channel;         /* the one that is looked at; ALL_CHANNELS: their mean */
+    int channel;         /* what is looked at: ALL_CHANNELS, a channel, CHROMA + a channel */
     int n;
     double left;                       /* the least part of the squares that a guess has left */
     PixelPlace at[PATCHES];            /* pixels of B; the first of each patch */
     float *before, *from, *to, *moved; /* owned; A in its place, A moved, B, work: CELLS a patch */
 } Patches;
 
-/* One channel of a pixel, or the mean of all, from 0 to 255. */
+/* A channel of a pixel, or the mean of all, from 0 to 255, or the difference of both. */
 static float level_at(const Picture *picture, int x, int y, int channel, const float *levels)
 {
     x = x < 0 ? 0 : x < picture->width ? x : picture->width - 1;
@@ -41,11 +43,14 @@ static float level_at(const Picture *picture, int x, int y, int channel, const f
     size_t channels = (size_t)picture->channels;
     size_t i = ((size_t)y * (size_t)picture->width + (size_t)x) * channels;
     float sum = 0;
-    if (channel != ALL_CHANNELS)
+    if (channel >= 0 && channel < CHROMA)
         return 255 * levels[picture_code(picture, i + (size_t)channel)];
     for (size_t c = 0; c < channels; c++)
         sum += levels[picture_code(picture, i + c)];
-    return 255 * sum / (float)channels;
+    float mean = sum / (float)channels;
+    if (channel == ALL_CHANNELS)
+        return 255 * mean;
+    return 255 * (levels[picture_code(picture, i + (size_t)(channel - CHROMA))] - mean);
 }
 
 /* Filters rows, then columns; `taps` are the weights of cells `first`, first + 1, ... from each;
@@ -356,6 +361,30 @@ static bool has_same_tones(const Patches *patches, const float *other, double sl
     return fabs(gain - 1) <= slack_gain && fabs(b - a) <= slack_levels * n;
 }
 
+/* Loads what is to be looked at, and warps it; the side that the warped one is held against. */
+static const float *look_at(Patches *patches, int channel, const Warp *what)
+{
+    patches->channel = channel;
+    load_patches(patches);
+    warp(patches, what);
+    return what->sharper ? patches->before : patches->to;
+}
+
+/* Whether the colours are as far from grey as they were, all channels together. The tones of a
+ * channel do not tell: where things are nearly grey they hide another saturation. */
+static bool has_same_saturation(Patches *patches, const Warp *what)
+{
+    double aa = 0, ab = 0;
+    for (int c = 0; c < patches->a->channels; c++) {
+        const float *other = look_at(patches, CHROMA + c, what);
+        for (int cell = NO_CELL; next_cell(patches, &cell);) {
+            aa += (double)(patches->moved[cell] * patches->moved[cell]);
+            ab += (double)(patches->moved[cell] * other[cell]);
+        }
+    }
+    return cause_is_same_saturation(aa, ab);
+}
+
 /* Whether each channel has the same tones. Cubic interpolation of what another interpolation has
  * moved changes the contrast by up to 2 %; a blur is not quite a Gaussian. */
 static bool keeps_tones(Patches *patches, const Warp *what)
@@ -363,15 +392,11 @@ static bool keeps_tones(Patches *patches, const Warp *what)
     bool whole = what->sigma == 0 && fabs(what->d[0]) < 0.02 && fabs(what->d[1]) < 0.02;
     bool same = true;
     for (int c = 0; c < patches->a->channels && same; c++) {
-        patches->channel = c;
-        load_patches(patches);
-        warp(patches, what);
-        same = has_same_tones(patches, what->sharper ? patches->before : patches->to,
-                              whole ? 0.005 : 0.022);
+        const float *other = look_at(patches, c, what);
+        same = has_same_tones(patches, other, whole ? 0.005 : 0.022);
     }
-    patches->channel = ALL_CHANNELS;
-    load_patches(patches);
-    warp(patches, what);
+    same = same && has_same_saturation(patches, what);
+    look_at(patches, ALL_CHANNELS, what);
     return same;
 }
 

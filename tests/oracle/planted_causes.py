@@ -91,12 +91,13 @@ def hue_turned(codes, degrees):
 
 
 def in_part(codes, made, rows, columns):
-    """`made` in a part of the picture, whose sides are fractions of it, and `codes` elsewhere."""
+    """`made` in a part of the picture, whose sides are fractions of it, and `codes` elsewhere; `codes` alone where
+    nothing is elsewhere that `made` changes, as then it is no fault of a part."""
     height, width = codes.shape[:2]
     y, x = slice(int(rows[0] * height), int(rows[1] * height)), slice(int(columns[0] * width), int(columns[1] * width))
     out = codes.copy()
     out[y, x] = np.clip(made, 0, 255)[y, x]
-    return out
+    return codes if (np.rint(out) == np.clip(np.rint(made), 0, 255)).all() else out
 
 
 def recoloured(codes, color):
@@ -207,11 +208,14 @@ def main():
     corcast, named, wrong = sys.argv[1], collections.Counter(), []
     with tempfile.TemporaryDirectory() as folder:
         for path in sys.argv[2:]:
-            codes = read(path)
+            codes, made = read(path), set()
             for planted, right, plant in FAULTS:
                 write(folder + "/b.ppm", plant(codes))
-                if (read(folder + "/b.ppm") == codes).all():
+                planted_codes = read(folder + "/b.ppm")
+                # A fault that changes nothing, or no more than another that was planted: grey is not desaturated.
+                if (planted_codes == codes).all() or planted_codes.tobytes() in made:
                     continue
+                made.add(planted_codes.tobytes())
                 cause, kind = cause_of(corcast, path, folder + "/b.ppm")
                 named[planted, kind] += 1
                 if kind not in (right, NONE):

@@ -16,7 +16,7 @@ static Picture reference; /* the plain shot */
 /* How a picture is drawn, and what is done to its codes. */
 typedef struct Shot {
     double dx, dy, radii, highlight, diffuse; /* factors of 1 and pixels */
-    double angle;
+    double angle, pale;   /* pale: of 0 to 1, how near all colours are to that of resin */
     int samples, without; /* a side; the ball left out, from 1 on */
     double sigma;
     void (*spoil)(Picture *picture, double by);
@@ -34,6 +34,12 @@ static const struct {
     {97.1, 68.8, 7.3, {0.05, 0.33, 0.36}},
 };
 
+static double color_of(const Shot *shot, int ball, int c)
+{
+    static const double resin[3] = {0.62, 0.53, 0.4};
+    return balls[ball].color[c] + shot->pale * (resin[c] - balls[ball].color[c]);
+}
+
 static void light_at(const Shot *shot, double x, double y, double out[3])
 {
     double turned_x = cos(shot->angle) * (x - W / 2.0) - sin(shot->angle) * (y - H / 2.0);
@@ -49,7 +55,7 @@ static void light_at(const Shot *shot, double x, double y, double out[3])
             continue;
         double lit = fmax(0, -0.38 * u - 0.45 * v + 0.81 * sqrt(square));
         for (int c = 0; c < 3; c++)
-            out[c] = balls[i].color[c] * (0.12 + 0.72 * shot->diffuse * lit) +
+            out[c] = color_of(shot, i, c) * (0.12 + 0.72 * shot->diffuse * lit) +
                      shot->highlight * pow(lit, 23);
     }
 }
@@ -183,6 +189,28 @@ static void flip_and_darken(Picture *picture, double by)
 {
     flip_rows(picture, by);
     gain_of_codes(picture, by);
+}
+
+static bool is_background(const uint8_t pixel[3])
+{
+    return pixel[0] == 235 && pixel[1] == 235 && pixel[2] == 235;
+}
+
+/* Of what is seen in the upper half. */
+static void gamma_of_half(Picture *picture, double by)
+{
+    for (int i = 0; i < W * (H / 2); i++)
+        for (int c = 0; c < 3 && !is_background(picture->codes8 + 3 * i); c++)
+            picture->codes8[3 * i + c] = clipped(255 * pow(picture->codes8[3 * i + c] / 255.0, by));
+}
+
+static void desaturate(Picture *picture, double by)
+{
+    for (uint8_t *at = picture->codes8; at < picture->codes8 + 3 * W * H; at += 3) {
+        const double luma = 0.299 * at[0] + 0.587 * at[1] + 0.114 * at[2];
+        for (int c = 0; c < 3; c++)
+            at[c] = clipped(at[c] + by * (luma - at[c]));
+    }
 }
 
 /* From `by` on, a seed: normal noise, some pixels of any colour, a block, a darker band. */
@@ -372,6 +400,44 @@ static void tells_highlights_from_other_shading(void **state)
     expect_cause(&shot, "only shading differs");
 }
 
+/* Of the shot `from` and another. */
+static void expect_cause_from(const Shot *from, const Shot *shot, const char *words)
+{
+    Picture kept = reference;
+    reference = shoot(from);
+    expect_cause(shot, words);
+    picture_release(&reference);
+    reference = kept;
+}
+
+/* Of nearly grey surfaces every curve of tones makes light that is nearly white, or nearly of their
+ * own colour: both are the same. */
+static void names_no_light_of_surfaces_that_are_nearly_grey(void **state)
+{
+    (void)state;
+    for (int step = 0; step < 4; step++) {
+        Shot resin = spoilt(gamma_of_half, 1), other;
+        resin.pale = 0.7 + 0.1 * step;
+        other = resin;
+        other.by = 1.2;
+        expect_cause_from(&resin, &other, NULL);
+    }
+}
+
+/* Another saturation of nearly grey surfaces is a small part of what a move changes. */
+static void tells_a_move_from_one_that_is_desaturated(void **state)
+{
+    (void)state;
+    static const double moves[] = {1, 0.5, 2.3};
+    for (int i = 0; i < 3; i++) {
+        Shot pale = spoilt(desaturate, 0.7), other = pale;
+        other.dx = moves[i];
+        expect_cause_from(&pale, &other, "moved by");
+        other.by = 0.76;
+        expect_cause_from(&pale, &other, NULL);
+    }
+}
+
 static void names_outlines_that_are_sampled_otherwise(void **state)
 {
     (void)state;
@@ -463,6 +529,8 @@ int main(void)
         cmocka_unit_test(says_the_number_of_a_tone_to_its_last_digit),
         cmocka_unit_test(names_rows_and_channels_that_are_exchanged),
         cmocka_unit_test(tells_highlights_from_other_shading),
+        cmocka_unit_test(names_no_light_of_surfaces_that_are_nearly_grey),
+        cmocka_unit_test(tells_a_move_from_one_that_is_desaturated),
         cmocka_unit_test(names_outlines_that_are_sampled_otherwise),
         cmocka_unit_test(names_another_background),
         cmocka_unit_test(names_the_side_that_lacks_a_thing_and_its_place),
