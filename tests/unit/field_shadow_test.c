@@ -85,7 +85,7 @@ static void ask(const Geometry *geometry, const Light *light, const Viewpoint *e
     void *shadow, *queue;
     assert_true(field_lights.can(geometry, &view, light));
     assert_int_equal(field_lights.look(&drawing, light, eye, NULL, &shadow, NULL), STATUS_OK);
-    assert_int_equal(field_lights.queue_new(shadow, &queue, NULL), STATUS_OK);
+    assert_int_equal(field_lights.queue_new(shadow, NULL, &queue, NULL), STATUS_OK);
     memset(sight->shadowed, 0, sizeof sight->shadowed);
     field_lights.ask(queue, tilekernels[kind], &sight->places, wanted, 0);
     RenderKernels kernels = (RenderKernels)(KERNELS_PORTABLE + kind);

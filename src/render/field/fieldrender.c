@@ -485,7 +485,8 @@ static Status make_batch(const FieldPicture *picture, Batch *batch, Err *err)
         batch->tiles[i].shadowed = batch->shadowed + i * n_lights;
     for (size_t i = 0; i < n_lights; i++)
         if (picture->prepared->shadows[i])
-            TRY(field_lights.queue_new(picture->prepared->shadows[i], &batch->queues[i], err));
+            TRY(field_lights.queue_new(picture->prepared->shadows[i],
+                                       picture->canvas.drawing->hidden, &batch->queues[i], err));
     return STATUS_OK;
 }
 

@@ -9,6 +9,7 @@
 #include "render/field/fieldspace.h"
 #include "render/field/vessellists.h"
 #include <stdlib.h>
+#include <string.h>
 
 /* Blockers nearer than this to the lit place cast no shadow [docs/POVRAY.md section 3]. */
 static const double nearest_mm = 1e-3;
@@ -26,6 +27,7 @@ typedef struct FieldShadow {
 
 typedef struct FieldQueue {
     const FieldShadow *shadow;
+    const bool *hidden; /* per segment: the camera does not see it; NULL: it sees all. Borrowed. */
     LightQueue *queue;
     uint32_t answer[LIGHT_BATCH]; /* of each call */
     /* Of the answers at hand: */
@@ -34,6 +36,8 @@ typedef struct FieldQueue {
     Status status;
     Err *err;
     FieldPlaces places;
+    AskedPlaces near;                   /* places at hidden segments */
+    uint8_t is_near[LIGHT_MOST_PLACES]; /* per place of a request */
     FieldSpace space;
 } FieldQueue;
 
@@ -146,13 +150,14 @@ done:
 
 /* ---- asking ---------------------------------------------------------------------------------- */
 
-static Status new_queue(const void *of, void **out, Err *err)
+static Status new_queue(const void *of, const bool *hidden, void **out, Err *err)
 {
     const FieldShadow *shadow = of;
     FieldQueue *queue;
     TRY(mem_calloc(&queue, 1, sizeof *queue, "shadows", err));
     *out = queue;
     queue->shadow = shadow;
+    queue->hidden = hidden;
     TRY(fieldspace_init(shadow->geometry, &queue->space, err));
     return lightqueue_new(&shadow->aim, &queue->queue, err);
 }
@@ -191,12 +196,11 @@ static FieldTile tile_of(const FieldShadow *shadow, int number, LocalGroups *gro
                        .z_min = HUGE_VAL};
 }
 
-/* Makes the places of a request those that the kernel is asked about, in the request's own memory,
- * and sets the tile's z_min, from where on vessels matter. Leaves out places outside the tile: they
- * are outside the light's view, and see the light. */
-static void set_places(FieldQueue *queue, const LightRequest *request, FieldTile *tile)
+/* Sets the z of a request's places to those that the kernel reads, and the tile's z_min, from where
+ * on vessels matter. Leaves out places outside the tile: they are outside the light's view, and see
+ * the light. Returns how many are left. */
+static int place_request(const FieldQueue *queue, const LightRequest *request, FieldTile *tile)
 {
-    FieldPlaces *places = &queue->places;
     AskedPlaces *asked = request->places;
     const LightAim *aim = &queue->shadow->aim;
     float half_x = (float)fabs(0.50005 / aim->per_x), half_y = (float)fabs(0.50005 / aim->per_y);
@@ -213,11 +217,17 @@ static void set_places(FieldQueue *queue, const LightRequest *request, FieldTile
         tile->z_min = min_of(tile->z_min, z);
         n++;
     }
+    return n;
+}
+
+/* Gives the kernel n > 0 places, in their own memory. */
+static void set_places(AskedPlaces *asked, int n, FieldPlaces *places)
+{
     places->x = asked->x;
     places->y = asked->y;
     places->z = asked->z;
     places->n = n;
-    for (int i = n; n > 0 && i < n + PLACES_BEHIND; i++) {
+    for (int i = n; i < n + PLACES_BEHIND; i++) {
         places->x[i] = places->x[n - 1];
         places->y[i] = places->y[n - 1];
         places->z[i] = places->z[n - 1];
@@ -247,32 +257,131 @@ static const size_t *list_of(const FieldShadow *shadow, int tile)
     return &shadow->rows[tile / shadow->view.tiles].offsets[tile % shadow->view.tiles];
 }
 
-static Status answer_tile(FieldQueue *queue, const LightRequest *request, Err *err)
+/* Place i in the frame of the segments. */
+static Vec3 place_at(const FieldTile *tile, const AskedPlaces *asked, int i)
 {
-    const FieldShadow *shadow = queue->shadow;
+    const double z = asked->z[i], scale = tile->perspective ? z : 1;
+    return vec3((tile->middle_x + (double)asked->x[i]) * scale,
+                (tile->middle_y + (double)asked->y[i]) * scale, z);
+}
+
+/* Marks the places of [first, end) that lie within reach of a segment. */
+static void mark_near(FieldQueue *queue, const FieldTile *tile, const AskedPlaces *asked, int first,
+                      int end, const FrameSegment *segment)
+{
+    for (int i = first; i < end; i++) {
+        const Vec3 from = vec3_sub(place_at(tile, asked, i), segment->a);
+        const double along = min_of(max_of(vec3_dot(from, segment->axis), 0), segment->length);
+        const Vec3 off = vec3_add_scaled(from, segment->axis, -along);
+        queue->is_near[i] |= vec3_dot(off, off) < segment->reach * segment->reach;
+    }
+}
+
+/* Marks the n places that lie within reach of a hidden segment. Places that follow one another are
+ * close together: most blocks of them are far from a segment. */
+static void find_near(FieldQueue *queue, const FieldTile *tile, const AskedPlaces *asked, int n)
+{
+    Box blocks[LIGHT_BATCH];
+    for (int i = 0; i < n; i++) {
+        Box *block = &blocks[i / TILE_SAMPLES];
+        *block =
+            box_with_ball(i % TILE_SAMPLES ? *block : box_empty(), place_at(tile, asked, i), 0);
+    }
+    memset(queue->is_near, 0, (size_t)n);
+    for (size_t i = 0; i < tile->n_terms; i++) {
+        const uint32_t number = queue->space.candidates[i];
+        const FrameSegment *segment = &queue->shadow->lists.segments[number];
+        if (!queue->hidden[number])
+            continue;
+        Box box = box_with_ball(box_empty(), segment->a, segment->reach);
+        box = box_with_ball(box, segment->b, segment->reach);
+        for (int first = 0; first < n; first += TILE_SAMPLES)
+            if (box_meets(box, blocks[first / TILE_SAMPLES]))
+                mark_near(queue, tile, asked, first,
+                          first + TILE_SAMPLES < n ? first + TILE_SAMPLES : n, segment);
+    }
+}
+
+/* Moves the places within reach of a hidden segment from `asked` to queue->near. Returns how many
+ * places are moved, and sets *n to how many are left.
+ *
+ * The camera sees the surface that is left without the hidden segments. Where a hidden segment
+ * begins, places on that surface lie inside the body of all segments. That body hides every light
+ * from them. So a hidden segment casts no shadow on places that its own term reaches. It is thinner
+ * than a pixel, and its term reaches 2.4 of its radii. */
+static int set_apart(FieldQueue *queue, const FieldTile *tile, AskedPlaces *asked, int *n)
+{
+    const int n_asked = *n;
+    int n_near = *n = 0;
+    find_near(queue, tile, asked, n_asked);
+    for (int i = 0; i < n_asked; i++) {
+        AskedPlaces *to = queue->is_near[i] ? &queue->near : asked;
+        int at = queue->is_near[i] ? n_near++ : (*n)++;
+        to->x[at] = asked->x[i];
+        to->y[at] = asked->y[i];
+        to->z[at] = asked->z[i];
+        to->from[at] = asked->from[i];
+    }
+    return n_near;
+}
+
+/* Leaves out the terms of hidden segments. */
+static void leave_out_hidden(const FieldQueue *queue, FieldTile *tile)
+{
+    const FieldSpace *space = &queue->space;
+    size_t n = 0;
+    for (size_t i = 0; i < tile->n_terms; i++) {
+        if (queue->hidden[space->candidates[i]])
+            continue;
+        space->terms[n] = space->terms[i];
+        space->candidates[n++] = space->candidates[i];
+    }
+    tile->n_terms = n;
+}
+
+/* Decides n places by the terms of a tile, and stores the answers. */
+static Status decide_places(FieldQueue *queue, const FieldTile *tile, AskedPlaces *asked, int n,
+                            Err *err)
+{
     FieldPlaces *places = &queue->places;
-    FieldSpace *space = &queue->space;
-    FieldTile tile = tile_of(shadow, request->tile, space->groups);
-    const size_t *list = list_of(shadow, request->tile);
-    const uint32_t *segments = shadow->rows[request->tile / shadow->view.tiles].items + list[0];
-    if (request->next >= 0)
-        __builtin_prefetch(list_of(shadow, request->next));
-    fieldterms_fetch(shadow->lists.segments, segments, list[1] - list[0]);
-    set_places(queue, request, &tile);
-    if (list[0] == list[1] || places->n == 0)
+    if (n == 0)
         return STATUS_OK;
-    TRY(fieldspace_reserve(space, list[1] - list[0], err));
-    fieldterms_make(shadow->lists.segments, segments, list[1] - list[0], &tile, space->terms,
-                    space->candidates);
-    queue->kernel(&tile, &space->work, places);
-    for (int i = 0; i < places->n; i++) {
+    set_places(asked, n, places);
+    queue->kernel(tile, &queue->space.work, places);
+    for (int i = 0; i < n; i++) {
         if (places->state[i] == PLACE_UNSURE)
-            TRY(decide(queue, &tile, i, err));
-        uint32_t from = request->places->from[i];
+            TRY(decide(queue, tile, i, err));
+        uint32_t from = asked->from[i];
         queue->shadowed[queue->answer[from / TILE_SAMPLES] + from % TILE_SAMPLES] =
             places->state[i] == PLACE_DARK;
     }
     return STATUS_OK;
+}
+
+static Status answer_tile(FieldQueue *queue, const LightRequest *request, Err *err)
+{
+    const FieldShadow *shadow = queue->shadow;
+    FieldSpace *space = &queue->space;
+    FieldTile tile = tile_of(shadow, request->tile, space->groups);
+    const size_t *list = list_of(shadow, request->tile);
+    const uint32_t *segments = shadow->rows[request->tile / shadow->view.tiles].items + list[0];
+    int n_near = 0;
+    if (request->next >= 0)
+        __builtin_prefetch(list_of(shadow, request->next));
+    fieldterms_fetch(shadow->lists.segments, segments, list[1] - list[0]);
+    int n = place_request(queue, request, &tile);
+    if (list[0] == list[1] || n == 0)
+        return STATUS_OK;
+    TRY(fieldspace_reserve(space, list[1] - list[0], err));
+    fieldterms_make(shadow->lists.segments, segments, list[1] - list[0], &tile, space->terms,
+                    space->candidates);
+    if (queue->hidden)
+        n_near = set_apart(queue, &tile, request->places, &n);
+    TRY(decide_places(queue, &tile, request->places, n, err));
+    if (n_near == 0)
+        return STATUS_OK;
+    leave_out_hidden(queue, &tile);
+    return decide_places(queue, &tile, &queue->near, n_near, err);
 }
 
 static void visit_tile(const LightRequest *request, void *context)

@@ -335,8 +335,9 @@ static void free_shadow(void *shadow)
     rastershadow_free(shadow);
 }
 
-static Status new_queue(const void *shadow, void **queue, Err *err)
+static Status new_queue(const void *shadow, const bool *hidden, void **queue, Err *err)
 {
+    (void)hidden; /* surfaces of primitives are the same with and without others */
     RasterQueue *made = NULL;
     Status status = rasterqueue_new(shadow, &made, err);
     *queue = made;

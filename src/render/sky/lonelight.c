@@ -87,7 +87,7 @@ static Status look(Asking *asking, const void *shadow, Err *err)
     TRY(mem_calloc(&asking->queues, workers, sizeof *asking->queues, "lights", err));
     TRY(mem_calloc(&asking->status, workers, sizeof *asking->status, "lights", err));
     for (size_t i = 0; i < workers; i++)
-        TRY(asking->views->queue_new(shadow, &asking->queues[i], err));
+        TRY(asking->views->queue_new(shadow, NULL, &asking->queues[i], err));
     threads_for(runs_of(asking->places), (int)workers, look_at_run, asking);
     for (size_t i = 0; i < workers; i++)
         if (asking->status[i] != STATUS_OK)

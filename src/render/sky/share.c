@@ -513,7 +513,7 @@ static Status make_looks(SetLook *look, Err *err)
     TRY(mem_calloc(&look->queues, n, sizeof *look->queues, "lights", err));
     for (size_t i = 0; i < n; i++)
         TRY(share->from->views->queue_new(look->shadows[i % (size_t)look->n_points],
-                                          &look->queues[i], err));
+                                          share->drawing->hidden, &look->queues[i], err));
     return STATUS_OK;
 }
 

@@ -38,8 +38,10 @@ typedef struct LightViews {
     Status (*look)(const struct Drawing *drawing, const Light *light, const Viewpoint *frame,
                    const Box *asked, void **shadow, Err *err);
     void (*free)(void *shadow);
-    /* A queue of questions to it, for one thread; *queue is the caller's even when this fails. */
-    Status (*queue_new)(const void *shadow, void **queue, Err *err);
+    /* Makes a queue of shadow queries for one thread. `hidden` is that of the drawing if the
+     * shading points are those that its camera sees, else NULL; it is borrowed. *queue is the
+     * caller's even when this fails. STATUS_MEMORY. */
+    Status (*queue_new)(const void *shadow, const bool *hidden, void **queue, Err *err);
     void (*queue_free)(void *queue);
     /* Puts the question whether the light is hidden from place i, for each i whose bit is set in
      * `wanted`; at most LIGHT_BATCH calls between two answers. */
