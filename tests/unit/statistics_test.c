@@ -328,6 +328,24 @@ static void a_perfect_tree_has_the_ratios_it_was_made_with(void **state)
     tree_release(&tree);
 }
 
+/* Four bifurcations, whose daughters' radii are as 0.5, 0.8, 0.95 and 1. */
+static void bifurcations_spread_as_a_calculator_says(void **state)
+{
+    (void)state;
+    enum { N = 10 };
+    const int32_t parent[N] = {-1, 0, 1, 1, 2, 2, 4, 4, 3, 3};
+    const double radius[N] = {2, 2, 1.8, 0.9, 1.5, 1.2, 1, 0.95, 0.8, 0.8};
+    const double length[N] = {0, 9, 8, 7, 6, 5, 4, 4, 3, 3};
+    Tree tree = make_tree(N, parent, radius, length);
+    TreeStatistics statistics = statistics_of(&tree);
+    assert_int_equal(statistics.symmetry.count, 4);
+    assert_close(statistics.symmetry.mean, 0.8125);
+    assert_close(statistics.symmetry.sd, 0.225);
+    assert_close(statistics.symmetry.median, 0.875);
+    statistics_release(&statistics);
+    tree_release(&tree);
+}
+
 static void assert_same_table(const StatisticsTable *a, const StatisticsTable *b)
 {
     assert_int_equal(a->n, b->n);
@@ -548,6 +566,7 @@ int main(void)
         cmocka_unit_test(a_tree_stands_beside_the_published_orders_of_its_diameters),
         cmocka_unit_test(rejects_a_table_of_morphometry_that_is_none),
         cmocka_unit_test(a_perfect_tree_has_the_ratios_it_was_made_with),
+        cmocka_unit_test(bifurcations_spread_as_a_calculator_says),
         cmocka_unit_test(a_tree_in_many_small_steps_has_the_same_statistics),
         cmocka_unit_test(a_vessel_whose_radius_changes_has_the_mean_weighted_by_length),
         cmocka_unit_test(the_smallest_trees_have_statistics),

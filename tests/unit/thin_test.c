@@ -140,6 +140,25 @@ static void vessels_end_to_end_are_one_run_however_many_they_are(void **state)
     free(vessels);
 }
 
+/* At a bend both vessels of a run lie in one cell, and more than fills it. */
+static void covers_no_more_than_a_cell_at_a_bend(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 60; k++) {
+        const double turn = 0.04 * k;
+        const Vec3 bend = vec3(0.013 * k, 0.031 * k - 1, 0);
+        Primitive vessels[] = {vessel(vec3_add(bend, vec3(-3, 0, 0)), bend, 0.49 * PIXEL_MM, 1),
+                               vessel(bend, vec3_add(bend, vec3(3 * cos(turn), 3 * sin(turn), 0)),
+                                      0.49 * PIXEL_MM, 2)};
+        Scene scene;
+        look_at_paper(&scene, vessels, 2, SIDE);
+        Frame frame = drawn(&scene, true, 0, 1, 1);
+        for (size_t i = 0; i < (size_t)SIDE * SIDE; i++)
+            assert_true(frame.color.values[3 * i] > -1e-5F);
+        frame_release(&frame);
+    }
+}
+
 static void hides_behind_what_is_thicker(void **state)
 {
     (void)state;
@@ -583,6 +602,7 @@ int main(void)
         cmocka_unit_test(covers_the_area_of_its_projection_wherever_it_lies),
         cmocka_unit_test(covers_as_much_in_pieces_as_in_one),
         cmocka_unit_test(vessels_end_to_end_are_one_run_however_many_they_are),
+        cmocka_unit_test(covers_no_more_than_a_cell_at_a_bend),
         cmocka_unit_test(hides_behind_what_is_thicker),
         cmocka_unit_test(is_drawn_as_wide_as_is_asked_for),
         cmocka_unit_test(is_shaded_at_five_normals),
