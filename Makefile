@@ -188,7 +188,7 @@ check: ## every test; ends in "N passed, N failed"
 check-all: ## `make check`, and what needs packages of hundreds of MB: PrusaSlicer, Blender
 	$(Q).ci/deps build run check page
 	$(Q).ci/deps all || echo 'what needs these packages is skipped' >&2
-	$(Q)JOBS=$(JOBS) tests/check usual all
+	$(Q)JOBS=$(JOBS) ALLOC=all tests/check usual all
 
 check-quick: ## what half a minute can test, of what is installed
 	$(Q)JOBS=$(JOBS) tests/check quick
