@@ -1,22 +1,22 @@
-/* Occlusion is found for all places at once [skylight.c].
+/* Occlusion is found for all places at once [occlusion.c].
  *
  * Of the points of an area light a pixel asks a quarter, that of its set: pixels are of four sets,
  * as they lie in squares of two by two. It takes the answers of the pixels around it that lie on
  * the same surface, in the proportions 1 : 2 : 1 across and down, by which each set has the same
  * weight, so that a plane has the mean of all four, without grain. The points are looked from,
  * those of one set after those of another, as lights are that cast hard shadows. */
-#include "render/sky/share.h"
+#include "render/light/bandvisibility.h"
 
 #include "render/cast/caster.h"
+#include "render/light/occlusion.h"
 #include "render/light/shade.h"
-#include "render/sky/skylight.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Rows of a strip, whose planes are forgotten when its places are made; columns and rows of a
  * square; and what threads take at a time: so few that the questions to a set stay in the cache. */
-enum { SETS = 4, STRIP = 256, SQUARE = SHARE_BLOCK, PLACES_AT_ONCE = 8192 };
+enum { SETS = 4, STRIP = 256, SQUARE = VISIBILITY_BLOCK, PLACES_AT_ONCE = 8192 };
 
 /* In Share.reach: the pixel sees the ground. */
 enum { ON_GROUND = 1 << 15, POINTS_SEEN = ON_GROUND - 1 };
@@ -32,15 +32,15 @@ typedef struct Run {
  * light. Without area lights all are of set 0, so that neighbours follow one another. */
 typedef struct Share {
     const Drawing *drawing;
-    const LightSources *from;
-    SharedLight *light;
+    const VisibilitySources *from;
+    PixelVisibility *light;
     bool is_soft;     /* whether area lights are asked */
     uint32_t *pixels; /* owned; of each number; only where area lights are asked, as `reach` */
     size_t n;         /* numbers */
     Run *runs;        /* owned; at most PLACES_AT_ONCE numbers each */
     size_t n_runs;
     int number;      /* of the light at hand */
-    Box asked;       /* about all places, if area lights are asked, from SharedLight.origin */
+    Box asked;       /* about all places, if area lights are asked, from PixelVisibility.origin */
     uint16_t *reach; /* owned; of each pixel, how many points of that it sees, and ON_GROUND; of one
                       * that sees nothing 0 */
 } Share;
@@ -70,7 +70,7 @@ typedef struct PlaceJob {
     Frame planes;
     double pixel_mm;        /* what a pixel is wide, in perspective at 1 mm */
     uint32_t (*next)[SETS]; /* of each square, the next number of each set */
-    Box *boxes;             /* of each square, about its places, from SharedLight.origin */
+    Box *boxes;             /* of each square, about its places, from PixelVisibility.origin */
 } PlaceJob;
 
 /* The pixels of a square, in the band. */
@@ -79,7 +79,7 @@ typedef struct Square {
 } Square;
 
 /* A square of some of the light's rows. */
-static Square square_at(const SharedLight *light, size_t number, int first, int rows)
+static Square square_at(const PixelVisibility *light, size_t number, int first, int rows)
 {
     size_t across = squares_in(light->width);
     int column = (int)(number % across) * SQUARE;
@@ -89,7 +89,7 @@ static Square square_at(const SharedLight *light, size_t number, int first, int 
                     end_row < first + rows ? end_row : first + rows};
 }
 
-static size_t pixel_at(const SharedLight *light, int column, int row)
+static size_t pixel_at(const PixelVisibility *light, int column, int row)
 {
     return (size_t)row * (size_t)light->width + (size_t)column;
 }
@@ -100,7 +100,7 @@ static size_t plane_pixel(const PlaceJob *job, int column, int row)
     return pixel_at(job->share->light, column, row - job->first);
 }
 
-/* Lines of sight of a row of pixels, from SharedLight.origin: all begin a step apart, or in
+/* Lines of sight of a row of pixels, from PixelVisibility.origin: all begin a step apart, or in
  * perspective at one point, and lead a step apart. */
 typedef struct SightRow {
     bool perspective;
@@ -151,46 +151,47 @@ static inline double ground_distance(const SightRow *sight, int column)
     return seen ? t : HUGE_VAL;
 }
 
-/* Marks the pixels of the square in SharedLight.numbers by their PlaceKind, or PLACE_NONE, adds the
- * depth of the ground where it is nearest, and counts those that see something. */
+/* Marks the pixels of the square in PixelVisibility.numbers by their SurfaceKind, or NO_HIT, adds
+ * the depth of the ground where it is nearest, and counts those that see something. */
 static void count_places(size_t number, int worker, void *context)
 {
     (void)worker;
     const PlaceJob *job = context;
-    const SharedLight *light = job->share->light;
+    const PixelVisibility *light = job->share->light;
     const Square square = square_at(light, number, job->first, job->rows);
     const bool has_ground = job->share->drawing->view->ground.present;
     for (int row = square.first_row; row < square.end_row; row++) {
-        const SightRow sight = sight_of_row(job->share, light->first + row);
+        const SightRow sight = sight_of_row(job->share, light->first_row + row);
         for (int column = square.first_column; column < square.end_column; column++) {
             float *depth = &job->planes.depth.values[plane_pixel(job, column, row)];
             double t = has_ground ? ground_distance(&sight, column) : HUGE_VAL;
             bool on_ground = t < (double)*depth;
-            uint32_t *kind = &light->numbers[pixel_at(light, column, row)];
-            *kind = PLACE_NONE;
+            uint32_t *kind = &light->point_index[pixel_at(light, column, row)];
+            *kind = NO_HIT;
             if (!on_ground && !isfinite(*depth))
                 continue;
             if (on_ground)
                 *depth = (float)t;
-            *kind = on_ground ? PLACE_GROUND : PLACE_VESSEL;
-            job->next[number][set_of_pixel(job->share, column, light->first + row)]++;
+            *kind = on_ground ? SURFACE_GROUND : SURFACE_VESSEL;
+            job->next[number][set_of_pixel(job->share, column, light->first_row + row)]++;
         }
     }
 }
 
-static inline PixelPlace place_of(const PlaceJob *job, const SightRow *sight, int column, int row)
+static inline ShadingPoint place_of(const PlaceJob *job, const SightRow *sight, int column, int row)
 {
-    const SharedLight *light = job->share->light;
+    const PixelVisibility *light = job->share->light;
     const View *view = job->share->drawing->view;
     size_t pixel = plane_pixel(job, column, row);
     double t = (double)job->planes.depth.values[pixel];
     Vec3 from = vec3_add_scaled(sight->from, sight->from_step, column);
     Vec3 way = vec3_add_scaled(sight->way, sight->way_step, column);
     Vec3 at = vec3_add_scaled(from, way, t / sight_length(sight, column));
-    PixelPlace place = {.at = {(float)at.x, (float)at.y, (float)at.z},
-                        .size = (float)(sight->perspective ? t * job->pixel_mm : job->pixel_mm),
-                        .kind = (PlaceKind)light->numbers[pixel_at(light, column, row)]};
-    if (place.kind == PLACE_VESSEL) {
+    ShadingPoint place = {.position = {(float)at.x, (float)at.y, (float)at.z},
+                          .pixel_mm =
+                              (float)(sight->perspective ? t * job->pixel_mm : job->pixel_mm),
+                          .surface = (SurfaceKind)light->point_index[pixel_at(light, column, row)]};
+    if (place.surface == SURFACE_VESSEL) {
         memcpy(place.normal, &job->planes.normal.values[3 * pixel], sizeof place.normal);
     } else {
         Vec3 normal = view->ground.normal;
@@ -207,24 +208,24 @@ static void set_places(size_t number, int worker, void *context)
     (void)worker;
     const PlaceJob *job = context;
     const Share *share = job->share;
-    const SharedLight *light = share->light;
+    const PixelVisibility *light = share->light;
     const Square square = square_at(light, number, job->first, job->rows);
     Box box = box_empty();
     for (int row = square.first_row; row < square.end_row; row++) {
-        const SightRow sight = sight_of_row(share, light->first + row);
+        const SightRow sight = sight_of_row(share, light->first_row + row);
         for (int column = square.first_column; column < square.end_column; column++) {
             size_t pixel = pixel_at(light, column, row);
             if (share->is_soft)
-                share->reach[pixel] = light->numbers[pixel] == PLACE_GROUND ? ON_GROUND : 0;
-            if (light->numbers[pixel] == PLACE_NONE)
+                share->reach[pixel] = light->point_index[pixel] == SURFACE_GROUND ? ON_GROUND : 0;
+            if (light->point_index[pixel] == NO_HIT)
                 continue;
-            uint32_t to = job->next[number][set_of_pixel(share, column, light->first + row)]++;
-            light->places[to] = place_of(job, &sight, column, row);
-            light->numbers[pixel] = to;
+            uint32_t to = job->next[number][set_of_pixel(share, column, light->first_row + row)]++;
+            light->points[to] = place_of(job, &sight, column, row);
+            light->point_index[pixel] = to;
             if (!share->is_soft)
                 continue;
             share->pixels[to] = (uint32_t)pixel;
-            box = box_with_ball(box, pixelplace_point(&light->places[to]), 0);
+            box = box_with_ball(box, shadingpoint_position(&light->points[to]), 0);
         }
     }
     job->boxes[number] = box;
@@ -260,8 +261,8 @@ static Status add_strip(Share *share, PlaceJob *job, Err *err)
     Drawing strip = *share->drawing;
     size_t across = squares_in(share->light->width), squares = across * squares_in(job->rows);
     int threads = share->drawing->params->threads;
-    strip.band = (Band){.first = share->light->first + job->first, .rows = job->rows};
-    TRY(share->from->see(&strip, share->from->context, &job->planes, err));
+    strip.band = (Band){.first = share->light->first_row + job->first, .rows = job->rows};
+    TRY(share->from->draw_planes(&strip, share->from->context, &job->planes, err));
     memset(job->next, 0, squares * sizeof *job->next);
     threads_for(squares, threads, count_places, job);
     number_squares(share, across, squares_in(job->rows), job->next);
@@ -274,13 +275,13 @@ static Status add_strip(Share *share, PlaceJob *job, Err *err)
 /* Room for a place of each pixel, of which what is not used is never touched. */
 static Status make_places(Share *share, Err *err)
 {
-    SharedLight *light = share->light;
+    PixelVisibility *light = share->light;
     size_t pixels = (size_t)light->width * (size_t)light->rows;
     const Camera *camera = &share->drawing->view->camera;
-    PlaceJob job = {.share = share, .pixel_mm = sharedlight_pixel_mm(camera, 1)};
+    PlaceJob job = {.share = share, .pixel_mm = pixelvisibility_pixel_mm(camera, 1)};
     Status status;
-    TRY(mem_alloc(&light->numbers, pixels, sizeof *light->numbers, "places", err));
-    TRY(mem_alloc(&light->places, pixels, sizeof *light->places, "places", err));
+    TRY(mem_alloc(&light->point_index, pixels, sizeof *light->point_index, "places", err));
+    TRY(mem_alloc(&light->points, pixels, sizeof *light->points, "places", err));
     if (share->is_soft) {
         TRY(mem_alloc(&share->pixels, pixels, sizeof *share->pixels, "places", err));
         TRY(mem_alloc(&share->reach, pixels, sizeof *share->reach, "places", err));
@@ -310,16 +311,17 @@ done:
  * and the sum of these. */
 static int sum_about(const Share *share, int column, int row, int *parts)
 {
-    const SharedLight *light = share->light;
-    const PixelPlace place = light->places[light->numbers[pixel_at(light, column, row)]];
+    const PixelVisibility *light = share->light;
+    const ShadingPoint place = light->points[light->point_index[pixel_at(light, column, row)]];
     int first = column > 0 ? column - 1 : 0;
     int last = column + 1 < light->width ? column + 1 : column;
     int sum = 0, weights = 0;
     for (int j = row > 0 ? row - 1 : 0; j <= row + 1 && j < light->rows; j++) {
-        const uint32_t *numbers = &light->numbers[pixel_at(light, 0, j)];
+        const uint32_t *numbers = &light->point_index[pixel_at(light, 0, j)];
         const uint16_t *reach = &share->reach[pixel_at(light, 0, j)];
         for (int i = first; i <= last; i++) {
-            if (numbers[i] == PLACE_NONE || !places_are_of_one(&place, &light->places[numbers[i]]))
+            if (numbers[i] == NO_HIT ||
+                !shadingpoints_share_surface(&place, &light->points[numbers[i]]))
                 continue;
             int weight = (i == column ? 2 : 1) * (j == row ? 2 : 1);
             sum += weight * (reach[i] & POINTS_SEEN);
@@ -339,12 +341,12 @@ static bool point_is_of(const Light *light, int point, int set)
     return set_of(point % light->samples, point / light->samples) == set;
 }
 
-/* Where a place is, mm from SharedLight.origin, a little off the surface, which depths of single
- * precision miss. */
-static Vec3 off_surface(const Share *share, const PixelPlace *place)
+/* Where a place is, mm from PixelVisibility.origin, a little off the surface, which depths of
+ * single precision miss. */
+static Vec3 off_surface(const Share *share, const ShadingPoint *place)
 {
     Vec3 normal = {(double)place->normal[0], (double)place->normal[1], (double)place->normal[2]};
-    Vec3 at = pixelplace_point(place);
+    Vec3 at = shadingpoint_position(place);
     Vec3 eye = vec3_sub(share->drawing->view->camera.location, share->light->origin);
     Vec3 sight = vec3_sub(at, eye);
     float off = sqrtf((float)vec3_dot(at, at)) + sqrtf((float)vec3_dot(sight, sight));
@@ -352,14 +354,14 @@ static Vec3 off_surface(const Share *share, const PixelPlace *place)
 }
 
 /* Whether the place faces the middle of the light at hand. */
-static bool is_facing(const Share *share, const PixelPlace *place, Vec3 point)
+static bool is_facing(const Share *share, const ShadingPoint *place, Vec3 point)
 {
     const Light *light = &share->drawing->view->lights[share->number];
     Vec3 normal = {(double)place->normal[0], (double)place->normal[1], (double)place->normal[2]};
     Vec3 towards = vec3_sub(light->location, light->parallel ? light->target : point);
-    const double least = LEAST_LIT_COSINE * LEAST_LIT_COSINE;
+    const double least = MIN_LIT_COSINE * MIN_LIT_COSINE;
     double along = vec3_dot(normal, towards);
-    /* In one go, as in places_are_of_one. */
+    /* In one go, as in shadingpoints_share_surface. */
     return (along > 0) & (along * along >= least * vec3_dot(towards, towards));
 }
 
@@ -370,7 +372,7 @@ static void set_reach(const Share *share, size_t number, int seen)
 }
 
 /* How many points of the set reach the place, by rays. */
-static int points_seen(const Share *share, const PixelPlace *place, int set, int worker)
+static int points_seen(const Share *share, const ShadingPoint *place, int set, int worker)
 {
     const Drawing *drawing = share->drawing;
     const Light *light = &drawing->view->lights[share->number];
@@ -395,7 +397,7 @@ static void cast_to_light(size_t index, int worker, void *context)
     const Run *run = &share->runs[index];
     for (size_t number = run->from; number < run->to; number++)
         set_reach(share, number,
-                  points_seen(share, &share->light->places[number], run->set, worker));
+                  points_seen(share, &share->light->points[number], run->set, worker));
 }
 
 /* The points of a set of the light at hand, each looked from, and what the threads ask them. */
@@ -416,7 +418,7 @@ static uint64_t ask_places(const SetLook *look, size_t from, size_t to, int work
     SeenPlaces places = {.x = {0}};
     uint64_t wanted = 0;
     for (size_t i = 0; i < TILE_SAMPLES && from + i < to; i++) {
-        const PixelPlace *place = &share->light->places[from + i];
+        const ShadingPoint *place = &share->light->points[from + i];
         Vec3 at = off_surface(share, place);
         places.x[i] = at.x;
         places.y[i] = at.y;
@@ -424,8 +426,8 @@ static uint64_t ask_places(const SetLook *look, size_t from, size_t to, int work
         wanted |= (uint64_t)is_facing(share, place, vec3_add(share->light->origin, at)) << i;
     }
     for (int k = 0; k < look->n_points; k++)
-        share->from->views->ask(look->queues[worker * look->n_points + k], kernels, &places, wanted,
-                                answer);
+        share->from->light_views->ask(look->queues[worker * look->n_points + k], kernels, &places,
+                                      wanted, answer);
     return wanted;
 }
 
@@ -445,8 +447,9 @@ static void look_at_run(size_t index, int worker, void *context)
     memset(hidden, 0, n * sizeof *hidden);
     for (int k = 0; k < look->n_points; k++) {
         memset(shadowed, 0, n);
-        Status status = share->from->views->answer(look->queues[worker * look->n_points + k],
-                                                   share->drawing->params->kernels, shadowed, NULL);
+        Status status =
+            share->from->light_views->answer(look->queues[worker * look->n_points + k],
+                                             share->drawing->params->kernels, shadowed, NULL);
         if (status != STATUS_OK)
             look->status[worker] = status;
         for (size_t i = 0; i < n; i++)
@@ -484,13 +487,13 @@ static void look_from_point(size_t index, int worker, void *context)
     const Viewpoint frame = frame_of(share);
     const Box asked = {vec3_add(share->asked.low, share->light->origin),
                        vec3_add(share->asked.high, share->light->origin)};
-    const bool anywhere = share->from->lone || share->n == 0;
+    const bool anywhere = share->from->off_pixel || share->n == 0;
     RenderParams alone = *share->drawing->params;
     Drawing drawing = *share->drawing;
     alone.threads = 1;
     drawing.params = &alone;
-    Status status = share->from->views->look(&drawing, &point, &frame, anywhere ? NULL : &asked,
-                                             &look->shadows[index], NULL);
+    Status status = share->from->light_views->look(
+        &drawing, &point, &frame, anywhere ? NULL : &asked, &look->shadows[index], NULL);
     if (status != STATUS_OK)
         look->status[worker] = status;
 }
@@ -512,14 +515,14 @@ static Status make_looks(SetLook *look, Err *err)
     n = workers * (size_t)look->n_points;
     TRY(mem_calloc(&look->queues, n, sizeof *look->queues, "lights", err));
     for (size_t i = 0; i < n; i++)
-        TRY(share->from->views->queue_new(look->shadows[i % (size_t)look->n_points],
-                                          share->drawing->hidden, &look->queues[i], err));
+        TRY(share->from->light_views->queue_new(look->shadows[i % (size_t)look->n_points],
+                                                share->drawing->hidden, &look->queues[i], err));
     return STATUS_OK;
 }
 
 static void release_looks(SetLook *look)
 {
-    const LightViews *views = look->share->from->views;
+    const LightViews *views = look->share->from->light_views;
     size_t workers = (size_t)look->share->drawing->params->threads;
     for (size_t i = 0; look->queues && i < workers * (size_t)look->n_points; i++)
         views->queue_free(look->queues[i]);
@@ -536,9 +539,9 @@ static Status look_at_lone(const SetLook *look, Err *err)
 {
     const Share *share = look->share;
     const Viewpoint frame = frame_of(share);
-    for (int k = 0; share->from->lone && k < look->n_points; k++)
-        TRY(lonelight_look(share->drawing, share->from->views, look->shadows[k], &frame,
-                           (size_t)share->number, share->from->lone, err));
+    for (int k = 0; share->from->off_pixel && k < look->n_points; k++)
+        TRY(offpixel_query(share->drawing, share->from->light_views, look->shadows[k], &frame,
+                           (size_t)share->number, share->from->off_pixel, err));
     return STATUS_OK;
 }
 
@@ -560,12 +563,12 @@ static Status look_from_set(const Share *share, int set, Err *err)
 static Status find_reach(Share *share, Err *err)
 {
     const Drawing *drawing = share->drawing;
-    const LightViews *views = share->from->views;
+    const LightViews *views = share->from->light_views;
     const Light *light = &drawing->view->lights[share->number];
     if (!views || !lightviews_can(views, drawing->geometry, drawing->view, light)) {
         threads_for(share->n_runs, drawing->params->threads, cast_to_light, share);
-        if (share->from->lone)
-            lonelight_cast(drawing, (size_t)share->number, share->from->lone);
+        if (share->from->off_pixel)
+            offpixel_trace(drawing, (size_t)share->number, share->from->off_pixel);
         return STATUS_OK;
     }
     for (int set = 0; set < SETS; set++)
@@ -607,7 +610,7 @@ static void gather_square(size_t index, int worker, void *context)
 {
     (void)worker;
     const Share *share = context;
-    const SharedLight *light = share->light;
+    const PixelVisibility *light = share->light;
     const Square square = square_at(light, index, 0, light->rows);
     const int first = square.first_column > 0 ? square.first_column : 1;
     const int end = square.end_column < light->width ? square.end_column : light->width - 1;
@@ -620,13 +623,13 @@ static void gather_square(size_t index, int worker, void *context)
         for (int column = square.first_column; column < square.end_column; column++) {
             size_t pixel = pixel_at(light, column, row);
             int i = column - first, sum, parts = 16;
-            if (light->numbers[pixel] == PLACE_NONE)
+            if (light->point_index[pixel] == NO_HIT)
                 continue;
             if (within && column >= first && column < end && sums.is_one[i])
                 sum = sums.sums[i];
             else
                 sum = sum_about(share, column, row, &parts);
-            light->parts[share->number][pixel] = (float)(sum * SETS) / ((float)parts * points);
+            light->lights[share->number][pixel] = (float)(sum * SETS) / ((float)parts * points);
         }
     }
 }
@@ -634,13 +637,13 @@ static void gather_square(size_t index, int worker, void *context)
 static Status share_lights(Share *share, Err *err)
 {
     const View *view = share->drawing->view;
-    SharedLight *light = share->light;
+    PixelVisibility *light = share->light;
     size_t pixels = (size_t)light->width * (size_t)light->rows;
     int threads = share->drawing->params->threads;
     for (size_t i = 0; i < view->n_lights; i++) {
         if (!light_is_soft(&view->lights[i]))
             continue;
-        TRY(mem_alloc(&light->parts[i], pixels, sizeof *light->parts[i], "lights", err));
+        TRY(mem_alloc(&light->lights[i], pixels, sizeof *light->lights[i], "lights", err));
         share->number = (int)i;
         TRY(find_reach(share, err));
         threads_for(squares_in(light->width) * squares_in(light->rows), threads, gather_square,
@@ -651,14 +654,15 @@ static Status share_lights(Share *share, Err *err)
 
 /* ---- all of it ------------------------------------------------------------------------------- */
 
-bool share_is_wanted(const View *view, const RenderParams *params)
+bool pixelvisibility_is_needed(const View *view, const RenderParams *params)
 {
     return params->want_color && params->method != RENDER_TRACE &&
            !(view->effects.xray.per_mm > 0) &&
            (params->occlusion > 0 || (params->shadows && view_has_soft_shadows(view)));
 }
 
-Status share_light(const Drawing *drawing, const LightSources *from, SharedLight **out, Err *err)
+Status pixelvisibility_compute(const Drawing *drawing, const VisibilitySources *from,
+                               PixelVisibility **out, Err *err)
 {
     const RenderParams *params = drawing->params;
     Share share = {.drawing = drawing,
@@ -666,21 +670,21 @@ Status share_light(const Drawing *drawing, const LightSources *from, SharedLight
                    .is_soft = params->shadows && view_has_soft_shadows(drawing->view)};
     Status status;
     TRY(mem_calloc(&share.light, 1, sizeof *share.light, "places", err));
-    share.light->side = 1;
+    share.light->samples_per_side = 1;
     share.light->width = drawing->view->camera.width;
-    share.light->first = drawing->band.first;
+    share.light->first_row = drawing->band.first;
     share.light->rows = drawing->band.rows;
     share.light->origin =
-        params->occlusion > 0 ? from->beams->origin : box_center(drawing->geometry->bounds);
+        params->occlusion > 0 ? from->occluders->origin : box_center(drawing->geometry->bounds);
     TRY_GOTO(make_places(&share, err));
     if (params->occlusion > 0)
-        TRY_GOTO(skylight_find(drawing, from->beams, share.light, err));
+        TRY_GOTO(occlusion_compute(drawing, from->occluders, share.light, err));
     if (share.is_soft)
         TRY_GOTO(share_lights(&share, err));
     *out = share.light;
     share.light = NULL;
 done:
-    sharedlight_free(share.light);
+    pixelvisibility_free(share.light);
     free(share.pixels);
     free(share.runs);
     free(share.reach);

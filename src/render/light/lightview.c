@@ -2,7 +2,7 @@
  * rounding. Where places are asked about that lie in part of it, only the lists of the tiles in
  * that part are made. The tiles are the same whatever the part: so are the answers, to the last
  * bit. */
-#include "render/tile/lightview.h"
+#include "render/light/lightview.h"
 
 /* A point light must be as far from the middle of the scene, in radii of the scene: it sees less
  * than 60 degrees to each side then. */

@@ -1,9 +1,9 @@
 /* Thin vessels of a grown tree have the shadows that rays find, from the views of lights, and of
  * the points of area lights. */
 #include "render/field/fieldshadow.h"
+#include "render/light/offpixel.h"
 #include "render/raster/rastershadow.h"
 #include "render/render.h"
-#include "render/sky/lonelight.h"
 #include "render/thin/thinvessels.h"
 #include "unit.h"
 
@@ -99,7 +99,7 @@ static void forget_sight(Sight *sight)
     scene_release(&sight->scene);
 }
 
-static void look_from(Sight *sight, const LightViews *views, size_t number, LonePlaces *places)
+static void look_from(Sight *sight, const LightViews *views, size_t number, OffPixelPoints *places)
 {
     const Light *light = &sight->scene.view.lights[number];
     for (int k = 0; k < light_points(light); k++) {
@@ -108,7 +108,7 @@ static void look_from(Sight *sight, const LightViews *views, size_t number, Lone
         assert_int_equal(views->look(&sight->drawing, &point, &sight->frame, NULL, &shadow, &err),
                          STATUS_OK);
         assert_int_equal(
-            lonelight_look(&sight->drawing, views, shadow, &sight->frame, number, places, &err),
+            offpixel_query(&sight->drawing, views, shadow, &sight->frame, number, places, &err),
             STATUS_OK);
         views->free(shadow);
     }
@@ -120,14 +120,14 @@ static void have_the_shadows_of_rays(SceneModel model, Projection projection,
 {
     Sight sight;
     see(model, projection, &sight);
-    LonePlaces seen = sight.thin.lights, cast = sight.thin.lights;
-    assert_int_equal(loneplaces_init(&sight.scene.view, &seen, &err), STATUS_OK);
-    assert_int_equal(loneplaces_init(&sight.scene.view, &cast, &err), STATUS_OK);
+    OffPixelPoints seen = sight.thin.lights, cast = sight.thin.lights;
+    assert_int_equal(offpixel_init(&sight.scene.view, &seen, &err), STATUS_OK);
+    assert_int_equal(offpixel_init(&sight.scene.view, &cast, &err), STATUS_OK);
     size_t asked = 0, dark = 0, off = 0;
     for (size_t k = 0; k < sight.scene.view.n_lights; k++) {
         size_t points = (size_t)light_points(&sight.scene.view.lights[k]);
         look_from(&sight, views, k, &seen);
-        lonelight_cast(&sight.drawing, k, &cast);
+        offpixel_trace(&sight.drawing, k, &cast);
         for (size_t i = 0; i < seen.n; i++) {
             asked += points;
             dark += points - cast.reach[k][i];
@@ -137,8 +137,8 @@ static void have_the_shadows_of_rays(SceneModel model, Projection projection,
     print_message("%zu of %zu dark, %zu off\n", dark, asked, off);
     assert_true(asked > 20000 && dark > asked / 50 && dark < asked / 2);
     assert_true(off * 1000000 <= most * asked);
-    loneplaces_release(&seen);
-    loneplaces_release(&cast);
+    offpixel_release(&seen);
+    offpixel_release(&cast);
     forget_sight(&sight);
 }
 

@@ -44,7 +44,7 @@ typedef struct LightViews {
     Status (*queue_new)(const void *shadow, const bool *hidden, void **queue, Err *err);
     void (*queue_free)(void *queue);
     /* Puts the question whether the light is hidden from place i, for each i whose bit is set in
-     * `wanted`; at most LIGHT_BATCH calls between two answers. */
+     * `wanted`; at most SHADOW_BATCH calls between two answers. */
     void (*ask)(void *queue, const TileKernels *kernels, const SeenPlaces *places, uint64_t wanted,
                 uint32_t answer);
     /* Answers all questions since the last answer: sets shadowed[answer + i], `answer` being that

@@ -2,7 +2,7 @@
  * that lie in it: few, as neighbours in the picture mostly are neighbours in the light's view. The
  * places of a request lie side by side in memory, and nothing else is kept of the picture's tile:
  * a batch stays in the cache. */
-#include "render/tile/lightqueue.h"
+#include "render/light/shadowqueue.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,20 +13,20 @@ typedef struct Request {
     int before;   /* the request before it in the tile of the light, or -1 */
 } Request;
 
-struct LightQueue {
+struct ShadowQueue {
     LightAim aim;
     int n_calls, n_requests, n_tiles, n_asked;
-    Request requests[LIGHT_MOST_PLACES];
-    int tiles[LIGHT_MOST_PLACES]; /* of the light, that are asked, in the order of their first
+    Request requests[SHADOW_MAX_POINTS];
+    int tiles[SHADOW_MAX_POINTS]; /* of the light, that are asked, in the order of their first
                                    * request */
-    AskedPlaces asked;
-    AskedPlaces taken; /* of the tile that is shown */
-    int *last;         /* of each tile of the light, the last request there, or -1 */
+    QueuedPoints asked;
+    QueuedPoints taken; /* of the tile that is shown */
+    int *last;          /* of each tile of the light, the last request there, or -1 */
 };
 
-Status lightqueue_new(const LightAim *aim, LightQueue **out, Err *err)
+Status shadowqueue_new(const LightAim *aim, ShadowQueue **out, Err *err)
 {
-    LightQueue *queue;
+    ShadowQueue *queue;
     size_t n = (size_t)aim->columns * (size_t)aim->rows;
     TRY(mem_alloc(&queue, 1, sizeof *queue, "shadows", err));
     *out = queue;
@@ -38,7 +38,7 @@ Status lightqueue_new(const LightAim *aim, LightQueue **out, Err *err)
     return STATUS_OK;
 }
 
-void lightqueue_free(LightQueue *queue)
+void shadowqueue_free(ShadowQueue *queue)
 {
     if (!queue)
         return;
@@ -47,9 +47,9 @@ void lightqueue_free(LightQueue *queue)
 }
 
 /* Asks about the places whose bits are set, and returns how many they are. */
-static int append_places(LightQueue *queue, const AimedPlaces *aimed, int call, uint64_t places)
+static int append_places(ShadowQueue *queue, const AimedPlaces *aimed, int call, uint64_t places)
 {
-    AskedPlaces *asked = &queue->asked;
+    QueuedPoints *asked = &queue->asked;
     int first = queue->n_asked, n = first;
     for (; places; places &= places - 1, n++) {
         int sample = __builtin_ctzll(places);
@@ -62,8 +62,8 @@ static int append_places(LightQueue *queue, const AimedPlaces *aimed, int call, 
     return n - first;
 }
 
-int lightqueue_ask(LightQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
-                   uint64_t wanted)
+int shadowqueue_ask(ShadowQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
+                    uint64_t wanted)
 {
     int call = queue->n_calls++;
     AimedPlaces aimed;
@@ -82,11 +82,11 @@ int lightqueue_ask(LightQueue *queue, const TileKernels *kernels, const SeenPlac
     return call;
 }
 
-/* Copies n places, and up to PLACES_BEHIND more: in blocks of one size, which compilers copy
+/* Copies n places, and up to POINT_PADDING more: in blocks of one size, which compilers copy
  * without a call, as requests are small. */
-static void copy_places(const AskedPlaces *from, int first, int n, AskedPlaces *to, int at)
+static void copy_places(const QueuedPoints *from, int first, int n, QueuedPoints *to, int at)
 {
-    enum { BLOCK = PLACES_BEHIND + 1 };
+    enum { BLOCK = POINT_PADDING + 1 };
     for (int i = 0; i < n; i += BLOCK) {
         memcpy(&to->x[at + i], &from->x[first + i], BLOCK * sizeof *to->x);
         memcpy(&to->y[at + i], &from->y[first + i], BLOCK * sizeof *to->y);
@@ -96,7 +96,7 @@ static void copy_places(const AskedPlaces *from, int first, int n, AskedPlaces *
 }
 
 /* Collects what a tile is asked, and forgets it. */
-static int take_places(LightQueue *queue, int tile)
+static int take_places(ShadowQueue *queue, int tile)
 {
     int n = 0;
     for (int i = queue->last[tile]; i >= 0; i = queue->requests[i].before) {
@@ -108,13 +108,13 @@ static int take_places(LightQueue *queue, int tile)
     return n;
 }
 
-void lightqueue_visit(LightQueue *queue, LightVisitor *visit, void *context)
+void shadowqueue_visit(ShadowQueue *queue, LightVisitor *visit, void *context)
 {
     for (int i = 0; i < queue->n_tiles; i++) {
-        LightRequest request = {.tile = queue->tiles[i],
-                                .next = i + 1 < queue->n_tiles ? queue->tiles[i + 1] : -1,
-                                .places = &queue->taken,
-                                .n = take_places(queue, queue->tiles[i])};
+        TileQueries request = {.tile = queue->tiles[i],
+                               .next = i + 1 < queue->n_tiles ? queue->tiles[i + 1] : -1,
+                               .places = &queue->taken,
+                               .n = take_places(queue, queue->tiles[i])};
         visit(&request, context);
     }
     queue->n_calls = queue->n_requests = queue->n_tiles = queue->n_asked = 0;

@@ -1,16 +1,16 @@
 /* What is done to beams several at once, in one version for each kind of processor, all of which
  * give the same bytes: nothing is fused, and sums and products have one order. */
-#ifndef CORCAST_RENDER_BEAMKERNELS_H
-#define CORCAST_RENDER_BEAMKERNELS_H
+#ifndef CORCAST_RENDER_OCCLUSIONKERNELS_H
+#define CORCAST_RENDER_OCCLUSIONKERNELS_H
 
-#include "render/sky/beams.h"
+#include "render/light/occluders.h"
 #include "render/tile/tilekernels.h"
 
 /* Places from which beams begin. Arrays have room for a multiple of BEAM_BLOCK, and hold zeros
  * behind the last place. */
 typedef struct BeamPlaces {
     uint32_t n;
-    float *at[3];     /* owned, as all that follows; mm from Beams.origin */
+    float *at[3];     /* owned, as all that follows; mm from OccluderSet.origin */
     float *normal[3]; /* unit */
     float *above;     /* the ground: its sign; 0: the ground hides no sky */
 } BeamPlaces;
@@ -39,7 +39,7 @@ typedef struct SeenBlock {
     float reach_x[BEAM_BLOCK];
 } SeenBlock;
 
-/* Beams of one line, as its direction sees them. */
+/* OccluderSet of one line, as its direction sees them. */
 typedef struct BeamGroup {
     float x[BEAM_BLOCK], y[BEAM_BLOCK], z[BEAM_BLOCK]; /* where each begins */
     float widening[BEAM_BLOCK]; /* of half its width with z: below 0 of what leads against the
@@ -92,7 +92,7 @@ typedef struct BeamAnswers {
 typedef struct BeamKernels {
     /* Sets answers[i] for each place i, of which there is one at least. A place asks about the end
      * of the line that its surface faces. */
-    void (*ask)(const Beams *beams, const BeamDirection *direction, const BeamPlaces *places,
+    void (*ask)(const OccluderSet *beams, const BeamDirection *direction, const BeamPlaces *places,
                 BeamWork *work, uint8_t *answers);
     /* The part of the sky that is free, from 0 to 1, about the normal of a pixel of a quad: of each
      * line the mean of the answers about the end that the normal faces, by the pixel's

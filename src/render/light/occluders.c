@@ -5,10 +5,10 @@
  * Why this: single rays err as random numbers do, by the root of their number (0.046 in a ball of
  * 20,000 segments by 256 directions of the sphere, 0.061 by 128), and leave bands where directions
  * are shared, grain where they are not. A beam is the mean of many rays: 0.034 by 128 directions,
- * and its edges are soft. Beams that widen for ever err less in a ball, but each of them touches
- * many vessels, and a box about distant ones does not stand for them until it is narrower than the
- * beam. A beam never widens beyond its height above the surface, so that it cannot be covered by
- * what lies below the horizon.
+ * and its edges are soft. OccluderSet that widen for ever err less in a ball, but each of them
+ * touches many vessels, and a box about distant ones does not stand for them until it is narrower
+ * than the beam. A beam never widens beyond its height above the surface, so that it cannot be
+ * covered by what lies below the horizon.
  *
  * All models are seen as capsules about their segments. That of a cut cylinder begins where the
  * joint that leads to it does, and stands for both: with capsules of their own, joints would be
@@ -16,7 +16,7 @@
  * a flat end that is seen, as those of tips are, the capsule's round end stays within the cylinder:
  * beyond it, it would cover all places of the flat end, and the error of a dense ball be 0.052
  * instead of 0.031. */
-#include "render/sky/beams.h"
+#include "render/light/occluders.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -40,7 +40,7 @@ static Vec3 load_point(float from[3][BEAM_BLOCK], size_t lane, Vec3 origin)
 
 /* The capsules of a geometry while they are listed. */
 typedef struct Listing {
-    Beams *beams;
+    OccluderSet *beams;
     size_t n;
     double radii;   /* their sum */
     uint32_t *last; /* owned; of each segment that has a cylinder, the number behind its capsule */
@@ -112,10 +112,10 @@ static size_t end_of_segments(const Geometry *geometry)
     return end;
 }
 
-Status beams_new(const Geometry *geometry, Beams *beams, Err *err)
+Status occluderset_new(const Geometry *geometry, OccluderSet *beams, Err *err)
 {
     size_t most = geometry->n_primitives - geometry->n_ends + geometry->n_segments;
-    Beams made = {.origin = box_center(geometry->bounds)};
+    OccluderSet made = {.origin = box_center(geometry->bounds)};
     Listing listing = {.beams = &made};
     TRY(mem_calloc(&listing.last, end_of_segments(geometry), sizeof *listing.last, "occlusion",
                    err));
@@ -138,15 +138,15 @@ Status beams_new(const Geometry *geometry, Beams *beams, Err *err)
     return status;
 }
 
-void beams_release(Beams *beams)
+void occluderset_release(OccluderSet *beams)
 {
     free(beams->capsules);
-    *beams = (Beams){0};
+    *beams = (OccluderSet){0};
 }
 
 /* Fibonacci's lattice of a hemisphere: rings of equal area, each a golden angle on from the last.
  */
-Vec3 beams_line(int n, int k)
+Vec3 occlusion_direction(int n, int k)
 {
     double z = 1 - (k + 0.5) / n, across = sqrt(1 - z * z);
     return vec3(across * elementary_cos(golden_turn * k), across * elementary_sin(golden_turn * k),

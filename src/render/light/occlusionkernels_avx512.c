@@ -3,7 +3,7 @@
 
 #define LANES_AVX512
 #define BEAM_KERNEL(name) name##_avx512
-#include "render/sky/kernel_beam.h"
+#include "render/light/kernel_occlusion.h"
 
 #else
 typedef int NotForThisProcessor;

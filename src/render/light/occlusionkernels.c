@@ -1,6 +1,6 @@
 /* The kernels for any processor, and the choice among all. */
 #define BEAM_KERNEL(name) name##_portable
-#include "render/sky/kernel_beam.h"
+#include "render/light/kernel_occlusion.h"
 
 #include <stdlib.h>
 

@@ -1,11 +1,11 @@
-/* Beams, several at a time: included by each source that compiles it for its lanes.
+/* OccluderSet, several at a time: included by each source that compiles it for its lanes.
  *
- * Beams of one line, along its direction and against it, are sorted into a grid across it, where
- * they begin, and each capsule in turn takes what it covers from those in the cells that it can
- * touch: those of a row stand one after another, to be taken many at once. The other way about,
- * capsules in tiles for beams to ask, beams that lie side by side seldom touch the same ones. Beams
- * of both directions go together because each place begins one of the two: a capsule is set once
- * for both, and finds twice as many beams in its cells.
+ * OccluderSet of one line, along its direction and against it, are sorted into a grid across it,
+ * where they begin, and each capsule in turn takes what it covers from those in the cells that it
+ * can touch: those of a row stand one after another, to be taken many at once. The other way about,
+ * capsules in tiles for beams to ask, beams that lie side by side seldom touch the same ones.
+ * OccluderSet of both directions go together because each place begins one of the two: a capsule is
+ * set once for both, and finds twice as many beams in its cells.
  *
  * Of beams taken at once a capsule covers a third. Whether it covers any is not asked before all is
  * worked out: a processor foresees the answer badly, and what it does in vain costs more than a
@@ -14,7 +14,7 @@
 #error "define BEAM_KERNEL(name), the name of a function"
 #endif
 
-#include "render/sky/beamkernels.h"
+#include "render/light/occlusionkernels.h"
 #include "render/tile/lanes.h"
 
 /* Of a ball far away, that is drawn as a square. */
@@ -295,7 +295,7 @@ LANE_FN void cover_rows(const SeenBlock *seen, int i, float wide, BeamWork *work
     }
 }
 
-LANE_TARGET static void BEAM_KERNEL(ask)(const Beams *beams, const BeamDirection *direction,
+LANE_TARGET static void BEAM_KERNEL(ask)(const OccluderSet *beams, const BeamDirection *direction,
                                          const BeamPlaces *places, BeamWork *work, uint8_t *answers)
 {
     list_beams(direction, places, work);

@@ -2,7 +2,7 @@
 #include "render/render.h"
 #include "unit.h"
 
-#include "render/light/occlusion.h"
+#include "render/light/rayocclusion.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -43,9 +43,9 @@ static double by_rays(Caster *caster, const Scene *scene, const Frame *frame, in
 {
     const float *n = &frame->normal.values[3 * pixel];
     Vec3 point = ray_at(camera_ray(&scene->view.camera, i, j), (double)frame->depth.values[pixel]);
-    return occlusion_open(caster, 0, &scene->view.ground, point,
-                          vec3((double)n[0], (double)n[1], (double)n[2]), 1024,
-                          occlusion_turn(i, j));
+    return rayocclusion_ambient(caster, 0, &scene->view.ground, point,
+                                vec3((double)n[0], (double)n[1], (double)n[2]), 1024,
+                                rayocclusion_turn(i, j));
 }
 
 /* The error of 24 rows in the middle of the picture, at about so many places. */

@@ -3,7 +3,7 @@
 
 #define LANES_AVX2
 #define BEAM_KERNEL(name) name##_avx2
-#include "render/sky/kernel_beam.h"
+#include "render/light/kernel_occlusion.h"
 
 #else
 typedef int NotForThisProcessor;

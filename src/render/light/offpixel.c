@@ -1,9 +1,9 @@
 /* Places are asked about in runs of the order that they have, whoever asks: an answer depends
  * neither on the number of threads nor on the band that is drawn. */
-#include "render/sky/lonelight.h"
+#include "render/light/offpixel.h"
 
 #include "render/cast/caster.h"
-#include "render/tile/lightqueue.h"
+#include "render/light/shadowqueue.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@ enum { RUN = 4096 };
 
 typedef struct Asking {
     const Drawing *drawing;
-    const LonePlaces *places;
+    const OffPixelPoints *places;
     size_t light;
     /* Of what is seen from the light: */
     const LightViews *views;
@@ -20,7 +20,7 @@ typedef struct Asking {
     Status *status; /* likewise */
 } Asking;
 
-Status loneplaces_init(const View *view, LonePlaces *places, Err *err)
+Status offpixel_init(const View *view, OffPixelPoints *places, Err *err)
 {
     for (size_t i = 0; i < view->n_lights; i++)
         if (view->lights[i].casts_shadows)
@@ -28,19 +28,19 @@ Status loneplaces_init(const View *view, LonePlaces *places, Err *err)
     return STATUS_OK;
 }
 
-void loneplaces_release(LonePlaces *places)
+void offpixel_release(OffPixelPoints *places)
 {
     for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
         free(places->reach[i]);
-    *places = (LonePlaces){0};
+    *places = (OffPixelPoints){0};
 }
 
-static size_t runs_of(const LonePlaces *places)
+static size_t runs_of(const OffPixelPoints *places)
 {
     return (places->n + RUN - 1) / RUN;
 }
 
-static size_t end_of(const LonePlaces *places, size_t run)
+static size_t end_of(const OffPixelPoints *places, size_t run)
 {
     return (run + 1) * RUN < places->n ? (run + 1) * RUN : places->n;
 }
@@ -50,7 +50,7 @@ static size_t end_of(const LonePlaces *places, size_t run)
 /* Asks about the places from a number on, at most TILE_SAMPLES of them. */
 static void ask_places(const Asking *asking, size_t from, size_t to, void *queue, uint32_t answer)
 {
-    const LonePlaces *places = asking->places;
+    const OffPixelPoints *places = asking->places;
     const TileKernels *kernels = tilekernels[kernels_kind(asking->drawing->params->kernels)];
     const Light *light = &asking->drawing->view->lights[asking->light];
     SeenPlaces seen = {.x = {0}};
@@ -95,8 +95,8 @@ static Status look(Asking *asking, const void *shadow, Err *err)
     return STATUS_OK;
 }
 
-Status lonelight_look(const Drawing *drawing, const LightViews *views, const void *shadow,
-                      const Viewpoint *frame, size_t light, LonePlaces *places, Err *err)
+Status offpixel_query(const Drawing *drawing, const LightViews *views, const void *shadow,
+                      const Viewpoint *frame, size_t light, OffPixelPoints *places, Err *err)
 {
     Asking asking = {
         .drawing = drawing, .places = places, .light = light, .views = views, .frame = frame};
@@ -114,7 +114,7 @@ static void cast_run(size_t run, int worker, void *context)
 {
     const Asking *asking = context;
     const Drawing *drawing = asking->drawing;
-    const LonePlaces *places = asking->places;
+    const OffPixelPoints *places = asking->places;
     const Light *light = &drawing->view->lights[asking->light];
     for (size_t i = run * RUN; i < end_of(places, run); i++) {
         Vec3 point = places->at(places->context, light, i);
@@ -128,7 +128,7 @@ static void cast_run(size_t run, int worker, void *context)
     }
 }
 
-void lonelight_cast(const Drawing *drawing, size_t light, LonePlaces *places)
+void offpixel_trace(const Drawing *drawing, size_t light, OffPixelPoints *places)
 {
     Asking asking = {.drawing = drawing, .places = places, .light = light};
     threads_for(runs_of(places), drawing->params->threads, cast_run, &asking);
