@@ -40,7 +40,7 @@ enum { TERMS_TO_KEEP = 100 };
 typedef struct Build {
     const VesselTree *tree;
     const MeshParams *params;
-    NumberLists incident, blending;
+    IndexLists incident, blending;
     Zones zones;
     ZoneFineness fineness;
     ZonePiece *pieces;
@@ -124,8 +124,8 @@ static void release_workers(Build *build, int n_workers)
 static void release_build(Build *build, int n_workers)
 {
     release_workers(build, n_workers);
-    numberlists_release(&build->incident);
-    numberlists_release(&build->blending);
+    indexlists_release(&build->incident);
+    indexlists_release(&build->blending);
     for (uint32_t z = 0; z < build->zones.n_zones && build->pieces; z++)
         zonepiece_release(&build->pieces[z]);
     zones_release(&build->zones);

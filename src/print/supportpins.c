@@ -27,7 +27,7 @@ typedef struct Standing {
     VesselTree *tree;
     const PrintBase *base;
     BoxTree boxes;         /* of the tree as it was; owned */
-    NumberLists incident;  /* likewise ... */
+    IndexLists incident;   /* likewise ... */
     size_t incident_nodes; /* ... which had so many nodes */
     Foot *feet;
     size_t n_feet, foot_capacity;
@@ -280,7 +280,7 @@ static Status keep_flat(Standing *standing, const MeshParams *params)
 {
     bool done = false;
     while (!done) {
-        NumberLists incident = {0}, blending = {0};
+        IndexLists incident = {0}, blending = {0};
         Zones zones = {0};
         Status status;
         Err *err = standing->err;
@@ -289,8 +289,8 @@ static Status keep_flat(Standing *standing, const MeshParams *params)
         TRY_GOTO(zones_find(standing->tree, &incident, &blending, params, &zones, err));
         done = take_spoilt(standing, &zones) == 0;
     done:
-        numberlists_release(&incident);
-        numberlists_release(&blending);
+        indexlists_release(&incident);
+        indexlists_release(&blending);
         zones_release(&zones);
         TRY(status);
     }
@@ -319,7 +319,7 @@ Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, const M
     standing.pins = (Pins){0};
 done:
     boxtree_release(&standing.boxes);
-    numberlists_release(&standing.incident);
+    indexlists_release(&standing.incident);
     free(standing.feet);
     pins_release(&standing.pins);
     return status;

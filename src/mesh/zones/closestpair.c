@@ -103,7 +103,7 @@ static Status search_wider(GapSearch *search, int threads, NearPair *pair, bool 
 Status leastgap_find(const VesselTree *tree, const MeshParams *params, NearPair *pair, bool *found,
                      Err *err)
 {
-    NumberLists incident = {0}, blending = {0};
+    IndexLists incident = {0}, blending = {0};
     Zones zones = {0};
     GapSearch *search = NULL;
     Status status;
@@ -115,8 +115,8 @@ Status leastgap_find(const VesselTree *tree, const MeshParams *params, NearPair 
     search->zones = &zones;
     TRY_GOTO(search_wider(search, params->threads, pair, found, err));
 done:
-    numberlists_release(&incident);
-    numberlists_release(&blending);
+    indexlists_release(&incident);
+    indexlists_release(&blending);
     zones_release(&zones);
     free(search);
     return status;

@@ -30,7 +30,7 @@ typedef struct Neighbor {
 
 typedef struct FreeSearch {
     const VesselTree *tree;
-    const NumberLists *incident, *blending;
+    const IndexLists *incident, *blending;
     const TreeOrder *order;
     double disturbance; /* what others may add where the wall is a cylinder */
     FreeEnd (*ends)[2];
@@ -181,7 +181,7 @@ static int compare_numbers(const void *a, const void *b)
 static Status list_others(EndSearch *search, const FreeSearch *all, uint32_t segment)
 {
     const VesselTree *tree = all->tree;
-    const NumberLists *blending = all->blending, *incident = all->incident;
+    const IndexLists *blending = all->blending, *incident = all->incident;
     double limit = BLEND_REACH * search->self->radius_mm;
     TRY(mem_reserve(&search->steps, &search->step_capacity, 1, sizeof *search->steps, "terms",
                     NULL));
@@ -326,9 +326,8 @@ double freeends_moved(const MeshParams *params)
     return 0.25 * fmin(fmax(params->tolerance, least_part), most_part);
 }
 
-Status freeends_find(const VesselTree *tree, const NumberLists *incident,
-                     const NumberLists *blending, const TreeOrder *order, const MeshParams *params,
-                     FreeEnd (*ends)[2], Err *err)
+Status freeends_find(const VesselTree *tree, const IndexLists *incident, const IndexLists *blending,
+                     const TreeOrder *order, const MeshParams *params, FreeEnd (*ends)[2], Err *err)
 {
     size_t n = tree->n_segments;
     double disturbance = 4 * freeends_moved(params) * FIELD_LEVEL;

@@ -18,8 +18,8 @@ double freeends_moved(const MeshParams *params);
 
 /* Fills ends[], one pair a segment, zeroed before; `blending` lists the segments that blend at each
  * node. */
-MUST_CHECK Status freeends_find(const VesselTree *tree, const NumberLists *incident,
-                                const NumberLists *blending, const TreeOrder *order,
+MUST_CHECK Status freeends_find(const VesselTree *tree, const IndexLists *incident,
+                                const IndexLists *blending, const TreeOrder *order,
                                 const MeshParams *params, FreeEnd (*ends)[2], Err *err);
 
 #endif

@@ -7,7 +7,7 @@
 
 typedef struct Planner {
     const VesselTree *tree;
-    const NumberLists *incident, *blending;
+    const IndexLists *incident, *blending;
     const Zones *zones;
     uint32_t zone;
     ZonePlan plan;
@@ -116,9 +116,8 @@ static Status add_groups(Planner *planner, const uint32_t *nodes, uint32_t n_nod
     return STATUS_OK;
 }
 
-Status zoneplan_make(const VesselTree *tree, const NumberLists *incident,
-                     const NumberLists *blending, const Zones *zones, uint32_t zone, ZonePlan *out,
-                     Err *err)
+Status zoneplan_make(const VesselTree *tree, const IndexLists *incident, const IndexLists *blending,
+                     const Zones *zones, uint32_t zone, ZonePlan *out, Err *err)
 {
     Planner planner = {tree, incident, blending, zones, .zone = zone};
     ZonePlan *plan = &planner.plan;

@@ -28,7 +28,7 @@ static const double round_room = 0.375;
 
 typedef struct Divider {
     const VesselTree *tree;
-    const NumberLists *incident, *blending;
+    const IndexLists *incident, *blending;
     uint32_t *root; /* union-find over nodes */
     bool *joined;   /* whether a node is in a zone with others */
     FreeEnd (*ends)[2];
@@ -41,7 +41,7 @@ typedef struct Divider {
 void zones_release(Zones *zones)
 {
     free(zones->zone);
-    numberlists_release(&zones->nodes);
+    indexlists_release(&zones->nodes);
     free(zones->plane);
     free(zones->is_tube);
     free(zones->is_close);
@@ -61,7 +61,7 @@ static Vec3 point_from(const FieldSegment *segment, int end, double mm)
     return vec3_add_scaled(from, vec3_normalized(vec3_sub(to, from)), mm);
 }
 
-static bool is_end(const NumberLists *incident, uint32_t node)
+static bool is_end(const IndexLists *incident, uint32_t node)
 {
     return incident->first[node + 1] - incident->first[node] == 1;
 }
@@ -228,8 +228,8 @@ static bool push_plane(Divider *divider, uint32_t a, uint32_t b)
 static bool blend_somewhere(const Divider *divider, uint32_t a, uint32_t b)
 {
     for (int end = 0; end < 2; end++)
-        if (numberlists_hold(divider->blending, divider->tree->nodes[a][end], b) ||
-            numberlists_hold(divider->blending, divider->tree->nodes[b][end], a))
+        if (indexlists_hold(divider->blending, divider->tree->nodes[a][end], b) ||
+            indexlists_hold(divider->blending, divider->tree->nodes[b][end], a))
             return true;
     return false;
 }
@@ -266,7 +266,7 @@ static bool part_near(Divider *divider, const NearPair *pairs, size_t n)
 }
 
 /* Lists the nodes of each zone under its root. */
-static Status list_nodes(const Divider *divider, NumberLists *lists, Err *err)
+static Status list_nodes(const Divider *divider, IndexLists *lists, Err *err)
 {
     size_t n = divider->tree->n_nodes;
     TRY(mem_calloc(&lists->first, n + 2, sizeof *lists->first, "zones", err));
@@ -295,7 +295,7 @@ static FieldSegment part_in_zone(const Divider *divider, uint32_t segment, int e
 
 /* Whether what lies behind the plane of an arm keeps off the vessels of the zone that do not blend
  * with it. */
-static bool is_off(const Divider *divider, const NumberLists *nodes, uint32_t segment, int end)
+static bool is_off(const Divider *divider, const IndexLists *nodes, uint32_t segment, int end)
 {
     uint32_t node = divider->tree->nodes[segment][end], root = root_of(divider, node);
     FieldSegment tail = part_in_zone(divider, segment, end, divider->plane[segment][end]);
@@ -303,7 +303,7 @@ static bool is_off(const Divider *divider, const NumberLists *nodes, uint32_t se
         const uint32_t *first = &divider->incident->first[nodes->items[i]];
         for (uint32_t k = first[0]; k < first[1]; k++) {
             uint32_t other = divider->incident->items[k];
-            if (other == segment || numberlists_hold(divider->blending, node, other))
+            if (other == segment || indexlists_hold(divider->blending, node, other))
                 continue;
             int its_end = segment_end_at(divider->tree, other, nodes->items[i]);
             FieldSegment part = part_in_zone(divider, other, its_end, 0);
@@ -319,7 +319,7 @@ static bool is_off(const Divider *divider, const NumberLists *nodes, uint32_t se
 static Status join_crowded(Divider *divider, bool *changed, Err *err)
 {
     const VesselTree *tree = divider->tree;
-    NumberLists nodes = {0};
+    IndexLists nodes = {0};
     Status status;
     TRY_GOTO(list_nodes(divider, &nodes, err));
     for (uint32_t i = 0; i < tree->n_segments; i++)
@@ -331,7 +331,7 @@ static Status join_crowded(Divider *divider, bool *changed, Err *err)
             divider->is_whole[i] = *changed = true;
         }
 done:
-    numberlists_release(&nodes);
+    indexlists_release(&nodes);
     return status;
 }
 
@@ -352,7 +352,7 @@ static Status divide(Divider *divider, const NearPair *pairs, size_t n_pairs, Er
 static Status number_zones(const Divider *divider, Zones *zones, Err *err)
 {
     const VesselTree *tree = divider->tree;
-    NumberLists *lists = &zones->nodes;
+    IndexLists *lists = &zones->nodes;
     TRY(mem_calloc(&zones->zone, tree->n_nodes, sizeof *zones->zone, "nodes", err));
     for (uint32_t i = 0; i < tree->n_nodes; i++) {
         uint32_t first = divider->incident->first[i], root = root_of(divider, i);
@@ -394,7 +394,7 @@ static void keep_strangers(const Divider *divider, NearPair *pairs, size_t n, Zo
     qsort(pairs, zones->n_strangers, sizeof *pairs, compare_gaps);
 }
 
-Status zones_find(const VesselTree *tree, const NumberLists *incident, const NumberLists *blending,
+Status zones_find(const VesselTree *tree, const IndexLists *incident, const IndexLists *blending,
                   const MeshParams *params, Zones *out, Err *err)
 {
     Zones zones = {.moved = freeends_moved(params)};

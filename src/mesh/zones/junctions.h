@@ -11,7 +11,7 @@
 typedef struct Zones {
     uint32_t *zone; /* one a node; NO_ZONE: the vessel is cut off flat there */
     uint32_t n_zones;
-    NumberLists nodes;   /* of each zone, in place of segments of nodes */
+    IndexLists nodes;    /* of each zone, in place of segments of nodes */
     double (*plane)[2];  /* one a segment: where its tube begins, from either end, mm; where the end
                           * is flat, 0 */
     bool *is_tube;       /* one a segment; else it lies in one zone, whole */
@@ -23,8 +23,8 @@ typedef struct Zones {
 } Zones;
 
 /* Cuts the tree. */
-MUST_CHECK Status zones_find(const VesselTree *tree, const NumberLists *incident,
-                             const NumberLists *blending, const MeshParams *params, Zones *out,
+MUST_CHECK Status zones_find(const VesselTree *tree, const IndexLists *incident,
+                             const IndexLists *blending, const MeshParams *params, Zones *out,
                              Err *err);
 void zones_release(Zones *zones);
 
@@ -50,8 +50,8 @@ typedef struct ZonePlan {
 #define PLANE_MOVE 0.125
 #define CLOSE_MOVE 0.06
 
-MUST_CHECK Status zoneplan_make(const VesselTree *tree, const NumberLists *incident,
-                                const NumberLists *blending, const Zones *zones, uint32_t zone,
+MUST_CHECK Status zoneplan_make(const VesselTree *tree, const IndexLists *incident,
+                                const IndexLists *blending, const Zones *zones, uint32_t zone,
                                 ZonePlan *out, Err *err);
 void zoneplan_release(ZonePlan *plan);
 

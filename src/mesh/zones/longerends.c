@@ -21,7 +21,7 @@ typedef struct FreeTip {
 
 typedef struct Lengthening {
     VesselTree *tree;
-    NumberLists incident, blending;
+    IndexLists incident, blending;
     Zones zones;
     FreeTip *tips;
     size_t n_tips;
@@ -54,7 +54,7 @@ static Status list_tips(Lengthening *all, Err *err)
 static Status find_zones(Lengthening *all, const MeshParams *params, Err *err)
 {
     zones_release(&all->zones);
-    numberlists_release(&all->blending);
+    indexlists_release(&all->blending);
     TRY(vesseltree_blending(all->tree, &all->incident, &all->blending, err));
     return zones_find(all->tree, &all->incident, &all->blending, params, &all->zones, err);
 }
@@ -131,8 +131,8 @@ Status vesseltree_free_ends(VesselTree *tree, const MeshParams *params, uint32_t
     } while (put_back_overlapping(&all) || lengthen(&all));
     TRY_GOTO(list_longer(&all, lengthened, n, err));
 done:
-    numberlists_release(&all.incident);
-    numberlists_release(&all.blending);
+    indexlists_release(&all.incident);
+    indexlists_release(&all.blending);
     zones_release(&all.zones);
     free(all.tips);
     return status;

@@ -15,7 +15,7 @@ enum { MOST_ROUNDS = 12 };
 
 typedef struct Parting {
     VesselTree *tree;
-    NumberLists incident, blending;
+    IndexLists incident, blending;
     Zones zones;
     double *kept;  /* one a segment: of its radius in this round */
     double *radii; /* as they were at first */
@@ -61,8 +61,8 @@ static Status thin_pairs(Parting *parting, Err *err)
 
 static void release_round(Parting *parting)
 {
-    numberlists_release(&parting->incident);
-    numberlists_release(&parting->blending);
+    indexlists_release(&parting->incident);
+    indexlists_release(&parting->blending);
     zones_release(&parting->zones);
 }
 
