@@ -5,8 +5,6 @@
  * are in the domain (connection_is_inside), and clear of all others (connection_clearance). */
 #include "grow/connection.h"
 
-#include "grow/trunk.h"
-
 #include <string.h>
 
 /* Vessels widen as the tree below them grows: the rules hold for radii this much greater, and so at

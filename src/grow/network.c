@@ -17,7 +17,6 @@
  * between candidates, never the tree's own figures. */
 #include "grow/network.h"
 
-#include "grow/trunk.h"
 #include <float.h>
 #include <stdlib.h>
 
