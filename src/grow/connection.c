@@ -11,8 +11,8 @@
  * the end of growth for nearly all vessels at their final radii. For length, and for keeping clear
  * of others. */
 static const double length_reserve = 1.15, clearance_reserve = 1.1;
-/* Bifurcations keep this many times the least length from the ends, as radii change a little too.
- */
+/* Bifurcations keep this many times the least length from the ends, as radii change a little
+ * too. */
 static const double margin = 1.02;
 /* How often the place of the connection that is made is found anew. */
 enum { ROUNDS = 2 };

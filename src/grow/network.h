@@ -243,8 +243,8 @@ void network_resum(Network *net);
  * Cost     O(n). */
 MUST_CHECK Status network_reorder(Network *net, Err *err);
 
-/* ---- the trunk --------------------------------------------------------------------------------
- */
+/* ---- the trunk
+ * -------------------------------------------------------------------------------- */
 
 /* The greatest share of the drop of pressure that may be spent along a trunk. */
 #define TRUNK_MOST_SPENT 0.999

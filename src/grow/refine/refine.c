@@ -34,8 +34,8 @@
 
 /* Temperatures over S_root a segment: of annealing at first and at last, and of repairs. */
 static const double hot = 1, cold = 0.02, warm = 0.05;
-/* The penalty for a mm meanwhile, relative to S_root for each mm of vessels, at first and at last.
- */
+/* The penalty for a mm meanwhile, relative to S_root for each mm of vessels, at first and at
+ * last. */
 static const double first_rate = 0.1, last_rate = 2;
 /* The share of the budget that is left then: what so many moves a terminal take, within limits. */
 static const double last_moves = 40, least_left = 0.1, most_left = 0.5;
@@ -283,8 +283,8 @@ static Status repair(Refinement *refinement, bool *over, Err *err)
 }
 
 /* The moves of a cycle: of annealing, mending and the descent after it. Several cycles find more in
- * a small tree than one long one: where bifurcations would merge, T is right only after a descent.
- */
+ * a small tree than one long one: where bifurcations would merge, T is right only after a
+ * descent. */
 static double cycle_moves(const Refinement *refinement)
 {
     double terminals = (double)refinement->search.arbor.terminals;
