@@ -11,16 +11,16 @@
 #include <string.h>
 
 enum { ZONES_A_TRIM = 1024 };
-typedef struct RimPlace {
+typedef struct RimRange {
     uint32_t first, n; /* in rim_points of the assembly */
-} RimPlace;
+} RimRange;
 
 typedef struct Assembly {
     const VesselTree *tree;
-    const Zones *zones;
+    const Junctions *junctions;
     VesselMesh *mesh;
     double grid_mm;
-    RimPlace (*rims)[2]; /* one a segment and end */
+    RimRange (*rims)[2]; /* one a segment and end */
     uint32_t *rim_points;
     size_t n_rim_points;
     double *angles; /* of the rims of one tube */
@@ -54,13 +54,13 @@ static void add_triangle(const Assembly *assembly, uint32_t a, uint32_t b, uint3
 }
 
 /* The segment that two of the corners are nearest to, or the first one's. */
-static uint32_t label_of(const ZonePiece *piece, const uint32_t at[3])
+static uint32_t label_of(const JunctionMesh *piece, const uint32_t at[3])
 {
     uint32_t a = piece->points[at[0]].segment, b = piece->points[at[1]].segment;
     return b == piece->points[at[2]].segment ? b : a;
 }
 
-static void add_piece(Assembly *assembly, ZonePiece *piece)
+static void add_piece(Assembly *assembly, JunctionMesh *piece)
 {
     VesselMesh *mesh = assembly->mesh;
     uint32_t offset = (uint32_t)mesh->n_points;
@@ -75,7 +75,7 @@ static void add_piece(Assembly *assembly, ZonePiece *piece)
     for (size_t i = 0; i < piece->n_rims; i++) {
         const Rim *rim = &piece->rims[i];
         assembly->rims[rim->segment][rim->end] =
-            (RimPlace){(uint32_t)assembly->n_rim_points, rim->n};
+            (RimRange){(uint32_t)assembly->n_rim_points, rim->n};
         for (uint32_t k = 0; k < rim->n; k++)
             assembly->rim_points[assembly->n_rim_points++] =
                 offset + piece->rim_points[rim->first + k];
@@ -88,10 +88,10 @@ static Vec3 axis_of(const FieldSegment *segment)
 }
 
 /* A regular rim on a segment's wall about a place on its axis, turned by a part of a side. */
-static RimPlace add_rim(Assembly *assembly, const FieldSegment *self, Vec3 at, double turn)
+static RimRange add_rim(Assembly *assembly, const FieldSegment *self, Vec3 at, double turn)
 {
     Vec3 u, v;
-    RimPlace rim = {(uint32_t)assembly->n_rim_points, assembly->sides};
+    RimRange rim = {(uint32_t)assembly->n_rim_points, assembly->sides};
     vec3_across(axis_of(self), &u, &v);
     for (uint32_t i = 0; i < rim.n; i++) {
         double angle = FULL_TURN * ((i + turn) / rim.n - 0.5);
@@ -108,7 +108,7 @@ static void add_cap(Assembly *assembly, uint32_t segment, int end)
 {
     const FieldSegment *self = &assembly->tree->segments[segment];
     Vec3 at = end ? self->b : self->a, axis = axis_of(self);
-    RimPlace *rim = &assembly->rims[segment][end];
+    RimRange *rim = &assembly->rims[segment][end];
     *rim = add_rim(assembly, self, at, 0.5);
     uint32_t middle = add_point(assembly, at, vec3_scale(axis, end ? 1 : -1));
     const uint32_t *points = &assembly->rim_points[rim->first];
@@ -120,7 +120,7 @@ static void add_cap(Assembly *assembly, uint32_t segment, int end)
 
 /* Angles of a rim's points about the axis, rising from about -pi on: each is the one nearest to
  * that before it, as rounding may have carried a point at -pi or pi over to the other. */
-static void find_angles(const Assembly *assembly, const FieldSegment *segment, RimPlace rim,
+static void find_angles(const Assembly *assembly, const FieldSegment *segment, RimRange rim,
                         double *angles)
 {
     Vec3 u, v;
@@ -146,11 +146,11 @@ static void measure_rim(const Assembly *assembly, const double *angles, uint32_t
     double widest = 0;
     for (uint32_t i = 0; i < n; i++)
         widest = fmax(widest, turned_angle(angles, n, i + 1) - angles[i]);
-    double off = 1 - elementary_cos(widest / 2) + assembly->zones->moved;
+    double off = 1 - elementary_cos(widest / 2) + assembly->junctions->moved;
     meshoff_add(assembly->off, radius * off, radius);
 }
 
-static Status add_strip(Assembly *assembly, uint32_t segment, RimPlace a, RimPlace b, Err *err)
+static Status add_strip(Assembly *assembly, uint32_t segment, RimRange a, RimRange b, Err *err)
 {
     const FieldSegment *self = &assembly->tree->segments[segment];
     TRY(mem_reserve(&assembly->angles, &assembly->angle_capacity, (size_t)a.n + b.n,
@@ -180,7 +180,7 @@ static Status add_strip(Assembly *assembly, uint32_t segment, RimPlace a, RimPla
 static uint32_t count_rims(const Assembly *assembly, uint32_t segment)
 {
     const FieldSegment *self = &assembly->tree->segments[segment];
-    const double *plane = assembly->zones->plane[segment];
+    const double *plane = assembly->junctions->plane[segment];
     if (assembly->tube_edge == 0)
         return 0;
     double edges = (vec3_distance(self->a, self->b) - plane[0] - plane[1]) /
@@ -189,7 +189,7 @@ static uint32_t count_rims(const Assembly *assembly, uint32_t segment)
 }
 
 /* How far along its segment a rim lies, mm. */
-static double rim_along(const Assembly *assembly, const FieldSegment *self, RimPlace rim)
+static double rim_along(const Assembly *assembly, const FieldSegment *self, RimRange rim)
 {
     double sum = 0;
     for (uint32_t i = 0; i < rim.n; i++) {
@@ -203,12 +203,12 @@ static double rim_along(const Assembly *assembly, const FieldSegment *self, RimP
 static Status add_tube(Assembly *assembly, uint32_t segment, Err *err)
 {
     const FieldSegment *self = &assembly->tree->segments[segment];
-    RimPlace a = assembly->rims[segment][0], b = assembly->rims[segment][1];
+    RimRange a = assembly->rims[segment][0], b = assembly->rims[segment][1];
     uint32_t n = count_rims(assembly, segment);
     double from = n ? rim_along(assembly, self, a) : 0, to = n ? rim_along(assembly, self, b) : 0;
     for (uint32_t i = 1; i <= n; i++) {
         Vec3 at = vec3_add_scaled(self->a, axis_of(self), from + (to - from) * i / (n + 1));
-        RimPlace next = add_rim(assembly, self, at, i % 2 ? 1 : 0.5);
+        RimRange next = add_rim(assembly, self, at, i % 2 ? 1 : 0.5);
         TRY(add_strip(assembly, segment, a, next, err));
         a = next;
     }
@@ -219,16 +219,16 @@ static uint32_t count_caps(const Assembly *assembly)
 {
     uint32_t caps = 0;
     for (uint32_t i = 0; i < assembly->tree->n_segments; i++)
-        for (int end = 0; end < 2 && assembly->zones->is_tube[i]; end++)
-            caps += assembly->zones->zone[assembly->tree->nodes[i][end]] == NO_ZONE;
+        for (int end = 0; end < 2 && assembly->junctions->is_tube[i]; end++)
+            caps += assembly->junctions->of_node[assembly->tree->nodes[i][end]] == NO_JUNCTION;
     return caps;
 }
 
-static Status reserve(Assembly *assembly, const ZonePiece *pieces, Err *err)
+static Status reserve(Assembly *assembly, const JunctionMesh *pieces, Err *err)
 {
     size_t caps = count_caps(assembly), rims = caps * assembly->sides;
     size_t points = caps * (assembly->sides + 1), triangles = rims;
-    for (uint32_t z = 0; z < assembly->zones->n_zones; z++) {
+    for (uint32_t z = 0; z < assembly->junctions->n_junctions; z++) {
         points += pieces[z].n_points;
         triangles += pieces[z].n_triangles;
         for (size_t i = 0; i < pieces[z].n_rims; i++)
@@ -237,7 +237,8 @@ static Status reserve(Assembly *assembly, const ZonePiece *pieces, Err *err)
     VesselMesh *mesh = assembly->mesh;
     triangles += rims;
     for (uint32_t i = 0; i < assembly->tree->n_segments; i++) {
-        size_t more = assembly->zones->is_tube[i] ? count_rims(assembly, i) * assembly->sides : 0;
+        size_t more =
+            assembly->junctions->is_tube[i] ? count_rims(assembly, i) * assembly->sides : 0;
         points += more;
         rims += more;
         triangles += 2 * more;
@@ -251,12 +252,13 @@ static Status reserve(Assembly *assembly, const ZonePiece *pieces, Err *err)
                       err);
 }
 
-Status assemble_mesh(const VesselTree *tree, const Zones *zones, ZonePiece *pieces, uint32_t sides,
-                     double tube_edge, double grid_mm, VesselMesh *mesh, MeshOff *off, Err *err)
+Status assemble_mesh(const VesselTree *tree, const Junctions *junctions, JunctionMesh *pieces,
+                     uint32_t sides, double tube_edge, double grid_mm, VesselMesh *mesh,
+                     MeshOff *off, Err *err)
 {
     VesselMesh made = {0};
     Assembly assembly = {.tree = tree,
-                         .zones = zones,
+                         .junctions = junctions,
                          .mesh = &made,
                          .grid_mm = grid_mm,
                          .sides = sides,
@@ -264,17 +266,17 @@ Status assemble_mesh(const VesselTree *tree, const Zones *zones, ZonePiece *piec
                          .off = off};
     Status status;
     TRY_GOTO(reserve(&assembly, pieces, err));
-    for (uint32_t z = 0; z < zones->n_zones; z++) {
+    for (uint32_t z = 0; z < junctions->n_junctions; z++) {
         add_piece(&assembly, &pieces[z]);
-        zonepiece_release(&pieces[z]);
+        junctionmesh_release(&pieces[z]);
         if (z % ZONES_A_TRIM == 0)
             mem_trim();
     }
     for (uint32_t i = 0; i < tree->n_segments; i++) {
-        if (!zones->is_tube[i])
+        if (!junctions->is_tube[i])
             continue;
         for (int end = 0; end < 2; end++)
-            if (zones->zone[tree->nodes[i][end]] == NO_ZONE)
+            if (junctions->of_node[tree->nodes[i][end]] == NO_JUNCTION)
                 add_cap(&assembly, i, end);
         TRY_GOTO(add_tube(&assembly, i, err));
     }

@@ -139,8 +139,8 @@ static bool may_collapse(const Work *work, uint32_t point, const Ring *ring, uin
 {
     const PatchPoint *points = work->patch->points;
     int shared = shared_triangles(ring, target);
-    bool on_rim = points[point].arm != NO_ARM;
-    if (on_rim && (shared != 1 || points[target].arm != points[point].arm))
+    bool on_rim = points[point].stub != NO_STUB;
+    if (on_rim && (shared != 1 || points[target].stub != points[point].stub))
         return false;
     for (int i = 0; i < ring->n; i++)
         if (ring->to[i] != target && !edge_is_near(work, target, ring->to[i]))
@@ -203,7 +203,7 @@ static bool try_point(const Work *work, uint32_t point)
     int n = 0;
     for (; n < ring.n; n++)
         insert_neighbor(work, point, ring.to[n], list, n);
-    bool on_rim = work->patch->points[point].arm != NO_ARM;
+    bool on_rim = work->patch->points[point].stub != NO_STUB;
     for (int i = 0; i < ring.n && on_rim; i++)
         if (shared_triangles(&ring, ring.from[i]) == 1)
             insert_neighbor(work, point, ring.from[i], list, n++);
@@ -238,7 +238,7 @@ static Status prepare(Collapser *collapser, const Patch *patch, Err *err)
     return STATUS_OK;
 }
 
-Status collapse_make(Collapser *collapser, Patch *patch, double sagitta, Err *err)
+Status collapse_apply(Collapser *collapser, Patch *patch, double sagitta, Err *err)
 {
     const Work work = {collapser, patch, sagitta};
     TRY(prepare(collapser, patch, err));

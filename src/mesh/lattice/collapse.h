@@ -18,6 +18,6 @@ void collapser_release(Collapser *collapser);
 /* Moves points into neighbours while no new edge is farther from the surface between its ends than
  * `sagitta` of the local radius. All points stay on the surface; a rim's points stay on the rim.
  * What the patch is topologically does not change. */
-MUST_CHECK Status collapse_make(Collapser *collapser, Patch *patch, double sagitta, Err *err);
+MUST_CHECK Status collapse_apply(Collapser *collapser, Patch *patch, double sagitta, Err *err);
 
 #endif

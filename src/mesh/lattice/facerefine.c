@@ -27,8 +27,8 @@ typedef enum TriangleState {
 
 typedef struct Refining {
     Refiner *refiner;
-    const ZoneField *field;
-    const ZoneTree *tree;
+    const JunctionField *field;
+    const Octree *tree;
     Patch *patch;
     MeshOff *off;
     double split, limit; /* in the last round nothing is too far off */
@@ -37,7 +37,7 @@ typedef struct Refining {
 
 void refiner_release(Refiner *refiner)
 {
-    pairtable_release(&refiner->edges);
+    keymap_release(&refiner->edges);
     free(refiner->states);
     free(refiner->renamed);
     *refiner = (Refiner){0};
@@ -46,12 +46,12 @@ void refiner_release(Refiner *refiner)
 /* Whether a place is inside the wall, as far as is known: behind a plane it is as `otherwise`. */
 static bool is_inside(const Refining *refining, Vec3 x, bool otherwise)
 {
-    const ZoneTree *tree = refining->tree;
-    const ZoneCell *cell = zonetree_leaf(tree, x);
+    const Octree *tree = refining->tree;
+    const OctreeCell *cell = octree_leaf(tree, x);
     if (!cell || cell->state == CELL_OUTSIDE)
         return false;
     if (cell->state == CELL_ACTIVE)
-        return fieldpart_value(refining->field, &tree->kept, &cell->part, x).phi >= FIELD_LEVEL;
+        return localfield_value(refining->field, &tree->kept, &cell->part, x).phi >= FIELD_LEVEL;
     return cell->state == CELL_INSIDE || otherwise;
 }
 
@@ -80,14 +80,14 @@ static double search_wall(const Refining *refining, Vec3 x, bool inside, Vec3 ou
 static double measure_at(const Refining *refining, Vec3 x, Vec3 normal, double radius_mm)
 {
     static const double near = 0.02, steep = FIELD_LEVEL;
-    const ZoneTree *tree = refining->tree;
-    const ZoneCell *cell = zonetree_leaf(tree, x);
+    const Octree *tree = refining->tree;
+    const OctreeCell *cell = octree_leaf(tree, x);
     Vec3 gradient;
     if (!cell || cell->state == CELL_BEHIND)
         return 0;
     if (cell->state != CELL_ACTIVE)
         return search_wall(refining, x, cell->state == CELL_INSIDE, normal, radius_mm);
-    FieldValue value = fieldpart_gradient(refining->field, &tree->kept, &cell->part, x, &gradient);
+    FieldValue value = localfield_gradient(refining->field, &tree->kept, &cell->part, x, &gradient);
     double slope = vec3_length(gradient), off = fabs(value.phi - FIELD_LEVEL) / slope;
     if (off <= near * radius_mm && slope * radius_mm >= steep)
         return off;
@@ -142,14 +142,14 @@ static bool find_point(const Refining *refining, uint32_t a, uint32_t b, PatchPo
     Vec3 middle = middle_of(refining, a, b), x = middle, gradient;
     double most = most_moved * length_of(refining, a, b);
     for (int i = 0; i < MOST_STEPS; i++) {
-        const ZoneCell *cell = zonetree_leaf(refining->tree, x);
+        const OctreeCell *cell = octree_leaf(refining->tree, x);
         if (!cell || cell->state != CELL_ACTIVE || vec3_distance(x, middle) > most)
             return false;
         FieldValue value =
-            fieldpart_gradient(refining->field, &refining->tree->kept, &cell->part, x, &gradient);
+            localfield_gradient(refining->field, &refining->tree->kept, &cell->part, x, &gradient);
         double steepness = vec3_length(gradient);
         if (fabs(value.phi - FIELD_LEVEL) <= precisely * FIELD_LEVEL) {
-            *point = patch_wall_point(refining->field, x, &value, gradient);
+            *point = patch_surface_point(refining->field, x, &value, gradient);
             return vec3_dot(point->normal, one->normal) >= alike &&
                    vec3_dot(point->normal, other->normal) >= alike;
         }
@@ -166,11 +166,11 @@ static Status mark_edge(const Refining *refining, uint32_t a, uint32_t b, bool *
     const PatchPoint *points = refining->patch->points;
     uint32_t *place;
     PatchPoint point;
-    bool is_new, on_rim = points[a].arm != NO_ARM && points[a].arm == points[b].arm;
+    bool is_new, on_rim = points[a].stub != NO_STUB && points[a].stub == points[b].stub;
     *marked = false;
     if (on_rim)
         return STATUS_OK;
-    TRY(pairtable_place(&refining->refiner->edges, pair_key(a, b), &place, &is_new, refining->err));
+    TRY(keymap_put(&refining->refiner->edges, key_of_pair(a, b), &place, &is_new, refining->err));
     if (is_new) {
         *place = NONE;
         if (find_point(refining, a, b, &point))
@@ -233,7 +233,7 @@ static Status look_at(const Refining *refining, size_t number)
 /* The point that an edge is to be split at, or NONE. */
 static uint32_t point_on(const Refining *refining, uint32_t a, uint32_t b)
 {
-    const uint32_t *place = pairtable_find(&refining->refiner->edges, pair_key(a, b));
+    const uint32_t *place = keymap_find(&refining->refiner->edges, key_of_pair(a, b));
     return place ? *place : NONE;
 }
 
@@ -250,7 +250,7 @@ static void spare_edges(const Refining *refining, const Triangle *triangle)
     const PatchPoint *points = refining->patch->points;
     for (int i = 0; i < 3; i++) {
         uint32_t a = triangle->at[i], b = triangle->at[(i + 1) % 3], c = triangle->at[(i + 2) % 3];
-        uint32_t *place = pairtable_find(&refining->refiner->edges, pair_key(a, b));
+        uint32_t *place = keymap_find(&refining->refiner->edges, key_of_pair(a, b));
         if (!place || *place == NONE)
             continue;
         const PatchPoint *at = &points[*place];
@@ -298,7 +298,7 @@ static Status refine_once(const Refining *refining, bool *changed)
     Refiner *refiner = refining->refiner;
     const Patch *patch = refining->patch;
     size_t n = patch->n_triangles, n_points = patch->n_points;
-    TRY(pairtable_begin(&refiner->edges, 0, refining->err));
+    TRY(keymap_begin(&refiner->edges, 0, "points of a junction", refining->err));
     for (size_t i = 0; i < n; i++)
         if (refiner->states[i] != TRIANGLE_STUBBORN)
             TRY(look_at(refining, i));
@@ -310,8 +310,8 @@ static Status refine_once(const Refining *refining, bool *changed)
     return STATUS_OK;
 }
 
-Status refine_make(Refiner *refiner, const ZonePlan *plan, const ZoneTree *tree, double limit,
-                   Patch *patch, MeshOff *off, Err *err)
+Status facerefine_apply(Refiner *refiner, const JunctionPlan *plan, const Octree *tree,
+                        double limit, Patch *patch, MeshOff *off, Err *err)
 {
     Refining refining = {refiner, &plan->field, tree, patch, off, limit, limit, err};
     size_t n_points = patch->n_points;

@@ -10,15 +10,16 @@ void patch_release(Patch *patch)
     *patch = (Patch){0};
 }
 
-PatchPoint patch_wall_point(const ZoneField *field, Vec3 x, const FieldValue *value, Vec3 gradient)
+PatchPoint patch_surface_point(const JunctionField *field, Vec3 x, const FieldValue *value,
+                               Vec3 gradient)
 {
-    const ZoneTerm *term = &field->terms[value->largest];
+    const PotentialTerm *term = &field->terms[value->largest];
     return (PatchPoint){.x = x,
                         .normal = vec3_scale(gradient, -1 / vec3_length(gradient)),
                         .radius_mm = term->radius_mm,
                         .segment = term->segment,
-                        .tube = term->arm,
-                        .arm = NO_ARM};
+                        .tube = term->stub,
+                        .stub = NO_STUB};
 }
 
 Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *number, Err *err)

@@ -12,8 +12,8 @@ typedef struct PatchPoint {
     Vec3 normal;      /* unit, outward */
     double radius_mm; /* of the vessel whose term is largest there */
     uint32_t segment; /* that vessel */
-    uint16_t tube;    /* that vessel's arm, or NO_ARM */
-    uint16_t arm;     /* the arm on the rim of whose plane it lies, or NO_ARM */
+    uint16_t tube;    /* that vessel's stub, or NO_STUB */
+    uint16_t stub;    /* the stub on the rim of whose plane it lies, or NO_STUB */
 } PatchPoint;
 
 typedef struct Triangle {
@@ -30,7 +30,8 @@ typedef struct Patch {
 void patch_release(Patch *patch);
 
 /* A point of the wall where the field has this value and gradient. */
-PatchPoint patch_wall_point(const ZoneField *field, Vec3 x, const FieldValue *value, Vec3 gradient);
+PatchPoint patch_surface_point(const JunctionField *field, Vec3 x, const FieldValue *value,
+                               Vec3 gradient);
 
 MUST_CHECK Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *number, Err *err);
 MUST_CHECK Status patch_add_triangle(Patch *patch, Triangle triangle, Err *err);
