@@ -57,56 +57,6 @@ void junctionworkspace_release(JunctionWorkspace *worker)
     *worker = (JunctionWorkspace){0};
 }
 
-static uint32_t root_of(uint32_t *root, uint32_t point)
-{
-    while (root[point] != point)
-        point = root[point] = root[root[point]];
-    return point;
-}
-
-/* How many connected parts the patch has; next[] becomes a forest of their points. */
-static size_t find_parts(const JunctionWorkspace *worker)
-{
-    const Patch *patch = &worker->patch;
-    size_t parts = patch->n_points;
-    for (uint32_t i = 0; i < patch->n_points; i++)
-        worker->next[i] = i;
-    for (size_t i = 0; i < patch->n_triangles; i++)
-        for (int k = 1; k < 3; k++) {
-            uint32_t a = root_of(worker->next, patch->triangles[i].at[0]);
-            uint32_t b = root_of(worker->next, patch->triangles[i].at[k]);
-            worker->next[a] = b;
-            parts -= a != b;
-        }
-    return parts;
-}
-
-/* Leaves the part with the most points alone: the others are tails of stubs that another vessel
- * hid from the cut. What else is lost with them is found missing. */
-static Status keep_largest(JunctionWorkspace *worker, Err *err)
-{
-    Patch *patch = &worker->patch;
-    PlaneCutter *cutter = &worker->cutter; /* for its room, one number a point */
-    uint32_t best = 0;
-    TRY(mem_reserve(&worker->next, &worker->next_capacity, patch->n_points, sizeof *worker->next,
-                    "points of a junction", err));
-    if (find_parts(worker) < 2)
-        return STATUS_OK;
-    for (size_t i = 0; i < patch->n_points; i++)
-        cutter->renamed[i] = 0;
-    for (uint32_t i = 0; i < patch->n_points; i++) {
-        uint32_t root = root_of(worker->next, i);
-        cutter->renamed[root]++;
-        if (cutter->renamed[root] > cutter->renamed[best])
-            best = root;
-    }
-    for (size_t i = 0; i < patch->n_triangles; i++)
-        if (root_of(worker->next, patch->triangles[i].at[0]) != best)
-            patch->triangles[i].at[0] = NONE;
-    patch_compact(patch, cutter->renamed);
-    return STATUS_OK;
-}
-
 /* Fills next[] with the next point along a rim, NONE off the rims. False when an edge has two
  * triangles on one side, or is open off the rims. */
 static Status follow_edges(const Maker *maker, size_t *n_edges, bool *sound)
@@ -201,7 +151,9 @@ static Status prove(const Maker *maker, bool *sound)
     piece->n_rims = n_stubs;
     for (size_t k = 0; k < n_stubs && *sound; k++)
         *sound = add_rim(maker, k, &n_points);
-    *sound = *sound && find_parts(maker->worker) == 1;
+    size_t parts;
+    TRY(patch_count_parts(&maker->worker->patch, &parts, maker->err));
+    *sound = *sound && parts == 1;
     return STATUS_OK;
 }
 
@@ -243,7 +195,7 @@ static bool find_own_wall(const Maker *maker, const LocalField *all, uint32_t nu
         }
         *at = vec3_add_scaled(from, way, low);
         FieldValue value = localfield_gradient(&plan->field, &tree->stack, all, *at, &gradient);
-        if (plan->field.terms[value.largest].segment == number && !is_in_stub(maker, *at))
+        if (plan->field.terms[value.largest_term].segment == number && !is_in_stub(maker, *at))
             return true;
     }
     return false;
@@ -311,7 +263,7 @@ static Status finish(const Maker *maker, const MeshFineness *fineness, uint8_t *
                        &worker->patch, sound, maker->err));
     if (!*sound)
         return STATUS_OK;
-    TRY(keep_largest(worker, maker->err));
+    TRY(patch_keep_largest(&worker->patch, maker->err));
     TRY(find_statuses(maker, fineness->cells.ratio, segment_status));
     TRY(collapse_apply(&worker->collapser, &worker->patch, fineness->sagitta, maker->err));
     maker->piece->off = (MeshOff){0};

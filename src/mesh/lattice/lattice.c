@@ -310,15 +310,6 @@ static Status edge_ends(Cutter *cutter, const uint32_t around[4], int axis, cons
     return STATUS_OK;
 }
 
-static Status list_tetrahedron(const Cutter *cutter, const uint32_t at[4])
-{
-    TetrahedronList *list = cutter->list;
-    TRY(mem_reserve(&list->items, &list->capacity, list->n + 1, sizeof *list->items,
-                    "points of a junction", cutter->err));
-    list->items[list->n++] = (Tetrahedron){{at[0], at[1], at[2], at[3]}};
-    return STATUS_OK;
-}
-
 /* Four leaves about a smallest edge; the second and third from the first one across. */
 static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
 {
@@ -344,7 +335,9 @@ static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
         TRY(centers[b] ? STATUS_OK : add_center(cutter, from, b));
         at[2] = centers[a];
         at[3] = centers[b];
-        TRY(cutter->list ? list_tetrahedron(cutter, at) : cut_tetrahedron(cutter, from, at));
+        TRY(cutter->list ? ARRAY_PUSH(cutter->list, "points of a junction", cutter->err,
+                                      (Tetrahedron){{at[0], at[1], at[2], at[3]}})
+                         : cut_tetrahedron(cutter, from, at));
     }
     return STATUS_OK;
 }

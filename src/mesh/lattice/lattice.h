@@ -2,7 +2,7 @@
 #ifndef CORCAST_MESH_LATTICE_LATTICE_H
 #define CORCAST_MESH_LATTICE_LATTICE_H
 
-#include "base/keymap.h"
+#include "base/base.h"
 #include "mesh/lattice/octree.h"
 #include "mesh/lattice/patch.h"
 
@@ -26,10 +26,7 @@ typedef struct Tetrahedron {
     uint32_t at[4]; /* points */
 } Tetrahedron;
 
-typedef struct TetrahedronList {
-    Tetrahedron *items; /* owned */
-    size_t n, capacity;
-} TetrahedronList;
+typedef ARRAY(Tetrahedron) TetrahedronList;
 
 /* What one thread needs; zeroed before the first use, and kept for the next junction. */
 typedef struct Lattice {

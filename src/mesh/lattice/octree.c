@@ -44,7 +44,7 @@ void octree_release(Octree *tree)
 static bool is_behind(const Builder *builder, const FieldBounds *bounds, Vec3 center, double ball)
 {
     const JunctionPlan *plan = builder->plan;
-    if (bounds->all - bounds->largest > 0.1 * FIELD_LEVEL)
+    if (bounds->sum_upper - bounds->largest_upper > 0.1 * FIELD_LEVEL)
         return false;
     uint16_t number = plan->field.terms[bounds->largest_term].stub;
     if (number == NO_STUB)
@@ -92,17 +92,19 @@ static double turn_across(const Builder *builder, const LocalField *part, Vec3 c
 static bool must_split(const Builder *builder, const LocalField *part, const FieldBounds *bounds,
                        Vec3 center, double side)
 {
-    double usual = builder->size->ratio * bounds->thinnest;
+    double usual = builder->size->ratio * bounds->min_radius_mm;
     if (side > usual)
         return true;
-    if (bounds->parted)
+    if (bounds->has_unblended_pair)
         return side > parted_part * usual;
-    if (side * bounds->crease > crease_part * builder->size->bending * bounds->thinnest)
+    if (side * bounds->max_normal_difference >
+        crease_part * builder->size->bending * bounds->min_radius_mm)
         return true;
-    if (side < 2 * least_part * usual || bounds->all - bounds->largest < lone * FIELD_LEVEL)
+    if (side < 2 * least_part * usual ||
+        bounds->sum_upper - bounds->largest_upper < lone * FIELD_LEVEL)
         return false;
     return side * turn_across(builder, part, center, side) >
-           builder->size->bending * bounds->thinnest;
+           builder->size->bending * bounds->min_radius_mm;
 }
 
 static Status split(Builder *builder, uint32_t cell, const LocalField *part, Err *err);
@@ -128,7 +130,7 @@ static Status settle(Builder *builder, uint32_t number, const LocalField *part, 
     else if (is_behind(builder, &bounds, center, ball))
         state = CELL_BEHIND;
     tree->cells[number].state = (uint8_t)state;
-    if (state == CELL_ACTIVE && side <= builder->size->ratio * bounds.thinnest &&
+    if (state == CELL_ACTIVE && side <= builder->size->ratio * bounds.min_radius_mm &&
         own.n_terms > MAX_LOCAL_TERMS)
         return localfield_refuse(err);
     if (state == CELL_ACTIVE && cell.level < OCTREE_LEVELS &&

@@ -227,7 +227,7 @@ static Status narrow_groups(LocalFieldPool *pool, const LocalField *part, LocalF
         for (uint32_t i = 0; i < out->words; i++)
             narrow[i] = 0;
         for (uint32_t i = 0; i < out->n_terms; i++)
-            narrow[i / 64] |= (group[pool->work[i].place / 64] >> pool->work[i].place % 64 & 1)
+            narrow[i / 64] |= (group[pool->work[i].index / 64] >> pool->work[i].index % 64 & 1)
                               << i % 64;
         add_group(pool, out);
     }
@@ -342,18 +342,18 @@ static double find_crease(const JunctionField *field, const LocalFieldPool *pool
 static void sum_bounds(const JunctionField *field, const LocalFieldPool *pool,
                        const LocalField *part, Vec3 center, double radius_mm, FieldBounds *bounds)
 {
-    *bounds = (FieldBounds){.thinnest = HUGE_VAL};
+    *bounds = (FieldBounds){.min_radius_mm = HUGE_VAL};
     for (uint32_t i = 0; i < part->n_terms; i++) {
         uint32_t number = pool->terms[part->first_term + i];
         double radius = field->terms[number].radius_mm, upper = pool->work[i].upper;
-        bounds->all += upper;
-        if (upper > bounds->largest) {
-            bounds->largest = upper;
+        bounds->sum_upper += upper;
+        if (upper > bounds->largest_upper) {
+            bounds->largest_upper = upper;
             bounds->largest_term = number;
         }
         if (upper > significant) {
-            bounds->thinnest = fmin(bounds->thinnest, radius);
-            bounds->widest = fmax(bounds->widest, radius);
+            bounds->min_radius_mm = fmin(bounds->min_radius_mm, radius);
+            bounds->max_radius_mm = fmax(bounds->max_radius_mm, radius);
         }
     }
     for (uint32_t g = 0; g < part->n_groups; g++) {
@@ -367,9 +367,9 @@ static void sum_bounds(const JunctionField *field, const LocalFieldPool *pool,
     }
     bool is_round = field->n_terms > 0 && field->terms[0].is_round;
     if (is_round)
-        bounds->crease = find_crease(field, pool, part, center, radius_mm);
+        bounds->max_normal_difference = find_crease(field, pool, part, center, radius_mm);
     else
-        bounds->parted = part->n_groups > 1 && has_parted(pool, part);
+        bounds->has_unblended_pair = part->n_groups > 1 && has_parted(pool, part);
 }
 
 Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool, const LocalField *part,
@@ -465,7 +465,7 @@ static FieldValue gradient_of_largest(const JunctionField *field, const LocalFie
         if (group[i / 64] >> i % 64 & 1)
             add_term(&sum, &field->terms[terms[i]], terms[i], &places[i], values[i]);
     *gradient = sum.gradient;
-    best.largest = sum.largest_term;
+    best.largest_term = sum.largest_term;
     return best;
 }
 
@@ -483,7 +483,7 @@ FieldValue localfield_gradient(const JunctionField *field, const LocalFieldPool 
         add_term(&sum, term, terms[i], &place, value_at(term, &place));
     }
     *gradient = sum.gradient;
-    return (FieldValue){.phi = sum.phi, .largest = sum.largest_term};
+    return (FieldValue){.phi = sum.phi, .largest_term = sum.largest_term};
 }
 
 double field_height(double phi)
