@@ -253,7 +253,7 @@ static Status list_closed(Making *making, Err *err)
 {
     PrintReport *report = &making->report;
     const VesselTree *tree = making->tree;
-    NumberLists incident = {0};
+    IndexLists incident = {0};
     Status status;
     TRY_GOTO(vesseltree_incident(tree, &incident, err));
     TRY_GOTO(
@@ -266,7 +266,7 @@ static Status list_closed(Making *making, Err *err)
                 report->closed[report->n_closed++] = i;
         }
 done:
-    numberlists_release(&incident);
+    indexlists_release(&incident);
     return status;
 }
 

@@ -27,7 +27,7 @@ typedef struct Standing {
     VesselTree *tree;
     const PrintBase *base;
     BoxTree boxes;         /* of the tree as it was; owned */
-    NumberLists incident;  /* likewise ... */
+    IndexLists incident;   /* likewise ... */
     size_t incident_nodes; /* ... which had so many nodes */
     Foot *feet;
     size_t n_feet, foot_capacity;
@@ -310,7 +310,7 @@ Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, const M
     standing.pins = (Pins){0};
 done:
     boxtree_release(&standing.boxes);
-    numberlists_release(&standing.incident);
+    indexlists_release(&standing.incident);
     free(standing.feet);
     pins_release(&standing.pins);
     return status;

@@ -179,7 +179,7 @@ static int compare_numbers(const void *a, const void *b)
 static Status list_others(EndSearch *search, const FreeEndInput *input, uint32_t segment, Err *err)
 {
     const VesselTree *tree = input->tree;
-    const NumberLists *blending = input->blending, *incident = input->incident;
+    const IndexLists *blending = input->blending, *incident = input->incident;
     double limit = BLEND_REACH * search->self->radius_mm;
     TRY(ARRAY_PUSH(&search->steps, "terms", err,
                    (BlendStep){tree->nodes[segment][search->end], segment, 0}));

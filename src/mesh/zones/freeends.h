@@ -20,7 +20,7 @@ double freeends_moved(const MeshParams *params);
 /* The tree, with lists of segments per node. All pointers are borrowed. */
 typedef struct FreeEndInput {
     const VesselTree *tree;
-    const NumberLists *incident, *blending; /* segments with an end at the node; that blend there */
+    const IndexLists *incident, *blending; /* segments with an end at the node; that blend there */
     const TreeOrder *order;
     const MeshParams *params;
 } FreeEndInput;

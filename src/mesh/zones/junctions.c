@@ -40,8 +40,8 @@ typedef struct Divider {
 
 void junctions_release(Junctions *junctions)
 {
-    numberlists_release(&junctions->incident);
-    numberlists_release(&junctions->blending);
+    indexlists_release(&junctions->incident);
+    indexlists_release(&junctions->blending);
     indexlists_release(&junctions->nodes);
     free(junctions->of_node);
     free(junctions->plane);
@@ -218,8 +218,8 @@ static bool push_plane(Divider *divider, uint32_t a, uint32_t b)
 static bool blend_somewhere(const Divider *divider, uint32_t a, uint32_t b)
 {
     for (int end = 0; end < 2; end++)
-        if (numberlists_hold(&divider->junctions->blending, divider->tree->nodes[a][end], b) ||
-            numberlists_hold(&divider->junctions->blending, divider->tree->nodes[b][end], a))
+        if (indexlists_hold(&divider->junctions->blending, divider->tree->nodes[a][end], b) ||
+            indexlists_hold(&divider->junctions->blending, divider->tree->nodes[b][end], a))
             return true;
     return false;
 }
@@ -288,7 +288,7 @@ static bool is_off(const Divider *divider, const IndexLists *nodes, uint32_t seg
         const uint32_t *first = &divider->junctions->incident.first[nodes->items[i]];
         for (uint32_t k = first[0]; k < first[1]; k++) {
             uint32_t other = divider->junctions->incident.items[k];
-            if (other == segment || numberlists_hold(&divider->junctions->blending, node, other))
+            if (other == segment || indexlists_hold(&divider->junctions->blending, node, other))
                 continue;
             int its_end = segment_end_at(divider->tree, other, nodes->items[i]);
             FieldSegment part = part_in_zone(divider, other, its_end, 0);

@@ -14,9 +14,9 @@
 
 /* All arrays are owned. */
 typedef struct Junctions {
-    NumberLists incident; /* per node: the segments with an end there */
-    NumberLists blending; /* per node: the segments that blend there */
-    uint32_t *of_node;    /* per node: its region, or NO_JUNCTION if the vessel is cut off flat */
+    IndexLists incident; /* per node: the segments with an end there */
+    IndexLists blending; /* per node: the segments that blend there */
+    uint32_t *of_node;   /* per node: its region, or NO_JUNCTION if the vessel is cut off flat */
     uint32_t n_junctions;
     IndexLists nodes;   /* per region: its nodes */
     double (*plane)[2]; /* per segment that is a tube: distance of its two planes from its ends, mm;
