@@ -212,26 +212,27 @@ static void tell_ancestors(Network *net, int32_t i, const Reduced *reduced, Box 
     }
 }
 
-void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal,
-                   const int32_t made[2], Box zone)
+void network_split(Network *net, const Split *split, Box zone)
 {
+    int32_t segment = split->segment, proximal = split->made[0], fresh = split->made[1];
     Segment *distal = &net->segment[segment];
-    int32_t above = distal->parent, proximal = made[0], fresh = made[1];
-    net->position[proximal] = bifurcation;
-    net->position[fresh] = terminal;
+    int32_t above = distal->parent;
+    net->position[proximal] = split->bifurcation;
+    net->position[fresh] = split->terminal;
     net->segment[above].child[net->segment[above].child[1] == segment] = proximal;
-    net->segment[proximal] = (Segment){.length = vec3_distance(net->position[above], bifurcation),
-                                       .child = {segment, fresh},
-                                       .parent = above,
-                                       .terminals = distal->terminals + 1,
-                                       .gauge = distal->gauge};
+    net->segment[proximal] =
+        (Segment){.length = vec3_distance(net->position[above], split->bifurcation),
+                  .child = {segment, fresh},
+                  .parent = above,
+                  .terminals = distal->terminals + 1,
+                  .gauge = distal->gauge};
     net->sensitivity[proximal] = net->sensitivity[segment];
-    net->segment[fresh] = (Segment){.length = vec3_distance(bifurcation, terminal),
+    net->segment[fresh] = (Segment){.length = vec3_distance(split->bifurcation, split->terminal),
                                     .child = {-1, -1},
                                     .parent = proximal,
                                     .terminals = 1};
     distal->parent = proximal;
-    distal->length = vec3_distance(bifurcation, net->position[segment]);
+    distal->length = vec3_distance(split->bifurcation, net->position[segment]);
     if (net->trait) {
         net->trait[proximal] = net->trait[segment];
         net->trait[proximal].origin = net->trait[proximal].mate = -1;

@@ -398,3 +398,16 @@ bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, N
     sort_catch(&found, limit, out);
     return true;
 }
+
+int grid_nearest_guessed(const Grid *grid, Vec3 point, double within, int limit, double *reach,
+                         Near *out)
+{
+    int count = limit;
+    if (!(*reach + grid->edge < within) || !grid_nearest_quick(grid, point, *reach, limit, out))
+        count = grid_nearest(grid, point, within, limit, out);
+    if (count < limit)
+        return count;
+    double last = sqrt((double)out[limit - 1].distance2);
+    *reach += (*reach > 0 ? 0.1 : 1) * (1.25 * last - *reach);
+    return last + 2 * grid->edge < within ? count : -1; /* whichever search it was */
+}

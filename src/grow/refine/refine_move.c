@@ -219,21 +219,6 @@ static void propose(const LocalSearch *search, int32_t subtree, int32_t host, Ca
         out->count += price(search, subtree, host, &out->list[out->count]);
 }
 
-/* Finds the nearest segments; looks first as far as was enough for the last points, and a little
- * more. */
-static int find_near(LocalSearch *search, Vec3 point, Near *near)
-{
-    const Grid *grid = &search->clearance.grid;
-    double reach = search->reach;
-    int count = NEIGHBOURS;
-    if (!grid_nearest_quick(grid, point, reach, NEIGHBOURS, near))
-        count = grid_nearest(grid, point, INFINITY, NEIGHBOURS, near);
-    if (count == NEIGHBOURS)
-        search->reach +=
-            (reach > 0 ? 0.1 : 1) * (1.25 * sqrt((double)near[NEIGHBOURS - 1].distance2) - reach);
-    return count;
-}
-
 /* Finds connections of `subtree`, which is pruned: to the segment that it came from, to those that
  * this one shares a node with, and to the nearest. None when the first has no price. */
 static void find_candidates(LocalSearch *search, int32_t subtree, int32_t origin, Candidates *out)
@@ -252,7 +237,8 @@ static void find_candidates(LocalSearch *search, int32_t subtree, int32_t origin
     }
     for (int side = 0; side < 2 && below[0] >= 0; side++)
         propose(search, subtree, below[side], out);
-    int found = find_near(search, arbor->shape[subtree].to, near);
+    int found = grid_nearest_guessed(&search->clearance.grid, arbor->shape[subtree].to, INFINITY,
+                                     NEIGHBOURS, &search->reach, near);
     for (int k = 0; k < found; k++)
         if (near[k].segment != fork && arbor_is_same_tree(arbor, near[k].segment, subtree) &&
             !arbor_is_below(arbor, near[k].segment, subtree))
