@@ -332,8 +332,8 @@ Status file_read(const char *path, const FileForm *form, char **bytes, size_t *s
 Status file_hash(const char *path, Hash *hash, Err *err)
 {
     static const FileForm any = {.name = "a file", .most_bytes = 16e9};
-    char *bytes;
-    size_t size;
+    char *bytes = NULL;
+    size_t size = 0;
     TRY(file_read(path, &any, &bytes, &size, err));
     hash_add(hash, &size, sizeof size);
     hash_add(hash, bytes, size);

@@ -155,13 +155,13 @@ static Rgb color_at(const Scene *scene, Caster *caster, double i, double j)
     Surfel surfel;
     if (!caster_first(caster, 0, ray, &surfel))
         return scene->view.background;
-    const ShadePoint at = {&scene->appearance.finish,
-                           appearance_color(&scene->appearance, surfel.segment),
-                           ray_at(ray, surfel.t),
-                           surfel.normal,
-                           ray.direction,
-                           1,
-                           NULL};
+    const ShadingInput at = {&scene->appearance.finish,
+                             appearance_color(&scene->appearance, surfel.segment),
+                             ray_at(ray, surfel.t),
+                             surfel.normal,
+                             ray.direction,
+                             1,
+                             NULL};
     return shade(&scene->view, &at, is_shadowed, caster);
 }
 
@@ -337,7 +337,7 @@ static Rgb shaded(const Scene *scene, const TileSurface *surface, int sample)
                    surface->pigment[2][sample]};
     if (vec3_dot(at[1], at[2]) > 0)
         at[1] = vec3_scale(at[1], -1);
-    const ShadePoint point = {&scene->appearance.finish, pigment, at[0], at[1], at[2], 1, NULL};
+    const ShadingInput point = {&scene->appearance.finish, pigment, at[0], at[1], at[2], 1, NULL};
     return shade(&scene->view, &point, NULL, NULL);
 }
 

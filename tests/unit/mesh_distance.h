@@ -3,8 +3,8 @@
 #ifndef CORCAST_TESTS_MESH_DISTANCE_H
 #define CORCAST_TESTS_MESH_DISTANCE_H
 
+#include "field/field.h"
 #include "render/cast/raysearch.h"
-#include "surface/surface.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +21,7 @@ typedef struct Ruler {
     const VesselTree *tree;
     const VesselMesh *mesh;
     FieldSegment *segments;
-    NumberLists incident, blending, nodes; /* the last: the nodes at which each segment blends */
+    IndexLists incident, blending, nodes; /* the last: the nodes at which each segment blends */
     BoxTree segment_tree, triangle_tree;
     void *scratch; /* of field_search */
     uint32_t *near, *stamp, stamps;
@@ -57,7 +57,7 @@ static inline void ruler_nodes(Ruler *ruler)
 {
     size_t n = ruler->tree->n_segments, nodes = ruler->tree->n_nodes;
     uint32_t *first = calloc(n + 2, sizeof *first);
-    const NumberLists *from = &ruler->blending;
+    const IndexLists *from = &ruler->blending;
     uint32_t *items = calloc(from->first[nodes], sizeof *items);
     for (uint32_t i = 0; i < from->first[nodes]; i++)
         first[from->items[i] + 2]++;
@@ -66,7 +66,7 @@ static inline void ruler_nodes(Ruler *ruler)
     for (uint32_t node = 0; node < nodes; node++)
         for (uint32_t i = from->first[node]; i < from->first[node + 1]; i++)
             items[first[from->items[i] + 1]++] = node;
-    ruler->nodes = (NumberLists){first, items};
+    ruler->nodes = (IndexLists){.first = first, .items = items};
 }
 
 static inline Status ruler_make(Ruler *ruler, const VesselTree *tree, const VesselMesh *mesh,
@@ -98,9 +98,9 @@ static inline Status ruler_make(Ruler *ruler, const VesselTree *tree, const Vess
 
 static inline void ruler_release(Ruler *ruler)
 {
-    numberlists_release(&ruler->incident);
-    numberlists_release(&ruler->blending);
-    numberlists_release(&ruler->nodes);
+    indexlists_release(&ruler->incident);
+    indexlists_release(&ruler->blending);
+    indexlists_release(&ruler->nodes);
     boxtree_release(&ruler->segment_tree);
     boxtree_release(&ruler->triangle_tree);
     field_search.workspace_free(ruler->scratch);

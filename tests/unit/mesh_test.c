@@ -1,10 +1,10 @@
 /* The triangulation of vessels, stage by stage and whole; distances by the guaranteed search. */
 #include "base/random.h"
+#include "mesh/lattice/octree.h"
+#include "mesh/proof/boxpairs.h"
+#include "mesh/proof/meshcheck.h"
+#include "mesh/zones/nearpairs.h"
 #include "stage/stage.h"
-#include "surface/mesh/boxpairs.h"
-#include "surface/mesh/meshcheck.h"
-#include "surface/mesh/nearpairs.h"
-#include "surface/mesh/zonetree.h"
 #include "treeio/treeio.h"
 #include "unit.h"
 
@@ -191,7 +191,7 @@ static void triangles_that_are_too_far_off_are_split(void **state)
 
 /* What leads from a tree to its zones. */
 typedef struct Cut {
-    NumberLists incident, blending;
+    IndexLists incident, blending;
     Zones zones;
 } Cut;
 
@@ -207,8 +207,8 @@ static void cut(const VesselTree *tree, Cut *made)
 
 static void release_cut(Cut *made)
 {
-    numberlists_release(&made->incident);
-    numberlists_release(&made->blending);
+    indexlists_release(&made->incident);
+    indexlists_release(&made->blending);
     zones_release(&made->zones);
 }
 
@@ -372,18 +372,18 @@ static void vessels_at_both_ends_of_a_short_one_do_not_blend(void **state)
 {
     (void)state;
     Sketch sketch;
-    NumberLists incident, blending;
+    IndexLists incident, blending;
     sketch_begin(&sketch, vec3(0, 0, 0));
     uint32_t one = sketch_to(&sketch, 0, vec3(5, 0, 0), 0.5);
     uint32_t two = sketch_to(&sketch, one, vec3(6.4, 0, 0), 0.5);
     sketch_to(&sketch, two, vec3(6.4, 4, 0), 0.5);
     assert_int_equal(vesseltree_incident(&sketch.tree, &incident, NULL), STATUS_OK);
     assert_int_equal(vesseltree_blending(&sketch.tree, &incident, &blending, NULL), STATUS_OK);
-    assert_true(numberlists_hold(&blending, one, 0) && numberlists_hold(&blending, one, 1));
-    assert_false(numberlists_hold(&blending, one, 2));
-    assert_false(numberlists_hold(&blending, two, 0));
-    numberlists_release(&incident);
-    numberlists_release(&blending);
+    assert_true(indexlists_hold(&blending, one, 0) && indexlists_hold(&blending, one, 1));
+    assert_false(indexlists_hold(&blending, one, 2));
+    assert_false(indexlists_hold(&blending, two, 0));
+    indexlists_release(&incident);
+    indexlists_release(&blending);
 }
 
 static void a_twig_within_a_trunk_is_swallowed_not_missing(void **state)

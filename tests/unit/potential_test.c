@@ -182,8 +182,8 @@ static bool blend_somewhere(const Geometry *geometry, uint32_t one, uint32_t oth
 {
     const Blend *blend = &geometry->blend;
     for (size_t group = 0; group < blend->n_groups; group++)
-        if (numberlists_hold(&blend->members, group, one) &&
-            numberlists_hold(&blend->members, group, other))
+        if (indexlists_hold(&blend->members, group, one) &&
+            indexlists_hold(&blend->members, group, other))
             return true;
     return false;
 }

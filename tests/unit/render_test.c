@@ -84,7 +84,7 @@ static Rgb seen_under(const Light *light, const Finish *finish, Rgb pigment, Vec
                       ShadowTest *shadow, void *context)
 {
     const View view = {.lights = {*light}, .n_lights = 1};
-    const ShadePoint at = {finish, pigment, {0, 0, 0}, {0, 0, 1}, direction, 1, NULL};
+    const ShadingInput at = {finish, pigment, {0, 0, 0}, {0, 0, 1}, direction, 1, NULL};
     return shade(&view, &at, shadow, context);
 }
 

@@ -5,7 +5,7 @@
  * do, and from 1e-4 mm on, as its shadow cache does. */
 #include "app/pictures/settle.h"
 
-#include "surface/surface.h"
+#include "field/field.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -220,7 +220,7 @@ static void set_lights(Asker *asker, size_t brighter, int more)
 /* What a ray sees. */
 typedef struct Look {
     double t; /* INFINITY where neither vessel nor ground is seen */
-    ShadePoint at;
+    ShadingInput at;
     uint32_t id; /* 0: the ground or nothing */
     Rgb color;
 } Look;

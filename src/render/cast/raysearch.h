@@ -3,9 +3,9 @@
 #define CORCAST_RENDER_RAYSEARCH_H
 
 #include "base/base.h"
+#include "field/field.h"
 #include "geom/geom.h"
 #include "scene/scene.h"
-#include "surface/surface.h"
 
 /* POV-Ray's limit [docs/POVRAY.md section 3]: crossings nearer than this are not visible. */
 #define NEAREST_SEEN_MM 1e-4

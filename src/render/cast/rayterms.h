@@ -4,8 +4,8 @@
 #define CORCAST_RENDER_RAYTERMS_H
 
 #include "base/base.h"
+#include "field/field.h"
 #include "render/cast/raysearch.h"
-#include "surface/surface.h"
 
 /* How the ray passes a tube: the term at t_mid + x is radial exp(-w^2) (erf(u) + erf(h - u)) / 2,
  * w = w0 + w1 x, u = u0 + u1 x. */

@@ -121,7 +121,7 @@ static void cast_shadows(const FieldPicture *picture, const SeenTile *seen, cons
         Vec3 point = ray_at(sample_ray(picture, seen, sample), seen_depth(seen, sample));
         LightWay way = light_way(light, point);
         shadowed[sample] =
-            vec3_dot(world_normal(picture, seen, sample), way.towards) >= LEAST_LIT_COSINE &&
+            vec3_dot(world_normal(picture, seen, sample), way.towards) >= MIN_LIT_COSINE &&
             caster_shadow(drawing->caster, worker, &drawing->view->ground, point, way.towards,
                           way.distance);
     }
@@ -493,7 +493,7 @@ static Status make_batch(const FieldPicture *picture, Batch *batch, Err *err)
 static Status make_batches(FieldPicture *picture, Err *err)
 {
     int workers = picture->canvas.workers;
-    picture->batch_size = picture->has_shadows ? LIGHT_BATCH : 1;
+    picture->batch_size = picture->has_shadows ? SHADOW_BATCH : 1;
     TRY(mem_calloc(&picture->batches, (size_t)workers, sizeof *picture->batches, "canvases", err));
     for (int i = 0; i < workers; i++)
         TRY(make_batch(picture, &picture->batches[i], err));

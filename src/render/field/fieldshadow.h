@@ -2,7 +2,7 @@
 #ifndef CORCAST_RENDER_FIELDSHADOW_H
 #define CORCAST_RENDER_FIELDSHADOW_H
 
-#include "render/tile/lightview.h"
+#include "render/light/lightview.h"
 
 /* Looks from lights that see all of the geometry and have none of it beyond them. A place is hidden
  * where field_search.any says so, but for a slack of 0.2 % of the level about the place. Nothing

@@ -3,8 +3,8 @@
 #define CORCAST_RENDER_VESSELLISTS_H
 
 #include "render/field/fieldterms.h"
+#include "render/light/lightview.h"
 #include "render/tile/interval.h"
-#include "render/tile/lightview.h"
 
 /* Where rays go through the picture: every pair of a column and a row, in pixels as camera_ray
  * takes them. Both ascend in steps of `spacing`. */
