@@ -63,15 +63,16 @@ static bool begins_with_one(const char *comment, const char *const *names)
     return false;
 }
 
-Status comments_write(const TreeMeta *meta, const char *const *but, FILE *stream, Err *err)
+void comments_put(const TreeMeta *meta, const char *const *except, Text *text)
 {
     Text line = TEXT_INIT;
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);) {
         const char *chars = text_chars(&line);
-        if (chars && !begins_with_one(chars, but))
-            fprintf(stream, *chars ? "# %s\n" : "#%s\n", chars);
+        if (chars && begins_with_one(chars, except))
+            continue;
+        text_puts(text, chars && *chars ? "# " : "#");
+        text_puts(text, chars);
+        text_puts(text, "\n");
     }
-    Status status = text_check(&line, err);
     text_release(&line);
-    return status;
 }

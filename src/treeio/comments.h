@@ -20,10 +20,9 @@ MUST_CHECK Status comment_read_key(TreeMeta *meta, const char *comment, Err *err
  * with {.meta = meta}. */
 bool comments_next(MetaWalk *walk, Text *line);
 
-/* Writes all that is known, a comment a line, but leaves out comments that begin with one of the
- * names `but` (ends with NULL) and a colon: they mean something else in the format. `but` may be
- * NULL. STATUS_MEMORY. */
-MUST_CHECK Status comments_write(const TreeMeta *meta, const char *const *but, FILE *stream,
-                                 Err *err);
+/* Appends all that is known, one comment per line. Leaves out comments that begin with a name of
+ * `except` and a colon, because they mean something else in the format. A list of names ends with
+ * NULL; `except` may be NULL. */
+void comments_put(const TreeMeta *meta, const char *const *except, Text *text);
 
 #endif

@@ -12,7 +12,6 @@
 #define CORCAST_TREEIO_FORMATS_H
 
 #include "tree/tree.h"
-#include <stdio.h>
 
 /* Whether a file that begins with these bytes, zero-terminated, is of the format. */
 typedef bool TreeDetect(const char *start);
@@ -21,8 +20,10 @@ typedef bool TreeDetect(const char *start);
 typedef Status TreeRead(TreeBuilder *builder, char *bytes, size_t size, Err *err);
 /* Likewise to a graph, in the file's own unit. */
 typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
-/* Writes a tree that tree_check accepts; errors of the stream are the caller's matter. */
-typedef Status TreeWrite(const Tree *tree, FILE *stream, Err *err);
+/* Appends the file of a tree that tree_check accepts. The text may flow into a stream; the caller
+ * checks it at the end. Errors: STATUS_INPUT, without the file's name, for a tree that the format
+ * cannot hold; STATUS_MEMORY. */
+typedef Status TreeWrite(const Tree *tree, Text *text, Err *err);
 
 /* Whether a column of the tree is written, although columns as such are not. */
 typedef bool TreeKeeps(const TreeColumn *column);

@@ -498,18 +498,15 @@ static Status put_deck(DeckTree *deck, Err *err)
     return STATUS_OK;
 }
 
-Status oned_write(const Tree *tree, FILE *stream, Err *err)
+Status oned_write(const Tree *tree, Text *text, Err *err)
 {
-    Text text = TEXT_TO(stream);
-    DeckTree deck = {.tree = tree, .text = &text};
+    DeckTree deck = {.tree = tree, .text = text};
     Status status = STATUS_OK;
-    TRY_GOTO(comments_write(&tree->meta, NULL, stream, err));
+    comments_put(&tree->meta, NULL, text);
     TRY_GOTO(tree_child_counts(tree, &deck.children, err));
     TRY_GOTO(tree_flow_shares(tree, &deck.share, err));
     TRY_GOTO(put_deck(&deck, err));
-    TRY_GOTO(text_flush(&text, err));
 done:
-    text_release(&text);
     free(deck.children);
     free(deck.share);
     return status;

@@ -419,7 +419,7 @@ static void fill_page(size_t index, int worker, void *context)
     pages->length[index] = (size_t)(to - text);
 }
 
-static Status write_rows(const Tree *tree, FILE *stream, Err *err)
+static Status write_rows(const Tree *tree, Text *text, Err *err)
 {
     size_t n = (tree->n + ROWS - 1) / ROWS, most = (size_t)threads_available() * BLOCKS_PER_THREAD;
     Pages pages = {.tree = tree};
@@ -431,7 +431,7 @@ static Status write_rows(const Tree *tree, FILE *stream, Err *err)
         most = n < most ? n : most;
         threads_for(most, 0, fill_page, &pages);
         for (size_t i = 0; i < most; i++)
-            fwrite(pages.text + i * ROWS * LONGEST_ROW, 1, pages.length[i], stream);
+            text_append(text, pages.text + i * ROWS * LONGEST_ROW, pages.length[i]);
     }
 done:
     free(pages.length);
@@ -444,22 +444,23 @@ bool swc_keeps(const TreeColumn *column)
     return strcmp(column->name, tree_pairs_name) == 0;
 }
 
-Status swc_write(const Tree *tree, FILE *stream, Err *err)
+Status swc_write(const Tree *tree, Text *text, Err *err)
 {
-    char share[NUMBER_TEXT_SIZE];
     TreePair *pair;
     size_t pairs;
     /* Remarks of other formats that a reader of SWC would take for shares or pairs. */
     static const char *const meaningful[] = {share_key, tree_pairs_name, NULL};
-    TRY(comments_write(&tree->meta, meaningful, stream, err));
+    comments_put(&tree->meta, meaningful, text);
     TRY(tree_pairs(tree, &pair, &pairs, err));
     for (size_t k = 0; k < pairs; k++)
-        fprintf(stream, "# %s: %d %d\n", tree_pairs_name, tree->id[pair[k].node[0]],
-                tree->id[pair[k].node[1]]);
+        text_printf(text, "# %s: %d %d\n", tree_pairs_name, tree->id[pair[k].node[0]],
+                    tree->id[pair[k].node[1]]);
     free(pair);
     for (size_t i = 0; tree->flow_share && i < tree->n; i++)
-        if (tree->flow_share[i] > 0)
-            fprintf(stream, "# %s: %d %s\n", share_key, tree->id[i],
-                    number_text(tree->flow_share[i], share));
-    return write_rows(tree, stream, err);
+        if (tree->flow_share[i] > 0) {
+            text_printf(text, "# %s: %d ", share_key, tree->id[i]);
+            text_number(text, tree->flow_share[i]);
+            text_puts(text, "\n");
+        }
+    return write_rows(tree, text, err);
 }

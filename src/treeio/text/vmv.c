@@ -270,51 +270,50 @@ Status vmv_read(Graph *graph, char *bytes, size_t size, Err *err)
     return status == STATUS_OK ? judge_directions(graph, err) : status;
 }
 
-static void write_number(double mm, FILE *stream)
+/* ---- writing --------------------------------------------------------------------------------- */
+
+static void put_um(double mm, Text *text)
 {
-    char number[NUMBER_TEXT_SIZE];
-    fprintf(stream, " %s", number_text(length_from_mm(mm, LENGTH_UM), number));
+    text_puts(text, " ");
+    text_number(text, length_from_mm(mm, LENGTH_UM));
 }
 
-static void write_strands(const Tree *tree, const Branches *branches, FILE *stream)
+static void put_vertex(const Tree *tree, size_t i, Text *text)
+{
+    text_printf(text, "%zu", i + 1);
+    put_um(tree->position[i].x, text);
+    put_um(tree->position[i].y, text);
+    put_um(tree->position[i].z, text);
+    put_um(tree->radius_mm[i], text);
+    text_puts(text, "\n");
+}
+
+static void put_strands(const Tree *tree, const Branches *branches, Text *text)
 {
     for (size_t k = 0, at = 0; k < branches->n; k++) {
-        fprintf(stream, "%zu %d", k + 1, tree->parent[branches->node[at]] + 1);
+        text_printf(text, "%zu %d", k + 1, tree->parent[branches->node[at]] + 1);
         for (; at < branches->end[k]; at++)
-            fprintf(stream, " %d", branches->node[at] + 1);
-        putc('\n', stream);
+            text_printf(text, " %d", branches->node[at] + 1);
+        text_puts(text, "\n");
     }
 }
 
-static void write_vertices(const Tree *tree, FILE *stream)
-{
-    fprintf(stream, "$VERT_LIST_BEGIN\n");
-    for (size_t i = 0; i < tree->n; i++) {
-        fprintf(stream, "%zu", i + 1);
-        write_number(tree->position[i].x, stream);
-        write_number(tree->position[i].y, stream);
-        write_number(tree->position[i].z, stream);
-        write_number(tree->radius_mm[i], stream);
-        putc('\n', stream);
-    }
-    fprintf(stream, "$VERT_LIST_END\n\n");
-}
-
-Status vmv_write(const Tree *tree, FILE *stream, Err *err)
+Status vmv_write(const Tree *tree, Text *text, Err *err)
 {
     Branches branches;
     TRY(branches_find(tree, &branches, err));
-    Status status = comments_write(&tree->meta, NULL, stream, err);
-    fprintf(stream,
-            "$PARAM_BEGIN\nNUM_VERTS %zu\nNUM_STRANDS %zu\nNUM_ATTRIB_PER_VERT 4\n"
-            "$PARAM_END\n\n",
-            tree->n, branches.n);
-    write_vertices(tree, stream);
-    fprintf(stream, "$STRANDS_LIST_BEGIN\n");
-    write_strands(tree, &branches, stream);
-    fprintf(stream, "$STRANDS_LIST_END\n");
+    comments_put(&tree->meta, NULL, text);
+    text_printf(text,
+                "$PARAM_BEGIN\nNUM_VERTS %zu\nNUM_STRANDS %zu\nNUM_ATTRIB_PER_VERT 4\n"
+                "$PARAM_END\n\n$VERT_LIST_BEGIN\n",
+                tree->n, branches.n);
+    for (size_t i = 0; i < tree->n; i++)
+        put_vertex(tree, i, text);
+    text_puts(text, "$VERT_LIST_END\n\n$STRANDS_LIST_BEGIN\n");
+    put_strands(tree, &branches, text);
+    text_puts(text, "$STRANDS_LIST_END\n");
     branches_release(&branches);
-    return status;
+    return STATUS_OK;
 }
 
 bool vmv_detect(const char *start)
