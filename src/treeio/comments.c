@@ -24,13 +24,16 @@ static const char *key_value(const char *comment, MetaKey *key)
     return *key == META_KEYS ? NULL : comment_value(name, meta_rows[*key].name);
 }
 
-Status comment_read(TreeMeta *meta, const char *comment, Err *err)
+Status comment_keep(TreeMeta *meta, const char *comment, Err *err)
 {
     MetaKey key;
     const char *value = key_value(comment, &key);
-    if (value)
-        return meta_parse(meta, key, value, err);
-    return meta_add_text(meta, META_KEYS, comment + (*comment == ' '), err);
+    return value ? meta_parse(meta, key, value, err) : meta_add_text(meta, META_KEYS, comment, err);
+}
+
+Status comment_read(TreeMeta *meta, const char *comment, Err *err)
+{
+    return comment_keep(meta, comment + (*comment == ' '), err);
 }
 
 Status comment_read_key(TreeMeta *meta, const char *comment, Err *err)

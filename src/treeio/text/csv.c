@@ -2,6 +2,7 @@
  * every tree has; all others become columns of the tree. Quotes are taken off in place, as what is
  * left is never longer. */
 #include "treeio/comments.h"
+#include "treeio/cursor.h"
 #include "treeio/formats.h"
 
 #include <math.h>
@@ -128,15 +129,15 @@ static Status read_row(TreeBuilder *builder, const Columns *columns, size_t line
 }
 
 /* What is read so far; `value` has room for one row. */
-typedef struct Reader {
+typedef struct CsvReader {
     TreeBuilder *builder;
     Columns columns;
     double *value; /* owned */
-} Reader;
+} CsvReader;
 
 static Status read_line(void *context, size_t number, char *line, Err *err)
 {
-    Reader *reader = context;
+    CsvReader *reader = context;
     TreeBuilder *builder = reader->builder;
     if (*line == '#')
         return comment_read(&builder->meta, line + 1, err);
@@ -151,9 +152,8 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
 
 Status csv_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
 {
-    (void)size;
-    Reader reader = {.builder = builder};
-    Status status = lines_read(builder->name, bytes, read_line, &reader, err);
+    CsvReader reader = {.builder = builder};
+    Status status = lines_read(builder->name, bytes, size, read_line, &reader, err);
     free(reader.columns.column);
     free(reader.value);
     return status;

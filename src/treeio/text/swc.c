@@ -156,13 +156,23 @@ static Status read_comment(Reader *reader, size_t line, const char *comment, Err
     return comment_read(&reader->builder->meta, comment, err);
 }
 
+/* Cuts a line into fields, of which `field` receives the first MAX_FIELDS. Returns their number. */
+static size_t cut_fields(char *line, char **field)
+{
+    size_t count = 0;
+    for (char *word; (word = text_field(&line)); count++)
+        if (count < MAX_FIELDS)
+            field[count] = word;
+    return count;
+}
+
 /* The columns behind the seventh have the names that a line gives to as many columns as there are,
  * or else "column 8" and so on. */
 static Status add_columns(const Reader *reader, Err *err)
 {
     char *copy = NULL, *title[MAX_FIELDS], number[32];
     TRY(mem_strdup(&copy, reader->titles ? reader->titles : "", err));
-    bool named = fields_cut(copy + strspn(copy, "#"), title, MAX_FIELDS) == reader->n_fields;
+    bool named = cut_fields(copy + strspn(copy, "#"), title) == reader->n_fields;
     Status status = STATUS_OK;
     for (size_t i = N_FIELDS, column; status == STATUS_OK && i < reader->n_fields; i++) {
         snprintf(number, sizeof number, "column %zu", i + 1);
@@ -207,7 +217,7 @@ static Status read_line(Reader *reader, char *line, Err *err)
     if (comment)
         *comment = '\0';
     TRY(fields_check_commas(line, err));
-    size_t count = fields_cut(line, field, MAX_FIELDS);
+    size_t count = cut_fields(line, field);
     if (count == 0)
         return STATUS_OK;
     bool fits = reader->n_fields == 0 ? count >= N_FIELDS : count == reader->n_fields;
