@@ -264,7 +264,7 @@ END
     # The polynomial in tanh is half of what stands in the source.
     local linear cubic
     read -r linear cubic < <(sed -n 's/.*\[ERF_FAST\] = {-\([0-9.]*\), -\([0-9.]*\),.*/\1 \2/p' \
-        "$REPO/src/surface/cellfunction.c" | awk '{ printf "%.14g %.14g\n", $1 / 2, $2 / 2 }')
+        "$REPO/src/field/cellfunction.c" | awk '{ printf "%.14g %.14g\n", $1 / 2, $2 / 2 }')
     says POVRAY.md "\`tanh($linear u + $cubic u^3)\`"
 }
 

@@ -2,19 +2,25 @@
 #ifndef CORCAST_BASE_BASE_H
 #define CORCAST_BASE_BASE_H
 
+#include "base/array.h"      // IWYU pragma: export
 #include "base/clock.h"      // IWYU pragma: export
 #include "base/elementary.h" // IWYU pragma: export
 #include "base/file.h"       // IWYU pragma: export
+#include "base/firstfail.h"  // IWYU pragma: export
 #include "base/hash.h"       // IWYU pragma: export
+#include "base/heap.h"       // IWYU pragma: export
 #include "base/ini.h"        // IWYU pragma: export
 #include "base/interrupt.h"  // IWYU pragma: export
 #include "base/isolated.h"   // IWYU pragma: export
 #include "base/json.h"       // IWYU pragma: export
+#include "base/keymap.h"     // IWYU pragma: export
+#include "base/lists.h"      // IWYU pragma: export
 #include "base/logcurve.h"   // IWYU pragma: export
 #include "base/memory.h"     // IWYU pragma: export
 #include "base/number.h"     // IWYU pragma: export
 #include "base/random.h"     // IWYU pragma: export
 #include "base/range.h"      // IWYU pragma: export
+#include "base/sets.h"       // IWYU pragma: export
 #include "base/slab.h"       // IWYU pragma: export
 #include "base/sort.h"       // IWYU pragma: export
 #include "base/status.h"     // IWYU pragma: export

@@ -4,8 +4,8 @@
 #define CORCAST_EMIT_EMIT_H
 
 #include "base/base.h"
+#include "field/field.h"
 #include "scene/scene.h"
-#include "surface/surface.h"
 
 /* The most vessels that OpenSCAD unites in good time; of more, a mesh is the better model. */
 #define OPENSCAD_QUICK 100

@@ -3,9 +3,9 @@
 #define CORCAST_RENDER_JOB_H
 
 #include "base/base.h"
+#include "field/field.h"
 #include "image/image.h"
 #include "scene/scene.h"
-#include "surface/surface.h"
 
 /* How primitives and blobs are drawn. */
 typedef enum RenderMethod {

@@ -4,12 +4,12 @@
 #define CORCAST_RENDER_RENDER_H
 
 #include "base/base.h"
+#include "field/field.h"
 #include "image/image.h"
 #include "render/ink/ink.h"
 #include "render/job.h"
 #include "render/light/shade.h"
 #include "scene/scene.h"
-#include "surface/surface.h"
 
 /* Bands begin at multiples of this many rows. */
 enum { RENDER_BAND_STEP = 8 };

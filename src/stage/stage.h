@@ -5,8 +5,8 @@
 #include "base/base.h"
 #include "derive/derive.h"
 #include "geom/geom.h"
+#include "mesh/mesh.h"
 #include "scene/scene.h"
-#include "surface/surface.h"
 #include "tree/tree.h"
 
 /* A look is what pictures of any tree have in common: finish, colours, lights and ground, in sizes

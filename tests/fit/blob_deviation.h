@@ -4,7 +4,7 @@
 #ifndef CORCAST_TESTS_BLOB_DEVIATION_H
 #define CORCAST_TESTS_BLOB_DEVIATION_H
 
-#include "surface/surface.h"
+#include "field/field.h"
 #include <math.h>
 
 enum { N_RATIOS = 5, N_ANGLES = 6, MAX_ENDS = 3 };

@@ -1,4 +1,4 @@
-/* The numbers of blob_shape [src/surface/blob.h; docs/METHODS.md section 2.6].
+/* The numbers of blob_shape [src/field/blob.h; docs/METHODS.md section 2.6].
  *
  *   fit_blob                  how far its surface is from the potential's
  *   fit_blob fit [ROUNDS]     searches anew: the least p-norm, p rising from 24 to 96, over all

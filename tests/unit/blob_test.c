@@ -1,10 +1,10 @@
 /* Slow: walks in small steps along each ray. */
 /* The blob: its numbers (docs/METHODS.md section 2.6), and its first hits against a walk in small
  * steps over a field written down once more, from POV-Ray's definition. */
+#include "field/field.h"
 #include "render/cast/blobcast.h"
 #include "render/field/kernel_blob.h"
 #include "stage/stage.h"
-#include "surface/surface.h"
 #include "unit.h"
 
 #include <stdint.h>

@@ -1,5 +1,5 @@
 /* Slow: holds every cell against brute force. */
-#include "surface/surface.h"
+#include "field/field.h"
 #include "unit.h"
 
 #include <stdint.h>

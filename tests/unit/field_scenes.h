@@ -3,8 +3,8 @@
 #ifndef CORCAST_TESTS_FIELD_SCENES_H
 #define CORCAST_TESTS_FIELD_SCENES_H
 
+#include "field/field.h"
 #include "scene/scene.h"
-#include "surface/surface.h"
 #include <string.h>
 
 enum { MAX_SEGMENTS = 64 };

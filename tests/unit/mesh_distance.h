@@ -3,8 +3,8 @@
 #ifndef CORCAST_TESTS_MESH_DISTANCE_H
 #define CORCAST_TESTS_MESH_DISTANCE_H
 
+#include "field/field.h"
 #include "render/cast/fieldcast.h"
-#include "surface/surface.h"
 #include <stdlib.h>
 #include <string.h>
 

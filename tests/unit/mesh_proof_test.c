@@ -1,10 +1,10 @@
 /* The proofs of meshes and prints, shown false cases made by hand: for each condition one that no
  * other condition refuses. */
 #include "grow/cco/grid.h"
-#include "surface/mesh/meshcheck.h"
-#include "surface/mesh/nearpairs.h"
-#include "surface/mesh/reach.h"
-#include "surface/print/proof.h"
+#include "mesh/precision.h"
+#include "mesh/proof/meshcheck.h"
+#include "mesh/zones/nearpairs.h"
+#include "print/seams.h"
 #include "unit.h"
 
 #include <string.h>

@@ -1,10 +1,10 @@
 /* The triangulation of vessels, stage by stage and whole; distances by the guaranteed search. */
 #include "base/random.h"
+#include "mesh/lattice/octree.h"
+#include "mesh/proof/boxpairs.h"
+#include "mesh/proof/meshcheck.h"
+#include "mesh/zones/nearpairs.h"
 #include "stage/stage.h"
-#include "surface/mesh/boxpairs.h"
-#include "surface/mesh/meshcheck.h"
-#include "surface/mesh/nearpairs.h"
-#include "surface/mesh/zonetree.h"
 #include "treeio/treeio.h"
 #include "unit.h"
 

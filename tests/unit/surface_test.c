@@ -1,4 +1,4 @@
-#include "surface/surface.h"
+#include "field/field.h"
 #include "unit.h"
 
 #include <stdint.h>

@@ -2,8 +2,8 @@
 #include "render/xray/xray.h"
 #include "unit.h"
 
+#include "field/field.h"
 #include "render/render.h"
-#include "surface/surface.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

@@ -5,9 +5,9 @@
 
 #include "app/pictures/coloring.h"
 #include "app/run/options.h"
+#include "field/field.h"
 #include "scene/scene.h"
 #include "stage/stage.h"
-#include "surface/surface.h"
 #include "tree/tree.h"
 
 typedef struct PictureOptions {

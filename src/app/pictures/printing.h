@@ -4,7 +4,7 @@
 
 #include "app/run/options.h"
 #include "base/base.h"
-#include "surface/surface.h"
+#include "print/print.h"
 
 typedef struct PrintSettings {
     double scale;           /* factor of all lengths, > 0 */

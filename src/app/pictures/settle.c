@@ -5,7 +5,7 @@
  * do, and from 1e-4 mm on, as its shadow cache does. */
 #include "app/pictures/settle.h"
 
-#include "surface/surface.h"
+#include "field/field.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>

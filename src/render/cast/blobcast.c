@@ -13,7 +13,7 @@
  * about the sign at their common end, by rounding, that end is the root. */
 #include "render/cast/blobcast.h"
 
-#include "surface/surface.h"
+#include "field/field.h"
 #include <stdlib.h>
 
 enum { MAX_PIECES = 5 * BLOB_TUBES + 8 * BLOB_BEADS };

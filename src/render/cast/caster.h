@@ -3,8 +3,8 @@
 #define CORCAST_RENDER_CASTER_H
 
 #include "base/base.h"
+#include "field/field.h"
 #include "scene/scene.h"
-#include "surface/surface.h"
 
 /* POV-Ray's limit [docs/POVRAY.md section 3]: crossings nearer than this are not seen. */
 #define NEAREST_SEEN_MM 1e-4

@@ -23,8 +23,8 @@
  * left. */
 #include "render/cast/fieldcast.h"
 
+#include "field/field.h"
 #include "render/cast/rayterms.h"
-#include "surface/surface.h"
 #include <float.h>
 
 /* Phi within this part of the level has reached it. */

@@ -3,10 +3,10 @@
 #define CORCAST_RENDER_FIELDCAST_H
 
 #include "base/base.h"
+#include "field/field.h"
 #include "geom/geom.h"
 #include "render/cast/rayterms.h"
 #include "scene/scene.h"
-#include "surface/surface.h"
 
 /* The first point at t in [t_min, t_max] where Phi crosses FIELD_LEVEL along the ray; t_min is
  * finite, t_max may be infinite. False when there is none. That is where Phi rises through it, but

@@ -5,9 +5,9 @@
 #define CORCAST_RENDER_POVRAY_ISOSURFACE_H
 
 #include "base/base.h"
+#include "field/field.h"
 #include "geom/geom.h"
 #include "scene/scene.h"
-#include "surface/surface.h"
 
 /* The cells of an isosurface under a hierarchy of boxes; constant once built, shared by threads. */
 typedef struct PovrayIsosurface PovrayIsosurface;

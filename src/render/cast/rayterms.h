@@ -4,7 +4,7 @@
 #define CORCAST_RENDER_RAYTERMS_H
 
 #include "base/base.h"
-#include "surface/surface.h"
+#include "field/field.h"
 
 /* How the ray passes a tube: the term at t_mid + x is radial exp(-w^2) (erf(u) + erf(h - u)) / 2,
  * w = w0 + w1 x, u = u0 + u1 x. */

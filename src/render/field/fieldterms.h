@@ -3,9 +3,9 @@
 #ifndef CORCAST_RENDER_FIELDTERMS_H
 #define CORCAST_RENDER_FIELDTERMS_H
 
+#include "field/field.h"
 #include "render/tile/interval.h"
 #include "render/tile/tile.h"
-#include "surface/surface.h"
 
 /* A segment in the frame of the camera, mm. */
 typedef struct FrameSegment {

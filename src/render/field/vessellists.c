@@ -5,7 +5,7 @@
  * whatever the number of threads. */
 #include "render/field/vessellists.h"
 
-#include "surface/surface.h"
+#include "field/field.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,0 +1,75 @@
+/* Lists of indices, one for each key, in two arrays (compressed sparse rows, by counting sort).
+ *
+ * Lists are built in four steps:
+ *
+ *     TRY_GOTO(indexlists_begin(&lists, n_keys, "segments", err));
+ *     for each item:  indexlists_count(&lists, its key);
+ *     TRY_GOTO(indexlists_allot(&lists, "segments", err));
+ *     for each item:  indexlists_put(&lists, its key, item);
+ *
+ * Each list holds its items in the order of the calls of indexlists_put. If the keys are in a
+ * table, indexlists_sort does all four steps. */
+#ifndef CORCAST_BASE_LISTS_H
+#define CORCAST_BASE_LISTS_H
+
+#include "base/status.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* List i holds items[first[i] .. first[i + 1]). Zeroed, there are no lists. Lists may be built
+ * again; they reuse their memory. */
+typedef struct IndexLists {
+    uint32_t *first, *items; /* owned */
+    size_t n;                /* number of lists */
+    size_t first_capacity, item_capacity;
+} IndexLists;
+
+void indexlists_release(IndexLists *lists);
+
+/* Begins `n` lists, all of them empty. `what` names the items in the message of STATUS_MEMORY. */
+MUST_CHECK Status indexlists_begin(IndexLists *lists, size_t n, const char *what, Err *err);
+
+/* Counts one item of list `key`, which is below lists->n. The count of list i is kept at first[i +
+ * 2] so that after the last indexlists_put first[i] is the start of list i. */
+static inline void indexlists_count(IndexLists *lists, size_t key)
+{
+    lists->first[key + 2]++;
+}
+
+/* Makes room for all items that were counted. Errors: STATUS_MEMORY, also if there are more than
+ * UINT32_MAX items. */
+MUST_CHECK Status indexlists_allot(IndexLists *lists, const char *what, Err *err);
+
+/* Appends an item to list `key`. There are as many calls for a key as calls of indexlists_count. */
+static inline void indexlists_put(IndexLists *lists, size_t key, uint32_t item)
+{
+    lists->items[lists->first[key + 1]++] = item;
+}
+
+/* The keys of items: item i has the keys at [i * per_item] to [(i + 1) * per_item - 1], such as the
+ * three vertices of triangle i. */
+typedef struct ItemKeys {
+    const uint32_t *keys; /* borrowed */
+    size_t n_items, per_item;
+} ItemKeys;
+
+/* Lists, for each of `n` keys, the items that have the key, by rising item. An item that has a key
+ * twice is listed twice. Errors: STATUS_MEMORY. O(n + keys). */
+MUST_CHECK Status indexlists_sort(IndexLists *lists, size_t n, ItemKeys keys, const char *what,
+                                  Err *err);
+
+/* Returns the length of list i. */
+static inline uint32_t indexlists_length(const IndexLists *lists, size_t i)
+{
+    return lists->first[i + 1] - lists->first[i];
+}
+
+/* Returns the position of `value` in an array of n rising values, or n if it is not there.
+ * O(log n). */
+size_t sorted_find(const uint32_t *sorted, size_t n, uint32_t value);
+
+/* Returns true if list i, whose items rise, holds the item. O(log of the length of the list). */
+bool indexlists_hold(const IndexLists *lists, size_t i, uint32_t item);
+
+#endif

@@ -1,0 +1,39 @@
+/* Disjoint sets of the indices 0 .. n - 1 (union-find).
+ *
+ * `parent` is an array of n indices that the caller owns. Each index leads, through its parents, to
+ * the representative of its set, which is the lowest index of the set. The result therefore does
+ * not depend on the order of the joins. A call of sets_find or sets_join costs O(log n) on average.
+ * A table of indices that already leads from each index to a lower one, or to itself, is such an
+ * array, too. */
+#ifndef CORCAST_BASE_SETS_H
+#define CORCAST_BASE_SETS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Makes a set of its own of each index. */
+static inline void sets_begin(uint32_t *parent, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        parent[i] = (uint32_t)i;
+}
+
+/* Returns the representative of the set that holds `i`. Shortens the path to it. */
+static inline uint32_t sets_find(uint32_t *parent, uint32_t i)
+{
+    while (parent[i] != i)
+        i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+/* Joins the sets of `a` and `b`. Returns false if they were the same set. */
+static inline bool sets_join(uint32_t *parent, uint32_t a, uint32_t b)
+{
+    a = sets_find(parent, a);
+    b = sets_find(parent, b);
+    parent[a > b ? a : b] = a < b ? a : b;
+    return a != b;
+}
+
+#endif

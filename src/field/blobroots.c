@@ -1,0 +1,185 @@
+/* Along a line of unit direction a component's field is f = S (1 - q)^2, q = d^2 / R^2, where q
+ * < 1. With 0 <= q'' <= 2 / R^2 and q'^2 <= 4 q / R^2, f'' = 2 S (q'^2 - (1 - q) q'') lies between
+ * -4 S / R^2 and 8 S / R^2; f' has no jump. So |F''| is at most M, the sum of 8 |S| / R^2 over what
+ * is felt in an interval of width w, and F is within M w^2 / 8 of the straight line between its
+ * ends. If that keeps F off 1, it holds no root; else it is halved. */
+#include "field/blobroots.h"
+
+#include "field/blob.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+typedef struct Point {
+    long double x, y, z;
+} Point;
+
+/* A component as the ray feels it, from t0 to t1 at most. */
+typedef struct Felt {
+    Point a, axis;       /* an end and a unit axis */
+    long double length;  /* 0: a ball */
+    long double radius2; /* mm^2 */
+    long double strength;
+    long double t0, t1;
+} Felt;
+
+typedef struct Search {
+    Point origin, direction;
+    Felt *felt;
+    long double narrow; /* intervals are halved until they are so wide, mm */
+    BlobRoots *roots;
+} Search;
+
+static Point point_of(Vec3 v)
+{
+    return (Point){v.x, v.y, v.z};
+}
+
+static Point along(Point p, Point d, long double t)
+{
+    return (Point){p.x + d.x * t, p.y + d.y * t, p.z + d.z * t};
+}
+
+static long double dot(Point a, Point b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static Point less(Point a, Point b)
+{
+    return along(a, b, -1);
+}
+
+/* The component, if the ray comes as near as its radius to a ball about it between t_min and
+ * t_max. */
+static bool take_component(const Search *search, const BlobComponent *component, bool tube,
+                           long double t_min, long double t_max, Felt *felt)
+{
+    Point a = point_of(component->a), span = less(point_of(component->b), a);
+    long double length = tube ? sqrtl(dot(span, span)) : 0;
+    long double radius = component->radius_mm, reach = radius + length / 2;
+    Point middle = along(a, span, tube ? 0.5L : 0), from = less(middle, search->origin);
+    long double t = dot(from, search->direction);
+    Point off = along(from, search->direction, -t);
+    long double half2 = reach * reach - dot(off, off);
+    if (!(half2 > 0))
+        return false;
+    long double half = sqrtl(half2);
+    *felt = (Felt){a,
+                   length > 0 ? along((Point){0, 0, 0}, span, 1 / length) : span,
+                   length,
+                   radius * radius,
+                   component->strength,
+                   fmaxl(t - half, t_min),
+                   fminl(t + half, t_max)};
+    return felt->t0 < felt->t1;
+}
+
+static long double field_of(const Felt *felt, Point x)
+{
+    Point from = less(x, felt->a);
+    long double foot = fminl(fmaxl(dot(from, felt->axis), 0), felt->length);
+    Point off = along(from, felt->axis, -foot);
+    long double inside = 1 - dot(off, off) / felt->radius2;
+    return inside > 0 ? felt->strength * inside * inside : 0;
+}
+
+/* The sum of the first n less 1. */
+static long double excess(const Search *search, size_t n, long double t)
+{
+    long double sum = -1;
+    Point x = along(search->origin, search->direction, t);
+    for (size_t i = 0; i < n; i++)
+        sum += field_of(&search->felt[i], x);
+    return sum;
+}
+
+/* Brings what is felt between `low` and `high` to the front of the first n: how many. */
+static size_t keep_felt(Felt *felt, size_t n, long double low, long double high,
+                        long double *curvature)
+{
+    size_t kept = 0;
+    *curvature = 0;
+    for (size_t i = 0; i < n; i++) {
+        Felt at = felt[i];
+        if (at.t1 < low || at.t0 > high)
+            continue;
+        felt[i] = felt[kept];
+        felt[kept++] = at;
+        *curvature += 8 * fabsl(at.strength) / at.radius2;
+    }
+    return kept;
+}
+
+/* Finds the roots between `low` and `high`, where the excess is `f_low` and `f_high`, among the
+ * first n. */
+static void search_between(Search *search, size_t n, long double low, long double high,
+                           long double f_low, long double f_high)
+{
+    BlobRoots *roots = search->roots;
+    if (roots->n == BLOB_ROOTS)
+        return;
+    long double curvature, width = high - low;
+    n = keep_felt(search->felt, n, low, high, &curvature);
+    bool passes = (f_low < 0) != (f_high < 0);
+    if (!passes && fminl(fabsl(f_low), fabsl(f_high)) > curvature * width * width / 8)
+        return;
+    if (width <= search->narrow) {
+        if (passes)
+            roots->t[roots->n++] = (double)((low + high) / 2);
+        else
+            roots->sure = false;
+        return;
+    }
+    long double middle = (low + high) / 2, f_middle = excess(search, n, middle);
+    search_between(search, n, low, middle, f_low, f_middle);
+    search_between(search, n, middle, high, f_middle, f_high);
+}
+
+static bool meets_ball(Ray ray, Ball ball)
+{
+    Vec3 from = vec3_sub(ball.center, ray.origin);
+    Vec3 off = vec3_add_scaled(from, ray.direction, -vec3_dot(from, ray.direction));
+    return vec3_length(off) <= ball.radius;
+}
+
+Status blob_roots(const FieldSegment *segments, size_t n, Ray ray, double t_min, double t_max,
+                  BlobRoots *roots, Err *err)
+{
+    Search search = {
+        .origin = point_of(ray.origin), .direction = point_of(ray.direction), .roots = roots};
+    size_t felt = 0, room = 0;
+    long double low = HUGE_VALL, high = -HUGE_VALL, least = HUGE_VALL;
+    *roots = (BlobRoots){.sure = true};
+    for (size_t i = 0; i < n; i++) {
+        BlobComponent components[BLOB_COMPONENTS];
+        if (!meets_ball(ray, blob_ball(&segments[i])))
+            continue;
+        blob_components(&blob_shape, &segments[i], components);
+        if (felt + BLOB_COMPONENTS > room) {
+            Status status = mem_reserve(&search.felt, &room, felt + BLOB_COMPONENTS,
+                                        sizeof *search.felt, "components", err);
+            if (status != STATUS_OK) {
+                free(search.felt);
+                return status;
+            }
+        }
+        for (int c = 0; c < BLOB_COMPONENTS; c++) {
+            Felt *next = &search.felt[felt];
+            if (!take_component(&search, &components[c], blob_component_is_tube(c), t_min, t_max,
+                                next))
+                continue;
+            low = fminl(low, next->t0);
+            high = fmaxl(high, next->t1);
+            least = fminl(least, segments[i].radius_mm);
+            felt++;
+        }
+    }
+    if (felt > 0) {
+        search.narrow = fmaxl(1e-12L * least, 4 * LDBL_EPSILON * fmaxl(fabsl(low), fabsl(high)));
+        search_between(&search, felt, low, high, excess(&search, felt, low),
+                       excess(&search, felt, high));
+    }
+    free(search.felt);
+    return STATUS_OK;
+}

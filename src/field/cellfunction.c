@@ -1,0 +1,190 @@
+/* A term is split into parts that POV-Ray evaluates cheaply and that lose nothing far from the
+ * origin: two axes v and w across the segment and one along it, each an affine function of x in
+ * units of 1/c = sqrt(2) s. The Gaussian is exp(-(v^2 + w^2)), a sum of squares and not a
+ * difference of large ones. v is perpendicular to the coordinate axis that the segment is least
+ * along, so that it has one coefficient less, and in a planar tree w has only one.
+ *
+ * The axial factor is (erf(start) + erf(end)) / 2, start and end being how far x is inside either
+ * end. It is step(start) + step(end) - 1 with step(u) = (1 + erf u) / 2, and where one end is so
+ * far inside that its step is 1, the other step alone, or 1. erf u is tanh(odd polynomial of u),
+ * least in the largest error over all u for its degree; then step(u) = 1 / (1 + exp(-2 polynomial))
+ * takes one exp. */
+#include "field/field.h"
+
+const double erf_forms[][ERF_TERMS] = {
+    [ERF_FAST] = {-2.2593813716768, -0.199532717478024, 0, 0, 0},
+    [ERF_EXACT] = {-2.2567159143614, -0.20586869074822, 0.00099789952449538, 0.00082826271063574,
+                   -6.4207848748694e-5},
+};
+
+double erf_form_error(ErfForm form)
+{
+    return form == ERF_FAST ? 2.85e-4 : 3e-6;
+}
+
+double cell_displacement(double radius_mm, ErfForm form)
+{
+    return (3 * erf_form_error(form) + 2e-5) * radius_mm;
+}
+
+/* c (direction . x) + offset, zero at the origin given. Rounded to 12 digits of c and to 1e-10, so
+ * that equal numbers are equal to the last bit: POV-Ray's time to read a scene grows with the
+ * square of how many different ones there are. */
+static Linear linear(Vec3 direction, double c, Vec3 origin)
+{
+    double unit = elementary_pow(10, 11 - floor(elementary_log10(c)));
+    Vec3 k = {round(direction.x * c * unit) / unit, round(direction.y * c * unit) / unit,
+              round(direction.z * c * unit) / unit};
+    return (Linear){{k.x, k.y, k.z, round(-vec3_dot(k, origin) * 1e10) / 1e10}};
+}
+
+static Vec3 least_along(Vec3 axis)
+{
+    double x = fabs(axis.x), y = fabs(axis.y), z = fabs(axis.z);
+    return z <= x && z <= y ? vec3(0, 0, 1) : y <= x ? vec3(0, 1, 0) : vec3(1, 0, 0);
+}
+
+TermForm term_form(const FieldSegment *segment)
+{
+    double c = potential_k(segment->radius_mm);
+    Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a));
+    Vec3 v = vec3_normalized(vec3_cross(axis, least_along(axis)));
+    return (TermForm){linear(v, c, segment->a), linear(vec3_cross(v, axis), c, segment->a),
+                      linear(axis, c, segment->a), linear(vec3_scale(axis, -1), c, segment->b)};
+}
+
+static double linear_at(const Linear *linear, Vec3 x)
+{
+    const double *k = linear->k;
+    return x.x * k[0] + x.y * k[1] + x.z * k[2] + k[3];
+}
+
+static double step_form(double u, ErfForm form)
+{
+    const double *k = erf_forms[form];
+    double exponent =
+        form == ERF_FAST
+            ? u * (u * u * k[1] + k[0])
+            : u * ((((u * u * k[4] + k[3]) * u * u + k[2]) * u * u + k[1]) * u * u + k[0]);
+    return 1 / (elementary_exp(exponent) + 1);
+}
+
+double term_form_value(const TermForm *term, TermPart part, ErfForm form, Vec3 x)
+{
+    double v = linear_at(&term->v, x), w = linear_at(&term->w, x);
+    double gauss = elementary_exp(-(v * v + w * w));
+    switch (part) {
+    case TERM_BOTH_ENDS:
+        return gauss * (step_form(linear_at(&term->start, x), form) +
+                        step_form(linear_at(&term->end, x), form) - 1);
+    case TERM_START:
+        return gauss * step_form(linear_at(&term->start, x), form);
+    case TERM_END:
+        return gauss * step_form(linear_at(&term->end, x), form);
+    case TERM_MIDDLE:
+        break;
+    }
+    return gauss;
+}
+
+const uint32_t *cell_group(const CellTree *cells, const Cell *cell, uint32_t group, uint32_t *n)
+{
+    size_t number = cell->first_group + group;
+    size_t first = number > 0 ? cells->group_ends[number - 1] : 0;
+    *n = (uint32_t)(cells->group_ends[number] - first);
+    return cells->members + first;
+}
+
+static double term_at(const CellTree *cells, const CellTerm *term, Vec3 x)
+{
+    return term_form_value(&cells->forms[term->segment], (TermPart)term->part, cells->erf, x);
+}
+
+/* A sum of terms of a cell, and the largest of them. */
+typedef struct TermSum {
+    double phi, largest;
+    uint32_t segment;
+} TermSum;
+
+/* Of the `n` terms at the places given, or of the first n. */
+static TermSum sum_terms(const CellTree *cells, const CellTerm *terms, const uint32_t *places,
+                         uint32_t n, Vec3 x)
+{
+    TermSum sum = {.largest = -1};
+    for (uint32_t i = 0; i < n; i++) {
+        const CellTerm *term = &terms[places ? places[i] : i];
+        double value = term_at(cells, term, x);
+        sum.phi += value;
+        if (value > sum.largest) {
+            sum.largest = value;
+            sum.segment = term->segment;
+        }
+    }
+    return sum;
+}
+
+/* The largest of the sums of the groups. */
+static TermSum largest_sum(const CellTree *cells, const Cell *cell, Vec3 x)
+{
+    const CellTerm *terms = cells->terms + cell->first;
+    if (cell->n_groups == 0)
+        return sum_terms(cells, terms, NULL, cell->count, x);
+    TermSum best = {.phi = -1};
+    for (uint32_t group = 0; group < cell->n_groups; group++) {
+        uint32_t n;
+        const uint32_t *places = cell_group(cells, cell, group, &n);
+        TermSum sum = sum_terms(cells, terms, places, n, x);
+        best = sum.phi > best.phi ? sum : best;
+    }
+    return best;
+}
+
+double cell_function(const CellTree *cells, const Cell *cell, Vec3 x)
+{
+    if (cell_is_tube(cells, cell)) {
+        const TermForm *form = &cells->forms[cells->terms[cell->first].segment];
+        double v = linear_at(&form->v, x), w = linear_at(&form->w, x);
+        return (sqrt(v * v + w * w) * TUBE_SLOPE - 2) * cell->scale;
+    }
+    return potential_log_form(largest_sum(cells, cell, x).phi) * cell->scale;
+}
+
+uint32_t cell_largest_term(const CellTree *cells, const Cell *cell, Vec3 x)
+{
+    return largest_sum(cells, cell, x).segment;
+}
+
+/* The group whose sum is largest at x, the first of equals. */
+static uint32_t largest_group(const CellTree *cells, const Cell *cell, Vec3 x)
+{
+    const CellTerm *terms = cells->terms + cell->first;
+    double most = -1;
+    uint32_t best = 0;
+    for (uint32_t group = 0; group < cell->n_groups; group++) {
+        uint32_t n;
+        const uint32_t *places = cell_group(cells, cell, group, &n);
+        double phi = sum_terms(cells, terms, places, n, x).phi;
+        best = phi > most ? group : best;
+        most = fmax(phi, most);
+    }
+    return best;
+}
+
+double cell_mean(const CellTree *cells, const Cell *cell, const FieldSegment *segments,
+                 const double *numbers, Vec3 x)
+{
+    uint32_t n = cell->count;
+    const uint32_t *places =
+        cell->n_groups ? cell_group(cells, cell, largest_group(cells, cell, x), &n) : NULL;
+    double all = 0, known = 0, sum = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        const CellTerm *term = &cells->terms[cell->first + (places ? places[i] : i)];
+        double value = term_at(cells, term, x), number = numbers[segments[term->segment].segment];
+        all += value;
+        if (isnan(number))
+            continue;
+        known += value;
+        sum += value * number;
+    }
+    return 2 * known >= all && known > 0 ? sum / known : (double)NAN;
+}

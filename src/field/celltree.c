@@ -1,0 +1,556 @@
+/* One descent from at most eight cubes about everything: each cube filters its parent's list of
+ * terms by their bound in it, and is dropped when the bounds do not add up to the level; so empty
+ * space costs nothing and a segment is looked at only where it may matter. A cube of side 4 r_max *
+ * 2^j lies on the lattice of multiples of its side, so that neighbours share their faces to the
+ * last bit. The box of a cell is its cube with an overlap about it.
+ *
+ * The bound of the gradient. In units of s, the axial factor A of a term is the probability that a
+ * normal variable is within the segment, and |A'| = |E[g; inside]| <= A sqrt(-2 ln A), because a
+ * law whose mean is m has an entropy of at least m^2 / 2 relative to the normal law, and that of
+ * the normal law confined to a set of probability A is -ln A. With the radial factor
+ *   s |grad phi| <= phi sqrt(-2 ln phi).
+ * For the sum, with L^2 = -2 ln Phi, p_i = phi_i / Phi and q_i = (s_min / s_i)^2 <= 1, by
+ * Cauchy-Schwarz, q_i <= 1, and Gibbs' variational principle
+ *   (s_min |grad Phi| / Phi)^2 <= sum p_i q_i (L^2 - 2 ln p_i)
+ *                              <= 2 (sum p_i q_i L^2 / 2 - sum p_i ln p_i)
+ *                              <= 2 ln sum exp(q_i L^2 / 2),
+ * and grad (log form) = -grad Phi / (Phi L): s_min |grad| <= sqrt(2 ln(sum exp(q_i L^2 / 2))) / L,
+ * which grows with Phi. Equality for one term, and for n that coincide. For the largest of sums of
+ * some of the terms it holds as it does for each. */
+#include "field/potential.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+/* There is no surface where the potential is below or above these. The hundredth of the level
+ * covers a thousand dropped terms, and an erf approximated to 2.8e-4 in four terms. */
+static const double empty_below = 0.99 * FIELD_LEVEL;
+static const double full_above = 1.01 * FIELD_LEVEL;
+
+/* A term matters for the size of a cell when its bound is above this. */
+static const double significant = 1e-2;
+
+/* The accuracy of a cell over its local radius, and the most that a shadow may ask for. */
+static const double accuracy_ratio = 1.0 / 300, largest_accuracy_ratio = 1.0 / 60;
+
+/* Boxes reach beyond their cubes by this many accuracies and up to 2 SHIFTS spacings, in which they
+ * are shifted against each other. */
+static const double overlap_accuracies = 5;
+enum { SHIFTS = 13 };
+
+/* The box of a cell is that of the parts of its cube, halved so many times, that the surface may
+ * meet; of many terms, that of the whole cube. */
+enum { HALVINGS = 2, MOST_HALVED_TERMS = 16 };
+
+/* With erf as a polynomial's tanh, s |A'| is at most this times A sqrt(-2 ln A) down to A =
+ * LOG_FORM_FLOOR / 10, and within the bound of the exact form from A = 1e-3 up (tabulated in
+ * tests/unit/cells_test.c). */
+static const double tail_steepness[] = {[ERF_FAST] = 1.14, [ERF_EXACT] = 1.21};
+
+static const size_t max_cells = 1000000;
+/* Terms looked at in all cubes, those without surface included, and KEPT times more for one that is
+ * kept: seconds of work. Of most trees, 80 a cell. */
+enum { KEPT = 3 };
+static const uint64_t max_looks = 30000000, max_looks_per_cell = 150;
+
+/* A term's bound is peak exp(-decay dist^2), above the cut-off up to dist^2 = reach2. */
+typedef struct Support {
+    double peak, decay, reach2;
+} Support;
+
+typedef struct Builder {
+    const FieldSegment *segments;
+    Support *supports; /* one a segment */
+    double beta;
+    double root_side;
+    /* mm, a power of 2: single precision holds its multiples in all boxes, and their differences.
+     * POV-Ray keeps the least corner and the size of a box in single precision, and looks into no
+     * box that these miss: so the sides of boxes are such multiples. */
+    double spacing;
+    uint32_t *stack; /* the lists of the cubes from the first down to the current one */
+    size_t depth, stack_capacity;
+    uint64_t looks;      /* at terms, in all cubes so far */
+    LocalGroups *groups; /* NULL where all segments blend */
+    CellTree tree;
+    size_t cell_capacity, term_capacity, member_capacity, group_capacity;
+} Builder;
+
+/* Part of the stack, and what its terms have in common. */
+typedef struct TermList {
+    size_t first, count;
+    double bound_sum;
+    double smallest_radius, largest_radius;
+    double local_radius; /* smallest of the significant terms, of all when none is */
+    double steepness;    /* the bound of s_min |grad (log form)| below the level; 0 where there is
+                          * no surface by bound_sum */
+} TermList;
+
+/* A cube of the octree: the multiples of `side` from at[] on. */
+typedef struct Cube {
+    double side;
+    int64_t at[3];
+} Cube;
+
+static Cube octant_of(const Cube *cube, int octant)
+{
+    Cube part = {cube->side / 2, {0}};
+    for (int axis = 0; axis < 3; axis++)
+        part.at[axis] = 2 * cube->at[axis] + (octant >> axis & 1);
+    return part;
+}
+
+static Vec3 cube_low(const Cube *cube)
+{
+    return vec3((double)cube->at[0] * cube->side, (double)cube->at[1] * cube->side,
+                (double)cube->at[2] * cube->side);
+}
+
+static Box cube_box(const Cube *cube, double margin)
+{
+    Vec3 low = cube_low(cube);
+    double side = cube->side + margin;
+    return (Box){{low.x - margin, low.y - margin, low.z - margin},
+                 {low.x + side, low.y + side, low.z + side}};
+}
+
+/* The bound of s_min |grad (log form)| for potentials up to `phi`. */
+static double gradient_bound(const Builder *builder, const TermList *terms, double phi)
+{
+    double half_l2 = -elementary_log(phi), sum = 0;
+    for (size_t i = terms->first; i < terms->first + terms->count; i++) {
+        double ratio = terms->smallest_radius / builder->segments[builder->stack[i]].radius_mm;
+        sum += elementary_exp(ratio * ratio * half_l2);
+    }
+    return sqrt(elementary_log(sum) / half_l2);
+}
+
+/* Pushes those terms of `from` whose bound in the box is above CELL_TERM_CUTOFF. */
+static Status filter_terms(Builder *builder, const TermList *from, Box box, TermList *out, Err *err)
+{
+    TRY(mem_reserve(&builder->stack, &builder->stack_capacity, builder->depth + from->count,
+                    sizeof *builder->stack, "terms", err));
+    TermList list = {builder->depth, 0, 0, HUGE_VAL, 0, HUGE_VAL, 0};
+    builder->looks += from->count;
+    if (builder->looks > max_looks + max_looks_per_cell * builder->tree.n_cells)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "the isosurface has too many vessels that overlap, or radii that are too "
+                       "different, to be cut into cells in a reasonable time; leave out vessels or "
+                       "choose another model");
+    for (size_t i = from->first; i < from->first + from->count; i++) {
+        uint32_t number = builder->stack[i];
+        const FieldSegment *segment = &builder->segments[number];
+        const Support *support = &builder->supports[number];
+        double distance2 = segment_box_distance2(segment, &box);
+        if (!(distance2 < support->reach2))
+            continue;
+        builder->stack[list.first + list.count++] = number;
+        double bound = support->peak * elementary_exp(-support->decay * distance2);
+        list.bound_sum += bound;
+        list.smallest_radius = fmin(list.smallest_radius, segment->radius_mm);
+        list.largest_radius = fmax(list.largest_radius, segment->radius_mm);
+        if (bound > significant)
+            list.local_radius = fmin(list.local_radius, segment->radius_mm);
+    }
+    if (isinf(list.local_radius))
+        list.local_radius = list.smallest_radius;
+    if (list.bound_sum >= empty_below)
+        list.steepness = gradient_bound(builder, &list, empty_below);
+    builder->looks += KEPT * list.count;
+    builder->depth += list.count;
+    *out = list;
+    return STATUS_OK;
+}
+
+/* A sum of terms at the centre of a cube, and what it is at least all over the cube: each term
+ * loses at most the largest phi sqrt(-2 ln phi) / s, exp(-1/2) / s, a mm. */
+typedef struct CubeSum {
+    double phi, at_least;
+} CubeSum;
+
+/* Of the `n` terms at the places given of the list, or of the first n. */
+static CubeSum sum_in(const Builder *builder, const uint32_t *list, const uint32_t *places,
+                      size_t n, Vec3 center, double half_diagonal)
+{
+    CubeSum sum = {0};
+    for (size_t i = 0; i < n; i++) {
+        const FieldSegment *segment = &builder->segments[list[places ? places[i] : i]];
+        double term = potential_term(segment, center);
+        sum.phi += term;
+        sum.at_least +=
+            fmax(0, term - half_diagonal * elementary_exp(-0.5) * 2 / segment->radius_mm);
+    }
+    return sum;
+}
+
+/* The largest of the sums of the groups. */
+static CubeSum largest_sum(const Builder *builder, const TermList *terms, Vec3 center,
+                           double half_diagonal)
+{
+    const uint32_t *list = builder->stack + terms->first;
+    if (!builder->groups)
+        return sum_in(builder, list, NULL, terms->count, center, half_diagonal);
+    CubeSum largest = {0};
+    size_t n_groups = localgroups_find(builder->groups, list, terms->count);
+    for (size_t group = 0; group < n_groups; group++) {
+        size_t n;
+        const uint32_t *places = localgroups_members(builder->groups, group, &n);
+        CubeSum sum = sum_in(builder, list, places, n, center, half_diagonal);
+        largest.phi = fmax(largest.phi, sum.phi);
+        largest.at_least = fmax(largest.at_least, sum.at_least);
+    }
+    return largest;
+}
+
+/* Whether the potential at the centre proves that the level is not met in the cube widened by
+ * `margin`: it is too small to reach the level by the bound of the log form's gradient, or so large
+ * that it stays above. */
+static bool misses_surface(const Builder *builder, const TermList *terms, const Cube *cube,
+                           double margin)
+{
+    Vec3 center = box_center(cube_box(cube, 0));
+    double half_diagonal = sqrt(3) * (cube->side / 2 + margin);
+    CubeSum sum = largest_sum(builder, terms, center, half_diagonal);
+    if (sum.phi >= empty_below)
+        return sum.at_least > full_above;
+    double rise =
+        sqrt(-2 * elementary_log(fmax(sum.phi, DBL_MIN))) - sqrt(-2 * elementary_log(empty_below));
+    return rise * terms->smallest_radius / 2 > terms->steepness * half_diagonal;
+}
+
+/* x down (sign 1) or up (sign -1) to `decimals` places behind the point, which may be negative. */
+static double round_down(double x, int decimals, double sign)
+{
+    double unit = elementary_pow(10, abs(decimals));
+    return decimals < 0 ? sign * floor(sign * x / unit) * unit
+                        : sign * floor(sign * x * unit) / unit;
+}
+
+/* Decimals that keep `digits` digits of x > 0. */
+static int decimals_of(double x, int digits)
+{
+    return digits - 1 - (int)floor(elementary_log10(x));
+}
+
+double cell_accuracy(double radius)
+{
+    double accuracy =
+        fmax(accuracy_ratio * radius, fmin(SHADOW_ACCURACY_MM, largest_accuracy_ratio * radius));
+    return round_down(accuracy, decimals_of(accuracy, 3), 1);
+}
+
+/* Which ends of the segment the term feels somewhere in the box. */
+static TermPart part_in(const TermForm *form, Box box)
+{
+    Vec3 center = box_center(box), half = vec3_sub(box.high, center);
+    bool felt[2];
+    for (int end = 0; end < 2; end++) {
+        const double *k = end ? form->end.k : form->start.k;
+        double inside = k[0] * center.x + k[1] * center.y + k[2] * center.z + k[3];
+        double swing = fabs(k[0]) * half.x + fabs(k[1]) * half.y + fabs(k[2]) * half.z;
+        felt[end] = inside - swing < END_REACH;
+    }
+    return felt[0] ? (felt[1] ? TERM_BOTH_ENDS : TERM_START) : felt[1] ? TERM_END : TERM_MIDDLE;
+}
+
+static Status push_terms(Builder *builder, const TermList *terms, Box box, Err *err)
+{
+    CellTree *tree = &builder->tree;
+    TRY(mem_reserve(&tree->terms, &builder->term_capacity, tree->n_terms + terms->count,
+                    sizeof *tree->terms, "terms of cells", err));
+    for (size_t i = 0; i < terms->count; i++) {
+        uint32_t segment = builder->stack[terms->first + i];
+        tree->terms[tree->n_terms++] = (CellTerm){segment, part_in(&tree->forms[segment], box)};
+    }
+    return STATUS_OK;
+}
+
+/* Adds the groups of the cell, unless its terms are all one. */
+static Status push_groups(Builder *builder, const TermList *terms, Cell *cell, Err *err)
+{
+    CellTree *tree = &builder->tree;
+    size_t n_groups = 0;
+    if (builder->groups)
+        n_groups = localgroups_find(builder->groups, builder->stack + terms->first, terms->count);
+    if (n_groups < 2)
+        return STATUS_OK;
+    cell->first_group = (uint32_t)tree->n_groups;
+    cell->n_groups = (uint32_t)n_groups;
+    TRY(mem_reserve(&tree->group_ends, &builder->group_capacity, tree->n_groups + n_groups,
+                    sizeof *tree->group_ends, "groups of cells", err));
+    for (size_t group = 0; group < n_groups; group++) {
+        size_t n;
+        const uint32_t *places = localgroups_members(builder->groups, group, &n);
+        TRY(mem_reserve(&tree->members, &builder->member_capacity, tree->n_members + n,
+                        sizeof *tree->members, "groups of cells", err));
+        for (size_t i = 0; i < n; i++)
+            tree->members[tree->n_members++] = places[i];
+        tree->group_ends[tree->n_groups++] = tree->n_members;
+    }
+    return STATUS_OK;
+}
+
+/* The segment whose term is more than half the level where the sum reaches it, because all others
+ * together stay below. */
+static uint32_t largest_in(const Builder *builder, const TermList *terms, Box box)
+{
+    for (size_t i = 0; i < terms->count; i++) {
+        uint32_t segment = builder->stack[terms->first + i];
+        double bound = potential_term_bound(&builder->segments[segment], box);
+        if (terms->bound_sum - bound < 0.48 * FIELD_LEVEL)
+            return segment;
+    }
+    return CELL_MIXED;
+}
+
+/* The bound of the gradient of the cell's function, whose scale is `scale`. */
+static double max_gradient(const Builder *builder, const TermList *terms, const Cell *cell)
+{
+    double bound = 1;
+    if (!cell_is_tube(&builder->tree, cell)) {
+        double near = gradient_bound(builder, terms, LOG_FORM_CEILING);
+        double far = gradient_bound(builder, terms, LOG_FORM_FLOOR);
+        bound = fmax(near, tail_steepness[builder->tree.erf] * far);
+    }
+    double gradient = bound * (1 + 1e-9) * cell->scale * 2 / terms->smallest_radius;
+    return round_down(gradient, decimals_of(gradient, 4), -1);
+}
+
+/* SHIFTS, or 1, which is no shift, where single precision is too coarse. */
+static int shifts_at(const Builder *builder, double accuracy)
+{
+    return 2 * SHIFTS * builder->spacing <= overlap_accuracies * accuracy ? SHIFTS : 1;
+}
+
+/* How far the box of a cell reaches beyond its cube, before it is shifted. */
+static double overlap_of(const Builder *builder, double accuracy)
+{
+    double step = shifts_at(builder, accuracy) * builder->spacing;
+    return ceil(overlap_accuracies * accuracy / step) * step;
+}
+
+/* The shift of a cell's box, in spacings, below SHIFTS - 1. Two cells that touch have different
+ * shifts where their boxes, before the overlap is added, may begin and end in the same two planes
+ * across an axis: the cubes of such cells are at most HALVINGS levels of the octree apart, and if
+ * they are of one level, they differ in one or two of their three coordinates. */
+static int shift_of(const Builder *builder, const Cube *cube)
+{
+    int level = ilogb(builder->root_side / cube->side) % (HALVINGS + 1);
+    int64_t x = cube->at[0] & 1, y = cube->at[1] & 1, z = cube->at[2] & 1;
+    return 4 * level + (int)((x ^ z) | (y ^ z) << 1);
+}
+
+/* The box of a cell of this cube and accuracy, by what it has of the surface: its sides are
+ * multiples of the spacing, and it is shifted.
+ *
+ * POV-Ray halves the stretch of a ray in a box again and again, and so finds the wall at a fraction
+ * k / 2^i of the stretch. Where a ray along an axis meets the boxes of two cells that shift_of
+ * tells apart, equal fractions of the two stretches are different places: with overlaps of 13 m and
+ * 13 m' spacings and shifts s and s' they would be one place if 13 (m - m') (2 k - 2^i) were 2^i (s
+ * - s'), which 13 does not divide. Unequal fractions may be one place; but as the two boxes begin
+ * at different places, it is known which of them POV-Ray looks into first.
+ */
+static Box box_shifted(const Builder *builder, Box box, const Cube *cube, double accuracy)
+{
+    double unit = builder->spacing;
+    int shifts = shifts_at(builder, accuracy);
+    double up = shift_of(builder, cube) % shifts, down = shifts - 1 - up;
+    return (Box){{(floor(box.low.x / unit) - down) * unit, (floor(box.low.y / unit) - down) * unit,
+                  (floor(box.low.z / unit) - down) * unit},
+                 {(ceil(box.high.x / unit) + up) * unit, (ceil(box.high.y / unit) + up) * unit,
+                  (ceil(box.high.z / unit) + up) * unit}};
+}
+
+static bool box_has_box(Box box, Box other)
+{
+    return box_holds(box, other.low, 0) && box_holds(box, other.high, 0);
+}
+
+/* Widens *box to hold the parts of the cube, halved `times` times, in which the surface can lie,
+ * each with `margin` about it. */
+static Status hold_surface(Builder *builder, const TermList *candidates, const Cube *cube,
+                           double margin, int times, Box *box, Err *err)
+{
+    const Box own = cube_box(cube, margin);
+    size_t depth = builder->depth;
+    TermList terms;
+    if (box_has_box(*box, own))
+        return STATUS_OK;
+    TRY(filter_terms(builder, candidates, own, &terms, err));
+    if (terms.bound_sum >= empty_below && !misses_surface(builder, &terms, cube, margin)) {
+        if (times == 0)
+            *box = box_union(*box, own);
+        for (int octant = 0; times > 0 && octant < 8; octant++) {
+            const Cube part = octant_of(cube, octant);
+            TRY(hold_surface(builder, &terms, &part, margin, times - 1, box, err));
+        }
+    }
+    builder->depth = depth;
+    return STATUS_OK;
+}
+
+/* These looks are bounded by the number of cells, and not counted. */
+static Status box_of_surface(Builder *builder, const TermList *candidates, const Cube *cube,
+                             double margin, Box *box, Err *err)
+{
+    int times = candidates->count > MOST_HALVED_TERMS ? 0 : HALVINGS;
+    uint64_t looks = builder->looks;
+    *box = box_empty();
+    TRY(hold_surface(builder, candidates, cube, margin, times, box, err));
+    builder->looks = looks;
+    return STATUS_OK;
+}
+
+static Status add_cell(Builder *builder, const TermList *candidates, const Cube *cube, Err *err)
+{
+    double accuracy = cell_accuracy(candidates->local_radius);
+    Box box;
+    TermList terms;
+    TRY(box_of_surface(builder, candidates, cube, overlap_of(builder, accuracy), &box, err));
+    if (box_is_empty(box))
+        return STATUS_OK;
+    box = box_shifted(builder, box, cube, accuracy);
+    TRY(filter_terms(builder, candidates, box, &terms, err));
+
+    CellTree *tree = &builder->tree;
+    if (tree->n_cells == max_cells || tree->n_terms + terms.count > UINT32_MAX)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "the isosurface needs more than %zu cells of up to %g mm; leave out thin "
+                       "vessels or choose another model",
+                       max_cells, builder->root_side);
+    TRY(mem_reserve(&tree->cells, &builder->cell_capacity, tree->n_cells + 1, sizeof *tree->cells,
+                    "cells", err));
+    Cell cell = {.low = box.low,
+                 .high = box.high,
+                 .first = (uint32_t)tree->n_terms,
+                 .count = (uint32_t)terms.count,
+                 .scale = elementary_exp2(floor(elementary_log2(terms.smallest_radius / 8))),
+                 .accuracy = accuracy,
+                 .largest = largest_in(builder, &terms, box)};
+    TRY(push_terms(builder, &terms, box, err));
+    TRY(push_groups(builder, &terms, &cell, err));
+    cell.max_gradient = max_gradient(builder, &terms, &cell);
+    tree->cells[tree->n_cells++] = cell;
+    return STATUS_OK;
+}
+
+/* Adds the cells of a cube, whose parent has the terms `parent`. Terms are kept where they matter
+ * in the cube widened by the overlap of any cell that it may hold. */
+static Status descend(Builder *builder, const TermList *parent, const Cube *cube, Err *err)
+{
+    size_t depth = builder->depth;
+    double accuracy = cell_accuracy(parent->largest_radius);
+    double margin =
+        overlap_accuracies * accuracy + 2 * shifts_at(builder, accuracy) * builder->spacing;
+    TermList terms;
+    TRY(filter_terms(builder, parent, cube_box(cube, margin), &terms, err));
+    if (terms.bound_sum >= empty_below && !misses_surface(builder, &terms, cube, margin)) {
+        bool split =
+            cube->side > builder->root_side || cube->side > builder->beta * terms.local_radius;
+        if (!split)
+            TRY(add_cell(builder, &terms, cube, err));
+        for (int octant = 0; split && octant < 8; octant++) {
+            const Cube part = octant_of(cube, octant);
+            TRY(descend(builder, &terms, &part, err));
+        }
+    }
+    builder->depth = depth;
+    return STATUS_OK;
+}
+
+/* Descends from the cubes of the lattice, two along each axis at most, that hold the box; `all` is
+ * the list of all terms. */
+static Status descend_from_top(Builder *builder, const TermList *all, Box box, Err *err)
+{
+    Vec3 extent = vec3_sub(box.high, box.low);
+    double widest = fmax(extent.x, fmax(extent.y, extent.z));
+    double side = builder->root_side;
+    while (side < widest)
+        side *= 2;
+    const double low[3] = {box.low.x, box.low.y, box.low.z};
+    const double high[3] = {box.high.x, box.high.y, box.high.z};
+    int64_t first[3], last[3];
+    for (int axis = 0; axis < 3; axis++) {
+        first[axis] = (int64_t)floor(low[axis] / side);
+        last[axis] = (int64_t)floor(high[axis] / side);
+    }
+    for (int64_t z = first[2]; z <= last[2]; z++) {
+        for (int64_t y = first[1]; y <= last[1]; y++) {
+            for (int64_t x = first[0]; x <= last[0]; x++)
+                TRY(descend(builder, all, &(Cube){side, {x, y, z}}, err));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The power of 2 whose multiples within a box, and up to two root cubes beyond, single precision
+ * holds, and so their differences. */
+static double spacing_within(Box box, double root_side)
+{
+    double farthest = fmax(fmax(fmax(-box.low.x, box.high.x), fmax(-box.low.y, box.high.y)),
+                           fmax(-box.low.z, box.high.z));
+    return elementary_exp2(ilogb(farthest + 2 * root_side) + 2 - FLT_MANT_DIG);
+}
+
+static Support support_of(const FieldSegment *segment)
+{
+    double peak = potential_term_peak(segment);
+    double decay = 2 / (segment->radius_mm * segment->radius_mm);
+    return (Support){peak, decay, elementary_log(peak / CELL_TERM_CUTOFF) / decay};
+}
+
+static Status build(Builder *builder, size_t n_segments, Err *err)
+{
+    CellTree *tree = &builder->tree;
+    TRY(mem_reserve(&builder->stack, &builder->stack_capacity, n_segments, sizeof *builder->stack,
+                    "terms", err));
+    TRY(mem_calloc(&builder->supports, n_segments, sizeof *builder->supports, "supports", err));
+    TRY(mem_calloc(&tree->forms, n_segments, sizeof *tree->forms, "forms of terms", err));
+    TermList all = {.count = n_segments};
+    Box box = box_empty();
+    for (size_t i = 0; i < n_segments; i++) {
+        const FieldSegment *segment = &builder->segments[i];
+        tree->forms[i] = term_form(segment);
+        builder->supports[i] = support_of(segment);
+        builder->stack[i] = (uint32_t)i;
+        double reach = sqrt(fmax(builder->supports[i].reach2, 0));
+        box = box_with_ball(box, segment->a, reach);
+        box = box_with_ball(box, segment->b, reach);
+        all.largest_radius = fmax(all.largest_radius, segment->radius_mm);
+    }
+    if (n_segments == 0)
+        return STATUS_OK;
+    builder->depth = n_segments;
+    builder->root_side = 4 * all.largest_radius;
+    builder->spacing = spacing_within(box, builder->root_side);
+    return descend_from_top(builder, &all, box, err);
+}
+
+Status celltree_build(const Geometry *geometry, const CellParams *params, CellTree *cells, Err *err)
+{
+    Builder builder = {.segments = geometry->segments,
+                       .beta = params->beta > 0 ? params->beta : CELL_BETA,
+                       .tree = {.erf = params->erf}};
+    Status status = STATUS_OK;
+    if (geometry->blend.n_groups)
+        status = localgroups_new(geometry, &builder.groups, err);
+    if (status == STATUS_OK)
+        status = build(&builder, geometry->n_segments, err);
+    localgroups_free(builder.groups);
+    free(builder.supports);
+    free(builder.stack);
+    if (status == STATUS_OK)
+        *cells = builder.tree;
+    else
+        celltree_release(&builder.tree);
+    return status;
+}
+
+void celltree_release(CellTree *cells)
+{
+    free(cells->cells);
+    free(cells->terms);
+    free(cells->members);
+    free(cells->group_ends);
+    free(cells->forms);
+    *cells = (CellTree){0};
+}

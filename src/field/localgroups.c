@@ -1,0 +1,174 @@
+/* Whether a segment is in the list, and whether a group has been met, is marked by a number that
+ * need not be initialised or cleared: place[s] is that of s if the list has s there [Briggs &
+ * Torczon, "An efficient representation for sparse sets", 1993].
+ *
+ * A group that holds all of another holds its rarest member, so it is among that one's groups;
+ * how many segments both have in the list, and the lowest and the highest, settle most pairs. */
+#include "field/localgroups.h"
+
+#include <stdlib.h>
+
+/* What the list has of a group. */
+typedef struct Part {
+    uint32_t group;
+    uint32_t count, low, high; /* how many segments, and between which */
+    bool held;                 /* by another part */
+} Part;
+
+struct LocalGroups {
+    const Blend *blend;
+    const uint32_t *list;
+    size_t n_list;
+    uint32_t *place; /* one a segment */
+    uint32_t *met;   /* one a group: its part */
+    Part *parts;     /* in the order in which the list meets them */
+    size_t n_parts;
+    uint32_t *members; /* one a segment */
+};
+
+Status localgroups_new(const Geometry *geometry, LocalGroups **out, Err *err)
+{
+    LocalGroups *groups = NULL;
+    const Blend *blend = &geometry->blend;
+    Status status;
+    TRY_GOTO(mem_calloc(&groups, 1, sizeof *groups, "groups", err));
+    groups->blend = blend;
+    TRY_GOTO(
+        mem_calloc(&groups->place, geometry->n_segments, sizeof *groups->place, "groups", err));
+    TRY_GOTO(
+        mem_calloc(&groups->members, geometry->n_segments, sizeof *groups->members, "groups", err));
+    TRY_GOTO(mem_calloc(&groups->met, blend->n_groups, sizeof *groups->met, "groups", err));
+    TRY_GOTO(mem_calloc(&groups->parts, blend->n_groups, sizeof *groups->parts, "groups", err));
+    *out = groups;
+    return STATUS_OK;
+done:
+    localgroups_free(groups);
+    return status;
+}
+
+void localgroups_free(LocalGroups *groups)
+{
+    if (!groups)
+        return;
+    free(groups->place);
+    free(groups->members);
+    free(groups->met);
+    free(groups->parts);
+    free(groups);
+}
+
+static bool is_listed(const LocalGroups *groups, uint32_t segment)
+{
+    uint32_t place = groups->place[segment];
+    return place < groups->n_list && groups->list[place] == segment;
+}
+
+static Part *part_of(const LocalGroups *groups, uint32_t group)
+{
+    uint32_t number = groups->met[group];
+    bool met = number < groups->n_parts && groups->parts[number].group == group;
+    return met ? &groups->parts[number] : NULL;
+}
+
+/* Adds a segment to the parts of its groups. */
+static void meet(LocalGroups *groups, uint32_t segment)
+{
+    const NumberLists *lists = &groups->blend->groups;
+    for (uint32_t i = lists->first[segment]; i < lists->first[segment + 1]; i++) {
+        uint32_t group = lists->items[i];
+        Part *part = part_of(groups, group);
+        if (!part) {
+            groups->met[group] = (uint32_t)groups->n_parts;
+            part = &groups->parts[groups->n_parts++];
+            *part = (Part){.group = group, .low = segment, .high = segment};
+        }
+        part->count++;
+        part->low = segment < part->low ? segment : part->low;
+        part->high = segment > part->high ? segment : part->high;
+    }
+}
+
+/* The listed member of a part that is in the fewest groups. */
+static uint32_t rarest_of(const LocalGroups *groups, const Part *part)
+{
+    const NumberLists *members = &groups->blend->members, *holders = &groups->blend->groups;
+    uint32_t rarest = part->low, fewest = UINT32_MAX;
+    for (uint32_t i = members->first[part->group]; i < members->first[part->group + 1]; i++) {
+        uint32_t segment = members->items[i];
+        uint32_t count = holders->first[segment + 1] - holders->first[segment];
+        if (count < fewest && is_listed(groups, segment)) {
+            rarest = segment;
+            fewest = count;
+        }
+    }
+    return rarest;
+}
+
+/* Whether what the list has of `part` is all in the other one's group. */
+static bool is_within(const LocalGroups *groups, const Part *part, const Part *other)
+{
+    const NumberLists *members = &groups->blend->members;
+    if (other->count < part->count || other->low > part->low || other->high < part->high)
+        return false;
+    for (uint32_t i = members->first[part->group], k = members->first[other->group];
+         i < members->first[part->group + 1]; i++) {
+        uint32_t segment = members->items[i];
+        if (!is_listed(groups, segment))
+            continue;
+        while (k < members->first[other->group + 1] && members->items[k] < segment)
+            k++;
+        if (k == members->first[other->group + 1] || members->items[k] != segment)
+            return false;
+    }
+    return true;
+}
+
+/* Of equal parts, the first stays. */
+static bool is_held(const LocalGroups *groups, const Part *part)
+{
+    const NumberLists *holders = &groups->blend->groups;
+    uint32_t rarest = rarest_of(groups, part);
+    for (uint32_t i = holders->first[rarest]; i < holders->first[rarest + 1]; i++) {
+        const Part *other = part_of(groups, holders->items[i]);
+        if ((other->count > part->count || other < part) && is_within(groups, part, other))
+            return true;
+    }
+    return false;
+}
+
+size_t localgroups_find(LocalGroups *groups, const uint32_t *list, size_t n)
+{
+    groups->list = list;
+    groups->n_list = n;
+    groups->n_parts = 0;
+    for (size_t i = 0; i < n; i++)
+        groups->place[list[i]] = (uint32_t)i;
+    for (size_t i = 0; i < n; i++)
+        meet(groups, list[i]);
+    for (size_t i = 0; i < groups->n_parts; i++)
+        groups->parts[i].held = is_held(groups, &groups->parts[i]);
+    size_t kept = 0;
+    for (size_t i = 0; i < groups->n_parts; i++)
+        if (!groups->parts[i].held)
+            groups->parts[kept++] = groups->parts[i];
+    groups->n_parts = kept;
+    return kept;
+}
+
+const uint32_t *localgroups_members(LocalGroups *groups, size_t number, size_t *n)
+{
+    const NumberLists *lists = &groups->blend->members;
+    uint32_t group = groups->parts[number].group;
+    size_t count = 0;
+    for (uint32_t i = lists->first[group]; i < lists->first[group + 1]; i++) {
+        if (!is_listed(groups, lists->items[i]))
+            continue;
+        uint32_t place = groups->place[lists->items[i]];
+        size_t hole = count++;
+        for (; hole > 0 && groups->members[hole - 1] > place; hole--)
+            groups->members[hole] = groups->members[hole - 1];
+        groups->members[hole] = place;
+    }
+    *n = count;
+    return groups->members;
+}

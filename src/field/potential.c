@@ -1,0 +1,126 @@
+/* A term in the coordinates of its segment, in units of 1 / k = sqrt(2) s = radius / sqrt(2): u and
+ * v are how far x lies inside either end, E its distance from the axis line. Then the term is
+ * exp(-E^2) (erf u + erf v) / 2. Beyond an end both erf are close to -1 and +1, and their sum is
+ * taken as a difference of erfc, which keeps the digits of the tail. E comes from the part of x - a
+ * across the axis and v from b, not from differences of large squares or lengths. */
+#include "field/potential.h"
+
+/* 1 / sqrt(pi) */
+static const double inv_sqrt_pi = 0.56418958354775628695;
+
+typedef struct Place {
+    double k;    /* 1/mm */
+    double u, v; /* beyond a and before b, times k */
+    Vec3 axis;   /* unit, a to b */
+    Vec3 across; /* x less its foot on the axis line, mm */
+} Place;
+
+static Place place_of(const FieldSegment *segment, Vec3 x)
+{
+    Place place = {.k = potential_k(segment->radius_mm)};
+    place.axis = vec3_normalized(vec3_sub(segment->b, segment->a));
+    Vec3 from_a = vec3_sub(x, segment->a);
+    double along = vec3_dot(from_a, place.axis);
+    place.u = place.k * along;
+    place.v = place.k * vec3_dot(vec3_sub(segment->b, x), place.axis);
+    place.across = vec3_add_scaled(from_a, place.axis, -along);
+    return place;
+}
+
+static double radial_factor(const Place *place)
+{
+    return elementary_exp(-place->k * place->k * vec3_dot(place->across, place->across));
+}
+
+static double axial_factor(double u, double v)
+{
+    if (u < 0)
+        return 0.5 * (elementary_erfc(-u) - elementary_erfc(v));
+    if (v < 0)
+        return 0.5 * (elementary_erfc(-v) - elementary_erfc(u));
+    return 0.5 * (elementary_erf(u) + elementary_erf(v));
+}
+
+double potential_term(const FieldSegment *segment, Vec3 x)
+{
+    Place place = place_of(segment, x);
+    return radial_factor(&place) * axial_factor(place.u, place.v);
+}
+
+double potential_term_gradient(const FieldSegment *segment, Vec3 x, Vec3 *gradient)
+{
+    Place place = place_of(segment, x);
+    double radial = radial_factor(&place);
+    double term = radial * axial_factor(place.u, place.v);
+    double axial_slope = elementary_exp(-place.u * place.u) - elementary_exp(-place.v * place.v);
+    *gradient = vec3_add_scaled(vec3_scale(place.across, -2 * place.k * place.k * term), place.axis,
+                                place.k * inv_sqrt_pi * radial * axial_slope);
+    return term;
+}
+
+static double gap(double x, double low, double high)
+{
+    return x < low ? x - low : x > high ? x - high : 0;
+}
+
+/* From the nearest point of the box to x. */
+static Vec3 gap_to_box(Vec3 x, const Box *box)
+{
+    return vec3(gap(x.x, box->low.x, box->high.x), gap(x.y, box->low.y, box->high.y),
+                gap(x.z, box->low.z, box->high.z));
+}
+
+/* The squared distance of the box from a + s (b - a), s in [0, 1], is convex; its slope by s is
+ * piecewise linear and rises, with its bends where the point passes the plane of a face. [s0, s1]
+ * is drawn together about the zero of the slope, past each bend, until the slope between them is
+ * one straight line. */
+double segment_box_distance2(const FieldSegment *segment, const Box *box)
+{
+    Vec3 a = segment->a, span = vec3_sub(segment->b, a);
+    Vec3 gap0 = gap_to_box(a, box), gap1 = gap_to_box(segment->b, box);
+    double s0 = 0, slope0 = vec3_dot(gap0, span);
+    double s1 = 1, slope1 = vec3_dot(gap1, span);
+    if (slope0 >= 0)
+        return vec3_dot(gap0, gap0);
+    if (slope1 <= 0)
+        return vec3_dot(gap1, gap1);
+    const double bends[6] = {(box->low.x - a.x) / span.x,  (box->low.y - a.y) / span.y,
+                             (box->low.z - a.z) / span.z,  (box->high.x - a.x) / span.x,
+                             (box->high.y - a.y) / span.y, (box->high.z - a.z) / span.z};
+    for (int i = 0; i < 6; i++) {
+        if (!(bends[i] > s0 && bends[i] < s1)) /* also when the segment is parallel to the face */
+            continue;
+        double slope = vec3_dot(gap_to_box(vec3_add_scaled(a, span, bends[i]), box), span);
+        if (slope < 0) {
+            s0 = bends[i];
+            slope0 = slope;
+        } else {
+            s1 = bends[i];
+            slope1 = slope;
+        }
+    }
+    double s = s0 + (s1 - s0) * (slope0 / (slope0 - slope1));
+    Vec3 nearest = gap_to_box(vec3_add_scaled(a, span, s), box);
+    return vec3_dot(nearest, nearest);
+}
+
+double potential_term_peak(const FieldSegment *segment)
+{
+    double k = potential_k(segment->radius_mm);
+    return elementary_erf(0.5 * k * vec3_distance(segment->a, segment->b));
+}
+
+/* Beside the segment the axial factor is largest half way, where it is erf(k l / 2). At e / k
+ * beyond an end it is the integral of exp(-(e + y)^2) / sqrt(pi) over y in [0, k l], at most
+ * exp(-e^2) erf(k l) / 2, which is at most exp(-e^2) erf(k l / 2); and e^2 + E^2 = (k dist)^2. */
+double potential_term_bound(const FieldSegment *segment, Box box)
+{
+    double k = potential_k(segment->radius_mm);
+    return elementary_exp(-k * k * segment_box_distance2(segment, &box)) *
+           potential_term_peak(segment);
+}
+
+double potential_log_form(double phi)
+{
+    return sqrt(-2 * elementary_log(fmin(fmax(phi, LOG_FORM_FLOOR), LOG_FORM_CEILING))) - 2;
+}

@@ -1,0 +1,57 @@
+/* POV-Ray's root finder stops within the accuracy of its cell, measured along the ray. What the
+ * cells leave out of the potential moves the surface along its normal, by cell_displacement, so
+ * that along the ray it is that over the cosine between both. Depth planes hold single precision.
+ */
+#include "field/field.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+/* Rays within about 3 degrees of the tangent plane may pass on either side of it. */
+static const double grazing_cosine = 0.05;
+
+static Status radii_by_id(const Geometry *geometry, double **out, Err *err)
+{
+    uint32_t largest = 0;
+    for (size_t i = 0; i < geometry->n_ids; i++)
+        largest = geometry->ids[i] > largest ? geometry->ids[i] : largest;
+    double *radii = NULL;
+    TRY(mem_calloc(&radii, (size_t)largest + 1, sizeof *radii, "radii", err));
+    for (size_t i = 0; i < geometry->n_segments; i++)
+        radii[geometry->ids[geometry->segments[i].segment]] = geometry->segments[i].radius_mm;
+    *out = radii;
+    return STATUS_OK;
+}
+
+static double tolerance_at(const SurfaceSight *sight, size_t pixel, Vec3 direction,
+                           const double *radii, ErfForm erf)
+{
+    double depth = (double)sight->depth[pixel];
+    if (!isfinite(depth))
+        return 0;
+    const float *n = &sight->normal[3 * pixel];
+    double cosine = fabs(vec3_dot(vec3((double)n[0], (double)n[1], (double)n[2]), direction));
+    if (cosine < grazing_cosine)
+        return HUGE_VAL;
+    double radius = radii[sight->ids[pixel]];
+    return cell_accuracy(radius) + cell_displacement(radius, erf) / cosine +
+           depth * (double)FLT_EPSILON;
+}
+
+Status surface_tolerance(const Geometry *geometry, const Camera *camera, ErfForm erf,
+                         const SurfaceSight *seen, const SurfaceSight *exact, float *allowed,
+                         Err *err)
+{
+    double *radii = NULL;
+    TRY(radii_by_id(geometry, &radii, err));
+    for (int j = 0; j < camera->height; j++) {
+        for (int i = 0; i < camera->width; i++) {
+            size_t pixel = (size_t)j * (size_t)camera->width + (size_t)i;
+            Vec3 direction = camera_ray(camera, i, j).direction;
+            allowed[pixel] = (float)fmax(tolerance_at(seen, pixel, direction, radii, erf),
+                                         tolerance_at(exact, pixel, direction, radii, erf));
+        }
+    }
+    free(radii);
+    return STATUS_OK;
+}

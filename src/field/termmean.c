@@ -1,0 +1,124 @@
+/* Boxes about the segments, out to where their terms are cut off, find those that are felt at a
+ * point. A group is summed once, when its first member is met that is felt. */
+#include "field/field.h"
+
+#include <stdlib.h>
+
+struct TermMean {
+    const Geometry *geometry;
+    BoxTree tree;
+};
+
+static bool is_blob(const Geometry *geometry)
+{
+    return model_has(geometry->model, MODEL_BLOB);
+}
+
+static Box reach_of(const Geometry *geometry, const FieldSegment *segment)
+{
+    double reach;
+    if (is_blob(geometry)) {
+        reach = blob_reach(&blob_shape) * segment->radius_mm;
+    } else {
+        FieldTube tube = fieldtube_of(segment, 0);
+        reach = sqrt(fmax(tube.reach2, 0)) / tube.k;
+    }
+    return box_with_ball(box_with_ball(box_empty(), segment->a, reach), segment->b, reach);
+}
+
+Status termmean_new(const Geometry *geometry, TermMean **out, Err *err)
+{
+    const size_t n = geometry->n_segments;
+    TermMean *mean = NULL;
+    Box *boxes = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&mean, 1, sizeof *mean, "means", err));
+    TRY_GOTO(mem_calloc(&boxes, n, sizeof *boxes, "boxes", err));
+    mean->geometry = geometry;
+    for (size_t i = 0; i < n; i++)
+        boxes[i] = reach_of(geometry, &geometry->segments[i]);
+    TRY_GOTO(boxtree_build(boxes, n, &mean->tree, err));
+    *out = mean;
+    mean = NULL;
+done:
+    free(boxes);
+    termmean_free(mean);
+    return status;
+}
+
+void termmean_free(TermMean *mean)
+{
+    if (mean)
+        boxtree_release(&mean->tree);
+    free(mean);
+}
+
+/* Sums over segments. */
+typedef struct Weighed {
+    double all, known; /* terms; of segments that have a number */
+    double numbers;    /* the latter's times their numbers */
+} Weighed;
+
+/* 0 below the cut-off, so that what is felt is what a box holds. */
+static double term_of(const TermMean *mean, uint32_t segment, Vec3 x)
+{
+    const Geometry *geometry = mean->geometry;
+    const FieldSegment *of = &geometry->segments[segment];
+    double term = is_blob(geometry) ? blob_term(of, x) : potential_term(of, x);
+    return term < RAY_TERM_CUTOFF ? 0 : term;
+}
+
+static void weigh(Weighed *sum, double term, double number)
+{
+    sum->all += term;
+    if (isnan(number))
+        return;
+    sum->known += term;
+    sum->numbers += term * number;
+}
+
+/* The sums over a group, none of them if another member that is felt comes before `first`. */
+static Weighed weigh_group(const TermMean *mean, uint32_t group, uint32_t first,
+                           const double *numbers, Vec3 x)
+{
+    const Geometry *geometry = mean->geometry;
+    const NumberLists *members = &geometry->blend.members;
+    Weighed sum = {0};
+    for (uint32_t k = members->first[group]; k < members->first[group + 1]; k++) {
+        uint32_t segment = members->items[k];
+        double term = term_of(mean, segment, x);
+        if (term > 0 && segment < first)
+            return (Weighed){0};
+        weigh(&sum, term, numbers[geometry->segments[segment].segment]);
+    }
+    return sum;
+}
+
+/* The largest of the sums over groups that the segment is the first member of that is felt. */
+static void take_groups(const TermMean *mean, uint32_t segment, const double *numbers, Vec3 x,
+                        Weighed *best)
+{
+    const NumberLists *groups = &mean->geometry->blend.groups;
+    for (uint32_t k = groups->first[segment]; k < groups->first[segment + 1]; k++) {
+        Weighed sum = weigh_group(mean, groups->items[k], segment, numbers, x);
+        if (sum.all > best->all)
+            *best = sum;
+    }
+}
+
+double termmean_at(const TermMean *mean, const double *numbers, Vec3 x)
+{
+    const Geometry *geometry = mean->geometry;
+    Weighed sum = {0};
+    uint32_t i;
+    for (BoxWalk walk = boxwalk_box(&mean->tree, (Box){x, x}); boxwalk_next(&walk, &i);) {
+        double term = term_of(mean, i, x);
+        if (!(term > 0))
+            continue;
+        if (geometry->blend.n_groups)
+            take_groups(mean, i, numbers, x, &sum);
+        else
+            weigh(&sum, term, numbers[geometry->segments[i].segment]);
+    }
+    return sum.known > 0 && 2 * sum.known >= sum.all ? sum.numbers / sum.known : (double)NAN;
+}

@@ -1,0 +1,307 @@
+/* A cell is split while it is larger than what suits the thinnest vessel that may matter in it, and
+ * an active one while the normal turns too much across it, as in the crotch of a bifurcation. Where
+ * vessels that do not blend pass each other, cells are a sixth: the gap between them must hold
+ * cells. Cells behind the plane of an arm are not split below the arm's own size and make no wall;
+ * what lies there is cut off anyway.
+ *
+ * The root's side is a power of two times a cell that suits the arms: of the eighth parts of an
+ * octave that one is taken which makes the fewest cells along them. */
+#include "mesh/lattice/octree.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double half_diagonal = 0.8660254037844387;
+/* What an active leaf must know of, in sides from its centre: the centres of its larger
+ * neighbours. */
+static const double known_reach = 1.75;
+/* Cells near vessels that do not blend, and the least of all, over the usual. */
+static const double parted_part = 1.0 / 6, least_part = 1.0 / 8;
+/* Of the bending: a crease is cut off, and not an arc. */
+static const double crease_part = 0.22;
+/* Behind a plane walls go on for so many usual cells, in which the plane may be moved. */
+static const double margin_behind = 0.75;
+static const double surely = 1e-3;
+/* Where others add less than this, the wall is that of one tube. */
+static const double lone = 0.03;
+
+typedef struct Builder {
+    ZoneTree *tree;
+    const ZonePlan *plan;
+    const CellSize *size;
+} Builder;
+
+void zonetree_release(ZoneTree *tree)
+{
+    free(tree->cells);
+    partpool_release(&tree->kept);
+    partpool_release(&tree->stack);
+    *tree = (ZoneTree){0};
+}
+
+/* Whether the ball lies behind the plane of the arm whose wall is the only one that it may hold. */
+static bool is_behind(const Builder *builder, const PartBounds *bounds, Vec3 center, double ball)
+{
+    const ZonePlan *plan = builder->plan;
+    if (bounds->all - bounds->largest > 0.1 * FIELD_LEVEL)
+        return false;
+    uint16_t number = plan->field.terms[bounds->largest_term].arm;
+    if (number == NO_ARM)
+        return false;
+    const Arm *arm = &plan->arms[number];
+    double behind = vec3_dot(vec3_sub(center, arm->at), arm->outward);
+    return behind - ball > margin_behind * builder->size->ratio * arm->radius_mm;
+}
+
+static Vec3 normal_at(const Builder *builder, const FieldPart *part, Vec3 x)
+{
+    Vec3 gradient;
+    fieldpart_gradient(&builder->plan->field, &builder->tree->stack, part, x, &gradient);
+    double steepness = vec3_length(gradient);
+    return vec3_scale(gradient, steepness > 0 ? -1 / steepness : 0);
+}
+
+static Vec3 turn_along(const Builder *builder, const FieldPart *part, Vec3 x, Vec3 by)
+{
+    return vec3_sub(normal_at(builder, part, vec3_add(x, by)),
+                    normal_at(builder, part, vec3_sub(x, by)));
+}
+
+/* The most that the normal turns across a cell in any direction, the larger singular value of how
+ * it turns along two; measured on the tangent plane of the wall's point nearest to the centre. 0
+ * when the wall does not come near. */
+static double turn_across(const Builder *builder, const FieldPart *part, Vec3 center, double side)
+{
+    Vec3 gradient, u, v, x = center;
+    FieldValue value =
+        fieldpart_gradient(&builder->plan->field, &builder->tree->stack, part, x, &gradient);
+    double steepness = vec3_length(gradient);
+    double off = (FIELD_LEVEL - value.phi) / fmax(steepness, 1e-300);
+    if (fabs(off) > 1.5 * side)
+        return 0;
+    x = vec3_add_scaled(x, gradient, off / fmax(steepness, 1e-300));
+    vec3_across(vec3_scale(gradient, 1 / fmax(steepness, 1e-300)), &u, &v);
+    Vec3 along_u = turn_along(builder, part, x, vec3_scale(u, side / 2));
+    Vec3 along_v = turn_along(builder, part, x, vec3_scale(v, side / 2));
+    double uu = vec3_dot(along_u, along_u), vv = vec3_dot(along_v, along_v);
+    double uv = vec3_dot(along_u, along_v), half = 0.5 * (uu - vv);
+    return sqrt(0.5 * (uu + vv) + sqrt(half * half + uv * uv));
+}
+
+static bool must_split(const Builder *builder, const FieldPart *part, const PartBounds *bounds,
+                       Vec3 center, double side)
+{
+    double usual = builder->size->ratio * bounds->thinnest;
+    if (side > usual)
+        return true;
+    if (bounds->parted)
+        return side > parted_part * usual;
+    if (side * bounds->crease > crease_part * builder->size->bending * bounds->thinnest)
+        return true;
+    if (side < 2 * least_part * usual || bounds->all - bounds->largest < lone * FIELD_LEVEL)
+        return false;
+    return side * turn_across(builder, part, center, side) >
+           builder->size->bending * bounds->thinnest;
+}
+
+static Status split(Builder *builder, uint32_t cell, const FieldPart *part, Err *err);
+
+/* Finds the state of a cell of which `part` holds all that may matter, and splits it. */
+static Status settle(Builder *builder, uint32_t number, const FieldPart *part, Err *err)
+{
+    ZoneTree *tree = builder->tree;
+    PartPool *stack = &tree->stack;
+    size_t n_terms = stack->n_terms, n_groups = stack->n_groups;
+    const ZoneCell cell = tree->cells[number];
+    double side = zonetree_side(tree, cell.level), ball = half_diagonal * side;
+    Vec3 center = zonetree_center(tree, &cell);
+    FieldPart own;
+    PartBounds bounds;
+    TRY(fieldpart_narrow(&builder->plan->field, stack, part, center, known_reach * side, ball, &own,
+                         &bounds, err));
+    CellState state = CELL_ACTIVE;
+    if (bounds.upper < (1 - surely) * FIELD_LEVEL)
+        state = CELL_OUTSIDE;
+    else if (bounds.lower > (1 + surely) * FIELD_LEVEL)
+        state = CELL_INSIDE;
+    else if (is_behind(builder, &bounds, center, ball))
+        state = CELL_BEHIND;
+    tree->cells[number].state = (uint8_t)state;
+    if (state == CELL_ACTIVE && side <= builder->size->ratio * bounds.thinnest &&
+        own.n_terms > MOST_PART_TERMS)
+        return zonefield_refuse(err);
+    if (state == CELL_ACTIVE && cell.level < ZONETREE_LEVELS &&
+        must_split(builder, &own, &bounds, center, side))
+        TRY(split(builder, number, &own, err));
+    else if (state == CELL_ACTIVE)
+        TRY(fieldpart_copy(stack, &own, &tree->kept, &tree->cells[number].part, err));
+    stack->n_terms = n_terms;
+    stack->n_groups = n_groups;
+    return STATUS_OK;
+}
+
+static Status refuse(const Builder *builder, Err *err)
+{
+    return err_set(err, STATUS_INFEASIBLE,
+                   "a chain of junctions, of %u segments, has no free interval to be cut at, and "
+                   "its surface needs more than %zu cells, 4 GB of memory; a larger `tolerance` "
+                   "needs fewer",
+                   builder->plan->field.n_terms, builder->size->most);
+}
+
+/* Gives a cell children; of an active one they are settled, else they are as it is. */
+static Status split(Builder *builder, uint32_t number, const FieldPart *part, Err *err)
+{
+    ZoneTree *tree = builder->tree;
+    if (tree->n_cells + 8 > builder->size->most)
+        return refuse(builder, err);
+    TRY(mem_reserve(&tree->cells, &tree->capacity, tree->n_cells + 8, sizeof *tree->cells,
+                    "cells of a junction", err));
+    uint32_t first = (uint32_t)tree->n_cells;
+    tree->n_cells += 8;
+    tree->cells[number].children = first;
+    const ZoneCell parent = tree->cells[number];
+    for (uint32_t i = 0; i < 8; i++) {
+        ZoneCell child = {.level = (uint8_t)(parent.level + 1), .state = parent.state};
+        for (int axis = 0; axis < 3; axis++)
+            child.at[axis] = 2 * parent.at[axis] + (int32_t)(i >> axis & 1);
+        tree->cells[first + i] = child;
+    }
+    for (uint32_t i = 0; i < 8 && parent.state == CELL_ACTIVE; i++)
+        TRY(settle(builder, first + i, part, err));
+    return STATUS_OK;
+}
+
+/* The leaf of `level` or above that holds a cell of that level; UINT32_MAX outside the tree. */
+static uint32_t leaf_at(const ZoneTree *tree, const int64_t at[3], int level)
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (at[axis] < 0 || at[axis] >> level)
+            return UINT32_MAX;
+    uint32_t cell = 0;
+    for (int down = level - 1; down >= 0 && tree->cells[cell].children; down--) {
+        uint32_t octant =
+            (uint32_t)((at[0] >> down & 1) | (at[1] >> down & 1) << 1 | (at[2] >> down & 1) << 2);
+        cell = tree->cells[cell].children + octant;
+    }
+    return cell;
+}
+
+const ZoneCell *zonetree_leaf(const ZoneTree *tree, Vec3 x)
+{
+    double unit = zonetree_side(tree, ZONETREE_LEVELS);
+    Vec3 from = vec3_scale(vec3_sub(x, tree->corner), 1 / unit);
+    const int64_t at[3] = {(int64_t)floor(from.x), (int64_t)floor(from.y), (int64_t)floor(from.z)};
+    uint32_t leaf = leaf_at(tree, at, ZONETREE_LEVELS);
+    return leaf != UINT32_MAX ? &tree->cells[leaf] : NULL;
+}
+
+/* Splits a leaf that has only been found too large by its neighbour. */
+static Status split_leaf(Builder *builder, uint32_t number, Err *err)
+{
+    ZoneTree *tree = builder->tree;
+    FieldPart part = {0};
+    if (tree->cells[number].state == CELL_ACTIVE) {
+        const FieldPart kept = tree->cells[number].part;
+        TRY(fieldpart_copy(&tree->kept, &kept, &tree->stack, &part, err));
+    }
+    TRY(split(builder, number, &part, err));
+    tree->stack.n_terms = tree->stack.n_groups = 0;
+    return STATUS_OK;
+}
+
+/* Whether the cell that stands by this from another is one of the same eight. */
+static bool is_sibling(const ZoneCell *cell, const int by[3])
+{
+    bool same = true;
+    for (int axis = 0; axis < 3; axis++)
+        same = same && (cell->at[axis] + by[axis]) >> 1 == cell->at[axis] >> 1;
+    return same;
+}
+
+/* Splits the leaves next to a cell that has children, over faces and edges, that are larger than
+ * it. */
+static Status grade_about(Builder *builder, uint32_t number, Err *err)
+{
+    ZoneTree *tree = builder->tree;
+    const ZoneCell cell = tree->cells[number];
+    for (int i = 0; i < 27; i++) {
+        const int by[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+        if (abs(by[0]) + abs(by[1]) + abs(by[2]) > 2 || is_sibling(&cell, by))
+            continue;
+        const int64_t at[3] = {cell.at[0] + by[0], cell.at[1] + by[1], cell.at[2] + by[2]};
+        uint32_t other = leaf_at(tree, at, cell.level);
+        while (other != UINT32_MAX && tree->cells[other].level < cell.level) {
+            TRY(split_leaf(builder, other, err));
+            TRY(grade_about(builder, other, err));
+            other = leaf_at(tree, at, cell.level);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Cells made by grading stand behind the others, and are looked at in their turn; leaves that it
+ * splits are looked at at once. */
+static Status grade(Builder *builder, Err *err)
+{
+    ZoneTree *tree = builder->tree;
+    for (uint32_t i = 0; i < tree->n_cells; i++)
+        if (tree->cells[i].children)
+            TRY(grade_about(builder, i, err));
+    return STATUS_OK;
+}
+
+/* The side of a cell that makes the fewest cells along the segments when halved to suit each. */
+static double best_side(const ZonePlan *plan, double ratio)
+{
+    double best = 0, least = HUGE_VAL, widest = 0;
+    for (uint32_t i = 0; i < plan->field.n_terms; i++)
+        widest = fmax(widest, plan->field.terms[i].radius_mm);
+    for (int i = 0; i < 8; i++) {
+        double side = ratio * widest * elementary_exp2(-i / 8.0), cost = 0;
+        for (uint32_t j = 0; j < plan->field.n_terms; j++) {
+            double suits = ratio * plan->field.terms[j].radius_mm;
+            double halvings = fmax(0, ceil(elementary_log2(side / suits)));
+            double over = suits / ldexp(side, -(int)halvings);
+            cost += over * over;
+        }
+        if (cost < least) {
+            least = cost;
+            best = side;
+        }
+    }
+    return best;
+}
+
+static void place_root(ZoneTree *tree, const ZonePlan *plan, double ratio)
+{
+    Box box = box_empty();
+    for (uint32_t i = 0; i < plan->field.n_terms; i++) {
+        const ZoneTerm *term = &plan->field.terms[i];
+        Vec3 b = vec3_add_scaled(term->a, term->axis, term->length_k / term->k);
+        box =
+            box_with_ball(box_with_ball(box, term->a, 2 * term->radius_mm), b, 2 * term->radius_mm);
+    }
+    int axis = box_longest_axis(box);
+    double extent = vec3_component(vec3_sub(box.high, box.low), axis);
+    double side = best_side(plan, ratio);
+    tree->side = ldexp(side, (int)fmax(0, ceil(elementary_log2(extent / side))));
+    Vec3 center = box_center(box);
+    tree->corner = vec3_sub(center, vec3(tree->side / 2, tree->side / 2, tree->side / 2));
+}
+
+Status zonetree_build(ZoneTree *tree, const ZonePlan *plan, const CellSize *size, Err *err)
+{
+    Builder builder = {tree, plan, size};
+    tree->n_cells = 0;
+    tree->kept.n_terms = tree->kept.n_groups = tree->stack.n_terms = tree->stack.n_groups = 0;
+    place_root(tree, plan, size->ratio);
+    TRY(mem_reserve(&tree->cells, &tree->capacity, 1, sizeof *tree->cells, "cells of a junction",
+                    err));
+    tree->cells[tree->n_cells++] = (ZoneCell){0};
+    FieldPart all;
+    TRY(fieldpart_all(&plan->field, &tree->stack, &all, err));
+    TRY(settle(&builder, 0, &all, err));
+    tree->stack.n_terms = tree->stack.n_groups = 0;
+    return grade(&builder, err);
+}

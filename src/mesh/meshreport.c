@@ -1,0 +1,40 @@
+/* See meshreport.h. */
+#include "mesh/meshreport.h"
+
+#include "mesh/precision.h"
+#include <stdlib.h>
+
+void meshreport_release(MeshReport *report)
+{
+    free(report->missing);
+    free(report->swallowed);
+    free(report->slivers);
+    free(report->round);
+    free(report->near);
+    *report = (MeshReport){0};
+}
+
+bool meshreport_is_sound(const MeshReport *report)
+{
+    return report->open_edges == 0 && report->components == report->expected_components &&
+           report->genus == report->expected_genus && report->crossings == 0 &&
+           report->bridges == 0 && report->n_missing == 0;
+}
+
+Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *err)
+{
+    if (meshreport_is_sound(report))
+        return STATUS_OK;
+    if (report->n_missing)
+        return err_set(err, STATUS_DIFFERS,
+                       "%zu segments have no triangles, segment %u among them; nothing is written",
+                       report->n_missing, tree->ids[report->missing[0]]);
+    if (report->crossings > 0 && precision_is_short(tree))
+        return reach_refuse(tree, reach_thinnest(tree), mesh_grid(mesh_reach(tree)), err);
+    return err_set(err, STATUS_DIFFERS,
+                   "the surface is not sound: %zu parts for %zu trees, genus %zu, %zu open edges, "
+                   "%zu crossing pairs of triangles, %zu bridges; nothing is written (a smaller "
+                   "`tolerance` may help)",
+                   report->components, report->trees, report->genus, report->open_edges,
+                   report->crossings, report->bridges);
+}

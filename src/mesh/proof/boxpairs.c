@@ -1,0 +1,225 @@
+/* Runs of eight things are the leaves of a complete binary tree of boxes, in the order of the
+ * Morton codes of their middles; node i has the children 2 i and 2 i + 1. Pairs of nodes whose
+ * boxes meet are descended, those of one level being the work that threads share. */
+#include "mesh/proof/boxpairs.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { RUN = 8, UNITS = 256, KEPT_RUNS = 256 };
+
+typedef struct Leaf {
+    uint64_t code;
+    uint32_t number;
+} Leaf;
+
+/* The boxes that one unit of work keeps of runs that it has met: each at its number's place. */
+typedef struct KeptRuns {
+    uint32_t runs[KEPT_RUNS]; /* and 1; 0: none yet */
+    FloatBox boxes[KEPT_RUNS][RUN];
+} KeptRuns;
+
+typedef struct UnitPair {
+    uint32_t a, b; /* nodes, a <= b */
+} UnitPair;
+
+typedef struct Forest {
+    const BoxPairs *pairs;
+    Leaf *leaves;
+    FloatBox *boxes;         /* of nodes from 1 on */
+    uint32_t n_leaves, size; /* a power of 2, at least n_leaves: the first node that is a leaf */
+    UnitPair *units;
+    size_t n_units;
+} Forest;
+
+static const FloatBox nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+
+static void widen(FloatBox *box, const FloatBox *by)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        box->low[axis] = box->low[axis] < by->low[axis] ? box->low[axis] : by->low[axis];
+        box->high[axis] = box->high[axis] > by->high[axis] ? box->high[axis] : by->high[axis];
+    }
+}
+
+static uint32_t run_length(const Forest *forest, uint32_t leaf)
+{
+    uint32_t rest = forest->pairs->count - leaf * RUN;
+    return rest < RUN ? rest : RUN;
+}
+
+static FloatBox box_of_run(const Forest *forest, uint32_t leaf)
+{
+    FloatBox box = nothing;
+    for (uint32_t i = 0; i < run_length(forest, leaf); i++) {
+        FloatBox one = forest->pairs->box(leaf * RUN + i, forest->pairs->context);
+        widen(&box, &one);
+    }
+    return box;
+}
+
+/* Two zero bits after each of the lowest 21. */
+static uint64_t spread(uint64_t x)
+{
+    x &= 0x1fffff;
+    x = (x | x << 32) & 0x1f00000000ffffu;
+    x = (x | x << 16) & 0x1f0000ff0000ffu;
+    x = (x | x << 8) & 0x100f00f00f00f00fu;
+    x = (x | x << 4) & 0x10c30c30c30c30c3u;
+    return (x | x << 2) & 0x1249249249249249u;
+}
+
+static uint64_t morton_code(const FloatBox *box, const FloatBox *all)
+{
+    uint64_t code = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double size = (double)all->high[axis] - (double)all->low[axis];
+        double middle = 0.5 * ((double)box->low[axis] + (double)box->high[axis]);
+        double place = size > 0 ? (middle - (double)all->low[axis]) / size : 0;
+        code |= spread((uint64_t)(place * 0x1fffff)) << axis;
+    }
+    return code;
+}
+
+static int compare_leaves(const void *a, const void *b)
+{
+    const Leaf *one = a, *other = b;
+    if (one->code != other->code)
+        return one->code < other->code ? -1 : 1;
+    return (one->number > other->number) - (one->number < other->number);
+}
+
+/* The boxes of runs stand where the leaves do until these are in order. */
+static void order_leaves(Forest *forest)
+{
+    FloatBox all = nothing, *runs = &forest->boxes[forest->size];
+    for (uint32_t i = 0; i < forest->n_leaves; i++) {
+        runs[i] = box_of_run(forest, i);
+        widen(&all, &runs[i]);
+    }
+    for (uint32_t i = 0; i < forest->n_leaves; i++)
+        forest->leaves[i] = (Leaf){morton_code(&runs[i], &all), i};
+    qsort(forest->leaves, forest->n_leaves, sizeof *forest->leaves, compare_leaves);
+    for (uint32_t i = 0; i < forest->size; i++)
+        runs[i] = i < forest->n_leaves ? box_of_run(forest, forest->leaves[i].number) : nothing;
+    for (uint32_t i = forest->size - 1; i > 0; i--) {
+        forest->boxes[i] = forest->boxes[2 * i];
+        widen(&forest->boxes[i], &forest->boxes[2 * i + 1]);
+    }
+}
+
+static const FloatBox *boxes_of(const Forest *forest, KeptRuns *kept, uint32_t run)
+{
+    uint32_t *place = &kept->runs[run % KEPT_RUNS];
+    FloatBox *boxes = kept->boxes[run % KEPT_RUNS];
+    for (uint32_t i = 0; i < run_length(forest, run) && *place != run + 1; i++)
+        boxes[i] = forest->pairs->box(run * RUN + i, forest->pairs->context);
+    *place = run + 1;
+    return boxes;
+}
+
+/* Those of a run whose boxes meet `other`, and their boxes. */
+static uint32_t boxes_near(const Forest *forest, KeptRuns *kept, uint32_t run,
+                           const FloatBox *other, FloatBox near[RUN], uint32_t items[RUN])
+{
+    uint32_t n = 0;
+    const FloatBox *boxes = boxes_of(forest, kept, run);
+    for (uint32_t i = 0; i < run_length(forest, run); i++)
+        if (floatbox_meets(&boxes[i], other)) {
+            near[n] = boxes[i];
+            items[n++] = run * RUN + i;
+        }
+    return n;
+}
+
+/* One unit of work. */
+typedef struct Descent {
+    const Forest *forest;
+    KeptRuns kept;
+    int worker;
+} Descent;
+
+static void tell_pairs(Descent *descent, uint32_t node_a, uint32_t node_b)
+{
+    const Forest *forest = descent->forest;
+    const BoxPairs *pairs = forest->pairs;
+    uint32_t items[2][RUN], n[2] = {0};
+    FloatBox boxes[2][RUN];
+    n[0] = boxes_near(forest, &descent->kept, forest->leaves[node_a - forest->size].number,
+                      &forest->boxes[node_b], boxes[0], items[0]);
+    if (n[0] > 0)
+        n[1] = boxes_near(forest, &descent->kept, forest->leaves[node_b - forest->size].number,
+                          &forest->boxes[node_a], boxes[1], items[1]);
+    for (uint32_t i = 0; i < n[0]; i++)
+        for (uint32_t j = node_a == node_b ? i + 1 : 0; j < n[1]; j++) {
+            uint32_t a = items[0][i], b = items[1][j];
+            if (floatbox_meets(&boxes[0][i], &boxes[1][j]))
+                pairs->found(a < b ? a : b, a < b ? b : a, descent->worker, pairs->context);
+        }
+}
+
+/* Both nodes are of one level, a <= b. */
+static void descend(Descent *descent, uint32_t a, uint32_t b)
+{
+    const Forest *forest = descent->forest;
+    if (!floatbox_meets(&forest->boxes[a], &forest->boxes[b]))
+        return;
+    if (a >= forest->size) {
+        if (b - forest->size < forest->n_leaves)
+            tell_pairs(descent, a, b);
+        return;
+    }
+    descend(descent, 2 * a, 2 * b);
+    descend(descent, 2 * a, 2 * b + 1);
+    if (a != b)
+        descend(descent, 2 * a + 1, 2 * b);
+    descend(descent, 2 * a + 1, 2 * b + 1);
+}
+
+static void descend_unit(size_t index, int worker, void *context)
+{
+    const Forest *forest = context;
+    Descent descent;
+    descent.forest = forest;
+    descent.worker = worker;
+    memset(descent.kept.runs, 0,
+           sizeof descent.kept.runs); /* and not the boxes: fifty times that */
+    descend(&descent, forest->units[index].a, forest->units[index].b);
+}
+
+static Status find_units(Forest *forest, Err *err)
+{
+    uint32_t first = forest->size < UNITS ? forest->size : UNITS;
+    size_t capacity = 0;
+    for (uint32_t a = first; a < 2 * first; a++)
+        for (uint32_t b = a; b < 2 * first; b++) {
+            if (!floatbox_meets(&forest->boxes[a], &forest->boxes[b]))
+                continue;
+            TRY(mem_reserve(&forest->units, &capacity, forest->n_units + 1, sizeof *forest->units,
+                            "boxes", err));
+            forest->units[forest->n_units++] = (UnitPair){a, b};
+        }
+    return STATUS_OK;
+}
+
+Status boxpairs_find(const BoxPairs *pairs, Err *err)
+{
+    if (pairs->count == 0)
+        return STATUS_OK;
+    Forest forest = {.pairs = pairs, .n_leaves = (pairs->count + RUN - 1) / RUN, .size = 1};
+    while (forest.size < forest.n_leaves)
+        forest.size *= 2;
+    Status status;
+    TRY_GOTO(mem_calloc(&forest.leaves, forest.n_leaves, sizeof *forest.leaves, "boxes", err));
+    TRY_GOTO(
+        mem_calloc(&forest.boxes, 2 * (size_t)forest.size, sizeof *forest.boxes, "boxes", err));
+    order_leaves(&forest);
+    TRY_GOTO(find_units(&forest, err));
+    threads_for(forest.n_units, pairs->threads, descend_unit, &forest);
+done:
+    free(forest.leaves);
+    free(forest.boxes);
+    free(forest.units);
+    return status;
+}

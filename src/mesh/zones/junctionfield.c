@@ -1,0 +1,490 @@
+/* The bounds of a term in a ball of radius rho about x, in units of 1 / k. Its radial factor lies
+ * between those at E + rho and max(0, E - rho). Its axial factor, the same from either side of the
+ * middle, where it is largest, falls away from it: it is smallest at one of the ends of the
+ * interval of width 2 rho, and largest at the point of that nearest to the middle. */
+#include "mesh/zones/junctionfield.h"
+
+#include "mesh/zones/gauss.h"
+#include <float.h>
+#include <stdlib.h>
+
+static const double significant = 0.1 * FIELD_LEVEL;
+/* exp(-x^2) is below 10^-5 beyond this. */
+static const double out_of_reach = 3.4;
+/* Walls bend away from the planes that they are taken for. */
+static const double crease_slack = 1.2;
+static const double inv_sqrt_pi = 0.56418958354775628695;
+
+ZoneTerm zoneterm_of(Vec3 a, Vec3 b, double radius_mm, uint32_t segment, VesselBody body)
+{
+    double length = vec3_distance(a, b), k = sqrt(2) / radius_mm;
+    return (ZoneTerm){.a = a,
+                      .axis = vec3_scale(vec3_sub(b, a), 1 / length),
+                      .k = k,
+                      .length_k = k * length,
+                      .radius_mm = radius_mm,
+                      .segment = segment,
+                      .arm = NO_ARM,
+                      .is_round = body == BODY_ROUND};
+}
+
+/* A place in the coordinates of a term: how far inside either end, how far from the axis. */
+typedef struct TermPlace {
+    double u, v, e2;
+    Vec3 across; /* mm */
+} TermPlace;
+
+static inline TermPlace place_in(const ZoneTerm *term, Vec3 x)
+{
+    Vec3 from_a = vec3_sub(x, term->a);
+    double along = vec3_dot(from_a, term->axis);
+    Vec3 across = vec3_add_scaled(from_a, term->axis, -along);
+    return (TermPlace){term->k * along, term->length_k - term->k * along,
+                       term->k * term->k * vec3_dot(across, across), across};
+}
+
+static inline double axial(double u, double v)
+{
+    Pair both = erf_pair((Pair){u, v});
+    return 0.5 * (both[0] + both[1]);
+}
+
+/* The squared distance to the segment itself, in units of 1 / k. */
+static inline double distance2(const TermPlace *place)
+{
+    double inside = place->u < place->v ? place->u : place->v;
+    return inside < 0 ? place->e2 + inside * inside : place->e2;
+}
+
+static inline double value_at(const ZoneTerm *term, const TermPlace *place)
+{
+    double from_segment = distance2(place);
+    if (from_segment > out_of_reach * out_of_reach)
+        return 0;
+    if (term->is_round)
+        return exp_minus(from_segment);
+    return exp_minus(place->e2) * axial(place->u, place->v);
+}
+
+/* From the nearest point of the segment to the place, mm. */
+static Vec3 from_nearest(const ZoneTerm *term, const TermPlace *place)
+{
+    double beyond = fmax(0, -place->v) - fmax(0, -place->u);
+    return vec3_add_scaled(place->across, term->axis, beyond / term->k);
+}
+
+double zoneterm_value(const ZoneTerm *term, Vec3 x)
+{
+    TermPlace place = place_in(term, x);
+    return value_at(term, &place);
+}
+
+/* Of a term at a place, given its value there. */
+static inline Vec3 term_gradient(const ZoneTerm *term, const TermPlace *place, double value)
+{
+    if (term->is_round)
+        return vec3_scale(from_nearest(term, place), -2 * term->k * term->k * value);
+    Pair ends = {place->u, place->v}, none = {0, 0};
+    Pair felt = exp_minus_pair(place->e2 + ends * ends);
+    felt = pair_select((PairBits)(pair_abs(ends) < GAUSS_SATURATED), felt, none);
+    return vec3_add_scaled(vec3_scale(place->across, -2 * term->k * term->k * value), term->axis,
+                           term->k * inv_sqrt_pi * (felt[0] - felt[1]));
+}
+
+static double upper_bound(const ZoneTerm *term, const TermPlace *place, double rho)
+{
+    if (term->is_round) {
+        double from_segment = fmax(0, sqrt(distance2(place)) - rho);
+        return exp_minus(from_segment * from_segment);
+    }
+    double across = fmax(0, sqrt(place->e2) - rho), off = 0.5 * (place->v - place->u);
+    double towards = fmin(rho, fabs(off)) * (off > 0 ? 1 : -1);
+    return exp_minus(across * across) * axial(place->u + towards, place->v - towards);
+}
+
+static double lower_bound(const ZoneTerm *term, const TermPlace *place, double rho)
+{
+    double across = sqrt(term->is_round ? distance2(place) : place->e2) + rho;
+    if (across > 2)
+        return 0; /* less than 0.02, which no sum needs */
+    if (term->is_round)
+        return exp_minus(across * across);
+    double one = axial(place->u + rho, place->v - rho),
+           other = axial(place->u - rho, place->v + rho);
+    return exp_minus(across * across) * fmax(0, fmin(one, other));
+}
+
+void partpool_release(PartPool *pool)
+{
+    free(pool->terms);
+    free(pool->groups);
+    free(pool->work);
+    *pool = (PartPool){0};
+}
+
+static Status reserve_part(PartPool *pool, size_t terms, size_t words, Err *err)
+{
+    TRY(mem_reserve(&pool->terms, &pool->term_capacity, pool->n_terms + terms, sizeof *pool->terms,
+                    "terms of a junction", err));
+    return mem_reserve(&pool->groups, &pool->group_capacity, pool->n_groups + words,
+                       sizeof *pool->groups, "terms of a junction", err);
+}
+
+Status zonefield_refuse(Err *err)
+{
+    return err_set(err, STATUS_INFEASIBLE,
+                   "more than %d segments come together at one place; leave some out",
+                   MOST_PART_TERMS);
+}
+
+/* An empty part on top of the pool; its groups come after. */
+static FieldPart begin_part(const PartPool *pool, uint32_t n_terms)
+{
+    return (FieldPart){(uint32_t)pool->n_terms, n_terms, (uint32_t)pool->n_groups, 0,
+                       (n_terms + 63) / 64};
+}
+
+Status fieldpart_all(const ZoneField *field, PartPool *pool, FieldPart *out, Err *err)
+{
+    FieldPart part = begin_part(pool, field->n_terms);
+    size_t words = (size_t)part.words * field->n_groups;
+    TRY(reserve_part(pool, field->n_terms, words, err));
+    for (uint32_t i = 0; i < field->n_terms; i++)
+        pool->terms[pool->n_terms++] = i;
+    uint64_t *groups = &pool->groups[pool->n_groups];
+    for (size_t i = 0; i < words; i++)
+        groups[i] = 0;
+    for (uint32_t g = 0; g < field->n_groups; g++)
+        for (uint32_t i = field->first[g]; i < field->first[g + 1]; i++)
+            groups[g * part.words + field->members[i] / 64] |= (uint64_t)1
+                                                               << field->members[i] % 64;
+    pool->n_groups += words;
+    part.n_groups = field->n_groups;
+    *out = part;
+    return STATUS_OK;
+}
+
+Status fieldpart_copy(const PartPool *from, const FieldPart *part, PartPool *to, FieldPart *out,
+                      Err *err)
+{
+    size_t words = (size_t)part->words * part->n_groups;
+    TRY(reserve_part(to, part->n_terms, words, err));
+    FieldPart copy = begin_part(to, part->n_terms);
+    copy.n_groups = part->n_groups;
+    for (uint32_t i = 0; i < part->n_terms; i++)
+        to->terms[to->n_terms++] = from->terms[part->first_term + i];
+    for (size_t i = 0; i < words; i++)
+        to->groups[to->n_groups++] = from->groups[part->first_group + i];
+    *out = copy;
+    return STATUS_OK;
+}
+
+/* If there are more groups, they are not compared with each other. */
+enum { MOST_COMPARED = 256 };
+
+static bool is_subset(const uint64_t *a, const uint64_t *b, uint32_t words)
+{
+    for (uint32_t i = 0; i < words; i++)
+        if (a[i] & ~b[i])
+            return false;
+    return true;
+}
+
+/* Adds the group on top of the pool to the part, unless it is a subset of one there, and takes out
+ * those that are subsets of it. */
+static void add_group(PartPool *pool, FieldPart *part)
+{
+    uint64_t *groups = &pool->groups[part->first_group];
+    uint32_t words = part->words, kept = 0;
+    uint64_t *added = &groups[(size_t)part->n_groups * words];
+    if (part->n_groups >= MOST_COMPARED) {
+        pool->n_groups += words;
+        part->n_groups++;
+        return;
+    }
+    for (uint32_t g = 0; g < part->n_groups; g++)
+        if (is_subset(added, &groups[(size_t)g * words], words))
+            return;
+    for (uint32_t g = 0; g <= part->n_groups; g++) {
+        if (g < part->n_groups && is_subset(&groups[(size_t)g * words], added, words))
+            continue;
+        for (uint32_t i = 0; i < words; i++)
+            groups[(size_t)kept * words + i] = groups[(size_t)g * words + i];
+        kept++;
+    }
+    part->n_groups = kept;
+    pool->n_groups = part->first_group + (size_t)kept * words;
+}
+
+/* The groups of `part`, cut down to the terms at the places of the pool's work. */
+static Status narrow_groups(PartPool *pool, const FieldPart *part, FieldPart *out, Err *err)
+{
+    for (uint32_t g = 0; g < part->n_groups; g++) {
+        TRY(reserve_part(pool, 0, out->words, err));
+        const uint64_t *group = &pool->groups[part->first_group + (size_t)g * part->words];
+        uint64_t *narrow = &pool->groups[pool->n_groups];
+        for (uint32_t i = 0; i < out->words; i++)
+            narrow[i] = 0;
+        for (uint32_t i = 0; i < out->n_terms; i++)
+            narrow[i / 64] |= (group[pool->work[i].place / 64] >> pool->work[i].place % 64 & 1)
+                              << i % 64;
+        add_group(pool, out);
+    }
+    return STATUS_OK;
+}
+
+/* The sum over a group of numbers `stride` doubles apart. */
+static double group_sum(const uint64_t *group, uint32_t words, const double *values, size_t stride)
+{
+    double sum = 0;
+    for (uint32_t w = 0; w < words; w++)
+        for (uint64_t bits = group[w]; bits; bits &= bits - 1)
+            sum += values[(w * 64 + (uint32_t)__builtin_ctzll(bits)) * stride];
+    return sum;
+}
+
+static const uint64_t *group_of(const PartPool *pool, const FieldPart *part, uint32_t number)
+{
+    return &pool->groups[part->first_group + (size_t)number * part->words];
+}
+
+/* The group that stands for the ball: its sum is bounded the highest from below. */
+static uint32_t leading_group(const PartPool *pool, const FieldPart *part)
+{
+    const size_t stride = sizeof *pool->work / sizeof pool->work->lower;
+    double most = -1;
+    uint32_t best = 0;
+    for (uint32_t g = 0; g < part->n_groups; g++) {
+        double lower = group_sum(group_of(pool, part, g), part->words, &pool->work->lower, stride);
+        if (lower > most) {
+            most = lower;
+            best = g;
+        }
+    }
+    return best;
+}
+
+/* Whether the sum over group `a` is below that over `b` in the whole ball: what both have is left
+ * out. */
+static bool is_below(const PartPool *pool, const FieldPart *part, const uint64_t *a,
+                     const uint64_t *b)
+{
+    const size_t stride = sizeof *pool->work / sizeof pool->work->lower;
+    uint64_t only_a[MOST_PART_TERMS / 64], only_b[MOST_PART_TERMS / 64];
+    for (uint32_t w = 0; w < part->words; w++) {
+        only_a[w] = a[w] & ~b[w];
+        only_b[w] = b[w] & ~a[w];
+    }
+    return group_sum(only_a, part->words, &pool->work->upper, stride) <
+           group_sum(only_b, part->words, &pool->work->lower, stride);
+}
+
+/* Whether two terms that may matter are in no group together, of groups whose sum may be the
+ * largest somewhere in the ball. */
+static bool has_parted(const PartPool *pool, const FieldPart *part)
+{
+    if (part->n_terms > MOST_PART_TERMS)
+        return false;
+    uint64_t matters[MOST_PART_TERMS / 64] = {0};
+    const uint64_t *leader = group_of(pool, part, leading_group(pool, part));
+    for (uint32_t g = 0; g < part->n_groups; g++) {
+        const uint64_t *group = group_of(pool, part, g);
+        for (uint32_t w = 0; w < part->words && !is_below(pool, part, group, leader); w++)
+            matters[w] |= group[w];
+    }
+    for (uint32_t i = 0; i < part->n_terms; i++)
+        if (pool->work[i].upper <= significant)
+            matters[i / 64] &= ~((uint64_t)1 << i % 64);
+    for (uint32_t g = 0; g < part->n_groups; g++)
+        if (is_subset(matters, group_of(pool, part, g), part->words))
+            return false;
+    return true;
+}
+
+/* A wall that may pass a ball: its normal, and how far the centre is outside it, mm. */
+typedef struct NearWall {
+    Vec3 normal;
+    double outside;
+} NearWall;
+
+/* Whether two walls, as planes, meet in a ball of this radius, or face each other in it. */
+static bool walls_meet(const NearWall *a, const NearWall *b, double radius_mm)
+{
+    double cosine = vec3_dot(a->normal, b->normal);
+    double apart = a->outside * a->outside + b->outside * b->outside -
+                   2 * cosine * a->outside * b->outside; /* (distance * sine)^2 */
+    return cosine < -0.5 || apart <= (1 - cosine * cosine) * radius_mm * radius_mm;
+}
+
+/* How much the normals of walls differ at most that meet in the ball. */
+static double find_crease(const ZoneField *field, const PartPool *pool, const FieldPart *part,
+                          Vec3 center, double radius_mm)
+{
+    NearWall walls[MOST_PART_TERMS];
+    uint32_t n = 0;
+    double most = 0;
+    for (uint32_t i = 0; i < part->n_terms && n < MOST_PART_TERMS; i++) {
+        if (pool->work[i].upper < FIELD_LEVEL || pool->work[i].lower > FIELD_LEVEL)
+            continue;
+        const ZoneTerm *term = &field->terms[pool->terms[part->first_term + i]];
+        TermPlace place = place_in(term, center);
+        Vec3 from = from_nearest(term, &place);
+        walls[n] = (NearWall){vec3_normalized(from), vec3_length(from) - term->radius_mm};
+        for (uint32_t k = 0; k < n; k++)
+            if (walls_meet(&walls[k], &walls[n], crease_slack * radius_mm))
+                most = fmax(most, vec3_distance(walls[k].normal, walls[n].normal));
+        n++;
+    }
+    return most;
+}
+
+static void sum_bounds(const ZoneField *field, const PartPool *pool, const FieldPart *part,
+                       Vec3 center, double radius_mm, PartBounds *bounds)
+{
+    *bounds = (PartBounds){.thinnest = HUGE_VAL};
+    for (uint32_t i = 0; i < part->n_terms; i++) {
+        uint32_t number = pool->terms[part->first_term + i];
+        double radius = field->terms[number].radius_mm, upper = pool->work[i].upper;
+        bounds->all += upper;
+        if (upper > bounds->largest) {
+            bounds->largest = upper;
+            bounds->largest_term = number;
+        }
+        if (upper > significant) {
+            bounds->thinnest = fmin(bounds->thinnest, radius);
+            bounds->widest = fmax(bounds->widest, radius);
+        }
+    }
+    for (uint32_t g = 0; g < part->n_groups; g++) {
+        const uint64_t *group = &pool->groups[part->first_group + (size_t)g * part->words];
+        const TermWork *work = pool->work;
+        const size_t stride = sizeof *work / sizeof work->upper;
+        double upper = group_sum(group, part->words, &work->upper, stride);
+        double lower = group_sum(group, part->words, &work->lower, stride);
+        bounds->upper = fmax(bounds->upper, upper);
+        bounds->lower = fmax(bounds->lower, lower);
+    }
+    bool is_round = field->n_terms > 0 && field->terms[0].is_round;
+    if (is_round)
+        bounds->crease = find_crease(field, pool, part, center, radius_mm);
+    else
+        bounds->parted = part->n_groups > 1 && has_parted(pool, part);
+}
+
+Status fieldpart_narrow(const ZoneField *field, PartPool *pool, const FieldPart *part, Vec3 center,
+                        double radius_mm, double inner_mm, FieldPart *out, PartBounds *bounds,
+                        Err *err)
+{
+    TRY(reserve_part(pool, part->n_terms, 0, err));
+    TRY(mem_reserve(&pool->work, &pool->work_capacity, part->n_terms, sizeof *pool->work, "terms",
+                    err));
+    TermWork *work = pool->work;
+    FieldPart narrow = begin_part(pool, 0);
+    for (uint32_t i = 0; i < part->n_terms; i++) {
+        uint32_t number = pool->terms[part->first_term + i];
+        const ZoneTerm *term = &field->terms[number];
+        TermPlace place = place_in(term, center);
+        double reach = out_of_reach + term->k * radius_mm, inner = term->k * inner_mm;
+        if (distance2(&place) > reach * reach)
+            continue;
+        work[narrow.n_terms++] =
+            (TermWork){i, upper_bound(term, &place, inner), lower_bound(term, &place, inner)};
+        pool->terms[pool->n_terms++] = number;
+    }
+    narrow.words = (narrow.n_terms + 63) / 64;
+    TRY(narrow_groups(pool, part, &narrow, err));
+    sum_bounds(field, pool, &narrow, center, inner_mm, bounds);
+    *out = narrow;
+    return STATUS_OK;
+}
+
+/* Where the sum over a group is largest; values[] are those of the part's terms. */
+static FieldValue largest_group(const PartPool *pool, const FieldPart *part, const double *values)
+{
+    FieldValue best = {.phi = 0};
+    for (uint32_t g = 0; g < part->n_groups; g++) {
+        const uint64_t *group = &pool->groups[part->first_group + (size_t)g * part->words];
+        double sum = group_sum(group, part->words, values, 1);
+        if (sum > best.phi)
+            best = (FieldValue){.phi = sum, .group = g};
+    }
+    return best;
+}
+
+FieldValue fieldpart_value(const ZoneField *field, const PartPool *pool, const FieldPart *part,
+                           Vec3 x)
+{
+    double values[MOST_PART_TERMS], sum = 0;
+    const uint32_t *terms = &pool->terms[part->first_term];
+    for (uint32_t i = 0; i < part->n_terms && part->n_groups == 1; i++)
+        sum += zoneterm_value(&field->terms[terms[i]], x);
+    if (part->n_groups < 2)
+        return (FieldValue){.phi = sum};
+    for (uint32_t i = 0; i < part->n_terms; i++)
+        values[i] = zoneterm_value(&field->terms[terms[i]], x);
+    return largest_group(pool, part, values);
+}
+
+/* The gradient of a sum, and its largest term, while it is added up. */
+typedef struct GradientSum {
+    Vec3 gradient;
+    double phi, largest;
+    uint32_t largest_term;
+} GradientSum;
+
+static inline void add_term(GradientSum *sum, const ZoneTerm *term, uint32_t number,
+                            const TermPlace *place, double value)
+{
+    if (value == 0)
+        return;
+    sum->phi += value;
+    sum->gradient = vec3_add(sum->gradient, term_gradient(term, place, value));
+    if (value > sum->largest) {
+        sum->largest = value;
+        sum->largest_term = number;
+    }
+}
+
+/* Of many groups the values tell which one's gradient it is. */
+static FieldValue gradient_of_largest(const ZoneField *field, const PartPool *pool,
+                                      const FieldPart *part, Vec3 x, Vec3 *gradient)
+{
+    double values[MOST_PART_TERMS];
+    TermPlace places[MOST_PART_TERMS];
+    const uint32_t *terms = &pool->terms[part->first_term];
+    GradientSum sum = {.largest = 0};
+    for (uint32_t i = 0; i < part->n_terms; i++) {
+        places[i] = place_in(&field->terms[terms[i]], x);
+        values[i] = value_at(&field->terms[terms[i]], &places[i]);
+    }
+    FieldValue best = largest_group(pool, part, values);
+    const uint64_t *group = group_of(pool, part, best.group);
+    for (uint32_t i = 0; i < part->n_terms; i++)
+        if (group[i / 64] >> i % 64 & 1)
+            add_term(&sum, &field->terms[terms[i]], terms[i], &places[i], values[i]);
+    *gradient = sum.gradient;
+    best.largest = sum.largest_term;
+    return best;
+}
+
+/* A lone group, as most parts have, holds all terms. */
+FieldValue fieldpart_gradient(const ZoneField *field, const PartPool *pool, const FieldPart *part,
+                              Vec3 x, Vec3 *gradient)
+{
+    const uint32_t *terms = &pool->terms[part->first_term];
+    GradientSum sum = {.largest = 0};
+    if (part->n_groups > 1)
+        return gradient_of_largest(field, pool, part, x, gradient);
+    for (uint32_t i = 0; i < part->n_terms && part->n_groups == 1; i++) {
+        const ZoneTerm *term = &field->terms[terms[i]];
+        TermPlace place = place_in(term, x);
+        add_term(&sum, term, terms[i], &place, value_at(term, &place));
+    }
+    *gradient = sum.gradient;
+    return (FieldValue){.phi = sum.phi, .largest = sum.largest_term};
+}
+
+double field_height(double phi)
+{
+    return sqrt(-2 * elementary_log(fmin(fmax(phi, 1e-12), 0.9))) - 2;
+}

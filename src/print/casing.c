@@ -1,0 +1,137 @@
+/* Corners are shared by the faces that meet there. */
+#include "print/casing.h"
+
+#include "print/face.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the radius: what lies in the prism. */
+static const double in_prism = 0.998;
+
+typedef struct Enclosing {
+    Solid *solid;
+    const Casing *casing;
+    const CasingHole *holes;
+    size_t n_holes;
+    FaceLoop *loops;
+    uint32_t *turned; /* points of holes the other way round */
+    Err *err;
+} Enclosing;
+
+static double radius_of(const Casing *casing)
+{
+    int u = (casing->axis + 1) % 3;
+    return 0.5 * (vec3_component(casing->box.high, u) - vec3_component(casing->box.low, u));
+}
+
+static Vec3 middle_of(const Casing *casing)
+{
+    return vec3_scale(vec3_add(casing->box.low, casing->box.high), 0.5);
+}
+
+bool casing_has_face(const Casing *casing, int face)
+{
+    return !casing->is_round || face_axis(face) == casing->axis;
+}
+
+bool casing_holds_disc(const Casing *casing, int face, Vec3 at, double radius_mm)
+{
+    Vec3 from = vec3_sub(at, middle_of(casing));
+    double far2 = 0;
+    bool holds = true;
+    for (int axis = 0; axis < 3; axis++) {
+        double half =
+            0.5 * (vec3_component(casing->box.high, axis) - vec3_component(casing->box.low, axis));
+        double off = axis == face_axis(face) ? 0 : fabs(vec3_component(from, axis));
+        far2 += off * off;
+        holds = holds && (axis == face_axis(face) || off + radius_mm <= half);
+    }
+    return holds && (!casing->is_round || sqrt(far2) + radius_mm <= in_prism * radius_of(casing));
+}
+
+/* One face, whose edge is given counterclockwise seen from outside, with its holes. */
+static Status add_face(const Enclosing *enclosing, int face, const uint32_t *edge, uint32_t n)
+{
+    size_t n_loops = 0, n_turned = 0;
+    enclosing->loops[n_loops++] = (FaceLoop){edge, n};
+    for (size_t h = 0; h < enclosing->n_holes; h++) {
+        const CasingHole *hole = &enclosing->holes[h];
+        if (hole->face != face)
+            continue;
+        uint32_t *points = &enclosing->turned[n_turned];
+        for (uint32_t i = 0; i < hole->n; i++)
+            points[i] = hole->points[hole->is_rising ? hole->n - 1 - i : i];
+        n_turned += hole->n;
+        enclosing->loops[n_loops++] = (FaceLoop){points, hole->n};
+    }
+    return face_fill(enclosing->solid, face_axis(face), face_is_low(face), enclosing->loops,
+                     n_loops, MESH_CAP | MESH_FRAME, enclosing->err);
+}
+
+static Status add_corner(const Enclosing *enclosing, const double at[3], uint32_t *number)
+{
+    Vec3 place = vec3(at[0], at[1], at[2]);
+    Vec3 out = vec3_normalized(vec3_sub(place, middle_of(enclosing->casing)));
+    return solid_point(enclosing->solid, place, out, number, enclosing->err);
+}
+
+/* Corner i of the box has the high coordinate along axis k where bit k of i is set. */
+static Status add_box(const Enclosing *enclosing)
+{
+    uint32_t corners[8], edge[4];
+    static const uint8_t round_face[4] = {0, 1, 3, 2};
+    for (int i = 0; i < 8; i++) {
+        double at[3];
+        for (int axis = 0; axis < 3; axis++)
+            at[axis] = face_place(enclosing->casing, 2 * axis + (i >> axis & 1));
+        TRY(add_corner(enclosing, at, &corners[i]));
+    }
+    for (int face = 0; face < CASING_FACES; face++) {
+        int axis = face_axis(face), u = (axis + 1) % 3, v = (axis + 2) % 3;
+        for (int k = 0; k < 4; k++) {
+            int way = round_face[k], high = !face_is_low(face);
+            int corner = high << axis | (way & 1) << u | (way >> 1) << v;
+            edge[high ? k : 3 - k] = corners[corner];
+        }
+        TRY(add_face(enclosing, face, edge, 4));
+    }
+    return STATUS_OK;
+}
+
+static Status add_cylinder(const Enclosing *enclosing)
+{
+    const Casing *casing = enclosing->casing;
+    int axis = casing->axis, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    Vec3 middle = middle_of(casing);
+    uint32_t rings[2][CASING_SIDES], turned[CASING_SIDES];
+    for (int end = 0; end < 2; end++)
+        for (int i = 0; i < CASING_SIDES; i++) {
+            double at[3], angle = FULL_TURN * i / CASING_SIDES;
+            at[axis] = face_place(casing, 2 * axis + end);
+            at[u] = vec3_component(middle, u) + radius_of(casing) * elementary_cos(angle);
+            at[v] = vec3_component(middle, v) + radius_of(casing) * elementary_sin(angle);
+            TRY(add_corner(enclosing, at, &rings[end][i]));
+        }
+    TRY(solid_ring(enclosing->solid, rings[0], rings[1], CASING_SIDES, MESH_CAP | MESH_FRAME,
+                   enclosing->err));
+    for (int i = 0; i < CASING_SIDES; i++)
+        turned[i] = rings[0][CASING_SIDES - 1 - i];
+    TRY(add_face(enclosing, 2 * axis, turned, CASING_SIDES));
+    return add_face(enclosing, 2 * axis + 1, rings[1], CASING_SIDES);
+}
+
+Status casing_add(Solid *solid, const Casing *casing, const CasingHole *holes, size_t n, Err *err)
+{
+    Enclosing enclosing = {solid, casing, holes, n, .err = err};
+    size_t points = 0;
+    Status status;
+    for (size_t h = 0; h < n; h++)
+        points += holes[h].n;
+    TRY_GOTO(mem_calloc(&enclosing.loops, n + 1, sizeof *enclosing.loops, "a face", err));
+    TRY_GOTO(mem_calloc(&enclosing.turned, points, sizeof *enclosing.turned, "a face", err));
+    TRY_GOTO(casing->is_round ? add_cylinder(&enclosing) : add_box(&enclosing));
+done:
+    free(enclosing.loops);
+    free(enclosing.turned);
+    return status;
+}

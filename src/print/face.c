@@ -1,0 +1,239 @@
+/* Each hole is joined to the way round the face by a bridge, gone along there and back, from its
+ * point that is farthest along the first axis to the nearest corner that it sees; holes farther
+ * along come first, so that there always is one. Of the one way that is left, ears are cut off: a
+ * corner that turns left and whose triangle has no other corner in it [Eberly, Triangulation by Ear
+ * Clipping]. Coordinates are whole multiples of a grid, differences of which have 26 bits, so that
+ * every turn is exact. */
+#include "print/face.h"
+
+#include <stdlib.h>
+
+typedef struct Corner {
+    uint32_t point, next, before; /* the others are corners */
+} Corner;
+
+typedef struct Candidate {
+    double distance2;
+    uint32_t corner;
+} Candidate;
+
+typedef struct FaceWork {
+    const VesselMesh *mesh;
+    int u, v; /* axes */
+    Corner *corners;
+    uint32_t n;
+    Candidate *candidates;
+    FaceLoop *holes; /* farthest first */
+    size_t n_holes;
+} FaceWork;
+
+static double across(const FaceWork *work, uint32_t point, int axis)
+{
+    return (double)work->mesh->points[point][axis ? work->v : work->u];
+}
+
+/* Above 0 where the way from a over b to c turns left. */
+static double turn(const FaceWork *work, uint32_t a, uint32_t b, uint32_t c)
+{
+    double x = across(work, b, 0) - across(work, a, 0), y = across(work, b, 1) - across(work, a, 1);
+    return x * (across(work, c, 1) - across(work, a, 1)) -
+           y * (across(work, c, 0) - across(work, a, 0));
+}
+
+/* Whether p, on the line through a and b, lies between them. */
+static bool is_between(const FaceWork *work, uint32_t a, uint32_t b, uint32_t p)
+{
+    double along = 0, whole = 0;
+    for (int axis = 0; axis < 2; axis++) {
+        double d = across(work, b, axis) - across(work, a, axis);
+        along += d * (across(work, p, axis) - across(work, a, axis));
+        whole += d * d;
+    }
+    return along >= 0 && along <= whole;
+}
+
+static bool lies_on(const FaceWork *work, uint32_t a, uint32_t b, uint32_t p)
+{
+    return p != a && p != b && turn(work, a, b, p) == 0 && is_between(work, a, b, p);
+}
+
+/* Whether the edge from a to b meets the bridge elsewhere than in a point that they share. */
+static bool blocks(const FaceWork *work, uint32_t a, uint32_t b, uint32_t from, uint32_t to)
+{
+    if (lies_on(work, from, to, a) || lies_on(work, from, to, b) || lies_on(work, a, b, from) ||
+        lies_on(work, a, b, to))
+        return true;
+    if (a == from || a == to || b == from || b == to)
+        return false;
+    return turn(work, a, b, from) * turn(work, a, b, to) < 0 &&
+           turn(work, from, to, a) * turn(work, from, to, b) < 0;
+}
+
+/* Whether the way from a corner to a point begins on the left of the way round. */
+static bool opens_to(const FaceWork *work, const Corner *corner, uint32_t point)
+{
+    uint32_t before = work->corners[corner->before].point, next = work->corners[corner->next].point;
+    bool one = turn(work, before, corner->point, point) > 0;
+    bool other = turn(work, corner->point, next, point) > 0;
+    return turn(work, before, corner->point, next) > 0 ? one && other : one || other;
+}
+
+static bool sees(const FaceWork *work, size_t first_hole, const Corner *corner, uint32_t point)
+{
+    if (!opens_to(work, corner, point))
+        return false;
+    for (uint32_t i = 0; i < work->n; i++)
+        if (blocks(work, work->corners[i].point, work->corners[work->corners[i].next].point, point,
+                   corner->point))
+            return false;
+    for (size_t h = first_hole; h < work->n_holes; h++)
+        for (uint32_t i = 0; i < work->holes[h].n; i++) {
+            const FaceLoop *hole = &work->holes[h];
+            if (blocks(work, hole->points[i], hole->points[(i + 1) % hole->n], point,
+                       corner->point))
+                return false;
+        }
+    return true;
+}
+
+static int compare_candidates(const void *a, const void *b)
+{
+    const Candidate *one = a, *other = b;
+    if (one->distance2 != other->distance2)
+        return one->distance2 < other->distance2 ? -1 : 1;
+    return (one->corner > other->corner) - (one->corner < other->corner);
+}
+
+static void order_candidates(FaceWork *work, uint32_t point)
+{
+    for (uint32_t i = 0; i < work->n; i++) {
+        double x = across(work, work->corners[i].point, 0) - across(work, point, 0);
+        double y = across(work, work->corners[i].point, 1) - across(work, point, 1);
+        work->candidates[i] = (Candidate){x * x + y * y, i};
+    }
+    qsort(work->candidates, work->n, sizeof *work->candidates, compare_candidates);
+}
+
+static uint32_t add_corner(FaceWork *work, uint32_t point, uint32_t before)
+{
+    uint32_t own = work->n++;
+    work->corners[own] = (Corner){.point = point, .before = before};
+    if (own != before)
+        work->corners[before].next = own;
+    return own;
+}
+
+/* The place in the loop of its point farthest along the first axis. */
+static uint32_t farthest_of(const FaceWork *work, const FaceLoop *loop)
+{
+    uint32_t best = 0;
+    for (uint32_t i = 1; i < loop->n; i++)
+        if (across(work, loop->points[i], 0) > across(work, loop->points[best], 0))
+            best = i;
+    return best;
+}
+
+/* Joins a hole to the way round. False when it sees no corner. */
+static bool bridge(FaceWork *work, size_t number)
+{
+    const FaceLoop *hole = &work->holes[number];
+    uint32_t first = farthest_of(work, hole), point = hole->points[first], i = 0;
+    order_candidates(work, point);
+    while (i < work->n && !sees(work, number, &work->corners[work->candidates[i].corner], point))
+        i++;
+    if (i == work->n)
+        return false;
+    uint32_t corner = work->candidates[i].corner, next = work->corners[corner].next;
+    uint32_t last = corner;
+    for (uint32_t k = 0; k <= hole->n; k++)
+        last = add_corner(work, hole->points[(first + k) % hole->n], last);
+    last = add_corner(work, work->corners[corner].point, last);
+    work->corners[last].next = next;
+    work->corners[next].before = last;
+    return true;
+}
+
+static bool has_corner_in(const FaceWork *work, const Corner *ear)
+{
+    const Corner *corners = work->corners;
+    uint32_t a = corners[ear->before].point, b = ear->point, c = corners[ear->next].point;
+    for (uint32_t i = corners[ear->next].next; i != ear->before; i = corners[i].next) {
+        uint32_t p = corners[i].point;
+        if (p != a && p != b && p != c && turn(work, a, b, p) >= 0 && turn(work, b, c, p) >= 0 &&
+            turn(work, c, a, p) >= 0)
+            return true;
+    }
+    return false;
+}
+
+static bool is_ear(const FaceWork *work, const Corner *corner)
+{
+    return turn(work, work->corners[corner->before].point, corner->point,
+                work->corners[corner->next].point) > 0 &&
+           !has_corner_in(work, corner);
+}
+
+static Status cut_ears(FaceWork *work, Solid *solid, uint32_t label, Err *err)
+{
+    uint32_t at = 0, tried = 0, left = work->n;
+    while (left > 2 && tried < left) {
+        Corner *corner = &work->corners[at];
+        if (!is_ear(work, corner)) {
+            at = corner->next;
+            tried++;
+            continue;
+        }
+        TRY(solid_triangle(solid, work->corners[corner->before].point, corner->point,
+                           work->corners[corner->next].point, label, err));
+        work->corners[corner->before].next = corner->next;
+        work->corners[corner->next].before = corner->before;
+        at = work->corners[corner->next].next;
+        tried = 0;
+        left--;
+    }
+    return left == 2 ? STATUS_OK
+                     : err_set(err, STATUS_INFEASIBLE, "openings of the block touch each other");
+}
+
+static void order_holes(FaceWork *work, const FaceLoop *holes, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        double far = across(work, holes[i].points[farthest_of(work, &holes[i])], 0);
+        size_t at = work->n_holes++;
+        for (; at > 0; at--) {
+            const FaceLoop *before = &work->holes[at - 1];
+            if (across(work, before->points[farthest_of(work, before)], 0) >= far)
+                break;
+            work->holes[at] = *before;
+        }
+        work->holes[at] = holes[i];
+    }
+}
+
+Status face_fill(Solid *solid, int axis, bool is_low, const FaceLoop *loops, size_t n_loops,
+                 uint32_t label, Err *err)
+{
+    int next = (axis + 1) % 3, other = (axis + 2) % 3;
+    FaceWork work = {.mesh = &solid->mesh, is_low ? other : next, is_low ? next : other};
+    size_t most = 0;
+    Status status;
+    for (size_t i = 0; i < n_loops; i++)
+        most += loops[i].n + 2;
+    TRY_GOTO(mem_calloc(&work.corners, most, sizeof *work.corners, "a face", err));
+    TRY_GOTO(mem_calloc(&work.candidates, most, sizeof *work.candidates, "a face", err));
+    TRY_GOTO(mem_calloc(&work.holes, n_loops, sizeof *work.holes, "a face", err));
+    for (uint32_t i = 0; i < loops[0].n; i++)
+        add_corner(&work, loops[0].points[i], i ? i - 1 : 0);
+    work.corners[loops[0].n - 1].next = 0;
+    work.corners[0].before = loops[0].n - 1;
+    order_holes(&work, &loops[1], n_loops - 1);
+    for (size_t h = 0; h < work.n_holes; h++)
+        if (!bridge(&work, h))
+            TRY_GOTO(err_set(err, STATUS_INFEASIBLE, "openings of the block touch each other"));
+    TRY_GOTO(cut_ears(&work, solid, label, err));
+done:
+    free(work.corners);
+    free(work.candidates);
+    free(work.holes);
+    return status;
+}

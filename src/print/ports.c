@@ -1,0 +1,404 @@
+/* A port goes on along the vessel's axis as a cone, which a face cuts off. A fitting must leave its
+ * face at a right angle, and so does a port whose straight way is not free: it bends along a cubic
+ * curve, then is a straight cone, through circles that turn with the way and no more than it. Faces
+ * are tried from the nearest on along the axis; a way that comes near a vessel, another port
+ * or the edge of its face, or that bends too sharply for its width, is none. */
+#include "print/ports.h"
+
+#include "mesh/mesh.h"
+#include <stdlib.h>
+
+/* Of the female half of a conical fitting [ISO 80369-7]: its diameter at the face, its depth, and
+ * how much narrower it gets for each mm. */
+static const double luer_mm = 4.3, luer_depth_mm = 7.5, luer_taper = 0.06;
+/* Over the radii: what is left free between ports and others; over the way: how far the ends of the
+ * curve pull. */
+static const double free_part = 0.4, pull = 0.4;
+/* Over the radius: how far back a vessel belongs to its port. */
+static const double own_radii = 3;
+/* Of a plain port: the part of its way that is straight in the end. */
+static const double straight_part = 0.25;
+/* Of the angle at which a straight way may meet a face. */
+static const double least_cosine = 0.5;
+
+typedef struct PortSearch {
+    const VesselTree *tree;
+    BoxTree boxes; /* of the tree's segments; owned */
+    NumberLists incident;
+    const Casing *casing;
+    const PrintBlock *block;
+    Ports *ports;
+} PortSearch;
+
+void ports_release(Ports *ports)
+{
+    for (size_t i = 0; i < ports->n; i++)
+        free(ports->items[i].points);
+    free(ports->items);
+    *ports = (Ports){0};
+}
+
+/* Where the end of a vessel is, and which way leads out of it. */
+static PortRing rim_of(const VesselTree *tree, const CutEnd *end)
+{
+    const FieldSegment *segment = &tree->segments[end->segment];
+    Vec3 at = end->end ? segment->b : segment->a, other = end->end ? segment->a : segment->b;
+    return (PortRing){at, vec3_normalized(vec3_sub(at, other)), segment->radius_mm};
+}
+
+/* How far the rim's middle lies below a face. */
+static double depth_of(const PortRing *rim, const Casing *casing, int face)
+{
+    double off = face_place(casing, face) - vec3_component(rim->center, face_axis(face));
+    return face_is_low(face) ? -off : off;
+}
+
+/* What is left free between an opening and the edge of its face. */
+static double edge_room(double radius_mm)
+{
+    return fmin(1, 0.5 * radius_mm);
+}
+
+/* The place on a face that a way of this width ends at: half as far aside as the axis leads, which
+ * takes one bend, or as near to it as the edges leave room. */
+static Vec3 place_on_face(const PortRing *rim, const Casing *casing, int face, double radius_mm)
+{
+    double along = fmax(vec3_dot(rim->way, face_normal(face)), 0.7), at[3];
+    double way_mm = 0.5 * depth_of(rim, casing, face) / along;
+    Vec3 ahead = vec3_add_scaled(rim->center, rim->way, way_mm);
+    for (int axis = 0; axis < 3; axis++) {
+        double room = radius_mm + 1.01 * edge_room(radius_mm);
+        double low = vec3_component(casing->box.low, axis) + room;
+        double high = vec3_component(casing->box.high, axis) - room;
+        at[axis] = fmin(fmax(vec3_component(ahead, axis), low), high);
+    }
+    at[face_axis(face)] = face_place(casing, face);
+    return vec3(at[0], at[1], at[2]);
+}
+
+/* Whether a circle lies below the faces. */
+static bool is_within(const Casing *casing, const PortRing *ring)
+{
+    for (int face = 0; face < CASING_FACES; face++) {
+        double cosine = vec3_dot(ring->way, face_normal(face));
+        double high = ring->radius_mm * sqrt(fmax(1 - cosine * cosine, 0));
+        if (depth_of(ring, casing, face) < high + 0.1 * ring->radius_mm)
+            return false;
+    }
+    return true;
+}
+
+/* Whether circles that follow each other do not meet, and lie in the block. */
+static bool is_smooth(const Casing *casing, const PortRing *rim, const Port *port)
+{
+    for (int i = 0; i < port->n_rings; i++) {
+        const PortRing *from = i ? &port->rings[i - 1] : rim, *to = &port->rings[i];
+        double turned = vec3_distance(from->way, to->way);
+        double step = vec3_distance(from->center, to->center);
+        if (step < 1.2 * turned * fmax(from->radius_mm, to->radius_mm) ||
+            (i + 1 < port->n_rings && !is_within(casing, to)))
+            return false;
+    }
+    return true;
+}
+
+/* Lays a straight way to a face. False when the axis leads past it, or meets it at a small angle.
+ */
+static bool lay_straight(const PortSearch *search, const PortRing *rim, int face, Port *port)
+{
+    Vec3 normal = face_normal(face);
+    double depth = depth_of(rim, search->casing, face), cosine = vec3_dot(rim->way, normal);
+    if (cosine < least_cosine || search->block->is_luer)
+        return false;
+    double way_mm = depth / cosine, radius = rim->radius_mm + search->block->taper / 2 * way_mm;
+    double sine = sqrt(fmax(1 - cosine * cosine, 0)), reach = radius / cosine;
+    port->rings[0] = (PortRing){vec3_add_scaled(rim->center, rim->way, way_mm), rim->way, radius};
+    port->n_rings = 1;
+    port->is_straight = true;
+    port->face = face;
+    /* The highest point of the rim is below the face, and the ellipse within it. */
+    return depth > rim->radius_mm * sine &&
+           casing_holds_disc(search->casing, face, port->rings[0].center,
+                             1.1 * reach + edge_room(radius));
+}
+
+/* Lays the rings of a way that bends to a face. False when there is no room for it. */
+static bool lay_bent(const PortSearch *search, const PortRing *rim, int face, Port *port)
+{
+    const PrintBlock *block = search->block;
+    Vec3 normal = face_normal(face);
+    double depth = depth_of(rim, search->casing, face), half_taper = block->taper / 2;
+    double straight = block->is_luer ? luer_depth_mm : straight_part * depth;
+    double last_mm = block->is_luer ? luer_mm / 2 : rim->radius_mm + half_taper * depth;
+    double before_mm = last_mm - (block->is_luer ? luer_taper / 2 : half_taper) * straight;
+    Vec3 out = place_on_face(rim, search->casing, face, last_mm);
+    Vec3 bottom = vec3_add_scaled(out, normal, -straight);
+    double bend_mm = vec3_distance(bottom, rim->center);
+    if (depth <= straight)
+        return false;
+    Vec3 one = vec3_add_scaled(rim->center, rim->way, pull * bend_mm);
+    Vec3 other = vec3_add_scaled(bottom, normal, -pull * bend_mm);
+    for (int i = 0; i < PORT_RINGS - 1; i++) {
+        double t = (i + 1.0) / (PORT_RINGS - 1), s = 1 - t;
+        PortRing *ring = &port->rings[i];
+        ring->center =
+            vec3_add(vec3_add(vec3_scale(rim->center, s * s * s), vec3_scale(one, 3 * s * s * t)),
+                     vec3_add(vec3_scale(other, 3 * s * t * t), vec3_scale(bottom, t * t * t)));
+        Vec3 way = vec3_scale(vec3_sub(one, rim->center), s * s);
+        way = vec3_add_scaled(way, vec3_sub(other, one), 2 * s * t);
+        ring->way = vec3_normalized(vec3_add_scaled(way, vec3_sub(bottom, other), t * t));
+        ring->radius_mm = rim->radius_mm + t * (before_mm - rim->radius_mm);
+    }
+    port->rings[PORT_RINGS - 1] = (PortRing){out, normal, last_mm};
+    port->n_rings = PORT_RINGS;
+    port->is_straight = false;
+    port->face = face;
+    return is_smooth(search->casing, rim, port) &&
+           casing_holds_disc(search->casing, face, out, last_mm + edge_room(last_mm));
+}
+
+/* What a port fills between two rings; a straight one, as far as its ellipse reaches. */
+static FieldSegment stretch_of(const PortRing *rim, const Port *port, int i)
+{
+    const PortRing *from = i ? &port->rings[i - 1] : rim, *to = &port->rings[i];
+    double cosine = vec3_dot(to->way, face_normal(port->face)), beyond = 0;
+    if (port->is_straight)
+        beyond = to->radius_mm * sqrt(fmax(1 - cosine * cosine, 0)) / cosine;
+    return (FieldSegment){.a = from->center,
+                          .b = vec3_add_scaled(to->center, to->way, beyond),
+                          .radius_mm = fmax(from->radius_mm, to->radius_mm)};
+}
+
+static bool is_apart(const FieldSegment *one, const FieldSegment *other)
+{
+    double radii = one->radius_mm + other->radius_mm;
+    return segments_distance(one, other) >
+           radii + free_part * fmin(one->radius_mm, other->radius_mm);
+}
+
+enum { MOST_OWN = 64 };
+
+/* The vessels that a port goes on from: those within a few of its radii behind the rim. */
+typedef struct OwnVessels {
+    uint32_t segments[MOST_OWN];
+    size_t n;
+} OwnVessels;
+
+static void list_own(const PortSearch *search, uint32_t segment, uint32_t from, double left_mm,
+                     OwnVessels *own)
+{
+    const VesselTree *tree = search->tree;
+    uint32_t next = tree->nodes[segment][!segment_end_at(tree, segment, from)];
+    const uint32_t *first = &search->incident.first[next];
+    if (own->n == MOST_OWN)
+        return;
+    own->segments[own->n++] = segment;
+    left_mm -= vec3_distance(tree->segments[segment].a, tree->segments[segment].b);
+    for (uint32_t i = first[0]; i < first[1] && left_mm > 0; i++)
+        if (search->incident.items[i] != segment)
+            list_own(search, search->incident.items[i], next, left_mm, own);
+}
+
+static bool is_own(const OwnVessels *own, uint32_t segment)
+{
+    for (size_t i = 0; i < own->n; i++)
+        if (own->segments[i] == segment)
+            return true;
+    return false;
+}
+
+/* Whether a stretch of a way keeps off all vessels but its own. A vessel whose box it does not
+ * meet, widened by what is left free, is apart. */
+static bool is_off_vessels(const PortSearch *search, const FieldSegment *stretch,
+                           const OwnVessels *own)
+{
+    uint32_t k;
+    Box around = segment_box(stretch, (1 + free_part) * stretch->radius_mm);
+    for (BoxWalk walk = boxwalk_box(&search->boxes, around); boxwalk_next(&walk, &k);)
+        if (!is_apart(stretch, &search->tree->segments[k]) && !is_own(own, k))
+            return false;
+    return true;
+}
+
+/* Whether a stretch of a way keeps off a port. */
+static bool is_off_port(const PortSearch *search, const FieldSegment *stretch, const Port *other)
+{
+    PortRing its_rim = rim_of(search->tree, other->end);
+    for (int i = 0; i < other->n_rings; i++) {
+        FieldSegment its = stretch_of(&its_rim, other, i);
+        if (!is_apart(stretch, &its))
+            return false;
+    }
+    return true;
+}
+
+/* Sets the box of a way and what is to be left free about it. */
+static void set_box(const PortRing *rim, Port *port)
+{
+    port->box = box_empty();
+    for (int i = 0; i < port->n_rings; i++) {
+        FieldSegment own = stretch_of(rim, port, i);
+        port->box = box_union(port->box, segment_box(&own, (1 + free_part) * own.radius_mm));
+    }
+}
+
+/* Whether a way, whose box is set, keeps off all vessels but its own, and all ports. */
+static bool is_free(const PortSearch *search, const PortRing *rim, const Port *port)
+{
+    OwnVessels vessels = {.n = 0};
+    list_own(search, port->end->segment, search->tree->nodes[port->end->segment][port->end->end],
+             own_radii * rim->radius_mm, &vessels);
+    for (int i = 0; i < port->n_rings; i++) {
+        FieldSegment own = stretch_of(rim, port, i);
+        if (!is_off_vessels(search, &own, &vessels))
+            return false;
+    }
+    for (size_t p = 0; p < search->ports->n; p++) {
+        const Port *other = &search->ports->items[p];
+        if (!box_meets(port->box, other->box))
+            continue;
+        for (int i = 0; i < port->n_rings; i++) {
+            FieldSegment own = stretch_of(rim, port, i);
+            if (!is_off_port(search, &own, other))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* Whether there is a free way to the face, straight or bent. */
+static bool lay_way(const PortSearch *search, const PortRing *rim, int face, bool bent, Port *port)
+{
+    if (!(bent ? lay_bent : lay_straight)(search, rim, face, port))
+        return false;
+    set_box(rim, port);
+    return is_free(search, rim, port);
+}
+
+/* How far the axis leads until it is as far as the face; beyond a right angle, far. */
+static double distance_to(const PortRing *rim, const Casing *casing, int face)
+{
+    double depth = depth_of(rim, casing, face);
+    return depth / fmax(vec3_dot(rim->way, face_normal(face)), 0.05);
+}
+
+/* Tries the faces, the nearest along the axis first. */
+static bool find_way(const PortSearch *search, const PortRing *rim, Port *port)
+{
+    bool tried[CASING_FACES] = {false};
+    for (int i = 0; i < CASING_FACES; i++) {
+        int best = -1;
+        for (int face = 0; face < CASING_FACES; face++)
+            if (!tried[face] && (best < 0 || distance_to(rim, search->casing, face) <
+                                                 distance_to(rim, search->casing, best)))
+                best = face;
+        tried[best] = true;
+        for (int bent = 0; bent < 2 && casing_has_face(search->casing, best); bent++)
+            if (lay_way(search, rim, best, bent, port))
+                return true;
+    }
+    return false;
+}
+
+Status ports_find(const VesselTree *tree, const CutEnds *ends, const Casing *casing,
+                  const PrintBlock *block, Ports *out, Err *err)
+{
+    Ports made = {0};
+    PortSearch search = {.tree = tree, .casing = casing, .block = block, .ports = &made};
+    Status status;
+    TRY_GOTO(vesseltree_incident(tree, &search.incident, err));
+    TRY_GOTO(segments_boxtree(tree, &search.boxes, err));
+    TRY_GOTO(mem_calloc(&made.items, ends->n, sizeof *made.items, "ports", err));
+    for (int inlets = 1; inlets >= 0; inlets--)
+        for (size_t i = 0; i < ends->n; i++) {
+            CutEnd *end = &ends->items[i];
+            PortRing rim = rim_of(tree, end);
+            Port port = {.end = end};
+            if ((end->end == 0) != inlets || block->ports == PORTS_NONE ||
+                (block->ports == PORTS_INLET && !inlets) || !find_way(&search, &rim, &port))
+                continue;
+            end->opened = true;
+            made.items[made.n++] = port;
+        }
+    *out = made;
+done:
+    numberlists_release(&search.incident);
+    boxtree_release(&search.boxes);
+    return status;
+}
+
+/* A vector that is across `from`, turned as much as that is to lie along `to`. */
+static Vec3 turned_with(Vec3 across, Vec3 from, Vec3 to)
+{
+    Vec3 axis = vec3_cross(from, to);
+    double sine = vec3_length(axis);
+    if (sine > 1e-12)
+        across = vec3_turned(across, vec3_scale(axis, 1 / sine),
+                             elementary_atan2(sine, vec3_dot(from, to)));
+    return vec3_normalized(vec3_add_scaled(across, to, -vec3_dot(across, to)));
+}
+
+/* Where the cone about a straight way, `across` its axis, meets the face. */
+static Vec3 cut_of(const PortRing *rim, const Port *port, Vec3 across)
+{
+    const PortRing *last = &port->rings[0];
+    Vec3 normal = face_normal(port->face);
+    Vec3 from = vec3_add_scaled(rim->center, across, rim->radius_mm);
+    Vec3 along = vec3_sub(vec3_add_scaled(last->center, across, last->radius_mm), from);
+    double t = vec3_dot(vec3_sub(last->center, from), normal) / vec3_dot(along, normal);
+    return vec3_add_scaled(from, along, t);
+}
+
+/* The points of one ring, by rising angle about the segment's axis. */
+static Status add_ring(const PortRing *rim, const Port *port, int number, Vec3 u, Vec3 v,
+                       uint32_t *points, Solid *solid, Err *err)
+{
+    const PortRing *ring = &port->rings[number];
+    uint32_t n = port->end->n;
+    for (uint32_t i = 0; i < n; i++) {
+        double angle = FULL_TURN * ((i + 0.5) / n - 0.5);
+        Vec3 way =
+            vec3_add(vec3_scale(u, elementary_cos(angle)), vec3_scale(v, elementary_sin(angle)));
+        Vec3 at = port->is_straight ? cut_of(rim, port, way)
+                                    : vec3_add_scaled(ring->center, way, ring->radius_mm);
+        TRY(solid_point(solid, at, vec3_scale(way, -1), &points[i], err));
+    }
+    return STATUS_OK;
+}
+
+static Status add_port(const VesselTree *tree, Port *port, Solid *solid, Err *err)
+{
+    const CutEnd *end = port->end;
+    const FieldSegment *segment = &tree->segments[end->segment];
+    const PortRing rim = rim_of(tree, end);
+    Vec3 u, v, way = rim.way;
+    uint32_t *points[2], n = end->n;
+    Status status;
+    TRY(mem_calloc(&points[0], 2 * (size_t)n, sizeof **points, "ports", err));
+    points[1] = &points[0][n];
+    vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
+    const uint32_t *before = end->rim;
+    for (int i = 0; i < port->n_rings; i++) {
+        uint32_t *own = points[i % 2];
+        u = turned_with(u, way, port->rings[i].way);
+        way = port->rings[i].way;
+        v = vec3_scale(vec3_cross(way, u), end->end ? 1 : -1);
+        TRY_GOTO(add_ring(&rim, port, i, u, v, own, solid, err));
+        TRY_GOTO(solid_ring(solid, end->end ? own : before, end->end ? before : own, n,
+                            end->segment, err));
+        before = own;
+    }
+    TRY_GOTO(mem_calloc(&port->points, n, sizeof *port->points, "ports", err));
+    for (uint32_t i = 0; i < n; i++)
+        port->points[i] = before[i];
+done:
+    free(points[0]);
+    return status;
+}
+
+Status ports_add(const VesselTree *tree, Ports *ports, Solid *solid, Err *err)
+{
+    for (size_t i = 0; i < ports->n; i++)
+        TRY(add_port(tree, &ports->items[i], solid, err));
+    return STATUS_OK;
+}

@@ -1,0 +1,372 @@
+/* The two sides of a wall are surfaces of one machinery: of the vessels, and of the vessels with
+ * radii larger by the wall. Their flat ends lie in the same planes with rims of as many points, and
+ * a flat ring joins them. No boolean is needed, and what is proved of both is true of the wall but
+ * for crossings, for which it is searched as a whole. */
+#include "print/print.h"
+
+#include "mesh/mesh.h"
+#include "print/block.h"
+#include "print/seams.h"
+#include "print/solid.h"
+#include "print/supportpins.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* A surface, and where it is cut off flat. */
+typedef struct Side {
+    VesselMesh mesh;
+    MeshReport report;
+    CutEnds ends;
+} Side;
+
+typedef struct Making {
+    VesselTree *tree;
+    VesselTree outer; /* with radii of the wall, and with pins */
+    Pins pins;
+    PrintParams params;
+    Side sides[2]; /* the outer one, and that of the lumen */
+    Casing casing; /* the block or the plate */
+    Solid solid;
+    Seams seams;
+    PrintReport report;
+} Making;
+
+void printreport_release(PrintReport *report)
+{
+    free(report->closed);
+    free(report->longer);
+    free(report->thinned);
+    *report = (PrintReport){0};
+}
+
+static void release_side(Side *side)
+{
+    vesselmesh_release(&side->mesh);
+    meshreport_release(&side->report);
+    cutends_release(&side->ends);
+}
+
+static void release_making(Making *making)
+{
+    vesseltree_release(&making->outer);
+    pins_release(&making->pins);
+    release_side(&making->sides[0]);
+    release_side(&making->sides[1]);
+    solid_release(&making->solid);
+    seams_release(&making->seams);
+    printreport_release(&making->report);
+}
+
+static double outer_radius(const PrintParams *params, double radius_mm)
+{
+    return radius_mm * (1 + params->wall_ratio) + params->wall_mm;
+}
+
+static Status take_outer(Making *making, Err *err)
+{
+    VesselTree *outer = &making->outer;
+    const VesselTree *tree = making->tree;
+    size_t n = outer->n_segments = tree->n_segments;
+    outer->n_nodes = tree->n_nodes;
+    outer->body = tree->body;
+    TRY(mem_calloc(&outer->segments, n, sizeof *outer->segments, "segments", err));
+    TRY(mem_calloc(&outer->nodes, n, sizeof *outer->nodes, "segments", err));
+    TRY(mem_calloc(&outer->ids, n, sizeof *outer->ids, "segments", err));
+    memcpy(outer->nodes, tree->nodes, n * sizeof *outer->nodes);
+    memcpy(outer->ids, tree->ids, n * sizeof *outer->ids);
+    for (size_t i = 0; i < tree->n_segments; i++) {
+        outer->segments[i] = tree->segments[i];
+        outer->segments[i].radius_mm = outer_radius(&making->params, tree->segments[i].radius_mm);
+    }
+    return STATUS_OK;
+}
+
+/* What was changed on the outer side is changed in the tree, which keeps its wall. */
+static Status take_changes(Making *making, Err *err)
+{
+    const PrintParams *params = &making->params;
+    const PrintReport *report = &making->report;
+    VesselTree *tree = making->tree;
+    for (size_t i = 0; i < report->n_longer; i++) {
+        uint32_t k = report->longer[i];
+        tree->segments[k].a = making->outer.segments[k].a;
+        tree->segments[k].b = making->outer.segments[k].b;
+    }
+    for (size_t i = 0; i < report->n_thinned; i++) {
+        uint32_t k = report->thinned[i];
+        double *radius = &tree->segments[k].radius_mm, before = *radius;
+        *radius =
+            (making->outer.segments[k].radius_mm - params->wall_mm) / (1 + params->wall_ratio);
+        if (*radius < 0.05 * before)
+            return err_set(
+                err, STATUS_INPUT,
+                "segment %u and one that it does not belong with come so near that their "
+                "walls leave it no lumen; they cannot be parted",
+                tree->ids[k]);
+    }
+    return STATUS_OK;
+}
+
+/* Parts overlaps, lengthens ends and sets up pins. */
+static Status prepare(Making *making, Err *err)
+{
+    const PrintParams *params = &making->params;
+    PrintReport *report = &making->report;
+    TRY(take_outer(making, err));
+    if (params->part_overlaps)
+        TRY(vesseltree_part(&making->outer, &params->mesh, &report->thinned, &report->n_thinned,
+                            err));
+    if (print_is_hollow(params))
+        TRY(vesseltree_free_ends(&making->outer, &params->mesh, &report->longer, &report->n_longer,
+                                 err));
+    TRY(take_changes(making, err));
+    TRY(leastgap_find(&making->outer, &params->mesh, &report->closest, &report->has_closest, err));
+    if (!params->base.is_there)
+        return STATUS_OK;
+    TRY(pins_add(&making->outer, &params->base, print_has_wall(params), &params->mesh,
+                 &making->pins, err));
+    report->pins = making->pins.n_pins;
+    report->hanging = making->pins.n_hanging;
+    if (report->pins == 0)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "no pin can be led from the vessels to a base: all %zu places that need one "
+                       "have other vessels, or open ends, in the way",
+                       report->hanging);
+    return STATUS_OK;
+}
+
+static double rounded(double x, double step)
+{
+    return round(x / step) * step;
+}
+
+/* Finds the grid of all coordinates, and puts the block on it. */
+static Status lay_grid(Making *making, Err *err)
+{
+    Casing *casing = &making->casing;
+    double reach = mesh_reach(&making->outer), grid;
+    if (making->params.block.is_there)
+        TRY(block_casing(making->tree, &making->params.block, casing, err));
+    if (making->params.base.is_there)
+        *casing = pins_plate(&making->outer, &making->params.base, &making->pins);
+    for (int face = 0; face < CASING_FACES; face++)
+        reach = fmax(reach, fabs(face_place(casing, face)));
+    making->params.mesh.reach_mm = reach;
+    making->solid.grid_mm = grid = mesh_grid(reach);
+    Vec3 *ends[2] = {&casing->box.low, &casing->box.high};
+    for (int end = 0; end < 2; end++)
+        *ends[end] = vec3(rounded(ends[end]->x, grid), rounded(ends[end]->y, grid),
+                          rounded(ends[end]->z, grid));
+    return STATUS_OK;
+}
+
+static Status build_side(const VesselTree *tree, const MeshParams *params, Side *side, Err *err)
+{
+    TRY(vesselmesh_build(tree, params, &side->mesh, &side->report, err));
+    TRY(meshreport_check(&side->report, tree, err));
+    return cutends_find(&side->mesh, &side->ends, err);
+}
+
+static Status build_sides(Making *making, Err *err)
+{
+    const PrintParams *params = &making->params;
+    Status status = build_side(&making->outer, &params->mesh, &making->sides[0], err);
+    if (status != STATUS_OK && print_has_wall(params))
+        err_prefix(err, "with their walls, ");
+    TRY(status);
+    if (!print_has_wall(params))
+        return STATUS_OK;
+    status = build_side(making->tree, &params->mesh, &making->sides[1], err);
+    if (status != STATUS_OK)
+        err_prefix(err, "inside the walls, ");
+    return status;
+}
+
+static bool is_pin(const Pins *pins, const CutEnd *end)
+{
+    return end->segment >= pins->n_segments && pins->is_pin[end->segment - pins->n_segments];
+}
+
+/* Opens the ends of pins, and those that both sides are cut off flat at. */
+static void open_ends(Making *making)
+{
+    CutEnds *ends = &making->sides[0].ends;
+    for (size_t i = 0; i < ends->n; i++) {
+        CutEnd *end = &ends->items[i];
+        if (making->pins.n_pins)
+            end->opened = is_pin(&making->pins, end);
+        CutEnd *other = cutends_at(&making->sides[1].ends, end->segment, end->end);
+        if (other)
+            end->opened = other->opened = true;
+    }
+}
+
+/* Joins the sides where they are open. */
+static Status join_sides(Making *making, Err *err)
+{
+    const CutEnds *ends = &making->sides[0].ends;
+    for (size_t i = 0; i < ends->n; i++) {
+        const CutEnd *end = &ends->items[i];
+        const CutEnd *other = cutends_at(&making->sides[1].ends, end->segment, end->end);
+        if (!other)
+            continue;
+        TRY(solid_ring(&making->solid, end->end ? end->rim : other->rim,
+                       end->end ? other->rim : end->rim, end->n, end->segment | MESH_CAP, err));
+        seams_ring(&making->seams, end->segment, end->segment | MESH_LUMEN);
+        making->report.openings++;
+    }
+    return STATUS_OK;
+}
+
+static Status add_vessels(Making *making, Err *err)
+{
+    Side *outer = &making->sides[0], *lumen = &making->sides[1];
+    open_ends(making);
+    if (print_has_wall(&making->params)) {
+        for (uint32_t i = 0; i < making->tree->n_segments; i++)
+            seams_add(&making->seams, i | MESH_LUMEN);
+        TRY(solid_surface(&making->solid, &lumen->mesh, &lumen->ends, true, MESH_LUMEN, err));
+    }
+    TRY(solid_surface(&making->solid, &outer->mesh, &outer->ends, false, 0, err));
+    TRY(join_sides(making, err));
+    if (!making->params.base.is_there)
+        return STATUS_OK;
+    return pins_join(&making->solid, &making->casing, &outer->ends, &making->pins, &making->seams,
+                     err);
+}
+
+static Status add_all(Making *making, Err *err)
+{
+    Side *outer = &making->sides[0];
+    for (uint32_t i = 0; i < making->outer.n_segments; i++)
+        seams_add(&making->seams, i);
+    if (making->params.block.is_there)
+        return block_add(&making->solid, &making->outer, &outer->mesh, &outer->ends,
+                         &making->params.block, &making->casing, &making->seams,
+                         &making->report.openings, err);
+    return add_vessels(making, err);
+}
+
+/* Lists the segments with an end that nothing meets and that is not open. */
+static Status list_closed(Making *making, Err *err)
+{
+    PrintReport *report = &making->report;
+    const VesselTree *tree = making->tree;
+    NumberLists incident = {0};
+    Status status;
+    TRY_GOTO(vesseltree_incident(tree, &incident, err));
+    TRY_GOTO(
+        mem_calloc(&report->closed, 2 * tree->n_segments, sizeof *report->closed, "ends", err));
+    for (uint32_t i = 0; i < tree->n_segments; i++)
+        for (int end = 0; end < 2; end++) {
+            const uint32_t *first = &incident.first[tree->nodes[i][end]];
+            const CutEnd *at = cutends_at(&making->sides[0].ends, i, end);
+            if (first[1] - first[0] == 1 && !(at && at->opened))
+                report->closed[report->n_closed++] = i;
+        }
+done:
+    numberlists_release(&incident);
+    return status;
+}
+
+/* What was added to the tree is said of the segments that it was added to. */
+static void name_owners(Making *making, MeshReport *report)
+{
+    const Pins *pins = &making->pins;
+    VesselMesh *mesh = &making->solid.mesh;
+    uint32_t *const lists[] = {report->swallowed, report->slivers, report->round};
+    const size_t counts[] = {report->n_swallowed, report->n_slivers, report->n_round};
+    enum { LISTS = sizeof counts / sizeof *counts };
+    if (pins->n_added == 0)
+        return;
+    for (size_t i = 0; i < mesh->n_triangles; i++) {
+        uint32_t segment = mesh_segment(mesh, i);
+        bool is_own = segment < pins->n_segments || !pins->is_pin[segment - pins->n_segments];
+        mesh->labels[i] =
+            (mesh->labels[i] & MESH_FLAGS) | pins_owner(pins, segment) | (is_own ? 0 : MESH_FRAME);
+    }
+    for (int k = 0; k < LISTS; k++)
+        for (size_t i = 0; i < counts[k]; i++)
+            lists[k][i] = pins_owner(pins, lists[k][i]);
+    for (size_t i = 0; i < report->n_near; i++)
+        for (int k = 0; k < 2; k++)
+            report->near[i].segments[k] = pins_owner(pins, report->near[i].segments[k]);
+}
+
+/* The report of the solid: what is said of segments is what the outer side has. */
+static Status prove(Making *making, MeshReport *report, Err *err)
+{
+    Side *outer = &making->sides[0];
+    *report = outer->report;
+    outer->report = (MeshReport){0};
+    making->report.outer_mm3 = report->volume_mm3;
+    making->report.lumen_mm3 =
+        vesselmesh_volume(&making->sides[print_has_wall(&making->params)].mesh);
+    if (print_is_hollow(&making->params)) {
+        TRY(list_closed(making, err));
+        making->report.cavities =
+            seams_lone(&making->seams, print_has_wall(&making->params) ? MESH_LUMEN : 0);
+    }
+    if (print_has_wall(&making->params)) {
+        report->off.mm = fmax(report->off.mm, making->sides[1].report.off.mm);
+        report->off.ratio = fmax(report->off.ratio, making->sides[1].report.off.ratio);
+    }
+    making->report.rings = making->seams.n_rings;
+    TRY(seams_prove(&making->seams, &making->solid.mesh, making->solid.grid_mm,
+                    making->params.mesh.threads, report, err));
+    TRY(meshreport_check(report, &making->outer, err));
+    name_owners(making, report);
+    return STATUS_OK;
+}
+
+/* A disc about the middle of each opening of the lumen, with the outside of the lumen outside. */
+static Status add_lids(Making *making, Err *err)
+{
+    const CutEnds *ends = &making->sides[1].ends;
+    const PrintReport *report = &making->report;
+    if (report->n_closed)
+        return err_set(err, STATUS_INPUT,
+                       "the lumen of segment %u is not open at its end, because another vessel is "
+                       "in the way of its wall",
+                       making->tree->ids[report->closed[0]]);
+    for (size_t i = 0; i < ends->n; i++) {
+        const CutEnd *end = &ends->items[i];
+        const FieldSegment *segment = &making->tree->segments[end->segment];
+        Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a));
+        uint32_t middle;
+        TRY(solid_point(&making->solid, end->end ? segment->b : segment->a,
+                        vec3_scale(axis, end->end ? 1 : -1), &middle, err));
+        for (uint32_t k = 0; k < end->n; k++) {
+            uint32_t one = end->rim[k], next = end->rim[(k + 1) % end->n];
+            TRY(solid_triangle(&making->solid, middle, end->end ? one : next, end->end ? next : one,
+                               end->segment | MESH_CAP | MESH_LUMEN, err));
+        }
+    }
+    return STATUS_OK;
+}
+
+Status print_build(VesselTree *tree, const PrintParams *params, VesselMesh *mesh,
+                   MeshReport *report, PrintReport *print, Err *err)
+{
+    Making making = {.tree = tree, .params = *params};
+    MeshReport found = {0};
+    Status status;
+    TRY_GOTO(prepare(&making, err));
+    TRY_GOTO(lay_grid(&making, err));
+    TRY_GOTO(build_sides(&making, err));
+    TRY_GOTO(seams_make(&making.outer, &making.seams, err));
+    TRY_GOTO(add_all(&making, err));
+    TRY_GOTO(prove(&making, &found, err));
+    if (print_has_wall(params) && params->lids)
+        TRY_GOTO(add_lids(&making, err));
+    *mesh = making.solid.mesh;
+    *report = found;
+    *print = making.report;
+    making.solid.mesh = (VesselMesh){0};
+    making.report = (PrintReport){0};
+    found = (MeshReport){0};
+done:
+    meshreport_release(&found);
+    release_making(&making);
+    return status;
+}

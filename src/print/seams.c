@@ -1,0 +1,157 @@
+/* A ring takes a disc off either end of what it joins, and two discs' worth of the sum of Euler
+ * numbers with them. So a part of the solid, made of s spheres and r rings, has 2 (s - r); it must
+ * be connected in the mesh as it is in the graph. */
+#include "print/seams.h"
+
+#include "mesh/mesh.h"
+#include <stdlib.h>
+
+#define NONE UINT32_MAX
+
+void seams_release(Seams *seams)
+{
+    free(seams->trees);
+    free(seams->root);
+    free(seams->rings);
+    free(seams->is_there);
+    *seams = (Seams){0};
+}
+
+static uint32_t surface_count(const Seams *seams)
+{
+    return 2 * seams->n_nodes + 1;
+}
+
+static uint32_t root_of(uint32_t *root, uint32_t item)
+{
+    while (root[item] != item)
+        item = root[item] = root[root[item]];
+    return item;
+}
+
+Status seams_make(const VesselTree *tree, Seams *out, Err *err)
+{
+    Seams seams = {.n_nodes = (uint32_t)tree->n_nodes, .n_segments = tree->n_segments};
+    size_t n_trees, n = surface_count(&seams);
+    Status status;
+    TRY_GOTO(meshcheck_trees(tree, &seams.trees, &n_trees, err));
+    TRY_GOTO(mem_calloc(&seams.root, n, sizeof *seams.root, "trees", err));
+    TRY_GOTO(mem_calloc(&seams.rings, n, sizeof *seams.rings, "trees", err));
+    TRY_GOTO(mem_calloc(&seams.is_there, n, sizeof *seams.is_there, "trees", err));
+    for (uint32_t i = 0; i < n; i++)
+        seams.root[i] = i;
+    *out = seams;
+    return STATUS_OK;
+done:
+    seams_release(&seams);
+    return status;
+}
+
+uint32_t seams_surface(const Seams *seams, uint32_t label)
+{
+    if (label & MESH_FRAME)
+        return 2 * seams->n_nodes;
+    return seams->trees[label & ~MESH_FLAGS] + (label & MESH_LUMEN ? seams->n_nodes : 0);
+}
+
+void seams_add(Seams *seams, uint32_t label)
+{
+    seams->is_there[seams_surface(seams, label)] = true;
+}
+
+void seams_ring(Seams *seams, uint32_t label, uint32_t other)
+{
+    uint32_t a = root_of(seams->root, seams_surface(seams, label));
+    uint32_t b = root_of(seams->root, seams_surface(seams, other));
+    if (a != b)
+        seams->rings[a] += seams->rings[b];
+    seams->root[b] = a;
+    seams->rings[a]++;
+    seams->n_rings++;
+}
+
+size_t seams_lone(const Seams *seams, uint32_t kind)
+{
+    size_t n = 0;
+    uint32_t first = kind == MESH_LUMEN ? seams->n_nodes : 0;
+    for (uint32_t i = first; i < first + seams->n_nodes; i++)
+        n += seams->is_there[i] && seams->root[i] == i && seams->rings[i] == 0;
+    return n;
+}
+
+/* Euler numbers that the parts of the graph are to have, each at its root. */
+static void expect(const Seams *seams, long long *euler, MeshReport *report)
+{
+    long long sum = 0;
+    report->expected_components = 0;
+    for (uint32_t i = 0; i < surface_count(seams); i++) {
+        uint32_t root = root_of(seams->root, i);
+        if (!seams->is_there[i])
+            continue;
+        euler[root] += 2;
+        sum += 2;
+        if (root == i) {
+            report->expected_components++;
+            euler[root] -= 2 * (long long)seams->rings[root];
+            sum -= 2 * (long long)seams->rings[root];
+        }
+    }
+    report->expected_genus = (size_t)((2 * (long long)report->expected_components - sum) / 2);
+}
+
+/* Takes from euler[] what the parts of the mesh have: twice points less triangles, halved. Returns
+ * how many points have triangles of two parts. */
+static size_t take_found(const Seams *seams, const VesselMesh *mesh, uint32_t *part_of,
+                         long long *euler)
+{
+    size_t mixed = 0;
+    for (size_t i = 0; i < mesh->n_points; i++)
+        part_of[i] = NONE;
+    for (uint32_t i = 0; i < surface_count(seams); i++)
+        euler[i] *= 2;
+    for (size_t i = 0; i < mesh->n_triangles; i++) {
+        uint32_t part = root_of(seams->root, seams_surface(seams, mesh->labels[i]));
+        euler[part]++;
+        for (int k = 0; k < 3; k++) {
+            uint32_t *of = &part_of[mesh->triangles[i][k]];
+            mixed += *of != NONE && *of != part;
+            euler[part] -= *of == NONE ? 2 : 0;
+            *of = part;
+        }
+    }
+    return mixed;
+}
+
+/* Whether each part is what it is to be; after meshcheck_topology. */
+static Status check_parts(const Seams *seams, const VesselMesh *mesh, MeshReport *report, Err *err)
+{
+    long long *euler = NULL;
+    uint32_t *part_of = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&euler, surface_count(seams), sizeof *euler, "trees", err));
+    TRY_GOTO(mem_calloc(&part_of, mesh->n_points, sizeof *part_of, "points", err));
+    expect(seams, euler, report);
+    report->bridges = take_found(seams, mesh, part_of, euler);
+    for (uint32_t i = 0; i < surface_count(seams) && status == STATUS_OK; i++)
+        if (euler[i] != 0)
+            status = err_set(err, STATUS_DIFFERS,
+                             "the solid is not sound: a part of it has the Euler number %+lld off "
+                             "that of the surfaces it is made of; nothing is written",
+                             -euler[i] / 2);
+done:
+    free(euler);
+    free(part_of);
+    return status;
+}
+
+Status seams_prove(const Seams *seams, const VesselMesh *mesh, double grid_mm, int threads,
+                   MeshReport *report, Err *err)
+{
+    uint32_t *none;
+    TRY(mem_calloc(&none, seams->n_segments, sizeof *none, "segments", err));
+    Status status = meshcheck_topology(mesh, none, report, err);
+    free(none);
+    TRY(status);
+    TRY(meshcheck_crossings(mesh, grid_mm, threads, NULL, &report->crossings, err));
+    return check_parts(seams, mesh, report, err);
+}

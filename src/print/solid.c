@@ -1,0 +1,164 @@
+/* A cap of the mesher is a fan of triangles about a point that no other triangle has, so that
+ * leaving it out opens one rim, whose points keep their order by angle. Two surfaces of one tree
+ * whose segments differ in their radii alone have rims of as many points at the same angles. */
+#include "print/solid.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define NONE UINT32_MAX
+
+void cutends_release(CutEnds *ends)
+{
+    free(ends->items);
+    free(ends->rims);
+    *ends = (CutEnds){0};
+}
+
+/* The triangles of one cap from `first` on. */
+static uint32_t count_fan(const VesselMesh *mesh, size_t first)
+{
+    uint32_t n = 1, middle = mesh->triangles[first][0];
+    while (first + n < mesh->n_triangles && mesh_is_cap(mesh, first + n) &&
+           mesh->triangles[first + n][0] == middle)
+        n++;
+    return n;
+}
+
+Status cutends_find(const VesselMesh *mesh, CutEnds *out, Err *err)
+{
+    CutEnds ends = {0};
+    size_t capacity = 0, points = 0;
+    for (size_t i = 0; i < mesh->n_triangles;) {
+        if (!mesh_is_cap(mesh, i)) {
+            i++;
+            continue;
+        }
+        Status status = mem_reserve(&ends.items, &capacity, ends.n + 1, sizeof *ends.items,
+                                    "ends of vessels", err);
+        if (status != STATUS_OK) {
+            cutends_release(&ends);
+            return status;
+        }
+        uint32_t n = count_fan(mesh, i);
+        int end = mesh->triangles[i][2] == mesh->triangles[i + 1][1];
+        ends.items[ends.n++] =
+            (CutEnd){.segment = mesh_segment(mesh, i), .end = end, .first = (uint32_t)i, .n = n};
+        points += n;
+        i += n;
+    }
+    Status status = mem_calloc(&ends.rims, points, sizeof *ends.rims, "ends of vessels", err);
+    if (status != STATUS_OK) {
+        cutends_release(&ends);
+        return status;
+    }
+    uint32_t *rim = ends.rims;
+    for (size_t i = 0; i < ends.n; rim += ends.items[i++].n)
+        ends.items[i].rim = rim;
+    *out = ends;
+    return STATUS_OK;
+}
+
+CutEnd *cutends_at(const CutEnds *ends, uint32_t segment, int end)
+{
+    size_t low = 0, high = ends->n;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        const CutEnd *at = &ends->items[middle];
+        if (at->segment < segment || (at->segment == segment && at->end < end))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    CutEnd *found = low < ends->n ? &ends->items[low] : NULL;
+    return found && found->segment == segment && found->end == end ? found : NULL;
+}
+
+void solid_release(Solid *solid)
+{
+    vesselmesh_release(&solid->mesh);
+    *solid = (Solid){0};
+}
+
+Status solid_point(Solid *solid, Vec3 x, Vec3 normal, uint32_t *number, Err *err)
+{
+    VesselMesh *mesh = &solid->mesh;
+    size_t needed = mesh->n_points + 1;
+    TRY(mem_reserve(&mesh->points, &solid->point_capacity, needed, sizeof *mesh->points, "points",
+                    err));
+    TRY(mem_reserve(&mesh->normals, &solid->normal_capacity, needed, sizeof *mesh->normals,
+                    "points", err));
+    for (int axis = 0; axis < 3; axis++) {
+        double place = round(vec3_component(x, axis) / solid->grid_mm) * solid->grid_mm;
+        mesh->points[mesh->n_points][axis] = (float)place;
+        mesh->normals[mesh->n_points][axis] = (float)vec3_component(normal, axis);
+    }
+    *number = (uint32_t)mesh->n_points++;
+    return STATUS_OK;
+}
+
+Status solid_triangle(Solid *solid, uint32_t a, uint32_t b, uint32_t c, uint32_t label, Err *err)
+{
+    VesselMesh *mesh = &solid->mesh;
+    size_t needed = mesh->n_triangles + 1;
+    const uint32_t corners[3] = {a, b, c};
+    TRY(mem_reserve(&mesh->triangles, &solid->triangle_capacity, needed, sizeof *mesh->triangles,
+                    "triangles", err));
+    TRY(mem_reserve(&mesh->labels, &solid->label_capacity, needed, sizeof *mesh->labels,
+                    "triangles", err));
+    memcpy(mesh->triangles[mesh->n_triangles], corners, sizeof corners);
+    mesh->labels[mesh->n_triangles++] = label;
+    return STATUS_OK;
+}
+
+/* number[i] becomes the number in the solid of the mesh's i-th point, where it is not NONE. */
+static Status add_points(Solid *solid, const VesselMesh *mesh, bool turned, uint32_t *number,
+                         Err *err)
+{
+    for (size_t i = 0; i < mesh->n_points; i++) {
+        const float *own = mesh->normals[i];
+        Vec3 normal = vec3((double)own[0], (double)own[1], (double)own[2]);
+        if (number[i] != NONE)
+            TRY(solid_point(solid, mesh_point(mesh, (uint32_t)i),
+                            vec3_scale(normal, turned ? -1 : 1), &number[i], err));
+    }
+    return STATUS_OK;
+}
+
+Status solid_surface(Solid *solid, const VesselMesh *mesh, CutEnds *ends, bool turned,
+                     uint32_t flags, Err *err)
+{
+    uint32_t *number;
+    Status status;
+    TRY(mem_calloc(&number, mesh->n_points, sizeof *number, "points", err));
+    for (size_t e = 0; e < ends->n; e++)
+        if (ends->items[e].opened)
+            number[mesh->triangles[ends->items[e].first][0]] = NONE;
+    TRY_GOTO(add_points(solid, mesh, turned, number, err));
+    for (size_t i = 0; i < mesh->n_triangles; i++) {
+        const uint32_t *at = mesh->triangles[i];
+        uint32_t label = mesh->labels[i] | flags;
+        if (number[at[0]] != NONE)
+            TRY_GOTO(solid_triangle(solid, number[at[0]], number[at[turned ? 2 : 1]],
+                                    number[at[turned ? 1 : 2]], label, err));
+    }
+    for (size_t e = 0; e < ends->n; e++)
+        for (uint32_t i = 0; i < ends->items[e].n; i++) {
+            const CutEnd *end = &ends->items[e];
+            end->rim[i] = number[mesh->triangles[end->first + i][end->end ? 1 : 2]];
+        }
+done:
+    free(number);
+    return status;
+}
+
+Status solid_ring(Solid *solid, const uint32_t *ring, const uint32_t *next, uint32_t n,
+                  uint32_t label, Err *err)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t k = (i + 1) % n;
+        TRY(solid_triangle(solid, ring[i], ring[k], next[k], label, err));
+        TRY(solid_triangle(solid, ring[i], next[k], next[i], label, err));
+    }
+    return STATUS_OK;
+}

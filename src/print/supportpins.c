@@ -1,0 +1,358 @@
+/* A pin is a vessel more, so that it blends with what it holds; it is upright, so that it is cut
+ * off flat in the plane of the plate, whose face has a hole there. */
+#include "print/supportpins.h"
+
+#include "mesh/mesh.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Over the radius of the vessel: that of its pin; what is left free about pins; how far a pin
+ * begins from an open end. Over the thickest pin: how high the lowest vessel stands. */
+static const double pin_part = 0.8, free_part = 0.4, from_end = 3, lift_part = 3.5;
+/* How high the lowest vessel stands at the least, and how far the plate reaches beyond, mm. */
+static const double least_lift_mm = 2, edge_mm = 2;
+/* Over the way to it: how much higher than an open end a pin may begin. */
+static const double most_rise = 0.5;
+/* Over the radius: what is no lower than a node. */
+static const double level_part = 0.25;
+
+/* A place that a pin is to begin at. */
+typedef struct Foot {
+    uint32_t node, segment; /* one that ended there before any was cut */
+    Vec3 at;
+    double radius_mm;
+} Foot;
+
+typedef struct Standing {
+    VesselTree *tree;
+    const PrintBase *base;
+    BoxTree boxes;         /* of the tree as it was; owned */
+    NumberLists incident;  /* likewise ... */
+    size_t incident_nodes; /* ... which had so many nodes */
+    Foot *feet;
+    size_t n_feet, foot_capacity;
+    size_t segment_capacity[3], owner_capacity, pin_capacity;
+    Pins pins;
+    Err *err;
+} Standing;
+
+void pins_release(Pins *pins)
+{
+    free(pins->owner);
+    free(pins->is_pin);
+    *pins = (Pins){0};
+}
+
+static Vec3 place_of(const VesselTree *tree, uint32_t segment, int end)
+{
+    return end ? tree->segments[segment].b : tree->segments[segment].a;
+}
+
+/* Whether a node is lower than all that leads away from it. */
+static bool is_lowest(const Standing *standing, uint32_t node, Foot *foot)
+{
+    const VesselTree *tree = standing->tree;
+    const uint32_t *first = &standing->incident.first[node];
+    *foot = (Foot){.node = node};
+    for (uint32_t i = first[0]; i < first[1]; i++) {
+        uint32_t segment = standing->incident.items[i];
+        int end = segment_end_at(tree, segment, node);
+        double radius = tree->segments[segment].radius_mm;
+        double rise = place_of(tree, segment, !end).z - place_of(tree, segment, end).z;
+        if (rise < -level_part * radius)
+            return false;
+        if (radius > foot->radius_mm)
+            *foot = (Foot){node, segment, place_of(tree, segment, end), radius};
+    }
+    return first[1] > first[0];
+}
+
+static Status find_feet(Standing *standing)
+{
+    for (uint32_t node = 0; node < standing->tree->n_nodes; node++) {
+        Foot foot;
+        if (!is_lowest(standing, node, &foot))
+            continue;
+        foot.radius_mm = fmax(pin_part * foot.radius_mm, standing->base->least_radius_mm);
+        TRY(mem_reserve(&standing->feet, &standing->foot_capacity, standing->n_feet + 1,
+                        sizeof *standing->feet, "pins", standing->err));
+        standing->feet[standing->n_feet++] = foot;
+    }
+    return STATUS_OK;
+}
+
+static double top_of(const Standing *standing)
+{
+    const VesselTree *tree = standing->tree;
+    double low = HUGE_VAL, thick = 0;
+    for (size_t i = 0; i < tree->n_segments; i++) {
+        const FieldSegment *segment = &tree->segments[i];
+        low = fmin(low, fmin(segment->a.z, segment->b.z) - segment->radius_mm);
+    }
+    for (size_t i = 0; i < standing->n_feet; i++)
+        thick = fmax(thick, standing->feet[i].radius_mm);
+    return low - fmax(least_lift_mm, lift_part * thick);
+}
+
+static Status add_segment(Standing *standing, FieldSegment segment, uint32_t from, uint32_t to,
+                          uint32_t owner, bool is_pin)
+{
+    VesselTree *tree = standing->tree;
+    Pins *pins = &standing->pins;
+    size_t n = tree->n_segments + 1, *capacity = standing->segment_capacity;
+    TRY(mem_reserve(&tree->segments, &capacity[0], n, sizeof *tree->segments, "pins",
+                    standing->err));
+    TRY(mem_reserve(&tree->nodes, &capacity[1], n, sizeof *tree->nodes, "pins", standing->err));
+    TRY(mem_reserve(&tree->ids, &capacity[2], n, sizeof *tree->ids, "pins", standing->err));
+    TRY(mem_reserve(&pins->owner, &standing->owner_capacity, pins->n_added + 1, sizeof *pins->owner,
+                    "pins", standing->err));
+    TRY(mem_reserve(&pins->is_pin, &standing->pin_capacity, pins->n_added + 1, sizeof *pins->is_pin,
+                    "pins", standing->err));
+    segment.segment = tree->segments[owner].segment;
+    tree->segments[n - 1] = segment;
+    tree->nodes[n - 1][0] = from;
+    tree->nodes[n - 1][1] = to;
+    tree->ids[n - 1] = tree->ids[owner];
+    tree->n_segments = n;
+    pins->owner[pins->n_added] = owner;
+    pins->is_pin[pins->n_added++] = is_pin;
+    return STATUS_OK;
+}
+
+/* Whether a pin keeps off a vessel, unless that ends where the pin begins. */
+static bool is_off(const Standing *standing, const FieldSegment *pin, uint32_t node, size_t i)
+{
+    const VesselTree *tree = standing->tree;
+    const FieldSegment *other = &tree->segments[i];
+    double gap = segments_distance(pin, other) - pin->radius_mm - other->radius_mm;
+    return tree->nodes[i][0] == node || tree->nodes[i][1] == node ||
+           gap >= free_part * fmin(pin->radius_mm, other->radius_mm);
+}
+
+/* Whether a pin keeps off all that does not end where it begins. Vessels of the tree are found by
+ * their boxes as they were before any was cut, which only made them shorter. */
+static bool is_free(const Standing *standing, const FieldSegment *pin, uint32_t node)
+{
+    const VesselTree *tree = standing->tree;
+    Box around = segment_box(pin, (1 + free_part) * pin->radius_mm);
+    uint32_t number;
+    for (BoxWalk walk = boxwalk_box(&standing->boxes, around); boxwalk_next(&walk, &number);)
+        if (!is_off(standing, pin, node, number))
+            return false;
+    for (size_t i = standing->pins.n_segments; i < tree->n_segments; i++) {
+        const FieldSegment *added = &tree->segments[i];
+        if (box_meets(around, segment_box(added, added->radius_mm)) &&
+            !is_off(standing, pin, node, i))
+            return false;
+    }
+    return true;
+}
+
+/* A place on a vessel. */
+typedef struct Spot {
+    uint32_t segment;
+    int end; /* of the segment, from which it is so far */
+    double mm;
+} Spot;
+
+/* Goes from an open end so far along the vessel. False where it ends or branches before. */
+static bool walk_from(const Standing *standing, const Foot *foot, double mm, Spot *spot)
+{
+    const VesselTree *tree = standing->tree;
+    uint32_t node = foot->node, segment = foot->segment;
+    for (;;) {
+        if (tree->nodes[segment][0] != node && tree->nodes[segment][1] != node)
+            return false; /* it was cut in two */
+        int end = segment_end_at(tree, segment, node);
+        double length = vec3_distance(tree->segments[segment].a, tree->segments[segment].b);
+        *spot = (Spot){segment, end, fmin(mm, length)};
+        if (mm <= length)
+            return true;
+        mm -= length;
+        node = tree->nodes[segment][!end];
+        const uint32_t *first =
+            node < standing->incident_nodes ? &standing->incident.first[node] : NULL;
+        if (!first || first[1] - first[0] != 2)
+            return false;
+        segment =
+            standing->incident.items[first[0] + (standing->incident.items[first[0]] == segment)];
+    }
+}
+
+/* Cuts a vessel in two; what lies towards the end keeps its number. */
+static Status cut_at(Standing *standing, const Spot *spot, uint32_t *node)
+{
+    VesselTree *tree = standing->tree;
+    FieldSegment own = tree->segments[spot->segment], rest = own;
+    Vec3 from = place_of(tree, spot->segment, spot->end);
+    Vec3 to = place_of(tree, spot->segment, !spot->end);
+    Vec3 at = vec3_add_scaled(from, vec3_normalized(vec3_sub(to, from)), spot->mm);
+    uint32_t ends[2] = {tree->nodes[spot->segment][0], tree->nodes[spot->segment][1]};
+    *node = (uint32_t)tree->n_nodes++;
+    *(spot->end ? &rest.b : &rest.a) = at;
+    *(spot->end ? &own.a : &own.b) = at;
+    ends[spot->end] = *node;
+    TRY(add_segment(standing, rest, ends[0], ends[1], pins_owner(&standing->pins, spot->segment),
+                    false));
+    tree->segments[spot->segment] = own;
+    tree->nodes[spot->segment][!spot->end] = *node;
+    return STATUS_OK;
+}
+
+/* Moves a foot from an open end to a place beside it. False when there is none, or when the end
+ * would be much lower. */
+static Status move_foot(Standing *standing, Foot *foot, bool *done)
+{
+    VesselTree *tree = standing->tree;
+    double radius = tree->segments[foot->segment].radius_mm, off = from_end * radius;
+    Vec3 end = foot->at;
+    Spot spot;
+    *done = walk_from(standing, foot, off, &spot);
+    if (!*done)
+        return STATUS_OK;
+    Vec3 from = place_of(tree, spot.segment, spot.end);
+    Vec3 to = place_of(tree, spot.segment, !spot.end);
+    double left = vec3_distance(from, to) - spot.mm;
+    double rise = from.z + (to.z - from.z) * spot.mm / (spot.mm + left) - end.z;
+    *done = rise <= most_rise * off;
+    foot->segment = spot.segment;
+    foot->node = tree->nodes[spot.segment][!spot.end];
+    foot->at =
+        left > radius ? vec3_add_scaled(from, vec3_normalized(vec3_sub(to, from)), spot.mm) : to;
+    return *done && left > radius ? cut_at(standing, &spot, &foot->node) : STATUS_OK;
+}
+
+static Status add_pin(Standing *standing, Foot foot, bool open_ends)
+{
+    VesselTree *tree = standing->tree;
+    const uint32_t *first = &standing->incident.first[foot.node];
+    bool has_room = true;
+    if (open_ends && first[1] - first[0] == 1)
+        TRY(move_foot(standing, &foot, &has_room));
+    const FieldSegment pin = {.a = foot.at,
+                              .b = vec3(foot.at.x, foot.at.y, standing->pins.top_mm),
+                              .radius_mm = foot.radius_mm};
+    if (!has_room || !is_free(standing, &pin, foot.node)) {
+        standing->pins.n_hanging++;
+        return STATUS_OK;
+    }
+    standing->pins.n_pins++;
+    return add_segment(standing, pin, foot.node, (uint32_t)tree->n_nodes++,
+                       pins_owner(&standing->pins, foot.segment), true);
+}
+
+/* Whether a pin is not cut off flat at the plate, or overlaps a vessel. */
+static bool is_spoilt(const Standing *standing, const Zones *zones, uint32_t segment)
+{
+    for (size_t i = 0; i < zones->n_overlapping; i++)
+        if (zones->strangers[i].segments[0] == segment ||
+            zones->strangers[i].segments[1] == segment)
+            return true;
+    return zones->zone[standing->tree->nodes[segment][1]] != NO_ZONE;
+}
+
+/* Takes away what is spoilt, and tells how many pins that were. */
+static size_t take_spoilt(Standing *standing, const Zones *zones)
+{
+    VesselTree *tree = standing->tree;
+    Pins *pins = &standing->pins;
+    size_t kept = 0, n = pins->n_added;
+    for (size_t i = 0; i < n; i++) {
+        size_t from = pins->n_segments + i, to = pins->n_segments + kept;
+        if (pins->is_pin[i] && is_spoilt(standing, zones, (uint32_t)from))
+            continue;
+        tree->segments[to] = tree->segments[from];
+        tree->nodes[to][0] = tree->nodes[from][0];
+        tree->nodes[to][1] = tree->nodes[from][1];
+        tree->ids[to] = tree->ids[from];
+        pins->owner[kept] = pins->owner[i];
+        pins->is_pin[kept++] = pins->is_pin[i];
+    }
+    pins->n_added = kept;
+    pins->n_pins -= n - kept;
+    pins->n_hanging += n - kept;
+    tree->n_segments = pins->n_segments + kept;
+    return n - kept;
+}
+
+/* Leaves the pins that are cut off flat. */
+static Status keep_flat(Standing *standing, const MeshParams *params)
+{
+    bool done = false;
+    while (!done) {
+        NumberLists incident = {0}, blending = {0};
+        Zones zones = {0};
+        Status status;
+        Err *err = standing->err;
+        TRY_GOTO(vesseltree_incident(standing->tree, &incident, err));
+        TRY_GOTO(vesseltree_blending(standing->tree, &incident, &blending, err));
+        TRY_GOTO(zones_find(standing->tree, &incident, &blending, params, &zones, err));
+        done = take_spoilt(standing, &zones) == 0;
+    done:
+        numberlists_release(&incident);
+        numberlists_release(&blending);
+        zones_release(&zones);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, const MeshParams *params,
+                Pins *out, Err *err)
+{
+    size_t n = tree->n_segments;
+    Standing standing = {.tree = tree,
+                         .base = base,
+                         .segment_capacity = {n, n, n},
+                         .incident_nodes = tree->n_nodes,
+                         .pins.n_segments = n,
+                         .err = err};
+    Status status;
+    TRY_GOTO(segments_boxtree(tree, &standing.boxes, err));
+    TRY_GOTO(vesseltree_incident(tree, &standing.incident, err));
+    TRY_GOTO(find_feet(&standing));
+    standing.pins.top_mm = top_of(&standing);
+    for (size_t i = 0; i < standing.n_feet; i++)
+        TRY_GOTO(add_pin(&standing, standing.feet[i], open_ends));
+    TRY_GOTO(keep_flat(&standing, params));
+    *out = standing.pins;
+    standing.pins = (Pins){0};
+done:
+    boxtree_release(&standing.boxes);
+    numberlists_release(&standing.incident);
+    free(standing.feet);
+    pins_release(&standing.pins);
+    return status;
+}
+
+Casing pins_plate(const VesselTree *tree, const PrintBase *base, const Pins *pins)
+{
+    Box box = box_empty();
+    for (size_t i = 0; i < tree->n_segments; i++) {
+        const FieldSegment *segment = &tree->segments[i];
+        box = box_with_ball(box, segment->a, segment->radius_mm + edge_mm);
+        box = box_with_ball(box, segment->b, segment->radius_mm + edge_mm);
+    }
+    box.high.z = pins->top_mm;
+    box.low.z = pins->top_mm - base->thickness_mm;
+    return (Casing){.box = box};
+}
+
+Status pins_join(Solid *solid, const Casing *plate, const CutEnds *ends, const Pins *pins,
+                 Seams *seams, Err *err)
+{
+    CasingHole *holes;
+    size_t n = 0;
+    TRY(mem_calloc(&holes, pins->n_pins, sizeof *holes, "pins", err));
+    seams_add(seams, MESH_FRAME);
+    for (size_t i = 0; i < ends->n; i++) {
+        const CutEnd *end = &ends->items[i];
+        if (end->segment < pins->n_segments || !pins->is_pin[end->segment - pins->n_segments])
+            continue;
+        holes[n++] = (CasingHole){5, false, end->rim, end->n};
+        seams_ring(seams, end->segment, MESH_FRAME);
+    }
+    Status status = casing_add(solid, plate, holes, n, err);
+    free(holes);
+    return status;
+}
