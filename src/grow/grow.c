@@ -169,7 +169,7 @@ static void set_toss_distance(Growth *growth, double distance)
 /* The map that says how densely terminals are to stand; NULL: evenly. */
 static const Demand *density(const GrowParams *params)
 {
-    return params->terminal_flow == TERMINAL_FLOW_DEMAND ? NULL : params->demand;
+    return params->blood.terminal_flow == TERMINAL_FLOW_DEMAND ? NULL : params->demand;
 }
 
 /* Draws a point where blood is asked for. A map asks for 1e-4 of its maximum in the mean
@@ -368,13 +368,14 @@ static Status start(Growth *growth, Err *err)
     inlets = inlets > 0 ? inlets : 1;
     TRY(round_init(&growth->round, params->candidates, inlets, threads, err));
 
-    double drop = pa_from_mmhg(params->p_perf_mmhg) - pa_from_mmhg(params->p_term_mmhg);
+    double drop = pa_from_mmhg(params->blood.p_perf_mmhg) - pa_from_mmhg(params->blood.p_term_mmhg);
     double scale = law_radius_unit(weights_reference_pa_s(params),
-                                   mm3_s_from_ml_min(params->q_perf_ml_min), drop);
+                                   mm3_s_from_ml_min(params->blood.q_perf_ml_min), drop);
     bool traits = params->from || params->inlets > 1 || weights_are_needed(params);
     size_t given = params->from ? params->from->n : 0;
-    TRY(network_init(&growth->site.net, (Law){params->gamma.value[0], params->lambda}, scale,
-                     given + 2 * params->terminals, inlets, traits, err));
+    const NetworkSize size = {given + 2 * params->terminals, inlets, traits};
+    TRY(network_init(&growth->site.net, (Law){params->gamma.value[0], params->lambda}, scale, size,
+                     err));
     if (params->keep_radii)
         TRY(network_add_trunk(&growth->site.net, err));
     if (params->from)

@@ -26,24 +26,23 @@ enum { LEVELS = 8 };
 /* A subtree that one thread refreshes has less than 1 / SUBTREES of the terminals. */
 enum { SUBTREES = 128 };
 
-Status network_init(Network *net, Law law, double radius_scale, size_t capacity, size_t inlets,
-                    bool traits, Err *err)
+Status network_init(Network *net, Law law, double radius_scale, NetworkSize size, Err *err)
 {
-    Network made = {
-        .law = law, .radius_scale = radius_scale, .capacity = capacity, .fresh_weight = 1};
-    Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&made.segment, capacity, sizeof *made.segment, "segments", err));
-    TRY_GOTO(mem_calloc(&made.sensitivity, capacity, sizeof *made.sensitivity, "segments", err));
-    if (traits)
-        TRY_GOTO(mem_calloc(&made.trait, capacity, sizeof *made.trait, "segments", err));
-    TRY_GOTO(mem_calloc(&made.position, capacity, sizeof *made.position, "positions", err));
-    TRY_GOTO(mem_calloc(&made.spare, capacity, sizeof *made.spare, "segments", err));
-    TRY_GOTO(mem_calloc(&made.tops, capacity, sizeof *made.tops, "segments", err));
-    TRY_GOTO(mem_calloc(&made.inlet, inlets, sizeof *made.inlet, "inlets", err));
+    size_t n = size.capacity;
+    Network made = {.law = law, .radius_scale = radius_scale, .capacity = n, .fresh_weight = 1};
+    Status status;
+    TRY_GOTO(mem_calloc(&made.segment, n, sizeof *made.segment, "segments", err));
+    TRY_GOTO(mem_calloc(&made.sensitivity, n, sizeof *made.sensitivity, "segments", err));
+    if (size.has_traits)
+        TRY_GOTO(mem_calloc(&made.trait, n, sizeof *made.trait, "segments", err));
+    TRY_GOTO(mem_calloc(&made.position, n, sizeof *made.position, "positions", err));
+    TRY_GOTO(mem_calloc(&made.spare, n, sizeof *made.spare, "segments", err));
+    TRY_GOTO(mem_calloc(&made.tops, n, sizeof *made.tops, "segments", err));
+    TRY_GOTO(mem_calloc(&made.inlet, size.inlets, sizeof *made.inlet, "inlets", err));
     *net = made;
+    return STATUS_OK;
 done:
-    if (status != STATUS_OK)
-        network_release(&made);
+    network_release(&made);
     return status;
 }
 

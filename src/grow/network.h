@@ -79,10 +79,15 @@ typedef struct Network {
     int32_t *tops; /* workspace of network_refresh */
 } Network;
 
-/* Makes an empty network with room for `capacity` nodes, `inlets` of them inlets; `traits`: whether
- * segments have a Trait. *net is owned by the caller; STATUS_MEMORY. */
-MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, size_t capacity,
-                               size_t inlets, bool traits, Err *err);
+typedef struct NetworkSize {
+    size_t capacity; /* maximum number of nodes */
+    size_t inlets;   /* maximum number of nodes that are inlets */
+    bool has_traits; /* segments have a Trait */
+} NetworkSize;
+
+/* Makes an empty network. Release it with network_release. Errors: STATUS_MEMORY. */
+MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, NetworkSize size,
+                               Err *err);
 void network_release(Network *net);
 /* Has segments keep radii, which the caller then sets: all are 0. STATUS_MEMORY. */
 MUST_CHECK Status network_add_trunk(Network *net, Err *err);

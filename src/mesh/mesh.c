@@ -271,9 +271,10 @@ static Status make_mesh(MeshBuild *build, VesselMesh *mesh, MeshReport *report, 
         report->off.mm = fmax(report->off.mm, build->meshes[z].off.mm);
         report->off.ratio = fmax(report->off.ratio, build->meshes[z].off.ratio);
     }
-    return assemble_mesh(build->tree, &build->junctions, build->meshes,
-                         sides_of(cap_part * report->tolerance), params->tube_edge,
-                         build->fineness.grid_mm, mesh, &report->off, err);
+    const TubeParams tubes = {sides_of(cap_part * report->tolerance), params->tube_edge,
+                              build->fineness.grid_mm};
+    return assemble_mesh(build->tree, &build->junctions, build->meshes, &tubes, mesh, &report->off,
+                         err);
 }
 
 /* Has the junctions made finer that triangles which cross lie in, of tubes those at both ends;

@@ -168,12 +168,12 @@ Status move_bifurcation(LocalSearch *search, int32_t i, Err *err)
     return STATUS_OK;
 }
 
-typedef struct Candidate {
+typedef struct MoveCandidate {
     int32_t host;
     double price; /* of connecting there, by the marginals */
     Bifurcation problem;
     BifurcationState state;
-} Candidate;
+} MoveCandidate;
 
 /* The marginal of a segment: the stored one where the present move has changed nothing beside it.
  */
@@ -186,7 +186,7 @@ static Marginal marginal_of(const Arbor *arbor, int32_t i)
 }
 
 /* Prices the connection of `subtree`, which is pruned, to `host`. */
-static bool price(const LocalSearch *search, int32_t subtree, int32_t host, Candidate *out)
+static bool price(const LocalSearch *search, int32_t subtree, int32_t host, MoveCandidate *out)
 {
     const Arbor *arbor = &search->arbor;
     const Shape *shape = &arbor->shape[host];
@@ -207,7 +207,7 @@ static bool price(const LocalSearch *search, int32_t subtree, int32_t host, Cand
 
 typedef struct Candidates {
     int count;
-    Candidate list[CANDIDATES]; /* the first is where the subtree came from */
+    MoveCandidate list[CANDIDATES]; /* the first is where the subtree came from */
 } Candidates;
 
 static void propose(const LocalSearch *search, int32_t subtree, int32_t host, Candidates *out)
@@ -245,7 +245,8 @@ static void find_candidates(LocalSearch *search, int32_t subtree, int32_t origin
             propose(search, subtree, near[k].segment, out);
 }
 
-static int choose(LocalSearch *search, const Candidate *candidate, int count, double temperature)
+static int choose(LocalSearch *search, const MoveCandidate *candidate, int count,
+                  double temperature)
 {
     int best = 0;
     for (int k = 1; k < count; k++)
@@ -272,7 +273,7 @@ static double tolerance(LocalSearch *search, double temperature)
 
 /* Connects `subtree`, which is pruned, as the candidate says, if S_root and penalties are then
  * below `limit`. If not, the move is to be undone. */
-static bool connect(LocalSearch *search, int32_t subtree, Candidate *to, double limit)
+static bool connect(LocalSearch *search, int32_t subtree, MoveCandidate *to, double limit)
 {
     Arbor *arbor = &search->arbor;
     const Law law = arbor_law(arbor, to->host);
@@ -294,7 +295,7 @@ Status move_subtree(LocalSearch *search, int32_t i, double temperature, Err *err
     const int32_t here[] = {i, fork, origin};
     double cost = arbor_cost(arbor);
     Candidates candidates;
-    Candidate *candidate = candidates.list;
+    MoveCandidate *candidate = candidates.list;
     arbor_begin(arbor);
     double due = penalty(search, here, 3);
     arbor_prune(arbor, i);
