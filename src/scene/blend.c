@@ -8,35 +8,21 @@
 
 #include <stdlib.h>
 
-/* The lists of the numbers below n_items: in which of the n lists each is. */
-static Status turn_over(const NumberLists *lists, size_t n, size_t n_items, NumberLists *out,
-                        Err *err)
+/* Lists, for each item below n_items, the lists that hold the item. */
+static Status turn_over(const IndexLists *lists, size_t n_items, IndexLists *out, Err *err)
 {
-    NumberLists turned = {0};
-    Status status;
-    TRY_GOTO(mem_calloc(&turned.first, n_items + 2, sizeof *turned.first, "groups", err));
-    TRY_GOTO(mem_calloc(&turned.items, lists->first[n], sizeof *turned.items, "groups", err));
-    for (uint32_t i = 0; i < lists->first[n]; i++)
-        turned.first[lists->items[i] + 2]++;
-    for (size_t i = 2; i <= n_items; i++)
-        turned.first[i] += turned.first[i - 1];
-    for (uint32_t list = 0; list < n; list++)
+    TRY(indexlists_begin(out, n_items, "groups", err));
+    for (uint32_t i = 0; i < lists->first[lists->n]; i++)
+        indexlists_count(out, lists->items[i]);
+    TRY(indexlists_allot(out, "groups", err));
+    for (uint32_t list = 0; list < lists->n; list++)
         for (uint32_t i = lists->first[list]; i < lists->first[list + 1]; i++)
-            turned.items[turned.first[lists->items[i] + 1]++] = list;
-    *out = turned;
+            indexlists_put(out, lists->items[i], list);
     return STATUS_OK;
-done:
-    numberlists_release(&turned);
-    return status;
-}
-
-static uint32_t length_of(const NumberLists *lists, uint32_t i)
-{
-    return lists->first[i + 1] - lists->first[i];
 }
 
 /* Whether list b holds all of list a, which is not empty. */
-static bool is_part(const NumberLists *lists, uint32_t a, uint32_t b)
+static bool is_part(const IndexLists *lists, uint32_t a, uint32_t b)
 {
     const uint32_t *of_a = lists->items + lists->first[a],
                    *end_a = lists->items + lists->first[a + 1];
@@ -55,11 +41,11 @@ static bool is_part(const NumberLists *lists, uint32_t a, uint32_t b)
 
 /* Whether the list is empty, part of another, or the same as an earlier one; `holders` are the
  * lists that hold each number. */
-static bool is_idle(const NumberLists *lists, const NumberLists *holders, uint32_t self)
+static bool is_idle(const IndexLists *lists, const IndexLists *holders, uint32_t self)
 {
     uint32_t rarest = 0, fewest = UINT32_MAX;
     for (uint32_t i = lists->first[self]; i < lists->first[self + 1]; i++) {
-        uint32_t count = length_of(holders, lists->items[i]);
+        uint32_t count = indexlists_length(holders, lists->items[i]);
         rarest = count < fewest ? lists->items[i] : rarest;
         fewest = count < fewest ? count : fewest;
     }
@@ -67,67 +53,66 @@ static bool is_idle(const NumberLists *lists, const NumberLists *holders, uint32
         return true;
     for (uint32_t i = holders->first[rarest]; i < holders->first[rarest + 1]; i++) {
         uint32_t other = holders->items[i];
-        bool larger = length_of(lists, other) > length_of(lists, self);
+        bool larger = indexlists_length(lists, other) > indexlists_length(lists, self);
         if ((larger || other < self) && is_part(lists, self, other))
             return true;
     }
     return false;
 }
 
-/* The lists that are not idle, in *out, and how many. */
-static Status keep_busy(const NumberLists *lists, const NumberLists *holders, size_t n,
-                        NumberLists *out, size_t *n_out, Err *err)
+/* Keeps the lists that are not idle. */
+static Status keep_busy(const IndexLists *lists, const IndexLists *holders, IndexLists *kept,
+                        Err *err)
 {
-    NumberLists kept = {0};
-    size_t count = 0;
+    uint32_t *busy = NULL;
+    size_t n = 0;
     Status status;
-    TRY_GOTO(mem_calloc(&kept.first, n + 1, sizeof *kept.first, "groups", err));
-    TRY_GOTO(mem_calloc(&kept.items, lists->first[n], sizeof *kept.items, "groups", err));
-    for (uint32_t i = 0; i < n; i++) {
-        if (is_idle(lists, holders, i))
-            continue;
-        kept.first[count + 1] = kept.first[count];
-        count++;
-        for (uint32_t k = lists->first[i]; k < lists->first[i + 1]; k++)
-            kept.items[kept.first[count]++] = lists->items[k];
-    }
-    *out = kept;
-    *n_out = count;
-    return STATUS_OK;
+    TRY_GOTO(mem_calloc(&busy, lists->n, sizeof *busy, "groups", err));
+    for (uint32_t i = 0; i < lists->n; i++)
+        if (!is_idle(lists, holders, i))
+            busy[n++] = i;
+    TRY_GOTO(indexlists_begin(kept, n, "groups", err));
+    for (size_t i = 0; i < n; i++)
+        kept->first[i + 2] = indexlists_length(lists, busy[i]);
+    TRY_GOTO(indexlists_allot(kept, "groups", err));
+    for (size_t i = 0; i < n; i++)
+        for (uint32_t k = lists->first[busy[i]]; k < lists->first[busy[i] + 1]; k++)
+            indexlists_put(kept, i, lists->items[k]);
 done:
-    numberlists_release(&kept);
+    free(busy);
     return status;
 }
 
 Status vesseltree_blend(const VesselTree *tree, Blend *out, Err *err)
 {
-    NumberLists incident = {0}, blending = {0}, nodes = {0};
+    IndexLists incident = {0}, blending = {0}, nodes = {0};
     Blend blend = {0};
     Status status;
     TRY_GOTO(vesseltree_incident(tree, &incident, err));
     TRY_GOTO(vesseltree_blending(tree, &incident, &blending, err));
-    TRY_GOTO(turn_over(&blending, tree->n_nodes, tree->n_segments, &nodes, err));
-    TRY_GOTO(keep_busy(&blending, &nodes, tree->n_nodes, &blend.members, &blend.n_groups, err));
-    TRY_GOTO(turn_over(&blend.members, blend.n_groups, tree->n_segments, &blend.groups, err));
+    TRY_GOTO(turn_over(&blending, tree->n_segments, &nodes, err));
+    TRY_GOTO(keep_busy(&blending, &nodes, &blend.members, err));
+    TRY_GOTO(turn_over(&blend.members, tree->n_segments, &blend.groups, err));
+    blend.n_groups = blend.members.n;
     *out = blend;
     blend = (Blend){0};
 done:
-    numberlists_release(&incident);
-    numberlists_release(&blending);
-    numberlists_release(&nodes);
-    numberlists_release(&blend.members);
-    numberlists_release(&blend.groups);
+    indexlists_release(&incident);
+    indexlists_release(&blending);
+    indexlists_release(&nodes);
+    indexlists_release(&blend.members);
+    indexlists_release(&blend.groups);
     return status;
 }
 
 /* Appends those members of a group that are among `indices`, unless the first of them is not
  * number `i`: then the group is listed elsewhere. */
-static bool add_members(const NumberLists *members, uint32_t group, const uint32_t *indices,
+static bool add_members(const IndexLists *members, uint32_t group, const uint32_t *indices,
                         size_t n, size_t i, uint32_t *items, size_t *n_items)
 {
     size_t end = *n_items;
     for (uint32_t k = members->first[group]; k < members->first[group + 1]; k++) {
-        size_t place = numbers_place(indices, n, members->items[k]);
+        size_t place = sorted_find(indices, n, members->items[k]);
         if (place < n)
             items[end++] = (uint32_t)place;
     }
@@ -141,13 +126,13 @@ static bool add_members(const NumberLists *members, uint32_t group, const uint32
 static Status part_members(const Blend *whole, const uint32_t *indices, size_t n, Blend *part,
                            Err *err)
 {
-    const NumberLists *groups = &whole->groups, *members = &whole->members;
+    const IndexLists *groups = &whole->groups, *members = &whole->members;
     size_t most = 0, n_items = 0;
     uint32_t longest = 0;
     for (size_t i = 0; i < n; i++)
-        most += length_of(groups, indices[i]);
+        most += indexlists_length(groups, indices[i]);
     for (uint32_t g = 0; g < whole->n_groups; g++)
-        longest = length_of(members, g) > longest ? length_of(members, g) : longest;
+        longest = indexlists_length(members, g) > longest ? indexlists_length(members, g) : longest;
     TRY(mem_calloc(&part->members.first, most + 1, sizeof *part->members.first, "groups", err));
     TRY(mem_calloc(&part->members.items, most + longest, sizeof *part->members.items, "groups",
                    err));
@@ -156,6 +141,7 @@ static Status part_members(const Blend *whole, const uint32_t *indices, size_t n
             if (add_members(members, groups->items[k], indices, n, i, part->members.items,
                             &n_items))
                 part->members.first[++part->n_groups] = (uint32_t)n_items;
+    part->members.n = part->n_groups;
     return STATUS_OK;
 }
 
@@ -176,7 +162,7 @@ Status geometry_part(const Geometry *whole, const uint32_t *indices, size_t n, G
     made.n_segments = made.drawn = n;
     if (whole->blend.n_groups) {
         TRY_GOTO(part_members(&whole->blend, indices, n, &made.blend, err));
-        TRY_GOTO(turn_over(&made.blend.members, made.blend.n_groups, n, &made.blend.groups, err));
+        TRY_GOTO(turn_over(&made.blend.members, n, &made.blend.groups, err));
     }
     *part = made;
     return STATUS_OK;
