@@ -211,7 +211,8 @@ static Status fill_outputs(const Emitter *emitter, const EmitParams *params, Out
                            EmitReport *report, Err *err)
 {
     Text *text = outputs->text;
-    Status status = emitter->write(params, &text[0], &text[1], report, err);
+    EmitOutput to = {&text[0], &text[1], report};
+    Status status = emitter->write(params, &to, err);
     if (status == STATUS_OK && params->settings)
         status = emitter->write_settings(params, &text[SETTINGS], err);
     for (size_t i = 0; i < BESIDES; i++)

@@ -97,24 +97,15 @@ static Status put_cell(Cells *cells, List from, const Box *clip, Err *err)
     text_puts(text, clip ? "Blob_Cell()\n" : "Blob_Start()\n");
     for (size_t i = 0; i < n; i++) {
         const FieldSegment *segment = &cells->scene->geometry.segments[list[i]];
-        text_puts(text, "Vessel_Blob(");
-        put_vector(text, segment->a);
-        text_puts(text, ",");
-        put_vector(text, segment->b);
-        text_puts(text, ",");
-        text_number(text, segment->radius_mm);
-        text_puts(text, ")\n");
+        put_text(text, "Vessel_Blob(<%v>,<%v>,%n)\n", segment->a, segment->b, segment->radius_mm);
     }
     if (!clip) {
         text_puts(text, "Blob_Paint()\n");
         return STATUS_OK;
     }
     Vec3 pad = vec3(overlap_mm, overlap_mm, overlap_mm);
-    text_puts(text, "Blob_Cell_End(");
-    put_vector(text, vec3_sub(clip->low, pad));
-    text_puts(text, ",");
-    put_vector(text, vec3_add(clip->high, pad));
-    text_puts(text, ")\n");
+    put_text(text, "Blob_Cell_End(<%v>,<%v>)\n", vec3_sub(clip->low, pad),
+             vec3_add(clip->high, pad));
     cells->written++;
     return STATUS_OK;
 }
@@ -149,16 +140,13 @@ static Status halve(Cells *cells, List list, size_t top, Box box, Halves *out, E
                     err));
     Box *half = out->box;
     Vec3 middle = box_center(box);
-    switch (box_longest_axis(box)) {
-    case 0:
+    int axis = box_longest_axis(box);
+    if (axis == 0)
         half[0].high.x = half[1].low.x = middle.x;
-        break;
-    case 1:
+    else if (axis == 1)
         half[0].high.y = half[1].low.y = middle.y;
-        break;
-    default:
+    else
         half[0].high.z = half[1].low.z = middle.z;
-    }
     out->list[0] = take_those_in(cells, list, top, half[0]);
     out->list[1] = take_those_in(cells, list, top + out->list[0].n, half[1]);
     out->is_cut = 2 * (out->list[0].n + out->list[1].n) <= 3 * list.n;
@@ -241,8 +229,10 @@ static Status put_blobs(Text *out, void *context, Err *err)
 Status put_blob(Text *out, PovrayGeometry *geometry, Err *err)
 {
     bool whole;
+    Values values = {0};
     TRY(blob_is_whole(geometry, &whole, err));
-    return put_declaration(out, geometry, whole ? "blob" : "union", put_blobs, err);
+    add_part(&values, "members", put_blobs, geometry);
+    return put_declaration(out, geometry, whole ? "blob" : "union", &values, err);
 }
 
 Status find_painted(PovrayGeometry *geometry, Err *err)
@@ -378,7 +368,7 @@ static void put_term(Text *text, const Paints *paints, uint32_t number)
     if (paints->in_matrices)
         put_column(text, 'e', number, "0,0,0", 'y');
     else
-        text_printf(text, "%u", number);
+        put_text(text, "%u", number);
     text_puts(text, ")");
 }
 
@@ -467,30 +457,29 @@ static double grid_of(Box box)
 static Status put_hierarchy(Text *out, const PovrayGeometry *geometry, const double *places,
                             Err *err)
 {
-    Tmpl node = {0}, matrix = {0};
+    const char *const names[] = {places ? "povray/blob_weight.inc" : "povray/blob_node.inc",
+                                 "povray/matrix.inc"};
+    Tmpl templates[2] = {0};
     const size_t n = geometry->painted.n;
     Paints paints = {.scene = geometry->scene,
                      .painted = geometry->painted,
                      .places = places,
-                     .node = &node,
+                     .node = &templates[0],
                      .in_matrices = n > MOST_INLINE_TERMS,
                      .text = out};
     Status status;
-    TRY_GOTO(load_template(&node, geometry->params,
-                           places ? "povray/blob_weight.inc" : "povray/blob_node.inc", err));
-    TRY_GOTO(load_template(&matrix, geometry->params, "povray/matrix.inc", err));
+    TRY_GOTO(load_templates(templates, geometry->params, names, 2, err));
     TRY_GOTO(mem_calloc(&paints.items, n, sizeof *paints.items, "segments", err));
     for (size_t i = 0; i < n; i++)
         paints.items[i].segment = (uint32_t)i;
     paints.grid_mm = grid_of(box_of_items(&paints, 0, n));
     if (paints.in_matrices && !places)
-        TRY_GOTO(put_matrices(&paints, &matrix, err));
+        TRY_GOTO(put_matrices(&paints, &templates[1], err));
     text_printf(out, "#declare F%c=array[%zu]\n", places ? 'w' : 'n', count_nodes(n));
     TRY_GOTO(put_node(&paints, 0, n, err));
 done:
     free(paints.items);
-    tmpl_release(&node);
-    tmpl_release(&matrix);
+    release_templates(templates, 2);
     return status;
 }
 
@@ -517,24 +506,19 @@ static Status put_blend(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/blob_blend.inc", out, err);
 }
 
-/* The segments' paints. */
-static Status put_groups(Text *out, void *context, Err *err)
+/* Appends the paint of a segment, in groups of as many as a map of textures holds. */
+static void put_paint_of(Text *out, const void *context, size_t i)
 {
     const PovrayGeometry *geometry = context;
     const PovrayItems painted = geometry->painted;
-    for (size_t i = 0; i < painted.n; i++) {
-        const FieldSegment *segment = &geometry->scene->geometry.segments[painted.index[i]];
-        if (i % GROUP == 0)
-            text_printf(out, "Blob_Group(%zu)\n", i / GROUP);
-        text_printf(out, "Blob_Color(%zu,", i);
-        text_number(out, segment->radius_mm);
-        text_puts(out, ",");
-        put_paint(out, geometry->params, segment->segment);
-        text_puts(out, ")\n");
-        if (i % GROUP == GROUP - 1 || i + 1 == painted.n)
-            text_printf(out, "Blob_Group_End(%zu)\n", i / GROUP);
-    }
-    return text_check(out, err);
+    const FieldSegment *segment = &geometry->scene->geometry.segments[painted.index[i]];
+    if (i % GROUP == 0)
+        put_text(out, "Blob_Group(%z)\n", i / GROUP);
+    put_text(out, "Blob_Color(%z,%n,", i, segment->radius_mm);
+    put_paint(out, geometry->params, segment->segment);
+    text_puts(out, ")\n");
+    if (i % GROUP == GROUP - 1 || i + 1 == painted.n)
+        put_text(out, "Blob_Group_End(%z)\n", i / GROUP);
 }
 
 static Status put_nothing(Text *out, void *context, Err *err)
@@ -547,16 +531,15 @@ static void add_shape(Values *values)
 {
     const BlobTube *tube = blob_shape.tube;
     const BlobBead *bead = blob_shape.bead;
-    add_number(values, "r1", tube[0].radius);
-    add_number(values, "s1", tube[0].strength);
-    add_number(values, "r2", tube[1].radius);
-    add_number(values, "s2", tube[1].strength);
-    add_number(values, "h1", bead[0].offset);
-    add_number(values, "q1", bead[0].radius);
-    add_number(values, "c1", bead[0].strength);
-    add_number(values, "h2", bead[1].offset);
-    add_number(values, "q2", bead[1].radius);
-    add_number(values, "c2", bead[1].strength);
+    const struct {
+        const char *name;
+        double value;
+    } numbers[] = {{"r1", tube[0].radius},   {"s1", tube[0].strength}, {"r2", tube[1].radius},
+                   {"s2", tube[1].strength}, {"h1", bead[0].offset},   {"q1", bead[0].radius},
+                   {"c1", bead[0].strength}, {"h2", bead[1].offset},   {"q2", bead[1].radius},
+                   {"c2", bead[1].strength}};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        add_number(values, numbers[i].name, numbers[i].value);
 }
 
 Status put_blob_macros(Text *out, void *context, Err *err)
@@ -574,10 +557,10 @@ Status put_blob_macros(Text *out, void *context, Err *err)
     Text *top = add_value(&values, "top"), *n_groups = add_value(&values, "n_groups");
     if (painted) {
         text_printf(top, "Fn[%zu]", count_nodes(n) - 1);
-        text_printf(n_groups, "%zu", (n + GROUP - 1) / GROUP);
+        put_text(n_groups, "%z", (size_t)((n + GROUP - 1) / GROUP));
     }
     add_part(&values, "paint", painted ? put_functions : put_nothing, context);
     add_part(&values, "blend", put_blend, context);
-    add_part(&values, "groups", painted ? put_groups : put_nothing, context);
+    add_list(&values, "groups", put_paint_of, geometry, painted ? n : 0);
     return values_expand(&values, geometry->params, "povray/blob.inc", out, err);
 }
