@@ -37,7 +37,7 @@ static Box reach_of(const FieldSegment *segment, double reach)
 
 /* ---- cells ----------------------------------------------------------------------------------- */
 
-typedef struct Cells {
+typedef struct BlobCells {
     const Scene *scene;
     const Sight *sight; /* cells that it does not meet are left out */
     Text *text;         /* where the others are written to, or NULL */
@@ -46,7 +46,7 @@ typedef struct Cells {
     uint32_t *lists; /* a stack: the segments of both halves of a cell follow those of the cell */
     size_t room;
     size_t written; /* none when all is one blob */
-} Cells;
+} BlobCells;
 
 /* A list of segments on the stack of cells. */
 typedef struct List {
@@ -54,7 +54,7 @@ typedef struct List {
 } List;
 
 /* How many segments of a list are felt at x. */
-static size_t count_felt(const Cells *cells, const uint32_t *list, size_t n, Vec3 x)
+static size_t count_felt(const BlobCells *cells, const uint32_t *list, size_t n, Vec3 x)
 {
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
@@ -62,7 +62,7 @@ static size_t count_felt(const Cells *cells, const uint32_t *list, size_t n, Vec
     return count;
 }
 
-static Status check_crowd(const Cells *cells, const uint32_t *list, size_t n, Err *err)
+static Status check_crowd(const BlobCells *cells, const uint32_t *list, size_t n, Err *err)
 {
     if (n <= CROWD)
         return STATUS_OK;
@@ -82,7 +82,7 @@ static Status check_crowd(const Cells *cells, const uint32_t *list, size_t n, Er
 }
 
 /* Writes the blob of the segments of a list, clipped to a box or whole. */
-static Status put_cell(Cells *cells, List from, const Box *clip, Err *err)
+static Status put_cell(BlobCells *cells, List from, const Box *clip, Err *err)
 {
     Text *text = cells->text;
     const uint32_t *list = cells->lists + from.first;
@@ -111,7 +111,7 @@ static Status put_cell(Cells *cells, List from, const Box *clip, Err *err)
 }
 
 /* The segments of a list that reach into the box, put on the stack at `top`. */
-static List take_those_in(const Cells *cells, List from, size_t top, Box box)
+static List take_those_in(const BlobCells *cells, List from, size_t top, Box box)
 {
     const FieldSegment *segments = cells->scene->geometry.segments;
     const uint32_t *list = cells->lists + from.first;
@@ -131,7 +131,7 @@ typedef struct Halves {
 
 /* Halves a box into which the segments of a list reach, with the stack's end at `top`, unless few
  * do or most would reach into both halves. */
-static Status halve(Cells *cells, List list, size_t top, Box box, Halves *out, Err *err)
+static Status halve(BlobCells *cells, List list, size_t top, Box box, Halves *out, Err *err)
 {
     *out = (Halves){.box = {box, box}};
     if (list.n <= CELL)
@@ -155,7 +155,7 @@ static Status halve(Cells *cells, List list, size_t top, Box box, Halves *out, E
 
 /* Writes the cells of a box into which the segments of a list reach, with the stack's end at
  * `top`. */
-static Status put_cells_of(Cells *cells, List list, size_t top, Box box, bool whole, Err *err)
+static Status put_cells_of(BlobCells *cells, List list, size_t top, Box box, bool whole, Err *err)
 {
     Halves halves;
     if (!whole && !sight_meets(cells->sight, box_padded(box, overlap_mm)))
@@ -179,16 +179,16 @@ static List all_of(const PovrayGeometry *geometry)
 }
 
 /* The segments of the object, and the box that they reach into. */
-static Status cells_begin(const PovrayGeometry *geometry, Text *text, Cells *cells, Box *box,
+static Status cells_begin(const PovrayGeometry *geometry, Text *text, BlobCells *cells, Box *box,
                           Err *err)
 {
     const Geometry *all = &geometry->scene->geometry;
     const PovrayItems *items = &geometry->objects[geometry->object];
-    *cells = (Cells){.scene = geometry->scene,
-                     .sight = geometry->sight,
-                     .text = text,
-                     .reach = blob_reach(&blob_shape),
-                     .room = items->n};
+    *cells = (BlobCells){.scene = geometry->scene,
+                         .sight = geometry->sight,
+                         .text = text,
+                         .reach = blob_reach(&blob_shape),
+                         .room = items->n};
     TRY(mem_calloc(&cells->lists, cells->room, sizeof *cells->lists, "cells", err));
     *box = box_empty();
     for (size_t i = 0; i < items->n; i++) {
@@ -198,32 +198,36 @@ static Status cells_begin(const PovrayGeometry *geometry, Text *text, Cells *cel
     return STATUS_OK;
 }
 
-/* Whether all of the object is one blob, and not many, each clipped to a cell. */
+/* Finds whether all of the object is one blob, and not many blobs, each clipped to a cell. */
 static Status blob_is_whole(const PovrayGeometry *geometry, bool *whole, Err *err)
 {
-    Cells cells;
+    BlobCells cells = {0};
     Box box;
     Halves halves;
     const List all = all_of(geometry);
-    TRY(cells_begin(geometry, NULL, &cells, &box, err));
-    Status status = halve(&cells, all, all.n, box, &halves, err);
+    Status status;
+    TRY_GOTO(cells_begin(geometry, NULL, &cells, &box, err));
+    TRY_GOTO(halve(&cells, all, all.n, box, &halves, err));
+    *whole = !halves.is_cut;
+done:
     free(cells.lists);
-    if (status == STATUS_OK)
-        *whole = !halves.is_cut;
     return status;
 }
 
 static Status put_blobs(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    Cells cells;
+    BlobCells cells = {0};
     Box box;
     const List all = all_of(geometry);
-    TRY(cells_begin(geometry, out, &cells, &box, err));
-    Status status = put_cells_of(&cells, all, all.n, box, true, err);
-    free(cells.lists);
+    Status status;
+    TRY_GOTO(cells_begin(geometry, out, &cells, &box, err));
+    TRY_GOTO(put_cells_of(&cells, all, all.n, box, true, err));
     geometry->report->cells = cells.written;
-    return status == STATUS_OK ? text_check(out, err) : status;
+    TRY_GOTO(text_check(out, err));
+done:
+    free(cells.lists);
+    return status;
 }
 
 Status put_blob(Text *out, PovrayGeometry *geometry, Err *err)
@@ -239,7 +243,7 @@ Status find_painted(PovrayGeometry *geometry, Err *err)
 {
     const PovrayItems all = geometry->objects[0];
     uint32_t *index = geometry->indices + all.n;
-    Cells cells = {0};
+    BlobCells cells = {0};
     Box box;
     size_t n = 0;
     Status status;

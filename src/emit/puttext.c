@@ -2,7 +2,7 @@
  * conversions. */
 #include "emit/puttext.h"
 
-#include "scene/appearance.h"
+#include "scene/scene.h"
 #include <assert.h>
 #include <stdarg.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef CORCAST_SCENE_NUMBERLISTS_H
 #define CORCAST_SCENE_NUMBERLISTS_H
 
-#include "base/lists.h"
+#include "base/base.h"
 
 #define NumberLists IndexLists
 #define numberlists_release indexlists_release
