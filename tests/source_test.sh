@@ -122,7 +122,7 @@ test_no_source_changes_the_umask_or_the_locale() {
 # compile_with OPTION...: an object of growth, one of base and one of kernels that have AVX2, in ./built.
 compile_with() {
     local object objects=()
-    for object in base/elementary grow/cco/grid render/sky/beamkernels_avx2; do
+    for object in base/elementary grow/cco/grid render/light/occlusionkernels_avx2; do
         objects+=("$PWD/built/src/$object.o")
     done
     run make -C "$REPO" --no-print-directory V=1 MODE=release "BUILD=$PWD/built" "$@" "${objects[@]}"

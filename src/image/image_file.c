@@ -1,6 +1,6 @@
-/* The format of a file is recognised by its first bytes, whatever its name. The whole file is read
- * before it is decoded: readers then know how much there is, and need no file that can be wound
- * back, so that standard input will do. */
+/* The format of a file is recognised by its first bytes, not by its name. The whole file is read
+ * before it is decoded. Decoders then know its size, and can go back in it even if it came from
+ * standard input. */
 #include "image/formats.h"
 
 #include <stdlib.h>
@@ -10,8 +10,7 @@ static const ImageDecoder *const decoders[] = {&png_decoder, &pnm_decoder,  &pfm
                                                &exr_decoder, &tiff_decoder, &jpeg_decoder,
                                                &webp_decoder};
 
-/* NULL when the file is of no known format. */
-static const ImageDecoder *decoder_of(const ImageBytes *file)
+const ImageDecoder *imagedecoder_of(const ImageBytes *file)
 {
     for (size_t i = 0; i < sizeof decoders / sizeof *decoders; i++)
         if (decoders[i]->is(file))
@@ -22,7 +21,7 @@ static const ImageDecoder *decoder_of(const ImageBytes *file)
 static bool is_known(const char *start, size_t count)
 {
     const ImageBytes file = {.bytes = (const uint8_t *)start, .size = count};
-    return decoder_of(&file) != NULL;
+    return imagedecoder_of(&file) != NULL;
 }
 
 static const char *name_of(const char *path)
@@ -30,9 +29,59 @@ static const char *name_of(const char *path)
     return strcmp(path, "-") ? path : "standard input";
 }
 
-/* `layer` may be NULL. */
-static Status read_image(Image *image, const char *path, const char *layer, ImageAlpha alpha,
-                         Err *err)
+Status imageinput_open(const ImageDecoder *decoder, const ImageBytes *file, FILE *stream,
+                       ImageInput **out, Err *err)
+{
+    ImageInput *input;
+    TRY(mem_calloc(&input, 1, decoder->state_size, "readers", err));
+    input->guard.format = decoder->format;
+    input->guard.name = file->name;
+    input->decoder = decoder;
+    input->file = *file;
+    /* The bytes are only read, whatever the declaration of fmemopen states. */
+    input->stream = stream ? stream : fmemopen((void *)(uintptr_t)file->bytes, file->size, "rb");
+    if (input->stream) {
+        *out = input;
+        return STATUS_OK;
+    }
+    free(input);
+    return mem_out_of("to read", file->name, err);
+}
+
+void imageinput_close(ImageInput *input)
+{
+    if (!input)
+        return;
+    if (input->decoder->release)
+        input->decoder->release(input);
+    if (input->file.bytes)
+        fclose(input->stream);
+    image_release(&input->image);
+    free(input);
+}
+
+/* Decodes a file in memory, whose layer may be NULL. */
+static Status decode(const ImageBytes *file, ImageAlpha alpha, Image *image, Err *err)
+{
+    const ImageDecoder *decoder = imagedecoder_of(file);
+    if (file->layer && !decoder->has_layers)
+        return err_set(err, STATUS_INPUT, "%s: has no layer '%s': only OpenEXR files have layers",
+                       file->name, file->layer);
+    ImageInput *input = NULL;
+    Status status;
+    TRY_GOTO(imageinput_open(decoder, file, NULL, &input, err));
+    TRY_GOTO(guard_run(&input->guard, decoder->decode, input, err));
+    TRY_GOTO(image_settle_alpha(&input->image, alpha, file->name, err));
+    *image = input->image;
+    input->image = (Image){0};
+done:
+    if (status == STATUS_MEMORY)
+        err_prefix(err, "%s: ", file->name);
+    imageinput_close(input);
+    return status;
+}
+
+Status image_read(Image *image, const char *path, ImageAlpha alpha, const char *layer, Err *err)
 {
     static const FileForm form = {
         .name = "a PBM, PGM, PPM, PAM, PFM, PNG, TIFF, OpenEXR, JPEG or WebP file",
@@ -41,46 +90,16 @@ static Status read_image(Image *image, const char *path, const char *layer, Imag
     char *bytes;
     size_t size;
     TRY(file_read(path, &form, &bytes, &size, err));
-    ImageBytes file = {name_of(path), (const uint8_t *)bytes, size, layer};
-    Image made = {0};
-    const ImageDecoder *decoder = decoder_of(&file);
-    Status status =
-        layer && !decoder->has_layers
-            ? err_set(err, STATUS_INPUT, "%s: has no layer '%s': only OpenEXR files have layers",
-                      file.name, layer)
-            : decoder->decode(&file, &made, err);
+    const ImageBytes file = {name_of(path), (const uint8_t *)bytes, size, layer};
+    Status status = decode(&file, alpha, image, err);
     free(bytes);
-    if (status == STATUS_OK)
-        status = image_settle_alpha(&made, alpha, file.name, err);
-    if (status == STATUS_MEMORY)
-        err_prefix(err, "%s: ", file.name);
-    if (status == STATUS_OK)
-        *image = made;
-    else
-        image_release(&made);
     return status;
 }
 
-Status image_read(Image *image, const char *path, Err *err)
-{
-    return read_image(image, path, NULL, ALPHA_REFUSED, err);
-}
-
-Status image_read_transparent(Image *image, const char *path, Err *err)
-{
-    return read_image(image, path, NULL, ALPHA_KEPT, err);
-}
-
-Status image_read_layer(Image *image, const char *path, const char *layer, bool transparent,
-                        Err *err)
-{
-    return read_image(image, path, layer, transparent ? ALPHA_KEPT : ALPHA_REFUSED, err);
-}
-
-static Status read_picture(Picture *picture, const char *path, ImageAlpha alpha, Err *err)
+Status picture_read(Picture *picture, const char *path, ImageAlpha alpha, Err *err)
 {
     Image image;
-    TRY(read_image(&image, path, NULL, alpha, err));
+    TRY(image_read(&image, path, alpha, NULL, err));
     if (image.plane.values) {
         image_release(&image);
         return err_set(err, STATUS_INPUT,
@@ -90,25 +109,10 @@ static Status read_picture(Picture *picture, const char *path, ImageAlpha alpha,
     return STATUS_OK;
 }
 
-Status picture_read(Picture *picture, const char *path, Err *err)
-{
-    return read_picture(picture, path, ALPHA_REFUSED, err);
-}
-
-Status picture_read_transparent(Picture *picture, const char *path, Err *err)
-{
-    return read_picture(picture, path, ALPHA_KEPT, err);
-}
-
-Status picture_read_mask(Picture *picture, const char *path, Err *err)
-{
-    return read_picture(picture, path, ALPHA_IS_MASK, err);
-}
-
-static Status read_plane(Plane *plane, const char *path, ImageAlpha alpha, Err *err)
+Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, Err *err)
 {
     Image image;
-    TRY(read_image(&image, path, NULL, alpha, err));
+    TRY(image_read(&image, path, alpha, NULL, err));
     if (!image.plane.values) {
         image_release(&image);
         return err_set(
@@ -119,14 +123,4 @@ static Status read_plane(Plane *plane, const char *path, ImageAlpha alpha, Err *
     }
     *plane = image.plane;
     return STATUS_OK;
-}
-
-Status plane_read(Plane *plane, const char *path, Err *err)
-{
-    return read_plane(plane, path, ALPHA_REFUSED, err);
-}
-
-Status plane_read_transparent(Plane *plane, const char *path, Err *err)
-{
-    return read_plane(plane, path, ALPHA_KEPT, err);
 }

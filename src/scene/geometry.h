@@ -10,7 +10,6 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "scene/models.h"
-#include "scene/numberlists.h" // IWYU pragma: export
 #include "scene/triangles.h"
 #include <stdint.h>
 
