@@ -1,4 +1,5 @@
-/* See meshreport.h. */
+/* A mesh is not written if one of its facts is not as expected: programs that read it rely on a
+ * closed surface, and a wrong one is harder to notice than an error. */
 #include "mesh/meshreport.h"
 
 #include "mesh/precision.h"
@@ -7,7 +8,7 @@
 void meshreport_release(MeshReport *report)
 {
     free(report->missing);
-    free(report->swallowed);
+    free(report->enclosed);
     free(report->slivers);
     free(report->round);
     free(report->near);

@@ -27,7 +27,7 @@ typedef struct FieldPlaces {
 } FieldPlaces;
 
 /* Says of places what state they are in; x and y of the tile are not read. A place within 0.2 % of
- * the level is taken to be on a surface that it leaves, as by field_is_shadowed(). */
+ * the level is taken to be on a surface that it leaves, as field_search.any takes it. */
 typedef void ShadowKernel(const FieldTile *tile, TileWork *work, FieldPlaces *places);
 
 FieldKernel trace_portable, trace_blob_portable;

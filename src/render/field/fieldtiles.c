@@ -126,21 +126,20 @@ static Status decide_sample(const FieldTiles *tiles, FieldSpace *space, const Fi
                             Ray ray, int sample, TileHits *hits, Err *err)
 {
     TRY(fieldspace_reserve_rays(space, tile->n_terms, err));
-    double t;
-    Vec3 normal;
-    uint32_t segment = 0;
+    RayHit hit = {.index = 0};
     hits->state[sample] = TILE_MISS;
-    if (!fieldspace_first_hit(space, tile->n_terms, ray, tile->z_min, &t, &normal, &segment))
+    if (!fieldspace_first_hit(space, tile->n_terms, ray, tile->z_min, &hit))
         return STATUS_OK;
-    bool within = vec3_dot(normal, ray.direction) > 0;
-    normal = viewpoint_to_frame(&tiles->lists.eye, within ? vec3_scale(normal, -1) : normal);
+    bool within = vec3_dot(hit.normal, ray.direction) > 0;
+    Vec3 normal =
+        viewpoint_to_frame(&tiles->lists.eye, within ? vec3_scale(hit.normal, -1) : hit.normal);
     hits->any_hit = true;
     hits->state[sample] = TILE_HIT;
-    hits->z[sample] = t * vec3_dot(ray.direction, tiles->lists.eye.axes[2]);
+    hits->z[sample] = hit.t * vec3_dot(ray.direction, tiles->lists.eye.axes[2]);
     hits->normal[0][sample] = (float)normal.x;
     hits->normal[1][sample] = (float)normal.y;
     hits->normal[2][sample] = (float)normal.z;
-    hits->segment[sample] = segment;
+    hits->segment[sample] = hit.index;
     return STATUS_OK;
 }
 

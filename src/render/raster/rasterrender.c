@@ -113,8 +113,6 @@ static Status trace_raster(void *bins, int worker, int shift, BatchTile *tile, E
     if (!scene->kernels->trace(&own->tile, &own->hits, &tile->hits))
         return STATUS_OK;
     scene->kernels->resolve(&own->tile, &own->hits, &tile->hits);
-    for (int sample = 0; sample < TILE_SAMPLES; sample++)
-        tile->hits.z[sample] = own->tile.z_middle + (double)own->hits.z[sample];
     tile->seen.hits = &tile->hits;
     return STATUS_OK;
 }

@@ -75,8 +75,10 @@ static uint64_t find_hits(const SeenTile *seen)
     const bool whole = seen->n_columns == TILE_SIDE && seen->n_rows == TILE_SIDE;
     uint64_t hits = 0;
     for (int sample = 0; sample < TILE_SAMPLES; sample++)
-        if (seen->hits->state[sample] == TILE_HIT && (whole || is_inside(seen, sample)))
-            hits |= (uint64_t)1 << sample;
+        hits |= (uint64_t)(seen->hits->state[sample] == TILE_HIT) << sample;
+    for (int sample = 0; !whole && sample < TILE_SAMPLES; sample++)
+        if (!is_inside(seen, sample))
+            hits &= ~((uint64_t)1 << sample);
     return hits;
 }
 
