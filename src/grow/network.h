@@ -186,12 +186,12 @@ void network_spare(Network *net, size_t nodes);
 
 /* The connection of a new terminal: `segment` is split at `bifurcation`, and a new segment leads
  * from there to `terminal`. Positions are in mm. */
-typedef struct Split {
+typedef struct NetworkSplit {
     int32_t segment;
     Vec3 bifurcation, terminal;
     int32_t made[2]; /* two spare nodes: the proximal part becomes segment made[0], the new segment
                       * made[1] */
-} Split;
+} NetworkSplit;
 
 /* Splits a segment. Then the caller must remove the two nodes from the list of spare nodes, and
  * call network_grown.
@@ -204,7 +204,7 @@ typedef struct Split {
  * Threads  Threads may split at the same time if their zones have no point in common and both ends
  *          of each one's segment are in its own zone.
  * Cost     O(1). */
-void network_split(Network *net, const Split *split, Box zone);
+void network_split(Network *net, const NetworkSplit *split, Box zone);
 
 /* Adds to the number of terminals. They share the same flow, so radius_unit changes. */
 void network_grown(Network *net, size_t terminals);

@@ -141,7 +141,7 @@ static Status connect(const Running *running, int worker, Tile *tile, const Conn
     grid_remove(&site->grid, connection->segment);
     network_split(
         &site->net,
-        &(Split){
+        &(NetworkSplit){
             connection->segment, connection->bifurcation, connection->terminal, {made[0], made[1]}},
         tile->zone);
     for (int i = 0; i < ENDS; i++) {
