@@ -19,6 +19,7 @@ typedef struct CursorSyntax {
     const char *alone;   /* characters that are a word each */
     char comment;        /* begins a comment that ends with its line; 0: there are no comments */
     bool has_quotes;     /* a text in double quotes is one word */
+    bool skips_zeros;    /* zero bytes stand between words; otherwise they end the words */
 } CursorSyntax;
 
 /* Begin with cursor_of. All is borrowed. */

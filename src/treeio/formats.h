@@ -86,6 +86,9 @@ MUST_CHECK Status steps_read(Tree *tree, const char *folder, const char *quantit
  * blanks around it go, and where `separator` is one, several are like one. A quoted one ends with a
  * quote that no other follows. STATUS_INPUT, without file and line, when none does. */
 MUST_CHECK Status csv_field(char **at, char separator, char **field, Err *err);
+/* Cuts a row of CSV into its `n` fields, in place. Errors: STATUS_INPUT, without file and line, for
+ * any other number of fields, and as csv_field. */
+MUST_CHECK Status csv_row(char *line, char separator, char **field, size_t n, Err *err);
 /* Parts "name [unit]" in place; the unit is "" where there is none. */
 const char *csv_unit(char *title);
 

@@ -594,15 +594,7 @@ static Status read_edge(Table *table, size_t line, Err *err)
 
 static Status read_row(Table *table, size_t number, char *line, Err *err)
 {
-    size_t count = 0;
-    for (char *at = line, *field; at; count++) {
-        TRY(csv_field(&at, table->separator, &field, err));
-        if (count < table->n)
-            table->field[count] = field;
-    }
-    if (count != table->n)
-        return err_set(err, STATUS_INPUT, "the row has %zu field%s; there are %zu columns", count,
-                       count == 1 ? "" : "s", table->n);
+    TRY(csv_row(line, table->separator, table->field, table->n, err));
     return table->kind == NODES     ? read_node(table, number, err)
            : table->kind == VESSELS ? read_vessel(table, number, err)
                                     : read_edge(table, number, err);

@@ -260,10 +260,14 @@ static const struct {
     const char *keyword;
     Status (*read)(LegacyReader *reader, Err *err);
 } blocks[] = {
-    {"POINTS", read_points},           {"CELL_TYPES", read_cell_types},
-    {"POINT_DATA", begin_point_data},  {"CELL_DATA", begin_cell_data},
-    {"FIELD", read_field},             {"SCALARS", read_scalars},
-    {"LOOKUP_TABLE", skip_table},      {"METADATA", skip_description},
+    {"POINTS", read_points},
+    {"CELL_TYPES", read_cell_types},
+    {"POINT_DATA", begin_point_data},
+    {"CELL_DATA", begin_cell_data},
+    {"FIELD", read_field},
+    {"SCALARS", read_scalars},
+    {"LOOKUP_TABLE", skip_table},
+    {"METADATA", skip_description},
 };
 
 /* Attributes "KEYWORD name [components] [type]". */
@@ -342,8 +346,9 @@ static Status read_cells(LegacyReader *reader, VtkCells *cells, Err *err)
     TRY(read_count(reader, "cells", &n, err));
     TRY(read_count(reader, "numbers", &size, err));
     cells->n_corners = size;
-    return cursor_take(&reader->cursor, "OFFSETS") ? read_offset_cells(reader, n, cells, err)
-                                                   : read_counted_cells(reader, n, size, cells, err);
+    return cursor_take(&reader->cursor, "OFFSETS")
+               ? read_offset_cells(reader, n, cells, err)
+               : read_counted_cells(reader, n, size, cells, err);
 }
 
 /* ---- the file -------------------------------------------------------------------------------- */
@@ -365,8 +370,8 @@ static Status read_block(LegacyReader *reader, const char *keyword, Err *err)
 /* Reads the four lines before the first block. */
 static Status read_head(LegacyReader *reader, Err *err)
 {
-    static const char *const codings[] = {"ASCII", "BINARY"}, *const sets[] = {
-        "POLYDATA", "UNSTRUCTURED_GRID"};
+    static const char *const codings[] = {"ASCII", "BINARY"}, *const sets[] = {"POLYDATA",
+                                                                               "UNSTRUCTURED_GRID"};
     Cursor *cursor = &reader->cursor;
     char word[CURSOR_WORD];
     size_t length = strcspn(cursor->at, "\r\n");

@@ -16,8 +16,8 @@ static const struct {
     size_t size;
     bool is_float, is_signed;
 } types[VTK_TYPES] = {
-    [VTK_TEXT] = {1, false, false},  [VTK_INT8] = {1, false, true},
-    [VTK_UINT8] = {1, false, false}, [VTK_INT16] = {2, false, true},
+    [VTK_TEXT] = {1, false, false},   [VTK_INT8] = {1, false, true},
+    [VTK_UINT8] = {1, false, false},  [VTK_INT16] = {2, false, true},
     [VTK_UINT16] = {2, false, false}, [VTK_INT32] = {4, false, true},
     [VTK_UINT32] = {4, false, false}, [VTK_INT64] = {8, false, true},
     [VTK_UINT64] = {8, false, false}, [VTK_FLOAT] = {4, true, true},
@@ -145,8 +145,8 @@ static void take_block(size_t index, int worker, void *context)
     }
 }
 
-/* Uses all processors: the system clears the memory of `out` while it is written, which takes longer
- * than the conversion. */
+/* Uses all processors: the system clears the memory of `out` while it is written, which takes
+ * longer than the conversion. */
 void vtk_numbers(VtkType type, bool is_big_endian, const char *bytes, size_t n, double *out)
 {
     VtkValues all = {type, is_big_endian, bytes, n, out};
@@ -325,8 +325,10 @@ Status vtk_take_positions(VtkData *data, const char *const axes[3], const char *
 enum { VERTEX = 1, POLY_VERTEX = 2, LINE = 3, POLY_LINE = 4, QUADRATIC_EDGE = 21 };
 
 const VtkCellKind vtk_cell_kinds[VTK_CELL_KINDS] = {
-    {"VERTICES", "Verts", POLY_VERTEX, false}, {"LINES", "Lines", POLY_LINE, false},
-    {"POLYGONS", "Polys", 0, false},           {"TRIANGLE_STRIPS", "Strips", 0, false},
+    {"VERTICES", "Verts", POLY_VERTEX, false},
+    {"LINES", "Lines", POLY_LINE, false},
+    {"POLYGONS", "Polys", 0, false},
+    {"TRIANGLE_STRIPS", "Strips", 0, false},
     {"CELLS", "Cells", 0, true},
 };
 

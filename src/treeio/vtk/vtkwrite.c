@@ -1,10 +1,12 @@
-/* Writes a tree as VTK, legacy or XML: first a vertex for each root, then a polyline for each branch.
+/* Writes a tree as VTK, legacy or XML: first a vertex for each root, then a polyline for each
+ * branch.
  *
  * A polyline has points of its own, all with the values of its segments. Its first point has the
  * values of its first segment, so that a tube around it is as thick as the vessel from end to end.
- * Points shared with the parent would make it a cone. Points of one node have the same `id`, by which
- * vtktree.c finds the tree again. The tree's metadata are lines of text in the field data. Both kinds
- * of files have the arrays of one table. Numbers pass through one buffer, for trees of any size. */
+ * Points shared with the parent would make it a cone. Points of one node have the same `id`, by
+ * which vtktree.c finds the tree again. The tree's metadata are lines of text in the field data.
+ * Both kinds of files have the arrays of one table. Numbers pass through one buffer, for trees of
+ * any size. */
 #include "treeio/branches.h"
 #include "treeio/comments.h"
 #include "treeio/formats.h"

@@ -1,6 +1,6 @@
-/* GraphML of VesselVio, VesselExpress, igraph and networkx. Keys declare numbers of nodes and edges by
- * name, and each program has its own names. Positions are found by the usual names, or by those that
- * the user states. A node without any is one of VesselExpress, whose id is the text of a tuple
+/* GraphML of VesselVio, VesselExpress, igraph and networkx. Keys declare numbers of nodes and edges
+ * by name, and each program has its own names. Positions are found by the usual names, or by those
+ * that the user states. A node without any is one of VesselExpress, whose id is the text of a tuple
  * (z, y, x). Radii are found as in VTK files. Edges are straight: VesselVio leaves out bends. The
  * metadata of a tree that corcast wrote are data of the graph. */
 #include "treeio/comments.h"
