@@ -596,7 +596,7 @@ static void rejects_graphs_of_amira_that_make_no_sense(void **state)
          ":19: 'complex' is no type of numbers that is read"},
         {"} @6", "}", ":18: a declaration is 'EDGE { TYPE NAME } @BLOCK'"},
         {"@6\n3\n1\n2\n", "@8\n3\n1\n2\n", ":57: the block @8 is not declared"},
-        {"@7\n11\n12", "@7\n11\ntwelve", ":62: 'twelve' of strahler is no number"},
+        {"@7\n11\n12", "@7\n11\ntwelve", ":62: 'twelve' of Labels is no number"},
         {"@7\n11\n12", "@7\n11 12 7\n12", ":63: '13' stands where a block begins"},
         {"@3\n3\n2", "@3\n3\n3", ": the edges have 9 points together, POINT is 8"},
         {"@3\n3\n2", "@3\n3\n1", ": edge 1 has 1 points; it needs those of both its vertices"},
