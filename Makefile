@@ -43,9 +43,11 @@ FUZZ_PROGRAMS := $(HARNESSES:%=$(BUILD)/tests/fuzz/%)
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion \
 	-Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wvla -Wformat=2 -Wcast-qual \
-	-Wpointer-arith -Wundef -Wwrite-strings -Werror
+	-Wpointer-arith -Wundef -Wwrite-strings
 # clang takes the standard's INFINITY and NAN, which are floats, for promotions.
 WARNINGS += $(if $(findstring clang,$(CC)),-Wno-double-promotion)
+# Other levels of optimisation warn of other things, so a warning is an error only at the project's own flags.
+WARNINGS += $(if $(strip $(CFLAGS)),,-Werror)
 OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
 OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -278,7 +280,7 @@ $(FAILING): tests/alloc/failing.c Makefile
 	$(Q)$(CC) -D_GNU_SOURCE -std=c11 -O1 -g $(WARNINGS) -fPIC -shared -o $@ $<
 
 # Loops over pixels gain from vectors, growth from square roots that set no errno.
-$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/sky/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
+$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/light/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
 
 # Kernels of pictures read no input and write to arrays of fixed size; a check of the stack costs them 2 %.
 $(filter %kernels.o %kernels_avx2.o %kernels_avx512.o,$(ROOM_OBJECTS)): HARDEN_release += -fno-stack-protector

@@ -118,10 +118,10 @@ within 10⁻⁴ r of the ray @ kernel_joint.h @ off_joint_line = 1e-4f;
 0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ slack_mm = 1e-3;
 within 1.16 radii of the scene's middle cast rays @ lightview.c @ least_radii = 1.16;
 at most a quarter of a pixel apart @ zbuffer.c @ pixels_apart = 0.25;
-nothing below the horizon covers it, and than 3.5 mean radii @ beams.c @ wide_in_radii = 3.5;
-and face within 60 degrees of where it does @ skylight.c @ least_cosine = 0.5f;
-each within 5 / 4 of a pixel of the other's tangent plane @ sharedlight.h @ most = 1.25f * a->size;
-else of the pixel within two @ sharedlight.c @ enum { SEARCHED = 2 };
+nothing below the horizon covers it, and than 3.5 mean radii @ occluders.c @ wide_in_radii = 3.5;
+and face within 60 degrees of where it does @ occlusion.c @ least_cosine = 0.5f;
+each within 5 / 4 of a pixel of the other's tangent plane @ visibility.h @ limit = 1.25f * a->pixel_mm;
+else of the pixel within two @ visibility.c @ enum { SEARCH_PIXELS = 2 };
 followed over 16 of its ellipses @ ink.c @ RULINGS = 16 };
 found on each by Newton's iteration @ inkjoint.c @ NEWTON = 4 };
 a ray from 10⁻⁶ radii beside it @ ink.c @ #define BESIDE 1e-6
@@ -246,7 +246,7 @@ test_formats_lists_the_keys_of_a_tolerance() {
 
 test_the_numbers_for_povray_are_those_of_the_source() {
     agree POVRAY.md <<'END'
-for each light with n . L >= 1e-10 @ shade.h @ #define LEAST_LIT_COSINE 1e-10
+for each light with n . L >= 1e-10 @ shade.h @ #define MIN_LIT_COSINE 1e-10
 is within 2.85 · 10⁻⁴ of it @ cellfunction.c @ return form == ERF_FAST ? 2.85e-4
 no wall by more than three times that @ cellfunction.c @ return (3 * erf_form_error(form) + 2e-5) * radius_mm;
 POV-Ray holds at most 1,048,575 functions @ povray_joint.c @ POV-Ray holds 1,048,575 functions, of which a joint has three

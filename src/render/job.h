@@ -35,7 +35,7 @@ enum { RENDER_MOST_ANTIALIAS = 9 };
 typedef struct RenderParams {
     /* Of primitives and blobs; an isosurface has an engine of its own. For all of them RENDER_TRACE
      * says that shadows and occlusion are found for every sample, by rays; else soft shadows and
-     * occlusion are shared by the samples of a pixel [render/light/sharedlight.h], and hard shadows
+     * occlusion are shared by the samples of a pixel [render/light/visibility.h], and hard shadows
      * are those of the lights' views. */
     RenderMethod method;
     RenderKernels kernels;
@@ -97,7 +97,7 @@ typedef struct Drawing {
     const RenderParams *params;
     struct Caster *caster; /* for the rays that the engine asks for; NULL where it asks for none */
     const TermMean *mean;  /* of colours that blend; else NULL */
-    const struct SharedLight *shared; /* what samples of a pixel share; NULL: nothing */
+    const struct PixelVisibility *visibility; /* what samples of a pixel share; NULL: nothing */
     const bool *hidden; /* per primitive, or per segment of a field: the camera does not see it,
                          * lights do; NULL: none is hidden */
     const struct ThinLayer *thin; /* thin vessels that are drawn over each sample; NULL: none */

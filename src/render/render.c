@@ -20,10 +20,10 @@
 #include "render/cast/caster.h"
 #include "render/effect/effect.h"
 #include "render/field/fieldrender.h"
+#include "render/light/bandvisibility.h"
 #include "render/light/rayrender.h"
 #include "render/raster/rasterrender.h"
 #include "render/raster/zbuffer.h"
-#include "render/sky/share.h"
 #include "render/thin/thinvessels.h"
 #include "render/tile/tilekernels.h"
 #include "render/xray/xray.h"
@@ -41,7 +41,7 @@ struct Renderer {
     Caster *caster;      /* of the geometry; NULL until a view needs it */
     TermMean *mean;      /* likewise; NULL until an appearance needs it */
     RadiusTable radii;   /* likewise; empty until effects need it */
-    Beams beams;         /* likewise; none until there is occlusion */
+    OccluderSet beams;   /* likewise; none until there is occlusion */
     RenderStats stats;
     /* What is kept while engine, camera, lights, ground and antialiasing are these. */
     const Engine *engine; /* NULL: nothing is */
@@ -59,7 +59,7 @@ struct Renderer {
     ThinVessels thin;
     int thin_antialias;
     View thin_lights; /* whose lights and ground thin.lights and thin.open are for */
-    LonePlaces
+    OffPixelPoints
         *asked; /* those of `thin` while area lights are yet to be asked for them; borrowed */
 };
 
@@ -215,7 +215,7 @@ void renderer_free(Renderer *renderer)
     caster_free(renderer->caster);
     termmean_free(renderer->mean);
     radiustable_release(&renderer->radii);
-    beams_release(&renderer->beams);
+    occluderset_release(&renderer->beams);
     free(renderer);
 }
 
@@ -294,7 +294,7 @@ static Band band_between(int first, int rows, int margin, int height)
 /* ---- light that samples share -----------------------------------------------------------------
  */
 
-/* SharePlanes of a renderer. */
+/* DrawVesselPlanes of a renderer. */
 static Status see_vessels(const Drawing *drawing, void *context, Frame *planes, Err *err)
 {
     const Renderer *renderer = context;
@@ -333,22 +333,22 @@ static Drawing widened(const Drawing *drawing, int margin, int block)
 
 /* Finds what samples share, if they share anything, in the drawing's band and `margin` rows about
  * it at least. */
-static Status share(Renderer *renderer, const Drawing *drawing, int margin, SharedLight **out,
+static Status share(Renderer *renderer, const Drawing *drawing, int margin, PixelVisibility **out,
                     Err *err)
 {
     const RenderParams *params = drawing->params;
-    if (!share_is_wanted(drawing->view, params))
+    if (!pixelvisibility_is_needed(drawing->view, params))
         return STATUS_OK;
     if (params->occlusion > 0 && !renderer->beams.capsules)
-        TRY(beams_new(renderer->geometry, &renderer->beams, err));
+        TRY(occluderset_new(renderer->geometry, &renderer->beams, err));
     const bool soft = params->shadows && view_has_soft_shadows(drawing->view);
-    const Drawing wide = widened(drawing, margin, soft ? SHARE_BLOCK : 1);
-    const LightSources from = {.see = see_vessels,
-                               .context = renderer,
-                               .views = renderer->engine->lights,
-                               .beams = &renderer->beams,
-                               .lone = renderer->asked};
-    return share_light(&wide, &from, out, err);
+    const Drawing wide = widened(drawing, margin, soft ? VISIBILITY_BLOCK : 1);
+    const VisibilitySources from = {.draw_planes = see_vessels,
+                                    .context = renderer,
+                                    .light_views = renderer->engine->lights,
+                                    .occluders = &renderer->beams,
+                                    .off_pixel = renderer->asked};
+    return pixelvisibility_compute(&wide, &from, out, err);
 }
 
 /* ---- light of thin vessels --------------------------------------------------------------------
@@ -359,14 +359,14 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Shar
 static Status begin_light(Renderer *renderer, const View *view, Err *err)
 {
     const View *known = &renderer->thin_lights;
-    LonePlaces *places = &renderer->thin.lights;
+    OffPixelPoints *places = &renderer->thin.lights;
     if (places->n > 0 && has_lights(view, known->lights, known->n_lights) &&
         memcmp(&view->ground, &known->ground, sizeof view->ground) == 0)
         return STATUS_OK;
     thinvessels_place(&renderer->thin);
     renderer->thin_lights = (View){0};
     renderer->asked = places;
-    return renderer->params.shadows ? loneplaces_init(view, places, err) : STATUS_OK;
+    return renderer->params.shadows ? offpixel_init(view, places, err) : STATUS_OK;
 }
 
 /* Asks a light for the thin vessels as rows do, or by rays. */
@@ -376,11 +376,11 @@ static Status ask_light(Renderer *renderer, const Drawing *drawing, size_t light
     const Engine *engine = renderer->engine;
     const void *shadow = engine->shadow ? engine->shadow(renderer->prepared, light) : NULL;
     if (shadow)
-        return lonelight_look(drawing, engine->lights, shadow, &eye, light, renderer->asked, err);
+        return offpixel_query(drawing, engine->lights, shadow, &eye, light, renderer->asked, err);
     Drawing casting = *drawing;
     TRY(make_caster(renderer, err));
     casting.caster = renderer->caster;
-    lonelight_cast(&casting, light, renderer->asked);
+    offpixel_trace(&casting, light, renderer->asked);
     return STATUS_OK;
 }
 
@@ -392,7 +392,7 @@ static Status end_light(Renderer *renderer, const Drawing *drawing, Err *err)
     const RenderParams *params = drawing->params;
     if (!renderer->asked)
         return STATUS_OK;
-    const bool shared = share_is_wanted(view, params);
+    const bool shared = pixelvisibility_is_needed(view, params);
     for (size_t i = 0; i < view->n_lights && params->shadows; i++)
         if (view->lights[i].casts_shadows && !(shared && light_is_soft(&view->lights[i])))
             TRY(ask_light(renderer, drawing, i, err));
@@ -423,17 +423,17 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
     double start_s = clock_seconds();
     bool codes = params->codes_suffice && params->antialias == 1 && renderer->engine->makes_codes;
     TRY(make_planes(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
-    SharedLight *shared = NULL;
+    PixelVisibility *shared = NULL;
     Status status = STATUS_OK;
-    if (!drawing->shared) {
+    if (!drawing->visibility) {
         status = share(renderer, drawing, RENDER_BAND_STEP, &shared, err);
-        lit.shared = shared;
+        lit.visibility = shared;
     }
     if (status == STATUS_OK && drawing->hidden)
         status = light_thin(renderer, &lit, err);
     if (status == STATUS_OK)
         status = renderer->engine->rows(&lit, renderer->prepared, frame, err);
-    sharedlight_free(shared);
+    pixelvisibility_free(shared);
     TRY(status);
     renderer->stats.trace_s += clock_seconds() - start_s;
     renderer->stats.rays += (size_t)drawing->view->camera.width * (size_t)drawing->band.rows;
@@ -480,19 +480,19 @@ static Status draw_samples(Renderer *renderer, const Drawing *fine, int first, i
 }
 
 /* What the samples of pixels share where each is a pixel of a finer drawing. */
-static Status share_for_effects(Renderer *renderer, const Drawing *drawing, SharedLight **out,
+static Status share_for_effects(Renderer *renderer, const Drawing *drawing, PixelVisibility **out,
                                 Err *err)
 {
     const Effects *effects = &drawing->view->effects;
     int side = drawing->params->antialias;
-    if (!share_is_wanted(drawing->view, drawing->params))
+    if (!pixelvisibility_is_needed(drawing->view, drawing->params))
         return STATUS_OK;
     TRY(prepare_view(renderer, drawing, err));
     TRY(share(renderer, drawing,
               RENDER_BAND_STEP + rounded_up(effects_reach(effects, side), RENDER_BAND_STEP), out,
               err));
     if (*out)
-        (*out)->side = side;
+        (*out)->samples_per_side = side;
     return STATUS_OK;
 }
 
@@ -504,7 +504,7 @@ static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *fr
     RenderParams once = *params;
     View fine = *drawing->view;
     Drawing of_samples = *drawing;
-    SharedLight *shared = NULL;
+    PixelVisibility *shared = NULL;
     fine.camera.width *= params->antialias;
     fine.camera.height *= params->antialias;
     once.antialias = 1;
@@ -517,7 +517,7 @@ static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *fr
         TRY(radiustable_make(renderer->geometry, &renderer->radii, err));
     TRY(plane_init(&frame->color, drawing->view->camera.width, band->rows, 3, err));
     TRY(share_for_effects(renderer, drawing, &shared, err));
-    of_samples.shared = shared;
+    of_samples.visibility = shared;
     Status status = STATUS_OK;
     int step = (int)fmin(samples_at_once / fine.camera.width / params->antialias, 1e6);
     step = step < RENDER_BAND_STEP ? RENDER_BAND_STEP : step / RENDER_BAND_STEP * RENDER_BAND_STEP;
@@ -526,7 +526,7 @@ static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *fr
         status =
             draw_samples(renderer, &of_samples, band->first + row, rows, &frame->color, row, err);
     }
-    sharedlight_free(shared);
+    pixelvisibility_free(shared);
     return status;
 }
 

@@ -2,7 +2,7 @@
 #include "render/render.h"
 #include "unit.h"
 
-#include "render/sky/share.h"
+#include "render/light/bandvisibility.h"
 #include "stage/stage.h"
 #include "treeio/treeio.h"
 #include <stdint.h>
@@ -150,12 +150,12 @@ static void bands_have_the_soft_shadows_of_the_whole(void **state)
         for (SceneModel model = SCENE_CYLINDERS; model <= SCENE_BLOB; model++) {
             look.ground.present = ground == 1;
             Scene scene = staged(model, (Projection)ground);
-            scene.view.camera.height = 4 * SHARE_BLOCK + 11;
+            scene.view.camera.height = 4 * VISIBILITY_BLOCK + 11;
             scene.view.camera.width = 2 * WIDTH;
             RenderParams params = all_planes(1, 0);
             params.method = RENDER_RASTER;
             params.shadows = true;
-            assert_bands_are_the_whole(&scene, &params, SHARE_BLOCK + 8);
+            assert_bands_are_the_whole(&scene, &params, VISIBILITY_BLOCK + 8);
             scene_release(&scene);
         }
     look = plain;

@@ -1,11 +1,11 @@
 /* How much of the sky is seen, against what geometry says. */
-#include "render/light/occlusion.h"
+#include "render/light/rayocclusion.h"
 #include "unit.h"
 
 #include "render/job.h"
+#include "render/light/occlusion.h"
+#include "render/light/occlusionkernels.h"
 #include "render/render.h"
-#include "render/sky/beamkernels.h"
-#include "render/sky/skylight.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -22,7 +22,7 @@ static double open_part(const Geometry *geometry, const Ground *ground, Vec3 poi
 {
     Caster *caster;
     assert_int_equal(caster_new(geometry, NULL, 1, &caster, &err), STATUS_OK);
-    double open = occlusion_open(caster, 0, ground, point, normal, rays, turn);
+    double open = rayocclusion_ambient(caster, 0, ground, point, normal, rays, turn);
     caster_free(caster);
     return open;
 }
@@ -64,7 +64,7 @@ static void few_rays_are_right_on_average(void **state)
     for (int j = 0; j < 32; j++)
         for (int i = 0; i < 32; i++)
             sum += open_part(&geometry, &no_ground, vec3(0, 0, 0), vec3(0, 0, 1), 8,
-                             occlusion_turn(i, j));
+                             rayocclusion_turn(i, j));
     assert_true(fabs(sum / 1024 - many) < 4e-3);
 }
 
@@ -128,10 +128,10 @@ static void points_are_golden_angles_apart(void **state)
 static void turns_are_interleaved_gradient_noise(void **state)
 {
     (void)state;
-    assert_true(fabs(occlusion_turn(1, 0) - 0.555713357813584) < 1e-9);
-    assert_true(fabs(occlusion_turn(0, 1) - 0.309269245057135) < 1e-9);
-    assert_true(fabs(occlusion_turn(37.25, 101.75) - 0.969711563119490) < 1e-9);
-    assert_true(fabs(occlusion_turn(640, 479) - 0.565166883061425) < 1e-9);
+    assert_true(fabs(rayocclusion_turn(1, 0) - 0.555713357813584) < 1e-9);
+    assert_true(fabs(rayocclusion_turn(0, 1) - 0.309269245057135) < 1e-9);
+    assert_true(fabs(rayocclusion_turn(37.25, 101.75) - 0.969711563119490) < 1e-9);
+    assert_true(fabs(rayocclusion_turn(640, 479) - 0.565166883061425) < 1e-9);
 }
 
 static void turns_are_spread_over_the_circle(void **state)
@@ -140,7 +140,7 @@ static void turns_are_spread_over_the_circle(void **state)
     int count[10] = {0};
     for (int j = 0; j < 100; j++)
         for (int i = 0; i < 100; i++) {
-            double turn = occlusion_turn(i + 0.25, j - 0.25);
+            double turn = rayocclusion_turn(i + 0.25, j - 0.25);
             assert_true(turn >= 0 && turn < 1);
             count[(int)(10 * turn)]++;
         }
@@ -189,11 +189,11 @@ static double free_under_a_bar(const BeamKernels *kernels, double height, float 
     FieldSegment bar = {.a = {-100, 0, 0}, .b = {100, 0, 0}, .radius_mm = 1};
     const Geometry geometry = {.model = SCENE_ISOSURFACE, .segments = &bar, .n_segments = 1};
     const BeamDirection up = {.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .widening = widening};
-    Beams beams;
+    OccluderSet beams;
     BeamPlaces places = {0};
     BeamWork work = {0};
     uint8_t answer;
-    assert_int_equal(beams_new(&geometry, &beams, &err), STATUS_OK);
+    assert_int_equal(occluderset_new(&geometry, &beams, &err), STATUS_OK);
     assert_int_equal(beamplaces_new(1, &places, &err), STATUS_OK);
     assert_int_equal(beamwork_new(1, &work, &err), STATUS_OK);
     places.at[2][0] = (float)-height;
@@ -202,7 +202,7 @@ static double free_under_a_bar(const BeamKernels *kernels, double height, float 
     kernels->ask(&beams, &up, &places, &work, &answer);
     beamwork_release(&work);
     beamplaces_release(&places);
-    beams_release(&beams);
+    occluderset_release(&beams);
     return (double)answer / BEAM_FREE;
 }
 
@@ -236,19 +236,19 @@ static double seen_by_the_second(double degrees)
     const RenderParams params = {.threads = 1, .occlusion = 64};
     const Drawing drawing = {.geometry = &geometry, .view = &view, .params = &params};
     uint32_t numbers[2] = {0, 1};
-    SharedLight light = {.width = 2, .rows = 1, .side = 1, .numbers = numbers};
-    PixelPlace places[2] = {
-        sharedlight_place(&light, PLACE_VESSEL, vec3(0, 0, 0), vec3(0, 0, 1), 0.1),
-        sharedlight_place(&light, PLACE_VESSEL, vec3(0, 0, 0), vec3(sin(angle), 0, cos(angle)),
-                          0.1)};
-    Beams beams;
-    light.places = places;
-    assert_int_equal(beams_new(&geometry, &beams, &err), STATUS_OK);
-    assert_int_equal(skylight_find(&drawing, &beams, &light, &err), STATUS_OK);
-    double open = (double)light.open[1];
-    assert_true(light.open[0] == 1);
-    free(light.open);
-    beams_release(&beams);
+    PixelVisibility light = {.width = 2, .rows = 1, .samples_per_side = 1, .point_index = numbers};
+    ShadingPoint places[2] = {
+        pixelvisibility_point(&light, SURFACE_VESSEL, vec3(0, 0, 0), vec3(0, 0, 1), 0.1),
+        pixelvisibility_point(&light, SURFACE_VESSEL, vec3(0, 0, 0),
+                              vec3(sin(angle), 0, cos(angle)), 0.1)};
+    OccluderSet beams;
+    light.points = places;
+    assert_int_equal(occluderset_new(&geometry, &beams, &err), STATUS_OK);
+    assert_int_equal(occlusion_compute(&drawing, &beams, &light, &err), STATUS_OK);
+    double open = (double)light.ambient[1];
+    assert_true(light.ambient[0] == 1);
+    free(light.ambient);
+    occluderset_release(&beams);
     return open;
 }
 
@@ -265,16 +265,19 @@ static void a_sample_takes_light_from_up_to_two_pixels_away(void **state)
     (void)state;
     enum { SIDE = 9 };
     uint32_t numbers[SIDE * SIDE];
-    PixelPlace place = {.normal = {0, 0, 1}, .size = 0.1F};
-    const SharedLight light = {
-        .width = SIDE, .rows = SIDE, .side = 1, .numbers = numbers, .places = &place};
+    ShadingPoint place = {.normal = {0, 0, 1}, .pixel_mm = 0.1F};
+    const PixelVisibility light = {.width = SIDE,
+                                   .rows = SIDE,
+                                   .samples_per_side = 1,
+                                   .point_index = numbers,
+                                   .points = &place};
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) {
             bool is_near = abs(x - 4) <= 2 && abs(y - 4) <= 2;
-            memset(numbers, 0xff, sizeof numbers); /* PLACE_NONE */
+            memset(numbers, 0xff, sizeof numbers); /* NO_HIT */
             numbers[SIDE * y + x] = 0;
-            assert_int_equal(sharedlight_pixel(&light, 4, 4, &place),
-                             is_near ? (uint32_t)(SIDE * y + x) : PLACE_NONE);
+            assert_int_equal(pixelvisibility_pixel(&light, 4, 4, &place),
+                             is_near ? (uint32_t)(SIDE * y + x) : NO_HIT);
         }
 }
 
@@ -308,17 +311,18 @@ static void quads_weigh_by_their_distance_from_the_pixel(void **state)
 static void a_surface_ends_five_quarters_of_a_pixel_off_its_plane(void **state)
 {
     (void)state;
-    const SharedLight light = {.side = 1};
+    const PixelVisibility light = {.samples_per_side = 1};
     const Vec3 slanted = vec3(0.6, 0, 0.8);
     for (int outside = 0; outside < 2; outside++) {
         double off = (outside ? 1.26 : 1.24) * 0.3;
-        PixelPlace one = sharedlight_place(&light, PLACE_VESSEL, vec3(0, 0, 0), vec3(0, 0, 1), 0.3);
-        PixelPlace other =
-            sharedlight_place(&light, PLACE_VESSEL, vec3(-off / 3, 5, off), slanted, 0.3);
-        assert_int_equal(places_are_of_one(&one, &other), !outside);
-        assert_int_equal(places_are_of_one(&other, &one), !outside);
-        other.kind = PLACE_GROUND;
-        assert_false(places_are_of_one(&one, &other));
+        ShadingPoint one =
+            pixelvisibility_point(&light, SURFACE_VESSEL, vec3(0, 0, 0), vec3(0, 0, 1), 0.3);
+        ShadingPoint other =
+            pixelvisibility_point(&light, SURFACE_VESSEL, vec3(-off / 3, 5, off), slanted, 0.3);
+        assert_int_equal(shadingpoints_share_surface(&one, &other), !outside);
+        assert_int_equal(shadingpoints_share_surface(&other, &one), !outside);
+        other.surface = SURFACE_GROUND;
+        assert_false(shadingpoints_share_surface(&one, &other));
     }
 }
 

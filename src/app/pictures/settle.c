@@ -220,7 +220,7 @@ static void set_lights(Asker *asker, size_t brighter, int more)
 /* What a ray sees. */
 typedef struct Look {
     double t; /* INFINITY where neither vessel nor ground is seen */
-    ShadePoint at;
+    ShadingInput at;
     uint32_t id; /* 0: the ground or nothing */
     Rgb color;
 } Look;

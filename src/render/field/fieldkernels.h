@@ -4,7 +4,7 @@
 #define CORCAST_RENDER_FIELDKERNELS_H
 
 #include "render/field/fieldterms.h"
-#include "render/tile/lightqueue.h"
+#include "render/light/shadowqueue.h"
 
 /* Finds the first hits of a tile that has terms: sets all of *hits. `work` has room for those terms
  * [TILE_WORK_BYTES each] and holds nothing from one call to the next. Reads x and y of all
@@ -18,16 +18,16 @@ typedef enum PlaceState {
 } PlaceState;
 
 /* Places in a tile of a light's view, whose lines of sight lead to the light. Behind the last stand
- * PLACES_BEHIND copies of it. */
+ * POINT_PADDING copies of it. */
 typedef struct FieldPlaces {
     int n;
     float *x, *y;                     /* as those of a FieldTile */
     double *z;                        /* from where on something is in the way */
-    uint8_t state[LIGHT_MOST_PLACES]; /* PlaceState, the answer */
+    uint8_t state[SHADOW_MAX_POINTS]; /* PlaceState, the answer */
 } FieldPlaces;
 
 /* Says of places what state they are in; x and y of the tile are not read. A place within 0.2 % of
- * the level is taken to be on a surface that it leaves, as by field_is_shadowed(). */
+ * the level is taken to be on a surface that it leaves, as field_search.any takes it. */
 typedef void ShadowKernel(const FieldTile *tile, TileWork *work, FieldPlaces *places);
 
 FieldKernel trace_portable, trace_blob_portable;

@@ -28,16 +28,16 @@ typedef struct FieldShadow {
 typedef struct FieldQueue {
     const FieldShadow *shadow;
     const bool *hidden; /* per segment: the camera does not see it; NULL: it sees all. Borrowed. */
-    LightQueue *queue;
-    uint32_t answer[LIGHT_BATCH]; /* of each call */
+    ShadowQueue *queue;
+    uint32_t answer[SHADOW_BATCH]; /* of each call */
     /* Of the answers at hand: */
     ShadowKernel *kernel;
     uint8_t *shadowed;
     Status status;
     Err *err;
     FieldPlaces places;
-    AskedPlaces near;                   /* places at hidden segments */
-    uint8_t is_near[LIGHT_MOST_PLACES]; /* per place of a request */
+    QueuedPoints near;                  /* places at hidden segments */
+    uint8_t is_near[SHADOW_MAX_POINTS]; /* per place of a request */
     FieldSpace space;
 } FieldQueue;
 
@@ -159,7 +159,7 @@ static Status new_queue(const void *of, const bool *hidden, void **out, Err *err
     queue->shadow = shadow;
     queue->hidden = hidden;
     TRY(fieldspace_init(shadow->geometry, &queue->space, err));
-    return lightqueue_new(&shadow->aim, &queue->queue, err);
+    return shadowqueue_new(&shadow->aim, &queue->queue, err);
 }
 
 static void free_queue(void *of)
@@ -167,7 +167,7 @@ static void free_queue(void *of)
     FieldQueue *queue = of;
     if (!queue)
         return;
-    lightqueue_free(queue->queue);
+    shadowqueue_free(queue->queue);
     fieldspace_release(&queue->space);
     free(queue);
 }
@@ -177,7 +177,7 @@ static void ask(void *to, const TileKernels *kernels, const SeenPlaces *places, 
 {
     FieldQueue *queue = to;
     if (wanted)
-        queue->answer[lightqueue_ask(queue->queue, kernels, places, wanted)] = answer;
+        queue->answer[shadowqueue_ask(queue->queue, kernels, places, wanted)] = answer;
 }
 
 /* A tile of the light but for its terms. */
@@ -199,9 +199,9 @@ static FieldTile tile_of(const FieldShadow *shadow, int number, LocalGroups *gro
 /* Sets the z of a request's places to those that the kernel reads, and the tile's z_min, from where
  * on vessels matter. Leaves out places outside the tile: they are outside the light's view, and see
  * the light. Returns how many are left. */
-static int place_request(const FieldQueue *queue, const LightRequest *request, FieldTile *tile)
+static int place_request(const FieldQueue *queue, const TileQueries *request, FieldTile *tile)
 {
-    AskedPlaces *asked = request->places;
+    QueuedPoints *asked = request->places;
     const LightAim *aim = &queue->shadow->aim;
     float half_x = (float)fabs(0.50005 / aim->per_x), half_y = (float)fabs(0.50005 / aim->per_y);
     int n = 0;
@@ -221,13 +221,13 @@ static int place_request(const FieldQueue *queue, const LightRequest *request, F
 }
 
 /* Gives the kernel n > 0 places, in their own memory. */
-static void set_places(AskedPlaces *asked, int n, FieldPlaces *places)
+static void set_places(QueuedPoints *asked, int n, FieldPlaces *places)
 {
     places->x = asked->x;
     places->y = asked->y;
     places->z = asked->z;
     places->n = n;
-    for (int i = n; i < n + PLACES_BEHIND; i++) {
+    for (int i = n; i < n + POINT_PADDING; i++) {
         places->x[i] = places->x[n - 1];
         places->y[i] = places->y[n - 1];
         places->z[i] = places->z[n - 1];
@@ -258,7 +258,7 @@ static const size_t *list_of(const FieldShadow *shadow, int tile)
 }
 
 /* Place i in the frame of the segments. */
-static Vec3 place_at(const FieldTile *tile, const AskedPlaces *asked, int i)
+static Vec3 place_at(const FieldTile *tile, const QueuedPoints *asked, int i)
 {
     const double z = asked->z[i], scale = tile->perspective ? z : 1;
     return vec3((tile->middle_x + (double)asked->x[i]) * scale,
@@ -266,8 +266,8 @@ static Vec3 place_at(const FieldTile *tile, const AskedPlaces *asked, int i)
 }
 
 /* Marks the places of [first, end) that lie within reach of a segment. */
-static void mark_near(FieldQueue *queue, const FieldTile *tile, const AskedPlaces *asked, int first,
-                      int end, const FrameSegment *segment)
+static void mark_near(FieldQueue *queue, const FieldTile *tile, const QueuedPoints *asked,
+                      int first, int end, const FrameSegment *segment)
 {
     for (int i = first; i < end; i++) {
         const Vec3 from = vec3_sub(place_at(tile, asked, i), segment->a);
@@ -279,9 +279,9 @@ static void mark_near(FieldQueue *queue, const FieldTile *tile, const AskedPlace
 
 /* Marks the n places that lie within reach of a hidden segment. Places that follow one another are
  * close together: most blocks of them are far from a segment. */
-static void find_near(FieldQueue *queue, const FieldTile *tile, const AskedPlaces *asked, int n)
+static void find_near(FieldQueue *queue, const FieldTile *tile, const QueuedPoints *asked, int n)
 {
-    Box blocks[LIGHT_BATCH];
+    Box blocks[SHADOW_BATCH];
     for (int i = 0; i < n; i++) {
         Box *block = &blocks[i / TILE_SAMPLES];
         *block =
@@ -309,13 +309,13 @@ static void find_near(FieldQueue *queue, const FieldTile *tile, const AskedPlace
  * begins, places on that surface lie inside the body of all segments. That body hides every light
  * from them. So a hidden segment casts no shadow on places that its own term reaches. It is thinner
  * than a pixel, and its term reaches 2.4 of its radii. */
-static int set_apart(FieldQueue *queue, const FieldTile *tile, AskedPlaces *asked, int *n)
+static int set_apart(FieldQueue *queue, const FieldTile *tile, QueuedPoints *asked, int *n)
 {
     const int n_asked = *n;
     int n_near = *n = 0;
     find_near(queue, tile, asked, n_asked);
     for (int i = 0; i < n_asked; i++) {
-        AskedPlaces *to = queue->is_near[i] ? &queue->near : asked;
+        QueuedPoints *to = queue->is_near[i] ? &queue->near : asked;
         int at = queue->is_near[i] ? n_near++ : (*n)++;
         to->x[at] = asked->x[i];
         to->y[at] = asked->y[i];
@@ -340,7 +340,7 @@ static void leave_out_hidden(const FieldQueue *queue, FieldTile *tile)
 }
 
 /* Decides n places by the terms of a tile, and stores the answers. */
-static Status decide_places(FieldQueue *queue, const FieldTile *tile, AskedPlaces *asked, int n,
+static Status decide_places(FieldQueue *queue, const FieldTile *tile, QueuedPoints *asked, int n,
                             Err *err)
 {
     FieldPlaces *places = &queue->places;
@@ -358,7 +358,7 @@ static Status decide_places(FieldQueue *queue, const FieldTile *tile, AskedPlace
     return STATUS_OK;
 }
 
-static Status answer_tile(FieldQueue *queue, const LightRequest *request, Err *err)
+static Status answer_tile(FieldQueue *queue, const TileQueries *request, Err *err)
 {
     const FieldShadow *shadow = queue->shadow;
     FieldSpace *space = &queue->space;
@@ -384,7 +384,7 @@ static Status answer_tile(FieldQueue *queue, const LightRequest *request, Err *e
     return decide_places(queue, &tile, &queue->near, n_near, err);
 }
 
-static void visit_tile(const LightRequest *request, void *context)
+static void visit_tile(const TileQueries *request, void *context)
 {
     FieldQueue *queue = context;
     if (queue->status == STATUS_OK)
@@ -398,7 +398,7 @@ static Status answer(void *of, RenderKernels kernels, uint8_t *shadowed, Err *er
     queue->shadowed = shadowed;
     queue->status = STATUS_OK;
     queue->err = err;
-    lightqueue_visit(queue->queue, visit_tile, queue);
+    shadowqueue_visit(queue->queue, visit_tile, queue);
     return queue->status;
 }
 

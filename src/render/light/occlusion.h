@@ -1,18 +1,14 @@
-/* Ambient occlusion: how much of the sky a point sees. */
+/* Ambient occlusion: the part of the sky that the places of a picture see. */
 #ifndef CORCAST_RENDER_OCCLUSION_H
 #define CORCAST_RENDER_OCCLUSION_H
 
-#include "render/cast/caster.h"
+#include "render/light/occluders.h"
+#include "render/light/visibility.h"
 
-/* The part, from 0 to 1, of `rays` (at least 1) rays from the point that meet neither a vessel nor
- * the ground. Their directions are distributed as the cosine to `normal` (unit), and turned about
- * it by `turn`, a part of a full turn. O(rays) questions to the caster. METHODS section 3.1. */
-double occlusion_open(Caster *caster, int worker, const Ground *ground, Vec3 point, Vec3 normal,
-                      int rays, double turn);
-
-/* The turn of the sample at (i, j) of the picture, from 0 to 1: neighbours differ as much as they
- * can. J. Jimenez: Next generation post processing in Call of Duty: Advanced Warfare, SIGGRAPH
- * 2014. */
-double occlusion_turn(double i, double j);
+/* Sets light->ambient (owned by *light even when this fails) by `drawing->params->occlusion` beams.
+ * `light` has places and numbers; its first row is even. What a place sees depends on those up to
+ * VISIBILITY_MARGIN rows above it and below. STATUS_MEMORY. */
+MUST_CHECK Status occlusion_compute(const Drawing *drawing, const OccluderSet *beams,
+                                    PixelVisibility *light, Err *err);
 
 #endif

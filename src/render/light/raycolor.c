@@ -3,9 +3,9 @@
  * the view, and no plane but that of colours shows it. */
 #include "render/light/raycolor.h"
 
-#include "render/light/occlusion.h"
+#include "render/light/rayocclusion.h"
 #include "render/light/shade.h"
-#include "render/light/sharedlight.h"
+#include "render/light/visibility.h"
 #include <math.h>
 
 typedef struct ShadowContext {
@@ -22,16 +22,16 @@ static bool shadowed(void *context, Vec3 point, Vec3 towards, double distance)
 
 /* What the sample (i, j) shares with its pixel. */
 static void add_shared(const Drawing *drawing, double i, double j, double t, bool on_ground,
-                       float parts[VIEW_MAX_LIGHTS], ShadePoint *at)
+                       float parts[VIEW_MAX_LIGHTS], ShadingInput *at)
 {
-    const SharedLight *shared = drawing->shared;
-    PixelPlace seen =
-        sharedlight_place(shared, on_ground ? PLACE_GROUND : PLACE_VESSEL, at->point, at->normal,
-                          sharedlight_pixel_mm(&drawing->view->camera, t));
-    uint32_t pixel = sharedlight_pixel(shared, i, j, &seen);
-    at->open = (double)sharedlight_open(shared, pixel);
+    const PixelVisibility *visibility = drawing->visibility;
+    ShadingPoint seen =
+        pixelvisibility_point(visibility, on_ground ? SURFACE_GROUND : SURFACE_VESSEL, at->point,
+                              at->normal, pixelvisibility_pixel_mm(&drawing->view->camera, t));
+    uint32_t pixel = pixelvisibility_pixel(visibility, i, j, &seen);
+    at->open = (double)pixelvisibility_ambient(visibility, pixel);
     for (size_t k = 0; k < drawing->view->n_lights; k++)
-        parts[k] = sharedlight_part(shared, k, pixel);
+        parts[k] = pixelvisibility_light(visibility, k, pixel);
     at->parts = parts;
 }
 
@@ -63,18 +63,18 @@ Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, c
     float parts[VIEW_MAX_LIGHTS];
     ShadowContext context = {drawing->caster, ground, worker};
     Vec3 point = ray_at(ray, t);
-    ShadePoint at = {.finish = on_ground ? &ground->finish : &appearance->finish,
-                     .pigment = on_ground ? ground->color : pigment_of(drawing, surfel, point),
-                     .point = point,
-                     .normal = on_ground ? ground->normal : surfel->normal,
-                     .direction = ray.direction,
-                     .open = 1};
+    ShadingInput at = {.finish = on_ground ? &ground->finish : &appearance->finish,
+                       .pigment = on_ground ? ground->color : pigment_of(drawing, surfel, point),
+                       .point = point,
+                       .normal = on_ground ? ground->normal : surfel->normal,
+                       .direction = ray.direction,
+                       .open = 1};
     if (vec3_dot(at.normal, ray.direction) > 0)
         at.normal = vec3_scale(at.normal, -1);
-    if (drawing->shared)
+    if (drawing->visibility)
         add_shared(drawing, i, j, t, on_ground, parts, &at);
     else if (params->occlusion > 0)
-        at.open = occlusion_open(drawing->caster, worker, ground, at.point, at.normal,
-                                 params->occlusion, occlusion_turn(i, j));
+        at.open = rayocclusion_ambient(drawing->caster, worker, ground, at.point, at.normal,
+                                       params->occlusion, rayocclusion_turn(i, j));
     return shade(view, &at, params->shadows ? shadowed : NULL, &context);
 }

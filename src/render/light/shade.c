@@ -71,14 +71,14 @@ static double visible_part(const Light *light, Vec3 place, ShadowTest *shadow, v
     return (double)reach / n;
 }
 
-Rgb shade(const View *view, const ShadePoint *at, ShadowTest *shadow, void *context)
+Rgb shade(const View *view, const ShadingInput *at, ShadowTest *shadow, void *context)
 {
     Rgb color = rgb_scale(at->pigment, (double)at->finish->ambient * at->open);
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
         Vec3 towards = light_way(light, at->point).towards;
         double cosine = vec3_dot(at->normal, towards);
-        if (cosine < LEAST_LIT_COSINE)
+        if (cosine < MIN_LIT_COSINE)
             continue;
         double part = at->parts && at->parts[i] >= 0
                           ? (double)at->parts[i]

@@ -4,19 +4,19 @@
 #ifndef CORCAST_RENDER_RASTERKERNELS_H
 #define CORCAST_RENDER_RASTERKERNELS_H
 
+#include "render/light/shadowqueue.h"
 #include "render/raster/rastertile.h"
-#include "render/tile/lightqueue.h"
 
 /* Lines of sight of a light through places, all in one tile of its view, and depths on them. */
 typedef struct ShadowQueries {
     int n;
-    float *x, *y;         /* in the plane of the view, less the tile's middle; PLACES_ROOM */
-    float z[PLACES_ROOM]; /* less z_middle */
+    float *x, *y;            /* in the plane of the view, less the tile's middle; POINT_CAPACITY */
+    float z[POINT_CAPACITY]; /* less z_middle */
     /* Number of the primitive whose surface the place lies on, as in RasterHits. If that is a
      * sphere or a cylinder whose hit was found in single precision, it is not tested as a blocker
      * of this place: rounding would let it shadow itself. */
-    uint32_t item[PLACES_ROOM];
-    uint8_t covered[PLACES_ROOM]; /* 1 where an item is seen before that depth, else 0 */
+    uint32_t item[POINT_CAPACITY];
+    uint8_t covered[POINT_CAPACITY]; /* 1 where an item is seen before that depth, else 0 */
 } ShadowQueries;
 
 typedef struct RasterKernels {
@@ -25,9 +25,9 @@ typedef struct RasterKernels {
      * if sample i sees an item. Reads tile->list[0 .. n), and of the bins what raster_decide
      * does. */
     uint64_t (*trace)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
-    /* Completes *surface after `trace` with the same tile and hits: state, the primitive's number
+    /* Completes *surface after `trace` with the same tile and hits: state, z, the primitive's number
      * (as `segment`), and the normals of joints and of what was decided in double precision; leaves
-     * z, any_hit and any_unsure alone. Of joints, completes *hits. */
+     * any_hit and any_unsure alone. Of joints, completes *hits. */
     void (*resolve)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
     /* The places that the hits are at. */
     void (*locate)(const RasterTile *tile, const RasterHits *hits, SeenPlaces *places);

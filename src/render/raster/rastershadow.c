@@ -225,9 +225,9 @@ void rastershadow_free(RasterShadow *shadow)
 
 struct RasterQueue {
     const RasterShadow *shadow;
-    LightQueue *places;
-    const uint32_t *items[LIGHT_BATCH]; /* of each call; NULL in all of them: not known */
-    uint32_t answer[LIGHT_BATCH];
+    ShadowQueue *places;
+    const uint32_t *items[SHADOW_BATCH]; /* of each call; NULL in all of them: not known */
+    uint32_t answer[SHADOW_BATCH];
     const RasterKernels *kernels;
     uint8_t *shadowed;
     ShadowQueries queries;
@@ -237,14 +237,14 @@ Status rasterqueue_new(const RasterShadow *shadow, RasterQueue **out, Err *err)
 {
     TRY(mem_calloc(out, 1, sizeof **out, "shadows", err));
     (*out)->shadow = shadow;
-    return lightqueue_new(&shadow->aim, &(*out)->places, err);
+    return shadowqueue_new(&shadow->aim, &(*out)->places, err);
 }
 
 void rasterqueue_free(RasterQueue *queue)
 {
     if (!queue)
         return;
-    lightqueue_free(queue->places);
+    shadowqueue_free(queue->places);
     free(queue);
 }
 
@@ -253,7 +253,7 @@ void rasterqueue_ask(RasterQueue *queue, const TileKernels *kernels, const SeenP
 {
     if (!wanted)
         return;
-    int call = lightqueue_ask(queue->places, kernels, places, wanted);
+    int call = shadowqueue_ask(queue->places, kernels, places, wanted);
     queue->items[call] = items;
     queue->answer[call] = answer;
 }
@@ -278,10 +278,10 @@ static void fetch_list(const RasterShadow *shadow, int number)
         __builtin_prefetch(tile.list + word);
 }
 
-static void set_queries(RasterQueue *queue, const LightRequest *request)
+static void set_queries(RasterQueue *queue, const TileQueries *request)
 {
     ShadowQueries *queries = &queue->queries;
-    AskedPlaces *places = request->places;
+    QueuedPoints *places = request->places;
     queries->x = places->x;
     queries->y = places->y;
     queries->n = request->n;
@@ -296,7 +296,7 @@ static void set_queries(RasterQueue *queue, const LightRequest *request)
                (size_t)request->n * sizeof *queries->item); /* RASTER_NOTHING */
 }
 
-static void test_tile(const LightRequest *request, void *context)
+static void test_tile(const TileQueries *request, void *context)
 {
     RasterQueue *queue = context;
     ShadowQueries *queries = &queue->queries;
@@ -316,7 +316,7 @@ void rasterqueue_answer(RasterQueue *queue, const RasterKernels *kernels, uint8_
 {
     queue->kernels = kernels;
     queue->shadowed = shadowed;
-    lightqueue_visit(queue->places, test_tile, queue);
+    shadowqueue_visit(queue->places, test_tile, queue);
 }
 
 /* ---- for those who ask by places alone ------------------------------------------------------- */

@@ -2,9 +2,9 @@
 #ifndef CORCAST_RENDER_RASTERSHADOW_H
 #define CORCAST_RENDER_RASTERSHADOW_H
 
+#include "render/light/lightview.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
-#include "render/tile/lightview.h"
 
 /* The geometry as one light sees it; constant once built. */
 typedef struct RasterShadow RasterShadow;
@@ -20,7 +20,7 @@ void rastershadow_free(RasterShadow *shadow);
 /* Whether a light that casts shadows has points from which no one view sees all of the geometry. */
 bool rastershadows_need_rays(const Geometry *geometry, const View *view);
 
-/* Shadow queries to one light, for the places of up to LIGHT_BATCH tiles of the picture. They are
+/* Shadow queries to one light, for the places of up to SHADOW_BATCH tiles of the picture. They are
  * answered together because places that lie in one tile of the light share its list. Not
  * thread-safe: each worker has a queue of its own for each light. */
 typedef struct RasterQueue RasterQueue;
@@ -33,7 +33,7 @@ void rasterqueue_free(RasterQueue *queue);
 /* Adds a query for each place i whose bit is set in `wanted`; place i lies on items[i], as in
  * RasterHits. `items` is NULL where that is not known, in all calls between two answers or in none
  * of them. It is borrowed until rasterqueue_answer, which writes the answer for place i to
- * shadowed[answer + i]. At most LIGHT_BATCH calls between two answers. */
+ * shadowed[answer + i]. At most SHADOW_BATCH calls between two answers. */
 void rasterqueue_ask(RasterQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
                      const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer);
 /* Answers all queries and empties the queue. An answer is 1 if a primitive stands between the light

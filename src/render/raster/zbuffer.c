@@ -207,12 +207,12 @@ static void finish_pixel(const Buffers *buffers, const Point *point, int i, int 
         return;
     Rgb color = drawing->view->background;
     if (seen) {
-        const ShadePoint at = {.finish = &drawing->appearance->finish,
-                               .pigment = appearance_color(drawing->appearance, segment),
-                               .point = ray_at(ray, t),
-                               .normal = normal,
-                               .direction = ray.direction,
-                               .open = 1};
+        const ShadingInput at = {.finish = &drawing->appearance->finish,
+                                 .pigment = appearance_color(drawing->appearance, segment),
+                                 .point = ray_at(ray, t),
+                                 .normal = normal,
+                                 .direction = ray.direction,
+                                 .open = 1};
         color = shade(drawing->view, &at, NULL, NULL);
     }
     planes_store_color(frame, pixel, color);

@@ -12,8 +12,8 @@
 #include "render/thin/thinvessels.h"
 
 #include "render/cast/caster.h"
+#include "render/light/occlusion.h"
 #include "render/light/shade.h"
-#include "render/sky/skylight.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -301,7 +301,7 @@ static Status find(Search *search, int threads, Err *err)
 void thinvessels_release(ThinVessels *thin)
 {
     thinlayer_release(&thin->layer);
-    loneplaces_release(&thin->lights);
+    offpixel_release(&thin->lights);
     free(thin->piece_strips);
     free(thin->open);
     *thin = (ThinVessels){0};
@@ -369,7 +369,7 @@ static Vec3 above_wall(const Wall *wall, Vec3 normal)
     return vec3_add_scaled(wall->middle, normal, (1 + lift) * wall->radius);
 }
 
-/* LonePlaces.at: the point of a piece that faces the light. */
+/* OffPixelPoints.at: the point of a piece that faces the light. */
 static Vec3 lit_point(const void *context, const Light *light, size_t piece)
 {
     const Wall wall = wall_of(context, piece);
@@ -380,15 +380,15 @@ static Vec3 lit_point(const void *context, const Light *light, size_t piece)
 
 void thinvessels_place(ThinVessels *thin)
 {
-    loneplaces_release(&thin->lights);
-    thin->lights = (LonePlaces){.n = thin->layer.n_pieces, .at = lit_point, .context = thin};
+    offpixel_release(&thin->lights);
+    thin->lights = (OffPixelPoints){.n = thin->layer.n_pieces, .at = lit_point, .context = thin};
 }
 
 /* ---- ambient visibility ---------------------------------------------------------------------- */
 
 /* Columns of a picture of one row whose pixels are pieces. Runs are apart by more than the pixels
- * that share answers [sky/skylight.c], as their walls have nothing in common. Sets *n to the number
- * of columns. */
+ * that share answers [light/occlusion.c], as their walls have nothing in common. Sets *n to the
+ * number of columns. */
 static Status place_pieces(const ThinVessels *thin, uint32_t **columns, size_t *n, Err *err)
 {
     enum { APART = 4 };
@@ -407,43 +407,45 @@ static Status place_pieces(const ThinVessels *thin, uint32_t **columns, size_t *
 }
 
 static Status make_picture(const Drawing *drawing, const ThinVessels *thin, const uint32_t *columns,
-                           SharedLight *light, Err *err)
+                           PixelVisibility *light, Err *err)
 {
     size_t n = thin->layer.n_pieces;
-    TRY(mem_alloc(&light->numbers, (size_t)light->width, sizeof *light->numbers, "occlusion", err));
-    TRY(mem_calloc(&light->places, n, sizeof *light->places, "occlusion", err));
-    memset(light->numbers, 0xff, (size_t)light->width * sizeof *light->numbers); /* PLACE_NONE */
+    TRY(mem_alloc(&light->point_index, (size_t)light->width, sizeof *light->point_index,
+                  "occlusion", err));
+    TRY(mem_calloc(&light->points, n, sizeof *light->points, "occlusion", err));
+    memset(light->point_index, 0xff,
+           (size_t)light->width * sizeof *light->point_index); /* NO_HIT */
     for (size_t piece = 0; piece < n; piece++) {
         const Wall wall = wall_of(thin, piece);
         double t = vec3_distance(wall.middle, drawing->view->camera.location);
-        light->numbers[columns[piece]] = (uint32_t)piece;
-        light->places[piece] =
-            sharedlight_place(light, PLACE_VESSEL, above_wall(&wall, wall.front), wall.front,
-                              sharedlight_pixel_mm(&drawing->view->camera, t));
+        light->point_index[columns[piece]] = (uint32_t)piece;
+        light->points[piece] =
+            pixelvisibility_point(light, SURFACE_VESSEL, above_wall(&wall, wall.front), wall.front,
+                                  pixelvisibility_pixel_mm(&drawing->view->camera, t));
     }
     return STATUS_OK;
 }
 
-Status thinvessels_find_open(const Drawing *drawing, const Beams *beams, ThinVessels *thin,
+Status thinvessels_find_open(const Drawing *drawing, const OccluderSet *beams, ThinVessels *thin,
                              Err *err)
 {
-    SharedLight *light = NULL;
+    PixelVisibility *light = NULL;
     uint32_t *columns = NULL;
     size_t width = 0;
     Status status;
     TRY_GOTO(mem_calloc(&light, 1, sizeof *light, "occlusion", err));
     TRY_GOTO(place_pieces(thin, &columns, &width, err));
     light->width = (int)width;
-    light->rows = light->side = 1;
+    light->rows = light->samples_per_side = 1;
     light->origin = beams->origin;
     TRY_GOTO(make_picture(drawing, thin, columns, light, err));
-    TRY_GOTO(skylight_find(drawing, beams, light, err));
+    TRY_GOTO(occlusion_compute(drawing, beams, light, err));
     free(thin->open);
     TRY_GOTO(mem_calloc(&thin->open, thin->layer.n_pieces, sizeof *thin->open, "occlusion", err));
     for (size_t piece = 0; piece < thin->layer.n_pieces; piece++)
-        thin->open[piece] = light->open[columns[piece]];
+        thin->open[piece] = light->ambient[columns[piece]];
 done:
-    sharedlight_free(light);
+    pixelvisibility_free(light);
     free(columns);
     return status;
 }
@@ -471,13 +473,13 @@ static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const Wal
         double across = (2 * k + 1.0) / SHADED - 1;
         Vec3 normal =
             vec3_add_scaled(vec3_scale(wall->front, sqrt(1 - across * across)), wall->side, across);
-        const ShadePoint at = {.finish = &drawing->appearance->finish,
-                               .pigment = appearance_color(drawing->appearance, wall->segment),
-                               .point = vec3_add_scaled(wall->middle, normal, wall->radius),
-                               .normal = normal,
-                               .direction = wall->direction,
-                               .open = thin->open ? (double)thin->open[piece] : 1,
-                               .parts = parts};
+        const ShadingInput at = {.finish = &drawing->appearance->finish,
+                                 .pigment = appearance_color(drawing->appearance, wall->segment),
+                                 .point = vec3_add_scaled(wall->middle, normal, wall->radius),
+                                 .normal = normal,
+                                 .direction = wall->direction,
+                                 .open = thin->open ? (double)thin->open[piece] : 1,
+                                 .parts = parts};
         Rgb one = shade(drawing->view, &at, NULL, NULL);
         sum = (Rgb){sum.r + one.r / SHADED, sum.g + one.g / SHADED, sum.b + one.b / SHADED};
     }

@@ -5,8 +5,8 @@
 
 #include "base/base.h"
 #include "render/job.h"
-#include "render/sky/beams.h"
-#include "render/sky/lonelight.h"
+#include "render/light/occluders.h"
+#include "render/light/offpixel.h"
 #include "render/tile/thincells.h"
 
 /* The thin vessels of a geometry in one view, and the light that reaches them. */
@@ -15,7 +15,7 @@ typedef struct ThinVessels {
     Camera camera;          /* a bitwise copy of the one given */
     ThinLayer layer;        /* has no colours before thinvessels_color */
     uint32_t *piece_strips; /* per piece: index of its strip; owned */
-    LonePlaces lights;      /* shading points of the pieces; no lights before loneplaces_init */
+    OffPixelPoints lights;  /* shading points of the pieces; no lights before offpixel_init */
     float *open;            /* per piece: ambient visibility; NULL: 1. Owned. */
 } ThinVessels;
 
@@ -34,7 +34,7 @@ void thinvessels_release(ThinVessels *thin);
 
 /* Finds the ambient visibility of the pieces, by `drawing->params->occlusion` occlusion directions.
  * Errors   STATUS_MEMORY. */
-MUST_CHECK Status thinvessels_find_open(const Drawing *drawing, const Beams *beams,
+MUST_CHECK Status thinvessels_find_open(const Drawing *drawing, const OccluderSet *beams,
                                         ThinVessels *thin, Err *err);
 
 /* Sets the colours of the pieces of those strips that may touch the drawing's band, by the light

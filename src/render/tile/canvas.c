@@ -5,7 +5,7 @@
 #include "render/tile/canvas.h"
 
 #include "render/cast/caster.h"
-#include "render/light/sharedlight.h"
+#include "render/light/visibility.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -48,14 +48,14 @@ static void begin_surface(Rgb color, TileSurface *surface)
 }
 
 /* Lets the worker's surfaces have what samples share. */
-static void share_surfaces(const SharedLight *shared, CanvasWorker *own)
+static void share_surfaces(const PixelVisibility *visibility, CanvasWorker *own)
 {
     TileSurface *surfaces[] = {&own->surface, &own->ground};
-    for (int i = 0; shared && i < 2; i++) {
+    for (int i = 0; visibility && i < 2; i++) {
         surfaces[i]->open = own->open;
         surfaces[i]->parts = (const float(*)[TILE_SAMPLES])own->parts;
         for (int light = 0; light < VIEW_MAX_LIGHTS; light++)
-            surfaces[i]->is_shared[light] = shared->parts[light] != NULL;
+            surfaces[i]->is_shared[light] = visibility->lights[light] != NULL;
     }
 }
 
@@ -103,8 +103,8 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
                  .more = resampling_for(frame->color.values ? params->antialias : 1),
                  .look = tilelook_of(drawing->view, &appearance->finish, eye),
                  .ground_look = tilelook_of(drawing->view, &drawing->view->ground.finish, eye),
-                 .needs_places = needs_places(drawing->view) || drawing->mean || drawing->shared ||
-                                 drawing->view->ground.present,
+                 .needs_places = needs_places(drawing->view) || drawing->mean ||
+                                 drawing->visibility || drawing->view->ground.present,
                  .wants_color = frame->color.values || frame->codes.codes8,
                  .wants_geometry = planes_want_geometry(frame)};
     TRY(make_background(canvas, err));
@@ -112,7 +112,7 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
     for (int i = 0; i < canvas->workers; i++) {
         begin_surface(appearance->color, &canvas->each[i].surface);
         begin_surface(drawing->view->ground.color, &canvas->each[i].ground);
-        share_surfaces(drawing->shared, &canvas->each[i]);
+        share_surfaces(drawing->visibility, &canvas->each[i]);
     }
     return STATUS_OK;
 }
@@ -195,32 +195,33 @@ static void set_places(const SeenTile *seen, TileSurface *surface)
 static uint32_t shared_pixel(const Canvas *canvas, const SeenTile *seen, int sample,
                              const double per[2])
 {
-    const SharedLight *shared = canvas->drawing->shared;
+    const PixelVisibility *visibility = canvas->drawing->visibility;
     const Camera *camera = &canvas->drawing->view->camera;
     Vec3 line = seen_line(seen, sample), normal = load_vec3(seen->hits->normal, sample);
     double away = seen->perspective ? vec3_dot(normal, line) : normal.z;
-    PixelPlace place = sharedlight_place(
-        shared, seen->ground >> sample & 1 ? PLACE_GROUND : PLACE_VESSEL,
+    ShadingPoint place = pixelvisibility_point(
+        visibility, seen->ground >> sample & 1 ? SURFACE_GROUND : SURFACE_VESSEL,
         viewpoint_point(&canvas->eye, seen_place(seen, sample)),
         viewpoint_to_world(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
-        sharedlight_pixel_mm(camera, seen->hits->z[sample]));
-    return sharedlight_pixel(shared, line.x * per[0] + (camera->width - 1) / 2.0,
-                             (camera->height - 1) / 2.0 - line.y * per[1], &place);
+        pixelvisibility_pixel_mm(camera, seen->hits->z[sample]));
+    return pixelvisibility_pixel(visibility, line.x * per[0] + (camera->width - 1) / 2.0,
+                                 (camera->height - 1) / 2.0 - line.y * per[1], &place);
 }
 
 /* Asks memory for what the pixels of a tile to come share: of each of its rows that is little. */
 static void fetch_shared(const Canvas *canvas, const SeenTile *seen)
 {
-    const SharedLight *shared = canvas->drawing->shared;
+    const PixelVisibility *visibility = canvas->drawing->visibility;
     const int column = seen->column + 2 * TILE_SIDE;
-    for (int row = seen->row; column < shared->width && row < seen->row + seen->n_rows; row++) {
-        size_t pixel = (size_t)(row - shared->first) * (size_t)shared->width + (size_t)column;
-        __builtin_prefetch(&shared->numbers[pixel]);
-        if (shared->open)
-            __builtin_prefetch(&shared->open[pixel]);
+    for (int row = seen->row; column < visibility->width && row < seen->row + seen->n_rows; row++) {
+        size_t pixel =
+            (size_t)(row - visibility->first_row) * (size_t)visibility->width + (size_t)column;
+        __builtin_prefetch(&visibility->point_index[pixel]);
+        if (visibility->ambient)
+            __builtin_prefetch(&visibility->ambient[pixel]);
         for (size_t i = 0; i < canvas->look.n_lights; i++)
-            if (shared->parts[i])
-                __builtin_prefetch(&shared->parts[i][pixel]);
+            if (visibility->lights[i])
+                __builtin_prefetch(&visibility->lights[i][pixel]);
     }
 }
 
@@ -228,26 +229,26 @@ static void fetch_shared(const Canvas *canvas, const SeenTile *seen)
  * one a pixel. */
 static void set_shared(const Canvas *canvas, const SeenTile *seen, CanvasWorker *own)
 {
-    const SharedLight *shared = canvas->drawing->shared;
+    const PixelVisibility *visibility = canvas->drawing->visibility;
     const Camera *camera = &canvas->drawing->view->camera;
     const double per[2] = {camera->width / vec3_length(camera->right),
                            camera->height / vec3_length(camera->up)};
-    bool centers = canvas->more.side == 0 && shared->side == 1;
+    bool centers = canvas->more.side == 0 && visibility->samples_per_side == 1;
     if (centers)
         fetch_shared(canvas, seen);
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (seen->hits->state[sample] != TILE_HIT)
             continue;
-        uint32_t pixel = PLACE_NONE;
+        uint32_t pixel = NO_HIT;
         if (centers)
-            pixel = sharedlight_at(shared, seen->column + tile_sample_x(sample),
-                                   seen->row + tile_sample_y(sample));
-        if (pixel == PLACE_NONE)
+            pixel = pixelvisibility_at(visibility, seen->column + tile_sample_x(sample),
+                                       seen->row + tile_sample_y(sample));
+        if (pixel == NO_HIT)
             pixel = shared_pixel(canvas, seen, sample, per);
-        own->open[sample] = sharedlight_open(shared, pixel);
+        own->open[sample] = pixelvisibility_ambient(visibility, pixel);
         for (size_t i = 0; i < canvas->look.n_lights; i++)
-            if (shared->parts[i])
-                own->parts[i][sample] = sharedlight_part(shared, i, pixel);
+            if (visibility->lights[i])
+                own->parts[i][sample] = pixelvisibility_light(visibility, i, pixel);
     }
 }
 
@@ -301,7 +302,7 @@ float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
         set_pigments(canvas, seen, &own->surface);
     if (canvas->needs_places)
         set_places(seen, &own->surface);
-    if (canvas->drawing->shared)
+    if (canvas->drawing->visibility)
         set_shared(canvas, seen, own);
     canvas->kernels->shade(&canvas->look, &own->surface, own->color);
     if (seen->ground)

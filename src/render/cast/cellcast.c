@@ -1,0 +1,175 @@
+/* POV-Ray's IsoSurface object (shape/isosurf.cpp of 3.7.0.10), open and with max_trace 1, in its
+ * own order of operations. On the part [t0, t1] of the ray in the box:
+ *
+ *   R(a, b):  if b - a < accuracy:                           a hit at b if f(b) < 0
+ *             else if f(a) + f(b) < max_gradient (b - a):     R(a, m), then R(m, b), m the middle
+ *
+ * with f's sign turned when it is negative at t0, so that a ray from within finds its way out. A
+ * ray that starts within an accuracy of the box and has |f| < 4 max_gradient accuracy there starts
+ * on the surface: it is moved on by five accuracies, and f's sign is turned if it is negative
+ * there. So a shadow ray, which starts up to an accuracy inside, sees its own surface again where
+ * it runs nearly along it.
+ *
+ * POV-Ray also remembers the last cell that a ray missed, and takes a near ray for a miss of the
+ * same cell if the least f it saw exceeds max_gradient times the distance of the two. Scenes of
+ * ours do not let it: the last cell missed is always Cell_Guard of templates/povray/isosurface.inc.
+ */
+#include "render/cast/boxcast.h"
+#include "render/cast/povray_bound.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+/* What POV-Ray calls EPSILON, CLOSE_TOLERANCE, DEPTH_TOLERANCE and BOUND_HUGE (shape/boxes.cpp). */
+static const double flat = 1e-10, close_by = 1e-6, behind = 1e-6, endless = 2e10;
+
+/* ---- one cell -------------------------------------------------------------------------------- */
+
+/* One axis of POV-Ray's box test. Beyond the first axis, `slack` keeps an end of the interval where
+ * it is unless the new one is nearer by more. */
+static bool cut_axis(double from, double along, double low, double high, double slack, double *t0,
+                     double *t1)
+{
+    if (fabs(along) <= flat)
+        return from >= low && from <= high;
+    double far = ((along < 0 ? low : high) - from) / along;
+    if (far < *t0)
+        return false;
+    if (far <= *t1 - slack)
+        *t1 = far;
+    double near = ((along < 0 ? high : low) - from) / along;
+    if (near >= *t0 + slack) {
+        if (near > *t1)
+            return false;
+        *t0 = near;
+    }
+    return true;
+}
+
+static bool cut_box(Ray ray, const Cell *cell, double *t0, double *t1)
+{
+    Vec3 o = ray.origin, d = ray.direction;
+    *t0 = 0;
+    *t1 = endless;
+    return cut_axis(o.x, d.x, cell->low.x, cell->high.x, 0, t0, t1) &&
+           cut_axis(o.y, d.y, cell->low.y, cell->high.y, close_by, t0, t1) &&
+           cut_axis(o.z, d.z, cell->low.z, cell->high.z, close_by, t0, t1) && *t1 >= behind;
+}
+
+/* A search along a ray in a cell. */
+typedef struct CellSearch {
+    const CellTree *tree;
+    const Cell *cell;
+    Ray ray;
+    double sign;
+} CellSearch;
+
+static double value_at(const CellSearch *search, double t)
+{
+    return search->sign * cell_function(search->tree, search->cell, ray_at(search->ray, t));
+}
+
+typedef struct CellSample {
+    double t, f;
+} CellSample;
+
+/* R of above; `rise` is max_gradient times the width. */
+static bool find_root(const CellSearch *search, CellSample a, CellSample b, double rise,
+                      double width, double *t)
+{
+    if (width < search->cell->accuracy) {
+        *t = b.t;
+        return b.f < 0;
+    }
+    if (!(a.f + b.f - rise < 0))
+        return false;
+    width *= 0.5;
+    rise *= 0.5;
+    CellSample middle = {a.t + width, 0};
+    middle.f = value_at(search, middle.t);
+    return find_root(search, a, middle, rise, width, t) ||
+           find_root(search, middle, b, rise, width, t);
+}
+
+/* The cells, and the ray that is tested against their bounds. */
+typedef struct CellQuery {
+    const CellTree *cells;
+    BoundRay rounded;
+} CellQuery;
+
+/* Sets hits[0].t, and *rank to the order in which POV-Ray looks into the cell. */
+static int cell_crossings(const void *items, uint32_t index, Ray ray, Hit hits[ITEM_CROSSINGS],
+                          double *rank)
+{
+    const CellQuery *query = items;
+    const CellTree *tree = query->cells;
+    const Cell *cell = &tree->cells[index];
+    CellSearch search = {tree, cell, ray, 1};
+    double t0, t1, accuracy = cell->accuracy;
+    if (!cut_box(ray, cell, &t0, &t1) || t1 - t0 < accuracy ||
+        !povray_looks_into(&query->rounded, (Box){cell->low, cell->high}, rank))
+        return 0;
+    if (t0 < accuracy && fabs(value_at(&search, t0)) < cell->max_gradient * accuracy * 4) {
+        t0 = accuracy * 5;
+        if (value_at(&search, t0) < 0)
+            search.sign = -1;
+    }
+    CellSample a = {t0, value_at(&search, t0)};
+    if (a.f < 0) {
+        search.sign *= -1;
+        a.f *= -1;
+    }
+    CellSample b = {t1, value_at(&search, t1)};
+    double rise = cell->max_gradient * vec3_length(ray.direction) * (t1 - t0);
+    return find_root(&search, a, b, rise, t1 - t0, &hits->t);
+}
+
+static Vec3 cell_normal(const CellTree *tree, const Cell *cell, Vec3 x)
+{
+    double f = cell_function(tree, cell, x), step = cell->accuracy;
+    Vec3 n = {cell_function(tree, cell, vec3(x.x + step, x.y, x.z)) - f,
+              cell_function(tree, cell, vec3(x.x, x.y + step, x.z)) - f,
+              cell_function(tree, cell, vec3(x.x, x.y, x.z + step)) - f};
+    return n.x == 0 && n.y == 0 && n.z == 0 ? vec3(1, 0, 0) : vec3_normalized(n);
+}
+
+/* ---- all cells ------------------------------------------------------------------------------- */
+
+static Box cell_box(const RayIndex *index, size_t i)
+{
+    return (Box){index->cells.cells[i].low, index->cells.cells[i].high};
+}
+
+static Status build(RayIndex *index, const CellParams *params, Err *err)
+{
+    TRY(celltree_build(index->geometry, params, &index->cells, err));
+    return rayindex_build_boxes(index, index->cells.n_cells, cell_box, err);
+}
+
+/* Where two cells are hit at one point, the hit is that of the cell that POV-Ray looks into first.
+ * Where both boxes begin at one point, which their shifts [surface/celltree.c] avoid, it is that of
+ * the lower index. */
+static bool first_cell(const RayIndex *index, void *workspace, const RayPart *part, RayHit *hit)
+{
+    (void)workspace;
+    const CellQuery query = {&index->cells, bound_ray(part->ray)};
+    Hit nearest;
+    if (!boxcast_first(&index->boxes, part, 0, cell_crossings, &query, &nearest, &hit->cell))
+        return false;
+    const Cell *cell = &index->cells.cells[hit->cell];
+    const Vec3 x = ray_at(part->ray, nearest.t);
+    hit->t = nearest.t;
+    hit->normal = cell_normal(&index->cells, cell, x);
+    hit->index = cell_largest_term(&index->cells, cell, x);
+    return true;
+}
+
+static bool any_cell(const RayIndex *index, void *workspace, const RayPart *part)
+{
+    (void)workspace;
+    const CellQuery query = {&index->cells, bound_ray(part->ray)};
+    return boxcast_any(&index->boxes, part, 0, cell_crossings, &query);
+}
+
+const RaySearch cell_search = {
+    .nearest_mm = NEAREST_SEEN_MM, .build = build, .first = first_cell, .any = any_cell};

@@ -1,0 +1,52 @@
+/* Computes the visibility of ambient light and area lights that all samples of a pixel share, for a
+ * band of an image [visibility.h]. */
+#ifndef CORCAST_RENDER_BANDVISIBILITY_H
+#define CORCAST_RENDER_BANDVISIBILITY_H
+
+#include "render/light/lightview.h"
+#include "render/light/occluders.h"
+#include "render/light/offpixel.h"
+#include "render/light/shadowqueue.h"
+#include "render/light/visibility.h"
+
+/* Returns true if samples share visibility. Four conditions must hold: colours are wanted, the
+ * method is not RENDER_TRACE, the view is not an x-ray, and either ambient occlusion is on or
+ * shadows are on and an area light of the view casts soft shadows. */
+bool pixelvisibility_is_needed(const View *view, const RenderParams *params);
+
+/* Number of rows above and below a band on which the band's visibility depends. Ambient occlusion
+ * averages over 3 x 3 blocks of 2 x 2 pixels, which reach three rows. */
+enum { VISIBILITY_MARGIN = 3 };
+
+/* Rows of a block of the image. The shading points of a block query an area light together.
+ * Rounding in the isosurface and blob kernels depends on which shading points are queried together.
+ * Where a view has area lights, the caller of pixelvisibility_compute therefore passes a band of
+ * whole blocks: the result then has the same bytes as that of the whole image. */
+enum { VISIBILITY_BLOCK = 64 };
+
+/* Draws the depth and normal planes of the drawing's band: one ray through each pixel centre,
+ * vessels only. The caller releases *planes, even after an error. Errors: STATUS_MEMORY. */
+typedef Status DrawVesselPlanes(const Drawing *drawing, void *context, Frame *planes, Err *err);
+
+/* The inputs of pixelvisibility_compute. All are borrowed. */
+typedef struct VisibilitySources {
+    DrawVesselPlanes *draw_planes;
+    void *context;                 /* passed to draw_planes */
+    const LightViews *light_views; /* queries area lights; where it is NULL or does not support a
+                                    * light, the drawing's caster traces shadow rays instead */
+    const OccluderSet *occluders;  /* block ambient light; read only if occlusion is on */
+    OffPixelPoints *off_pixel;     /* also receives its visibility of the area lights; NULL: there
+                                    * are no off-pixel shading points */
+} VisibilitySources;
+
+/* Computes the visibility of all pixels of the drawing's band.
+ *
+ * The VISIBILITY_MARGIN rows next to an edge of the band are correct only if that edge is also an
+ * edge of the image. If ambient occlusion is on, the band's first row must be even.
+ *
+ * out      receives the result; release it with pixelvisibility_free. Set on success only.
+ * Errors   STATUS_MEMORY. */
+MUST_CHECK Status pixelvisibility_compute(const Drawing *drawing, const VisibilitySources *sources,
+                                          PixelVisibility **out, Err *err);
+
+#endif

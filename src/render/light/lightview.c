@@ -1,0 +1,123 @@
+/* The view is the smallest rectangle about the corners of the geometry's box, widened a little for
+ * rounding. Where places are asked about that lie in part of it, only the lists of the tiles in
+ * that part are made. The tiles are the same whatever the part: so are the answers, to the last
+ * bit. */
+#include "render/light/lightview.h"
+
+/* A point light must be as far from the middle of the scene, in radii of the scene: it sees less
+ * than 60 degrees to each side then. */
+static const double least_radii = 1.16;
+
+double lightview_radius(const Geometry *geometry)
+{
+    return vec3_distance(box_center(geometry->bounds), geometry->bounds.high);
+}
+
+/* Whether light and geometry are on one side of the ground. */
+static bool is_before_ground(const Ground *ground, const Light *light, Vec3 center)
+{
+    Vec3 towards = light_way(light, center).towards;
+    double above = vec3_dot(ground->normal, center) - ground->offset_mm;
+    double to_light = light->parallel
+                          ? vec3_dot(ground->normal, towards)
+                          : vec3_dot(ground->normal, light->location) - ground->offset_mm;
+    return !ground->present || above * to_light > 0;
+}
+
+bool lightview_sees_all(const Geometry *geometry, const View *view, const Light *light)
+{
+    Vec3 center = box_center(geometry->bounds);
+    double distance = vec3_distance(light->location, center);
+    return (light->parallel || distance > least_radii * lightview_radius(geometry)) &&
+           is_before_ground(&view->ground, light, center);
+}
+
+static Vec3 corner(const Box *box, int number)
+{
+    return vec3(number & 1 ? box->high.x : box->low.x, number & 2 ? box->high.y : box->low.y,
+                number & 4 ? box->high.z : box->low.z);
+}
+
+static Viewpoint eye_of(const Geometry *geometry, const Light *light)
+{
+    Viewpoint eye = {.location = light->location, .perspective = !light->parallel};
+    Vec3 target = light->parallel ? light->target : box_center(geometry->bounds);
+    eye.axes[2] = vec3_normalized(vec3_sub(target, light->location));
+    Vec3 other = fabs(eye.axes[2].x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
+    eye.axes[0] = vec3_normalized(vec3_cross(eye.axes[2], other));
+    eye.axes[1] = vec3_cross(eye.axes[0], eye.axes[2]);
+    return eye;
+}
+
+/* What a box of the world covers of the view's plane; infinite where part of it may be behind. */
+static Box seen_box(const Viewpoint *eye, const Box *world)
+{
+    Box box = box_empty();
+    for (int i = 0; i < 8; i++) {
+        Vec3 at = viewpoint_place(eye, corner(world, i));
+        if (eye->perspective && at.z <= 0)
+            return (Box){vec3(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL), vec3(HUGE_VAL, HUGE_VAL, HUGE_VAL)};
+        if (eye->perspective)
+            at = vec3(at.x / at.z, at.y / at.z, at.z);
+        box = box_with_ball(box, at, 0);
+    }
+    return box;
+}
+
+/* Of `tiles` tiles those from one place to another, both in tiles, and one more to either side for
+ * rounding. Places beside the tiles are those of the nearest. */
+static TileSpan tiles_between(double from, double to, int tiles)
+{
+    return (TileSpan){(int)max_of(min_of(from - 1, tiles - 1), 0),
+                      (int)max_of(min_of(to + 1, tiles - 1), 0)};
+}
+
+LightView lightview_of(const Geometry *geometry, const Light *light, int tiles, const Box *asked)
+{
+    LightView view = {.eye = eye_of(geometry, light), .tiles = tiles};
+    const int samples = tiles * TILE_SIDE;
+    Box box = seen_box(&view.eye, &geometry->bounds);
+    view.step_x = (box.high.x - box.low.x) * 1.0001 / samples;
+    view.step_y = -(box.high.y - box.low.y) * 1.0001 / samples;
+    view.left = (box.low.x + box.high.x) / 2 - (samples - 1) / 2.0 * view.step_x;
+    view.top = (box.low.y + box.high.y) / 2 - (samples - 1) / 2.0 * view.step_y;
+    view.z_middle = (box.low.z + box.high.z) / 2;
+    view.columns = view.rows = (TileSpan){0, tiles - 1};
+    if (asked) {
+        Box seen = seen_box(&view.eye, asked);
+        double per_x = 1 / (TILE_SIDE * view.step_x), per_y = 1 / (TILE_SIDE * view.step_y);
+        view.columns = tiles_between((seen.low.x - view.left) * per_x,
+                                     (seen.high.x - view.left) * per_x, tiles);
+        view.rows =
+            tiles_between((seen.high.y - view.top) * per_y, (seen.low.y - view.top) * per_y, tiles);
+    }
+    return view;
+}
+
+LightAim lightview_aim(const LightView *view, const Viewpoint *camera, double slack)
+{
+    LightAim aim = {.perspective = view->eye.perspective,
+                    .left = view->left - view->step_x / 2,
+                    .top = view->top - view->step_y / 2,
+                    .per_x = 1 / (TILE_SIDE * view->step_x),
+                    .per_y = 1 / (TILE_SIDE * view->step_y),
+                    .columns = view->tiles,
+                    .rows = view->tiles,
+                    .slack = slack,
+                    .z_middle = view->z_middle,
+                    .offset = viewpoint_place(&view->eye, camera->location)};
+    for (int i = 0; i < 3; i++)
+        aim.axes[i] = viewpoint_to_frame(camera, view->eye.axes[i]);
+    return aim;
+}
+
+bool lightviews_can(const LightViews *views, const Geometry *geometry, const View *view,
+                    const Light *light)
+{
+    bool can = true;
+    for (int k = 0; k < light_points(light); k++) {
+        Light point = light_at_point(light, k);
+        can = can && views->can(geometry, view, &point);
+    }
+    return can;
+}

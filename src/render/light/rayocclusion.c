@@ -1,0 +1,48 @@
+/* Directions are points of a disc lifted to the hemisphere above it (Malley), which makes them as
+ * frequent as their cosine, so that the mean needs no weights. The points are those of a sunflower:
+ * the k-th of n at the radius sqrt((k + u) / n) and k golden angles round, evenly spread for every
+ * n. The same points everywhere would leave bands; turned, and moved by another u, from pixel to
+ * pixel they leave fine grain, and are right on average. */
+#include "render/light/rayocclusion.h"
+
+#include <math.h>
+
+static const double shifts_per_turn = 12; /* so that u takes all values in every direction */
+static const double golden_part = 0.3819660112501051; /* of a full turn */
+
+typedef struct Axes {
+    Vec3 a, b;
+} Axes;
+
+/* Two unit vectors square to the normal and to each other. T. Duff et al.: Building an orthonormal
+ * basis, revisited, J. Comput. Graph. Tech. 6 (2017) 1-8. */
+static Axes axes_about(Vec3 n)
+{
+    double sign = copysign(1, n.z), s = -1 / (sign + n.z), t = n.x * n.y * s;
+    return (Axes){{1 + sign * n.x * n.x * s, sign * t, -sign * n.x},
+                  {t, sign + n.y * n.y * s, -n.y}};
+}
+
+double rayocclusion_ambient(Caster *caster, int worker, const Ground *ground, Vec3 point,
+                            Vec3 normal, int rays, double turn)
+{
+    Axes axes = axes_about(normal);
+    int open = 0;
+    double shift = turn * shifts_per_turn - floor(turn * shifts_per_turn);
+    for (int k = 0; k < rays; k++) {
+        double part = (k + shift) / rays, radius = sqrt(part);
+        double angle = FULL_TURN * (k * golden_part + turn);
+        Vec3 direction = vec3_scale(normal, sqrt(1 - part));
+        direction = vec3_add_scaled(direction, axes.a, radius * elementary_cos(angle));
+        direction = vec3_add_scaled(direction, axes.b, radius * elementary_sin(angle));
+        open += !caster_shadow(caster, worker, ground, point, vec3_normalized(direction), HUGE_VAL);
+    }
+    return (double)open / rays;
+}
+
+double rayocclusion_turn(double i, double j)
+{
+    double slope = 0.06711056 * i + 0.00583715 * j;
+    double turn = 52.9829189 * (slope - floor(slope));
+    return turn - floor(turn);
+}
