@@ -26,11 +26,9 @@ typedef struct Building {
     Link *link;
     size_t n_links;
     uint32_t *component; /* of each kept point, the first of its members */
-    uint32_t *degree;    /* links of each kept point */
-    uint32_t *first;     /* where each point's links begin in `at`; one more at the end */
-    uint32_t *at;
-    uint32_t *parent; /* of each kept point the parent + 1, 0: it has none */
-    uint32_t *above;  /* of each kept point the link to its parent */
+    IndexLists links;    /* the links of each kept point */
+    uint32_t *parent;    /* of each kept point the parent + 1, 0: it has none */
+    uint32_t *above;     /* of each kept point the link to its parent */
 } Building;
 
 static void release(Building *building)
@@ -38,9 +36,7 @@ static void release(Building *building)
     free(building->place);
     free(building->link);
     free(building->component);
-    free(building->degree);
-    free(building->first);
-    free(building->at);
+    indexlists_release(&building->links);
     free(building->parent);
     free(building->above);
 }
@@ -120,23 +116,11 @@ static size_t describe_link(const Building *building, const Link *link, double *
     return n;
 }
 
-static uint64_t hash_numbers(const double *number, size_t n)
-{
-    uint64_t hash = n;
-    for (size_t i = 0; i < n; i++) {
-        uint64_t bits;
-        memcpy(&bits, &number[i], sizeof bits);
-        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 32;
-    }
-    return hash;
-}
-
-/* A hash table with linear probing holds the indices + 1 of links that are kept. */
+/* The kept links, by hashes of their descriptions. */
 typedef struct LinkTable {
-    uint32_t *slot;
-    double *one, *other; /* descriptions of two links */
-    size_t slots;        /* a power of two */
+    KeyMap first;        /* per hash: a link + 1 */
+    uint32_t *next;      /* per link: the next link + 1 of its hash; 0: none; owned */
+    double *one, *other; /* descriptions of two links; owned */
 } LinkTable;
 
 static bool joins_same(const Link *one, const Link *other)
@@ -144,42 +128,48 @@ static bool joins_same(const Link *one, const Link *other)
     return (one->a == other->a && one->b == other->b) || (one->a == other->b && one->b == other->a);
 }
 
-/* Adds link `kept`, or returns false if it repeats a link of the table. */
-static bool take_link(const Building *building, LinkTable *table, size_t kept)
+/* Adds link `kept` to the table. Sets *is_new to false if the link repeats one of the table. */
+static Status take_link(const Building *building, LinkTable *table, size_t kept, bool *is_new,
+                        Err *err)
 {
     const Link *link = building->link;
+    uint32_t *first;
     size_t n = describe_link(building, &link[kept], table->one);
-    size_t at = hash_numbers(table->one, n) & (table->slots - 1);
-    for (; table->slot[at]; at = (at + 1) & (table->slots - 1))
-        if (joins_same(&link[kept], &link[table->slot[at] - 1]) &&
-            describe_link(building, &link[table->slot[at] - 1], table->other) == n &&
+    TRY(keymap_put(&table->first, key_of_numbers(table->one, n), &first, is_new, err));
+    for (uint32_t k = *first; k; k = table->next[k - 1])
+        if (joins_same(&link[kept], &link[k - 1]) &&
+            describe_link(building, &link[k - 1], table->other) == n &&
             memcmp(table->one, table->other, n * sizeof *table->one) == 0)
-            return false;
-    table->slot[at] = (uint32_t)kept + 1;
-    return true;
+            return STATUS_OK;
+    *is_new = true;
+    table->next[kept] = *first;
+    *first = (uint32_t)kept + 1;
+    return STATUS_OK;
 }
 
 /* Of links that repeat each other the first stays. Other links between the same two points are
  * vessels of their own, which close a loop. */
 static Status drop_repeated(Building *building, Err *err)
 {
-    LinkTable table = {.slots = 64};
+    LinkTable table = {0};
     const size_t most = 4 + 2 * building->graph->n_columns;
-    size_t kept = 0;
+    size_t kept = 0, n = building->n_links;
     Status status = STATUS_OK;
-    while (table.slots < 2 * building->n_links)
-        table.slots *= 2;
-    TRY_GOTO(mem_calloc(&table.slot, table.slots, sizeof *table.slot, "slots for lines", err));
+    TRY_GOTO(keymap_begin(&table.first, n, "slots for lines", err));
+    TRY_GOTO(mem_calloc(&table.next, n, sizeof *table.next, "slots for lines", err));
     TRY_GOTO(mem_calloc(&table.one, most, sizeof *table.one, "values of a line", err));
     TRY_GOTO(mem_calloc(&table.other, most, sizeof *table.other, "values of a line", err));
-    for (size_t i = 0; i < building->n_links; i++) {
+    for (size_t i = 0; i < n; i++) {
+        bool is_new;
         building->link[kept] = building->link[i];
-        kept += take_link(building, &table, kept);
+        TRY_GOTO(take_link(building, &table, kept, &is_new, err));
+        kept += is_new;
     }
-    building->reading->repeated = building->n_links - kept;
+    building->reading->repeated = n - kept;
     building->n_links = kept;
 done:
-    free(table.slot);
+    keymap_release(&table.first);
+    free(table.next);
     free(table.one);
     free(table.other);
     return status;
@@ -206,14 +196,11 @@ static void span(Building *building, size_t *kept)
 {
     uint32_t *component = building->component;
     Link *link = building->link;
-    for (uint32_t i = 0; i < building->graph->n_points; i++)
-        component[i] = i;
+    sets_begin(component, building->graph->n_points);
     *kept = 0;
     for (size_t i = 0; i < building->n_links; i++) {
-        uint32_t a = graph_first(component, link[i].a), b = graph_first(component, link[i].b);
-        if (a == b)
+        if (!sets_join(component, link[i].a, link[i].b))
             continue;
-        component[a < b ? b : a] = a < b ? a : b;
         Link taken = link[i];
         link[i] = link[*kept];
         link[(*kept)++] = taken;
@@ -306,37 +293,37 @@ static Status cut_loops(Building *building, Err *err)
 
 /* ---- roots ---- */
 
+static uint32_t degree_of(const Building *building, size_t point)
+{
+    return indexlists_length(&building->links, point);
+}
+
 /* Whether a point becomes a node: of a tree also one that no line leads to. */
 static bool is_node(const Building *building, size_t point)
 {
     return building->place[point] == point &&
-           (building->degree[point] > 0 || building->graph->is_tree);
+           (degree_of(building, point) > 0 || building->graph->is_tree);
 }
 
 static Status list_links(Building *building, Err *err)
 {
-    size_t n = building->graph->n_points;
-    TRY(mem_calloc(&building->degree, n, sizeof *building->degree, "degrees", err));
-    TRY(mem_calloc(&building->first, n, sizeof *building->first, "links of points", err));
-    TRY(mem_calloc(&building->at, 2 * building->n_links, sizeof *building->at, "links of points",
-                   err));
+    IndexLists *links = &building->links;
+    TRY(indexlists_begin(links, building->graph->n_points, "links of points", err));
     for (size_t i = 0; i < building->n_links; i++) {
-        building->degree[building->link[i].a]++;
-        building->degree[building->link[i].b]++;
+        indexlists_count(links, building->link[i].a);
+        indexlists_count(links, building->link[i].b);
     }
-    uint32_t end = 0;
-    for (size_t i = 0; i < n; i++)
-        building->first[i] = end += building->degree[i];
-    for (size_t i = building->n_links; i-- > 0;) {
-        building->at[--building->first[building->link[i].a]] = (uint32_t)i;
-        building->at[--building->first[building->link[i].b]] = (uint32_t)i;
+    TRY(indexlists_allot(links, "links of points", err));
+    for (size_t i = 0; i < building->n_links; i++) {
+        indexlists_put(links, building->link[i].a, (uint32_t)i);
+        indexlists_put(links, building->link[i].b, (uint32_t)i);
     }
     return STATUS_OK;
 }
 
 static const Link *link_at(const Building *building, uint32_t point, uint32_t k)
 {
-    return &building->link[building->at[building->first[point] + k]];
+    return &building->link[building->links.items[building->links.first[point] + k]];
 }
 
 /* How well a point would do as the root of its component. */
@@ -353,15 +340,15 @@ static Candidate judge(const Building *building, uint32_t point)
     const Graph *graph = building->graph;
     Candidate made = {.point = point + 1};
     bool leads_away = true;
-    for (uint32_t k = 0; k < building->degree[point]; k++) {
+    for (uint32_t k = 0; k < degree_of(building, point); k++) {
         const Link *link = link_at(building, point, k);
         leads_away = leads_away && graph->line[link->line].is_directed && link->a == point;
         made.thickness = fmax(made.thickness, link->thickness);
     }
-    made.rank = graph->point[point].is_inlet   ? RANK_INLET
-                : leads_away                   ? RANK_SOURCE
-                : building->degree[point] == 1 ? RANK_END
-                                               : RANK_ANY;
+    made.rank = graph->point[point].is_inlet      ? RANK_INLET
+                : leads_away                      ? RANK_SOURCE
+                : degree_of(building, point) == 1 ? RANK_END
+                                                  : RANK_ANY;
     return made;
 }
 
@@ -378,7 +365,7 @@ static Status choose_roots(Building *building, Candidate *best, Err *err)
     for (uint32_t i = 0; i < graph->n_points; i++) {
         if (!is_node(building, i))
             continue;
-        Candidate candidate = judge(building, i), *of = &best[graph_first(building->component, i)];
+        Candidate candidate = judge(building, i), *of = &best[sets_find(building->component, i)];
         if (is_better(&candidate, of))
             *of = candidate;
     }
@@ -421,7 +408,7 @@ static void direct_from(Building *building, uint32_t root, uint32_t *queue)
     queue[n++] = root;
     while (done < n) {
         uint32_t point = queue[done++];
-        for (uint32_t k = 0; k < building->degree[point]; k++) {
+        for (uint32_t k = 0; k < degree_of(building, point); k++) {
             const Link *link = link_at(building, point, k);
             uint32_t other = link->a ^ link->b ^ point;
             if (other + 1 == building->parent[point])
@@ -516,7 +503,7 @@ static Status radius_of(const Building *building, uint32_t kept, double *radius,
         *radius = graph->point[kept].radius;
         return STATUS_OK;
     }
-    for (uint32_t k = 0; k < building->degree[kept]; k++) {
+    for (uint32_t k = 0; k < degree_of(building, kept); k++) {
         const Link *link = link_at(building, kept, k);
         double of_link;
         TRY(radius_of(building, link->a ^ link->b ^ kept, &of_link, err));
@@ -713,8 +700,8 @@ static Status find_near_ends(Building *building, Err *err)
     TRY_GOTO(mem_calloc(&reach, graph->n_points, sizeof *reach, "reaches of ends", err));
     TRY_GOTO(mem_calloc(&part, graph->n_points, sizeof *part, "components", err));
     for (uint32_t i = 0; i < graph->n_points; i++) {
-        part[i] = is_node(building, i) ? graph_first(building->component, i) + 1 : 0;
-        if (part[i] && building->degree[i] == 1)
+        part[i] = is_node(building, i) ? sets_find(building->component, i) + 1 : 0;
+        if (part[i] && degree_of(building, i) == 1)
             reach[i] = fmin(median, reach_of(graph, link_at(building, i, 0)));
     }
     status = graph_near_ends(graph, part, reach, median, building->reading, err);

@@ -1,8 +1,8 @@
-/* Points that are joined are one, by union-find whose first member stands for all. Of the rest, in
- * the order of the file, each becomes the nearest point kept before it within the tolerance, or is
- * kept itself; so what is kept does not depend on chance, and a row of close points does not melt
- * into one. Kept points are found in a hash table of cubes whose side is the tolerance: those in
- * reach are in 27 of them, and few fit into one. Without a tolerance a cube is a place. */
+/* Merges points. Joined points are one set, whose first member is kept. Each other point, in the
+ * order of the file, becomes the nearest point kept before it within the tolerance, or is kept
+ * itself. What is kept therefore does not depend on hashes, and a row of close points does not
+ * become one point. Kept points are listed by cubes whose side is the tolerance: the points in
+ * reach are in 27 cubes, and few fit into one. Without a tolerance, a cube is a position. */
 #include "tree/graph_parts.h"
 #include "tree/tree.h"
 
@@ -20,22 +20,12 @@ void graph_scale(Graph *graph)
         graph->line[i].radius *= scale.radius;
 }
 
-uint32_t graph_first(uint32_t *place, uint32_t i)
-{
-    while (place[i] != i) {
-        place[i] = place[place[i]];
-        i = place[i];
-    }
-    return i;
-}
-
-/* Kept points by the cube they are in. */
+/* Kept points by their cubes. */
 typedef struct Cubes {
     const GraphPoint *point;
-    double side;    /* of a cube; 0: a cube is a place */
-    uint32_t *head; /* point + 1 of each slot */
-    uint32_t *next; /* of each point, the next + 1 of its slot */
-    size_t slots;   /* a power of two */
+    double side;    /* of a cube; 0: a cube is a position */
+    KeyMap first;   /* per cube, by a hash of it: a point + 1 */
+    uint32_t *next; /* per point: the next point + 1 of its cube; 0: none; owned */
 } Cubes;
 
 static Vec3 cube_of(const Cubes *cubes, Vec3 at)
@@ -45,22 +35,23 @@ static Vec3 cube_of(const Cubes *cubes, Vec3 at)
     return (Vec3){floor(at.x / cubes->side), floor(at.y / cubes->side), floor(at.z / cubes->side)};
 }
 
-static size_t slot_of(const Cubes *cubes, Vec3 cube)
+static uint64_t key_of(Vec3 cube)
 {
-    uint64_t bits[3], hash = 0;
-    memcpy(bits, &cube, sizeof bits);
-    for (int k = 0; k < 3; k++) {
-        hash = (hash ^ bits[k]) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 32;
-    }
-    return hash & (cubes->slots - 1);
+    return key_of_numbers((const double[]){cube.x, cube.y, cube.z}, 3);
+}
+
+/* Returns a point + 1 of the cube, or 0. Points of other cubes may follow it. */
+static uint32_t first_in(const Cubes *cubes, Vec3 cube)
+{
+    const uint32_t *first = keymap_find(&cubes->first, key_of(cube));
+    return first ? *first : 0;
 }
 
 /* The nearest kept point of a cube that is nearer than *nearest, which becomes its distance, or
  * *found. Of equally near ones the first of the file. */
 static uint32_t nearest_in(const Cubes *cubes, Vec3 cube, Vec3 at, uint32_t found, double *nearest)
 {
-    for (uint32_t i = cubes->head[slot_of(cubes, cube)]; i; i = cubes->next[i - 1]) {
+    for (uint32_t i = first_in(cubes, cube); i; i = cubes->next[i - 1]) {
         double distance = vec3_distance(cubes->point[i - 1].position, at);
         if (distance < *nearest || (distance == *nearest && i - 1 < found)) {
             *nearest = distance;
@@ -85,40 +76,36 @@ static uint32_t find_kept(const Cubes *cubes, uint32_t i)
     return found;
 }
 
-static void keep(Cubes *cubes, uint32_t i)
+static Status keep(Cubes *cubes, uint32_t i, Err *err)
 {
-    size_t slot = slot_of(cubes, cube_of(cubes, cubes->point[i].position));
-    cubes->next[i] = cubes->head[slot];
-    cubes->head[slot] = i + 1;
+    uint32_t *first;
+    bool is_new;
+    TRY(keymap_put(&cubes->first, key_of(cube_of(cubes, cubes->point[i].position)), &first, &is_new,
+                   err));
+    cubes->next[i] = *first;
+    *first = i + 1;
+    return STATUS_OK;
 }
 
 static void release_cubes(Cubes *cubes)
 {
-    free(cubes->head);
+    keymap_release(&cubes->first);
     free(cubes->next);
-    *cubes = (Cubes){0};
 }
 
-/* Begins with empty cubes; release with release_cubes. */
+/* Begins without points. The caller releases the cubes, also after an error. */
 static Status begin_cubes(Cubes *cubes, const Graph *graph, double side, Err *err)
 {
-    Cubes made = {.point = graph->point, .side = side, .slots = 64};
-    while (made.slots < graph->n_points)
-        made.slots *= 2;
-    TRY(mem_calloc(&made.head, made.slots, sizeof *made.head, "cubes of points", err));
-    Status status =
-        mem_calloc(&made.next, graph->n_points, sizeof *made.next, "cubes of points", err);
-    if (status == STATUS_OK)
-        *cubes = made;
-    else
-        release_cubes(&made);
-    return status;
+    *cubes = (Cubes){.point = graph->point, .side = side};
+    TRY(keymap_begin(&cubes->first, graph->n_points / 2, "cubes of points", err));
+    return mem_calloc(&cubes->next, graph->n_points, sizeof *cubes->next, "cubes of points", err);
 }
 
 static Status merge_places(const Graph *graph, double tolerance, uint32_t *place, Err *err)
 {
     Cubes cubes;
-    TRY(begin_cubes(&cubes, graph, tolerance, err));
+    Status status = STATUS_OK;
+    TRY_GOTO(begin_cubes(&cubes, graph, tolerance, err));
     for (uint32_t i = 0; i < graph->n_points; i++) {
         if (place[i] != i) {
             place[i] = place[place[i]];
@@ -126,10 +113,11 @@ static Status merge_places(const Graph *graph, double tolerance, uint32_t *place
         }
         place[i] = find_kept(&cubes, i);
         if (place[i] == i)
-            keep(&cubes, i);
+            TRY_GOTO(keep(&cubes, i, err));
     }
+done:
     release_cubes(&cubes);
-    return STATUS_OK;
+    return status;
 }
 
 /* Returns the distance of point `i` to the nearest point of another component that is nearer than
@@ -141,8 +129,7 @@ static double gap_of(const Cubes *cubes, const uint32_t *part, uint32_t i, doubl
     double nearest = reach;
     for (int k = 0; k < 27; k++) {
         Vec3 near = {cube.x + k % 3 - 1, cube.y + k / 3 % 3 - 1, cube.z + k / 9 - 1};
-        for (uint32_t j = cubes->head[slot_of(cubes, near)]; j && *left > 0;
-             j = cubes->next[j - 1], --*left)
+        for (uint32_t j = first_in(cubes, near); j && *left > 0; j = cubes->next[j - 1], --*left)
             if (part[j - 1] != part[i])
                 nearest = fmin(nearest, vec3_distance(cubes->point[j - 1].position, at));
     }
@@ -154,10 +141,11 @@ Status graph_near_ends(const Graph *graph, const uint32_t *part, const double *r
 {
     Cubes cubes;
     int64_t left = 100 * (int64_t)graph->n_points;
-    TRY(begin_cubes(&cubes, graph, most, err));
+    Status status = STATUS_OK;
+    TRY_GOTO(begin_cubes(&cubes, graph, most, err));
     for (uint32_t i = 0; i < graph->n_points; i++)
         if (part[i])
-            keep(&cubes, i);
+            TRY_GOTO(keep(&cubes, i, err));
     for (uint32_t i = 0; i < graph->n_points && left > 0; i++) {
         double gap = reach[i] > 0 ? gap_of(&cubes, part, i, reach[i], &left) : reach[i];
         if (gap < reach[i]) {
@@ -165,8 +153,9 @@ Status graph_near_ends(const Graph *graph, const uint32_t *part, const double *r
             reading->near_mm = fmax(reading->near_mm, gap);
         }
     }
+done:
     release_cubes(&cubes);
-    return STATUS_OK;
+    return status;
 }
 
 static Status join_points(const Graph *graph, uint32_t *place, Err *err)
@@ -176,8 +165,7 @@ static Status join_points(const Graph *graph, uint32_t *place, Err *err)
         if (join.a >= graph->n_points || join.b >= graph->n_points)
             return err_set(err, STATUS_INPUT, "%s: a joint names a point that there is not",
                            graph->name);
-        uint32_t a = graph_first(place, (uint32_t)join.a), b = graph_first(place, (uint32_t)join.b);
-        place[a < b ? b : a] = a < b ? a : b;
+        sets_join(place, (uint32_t)join.a, (uint32_t)join.b);
     }
     return STATUS_OK;
 }
@@ -187,8 +175,7 @@ Status graph_merge(const Graph *graph, bool by_place, uint32_t **place, Err *err
     uint32_t *made = NULL;
     Status status = STATUS_OK;
     TRY(mem_calloc(&made, graph->n_points, sizeof *made, "places of points", err));
-    for (uint32_t i = 0; i < graph->n_points; i++)
-        made[i] = i;
+    sets_begin(made, graph->n_points);
     TRY_GOTO(join_points(graph, made, err));
     for (uint32_t i = 0; i < graph->n_points; i++)
         made[i] = made[made[i]]; /* a chain leads to lower numbers, which are settled */
@@ -206,7 +193,7 @@ Status graph_count_merged(const Tree *tree, size_t *n, Err *err)
 {
     Graph graph = {.n_points = tree->n};
     uint32_t *place = NULL;
-    Status status;
+    Status status = STATUS_OK;
     TRY(mem_calloc(&graph.point, tree->n, sizeof *graph.point, "points", err));
     for (size_t i = 0; i < tree->n; i++)
         graph.point[i].position = tree->position[i];
