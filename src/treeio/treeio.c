@@ -54,10 +54,11 @@ typedef struct Format {
     TreeKeeps *keeps; /* of the columns that are lost, those that are not; NULL: none */
     unsigned takes;   /* bits of the options of reading */
     FileForm form;
-    TreeDetect *detect;    /* NULL: nothing tells */
-    TreeRead *read;        /* one of a tree ... */
-    GraphRead *read_graph; /* ... or this one of a network; with both, `detect` tells trees */
-    TreeWrite *write;      /* NULL: the format is only read */
+    TreeDetect *detect;     /* NULL: nothing tells */
+    TreeRead *read;         /* one of a tree ... */
+    GraphRead *read_graph;  /* ... or this one of a network; with both, `detect` tells trees */
+    TreeWrite *write;       /* NULL: the format is only read */
+    TreeKeywords *keywords; /* NULL: the format has none */
 } Format;
 
 /* As many rows of SWC as there are ids, of the longest numbers, have 18 GB. */
@@ -80,6 +81,7 @@ static const Format formats[] = {
      .takes = ANY_GRAPH | COLUMNS,
      .form = {.name = "a CSV file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = csv_segments_detect,
+     .keywords = table_keywords,
      .read_graph = table_read,
      .write = csv_segments_write},
     {.name = "CSV",
@@ -89,6 +91,7 @@ static const Format formats[] = {
      .form = {.name = "a CSV file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = csv_detect,
      .read = csv_read,
+     .keywords = csv_keywords,
      .read_graph = table_read,
      .write = csv_write},
     {.name = "VTK",
@@ -98,6 +101,7 @@ static const Format formats[] = {
      .form = {.name = "a VTK file", .most_bytes = MOST_BYTES},
      .detect = vtk_detect,
      .read_graph = vtk_read,
+     .keywords = vtk_keywords,
      .write = vtk_write},
     {.name = "VTP",
      .description = "VTK's XML: lines, arrays of points and of lines",
@@ -106,6 +110,7 @@ static const Format formats[] = {
      .form = {.name = "a VTP file", .most_bytes = MOST_BYTES},
      .detect = vtp_detect,
      .read_graph = vtp_read,
+     .keywords = vtp_keywords,
      .write = vtp_write},
     {.name = "VTU",
      .description = "VTK's XML of an unstructured grid, its lines alone",
@@ -136,6 +141,7 @@ static const Format formats[] = {
      .form = {.name = "a GraphML file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = graphml_detect,
      .read_graph = graphml_read,
+     .keywords = graphml_keywords,
      .loses = LOSES_ROOT_VALUES,
      .write = graphml_write},
     {.name = "Amira XML",
@@ -154,6 +160,7 @@ static const Format formats[] = {
      .form = {.name = "a deck of svOneDSolver", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = oned_detect,
      .read_graph = oned_read,
+     .keywords = oned_keywords,
      .write = oned_write},
     {.name = "VMV",
      .loses = IS_NETWORK | LOSES_COLUMNS,
@@ -163,6 +170,7 @@ static const Format formats[] = {
      .form = {.name = "a VMV file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = vmv_detect,
      .read_graph = vmv_read,
+     .keywords = vmv_keywords,
      .write = vmv_write},
     {.name = "VItA",
      .description = "a tree grown by VItA",
@@ -170,7 +178,8 @@ static const Format formats[] = {
      .takes = ANY_GRAPH,
      .form = {.name = "a tree of VItA", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = vita_detect,
-     .read_graph = vita_read},
+     .read_graph = vita_read,
+     .keywords = vita_keywords},
     {.name = "Secomb",
      .description = "a microvascular network (network.dat), diameters in um",
      .extensions = {"dat"},
@@ -190,14 +199,16 @@ static const Format formats[] = {
      .takes = ANY_GRAPH,
      .form = {.name = "a MetaIO scene", .most_bytes = MOST_BYTES},
      .detect = metaio_detect,
-     .read_graph = metaio_read},
+     .read_graph = metaio_read,
+     .keywords = metaio_keywords},
     {.name = "Amira",
      .description = "a spatial graph, line set or skeleton of Amira or Avizo, in um",
      .extensions = {"am"},
      .takes = ANY_GRAPH | RADIUS_ARRAY,
      .form = {.name = "an Amira file", .most_bytes = MOST_BYTES},
      .detect = amira_detect,
-     .read_graph = amira_read},
+     .read_graph = amira_read,
+     .keywords = amira_keywords},
 };
 
 enum { N_FORMATS = sizeof formats / sizeof *formats };
@@ -284,6 +295,13 @@ const char *tree_format_extension(size_t i)
 const char *tree_format_description(size_t i)
 {
     return i < N_FORMATS ? formats[i].description : NULL;
+}
+
+void tree_format_keywords(const char *path, Text *text)
+{
+    for (size_t i = 0; i < N_FORMATS; i++)
+        if (may_be(&formats[i], path) && formats[i].keywords)
+            formats[i].keywords(text);
 }
 
 static bool has_types(const Tree *tree)

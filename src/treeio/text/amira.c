@@ -476,17 +476,20 @@ static Status add_array(AmiraReader *reader, AmiraField *field, const size_t *ve
         field->of == EDGE ? &data->arrays[GRAPH_LINES] : &data->arrays[GRAPH_POINTS], &array, err);
 }
 
-/* Those that are needed to connect points are no arrays. */
+/* Names of numbers that connect points, and are no arrays. */
+static const char *const own_arrays[] = {"VertexCoordinates", "EdgeConnectivity",
+                                         "NumEdgePoints",     "EdgePointCoordinates",
+                                         "Coordinates",       "NeighbourCount"};
+
+/* Adds the other numbers as arrays. */
 static Status add_arrays(AmiraReader *reader, const size_t *vertex, Err *err)
 {
-    static const char *const own[] = {"VertexCoordinates",    "EdgeConnectivity", "NumEdgePoints",
-                                      "EdgePointCoordinates", "Coordinates",      "NeighbourCount"};
     for (size_t i = 0; i < reader->fields.n; i++) {
         size_t of = reader->fields.items[i].of;
         bool is_own =
             !reader->fields.items[i].value || of == LINES || of == NEIGHBOURS || of == ORIGINS;
-        for (size_t k = 0; k < sizeof own / sizeof *own && !is_own; k++)
-            is_own = strcasecmp(reader->fields.items[i].name, own[k]) == 0;
+        for (size_t k = 0; k < sizeof own_arrays / sizeof *own_arrays && !is_own; k++)
+            is_own = strcasecmp(reader->fields.items[i].name, own_arrays[k]) == 0;
         if (!is_own)
             TRY(add_array(reader, &reader->fields.items[i], vertex, err));
     }
@@ -638,4 +641,13 @@ done:
 bool amira_detect(const char *start)
 {
     return strncasecmp(start, "# AmiraMesh", 11) == 0 || strncasecmp(start, "# Avizo", 7) == 0;
+}
+
+void amira_keywords(Text *text)
+{
+    KEYWORDS_PUT(element_names, , text);
+    KEYWORDS_PUT(content_names, , text);
+    KEYWORDS_PUT(packing_names, , text);
+    KEYWORDS_PUT(own_arrays, , text);
+    vtk_put_type_names(NAMING_AMIRA, text);
 }

@@ -141,6 +141,12 @@ Status csv_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
     return status;
 }
 
+void csv_keywords(Text *text)
+{
+    KEYWORDS_PUT(node_columns, , text);
+    table_keywords(text);
+}
+
 /* The first line that is no comment names a parent and coordinates in mm. */
 bool csv_detect(const char *start)
 {
@@ -201,9 +207,10 @@ static void put_titles(const Tree *tree, const char *const *titles, size_t n, Te
 
 static void put_number(double value, Text *text)
 {
-    text_puts(text, ",");
+    char number[NUMBER_TEXT_SIZE + 1] = ",";
     if (!isnan(value))
-        text_number(text, value);
+        number_text(value, number + 1);
+    text_append(text, number, strlen(number));
 }
 
 static void put_position(Vec3 position, Text *text)

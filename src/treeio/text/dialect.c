@@ -27,6 +27,12 @@ size_t dialect_find_section(const Dialect *dialect, const char *title)
     return i;
 }
 
+void dialect_put_keywords(const Dialect *dialect, Text *text)
+{
+    keywords_put(&dialect->section->title, dialect->n_sections, sizeof *dialect->section, text);
+    keywords_put(&dialect->field->name, dialect->n_fields, sizeof *dialect->field, text);
+}
+
 /* ---- fields ---------------------------------------------------------------------------------- */
 
 Status field_position(char *const field[3], Vec3 *position, Err *err)

@@ -95,6 +95,8 @@ MUST_CHECK Status dialect_read(DialectReader *reader, char *text, size_t size, E
 MUST_CHECK Status dialect_add_segments(DialectReader *reader, Err *err);
 void dialect_release(DialectReader *reader);
 
+/* Appends the titles of sections and the names of fields, one per line. */
+void dialect_put_keywords(const Dialect *dialect, Text *text);
 /* Returns the section of this title, or n_sections. */
 size_t dialect_find_section(const Dialect *dialect, const char *title);
 

@@ -494,3 +494,9 @@ bool metaio_detect(const char *start)
 {
     return strncasecmp(text_first_row(start), "ObjectType", strlen("ObjectType")) == 0;
 }
+
+void metaio_keywords(Text *text)
+{
+    KEYWORDS_PUT(keys, .name, text);
+    vtk_put_type_names(NAMING_METAIO, text);
+}

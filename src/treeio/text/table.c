@@ -708,3 +708,10 @@ Status table_read(Graph *graph, char *bytes, size_t size, Err *err)
     ARRAY_RELEASE(&sayings.option);
     return status;
 }
+
+void table_keywords(Text *text)
+{
+    keywords_put(csv_segment_titles, CSV_SEGMENT_TITLES, sizeof *csv_segment_titles, text);
+    for (size_t k = 0; k < MAX_ALIASES; k++)
+        KEYWORDS_PUT(roles, .alias[k], text);
+}

@@ -3,6 +3,7 @@
  * instead. */
 #include "treeio/vtk/vtkdata.h"
 
+#include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include <math.h>
 #include <stdint.h>
@@ -78,6 +79,11 @@ const char *vtk_type_name(VtkNaming naming, VtkType type)
     return type_names[i].name[naming];
 }
 
+void vtk_put_type_names(VtkNaming naming, Text *text)
+{
+    KEYWORDS_PUT(type_names, .name[naming], text);
+}
+
 size_t vtk_type_size(VtkType type)
 {
     return types[type].size;
@@ -129,19 +135,18 @@ enum { BLOCK = 1 << 19 /* numbers: two huge pages */ };
 
 static void take_block(size_t index, int worker, void *context)
 {
-    const VtkValues *all = context;
-    size_t size = types[all->type].size, first = index * BLOCK, left = all->n - first;
+    const VtkValues all = *(const VtkValues *)context;
+    size_t size = types[all.type].size, first = index * BLOCK, left = all.n - first;
     size_t n = left < BLOCK ? left : BLOCK;
-    const char *bytes = all->bytes + first * size;
-    double *out = all->out + first;
+    const char *bytes = all.bytes + first * size;
     (void)worker;
-    if (take_plain(all->type, all->is_big_endian, bytes, n, out))
+    if (take_plain(all.type, all.is_big_endian, bytes, n, all.out + first))
         return;
     for (size_t i = 0; i < n; i++, bytes += size) {
         uint64_t bits = 0;
         for (size_t k = 0; k < size; k++)
-            bits = bits << 8 | (unsigned char)bytes[all->is_big_endian ? k : size - 1 - k];
-        out[i] = number_of_bits(all->type, bits);
+            bits = bits << 8 | (unsigned char)bytes[all.is_big_endian ? k : size - 1 - k];
+        all.out[first + i] = number_of_bits(all.type, bits);
     }
 }
 

@@ -46,6 +46,8 @@ MUST_CHECK Status vtk_find_type(VtkNaming naming, const char *name, const char *
                                 VtkType *type, Err *err);
 /* Returns the first name of a type in a format. */
 const char *vtk_type_name(VtkNaming naming, VtkType type);
+/* Appends all names of types in a format, one per line. */
+void vtk_put_type_names(VtkNaming naming, Text *text);
 /* Returns the number of bytes of one value. Text has bytes of 1. */
 size_t vtk_type_size(VtkType type);
 
