@@ -1,13 +1,12 @@
-/* Merges points. Joined points are one set, whose first member is kept. Each other point, in the
- * order of the file, becomes the nearest point kept before it within the tolerance, or is kept
- * itself. What is kept therefore does not depend on hashes, and a row of close points does not
- * become one point. Kept points are listed by cubes whose side is the tolerance: the points in
- * reach are in 27 cubes, and few fit into one. Without a tolerance, a cube is a position. */
+/* Points that are joined are one, by union-find whose first member stands for all. Of the rest, in
+ * the order of the file, each becomes the nearest point kept before it within the tolerance, or is
+ * kept itself; so what is kept does not depend on chance, and a row of close points does not melt
+ * into one. Kept points are found in a hash table of cubes whose side is the tolerance: those in
+ * reach are in 27 of them, and few fit into one. Without a tolerance a cube is a place. */
 #include "tree/graph_parts.h"
 #include "tree/tree.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 void graph_scale(Graph *graph)
 {
@@ -20,19 +19,20 @@ void graph_scale(Graph *graph)
         graph->line[i].radius *= scale.radius;
 }
 
-/* Kept points by their cubes. */
+/* Kept points by the cube they are in. */
 typedef struct Cubes {
     const GraphPoint *point;
-    double side;    /* of a cube; 0: a cube is a position */
-    KeyMap first;   /* per cube, by a hash of it: a point + 1 */
-    uint32_t *next; /* per point: the next point + 1 of its cube; 0: none; owned */
+    double side;    /* of a cube; 0: a cube is a place */
+    KeyMap last;    /* the last point + 1 of each cube, by the cube's key */
+    uint32_t *next; /* per point: the next point + 1 with the same key; owned */
 } Cubes;
 
 static Vec3 cube_of(const Cubes *cubes, Vec3 at)
 {
-    if (cubes->side == 0)
-        return (Vec3){at.x + 0.0, at.y + 0.0, at.z + 0.0}; /* no -0 */
-    return (Vec3){floor(at.x / cubes->side), floor(at.y / cubes->side), floor(at.z / cubes->side)};
+    Vec3 cube = cubes->side == 0 ? at
+                                 : vec3(floor(at.x / cubes->side), floor(at.y / cubes->side),
+                                        floor(at.z / cubes->side));
+    return vec3(cube.x + 0.0, cube.y + 0.0, cube.z + 0.0); /* no -0 */
 }
 
 static uint64_t key_of(Vec3 cube)
@@ -40,18 +40,18 @@ static uint64_t key_of(Vec3 cube)
     return key_of_numbers((const double[]){cube.x, cube.y, cube.z}, 3);
 }
 
-/* Returns a point + 1 of the cube, or 0. Points of other cubes may follow it. */
-static uint32_t first_in(const Cubes *cubes, Vec3 cube)
+/* Returns the last point + 1 that was kept in a cube, or 0. */
+static uint32_t last_in(const Cubes *cubes, Vec3 cube)
 {
-    const uint32_t *first = keymap_find(&cubes->first, key_of(cube));
-    return first ? *first : 0;
+    const uint32_t *last = keymap_find(&cubes->last, key_of(cube));
+    return last ? *last : 0;
 }
 
 /* The nearest kept point of a cube that is nearer than *nearest, which becomes its distance, or
  * *found. Of equally near ones the first of the file. */
 static uint32_t nearest_in(const Cubes *cubes, Vec3 cube, Vec3 at, uint32_t found, double *nearest)
 {
-    for (uint32_t i = first_in(cubes, cube); i; i = cubes->next[i - 1]) {
+    for (uint32_t i = last_in(cubes, cube); i; i = cubes->next[i - 1]) {
         double distance = vec3_distance(cubes->point[i - 1].position, at);
         if (distance < *nearest || (distance == *nearest && i - 1 < found)) {
             *nearest = distance;
@@ -78,27 +78,27 @@ static uint32_t find_kept(const Cubes *cubes, uint32_t i)
 
 static Status keep(Cubes *cubes, uint32_t i, Err *err)
 {
-    uint32_t *first;
+    uint32_t *last;
     bool is_new;
-    TRY(keymap_put(&cubes->first, key_of(cube_of(cubes, cubes->point[i].position)), &first, &is_new,
-                   err));
-    cubes->next[i] = *first;
-    *first = i + 1;
+    uint64_t key = key_of(cube_of(cubes, cubes->point[i].position));
+    TRY(keymap_put(&cubes->last, key, &last, &is_new, err));
+    cubes->next[i] = *last;
+    *last = i + 1;
     return STATUS_OK;
 }
 
 static void release_cubes(Cubes *cubes)
 {
-    keymap_release(&cubes->first);
+    keymap_release(&cubes->last);
     free(cubes->next);
 }
 
-/* Begins without points. The caller releases the cubes, also after an error. */
+/* Begins with empty cubes. The caller releases them, also after an error. */
 static Status begin_cubes(Cubes *cubes, const Graph *graph, double side, Err *err)
 {
     *cubes = (Cubes){.point = graph->point, .side = side};
-    TRY(keymap_begin(&cubes->first, graph->n_points / 2, "cubes of points", err));
-    return mem_calloc(&cubes->next, graph->n_points, sizeof *cubes->next, "cubes of points", err);
+    TRY(mem_calloc(&cubes->next, graph->n_points, sizeof *cubes->next, "cubes of points", err));
+    return keymap_begin(&cubes->last, graph->n_points, "cubes of points", err);
 }
 
 static Status merge_places(const Graph *graph, double tolerance, uint32_t *place, Err *err)
@@ -107,11 +107,7 @@ static Status merge_places(const Graph *graph, double tolerance, uint32_t *place
     Status status = STATUS_OK;
     TRY_GOTO(begin_cubes(&cubes, graph, tolerance, err));
     for (uint32_t i = 0; i < graph->n_points; i++) {
-        if (place[i] != i) {
-            place[i] = place[place[i]];
-            continue;
-        }
-        place[i] = find_kept(&cubes, i);
+        place[i] = place[i] == i ? find_kept(&cubes, i) : place[place[i]];
         if (place[i] == i)
             TRY_GOTO(keep(&cubes, i, err));
     }
@@ -129,7 +125,7 @@ static double gap_of(const Cubes *cubes, const uint32_t *part, uint32_t i, doubl
     double nearest = reach;
     for (int k = 0; k < 27; k++) {
         Vec3 near = {cube.x + k % 3 - 1, cube.y + k / 3 % 3 - 1, cube.z + k / 9 - 1};
-        for (uint32_t j = first_in(cubes, near); j && *left > 0; j = cubes->next[j - 1], --*left)
+        for (uint32_t j = last_in(cubes, near); j && *left > 0; j = cubes->next[j - 1], --*left)
             if (part[j - 1] != part[i])
                 nearest = fmin(nearest, vec3_distance(cubes->point[j - 1].position, at));
     }
@@ -149,8 +145,8 @@ Status graph_near_ends(const Graph *graph, const uint32_t *part, const double *r
     for (uint32_t i = 0; i < graph->n_points && left > 0; i++) {
         double gap = reach[i] > 0 ? gap_of(&cubes, part, i, reach[i], &left) : reach[i];
         if (gap < reach[i]) {
-            reading->near_ends++;
-            reading->near_mm = fmax(reading->near_mm, gap);
+            reading->network.near_ends++;
+            reading->network.near_mm = fmax(reading->network.near_mm, gap);
         }
     }
 done:
@@ -193,7 +189,7 @@ Status graph_count_merged(const Tree *tree, size_t *n, Err *err)
 {
     Graph graph = {.n_points = tree->n};
     uint32_t *place = NULL;
-    Status status = STATUS_OK;
+    Status status;
     TRY(mem_calloc(&graph.point, tree->n, sizeof *graph.point, "points", err));
     for (size_t i = 0; i < tree->n; i++)
         graph.point[i].position = tree->position[i];

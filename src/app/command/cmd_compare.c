@@ -57,7 +57,7 @@ static PlaneKind kind_of(const char *path)
 static Status read_ids(IdPlane *ids, const char *path, Err *err)
 {
     Picture picture;
-    TRY(picture_read(&picture, path, err));
+    TRY(picture_read(&picture, path, ALPHA_REFUSED, err));
     Status status = ids_take_picture(ids, &picture, err);
     picture_release(&picture);
     if (status != STATUS_OK)
@@ -84,7 +84,7 @@ static Status set_bits(Image *image, int bits, Err *err)
 static Status read_side(const Sides *sides, const char *path, Image *image, Picture *alpha,
                         Err *err)
 {
-    TRY(image_read_layer(image, path, sides->layer, sides->color, err));
+    TRY(image_read(image, path, sides->color ? ALPHA_KEPT : ALPHA_REFUSED, sides->layer, err));
     if (!sides->color)
         return STATUS_OK;
     Status status = alpha_take(alpha, image, err);
@@ -154,7 +154,7 @@ static Status write_picture(Status (*make)(Picture *, const Picture *, const Pic
     if (!path)
         return STATUS_OK;
     TRY(make(&picture, a, b, err));
-    Status status = picture_write(&picture, path, ENCODING_SRGB, NULL, err);
+    Status status = picture_write(&picture, path, ENCODING_SRGB, NULL, NULL, err);
     picture_release(&picture);
     return status;
 }
