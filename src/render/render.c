@@ -341,11 +341,11 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Pixe
         return STATUS_OK;
     if (params->occlusion > 0 && !renderer->beams.capsules)
         TRY(occluderset_new(renderer->geometry, &renderer->beams, err));
-    const bool soft = params->shadows && view_has_soft_shadows(drawing->view);
+    const bool soft = softshadows_are_on(drawing->view, params);
     const Drawing wide = widened(drawing, margin, soft ? VISIBILITY_BLOCK : 1);
     const VisibilitySources from = {.draw_planes = see_vessels,
                                     .context = renderer,
-                                    .light_views = renderer->engine->lights,
+                                    .engine = renderer->engine->shadows,
                                     .occluders = &renderer->beams,
                                     .off_pixel = renderer->asked};
     return pixelvisibility_compute(&wide, &from, out, err);
@@ -374,9 +374,10 @@ static Status ask_light(Renderer *renderer, const Drawing *drawing, size_t light
 {
     const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
     const Engine *engine = renderer->engine;
-    const void *shadow = engine->shadow ? engine->shadow(renderer->prepared, light) : NULL;
-    if (shadow)
-        return offpixel_query(drawing, engine->lights, shadow, &eye, light, renderer->asked, err);
+    LightBins *bins = engine->light_bins ? engine->light_bins(renderer->prepared, light) : NULL;
+    if (bins)
+        return offpixel_query(drawing, &(OffPixelViews){&bins, 1, &eye}, light, renderer->asked,
+                              err);
     Drawing casting = *drawing;
     TRY(make_caster(renderer, err));
     casting.caster = renderer->caster;

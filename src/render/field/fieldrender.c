@@ -10,6 +10,7 @@
 #include "render/field/fieldtiles.h"
 #include "render/light/raycolor.h"
 #include "render/light/shade.h"
+#include "render/light/shadowqueue.h"
 #include "render/tile/canvas.h"
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +25,7 @@ typedef struct FieldPass {
 /* The centres of all pixels, and the further samples; and what lights see. */
 typedef struct FieldPrepared {
     FieldPass center, further;
-    void *shadows[VIEW_MAX_LIGHTS]; /* owned; NULL where the light casts none, or rays do */
+    LightBins *shadows[VIEW_MAX_LIGHTS]; /* owned; NULL where the light casts none, or rays do */
 } FieldPrepared;
 
 /* Rows of tiles whose centres are traced together, with shadows. */
@@ -43,9 +44,9 @@ typedef struct BatchTile {
 typedef struct Batch {
     BatchTile *tiles;
     int n_tiles;
-    uint8_t (*shadowed)[TILE_SAMPLES]; /* tile by tile, one a light */
-    void *queues[VIEW_MAX_LIGHTS];     /* to the shadows that there are */
-    Status status;                     /* of what a visitor could not report */
+    uint8_t (*shadowed)[TILE_SAMPLES];    /* tile by tile, one a light */
+    ShadowQueue *queues[VIEW_MAX_LIGHTS]; /* to the shadows that there are */
+    Status status;                        /* of what a visitor could not report */
     Err err;
 } Batch;
 
@@ -143,8 +144,7 @@ static void ask_lights(const FieldPicture *picture, int worker, const BatchTile 
                                                  &picture->canvas.look.lights[i]);
         size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
         if (batch->queues[i])
-            field_lights.ask(batch->queues[i], picture->canvas.kernels, &places, wanted,
-                             (uint32_t)answer);
+            shadowqueue_add(batch->queues[i], &places, NULL, wanted, (uint32_t)answer);
         else
             cast_shadows(picture, &tile->seen, light, worker, wanted, tile->shadowed[i]);
     }
@@ -162,8 +162,7 @@ static Status find_shadows(const FieldPicture *picture, int worker, Err *err)
             ask_lights(picture, worker, &batch->tiles[i]);
     for (size_t i = 0; i < n_lights; i++)
         if (batch->queues[i])
-            TRY(field_lights.answer(batch->queues[i], drawing->params->kernels, batch->shadowed[0],
-                                    err));
+            TRY(shadowqueue_answer(batch->queues[i], batch->shadowed[0], err));
     return STATUS_OK;
 }
 
@@ -436,39 +435,23 @@ static void release_prepared(void *prepared)
     release_pass(&field->center);
     release_pass(&field->further);
     for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
-        field_lights.free(field->shadows[i]);
+        lightbins_free(field->shadows[i]);
     free(field);
-}
-
-static bool is_looked_from(const Drawing *drawing, const Light *light)
-{
-    return drawing->params->method != RENDER_TRACE &&
-           lightviews_can(&field_lights, drawing->geometry, drawing->view, light);
-}
-
-static Status prepare_shadows(const Drawing *drawing, FieldPrepared *field, Err *err)
-{
-    const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
-    for (size_t i = 0; i < drawing->view->n_lights; i++) {
-        const Light *light = &drawing->view->lights[i];
-        if (drawing->params->shadows && light->casts_shadows && light->samples <= 1 &&
-            is_looked_from(drawing, light))
-            TRY(field_lights.look(drawing, light, &eye, NULL, &field->shadows[i], err));
-    }
-    return STATUS_OK;
 }
 
 static Status prepare(const Drawing *drawing, void **prepared, Err *err)
 {
     Status status;
     const double center = 0;
+    const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
     Resampling more = resampling_for(drawing->params->want_color ? drawing->params->antialias : 1);
     FieldPrepared *field;
     TRY(mem_calloc(&field, 1, sizeof *field, "tiles", err));
     TRY_GOTO(prepare_pass(drawing, 1, &center, &field->center, err));
     if (more.side > 0)
         TRY_GOTO(prepare_pass(drawing, more.side, more.offsets, &field->further, err));
-    TRY_GOTO(prepare_shadows(drawing, field, err));
+    if (drawing->params->shadows)
+        TRY_GOTO(lightbins_new_hard(&field_shadows, drawing, &eye, field->shadows, err));
     *prepared = field;
 done:
     if (status != STATUS_OK)
@@ -485,8 +468,9 @@ static Status make_batch(const FieldPicture *picture, Batch *batch, Err *err)
         batch->tiles[i].shadowed = batch->shadowed + i * n_lights;
     for (size_t i = 0; i < n_lights; i++)
         if (picture->prepared->shadows[i])
-            TRY(field_lights.queue_new(picture->prepared->shadows[i],
-                                       picture->canvas.drawing->hidden, &batch->queues[i], err));
+            TRY(shadowqueue_new(picture->prepared->shadows[i],
+                                picture->canvas.drawing->params->kernels,
+                                picture->canvas.drawing->hidden, &batch->queues[i], err));
     return STATUS_OK;
 }
 
@@ -507,7 +491,7 @@ static void release_batch(Batch *batch, int n)
     free(batch->tiles);
     free(batch->shadowed);
     for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
-        field_lights.queue_free(batch->queues[i]);
+        shadowqueue_free(batch->queues[i]);
 }
 
 static Status make_further_rows(FieldPicture *picture, Err *err)
@@ -576,15 +560,10 @@ static bool can_draw(const Drawing *drawing)
 
 static bool needs_rays(const Drawing *drawing)
 {
-    const RenderParams *params = drawing->params;
-    bool rays = params->occlusion > 0 && params->method == RENDER_TRACE;
-    for (size_t i = 0; i < drawing->view->n_lights; i++)
-        rays |= params->shadows && drawing->view->lights[i].casts_shadows &&
-                !is_looked_from(drawing, &drawing->view->lights[i]);
-    return rays;
+    return shadowengine_needs_rays(&field_shadows, drawing);
 }
 
-static const void *shadow_of(const void *prepared, size_t light)
+static LightBins *light_bins(const void *prepared, size_t light)
 {
     const FieldPrepared *field = prepared;
     return field->shadows[light];
@@ -598,5 +577,5 @@ const Engine field_engine = {.name = "field",
                              .prepare = prepare,
                              .rows = draw_rows,
                              .free = release_prepared,
-                             .lights = &field_lights,
-                             .shadow = shadow_of};
+                             .shadows = &field_shadows,
+                             .light_bins = light_bins};

@@ -11,6 +11,7 @@
 
 #include "render/cast/caster.h"
 #include "render/light/shade.h"
+#include "render/light/shadowqueue.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 #include "render/raster/rastershadow.h"
@@ -22,8 +23,7 @@
 typedef struct RasterPrepared {
     RasterBins *bins; /* owned */
     bool has_shadows;
-    RasterShadow *shadows[VIEW_MAX_LIGHTS]; /* owned; one a light, NULL where it casts none, or rays
-                                             * do */
+    LightBins *shadows[VIEW_MAX_LIGHTS]; /* owned; NULL where the light casts none, or rays do */
     RasterGrid center;
     RasterGrid *further; /* owned; n x n, row by row */
 } RasterPrepared;
@@ -49,7 +49,7 @@ typedef struct Batch {
     BatchTile *tiles;
     int n_tiles;
     uint8_t (*shadowed)[TILE_SAMPLES];    /* tile by tile, one a light */
-    RasterQueue *queues[VIEW_MAX_LIGHTS]; /* NULL where the light has no RasterShadow */
+    ShadowQueue *queues[VIEW_MAX_LIGHTS]; /* to the shadows that there are */
 } Batch;
 
 typedef struct RasterPicture {
@@ -115,14 +115,13 @@ static void ask_lights(const RasterPicture *picture, const BatchTile *tile, int 
                                                         &picture->canvas.look.lights[i]);
         size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
         if (batch->queues[i])
-            rasterqueue_ask(batch->queues[i], picture->canvas.kernels, &places, tile->hits.item,
-                            wanted, (uint32_t)answer);
+            shadowqueue_add(batch->queues[i], &places, tile->hits.item, wanted, (uint32_t)answer);
         else
             cast_shadows(picture, light, worker, &places, wanted, tile->shadowed[i]);
     }
 }
 
-static void find_shadows(const RasterPicture *picture, int worker, Batch *batch)
+static Status find_shadows(const RasterPicture *picture, int worker, Batch *batch, Err *err)
 {
     size_t n_lights = picture->canvas.drawing->view->n_lights;
     memset(batch->shadowed, 0, (size_t)batch->n_tiles * n_lights * sizeof *batch->shadowed);
@@ -131,7 +130,8 @@ static void find_shadows(const RasterPicture *picture, int worker, Batch *batch)
             ask_lights(picture, &batch->tiles[i], worker, batch);
     for (size_t i = 0; i < n_lights; i++)
         if (batch->queues[i])
-            rasterqueue_answer(batch->queues[i], picture->kernels, batch->shadowed[0]);
+            TRY(shadowqueue_answer(batch->queues[i], batch->shadowed[0], err));
+    return STATUS_OK;
 }
 
 /* Adds the ground to what the tile sees. */
@@ -147,8 +147,8 @@ static void see_ground(const RasterPicture *picture, BatchTile *tile)
 }
 
 /* What the tiles of the batch see with their samples at the places of a grid. */
-static void see_batch(const RasterPicture *picture, const RasterGrid *grid, int worker,
-                      Batch *batch)
+static Status see_batch(const RasterPicture *picture, const RasterGrid *grid, int worker,
+                        Batch *batch, Err *err)
 {
     const RasterKernels *kernels = picture->kernels;
     for (int i = 0; i < batch->n_tiles; i++) {
@@ -167,7 +167,8 @@ static void see_batch(const RasterPicture *picture, const RasterGrid *grid, int 
             see_ground(picture, tile);
     }
     if (picture->prepared->has_shadows && picture->canvas.wants_color)
-        find_shadows(picture, worker, batch);
+        return find_shadows(picture, worker, batch, err);
+    return STATUS_OK;
 }
 
 /* The colours that the samples of a tile see, which sees something. */
@@ -251,32 +252,34 @@ static void write_mean(const Canvas *canvas, const BatchTile *tile)
 
 /* The means of the centre samples, which the picture holds, and all others, summed in float in
  * POV-Ray's order. */
-static void resample_batch(const RasterPicture *picture, int worker, Batch *batch)
+static Status resample_batch(const RasterPicture *picture, int worker, Batch *batch, Err *err)
 {
     const Canvas *canvas = &picture->canvas;
     for (int i = 0; i < batch->n_tiles; i++)
         begin_sum(canvas, &batch->tiles[i]);
     for (int pass = 0; pass < canvas->more.side * canvas->more.side; pass++) {
-        see_batch(picture, &picture->prepared->further[pass], worker, batch);
+        TRY(see_batch(picture, &picture->prepared->further[pass], worker, batch, err));
         for (int i = 0; i < batch->n_tiles; i++)
             add_to_sum(picture, worker, pass, &batch->tiles[i]);
     }
     for (int i = 0; i < batch->n_tiles; i++)
         write_mean(canvas, &batch->tiles[i]);
+    return STATUS_OK;
 }
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
-static void draw_batch(const RasterPicture *picture, int worker, Batch *batch)
+static Status draw_batch(const RasterPicture *picture, int worker, Batch *batch, Err *err)
 {
     if (!picture->second_round) {
-        see_batch(picture, &picture->prepared->center, worker, batch);
+        TRY(see_batch(picture, &picture->prepared->center, worker, batch, err));
         for (int i = 0; i < batch->n_tiles; i++)
             draw_tile(picture, worker, &batch->tiles[i]);
     }
     if (picture->second_round || (picture->canvas.more.side > 0 && !picture->chooses))
-        resample_batch(picture, worker, batch);
+        TRY(resample_batch(picture, worker, batch, err));
     batch->n_tiles = 0;
+    return STATUS_OK;
 }
 
 static void begin_tile(const RasterPicture *picture, const RasterTile *raster, int column, int row,
@@ -329,10 +332,9 @@ static Status draw_row(void *context, int row, int rows, int worker, Err *err)
             continue;
         TRY(find_thin(picture, tile, err));
         if (++batch->n_tiles == picture->batch_size)
-            draw_batch(picture, worker, batch);
+            TRY(draw_batch(picture, worker, batch, err));
     }
-    draw_batch(picture, worker, batch);
-    return STATUS_OK;
+    return draw_batch(picture, worker, batch, err);
 }
 
 /* ---- the picture ----------------------------------------------------------------------------- */
@@ -341,7 +343,7 @@ static void release_prepared(void *prepared)
 {
     RasterPrepared *raster = prepared;
     for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
-        rastershadow_free(raster->shadows[i]);
+        lightbins_free(raster->shadows[i]);
     rasterbins_free(raster->bins);
     free(raster->further);
     free(raster);
@@ -371,8 +373,7 @@ static Status prepare(const Drawing *drawing, void **prepared, Err *err)
     TRY_GOTO(prepare_samples(params, &view, raster, err));
     raster->has_shadows = params->shadows && params->want_color;
     if (raster->has_shadows)
-        TRY_GOTO(rastershadows_new(drawing->geometry, drawing->view, &view.eye, params->threads,
-                                   raster->shadows, err));
+        TRY_GOTO(lightbins_new_hard(&raster_shadows, drawing, &view.eye, raster->shadows, err));
     TRY_GOTO(rasterbins_new(drawing->geometry, &view, params->threads, &raster->bins, err));
     *prepared = raster;
 done:
@@ -383,7 +384,8 @@ done:
 
 static Status make_batch(const RasterPicture *picture, Batch *batch, Err *err)
 {
-    RasterShadow *const *shadows = picture->prepared->shadows;
+    LightBins *const *shadows = picture->prepared->shadows;
+    const Drawing *drawing = picture->canvas.drawing;
     size_t n = (size_t)picture->batch_size, n_lights = picture->canvas.drawing->view->n_lights;
     TRY(mem_calloc(&batch->tiles, n, sizeof *batch->tiles, "tiles", err));
     TRY(mem_calloc(&batch->shadowed, n * n_lights, sizeof *batch->shadowed, "lights", err));
@@ -391,7 +393,8 @@ static Status make_batch(const RasterPicture *picture, Batch *batch, Err *err)
         batch->tiles[i].shadowed = batch->shadowed + i * n_lights;
     for (size_t i = 0; i < n_lights; i++)
         if (shadows[i])
-            TRY(rasterqueue_new(shadows[i], &batch->queues[i], err));
+            TRY(shadowqueue_new(shadows[i], drawing->params->kernels, drawing->hidden,
+                                &batch->queues[i], err));
     return STATUS_OK;
 }
 
@@ -417,7 +420,7 @@ static void release(RasterPicture *picture)
         free(batch->tiles);
         free(batch->shadowed);
         for (size_t light = 0; light < VIEW_MAX_LIGHTS; light++)
-            rasterqueue_free(batch->queues[light]);
+            shadowqueue_free(batch->queues[light]);
     }
     free(picture->batches);
     canvas_release(&picture->canvas);
@@ -462,10 +465,10 @@ static bool can_draw(const Drawing *drawing)
 
 static bool needs_rays(const Drawing *drawing)
 {
-    return drawing->params->shadows && rastershadows_need_rays(drawing->geometry, drawing->view);
+    return shadowengine_needs_rays(&raster_shadows, drawing);
 }
 
-static const void *shadow_of(const void *prepared, size_t light)
+static LightBins *light_bins(const void *prepared, size_t light)
 {
     const RasterPrepared *raster = prepared;
     return raster->shadows[light];
@@ -479,5 +482,5 @@ const Engine raster_engine = {.name = "raster",
                               .prepare = prepare,
                               .rows = draw_rows,
                               .free = release_prepared,
-                              .lights = &raster_lights,
-                              .shadow = shadow_of};
+                              .shadows = &raster_shadows,
+                              .light_bins = light_bins};
