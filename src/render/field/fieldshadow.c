@@ -4,7 +4,6 @@
  * then keep their places in the view, and z rises towards the light. */
 #include "render/field/fieldshadow.h"
 
-#include "base/firstfail.h"
 #include "render/cast/caster.h"
 #include "render/field/fieldkernels.h"
 #include "render/field/fieldspace.h"

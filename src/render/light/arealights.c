@@ -8,7 +8,6 @@
  * hard shadows does. If the engine has no light views for a light, shadow rays are traced. */
 #include "render/light/arealights.h"
 
-#include "base/firstfail.h"
 #include "render/light/shade.h"
 #include "render/light/shadowpass.h"
 #include <math.h>

@@ -2,7 +2,6 @@
  * threads nor on the band that is drawn. */
 #include "render/light/offpixel.h"
 
-#include "base/firstfail.h"
 #include "render/light/shadowpass.h"
 #include <stdlib.h>
 

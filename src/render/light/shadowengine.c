@@ -3,7 +3,6 @@
  * of one after the other, unless the geometry is so small that threads would not help. */
 #include "render/light/shadowengine.h"
 
-#include "base/firstfail.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -5,7 +5,6 @@
  * tested. Memory is prefetched for those, and for the list of the next tile. */
 #include "render/raster/rastershadow.h"
 
-#include "base/firstfail.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 #include <stdlib.h>
