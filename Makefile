@@ -43,9 +43,11 @@ FUZZ_PROGRAMS := $(HARNESSES:%=$(BUILD)/tests/fuzz/%)
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion \
 	-Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wvla -Wformat=2 -Wcast-qual \
-	-Wpointer-arith -Wundef -Wwrite-strings -Werror
+	-Wpointer-arith -Wundef -Wwrite-strings
 # clang takes the standard's INFINITY and NAN, which are floats, for promotions.
 WARNINGS += $(if $(findstring clang,$(CC)),-Wno-double-promotion)
+# Other levels of optimisation warn of other things, so a warning is an error only at the project's own flags.
+WARNINGS += $(if $(strip $(CFLAGS)),,-Werror)
 OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
 OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer

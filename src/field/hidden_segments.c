@@ -7,7 +7,7 @@
 /* The largest of the sums that the segment is part of. */
 static double potential_of_groups(const Geometry *geometry, size_t segment, Vec3 x)
 {
-    const NumberLists *groups = &geometry->blend.groups, *members = &geometry->blend.members;
+    const IndexLists *groups = &geometry->blend.groups, *members = &geometry->blend.members;
     double largest = 0;
     for (uint32_t i = groups->first[segment]; i < groups->first[segment + 1]; i++) {
         uint32_t group = groups->items[i];

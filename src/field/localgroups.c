@@ -73,7 +73,7 @@ static Part *part_of(const LocalGroups *groups, uint32_t group)
 /* Adds a segment to the parts of its groups. */
 static void meet(LocalGroups *groups, uint32_t segment)
 {
-    const NumberLists *lists = &groups->blend->groups;
+    const IndexLists *lists = &groups->blend->groups;
     for (uint32_t i = lists->first[segment]; i < lists->first[segment + 1]; i++) {
         uint32_t group = lists->items[i];
         Part *part = part_of(groups, group);
@@ -91,7 +91,7 @@ static void meet(LocalGroups *groups, uint32_t segment)
 /* The listed member of a part that is in the fewest groups. */
 static uint32_t rarest_of(const LocalGroups *groups, const Part *part)
 {
-    const NumberLists *members = &groups->blend->members, *holders = &groups->blend->groups;
+    const IndexLists *members = &groups->blend->members, *holders = &groups->blend->groups;
     uint32_t rarest = part->low, fewest = UINT32_MAX;
     for (uint32_t i = members->first[part->group]; i < members->first[part->group + 1]; i++) {
         uint32_t segment = members->items[i];
@@ -107,7 +107,7 @@ static uint32_t rarest_of(const LocalGroups *groups, const Part *part)
 /* Whether what the list has of `part` is all in the other one's group. */
 static bool is_within(const LocalGroups *groups, const Part *part, const Part *other)
 {
-    const NumberLists *members = &groups->blend->members;
+    const IndexLists *members = &groups->blend->members;
     if (other->count < part->count || other->low > part->low || other->high < part->high)
         return false;
     for (uint32_t i = members->first[part->group], k = members->first[other->group];
@@ -126,7 +126,7 @@ static bool is_within(const LocalGroups *groups, const Part *part, const Part *o
 /* Of equal parts, the first stays. */
 static bool is_held(const LocalGroups *groups, const Part *part)
 {
-    const NumberLists *holders = &groups->blend->groups;
+    const IndexLists *holders = &groups->blend->groups;
     uint32_t rarest = rarest_of(groups, part);
     for (uint32_t i = holders->first[rarest]; i < holders->first[rarest + 1]; i++) {
         const Part *other = part_of(groups, holders->items[i]);
@@ -157,7 +157,7 @@ size_t localgroups_find(LocalGroups *groups, const uint32_t *list, size_t n)
 
 const uint32_t *localgroups_members(LocalGroups *groups, size_t number, size_t *n)
 {
-    const NumberLists *lists = &groups->blend->members;
+    const IndexLists *lists = &groups->blend->members;
     uint32_t group = groups->parts[number].group;
     size_t count = 0;
     for (uint32_t i = lists->first[group]; i < lists->first[group + 1]; i++) {

@@ -82,7 +82,7 @@ static Weighed weigh_group(const TermMean *mean, uint32_t group, uint32_t first,
                            const double *numbers, Vec3 x)
 {
     const Geometry *geometry = mean->geometry;
-    const NumberLists *members = &geometry->blend.members;
+    const IndexLists *members = &geometry->blend.members;
     Weighed sum = {0};
     for (uint32_t k = members->first[group]; k < members->first[group + 1]; k++) {
         uint32_t segment = members->items[k];
@@ -98,7 +98,7 @@ static Weighed weigh_group(const TermMean *mean, uint32_t group, uint32_t first,
 static void take_groups(const TermMean *mean, uint32_t segment, const double *numbers, Vec3 x,
                         Weighed *best)
 {
-    const NumberLists *groups = &mean->geometry->blend.groups;
+    const IndexLists *groups = &mean->geometry->blend.groups;
     for (uint32_t k = groups->first[segment]; k < groups->first[segment + 1]; k++) {
         Weighed sum = weigh_group(mean, groups->items[k], segment, numbers, x);
         if (sum.all > best->all)

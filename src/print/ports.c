@@ -24,7 +24,7 @@ static const double least_cosine = 0.5;
 typedef struct PortSearch {
     const VesselTree *tree;
     BoxTree boxes; /* of the tree's segments; owned */
-    NumberLists incident;
+    IndexLists incident;
     const Casing *casing;
     const PrintBlock *block;
     Ports *ports;
@@ -322,7 +322,7 @@ Status ports_find(const VesselTree *tree, const CutEnds *ends, const Casing *cas
         }
     *out = made;
 done:
-    numberlists_release(&search.incident);
+    indexlists_release(&search.incident);
     boxtree_release(&search.boxes);
     return status;
 }

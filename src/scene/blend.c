@@ -9,10 +9,10 @@
 #include <stdlib.h>
 
 /* The lists of the numbers below n_items: in which of the n lists each is. */
-static Status turn_over(const NumberLists *lists, size_t n, size_t n_items, NumberLists *out,
+static Status turn_over(const IndexLists *lists, size_t n, size_t n_items, IndexLists *out,
                         Err *err)
 {
-    NumberLists turned = {0};
+    IndexLists turned = {0};
     Status status;
     TRY_GOTO(mem_calloc(&turned.first, n_items + 2, sizeof *turned.first, "groups", err));
     TRY_GOTO(mem_calloc(&turned.items, lists->first[n], sizeof *turned.items, "groups", err));
@@ -26,17 +26,17 @@ static Status turn_over(const NumberLists *lists, size_t n, size_t n_items, Numb
     *out = turned;
     return STATUS_OK;
 done:
-    numberlists_release(&turned);
+    indexlists_release(&turned);
     return status;
 }
 
-static uint32_t length_of(const NumberLists *lists, uint32_t i)
+static uint32_t length_of(const IndexLists *lists, uint32_t i)
 {
     return lists->first[i + 1] - lists->first[i];
 }
 
 /* Whether list b holds all of list a, which is not empty. */
-static bool is_part(const NumberLists *lists, uint32_t a, uint32_t b)
+static bool is_part(const IndexLists *lists, uint32_t a, uint32_t b)
 {
     const uint32_t *of_a = lists->items + lists->first[a],
                    *end_a = lists->items + lists->first[a + 1];
@@ -55,7 +55,7 @@ static bool is_part(const NumberLists *lists, uint32_t a, uint32_t b)
 
 /* Whether the list is empty, part of another, or the same as an earlier one; `holders` are the
  * lists that hold each number. */
-static bool is_idle(const NumberLists *lists, const NumberLists *holders, uint32_t self)
+static bool is_idle(const IndexLists *lists, const IndexLists *holders, uint32_t self)
 {
     uint32_t rarest = 0, fewest = UINT32_MAX;
     for (uint32_t i = lists->first[self]; i < lists->first[self + 1]; i++) {
@@ -75,10 +75,10 @@ static bool is_idle(const NumberLists *lists, const NumberLists *holders, uint32
 }
 
 /* The lists that are not idle, in *out, and how many. */
-static Status keep_busy(const NumberLists *lists, const NumberLists *holders, size_t n,
-                        NumberLists *out, size_t *n_out, Err *err)
+static Status keep_busy(const IndexLists *lists, const IndexLists *holders, size_t n,
+                        IndexLists *out, size_t *n_out, Err *err)
 {
-    NumberLists kept = {0};
+    IndexLists kept = {0};
     size_t count = 0;
     Status status;
     TRY_GOTO(mem_calloc(&kept.first, n + 1, sizeof *kept.first, "groups", err));
@@ -95,13 +95,13 @@ static Status keep_busy(const NumberLists *lists, const NumberLists *holders, si
     *n_out = count;
     return STATUS_OK;
 done:
-    numberlists_release(&kept);
+    indexlists_release(&kept);
     return status;
 }
 
 Status vesseltree_blend(const VesselTree *tree, Blend *out, Err *err)
 {
-    NumberLists incident = {0}, blending = {0}, nodes = {0};
+    IndexLists incident = {0}, blending = {0}, nodes = {0};
     Blend blend = {0};
     Status status;
     TRY_GOTO(vesseltree_incident(tree, &incident, err));
@@ -112,22 +112,22 @@ Status vesseltree_blend(const VesselTree *tree, Blend *out, Err *err)
     *out = blend;
     blend = (Blend){0};
 done:
-    numberlists_release(&incident);
-    numberlists_release(&blending);
-    numberlists_release(&nodes);
-    numberlists_release(&blend.members);
-    numberlists_release(&blend.groups);
+    indexlists_release(&incident);
+    indexlists_release(&blending);
+    indexlists_release(&nodes);
+    indexlists_release(&blend.members);
+    indexlists_release(&blend.groups);
     return status;
 }
 
 /* Appends those members of a group that are among `indices`, unless the first of them is not
  * number `i`: then the group is listed elsewhere. */
-static bool add_members(const NumberLists *members, uint32_t group, const uint32_t *indices,
+static bool add_members(const IndexLists *members, uint32_t group, const uint32_t *indices,
                         size_t n, size_t i, uint32_t *items, size_t *n_items)
 {
     size_t end = *n_items;
     for (uint32_t k = members->first[group]; k < members->first[group + 1]; k++) {
-        size_t place = numbers_place(indices, n, members->items[k]);
+        size_t place = sorted_find(indices, n, members->items[k]);
         if (place < n)
             items[end++] = (uint32_t)place;
     }
@@ -141,7 +141,7 @@ static bool add_members(const NumberLists *members, uint32_t group, const uint32
 static Status part_members(const Blend *whole, const uint32_t *indices, size_t n, Blend *part,
                            Err *err)
 {
-    const NumberLists *groups = &whole->groups, *members = &whole->members;
+    const IndexLists *groups = &whole->groups, *members = &whole->members;
     size_t most = 0, n_items = 0;
     uint32_t longest = 0;
     for (size_t i = 0; i < n; i++)

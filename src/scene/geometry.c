@@ -34,8 +34,8 @@ void geometry_release(Geometry *geometry)
     free(geometry->primitives);
     free(geometry->axes);
     free(geometry->segments);
-    numberlists_release(&geometry->blend.members);
-    numberlists_release(&geometry->blend.groups);
+    indexlists_release(&geometry->blend.members);
+    indexlists_release(&geometry->blend.groups);
     vesselmesh_release(&geometry->mesh);
     free(geometry->ids);
     *geometry = (Geometry){0};

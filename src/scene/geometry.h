@@ -9,7 +9,6 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "scene/models.h"
-#include "scene/numberlists.h" // IWYU pragma: export
 #include "scene/triangles.h"
 #include <stdint.h>
 
@@ -86,8 +85,8 @@ typedef struct FieldSegment {
  * exceeds it. */
 typedef struct Blend {
     size_t n_groups;
-    NumberLists members; /* of each group: indices of Geometry.segments */
-    NumberLists groups;  /* of each segment: the groups that it is a member of, one at least */
+    IndexLists members; /* of each group: indices of Geometry.segments */
+    IndexLists groups;  /* of each segment: the groups that it is a member of, one at least */
 } Blend;
 
 /* Constant once made [stage_geometry]. */

@@ -1,7 +1,6 @@
 /* A mesh is plain data; what is here is read off it. */
 #include "scene/triangles.h"
 
-#include "scene/numberlists.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,7 +42,7 @@ Status vesselmesh_part(const VesselMesh *mesh, const uint32_t *segments, size_t 
     TRY_GOTO(mem_calloc(&number, mesh->n_points, sizeof *number, "points", err));
     TRY_GOTO(reserve(mesh, &made, err));
     for (size_t i = 0; i < mesh->n_triangles; i++) {
-        size_t place = numbers_place(segments, n, mesh_segment(mesh, i));
+        size_t place = sorted_find(segments, n, mesh_segment(mesh, i));
         if (place == n)
             continue;
         for (int k = 0; k < 3; k++)

@@ -17,7 +17,7 @@ typedef struct Step {
 
 typedef struct Walker {
     const VesselTree *tree;
-    const NumberLists *incident;
+    const IndexLists *incident;
     NodePair *pairs;
     Step *stack;
     size_t n_pairs, pair_capacity, stack_capacity;
@@ -31,10 +31,10 @@ void vesseltree_release(VesselTree *tree)
     *tree = (VesselTree){0};
 }
 
-static Status sort_by_node(const NodePair *pairs, size_t n_pairs, size_t n_nodes, NumberLists *out,
+static Status sort_by_node(const NodePair *pairs, size_t n_pairs, size_t n_nodes, IndexLists *out,
                            Err *err)
 {
-    NumberLists lists = {0};
+    IndexLists lists = {0};
     Status status;
     TRY_GOTO(mem_calloc(&lists.first, n_nodes + 2, sizeof *lists.first, "nodes", err));
     TRY_GOTO(mem_calloc(&lists.items, n_pairs, sizeof *lists.items, "nodes", err));
@@ -47,11 +47,11 @@ static Status sort_by_node(const NodePair *pairs, size_t n_pairs, size_t n_nodes
     *out = lists;
     return STATUS_OK;
 done:
-    numberlists_release(&lists);
+    indexlists_release(&lists);
     return status;
 }
 
-Status vesseltree_incident(const VesselTree *tree, NumberLists *out, Err *err)
+Status vesseltree_incident(const VesselTree *tree, IndexLists *out, Err *err)
 {
     NodePair *pairs;
     TRY(mem_calloc(&pairs, 2 * tree->n_segments, sizeof *pairs, "segments", err));
@@ -95,7 +95,7 @@ static Status walk_out(Walker *walker, uint32_t segment, int end, Err *err)
     return STATUS_OK;
 }
 
-Status vesseltree_blending(const VesselTree *tree, const NumberLists *incident, NumberLists *out,
+Status vesseltree_blending(const VesselTree *tree, const IndexLists *incident, IndexLists *out,
                            Err *err)
 {
     Walker walker = {.tree = tree, .incident = incident};

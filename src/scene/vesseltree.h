@@ -35,10 +35,10 @@ static inline int segment_end_at(const VesselTree *tree, uint32_t segment, uint3
 #define BLEND_REACH 2
 
 /* The segments with an end at each node. */
-MUST_CHECK Status vesseltree_incident(const VesselTree *tree, NumberLists *out, Err *err);
+MUST_CHECK Status vesseltree_incident(const VesselTree *tree, IndexLists *out, Err *err);
 /* The segments that blend at each node. O(size of the result). */
-MUST_CHECK Status vesseltree_blending(const VesselTree *tree, const NumberLists *incident,
-                                      NumberLists *out, Err *err);
+MUST_CHECK Status vesseltree_blending(const VesselTree *tree, const IndexLists *incident,
+                                      IndexLists *out, Err *err);
 
 /* The blend of the tree's segments: the solid is the union over the nodes of where the sum of the
  * terms of those that blend there exceeds FIELD_LEVEL. A group stands for each node whose segments

@@ -2,7 +2,6 @@
 /* The blob: its numbers (docs/METHODS.md section 2.6), and its first hits against a walk in small
  * steps over a field written down once more, from POV-Ray's definition. */
 #include "field/field.h"
-#include "render/cast/blobcast.h"
 #include "render/field/kernel_blob.h"
 #include "stage/stage.h"
 #include "unit.h"
@@ -12,24 +11,11 @@
 
 #include "../fit/blob_deviation.h"
 #include "field_scenes.h"
+#include "test_search.h"
 
-typedef struct Cast {
-    BlobCast *cast;
-    BlobScratch *scratch;
-} Cast;
-
-static Cast cast_of(const Geometry *geometry)
+static TestSearch cast_of(const Geometry *geometry)
 {
-    Cast cast;
-    assert_int_equal(blobcast_new(geometry, &cast.cast, NULL), STATUS_OK);
-    assert_int_equal(blobscratch_new(geometry->n_segments, &cast.scratch, NULL), STATUS_OK);
-    return cast;
-}
-
-static void release(Cast *cast)
-{
-    blobscratch_free(cast->scratch);
-    blobcast_free(cast->cast);
+    return testsearch_open(&blob_search, geometry, NULL);
 }
 
 static TestScene empty_scene(void)
@@ -44,14 +30,13 @@ static TestScene empty_scene(void)
  * -1. */
 static double radius_towards(const Geometry *geometry, Vec3 center, Vec3 outwards)
 {
-    Cast cast = cast_of(geometry);
-    Vec3 d = vec3_normalized(outwards), normal;
+    TestSearch cast = cast_of(geometry);
+    Vec3 d = vec3_normalized(outwards);
     Ray ray = {vec3_add_scaled(center, d, 50), vec3_scale(d, -1)};
-    double t;
-    uint32_t segment;
-    bool hit = blobcast_first_hit(cast.cast, cast.scratch, ray, 0, 100, &t, &normal, &segment);
-    release(&cast);
-    return hit ? 50 - t : -1;
+    RayHit hit;
+    bool found = testsearch_first(&cast, ray, 0, 100, &hit);
+    testsearch_close(&cast);
+    return found ? 50 - hit.t : -1;
 }
 
 /* ---- the field in long double, component by component ---------------------------------------- */
@@ -206,26 +191,26 @@ typedef struct Tally {
 
 /* No sample before the hit is inside, none that is missed is; the hit is on the surface. Samples
  * are `step` apart; what is inside by less than `slack` grazes. */
-static void check_ray(const Cast *cast, const TestScene *test, Ray ray, long double step,
+static void check_ray(const TestSearch *cast, const TestScene *test, Ray ray, long double step,
                       Tally *tally)
 {
     const long double slack = 1e-9L;
-    double t, t_max = 120;
-    Vec3 normal;
-    uint32_t segment;
-    bool hit = blobcast_first_hit(cast->cast, cast->scratch, ray, 0, t_max, &t, &normal, &segment);
-    assert_true(blobcast_any_hit(cast->cast, cast->scratch, ray, 0, t_max) == hit);
+    const double t_max = 120;
+    RayHit found;
+    bool hit = testsearch_first(cast, ray, 0, t_max, &found);
+    assert_true(testsearch_any(cast, ray, 0, t_max) == hit);
     tally->rays++;
     tally->hits += hit;
-    for (long double s = 45; s < (hit ? (long double)t - 1e-6L : 75); s += step) {
+    for (long double s = 45; s < (hit ? (long double)found.t - 1e-6L : 75); s += step) {
         long double value = field_at(&test->geometry, long_at(ray, s));
         tally->grazing += value > 1 && value <= 1 + slack;
         if (value > 1 + slack)
-            fail_msg("inside at %Lg, before the hit at %g", s, hit ? t : -1);
+            fail_msg("inside at %Lg, before the hit at %g", s, hit ? found.t : -1);
     }
     if (!hit)
         return;
-    LongVec3 x = long_at(ray, (long double)t);
+    const Vec3 normal = found.normal;
+    LongVec3 x = long_at(ray, (long double)found.t);
     assert_true(fabsl(field_at(&test->geometry, x) - 1) < 1e-9L);
     assert_true(fabs(vec3_length(normal) - 1) < 1e-12);
     const long double h = 1e-5L;
@@ -234,7 +219,7 @@ static void check_ray(const Cast *cast, const TestScene *test, Ray ray, long dou
                      x.z - h * (long double)normal.z};
     inwards = field_at(&test->geometry, back);
     assert_true(inwards > 1 - 1e-9L);
-    long double most = segment_at(&test->segments[segment], x);
+    long double most = segment_at(&test->segments[found.index], x);
     for (size_t i = 0; i < test->geometry.n_segments; i++)
         assert_true(segment_at(&test->segments[i], x) <= most + 1e-9L);
 }
@@ -249,10 +234,10 @@ static void first_hits_are_those_of_a_walk_in_small_steps(void **state)
         for (int scene = 0; scene < 2; scene++) {
             TestScene test;
             make_test_scene((SceneKind)kind, &random, &test);
-            Cast cast = cast_of(&test.geometry);
+            TestSearch cast = cast_of(&test.geometry);
             for (int i = 0; i < 60; i++)
                 check_ray(&cast, &test, random_ray(&random, &test, i), 0.03L, &tally);
-            release(&cast);
+            testsearch_close(&cast);
         }
     print_message("%d rays, %d hits, %d samples graze\n", tally.rays, tally.hits, tally.grazing);
     assert_true(tally.hits > tally.rays / 3 && tally.hits < tally.rays);
@@ -264,18 +249,15 @@ static void a_ray_from_within_finds_its_way_out(void **state)
     TestScene test = empty_scene();
     test.geometry.segments = test.segments;
     put_segment(&test, vec3(-20, 0, 0), vec3(20, 0, 0), 1.7);
-    Cast cast = cast_of(&test.geometry);
-    double t;
-    Vec3 normal;
-    uint32_t segment;
+    TestSearch cast = cast_of(&test.geometry);
+    RayHit hit;
     const Ray ray = {{0.3, 0.4, 0}, {0, 1, 0}};
-    assert_true(
-        blobcast_first_hit(cast.cast, cast.scratch, ray, 1e-2, INFINITY, &t, &normal, &segment));
-    assert_true(fabs(t - 1.3) < 1e-12);
-    assert_true(vec3_distance(normal, vec3(0, 1, 0)) < 1e-12);
-    assert_false(blobcast_any_hit(cast.cast, cast.scratch, ray, 1.3 + 1e-9, INFINITY));
-    assert_false(blobcast_any_hit(cast.cast, cast.scratch, ray, 1e-2, 1.3 - 1e-9));
-    release(&cast);
+    assert_true(testsearch_first(&cast, ray, 1e-2, INFINITY, &hit));
+    assert_true(fabs(hit.t - 1.3) < 1e-12);
+    assert_true(vec3_distance(hit.normal, vec3(0, 1, 0)) < 1e-12);
+    assert_false(testsearch_any(&cast, ray, 1.3 + 1e-9, INFINITY));
+    assert_false(testsearch_any(&cast, ray, 1e-2, 1.3 - 1e-9));
+    testsearch_close(&cast);
 }
 
 /* Radii over four decades, all through one point. */
@@ -286,21 +268,19 @@ static void many_segments_in_one_place_are_no_trouble(void **state)
     random_seed(&random, 84);
     TestScene test;
     make_test_scene(KIND_WIDE_STAR, &random, &test);
-    Cast cast = cast_of(&test.geometry);
+    TestSearch cast = cast_of(&test.geometry);
     int hits = 0;
     for (int i = 0; i < 3000; i++) {
         Ray ray = random_ray(&random, &test, i);
-        double t;
-        Vec3 normal;
-        uint32_t segment;
-        if (!blobcast_first_hit(cast.cast, cast.scratch, ray, 0, INFINITY, &t, &normal, &segment))
+        RayHit hit;
+        if (!testsearch_first(&cast, ray, 0, INFINITY, &hit))
             continue;
         hits++;
-        assert_true(isfinite(t) && fabs(vec3_length(normal) - 1) < 1e-12);
-        assert_true(fabsl(field_at(&test.geometry, long_at(ray, (long double)t)) - 1) < 1e-4L);
+        assert_true(isfinite(hit.t) && fabs(vec3_length(hit.normal) - 1) < 1e-12);
+        assert_true(fabsl(field_at(&test.geometry, long_at(ray, (long double)hit.t)) - 1) < 1e-4L);
     }
     assert_true(hits > 500);
-    release(&cast);
+    testsearch_close(&cast);
 }
 
 /* ---- terms in tiles -------------------------------------------------------------------------- */
@@ -454,14 +434,12 @@ static void the_witness_agrees_with_the_renderer(void **state)
     for (int kind = 0; kind < N_TAME_KINDS; kind++) {
         TestScene test;
         make_test_scene((SceneKind)kind, &random, &test);
-        Cast cast = cast_of(&test.geometry);
+        TestSearch cast = cast_of(&test.geometry);
         for (int i = 0; i < 100; i++) {
             Ray ray = random_ray(&random, &test, i);
-            double t;
-            Vec3 normal;
-            uint32_t segment;
-            bool hit =
-                blobcast_first_hit(cast.cast, cast.scratch, ray, 0, 120, &t, &normal, &segment);
+            RayHit found;
+            bool hit = testsearch_first(&cast, ray, 0, 120, &found);
+            const double t = found.t;
             BlobRoots roots = roots_of(&test.geometry, ray, 0, 120);
             assert_true(roots.sure);
             assert_true(hit == (roots.n > 0));
@@ -478,7 +456,7 @@ static void the_witness_agrees_with_the_renderer(void **state)
                 assert_true(k == 0 || roots.t[k] > roots.t[k - 1]);
             }
         }
-        release(&cast);
+        testsearch_close(&cast);
     }
     print_message("%d hits, %d roots\n", hits, roots_found);
     assert_true(hits > 200);

@@ -118,7 +118,7 @@ static void a_term_in_its_form_is_the_term(void **state)
 static double potential(const TestScene *test, Vec3 x)
 {
     const Blend *blend = &test->geometry.blend;
-    const NumberLists *members = &blend->members;
+    const IndexLists *members = &blend->members;
     double sum = 0, largest = 0;
     for (size_t i = 0; i < test->geometry.n_segments; i++)
         sum += potential_term(&test->segments[i], x);
@@ -240,8 +240,8 @@ static void the_surface_of_the_graph_lies_in_cells_too(void **state)
         TestScene test;
         make_graph_scene(&random, &test);
         hold_cells_to_surface(&test, betas[run % 3], (ErfForm)(run % 2), &random, &worst);
-        numberlists_release(&test.geometry.blend.members);
-        numberlists_release(&test.geometry.blend.groups);
+        indexlists_release(&test.geometry.blend.members);
+        indexlists_release(&test.geometry.blend.groups);
     }
     printf("  displacement over its bound: %.3f\n", worst);
 }

@@ -1,32 +1,26 @@
 /* Slow: holds the potential against brute force. */
-#include "render/cast/fieldcast.h"
 #include "unit.h"
 
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "field_scenes.h"
+#include "test_search.h"
 #include <stdio.h>
 
-/* A scene with its index and one workspace. */
 typedef struct Setup {
     TestScene test;
-    FieldIndex *index;
-    FieldScratch *scratch;
+    TestSearch search;
 } Setup;
 
 static void start(Setup *setup)
 {
-    assert_int_equal(fieldindex_build(&setup->test.geometry, &setup->index, NULL), STATUS_OK);
-    assert_int_equal(
-        fieldscratch_new(setup->index->geometry, setup->index->n_tubes, &setup->scratch, NULL),
-        STATUS_OK);
+    setup->search = testsearch_open(&field_search, &setup->test.geometry, NULL);
 }
 
 static void finish(Setup *setup)
 {
-    fieldscratch_free(setup->scratch);
-    fieldindex_free(setup->index);
+    testsearch_close(&setup->search);
 }
 
 static void begin_empty(Setup *setup)
@@ -37,9 +31,10 @@ static void begin_empty(Setup *setup)
 
 static bool first_hit(Setup *setup, Ray ray, double *t)
 {
-    Vec3 normal;
-    uint32_t segment;
-    return field_first_hit(setup->index, setup->scratch, ray, 0, HUGE_VAL, t, &normal, &segment);
+    RayHit hit = {.t = *t};
+    bool found = testsearch_first(&setup->search, ray, 0, HUGE_VAL, &hit);
+    *t = hit.t;
+    return found;
 }
 
 /* The brute force: which terms may exceed e^-32 on a ray, between which parameters, and their sum
@@ -149,17 +144,16 @@ static void check_hit(const Setup *setup, const Brute *brute, double t, Vec3 nor
 static void compare_with_brute_force(Setup *setup, Ray ray, Tally *tally)
 {
     Brute brute = brute_start(&setup->test, ray);
-    double t = -1, expected = -1;
-    Vec3 normal;
-    uint32_t segment;
-    bool hit =
-        field_first_hit(setup->index, setup->scratch, ray, 0, HUGE_VAL, &t, &normal, &segment);
+    double expected = -1;
+    RayHit found = {.t = -1};
+    bool hit = testsearch_first(&setup->search, ray, 0, HUGE_VAL, &found);
+    const double t = found.t;
     bool exists = brute_first_hit(&brute, &expected);
     tally->rays++;
     tally->within += brute_side(&brute) > 0;
     if (hit) {
         tally->hits++;
-        check_hit(setup, &brute, t, normal, segment, tally);
+        check_hit(setup, &brute, t, found.normal, found.index, tally);
     }
     if (exists && (!hit || t > expected + 1e-4)) {
         /* Only a vessel, or from within one a gap, barely touched may be passed by. */
@@ -295,19 +289,15 @@ static void a_chain_of_one_radius_is_one_long_segment(void **state)
     int hits = 0;
     for (int i = 0; i < 3000; i++) {
         Ray ray = random_ray(RAY_ANY, &whole.test, &random);
-        double t = 0, expected = 0;
-        Vec3 normal, expected_normal;
-        uint32_t segment;
-        bool hit =
-            field_first_hit(chain.index, chain.scratch, ray, 0, HUGE_VAL, &t, &normal, &segment);
-        assert_int_equal(hit, field_first_hit(whole.index, whole.scratch, ray, 0, HUGE_VAL,
-                                              &expected, &expected_normal, &segment));
+        RayHit found, expected;
+        bool hit = testsearch_first(&chain.search, ray, 0, HUGE_VAL, &found);
+        assert_int_equal(hit, testsearch_first(&whole.search, ray, 0, HUGE_VAL, &expected));
         if (!hit)
             continue;
         hits++;
-        double facing = -vec3_dot(expected_normal, ray.direction);
-        assert_true(fabs(t - expected) * facing < 1e-8);
-        assert_true(vec3_distance(normal, expected_normal) * facing < 1e-7);
+        double facing = -vec3_dot(expected.normal, ray.direction);
+        assert_true(fabs(found.t - expected.t) * facing < 1e-8);
+        assert_true(vec3_distance(found.normal, expected.normal) * facing < 1e-7);
     }
     assert_true(hits > 1000);
     finish(&chain);
@@ -338,15 +328,13 @@ static void a_ray_from_inside_meets_the_wall_from_within(void **state)
     put_segment(&setup.test, vec3(-20, 0, 7.5), vec3(20, 0, 7.5), 0.61);
     start(&setup);
     double t;
-    Vec3 normal;
-    uint32_t segment;
+    RayHit hit;
     Ray ray = {{0.7, 0, -0.4}, {0, 0, 1}};
-    assert_true(
-        field_first_hit(setup.index, setup.scratch, ray, 0, HUGE_VAL, &t, &normal, &segment));
-    assert_true(fabs(t - 1.63) < 1e-12);
-    assert_int_equal(segment, 0);
-    assert_true(vec3_distance(normal, vec3(0, 0, 1)) < 1e-12);
-    assert_false(field_first_hit(setup.index, setup.scratch, ray, 0, 1.62, &t, &normal, &segment));
+    assert_true(testsearch_first(&setup.search, ray, 0, HUGE_VAL, &hit));
+    assert_true(fabs(hit.t - 1.63) < 1e-12);
+    assert_int_equal(hit.index, 0);
+    assert_true(vec3_distance(hit.normal, vec3(0, 0, 1)) < 1e-12);
+    assert_false(testsearch_first(&setup.search, ray, 0, 1.62, &hit));
     /* From the surface outwards, and from it inwards. */
     assert_false(first_hit(&setup, (Ray){{0.7, 0, -1.23}, {0, 0, -1}}, &t));
     assert_true(first_hit(&setup, (Ray){{0.7, 0, -1.23}, {0, 0, 1}}, &t));
@@ -355,7 +343,7 @@ static void a_ray_from_inside_meets_the_wall_from_within(void **state)
 
 static bool is_shadowed(Setup *setup, Vec3 from, Vec3 towards, double far)
 {
-    return field_is_shadowed(setup->index, setup->scratch, (Ray){from, towards}, 1e-3, far);
+    return testsearch_any(&setup->search, (Ray){from, towards}, 1e-3, far);
 }
 
 static void a_wall_is_lit_from_its_own_side_alone(void **state)
@@ -396,13 +384,10 @@ static void looks_only_between_its_limits(void **state)
     } cases[] = {{0, HUGE_VAL, 3.5}, {0, 3.49, 0},          {0, 3.51, 3.5},   {4.6, HUGE_VAL, 8.5},
                  {4.6, 8.4, 0},      {9.6, HUGE_VAL, 13.5}, {15, HUGE_VAL, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        double t = 0;
-        Vec3 normal;
-        uint32_t segment;
-        bool hit = field_first_hit(setup.index, setup.scratch, ray, cases[i].t_min, cases[i].t_max,
-                                   &t, &normal, &segment);
-        assert_int_equal(hit, cases[i].expected > 0);
-        assert_true(!hit || fabs(t - cases[i].expected) < 1e-11);
+        RayHit hit;
+        bool found = testsearch_first(&setup.search, ray, cases[i].t_min, cases[i].t_max, &hit);
+        assert_int_equal(found, cases[i].expected > 0);
+        assert_true(!found || fabs(hit.t - cases[i].expected) < 1e-11);
     }
     finish(&setup);
 }
@@ -415,12 +400,10 @@ static void of_equal_terms_the_lowest_segment_is_named(void **state)
     for (int i = 0; i < 5; i++)
         put_segment(&setup.test, vec3(-9, 0.5, 1), vec3(9, 0.5, 1), i < 2 ? 0.3 : 0.5);
     start(&setup);
-    double t;
-    Vec3 normal;
-    uint32_t segment;
-    assert_true(field_first_hit(setup.index, setup.scratch, (Ray){{1, 0.625, 30}, {0, 0, -1}}, 0,
-                                HUGE_VAL, &t, &normal, &segment));
-    assert_int_equal(segment, 2);
+    RayHit hit;
+    const Ray ray = {{1, 0.625, 30}, {0, 0, -1}};
+    assert_true(testsearch_first(&setup.search, ray, 0, HUGE_VAL, &hit));
+    assert_int_equal(hit.index, 2);
     finish(&setup);
 }
 

@@ -182,7 +182,7 @@ static inline bool walk_to(Walk *walk, long double level)
 /* The n-th of the sums whose union is the surface, with its segments in `members`. */
 static inline Geometry sum_of(const Geometry *geometry, size_t number, FieldSegment *members)
 {
-    const NumberLists *lists = &geometry->blend.members;
+    const IndexLists *lists = &geometry->blend.members;
     Geometry sum = {.model = geometry->model, .segments = members};
     if (!geometry->blend.n_groups)
         return *geometry;

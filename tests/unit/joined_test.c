@@ -1,11 +1,11 @@
 #include "stage/stage.h"
 #include "unit.h"
 
-#include "render/cast/bvh.h"
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "test_search.h"
 #include "test_stage.h"
 
 static const Look look = {.color = {0.5f, 0.1f, 0.2f},
@@ -292,10 +292,7 @@ static void no_ray_sees_the_inside_of_a_robust_tree(void **state)
         Scene scene = stage(&tree, JOINTS_ROBUST, &report);
         joints += report.joints;
         round += report.places_short + report.places_sharp;
-        Bvh *bvh;
-        assert_int_equal(
-            bvh_build(scene.geometry.primitives, scene.geometry.n_primitives, &bvh, NULL),
-            STATUS_OK);
+        TestSearch search = testsearch_open(&primitive_search, &scene.geometry, NULL);
         Vec3 size = vec3_sub(scene.geometry.bounds.high, scene.geometry.bounds.low);
         for (int i = 0; i < 4000; i++) {
             double u = random_uniform(&random), v = random_uniform(&random);
@@ -306,15 +303,14 @@ static void no_ray_sees_the_inside_of_a_robust_tree(void **state)
             double x = number(&random, -1, 1), y = number(&random, -1, 1);
             Vec3 direction = vec3_normalized(vec3(x, y, number(&random, 0.1, 1)));
             Ray ray = {vec3_add_scaled(target, direction, -200), direction};
-            Hit hit;
-            size_t index;
-            if (!bvh_first_hit(bvh, ray, 0, &hit, &index))
+            RayHit hit;
+            if (!testsearch_first(&search, ray, 0, INFINITY, &hit))
                 continue;
             seen++;
             if (vec3_dot(hit.normal, direction) > 0)
-                fail_msg("tree %d, ray %d sees the inside of primitive %zu", k, i, index);
+                fail_msg("tree %d, ray %d sees the inside of primitive %u", k, i, hit.index);
         }
-        bvh_free(bvh);
+        testsearch_close(&search);
         scene_release(&scene);
         tree_release(&tree);
     }

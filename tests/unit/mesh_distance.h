@@ -4,7 +4,7 @@
 #define CORCAST_TESTS_MESH_DISTANCE_H
 
 #include "field/field.h"
-#include "render/cast/fieldcast.h"
+#include "render/cast/raysearch.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,9 +21,9 @@ typedef struct Ruler {
     const VesselTree *tree;
     const VesselMesh *mesh;
     FieldSegment *segments;
-    NumberLists incident, blending, nodes; /* the last: the nodes at which each segment blends */
+    IndexLists incident, blending, nodes; /* the last: the nodes at which each segment blends */
     BoxTree segment_tree, triangle_tree;
-    FieldScratch *scratch;
+    void *scratch; /* of field_search */
     uint32_t *near, *stamp, stamps;
 } Ruler;
 
@@ -57,7 +57,7 @@ static inline void ruler_nodes(Ruler *ruler)
 {
     size_t n = ruler->tree->n_segments, nodes = ruler->tree->n_nodes;
     uint32_t *first = calloc(n + 2, sizeof *first);
-    const NumberLists *from = &ruler->blending;
+    const IndexLists *from = &ruler->blending;
     uint32_t *items = calloc(from->first[nodes], sizeof *items);
     for (uint32_t i = 0; i < from->first[nodes]; i++)
         first[from->items[i] + 2]++;
@@ -66,7 +66,7 @@ static inline void ruler_nodes(Ruler *ruler)
     for (uint32_t node = 0; node < nodes; node++)
         for (uint32_t i = from->first[node]; i < from->first[node + 1]; i++)
             items[first[from->items[i] + 1]++] = node;
-    ruler->nodes = (NumberLists){first, items};
+    ruler->nodes = (IndexLists){.first = first, .items = items};
 }
 
 static inline Status ruler_make(Ruler *ruler, const VesselTree *tree, const VesselMesh *mesh,
@@ -93,17 +93,17 @@ static inline Status ruler_make(Ruler *ruler, const VesselTree *tree, const Vess
     free(boxes);
     ruler->near = calloc(tree->n_nodes, sizeof *ruler->near);
     ruler->stamp = calloc(tree->n_nodes, sizeof *ruler->stamp);
-    return fieldscratch_new(&(Geometry){0}, tree->n_segments, &ruler->scratch, NULL);
+    return field_search.workspace_new(&(Geometry){0}, tree->n_segments, &ruler->scratch, NULL);
 }
 
 static inline void ruler_release(Ruler *ruler)
 {
-    numberlists_release(&ruler->incident);
-    numberlists_release(&ruler->blending);
-    numberlists_release(&ruler->nodes);
+    indexlists_release(&ruler->incident);
+    indexlists_release(&ruler->blending);
+    indexlists_release(&ruler->nodes);
     boxtree_release(&ruler->segment_tree);
     boxtree_release(&ruler->triangle_tree);
-    fieldscratch_free(ruler->scratch);
+    field_search.workspace_free(ruler->scratch);
     free(ruler->segments);
     free(ruler->near);
     free(ruler->stamp);
@@ -131,18 +131,18 @@ static inline double ruler_hit(Ruler *ruler, Ray ray, double reach, uint32_t *se
     for (size_t k = 0; k < n; k++) {
         const uint32_t *range = &ruler->blending.first[ruler->near[k]];
         const uint32_t *list = &ruler->blending.items[range[0]];
-        double phi = 0, t;
-        Vec3 normal;
-        uint32_t hit;
-        for (uint32_t j = 0; j < range[1] - range[0]; j++)
+        const size_t n_list = range[1] - range[0];
+        const RayIndex index = {.geometry = &geometry, .list = list, .n = n_list};
+        const RayPart part = {ray, 0, fmin(first, 2 * reach)};
+        double phi = 0;
+        RayHit hit;
+        for (uint32_t j = 0; j < n_list; j++)
             phi += potential_term(&ruler->segments[list[j]], ray.origin);
         if (phi >= FIELD_LEVEL)
             return -1;
-        if (field_first_hit_among(&geometry, list, range[1] - range[0], ruler->scratch, ray, 0,
-                                  fmin(first, 2 * reach), &t, &normal, &hit) &&
-            t < first) {
-            first = t;
-            *segment = hit;
+        if (field_search.first(&index, ruler->scratch, &part, &hit) && hit.t < first) {
+            first = hit.t;
+            *segment = hit.index;
         }
     }
     return first;

@@ -1,10 +1,11 @@
 /* Rays and triangles: which is met first, where, and the normal that is seen there. */
-#include "render/cast/meshcast.h"
 #include "unit.h"
 
 #include "base/base.h"
 #include <math.h>
 #include <stdint.h>
+
+#include "test_search.h"
 
 /* A triangle in the plane z = 2.385, its right angle at the origin of x and y, and normals that
  * lean outwards. */
@@ -12,12 +13,10 @@ static float points[3][3] = {{0, 0, 2.385F}, {4.25F, 0, 2.385F}, {0, 3.5F, 2.385
 static float normals[3][3] = {{-0.6F, 0, -0.8F}, {0, -0.6F, -0.8F}, {0.28F, 0.96F, 0}};
 static uint32_t corners[1][3] = {{0, 1, 2}};
 
-static MeshCast *cast_one(uint32_t *label, VesselMesh *mesh)
+static TestSearch cast_one(uint32_t *label, Geometry *geometry)
 {
-    MeshCast *cast;
-    *mesh = (VesselMesh){points, normals, 3, corners, label, 1};
-    assert_int_equal(meshcast_new(mesh, &cast, NULL), STATUS_OK);
-    return cast;
+    *geometry = (Geometry){.mesh = {points, normals, 3, corners, label, 1}};
+    return testsearch_open(&triangle_search, geometry, NULL);
 }
 
 static const Vec3 parts = {0.2, 0.3, 0.5};
@@ -31,55 +30,48 @@ static Ray ray_through_parts(void)
 static void a_normal_is_between_those_of_the_corners(void **state)
 {
     (void)state;
-    uint32_t label = 7, segment;
-    VesselMesh mesh;
-    MeshCast *cast = cast_one(&label, &mesh);
-    Hit hit;
-    bool leaves;
-    assert_true(meshcast_first_hit(cast, ray_through_parts(), 1e-4, &hit, &segment, &leaves));
-    assert_int_equal(segment, 7);
-    assert_true(fabs(hit.t - 3.885) <= 1e-6 && leaves);
+    uint32_t label = 7;
+    Geometry geometry;
+    TestSearch cast = cast_one(&label, &geometry);
+    RayHit hit;
+    assert_true(testsearch_first(&cast, ray_through_parts(), 1e-4, INFINITY, &hit));
+    assert_int_equal(hit.index, 7);
+    assert_true(fabs(hit.t - 3.885) <= 1e-6 && hit.leaves);
     Vec3 expected = vec3_normalized(
         vec3(-0.6 * parts.x + 0.28 * parts.z, -0.6 * parts.y + 0.96 * parts.z, -0.4));
     assert_true(vec3_distance(hit.normal, expected) < 1e-6);
-    meshcast_free(cast);
+    testsearch_close(&cast);
 }
 
 static void a_cap_has_the_normal_of_its_plane(void **state)
 {
     (void)state;
-    uint32_t label = 7 | MESH_CAP, segment;
-    VesselMesh mesh;
-    MeshCast *cast = cast_one(&label, &mesh);
-    Hit hit;
-    bool leaves;
-    assert_true(meshcast_first_hit(cast, ray_through_parts(), 1e-4, &hit, &segment, &leaves));
-    assert_int_equal(segment, 7);
+    uint32_t label = 7 | MESH_CAP;
+    Geometry geometry;
+    TestSearch cast = cast_one(&label, &geometry);
+    RayHit hit;
+    assert_true(testsearch_first(&cast, ray_through_parts(), 1e-4, INFINITY, &hit));
+    assert_int_equal(hit.index, 7);
     assert_true(vec3_distance(hit.normal, vec3(0, 0, 1)) < 1e-6);
-    meshcast_free(cast);
+    testsearch_close(&cast);
 }
 
 static void rays_beside_the_edges_and_short_of_the_plane_meet_nothing(void **state)
 {
     (void)state;
-    uint32_t label = 7, segment;
-    VesselMesh mesh;
-    MeshCast *cast = cast_one(&label, &mesh);
+    uint32_t label = 7;
+    Geometry geometry;
+    TestSearch cast = cast_one(&label, &geometry);
     const Vec3 up = {0, 0, 1}, inside = {1.125, 1.25, 0};
-    Hit hit;
-    bool leaves;
-    assert_false(
-        meshcast_first_hit(cast, (Ray){{-0.001, 1.25, 0}, up}, 1e-4, &hit, &segment, &leaves));
-    assert_false(
-        meshcast_first_hit(cast, (Ray){{1.125, -0.001, 0}, up}, 1e-4, &hit, &segment, &leaves));
-    assert_false(
-        meshcast_first_hit(cast, (Ray){{2.127, 1.75, 0}, up}, 1e-4, &hit, &segment, &leaves));
-    assert_true(
-        meshcast_first_hit(cast, (Ray){{2.123, 1.75, 0}, up}, 1e-4, &hit, &segment, &leaves));
-    assert_false(meshcast_first_hit(cast, (Ray){inside, up}, 2.386, &hit, &segment, &leaves));
-    assert_true(meshcast_any_hit(cast, (Ray){inside, up}, 1e-3, 2.386));
-    assert_false(meshcast_any_hit(cast, (Ray){inside, up}, 1e-3, 2.384));
-    meshcast_free(cast);
+    RayHit hit;
+    assert_false(testsearch_first(&cast, (Ray){{-0.001, 1.25, 0}, up}, 1e-4, INFINITY, &hit));
+    assert_false(testsearch_first(&cast, (Ray){{1.125, -0.001, 0}, up}, 1e-4, INFINITY, &hit));
+    assert_false(testsearch_first(&cast, (Ray){{2.127, 1.75, 0}, up}, 1e-4, INFINITY, &hit));
+    assert_true(testsearch_first(&cast, (Ray){{2.123, 1.75, 0}, up}, 1e-4, INFINITY, &hit));
+    assert_false(testsearch_first(&cast, (Ray){inside, up}, 2.386, INFINITY, &hit));
+    assert_true(testsearch_any(&cast, (Ray){inside, up}, 1e-3, 2.386));
+    assert_false(testsearch_any(&cast, (Ray){inside, up}, 1e-3, 2.384));
+    testsearch_close(&cast);
 }
 
 /* Where a ray meets a triangle; T. Moller, B. Trumbore: Fast, minimum storage ray/triangle
@@ -123,33 +115,32 @@ static void the_nearest_of_many_is_found(void **state)
         }
     }
     const VesselMesh mesh = {place, place, 3 * TRIANGLES, corner, labels, TRIANGLES};
-    MeshCast *cast;
-    assert_int_equal(meshcast_new(&mesh, &cast, NULL), STATUS_OK);
+    const Geometry geometry = {.mesh = mesh};
+    TestSearch cast = testsearch_open(&triangle_search, &geometry, NULL);
     int met = 0;
     for (int i = 0; i < RAYS; i++) {
         Vec3 from = {uniform(&seed), uniform(&seed), uniform(&seed)};
         Vec3 to = {uniform(&seed), uniform(&seed), uniform(&seed)};
         Ray ray = {from, vec3_normalized(vec3_sub(to, from))};
-        uint32_t nearest = TRIANGLES, segment;
+        uint32_t nearest = TRIANGLES;
         double least = HUGE_VAL;
         for (uint32_t k = 0; k < TRIANGLES; k++) {
             double at = meeting(&mesh, k, ray);
             nearest = at < least ? k : nearest;
             least = fmin(least, at);
         }
-        Hit hit;
-        bool leaves;
-        bool found = meshcast_first_hit(cast, ray, 1e-4, &hit, &segment, &leaves);
+        RayHit hit;
+        bool found = testsearch_first(&cast, ray, 1e-4, INFINITY, &hit);
         assert_int_equal(found, nearest < TRIANGLES);
         met += found;
         if (!found)
             continue;
-        assert_int_equal(segment, nearest);
+        assert_int_equal(hit.index, nearest);
         assert_true(fabs(hit.t - least) <= 1e-5);
-        assert_true(meshcast_any_hit(cast, ray, 1e-4, least + 1e-4));
+        assert_true(testsearch_any(&cast, ray, 1e-4, least + 1e-4));
     }
     assert_in_range(met, RAYS / 4, RAYS);
-    meshcast_free(cast);
+    testsearch_close(&cast);
 }
 
 int main(void)

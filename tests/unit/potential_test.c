@@ -1,6 +1,5 @@
 /* What the potential does to vessels, in numbers (docs/METHODS.md), and what --potential graph
  * changes about it. */
-#include "render/cast/fieldcast.h"
 #include "render/render.h"
 #include "stage/stage.h"
 #include "unit.h"
@@ -9,6 +8,7 @@
 #include <stdlib.h>
 
 #include "field_scenes.h"
+#include "test_search.h"
 #include "test_stage.h"
 
 static TestScene empty_scene(void)
@@ -23,20 +23,17 @@ static TestScene empty_scene(void)
  * or -1 without a hit. */
 static double radius_towards(const Geometry *geometry, Vec3 center, Vec3 outwards)
 {
-    uint32_t all[2 * MAX_SEGMENTS], segment;
-    FieldScratch *scratch;
-    double t;
-    Vec3 normal;
+    uint32_t all[2 * MAX_SEGMENTS];
+    RayHit hit;
     assert_true(geometry->n_segments <= sizeof all / sizeof *all);
-    assert_int_equal(fieldscratch_new(geometry, geometry->n_segments, &scratch, NULL), STATUS_OK);
+    TestSearch search = testsearch_among(&field_search, geometry, all, geometry->n_segments);
     for (uint32_t i = 0; i < geometry->n_segments; i++)
         all[i] = i;
     Vec3 d = vec3_normalized(outwards);
     Ray ray = {vec3_add_scaled(center, d, 50), vec3_scale(d, -1)};
-    bool hit = field_first_hit_among(geometry, all, geometry->n_segments, scratch, ray, 0, 100, &t,
-                                     &normal, &segment);
-    fieldscratch_free(scratch);
-    return hit ? 50 - t : -1;
+    bool found = testsearch_first(&search, ray, 0, 100, &hit);
+    testsearch_close(&search);
+    return found ? 50 - hit.t : -1;
 }
 
 /* Segments from the origin into the plane z = 0, at equal angles; their radius across that
@@ -185,8 +182,8 @@ static bool blend_somewhere(const Geometry *geometry, uint32_t one, uint32_t oth
 {
     const Blend *blend = &geometry->blend;
     for (size_t group = 0; group < blend->n_groups; group++)
-        if (numberlists_hold(&blend->members, group, one) &&
-            numberlists_hold(&blend->members, group, other))
+        if (indexlists_hold(&blend->members, group, one) &&
+            indexlists_hold(&blend->members, group, other))
             return true;
     return false;
 }
@@ -297,22 +294,19 @@ static void the_picture_of_the_graph_is_that_of_single_rays(void **state)
     const RenderParams params = {.threads = 2, .antialias = 1, .want_depth = true};
     Frame frame;
     assert_int_equal(render(&scene, &params, &frame, NULL, NULL), STATUS_OK);
-    uint32_t all[] = {0, 1, 2, 3, 4}, segment;
-    FieldScratch *scratch;
-    assert_int_equal(fieldscratch_new(&scene.geometry, 5, &scratch, NULL), STATUS_OK);
+    const uint32_t all[] = {0, 1, 2, 3, 4};
+    TestSearch search = testsearch_among(&field_search, &scene.geometry, all, 5);
     int hits = 0;
     for (int pixel = 0; pixel < 200 * 120; pixel++) {
         Ray ray = camera_ray(&scene.view.camera, pixel % 200, pixel / 200);
-        double t;
-        Vec3 normal;
-        bool hit = field_first_hit_among(&scene.geometry, all, 5, scratch, ray, 0, HUGE_VAL, &t,
-                                         &normal, &segment);
-        assert_int_equal(hit, isfinite(frame.depth.values[pixel]));
-        assert_true(!hit || fabs((double)frame.depth.values[pixel] - t) < 1e-3);
-        hits += hit;
+        RayHit hit;
+        bool found = testsearch_first(&search, ray, 0, HUGE_VAL, &hit);
+        assert_int_equal(found, isfinite(frame.depth.values[pixel]));
+        assert_true(!found || fabs((double)frame.depth.values[pixel] - hit.t) < 1e-3);
+        hits += found;
     }
     assert_true(hits > 2000);
-    fieldscratch_free(scratch);
+    testsearch_close(&search);
     frame_release(&frame);
     scene_release(&scene);
 }
@@ -360,25 +354,24 @@ static void the_graph_is_left_where_all_its_bodies_are_left(void **state)
     Tree tree;
     make_hairpin(&tree);
     Scene scene = staged_hairpin(true);
-    uint32_t all[] = {0, 1, 2, 3, 4}, segment;
-    FieldScratch *scratch;
-    assert_int_equal(fieldscratch_new(&scene.geometry, 5, &scratch, NULL), STATUS_OK);
+    const uint32_t all[] = {0, 1, 2, 3, 4};
+    TestSearch search = testsearch_among(&field_search, &scene.geometry, all, 5);
     Random random;
     random_seed(&random, 74);
     for (int i = 0; i < 2000; i++) {
         const FieldSegment *in = &scene.geometry.segments[i % 5];
         Vec3 span = vec3_sub(in->b, in->a), d = random_direction(&random);
         Ray ray = {vec3_add_scaled(in->a, span, uniform(&random, 0.1, 0.9)), d};
-        double t, step = 0.02 * in->radius_mm;
-        Vec3 normal;
-        assert_true(field_first_hit_among(&scene.geometry, all, 5, scratch, ray, 0, HUGE_VAL, &t,
-                                          &normal, &segment));
+        double step = 0.02 * in->radius_mm;
+        RayHit hit;
+        assert_true(testsearch_first(&search, ray, 0, HUGE_VAL, &hit));
+        const double t = hit.t;
         for (double at = 0; at < t - 1e-6; at += step)
             assert_true(is_in_graph(&tree, &scene.geometry, ray_at(ray, at)));
         assert_true(is_in_graph(&tree, &scene.geometry, ray_at(ray, t - 1e-6)));
         assert_false(is_in_graph(&tree, &scene.geometry, ray_at(ray, t + 1e-6)));
     }
-    fieldscratch_free(scratch);
+    testsearch_close(&search);
     tree_release(&tree);
     scene_release(&scene);
 }

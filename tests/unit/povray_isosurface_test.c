@@ -1,21 +1,18 @@
 #include "render/render.h"
 #include "unit.h"
 
-#include "render/cast/fieldcast.h"
-#include "render/cast/povray_isosurface.h"
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "field_scenes.h"
+#include "test_search.h"
 #include <stdio.h>
 
 static const CellParams cells = {.beta = 3};
 
-static PovrayIsosurface *halving_of(const Geometry *geometry)
+static TestSearch halving_of(const Geometry *geometry)
 {
-    PovrayIsosurface *halving = NULL;
-    assert_int_equal(povray_isosurface_new(geometry, &cells, &halving, NULL), STATUS_OK);
-    return halving;
+    return testsearch_open(&cell_search, geometry, &cells);
 }
 
 /* A ray from 200 mm away through a place near some segment. */
@@ -31,9 +28,7 @@ static Ray random_ray(const TestScene *test, Random *random)
 /* The same scene, to be seen as POV-Ray sees it and by proof. */
 typedef struct Views {
     TestScene test;
-    PovrayIsosurface *halving;
-    FieldIndex *index;
-    FieldScratch *scratch;
+    TestSearch halving, exact;
     size_t seen, grazing;
 } Views;
 
@@ -41,31 +36,23 @@ static void views_init(Views *views, SceneKind kind, Random *random)
 {
     make_test_scene(kind, random, &views->test);
     views->halving = halving_of(&views->test.geometry);
-    assert_int_equal(fieldindex_build(&views->test.geometry, &views->index, NULL), STATUS_OK);
-    assert_int_equal(
-        fieldscratch_new(views->index->geometry, views->index->n_tubes, &views->scratch, NULL),
-        STATUS_OK);
+    views->exact = testsearch_open(&field_search, &views->test.geometry, NULL);
 }
 
 static void views_release(Views *views)
 {
-    fieldscratch_free(views->scratch);
-    fieldindex_free(views->index);
-    povray_isosurface_free(views->halving);
+    testsearch_close(&views->exact);
+    testsearch_close(&views->halving);
 }
 
 /* Both see the ray's first hit, and at the same place, unless it grazes. */
 static void assert_seen_alike(Views *views, Ray ray)
 {
-    Hit hit;
-    double t;
-    Vec3 normal;
-    uint32_t segment, exact_segment, cell;
-    bool found = povray_isosurface_first_hit(views->halving, ray, 1e-4, &hit, &segment, &cell);
-    bool exact = field_first_hit(views->index, views->scratch, ray, 1e-4, INFINITY, &t, &normal,
-                                 &exact_segment);
-    double cosine = exact ? -vec3_dot(normal, ray.direction) : 0;
-    if (found && (!exact || hit.t < t))
+    RayHit hit, expected;
+    bool found = testsearch_first(&views->halving, ray, 1e-4, INFINITY, &hit);
+    bool exact = testsearch_first(&views->exact, ray, 1e-4, INFINITY, &expected);
+    double cosine = exact ? -vec3_dot(expected.normal, ray.direction) : 0;
+    if (found && (!exact || hit.t < expected.t))
         cosine = exact ? fmin(cosine, fabs(vec3_dot(hit.normal, ray.direction))) : 0;
     if (cosine < 0.05) {
         views->grazing += found || exact;
@@ -73,10 +60,10 @@ static void assert_seen_alike(Views *views, Ray ray)
     }
     assert_true(found);
     views->seen++;
-    double radius = views->test.segments[segment].radius_mm;
+    double radius = views->test.segments[hit.index].radius_mm;
     double allowed = cell_accuracy(radius) + cell_displacement(radius, ERF_FAST) / cosine;
-    assert_true(fabs(hit.t - t) <= allowed);
-    assert_true(vec3_dot(hit.normal, normal) > cos(0.2)); /* it turns fast in a crease */
+    assert_true(fabs(hit.t - expected.t) <= allowed);
+    assert_true(vec3_dot(hit.normal, expected.normal) > cos(0.2)); /* it turns fast in a crease */
 }
 
 static void what_it_sees_is_the_surface_to_its_accuracy(void **state)
@@ -156,17 +143,16 @@ static void a_hit_is_behind_the_wall_by_less_than_the_accuracy(void **state)
     (void)state;
     TestScene test = {.geometry = {.segments = test.segments}};
     put_segment(&test, vec3(-38.5, 0, 0), vec3(49, 0, 0), 0.73);
-    PovrayIsosurface *halving = halving_of(&test.geometry);
+    TestSearch halving = halving_of(&test.geometry);
     for (double y = -0.7; y < 0.7; y += 0.0137) {
         Ray ray = {vec3(2.385, y, 30), vec3(0, 0, -1)};
-        Hit hit;
-        uint32_t segment, cell;
-        assert_true(povray_isosurface_first_hit(halving, ray, 1e-4, &hit, &segment, &cell));
+        RayHit hit;
+        assert_true(testsearch_first(&halving, ray, 1e-4, INFINITY, &hit));
         double wall = 30 - sqrt(0.73 * 0.73 - y * y);
         assert_true(hit.t >= wall - 1e-9 && hit.t < wall + cell_accuracy(0.73) + 1e-9);
-        assert_int_equal(segment, 0);
+        assert_int_equal(hit.index, 0);
     }
-    povray_isosurface_free(halving);
+    testsearch_close(&halving);
 }
 
 static void a_shadow_ray_leaves_its_own_wall_alone(void **state)
@@ -175,31 +161,29 @@ static void a_shadow_ray_leaves_its_own_wall_alone(void **state)
     TestScene test = {.geometry = {.segments = test.segments}};
     put_segment(&test, vec3(-38.5, 0, 0), vec3(49, 0, 0), 0.73);
     put_segment(&test, vec3(-38.5, 0, 5), vec3(49, 0, 5), 0.41);
-    PovrayIsosurface *halving = halving_of(&test.geometry);
+    TestSearch halving = halving_of(&test.geometry);
     double inside = 0.5 * cell_accuracy(0.73);
     Vec3 start = vec3(2.385, 0, 0.73 - inside);
-    assert_true(povray_isosurface_any_hit(halving, (Ray){start, vec3(0, 0, 1)}, 1e-3, 60));
-    assert_false(povray_isosurface_any_hit(halving, (Ray){start, vec3(0, 0, 1)}, 1e-3, 3.5));
-    assert_false(
-        povray_isosurface_any_hit(halving, (Ray){start, vec3_normalized(vec3(0, 1, 1))}, 1e-3, 60));
-    assert_true(povray_isosurface_any_hit(halving, (Ray){start, vec3(0, 0, -1)}, 1e-3, 60));
+    assert_true(testsearch_any(&halving, (Ray){start, vec3(0, 0, 1)}, 1e-3, 60));
+    assert_false(testsearch_any(&halving, (Ray){start, vec3(0, 0, 1)}, 1e-3, 3.5));
+    assert_false(testsearch_any(&halving, (Ray){start, vec3_normalized(vec3(0, 1, 1))}, 1e-3, 60));
+    assert_true(testsearch_any(&halving, (Ray){start, vec3(0, 0, -1)}, 1e-3, 60));
     /* Nearly along the wall it is met again, as POV-Ray has it. */
-    assert_true(povray_isosurface_any_hit(halving, (Ray){start, vec3_normalized(vec3(0, 1, 0.05))},
-                                          1e-3, 60));
-    povray_isosurface_free(halving);
+    assert_true(
+        testsearch_any(&halving, (Ray){start, vec3_normalized(vec3(0, 1, 0.05))}, 1e-3, 60));
+    testsearch_close(&halving);
 }
 
 static void an_empty_scene_shows_nothing(void **state)
 {
     (void)state;
     const Geometry geometry = {.model = SCENE_ISOSURFACE};
-    PovrayIsosurface *halving = halving_of(&geometry);
-    Hit hit;
-    uint32_t segment, cell;
+    TestSearch halving = halving_of(&geometry);
+    RayHit hit;
     Ray ray = {vec3(0, 0, 30), vec3(0, 0, -1)};
-    assert_false(povray_isosurface_first_hit(halving, ray, 1e-4, &hit, &segment, &cell));
-    assert_false(povray_isosurface_any_hit(halving, ray, 1e-3, 60));
-    povray_isosurface_free(halving);
+    assert_false(testsearch_first(&halving, ray, 1e-4, INFINITY, &hit));
+    assert_false(testsearch_any(&halving, ray, 1e-3, 60));
+    testsearch_close(&halving);
 }
 
 int main(void)

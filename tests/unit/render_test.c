@@ -1,12 +1,13 @@
 #include "render/render.h"
 #include "unit.h"
 
-#include "render/cast/bvh.h"
 #include "render/light/resample.h"
 #include "render/light/shade.h"
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "test_search.h"
 
 static double number(Random *random, double low, double high)
 {
@@ -49,8 +50,8 @@ static void the_hierarchy_finds_what_trying_all_finds(void **state)
     (void)state;
     static Primitive primitives[N_PRIMITIVES];
     throw_primitives(primitives);
-    Bvh *bvh;
-    assert_int_equal(bvh_build(primitives, N_PRIMITIVES, &bvh, NULL), STATUS_OK);
+    const Geometry geometry = {.primitives = primitives, .n_primitives = N_PRIMITIVES};
+    TestSearch search = testsearch_open(&primitive_search, &geometry, NULL);
     Random random;
     random_seed(&random, 17);
     int found = 0;
@@ -66,17 +67,16 @@ static void the_hierarchy_finds_what_trying_all_finds(void **state)
                 if (hits[k].t >= least)
                     nearest = fmin(nearest, hits[k].t);
         }
-        Hit hit;
-        size_t index;
-        bool seen = bvh_first_hit(bvh, ray, least, &hit, &index);
+        RayHit hit;
+        bool seen = testsearch_first(&search, ray, least, INFINITY, &hit);
         assert_int_equal(seen, isfinite(nearest));
         if (seen)
             assert_true(hit.t == nearest);
-        assert_int_equal(bvh_any_hit(bvh, ray, least, 6), seen && nearest < 6);
+        assert_int_equal(testsearch_any(&search, ray, least, 6), seen && nearest < 6);
         found += seen;
     }
     assert_true(found > 500);
-    bvh_free(bvh);
+    testsearch_close(&search);
 }
 
 /* The colour of the origin under one light, seen along a direction. */

@@ -13,7 +13,7 @@ void treeorder_release(TreeOrder *order)
 }
 
 /* Puts a tree in order, from `root` on, behind the `n` nodes that are. */
-static uint32_t order_tree(const VesselTree *tree, const NumberLists *incident, uint32_t root,
+static uint32_t order_tree(const VesselTree *tree, const IndexLists *incident, uint32_t root,
                            uint32_t n, uint32_t *stack, uint32_t *ordered, TreeOrder *order)
 {
     uint32_t top = 0;
@@ -35,7 +35,7 @@ static uint32_t order_tree(const VesselTree *tree, const NumberLists *incident, 
     return n;
 }
 
-Status treeorder_make(const VesselTree *tree, const NumberLists *incident, TreeOrder *out, Err *err)
+Status treeorder_make(const VesselTree *tree, const IndexLists *incident, TreeOrder *out, Err *err)
 {
     TreeOrder order = {0};
     uint32_t *stack = NULL, *ordered = NULL, n = 0;

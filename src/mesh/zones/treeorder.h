@@ -13,8 +13,8 @@ typedef struct TreeOrder {
 } TreeOrder;
 
 /* O(n). Release with treeorder_release. */
-MUST_CHECK Status treeorder_make(const VesselTree *tree, const NumberLists *incident,
-                                 TreeOrder *out, Err *err);
+MUST_CHECK Status treeorder_make(const VesselTree *tree, const IndexLists *incident, TreeOrder *out,
+                                 Err *err);
 void treeorder_release(TreeOrder *order);
 
 /* Whether the way from the lowest node to `node` leads through `through`. */

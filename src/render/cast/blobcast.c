@@ -11,28 +11,27 @@
  * quartic whose roots geom/quartic.h isolates by the signs of its coefficients, so none is missed
  * but two that lie within 2^-32 of the interval of each other. Where neighbouring quartics disagree
  * about the sign at their common end, by rounding, that end is the root. */
-#include "render/cast/blobcast.h"
+#include "render/cast/raysearch.h"
 
-#include "field/field.h"
 #include <stdlib.h>
 
 enum { MAX_PIECES = 5 * BLOB_TUBES + 8 * BLOB_BEADS };
 
 /* Along a line 1 - d^2 / R^2 = top - curve (t - nearest)^2, felt from t0 to t1. */
-typedef struct Piece {
+typedef struct BlobPiece {
     double t0, t1;
     double nearest, top, curve;
     double strength;
-} Piece;
+} BlobPiece;
 
 /* Part of a line, of the segment or piece of that number. */
-typedef struct Span {
+typedef struct BlobSpan {
     double t0, t1;
     uint32_t number;
-} Span;
+} BlobSpan;
 
 /* How a ray runs by a segment. */
-typedef struct Course {
+typedef struct BlobCourse {
     double along;        /* cosine of the angle between ray and axis */
     double across2;      /* squared sine of it */
     double t[2];         /* nearest to either end */
@@ -40,73 +39,34 @@ typedef struct Course {
     double slope[2];     /* half the change of distance2 as the end moves along the axis, 1/mm */
     double gate[2];      /* where the ray passes the planes across the axis at the ends */
     double t_axis, axis_distance2; /* nearest to the axis line */
-} Course;
+} BlobCourse;
 
-struct BlobCast {
-    const Geometry *geometry;
-    BoxTree boxes; /* a box for each segment, which holds all of its field */
-};
-
-struct BlobScratch {
-    Span *spans;   /* of segments */
-    Piece *pieces; /* of a group */
-    Span *order;   /* of pieces */
+/* The workspace of one thread. All arrays are owned. */
+typedef struct BlobScratch {
+    BlobSpan *spans;   /* of segments */
+    BlobPiece *pieces; /* of a group */
+    BlobSpan *order;   /* of pieces */
     uint32_t *active;
-};
+} BlobScratch;
 
 /* ---- building -------------------------------------------------------------------------------- */
 
-Status blobcast_new(const Geometry *geometry, BlobCast **out, Err *err)
+static Box segment_box(const RayIndex *index, size_t i)
 {
-    size_t n = geometry->n_segments;
-    BlobCast *cast = NULL;
-    Box *boxes = NULL;
-    Status status;
-    TRY_GOTO(mem_calloc(&cast, 1, sizeof *cast, "blobs", err));
-    TRY_GOTO(mem_calloc(&boxes, n, sizeof *boxes, "boxes", err));
-    cast->geometry = geometry;
-    for (size_t i = 0; i < n; i++) {
-        const FieldSegment *segment = &geometry->segments[i];
-        double reach = segment->radius_mm * blob_reach(&blob_shape);
-        boxes[i] = box_with_ball(box_empty(), segment->a, reach);
-        boxes[i] = box_with_ball(boxes[i], segment->b, reach);
-    }
-    TRY_GOTO(boxtree_build(boxes, n, &cast->boxes, err));
-    *out = cast;
-    cast = NULL;
-done:
-    free(boxes);
-    blobcast_free(cast);
-    return status;
+    const FieldSegment *segment = &index->geometry->segments[i];
+    double reach = segment->radius_mm * blob_reach(&blob_shape);
+    return box_with_ball(box_with_ball(box_empty(), segment->a, reach), segment->b, reach);
 }
 
-void blobcast_free(BlobCast *cast)
+static Status build(RayIndex *index, const CellParams *cells, Err *err)
 {
-    if (!cast)
-        return;
-    boxtree_release(&cast->boxes);
-    free(cast);
+    (void)cells;
+    return rayindex_build_boxes(index, index->geometry->n_segments, segment_box, err);
 }
 
-Status blobscratch_new(size_t n, BlobScratch **out, Err *err)
+static void workspace_free(void *workspace)
 {
-    BlobScratch *scratch = NULL;
-    Status status;
-    TRY_GOTO(mem_calloc(&scratch, 1, sizeof *scratch, "workspaces", err));
-    TRY_GOTO(mem_calloc(&scratch->spans, n, sizeof *scratch->spans, "segments", err));
-    /* Touched only as far as a ray ever needs. */
-    TRY_GOTO(mem_calloc(&scratch->pieces, n, MAX_PIECES * sizeof *scratch->pieces, "pieces", err));
-    TRY_GOTO(mem_calloc(&scratch->order, n, MAX_PIECES * sizeof *scratch->order, "pieces", err));
-    TRY_GOTO(mem_calloc(&scratch->active, n, MAX_PIECES * sizeof *scratch->active, "pieces", err));
-    *out = scratch;
-    return STATUS_OK;
-done:
-    blobscratch_free(scratch);
-    return status;
-}
-
-void blobscratch_free(BlobScratch *scratch)
-{
+    BlobScratch *scratch = workspace;
     if (!scratch)
         return;
     free(scratch->spans);
@@ -116,11 +76,28 @@ void blobscratch_free(BlobScratch *scratch)
     free(scratch);
 }
 
+static Status workspace_new(const Geometry *geometry, size_t n, void **out, Err *err)
+{
+    (void)geometry;
+    BlobScratch *scratch = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&scratch, 1, sizeof *scratch, "workspaces", err));
+    TRY_GOTO(mem_calloc(&scratch->spans, n, sizeof *scratch->spans, "segments", err));
+    TRY_GOTO(mem_calloc(&scratch->pieces, n, MAX_PIECES * sizeof *scratch->pieces, "pieces", err));
+    TRY_GOTO(mem_calloc(&scratch->order, n, MAX_PIECES * sizeof *scratch->order, "pieces", err));
+    TRY_GOTO(mem_calloc(&scratch->active, n, MAX_PIECES * sizeof *scratch->active, "pieces", err));
+    *out = scratch;
+    scratch = NULL;
+done:
+    workspace_free(scratch);
+    return status;
+}
+
 /* ---- pieces ---------------------------------------------------------------------------------- */
 
-static Course course_of(const FieldSegment *segment, Ray ray)
+static BlobCourse course_of(const FieldSegment *segment, Ray ray)
 {
-    Course course;
+    BlobCourse course;
     const Vec3 end[2] = {segment->a, segment->b};
     Vec3 axis = vec3_normalized(vec3_sub(end[1], end[0])), d = ray.direction;
     course.along = vec3_dot(d, axis);
@@ -147,36 +124,36 @@ static Course course_of(const FieldSegment *segment, Ray ray)
 }
 
 /* Appends the part from `low` to `high` of where the field of a piece is not 0. */
-static Piece *put_piece(Piece *end, double nearest, double distance2, double curve, double radius2,
-                        double strength, double low, double high)
+static BlobPiece *put_piece(BlobPiece *end, double nearest, double distance2, double curve,
+                            double radius2, double strength, double low, double high)
 {
     if (!(distance2 < radius2))
         return end;
     double half = sqrt((radius2 - distance2) / curve);
-    *end = (Piece){fmax(nearest - half, low),
-                   fmin(nearest + half, high),
-                   nearest,
-                   1 - distance2 / radius2,
-                   curve / radius2,
-                   strength};
+    *end = (BlobPiece){fmax(nearest - half, low),
+                       fmin(nearest + half, high),
+                       nearest,
+                       1 - distance2 / radius2,
+                       curve / radius2,
+                       strength};
     return end + (end->t0 < end->t1);
 }
 
 /* Where the ray is before the plane across the axis at the segment's first end, between the planes
  * of both, and beyond that of the second; empty where `low` is above `high`. */
-typedef struct Parts {
+typedef struct BlobParts {
     double low[3], high[3];
-} Parts;
+} BlobParts;
 
-static Parts parts_of(const Course *course, double distance_along)
+static BlobParts parts_of(const BlobCourse *course, double distance_along)
 {
-    Parts parts = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    BlobParts parts = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     if (course->along > 0)
-        return (Parts){{-INFINITY, course->gate[0], course->gate[1]},
-                       {course->gate[0], course->gate[1], INFINITY}};
+        return (BlobParts){{-INFINITY, course->gate[0], course->gate[1]},
+                           {course->gate[0], course->gate[1], INFINITY}};
     if (course->along < 0)
-        return (Parts){{course->gate[0], course->gate[1], -INFINITY},
-                       {INFINITY, course->gate[0], course->gate[1]}};
+        return (BlobParts){{course->gate[0], course->gate[1], -INFINITY},
+                           {INFINITY, course->gate[0], course->gate[1]}};
     int part = distance_along < 0 ? 0 : distance_along > 1 ? 2 : 1;
     parts.low[part] = -INFINITY;
     parts.high[part] = INFINITY;
@@ -192,8 +169,8 @@ static double place_along(const FieldSegment *segment, Ray ray)
 
 /* A tube and the two balls of minus half its strength at its ends: where the tube is a half ball
  * itself, half of it is left. */
-static Piece *put_tube(Piece *end, const Course *course, const Parts *parts, const BlobTube *tube,
-                       double radius_mm)
+static BlobPiece *put_tube(BlobPiece *end, const BlobCourse *course, const BlobParts *parts,
+                           const BlobTube *tube, double radius_mm)
 {
     double radius2 = tube->radius * radius_mm * (tube->radius * radius_mm);
     double half = 0.5 * tube->strength;
@@ -212,7 +189,8 @@ static Piece *put_tube(Piece *end, const Course *course, const Parts *parts, con
     return end;
 }
 
-static Piece *put_beads(Piece *end, const Course *course, const BlobBead *bead, double radius_mm)
+static BlobPiece *put_beads(BlobPiece *end, const BlobCourse *course, const BlobBead *bead,
+                            double radius_mm)
 {
     double radius2 = bead->radius * radius_mm * (bead->radius * radius_mm);
     for (int e = 0; e < 2; e++)
@@ -226,10 +204,10 @@ static Piece *put_beads(Piece *end, const Course *course, const BlobBead *bead, 
     return end;
 }
 
-static Piece *put_segment(Piece *end, const FieldSegment *segment, Ray ray)
+static BlobPiece *put_segment(BlobPiece *end, const FieldSegment *segment, Ray ray)
 {
-    Course course = course_of(segment, ray);
-    Parts parts = parts_of(&course, place_along(segment, ray));
+    BlobCourse course = course_of(segment, ray);
+    BlobParts parts = parts_of(&course, place_along(segment, ray));
     for (int i = 0; i < BLOB_TUBES; i++)
         end = put_tube(end, &course, &parts, &blob_shape.tube[i], segment->radius_mm);
     for (int i = 0; i < BLOB_BEADS; i++)
@@ -238,12 +216,13 @@ static Piece *put_segment(Piece *end, const FieldSegment *segment, Ray ray)
 }
 
 /* Where the ray may feel the segment: while it is within its reach. */
-static bool find_span(const FieldSegment *segment, Ray ray, double reach, double t_max, Span *span)
+static bool find_span(const FieldSegment *segment, Ray ray, double reach, double t_max,
+                      BlobSpan *span)
 {
-    Course course = course_of(segment, ray);
-    Parts parts = parts_of(&course, place_along(segment, ray));
+    BlobCourse course = course_of(segment, ray);
+    BlobParts parts = parts_of(&course, place_along(segment, ray));
     double radius2 = reach * segment->radius_mm * (reach * segment->radius_mm);
-    Piece piece[3], *end = piece;
+    BlobPiece piece[3], *end = piece;
     end = put_piece(end, course.t_axis, course.axis_distance2, course.across2, radius2, 1,
                     parts.low[1], parts.high[1]);
     for (int e = 0; e < 2; e++)
@@ -251,7 +230,7 @@ static bool find_span(const FieldSegment *segment, Ray ray, double reach, double
                         parts.high[2 * e]);
     span->t0 = INFINITY;
     span->t1 = -INFINITY;
-    for (const Piece *p = piece; p < end; p++) {
+    for (const BlobPiece *p = piece; p < end; p++) {
         span->t0 = fmin(span->t0, p->t0);
         span->t1 = fmax(span->t1, p->t1);
     }
@@ -260,15 +239,15 @@ static bool find_span(const FieldSegment *segment, Ray ray, double reach, double
 }
 
 /* By rising t0, and number where those are equal [Shell; gaps of Ciura 2001]. */
-static void sort_spans(Span *spans, size_t n)
+static void sort_spans(BlobSpan *spans, size_t n)
 {
     static const size_t gaps[] = {701, 301, 132, 57, 23, 10, 4, 1};
     for (size_t g = 0; g < sizeof gaps / sizeof *gaps; g++)
         for (size_t i = gaps[g]; i < n; i++) {
-            Span span = spans[i];
+            BlobSpan span = spans[i];
             size_t j = i;
             for (; j >= gaps[g]; j -= gaps[g]) {
-                const Span *before = &spans[j - gaps[g]];
+                const BlobSpan *before = &spans[j - gaps[g]];
                 if (before->t0 < span.t0 || (before->t0 == span.t0 && before->number < span.number))
                     break;
                 spans[j] = *before;
@@ -280,7 +259,7 @@ static void sort_spans(Span *spans, size_t n)
 /* ---- roots ----------------------------------------------------------------------------------- */
 
 /* Adds the Bernstein coefficients on [low, high] of a piece's field. */
-static void add_piece(const Piece *piece, double low, double high, double b[5])
+static void add_piece(const BlobPiece *piece, double low, double high, double b[5])
 {
     double l = low - piece->nearest, h = high - piece->nearest;
     double w0 = piece->top - piece->curve * l * l;
@@ -295,17 +274,17 @@ static void add_piece(const Piece *piece, double low, double high, double b[5])
 }
 
 /* A walk over the pieces of a group. */
-typedef struct Walk {
-    const Piece *pieces;
-    const Span *order;
+typedef struct BlobWalk {
+    const BlobPiece *pieces;
+    const BlobSpan *order;
     size_t n, next;
     uint32_t *active;
     size_t n_active;
-} Walk;
+} BlobWalk;
 
 /* Takes up the pieces that begin at `t` or before, drops those that end there: where the next one
  * begins or ends, infinity after the last. */
-static double walk_to(Walk *walk, double t)
+static double walk_to(BlobWalk *walk, double t)
 {
     double until = INFINITY;
     for (; walk->next < walk->n && walk->order[walk->next].t0 <= t; walk->next++)
@@ -325,7 +304,7 @@ static double walk_to(Walk *walk, double t)
 /* The first root in (t_min, t_max) of the pieces, sorted by `order`. */
 static bool first_root(BlobScratch *scratch, size_t n, double t_min, double t_max, double *t)
 {
-    Walk walk = {scratch->pieces, scratch->order, n, 0, scratch->active, 0};
+    BlobWalk walk = {scratch->pieces, scratch->order, n, 0, scratch->active, 0};
     double low = fmax(scratch->order[0].t0, 0);
     bool inside = false, known = low > 0;
     while (low < t_max) {
@@ -354,131 +333,120 @@ static bool first_root(BlobScratch *scratch, size_t n, double t_min, double t_ma
 
 /* ---- casting --------------------------------------------------------------------------------- */
 
-/* A search along a ray, and what it finds. */
-typedef struct Search {
+/* A search along a ray, and the group of segments that it meets. */
+typedef struct BlobQuery {
     const Geometry *geometry;
     BlobScratch *scratch;
-    Ray ray;
-    double t_min, t_max;
+    RayPart part;
     size_t n;          /* spans */
-    size_t first, end; /* those of the group that is hit */
-    double t;
-} Search;
+    size_t first, end; /* of the group that is hit: its spans */
+    double t;          /* of the hit */
+} BlobQuery;
 
 /* Adds the span of a segment, if the ray may feel it. */
-static void add_span(Search *search, uint32_t number)
+static void add_span(BlobQuery *query, uint32_t number)
 {
-    Span *span = &search->scratch->spans[search->n];
+    BlobSpan *span = &query->scratch->spans[query->n];
     span->number = number;
-    search->n += find_span(&search->geometry->segments[number], search->ray,
-                           blob_reach(&blob_shape), search->t_max, span);
+    query->n += find_span(&query->geometry->segments[number], query->part.ray,
+                          blob_reach(&blob_shape), query->part.t_max, span);
 }
 
 /* The first hit among the segments of the group. */
-static bool group_root(Search *search)
+static bool group_root(BlobQuery *query)
 {
-    BlobScratch *scratch = search->scratch;
-    Piece *last = scratch->pieces;
-    for (size_t i = search->first; i < search->end; i++)
-        last =
-            put_segment(last, &search->geometry->segments[scratch->spans[i].number], search->ray);
+    BlobScratch *scratch = query->scratch;
+    BlobPiece *last = scratch->pieces;
+    for (size_t i = query->first; i < query->end; i++)
+        last = put_segment(last, &query->geometry->segments[scratch->spans[i].number],
+                           query->part.ray);
     size_t n = (size_t)(last - scratch->pieces);
     for (size_t i = 0; i < n; i++)
-        scratch->order[i] = (Span){scratch->pieces[i].t0, scratch->pieces[i].t1, (uint32_t)i};
+        scratch->order[i] = (BlobSpan){scratch->pieces[i].t0, scratch->pieces[i].t1, (uint32_t)i};
     sort_spans(scratch->order, n);
-    return n > 0 && first_root(scratch, n, search->t_min, search->t_max, &search->t);
+    return n > 0 && first_root(scratch, n, query->part.t_min, query->part.t_max, &query->t);
 }
 
 /* The first hit among the segments whose spans there are. */
-static bool find_hit(Search *search)
+static bool find_hit(BlobQuery *query)
 {
-    const Span *spans = search->scratch->spans;
-    sort_spans(search->scratch->spans, search->n);
-    for (search->first = 0; search->first < search->n; search->first = search->end) {
-        double until = spans[search->first].t1;
-        size_t end = search->first + 1;
-        for (; end < search->n && spans[end].t0 <= until; end++)
+    const BlobSpan *spans = query->scratch->spans;
+    sort_spans(query->scratch->spans, query->n);
+    for (query->first = 0; query->first < query->n; query->first = query->end) {
+        double until = spans[query->first].t1;
+        size_t end = query->first + 1;
+        for (; end < query->n && spans[end].t0 <= until; end++)
             until = fmax(until, spans[end].t1);
-        search->end = end;
-        if (until > search->t_min && group_root(search))
+        query->end = end;
+        if (until > query->part.t_min && group_root(query))
             return true;
     }
     return false;
 }
 
-static bool search_boxes(const BlobCast *cast, Search *search)
+static void add_spans_in_boxes(const RayIndex *index, BlobQuery *query)
 {
     BoxWalk walk;
-    boxwalk_start(&walk, &cast->boxes, search->ray.origin, search->ray.direction, 0, false);
-    for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, search->t_max));)
+    const Ray *ray = &query->part.ray;
+    boxwalk_start(&walk, &index->boxes, ray->origin, ray->direction, 0, false);
+    for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, query->part.t_max));)
         for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++)
-            add_span(search, cast->boxes.items[i]);
-    return find_hit(search);
+            add_span(query, index->boxes.items[i]);
 }
 
-static bool search_list(Search *search, const uint32_t *list, size_t n)
+static bool search_segments(const RayIndex *index, BlobQuery *query)
 {
-    for (size_t i = 0; i < n; i++)
-        add_span(search, list[i]);
-    return find_hit(search);
+    if (index->boxes.nodes)
+        add_spans_in_boxes(index, query);
+    for (size_t i = 0; i < index->n; i++)
+        add_span(query, index->list[i]);
+    return find_hit(query);
 }
 
-/* Sets what is asked of a hit. */
-static void describe(const Search *search, double *t, Vec3 *normal, uint32_t *segment)
+/* Sets the normal and the segment of a hit. */
+static void describe(const BlobQuery *query, RayHit *hit)
 {
-    Vec3 x = ray_at(search->ray, search->t), sum = vec3(0, 0, 0);
+    Vec3 x = ray_at(query->part.ray, query->t), sum = vec3(0, 0, 0);
     double largest = -INFINITY;
-    *t = search->t;
-    for (size_t i = search->first; i < search->end; i++) {
-        const Span *span = &search->scratch->spans[i];
-        if (!(span->t0 <= *t && *t <= span->t1))
+    hit->t = query->t;
+    for (size_t i = query->first; i < query->end; i++) {
+        const BlobSpan *span = &query->scratch->spans[i];
+        if (!(span->t0 <= hit->t && hit->t <= span->t1))
             continue;
         BlobComponent components[BLOB_COMPONENTS];
         Vec3 gradient;
-        blob_components(&blob_shape, &search->geometry->segments[span->number], components);
+        blob_components(&blob_shape, &query->geometry->segments[span->number], components);
         double term = blob_components_at(components, x, &gradient);
         sum = vec3_add(sum, gradient);
-        if (term > largest || (term == largest && span->number < *segment)) {
+        if (term > largest || (term == largest && span->number < hit->index)) {
             largest = term;
-            *segment = span->number;
+            hit->index = span->number;
         }
     }
     /* POV-Ray's normal where the gradient is 0. */
     bool flat = sum.x == 0 && sum.y == 0 && sum.z == 0;
-    *normal = flat ? vec3(1, 0, 0) : vec3_scale(vec3_normalized(sum), -1);
+    hit->normal = flat ? vec3(1, 0, 0) : vec3_scale(vec3_normalized(sum), -1);
 }
 
-bool blobcast_first_hit(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_min,
-                        double t_max, double *t, Vec3 *normal, uint32_t *segment)
+static bool first_of_blob(const RayIndex *index, void *workspace, const RayPart *part, RayHit *hit)
 {
-    Search search = {cast->geometry, scratch, ray, t_min, t_max, .n = 0};
-    if (!search_boxes(cast, &search))
+    BlobQuery query = {index->geometry, workspace, *part, .n = 0};
+    if (!search_segments(index, &query))
         return false;
-    describe(&search, t, normal, segment);
+    describe(&query, hit);
     return true;
 }
 
-bool blobcast_first_hit_among(const Geometry *geometry, const uint32_t *list, size_t n,
-                              BlobScratch *scratch, Ray ray, double t_min, double t_max, double *t,
-                              Vec3 *normal, uint32_t *segment)
+static bool any_of_blob(const RayIndex *index, void *workspace, const RayPart *part)
 {
-    Search search = {geometry, scratch, ray, t_min, t_max, .n = 0};
-    if (!search_list(&search, list, n))
-        return false;
-    describe(&search, t, normal, segment);
-    return true;
+    BlobQuery query = {index->geometry, workspace, *part, .n = 0};
+    return search_segments(index, &query);
 }
 
-bool blobcast_any_hit(const BlobCast *cast, BlobScratch *scratch, Ray ray, double t_min,
-                      double t_max)
-{
-    Search search = {cast->geometry, scratch, ray, t_min, t_max, .n = 0};
-    return search_boxes(cast, &search);
-}
-
-bool blobcast_any_hit_among(const Geometry *geometry, const uint32_t *list, size_t n,
-                            BlobScratch *scratch, Ray ray, double t_min, double t_max)
-{
-    Search search = {geometry, scratch, ray, t_min, t_max, .n = 0};
-    return search_list(&search, list, n);
-}
+const RaySearch blob_search = {.nearest_mm = BLOB_NEAREST_MM,
+                               .shadow_from_mm = BLOB_NEAREST_MM,
+                               .build = build,
+                               .workspace_new = workspace_new,
+                               .workspace_free = workspace_free,
+                               .first = first_of_blob,
+                               .any = any_of_blob};

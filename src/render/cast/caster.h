@@ -2,19 +2,12 @@
 #ifndef CORCAST_RENDER_CASTER_H
 #define CORCAST_RENDER_CASTER_H
 
-#include "base/base.h"
-#include "field/field.h"
-#include "scene/scene.h"
-
-/* POV-Ray's limit [docs/POVRAY.md section 3]: crossings nearer than this are not seen. */
-#define NEAREST_SEEN_MM 1e-4
-/* Of a blob neither is seen nor casts a shadow what is nearer than this. */
-#define BLOB_NEAREST_MM 1e-2
+#include "render/cast/raysearch.h"
 
 /* Returns how near to the start of a ray crossings are not seen in this geometry. */
 static inline double caster_nearest_mm(const Geometry *geometry)
 {
-    return model_has(geometry->model, MODEL_BLOB) ? BLOB_NEAREST_MM : NEAREST_SEEN_MM;
+    return raysearch_for(geometry, false)->nearest_mm;
 }
 
 /* Constant once built, but for the workspaces of its threads. */

@@ -21,10 +21,9 @@
  * The way out of a vessel in which a ray starts is the same with the sign of Phi - T turned, and
  * needs no windows. Of a union of bodies it is found by leaving one after the other until none is
  * left. */
-#include "render/cast/fieldcast.h"
-
-#include "field/field.h"
+#include "render/cast/raysearch.h"
 #include "render/cast/rayterms.h"
+
 #include <float.h>
 
 /* Phi within this part of the level has reached it. */
@@ -149,17 +148,14 @@ static double march(const FieldScratch *scratch, double t, double t_max, double 
     }
 }
 
-/* What is asked of a ray, and the answer. */
-typedef struct RaySearch {
+/* A search along a ray, and the crossing that it finds. */
+typedef struct FieldQuery {
     const Geometry *geometry;
     FieldScratch *scratch;
-    Ray ray;
-    double t_min, t_max; /* t_max is finite, so that "none", infinite, is beyond it */
-    bool off_surface;    /* the ray starts on a surface: see is_skin */
-    double t;
-    Vec3 normal;
-    uint32_t segment;
-} RaySearch;
+    RayPart part;     /* its t_max is finite, so that "no crossing", infinite, is beyond it */
+    bool off_surface; /* the ray starts on a surface: see is_skin */
+    RayHit hit;
+} FieldQuery;
 
 static bool is_inside(const RaySample *sample)
 {
@@ -168,61 +164,61 @@ static bool is_inside(const RaySample *sample)
 
 /* Whether a ray that starts on a surface is inside only because that place is not exact: hits are
  * within 10^-3 r, so that Phi is within 0.4 % of the level, and the ray is on its way out. */
-static bool is_skin(const RaySearch *search, const RaySample *sample)
+static bool is_skin(const FieldQuery *query, const RaySample *sample)
 {
-    return search->off_surface && sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0;
+    return query->off_surface && sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0;
 }
 
-/* The first crossing of the group in the search's limits; infinite when there is none. */
-static double first_crossing(const RaySearch *search)
+/* Returns the first crossing of the group between t_min and t_max; infinity if there is none. */
+static double first_crossing(const FieldQuery *query)
 {
-    const FieldScratch *scratch = search->scratch;
-    double t = fmax(search->t_min, scratch->group[0]->t0);
-    if (t == search->t_min) {
+    const FieldScratch *scratch = query->scratch;
+    double t = fmax(query->part.t_min, scratch->group[0]->t0);
+    if (t == query->part.t_min) {
         RaySample start = sample_at(scratch, t);
         if (is_inside(&start)) {
-            t = march(scratch, t, search->t_max, -1);
-            if (!is_skin(search, &start))
+            t = march(scratch, t, query->part.t_max, -1);
+            if (!is_skin(query, &start))
                 return t;
         }
     }
-    return march(scratch, t, search->t_max, 1);
+    return march(scratch, t, query->part.t_max, 1);
 }
 
 /* Sets the answer to the place t of the group. */
-static void describe_hit(RaySearch *search, double t)
+static void describe_hit(FieldQuery *query, double t)
 {
-    const FieldScratch *scratch = search->scratch;
-    Vec3 x = ray_at(search->ray, t), sum = vec3(0, 0, 0);
+    const FieldScratch *scratch = query->scratch;
+    Vec3 x = ray_at(query->part.ray, t), sum = vec3(0, 0, 0);
     double largest = -1;
-    search->t = t;
+    query->hit.t = t;
     for (size_t i = 0; i < scratch->n_group; i++) {
         const RayTerm *term = scratch->group[i];
         if (term->t0 > t || term->t1 < t)
             continue;
         Vec3 gradient;
         uint32_t number = term->segment;
-        double value = potential_term_gradient(&search->geometry->segments[number], x, &gradient);
+        double value = potential_term_gradient(&query->geometry->segments[number], x, &gradient);
         sum = vec3_add(sum, gradient);
-        if (value > largest || (value == largest && number < search->segment)) {
+        if (value > largest || (value == largest && number < query->hit.index)) {
             largest = value;
-            search->segment = number;
+            query->hit.index = number;
         }
     }
     double steepness = vec3_length(sum);
-    search->normal = vec3_scale(steepness > 0 ? sum : search->ray.direction,
-                                steepness > 0 ? -1 / steepness : -1);
+    query->hit.normal = vec3_scale(steepness > 0 ? sum : query->part.ray.direction,
+                                   steepness > 0 ? -1 / steepness : -1);
 }
 
 /* The first hit of the sum of the terms chosen. */
-static bool hit_of_sum(RaySearch *search)
+static bool hit_of_sum(FieldQuery *query)
 {
-    while (rayterms_next_group(search->scratch)) {
-        if (!rayterms_find_windows(search->scratch))
+    while (rayterms_next_group(query->scratch)) {
+        if (!rayterms_find_windows(query->scratch))
             continue;
-        double t = first_crossing(search);
-        if (t <= search->t_max) {
-            describe_hit(search, t);
+        double t = first_crossing(query);
+        if (t <= query->part.t_max) {
+            describe_hit(query, t);
             return true;
         }
     }
@@ -230,145 +226,134 @@ static bool hit_of_sum(RaySearch *search)
 }
 
 /* Chooses the terms of one of the groups that the scratch has found. */
-static void choose_group(const RaySearch *search, size_t number)
+static void choose_group(const FieldQuery *query, size_t number)
 {
     size_t n;
-    const uint32_t *members = localgroups_members(search->scratch->groups, number, &n);
-    rayterms_choose(search->scratch, members, n);
+    const uint32_t *members = localgroups_members(query->scratch->groups, number, &n);
+    rayterms_choose(query->scratch, members, n);
 }
 
 /* If the ray is at t_min inside the body of the terms chosen, moves t_min to where it leaves,
  * infinite if that is beyond t_max, describes that place and returns true. *deep tells whether it
  * was more than skin there, and is left alone if not. */
-static bool leave_body(RaySearch *search, bool *deep)
+static bool leave_body(FieldQuery *query, bool *deep)
 {
-    const FieldScratch *scratch = search->scratch;
-    while (rayterms_next_group(search->scratch) && scratch->group[0]->t0 <= search->t_min) {
-        if (!rayterms_find_windows(search->scratch))
+    const FieldScratch *scratch = query->scratch;
+    while (rayterms_next_group(query->scratch) && scratch->group[0]->t0 <= query->part.t_min) {
+        if (!rayterms_find_windows(query->scratch))
             continue;
-        RaySample start = sample_at(scratch, search->t_min);
+        RaySample start = sample_at(scratch, query->part.t_min);
         if (!is_inside(&start))
             continue;
-        double t = march(scratch, search->t_min, search->t_max, -1);
-        if (t <= search->t_min)
+        double t = march(scratch, query->part.t_min, query->part.t_max, -1);
+        if (t <= query->part.t_min)
             return false;
-        search->t_min = t;
-        if (t <= search->t_max)
-            describe_hit(search, t);
-        *deep |= !is_skin(search, &start);
+        query->part.t_min = t;
+        if (t <= query->part.t_max)
+            describe_hit(query, t);
+        *deep |= !is_skin(query, &start);
         return true;
     }
     return false;
 }
 
 /* Whether a ray may be inside a vessel at t_min. */
-static bool starts_in_term(const RaySearch *search)
+static bool starts_in_term(const FieldQuery *query)
 {
-    const FieldScratch *scratch = search->scratch;
+    const FieldScratch *scratch = query->scratch;
     for (size_t i = 0; i < scratch->n_terms; i++)
-        if (scratch->terms[i].t0 <= search->t_min && scratch->terms[i].t1 >= search->t_min)
+        if (scratch->terms[i].t0 <= query->part.t_min && scratch->terms[i].t1 >= query->part.t_min)
             return true;
     return false;
 }
 
 /* Moves t_min out of the union of the bodies of the groups. True if it was inside, and not just for
  * being on the surface. */
-static bool leave_union(RaySearch *search, size_t n_groups)
+static bool leave_union(FieldQuery *query, size_t n_groups)
 {
-    bool deep = false, moved = starts_in_term(search);
-    while (moved && search->t_min <= search->t_max) {
+    bool deep = false, moved = starts_in_term(query);
+    while (moved && query->part.t_min <= query->part.t_max) {
         moved = false;
-        for (size_t i = 0; i < n_groups && search->t_min <= search->t_max; i++) {
-            choose_group(search, i);
-            moved |= leave_body(search, &deep);
+        for (size_t i = 0; i < n_groups && query->part.t_min <= query->part.t_max; i++) {
+            choose_group(query, i);
+            moved |= leave_body(query, &deep);
         }
     }
     return deep;
 }
 
 /* The first hit of the union of the bodies of the groups. */
-static bool hit_of_union(RaySearch *search)
+static bool hit_of_union(FieldQuery *query)
 {
-    FieldScratch *scratch = search->scratch;
+    FieldScratch *scratch = query->scratch;
     for (size_t i = 0; i < scratch->n_terms; i++)
         scratch->near[i] = scratch->terms[i].segment;
     size_t n_groups = localgroups_find(scratch->groups, scratch->near, scratch->n_terms);
-    if (leave_union(search, n_groups))
-        return search->t_min <= search->t_max;
+    if (leave_union(query, n_groups))
+        return query->part.t_min <= query->part.t_max;
     bool hit = false;
     for (size_t i = 0; i < n_groups; i++) {
-        choose_group(search, i);
-        if (hit_of_sum(search)) {
+        choose_group(query, i);
+        if (hit_of_sum(query)) {
             hit = true;
-            search->t_max = search->t;
+            query->part.t_max = query->hit.t;
         }
     }
     return hit;
 }
 
 /* The first hit of the terms that the scratch holds. */
-static bool first_hit(RaySearch *search)
+static bool first_hit(FieldQuery *query)
 {
-    if (search->scratch->groups)
-        return hit_of_union(search);
-    rayterms_choose_all(search->scratch);
-    return hit_of_sum(search);
+    if (query->scratch->groups)
+        return hit_of_union(query);
+    rayterms_choose_all(query->scratch);
+    return hit_of_sum(query);
 }
 
-static bool answer(const RaySearch *search, bool hit, double *t, Vec3 *normal, uint32_t *segment)
+static void list_terms(FieldQuery *query, const uint32_t *list, size_t n)
 {
-    if (hit) {
-        *t = search->t;
-        *normal = search->normal;
-        *segment = search->segment;
-    }
-    return hit;
-}
-
-static bool search_list(RaySearch *search, const uint32_t *list, size_t n)
-{
-    rayterms_clear(search->scratch);
+    rayterms_clear(query->scratch);
     for (size_t i = 0; i < n; i++) {
-        FieldTube tube = fieldtube_of(&search->geometry->segments[list[i]], list[i]);
+        FieldTube tube = fieldtube_of(&query->geometry->segments[list[i]], list[i]);
         if (tube.reach2 > 0)
-            rayterms_add(search->scratch, &tube, search->ray, search->t_min, search->t_max);
+            rayterms_add(query->scratch, &tube, &query->part);
     }
-    return first_hit(search);
 }
 
-bool field_first_hit_among(const Geometry *geometry, const uint32_t *list, size_t n,
-                           FieldScratch *scratch, Ray ray, double t_min, double t_max, double *t,
-                           Vec3 *normal, uint32_t *segment)
+static bool search_terms(const RayIndex *index, FieldQuery *query)
 {
-    RaySearch search = {geometry, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = false};
-    return answer(&search, search_list(&search, list, n), t, normal, segment);
+    query->part.t_max = fmin(query->part.t_max, DBL_MAX);
+    if (index->field)
+        rayterms_find(index->field, query->scratch, &query->part);
+    else
+        list_terms(query, index->list, index->n);
+    return first_hit(query);
 }
 
-static bool search_index(const FieldIndex *index, RaySearch *search)
+static bool first_of_field(const RayIndex *index, void *workspace, const RayPart *part, RayHit *hit)
 {
-    rayterms_find(index, search->scratch, search->ray, search->t_min, search->t_max);
-    return first_hit(search);
+    FieldQuery query = {index->geometry, workspace, *part, .off_surface = false};
+    bool found = search_terms(index, &query);
+    *hit = query.hit;
+    return found;
 }
 
-bool field_first_hit(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
-                     double t_max, double *t, Vec3 *normal, uint32_t *segment)
+static bool any_of_field(const RayIndex *index, void *workspace, const RayPart *part)
 {
-    RaySearch search = {index->geometry,     scratch, ray, t_min, fmin(t_max, DBL_MAX),
-                        .off_surface = false};
-    return answer(&search, search_index(index, &search), t, normal, segment);
+    FieldQuery query = {index->geometry, workspace, *part, .off_surface = true};
+    return search_terms(index, &query);
 }
 
-bool field_is_shadowed(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
-                       double t_max)
+static Status build(RayIndex *index, const CellParams *cells, Err *err)
 {
-    RaySearch search = {index->geometry,    scratch, ray, t_min, fmin(t_max, DBL_MAX),
-                        .off_surface = true};
-    return search_index(index, &search);
+    (void)cells;
+    return fieldindex_build(index->geometry, &index->field, err);
 }
 
-bool field_is_shadowed_among(const Geometry *geometry, const uint32_t *list, size_t n,
-                             FieldScratch *scratch, Ray ray, double t_min, double t_max)
-{
-    RaySearch search = {geometry, scratch, ray, t_min, fmin(t_max, DBL_MAX), .off_surface = true};
-    return search_list(&search, list, n);
-}
+const RaySearch field_search = {.nearest_mm = NEAREST_SEEN_MM,
+                                .build = build,
+                                .workspace_new = fieldscratch_new,
+                                .workspace_free = fieldscratch_free,
+                                .first = first_of_field,
+                                .any = any_of_field};

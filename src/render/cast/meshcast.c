@@ -4,7 +4,7 @@
  * leans to most. The normal that is seen is interpolated between those of the corners, in
  * POV-Ray's order of the corners and in single precision where POV-Ray has it, so that pictures are
  * the same: a highlight of size 40 makes 40 roundings of one. */
-#include "render/cast/meshcast.h"
+#include "render/cast/boxcast.h"
 
 #include <stdlib.h>
 
@@ -15,12 +15,6 @@ typedef struct TrianglePlane {
     float normal[3]; /* unit, inward; 0 of a triangle without area, which no ray meets */
     float distance;
 } TrianglePlane;
-
-struct MeshCast {
-    const VesselMesh *mesh;
-    TrianglePlane *planes; /* one a triangle */
-    BoxTree tree;          /* of the triangles' boxes */
-};
 
 static Vec3 vec3_of(const float values[3])
 {
@@ -53,46 +47,28 @@ static TrianglePlane triangle_plane(const Vec3 at[3])
                            (float)-vec3_dot(normal, at[0])};
 }
 
-static Box triangle_box(const Vec3 at[3])
+static Box triangle_box(const RayIndex *index, size_t triangle)
 {
     Box box = box_empty();
+    Vec3 at[3];
+    find_corners(&index->geometry->mesh, triangle, at);
     for (int k = 0; k < 3; k++)
         box = box_with_ball(box, at[k], 0);
     /* A hit lies off the triangle by the rounding of its plane. */
     return box_padded(box, 1e-6 * (vec3_length(box.low) + vec3_length(box.high)));
 }
 
-Status meshcast_new(const VesselMesh *mesh, MeshCast **out, Err *err)
+static Status build(RayIndex *index, const CellParams *cells, Err *err)
 {
-    MeshCast *cast = NULL;
-    Box *boxes = NULL;
-    Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&cast, 1, sizeof *cast, "hierarchies", err));
-    TRY_GOTO(mem_calloc(&cast->planes, mesh->n_triangles, sizeof *cast->planes, "triangles", err));
-    TRY_GOTO(mem_calloc(&boxes, mesh->n_triangles, sizeof *boxes, "boxes", err));
-    cast->mesh = mesh;
+    (void)cells;
+    const VesselMesh *mesh = &index->geometry->mesh;
+    TRY(mem_calloc(&index->planes, mesh->n_triangles, sizeof *index->planes, "triangles", err));
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         Vec3 at[3];
         find_corners(mesh, i, at);
-        cast->planes[i] = triangle_plane(at);
-        boxes[i] = triangle_box(at);
+        index->planes[i] = triangle_plane(at);
     }
-    TRY_GOTO(boxtree_build(boxes, mesh->n_triangles, &cast->tree, err));
-    *out = cast;
-    cast = NULL;
-done:
-    free(boxes);
-    meshcast_free(cast);
-    return status;
-}
-
-void meshcast_free(MeshCast *cast)
-{
-    if (!cast)
-        return;
-    free(cast->planes);
-    boxtree_release(&cast->tree);
-    free(cast);
+    return rayindex_build_boxes(index, mesh->n_triangles, triangle_box, err);
 }
 
 /* Twice the area of the triangle that the point (x, y) and the edge from a to b make, seen along
@@ -115,16 +91,20 @@ static bool holds(const Vec3 at[3], Vec3 normal, Vec3 place)
     return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
 }
 
-static bool meets(const MeshCast *cast, uint32_t triangle, Ray ray, double *t)
+/* Sets hits[0].t only. */
+static inline int triangle_crossings(const void *items, uint32_t triangle, Ray ray,
+                                     Hit hits[ITEM_CROSSINGS], double *rank)
 {
-    const TrianglePlane *plane = &cast->planes[triangle];
+    (void)rank;
+    const RayIndex *index = items;
+    const TrianglePlane *plane = &index->planes[triangle];
     Vec3 normal = vec3_of(plane->normal), at[3];
     double along = vec3_dot(normal, ray.direction);
     if (fabs(along) < epsilon)
-        return false;
-    *t = -((double)plane->distance + vec3_dot(normal, ray.origin)) / along;
-    find_corners(cast->mesh, triangle, at);
-    return holds(at, normal, ray_at(ray, *t));
+        return 0;
+    hits->t = -((double)plane->distance + vec3_dot(normal, ray.origin)) / along;
+    find_corners(&index->geometry->mesh, triangle, at);
+    return holds(at, normal, ray_at(ray, hits->t));
 }
 
 /* As it is kept in single precision. */
@@ -181,42 +161,28 @@ static Vec3 normal_at(const VesselMesh *mesh, size_t triangle, Vec3 plane_normal
     return vec3_normalized(vec3_of(flat));
 }
 
-bool meshcast_first_hit(const MeshCast *cast, Ray ray, double t_min, Hit *hit, uint32_t *segment,
-                        bool *leaves)
+static bool first_triangle(const RayIndex *index, void *workspace, const RayPart *part, RayHit *hit)
 {
-    BoxWalk walk;
-    uint32_t best = UINT32_MAX;
-    hit->t = INFINITY;
-    boxwalk_start(&walk, &cast->tree, ray.origin, ray.direction, t_min, true);
-    for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, hit->t));)
-        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
-            uint32_t candidate = cast->tree.items[i];
-            double t;
-            if (!meets(cast, candidate, ray, &t) || t < t_min)
-                continue;
-            if (t < hit->t || (t == hit->t && candidate < best)) {
-                hit->t = t;
-                best = candidate;
-            }
-        }
-    if (best == UINT32_MAX)
+    (void)workspace;
+    const VesselMesh *mesh = &index->geometry->mesh;
+    Hit nearest;
+    uint32_t triangle;
+    if (!boxcast_first(&index->boxes, part, part->t_min, triangle_crossings, index, &nearest,
+                       &triangle))
         return false;
-    *leaves = vec3_dot(vec3_of(cast->planes[best].normal), ray.direction) < 0;
-    Vec3 plane_normal = vec3_of(cast->planes[best].normal);
-    hit->normal = normal_at(cast->mesh, best, plane_normal, ray_at(ray, hit->t));
-    *segment = mesh_segment(cast->mesh, best);
+    const Vec3 plane_normal = vec3_of(index->planes[triangle].normal);
+    hit->t = nearest.t;
+    hit->leaves = vec3_dot(plane_normal, part->ray.direction) < 0;
+    hit->normal = normal_at(mesh, triangle, plane_normal, ray_at(part->ray, nearest.t));
+    hit->index = mesh_segment(mesh, triangle);
     return true;
 }
 
-bool meshcast_any_hit(const MeshCast *cast, Ray ray, double t_min, double t_max)
+static bool any_triangle(const RayIndex *index, void *workspace, const RayPart *part)
 {
-    BoxWalk walk;
-    boxwalk_start(&walk, &cast->tree, ray.origin, ray.direction, t_min, false);
-    for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, t_max));)
-        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
-            double t;
-            if (meets(cast, cast->tree.items[i], ray, &t) && t > t_min && t < t_max)
-                return true;
-        }
-    return false;
+    (void)workspace;
+    return boxcast_any(&index->boxes, part, part->t_min, triangle_crossings, index);
 }
+
+const RaySearch triangle_search = {
+    .nearest_mm = NEAREST_SEEN_MM, .build = build, .first = first_triangle, .any = any_triangle};

@@ -9,7 +9,7 @@
 
 static const double ln2 = 0.69314718055994530942;
 
-Status fieldscratch_new(const Geometry *geometry, size_t n, FieldScratch **out, Err *err)
+Status fieldscratch_new(const Geometry *geometry, size_t n, void **out, Err *err)
 {
     Status status;
     FieldScratch *scratch = NULL;
@@ -27,8 +27,9 @@ done:
     return status;
 }
 
-void fieldscratch_free(FieldScratch *scratch)
+void fieldscratch_free(void *workspace)
 {
+    FieldScratch *scratch = workspace;
     if (!scratch)
         return;
     free(scratch->terms);
@@ -145,10 +146,10 @@ void rayterms_clear(FieldScratch *scratch)
     scratch->n_terms = 0;
 }
 
-void rayterms_add(FieldScratch *scratch, const FieldTube *tube, Ray ray, double t_min, double t_max)
+void rayterms_add(FieldScratch *scratch, const FieldTube *tube, const RayPart *part)
 {
     RayTerm *term = &scratch->terms[scratch->n_terms];
-    if (pass_tube(tube, ray, term) && term->t1 >= t_min && term->t0 <= t_max)
+    if (pass_tube(tube, part->ray, term) && term->t1 >= part->t_min && term->t0 <= part->t_max)
         scratch->n_terms++;
 }
 
@@ -173,9 +174,9 @@ void rayterms_choose(FieldScratch *scratch, const uint32_t *numbers, size_t n)
     order_heap(scratch, n);
 }
 
-void rayterms_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
-                   double t_max)
+void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart *part)
 {
+    const Ray ray = part->ray;
     const double origin[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
     const double inverse[3] = {1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z};
     uint32_t stack[FIELD_STACK_SIZE];
@@ -186,14 +187,14 @@ void rayterms_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, doub
     while (top > 0) {
         uint32_t number = stack[--top];
         const FieldNode *node = &index->nodes[number];
-        if (!meets_node(node, origin, inverse, t_min, t_max))
+        if (!meets_node(node, origin, inverse, part->t_min, part->t_max))
             continue;
         if (node->n_tubes == 0) {
             stack[top++] = node->first;
             stack[top++] = number + 1;
         }
         for (uint32_t i = node->first; i < node->first + node->n_tubes; i++)
-            rayterms_add(scratch, &index->tubes[i], ray, t_min, t_max);
+            rayterms_add(scratch, &index->tubes[i], part);
     }
 }
 

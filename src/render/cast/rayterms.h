@@ -5,6 +5,7 @@
 
 #include "base/base.h"
 #include "field/field.h"
+#include "render/cast/raysearch.h"
 
 /* How the ray passes a tube: the term at t_mid + x is radial exp(-w^2) (erf(u) + erf(h - u)) / 2,
  * w = w0 + w1 x, u = u0 + u1 x. */
@@ -30,18 +31,16 @@ typedef struct FieldScratch {
     LocalGroups *groups; /* of the terms; NULL where all segments blend */
 } FieldScratch;
 
-/* Room for `n` segments of a geometry, which is borrowed. STATUS_MEMORY. */
-MUST_CHECK Status fieldscratch_new(const Geometry *geometry, size_t n, FieldScratch **out,
-                                   Err *err);
-void fieldscratch_free(FieldScratch *scratch);
+/* The workspace functions of field_search. */
+MUST_CHECK Status fieldscratch_new(const Geometry *geometry, size_t n, void **out, Err *err);
+void fieldscratch_free(void *workspace);
 
-/* Empties the scratch. Follow with rayterms_add for every segment that may matter in [t_min,
- * t_max], t_max finite; rayterms_find does both. */
+/* Empties the scratch. Follow with rayterms_add for every segment that may matter. */
 void rayterms_clear(FieldScratch *scratch);
-void rayterms_add(FieldScratch *scratch, const FieldTube *tube, Ray ray, double t_min,
-                  double t_max);
-void rayterms_find(const FieldIndex *index, FieldScratch *scratch, Ray ray, double t_min,
-                   double t_max);
+/* Adds the term of a tube if the ray passes it near enough. part->t_max must be finite. */
+void rayterms_add(FieldScratch *scratch, const FieldTube *tube, const RayPart *part);
+/* Empties the scratch and adds the terms of all tubes of the index. part->t_max must be finite. */
+void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart *part);
 
 /* Chooses the terms that groups are made of: all, or the `n` numbered. */
 void rayterms_choose_all(FieldScratch *scratch);

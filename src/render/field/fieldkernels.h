@@ -15,7 +15,7 @@ typedef void FieldKernel(const FieldTile *tile, TileWork *work, TileHits *hits);
  * light: sets points->state. Does not read the tile's x and y. points->x and y are as those of a
  * FieldTile. Blockers matter from depth points->z on. Behind the last point are POINT_PADDING
  * copies of it. A point within 0.2 % of the level is taken to be on a surface that it leaves, as in
- * field_is_shadowed(). */
+ * field_search.any. */
 typedef void ShadowKernel(const FieldTile *tile, TileWork *work, ShadowPoints *points);
 
 FieldKernel trace_portable, trace_blob_portable;

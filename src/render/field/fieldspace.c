@@ -3,14 +3,9 @@
 
 #include <stdlib.h>
 
-static bool is_blob(const FieldSpace *space)
-{
-    return model_has(space->geometry->model, MODEL_BLOB);
-}
-
 Status fieldspace_init(const Geometry *geometry, FieldSpace *space, Err *err)
 {
-    *space = (FieldSpace){.geometry = geometry};
+    *space = (FieldSpace){.geometry = geometry, .search = raysearch_for(geometry, false)};
     return geometry->blend.n_groups ? localgroups_new(geometry, &space->groups, err) : STATUS_OK;
 }
 
@@ -20,8 +15,8 @@ void fieldspace_release(FieldSpace *space)
     free(space->candidates);
     tilework_release(&space->work);
     localgroups_free(space->groups);
-    fieldscratch_free(space->scratch);
-    blobscratch_free(space->blob_scratch);
+    if (space->search)
+        space->search->workspace_free(space->scratch);
     *space = (FieldSpace){0};
 }
 
@@ -37,36 +32,25 @@ Status fieldspace_reserve_rays(FieldSpace *space, size_t n, Err *err)
 {
     if (n <= space->scratch_capacity)
         return STATUS_OK;
-    FieldScratch *larger = NULL;
-    BlobScratch *larger_blob = NULL;
+    void *larger;
     size_t capacity = n > 2 * space->scratch_capacity ? n : 2 * space->scratch_capacity;
-    if (is_blob(space))
-        TRY(blobscratch_new(capacity, &larger_blob, err));
-    else
-        TRY(fieldscratch_new(space->geometry, capacity, &larger, err));
-    fieldscratch_free(space->scratch);
-    blobscratch_free(space->blob_scratch);
+    TRY(space->search->workspace_new(space->geometry, capacity, &larger, err));
+    space->search->workspace_free(space->scratch);
     space->scratch = larger;
-    space->blob_scratch = larger_blob;
     space->scratch_capacity = capacity;
     return STATUS_OK;
 }
 
-bool fieldspace_first_hit(FieldSpace *space, size_t n, Ray ray, double t_min, double *t,
-                          Vec3 *normal, uint32_t *segment)
+bool fieldspace_first_hit(FieldSpace *space, size_t n, Ray ray, double t_min, RayHit *hit)
 {
-    if (is_blob(space))
-        return blobcast_first_hit_among(space->geometry, space->candidates, n, space->blob_scratch,
-                                        ray, t_min, HUGE_VAL, t, normal, segment);
-    return field_first_hit_among(space->geometry, space->candidates, n, space->scratch, ray, t_min,
-                                 HUGE_VAL, t, normal, segment);
+    const RayIndex index = {.geometry = space->geometry, .list = space->candidates, .n = n};
+    const RayPart part = {ray, t_min, HUGE_VAL};
+    return space->search->first(&index, space->scratch, &part, hit);
 }
 
 bool fieldspace_is_shadowed(FieldSpace *space, size_t n, Ray ray)
 {
-    if (is_blob(space))
-        return blobcast_any_hit_among(space->geometry, space->candidates, n, space->blob_scratch,
-                                      ray, 0, HUGE_VAL);
-    return field_is_shadowed_among(space->geometry, space->candidates, n, space->scratch, ray, 0,
-                                   HUGE_VAL);
+    const RayIndex index = {.geometry = space->geometry, .list = space->candidates, .n = n};
+    const RayPart part = {ray, 0, HUGE_VAL};
+    return space->search->any(&index, space->scratch, &part);
 }

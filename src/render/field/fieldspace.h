@@ -2,8 +2,7 @@
 #ifndef CORCAST_RENDER_FIELDSPACE_H
 #define CORCAST_RENDER_FIELDSPACE_H
 
-#include "render/cast/blobcast.h"
-#include "render/cast/fieldcast.h"
+#include "render/cast/raysearch.h"
 #include "render/field/fieldterms.h"
 
 /* Grows with the longest list of a tile. Made by fieldspace_init. */
@@ -14,9 +13,9 @@ typedef struct FieldSpace {
     uint32_t *candidates; /* segments of the terms */
     size_t candidates_capacity;
     TileWork work;
-    LocalGroups *groups;   /* NULL where all segments blend */
-    FieldScratch *scratch; /* made when first needed; of a blob the next */
-    BlobScratch *blob_scratch;
+    LocalGroups *groups;     /* NULL where all segments blend */
+    const RaySearch *search; /* for single rays among the candidates */
+    void *scratch;           /* its workspace; NULL before fieldspace_reserve_rays */
     size_t scratch_capacity;
 } FieldSpace;
 
@@ -29,11 +28,10 @@ MUST_CHECK Status fieldspace_reserve(FieldSpace *space, size_t n, Err *err);
 /* Makes room to cast single rays among n segments. STATUS_MEMORY. */
 MUST_CHECK Status fieldspace_reserve_rays(FieldSpace *space, size_t n, Err *err);
 
-/* What is there room for: the first hit of a ray among the first n candidates, t_min or more along
- * it, as field_first_hit_among() and blobcast_first_hit_among(); and whether a ray that starts on
- * the surface meets any of them. */
-bool fieldspace_first_hit(FieldSpace *space, size_t n, Ray ray, double t_min, double *t,
-                          Vec3 *normal, uint32_t *segment);
+/* Finds the first hit of a ray among the first n candidates, at t_min or later [raysearch.h]. There
+ * must be room for n. */
+bool fieldspace_first_hit(FieldSpace *space, size_t n, Ray ray, double t_min, RayHit *hit);
+/* Returns true if a ray that starts on the surface meets any of the first n candidates. */
 bool fieldspace_is_shadowed(FieldSpace *space, size_t n, Ray ray);
 
 #endif

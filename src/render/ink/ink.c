@@ -269,7 +269,7 @@ static int order_points(const void *a, const void *b)
 /* Whether a cylinder's end is neither in a ball nor a joint's. */
 static bool ends_in_disc(const Hand *hand, Vec3 end)
 {
-    return hand->geometry->model != SCENE_ROUNDED &&
+    return !model_has(hand->geometry->model, MODEL_ROUND_ENDS) &&
            !bsearch(&end, hand->joined, hand->n_joined, sizeof end, order_points);
 }
 

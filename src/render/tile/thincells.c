@@ -31,7 +31,7 @@ void thinlayer_release(ThinLayer *layer)
     free(layer->is_thin);
     free(layer->strips);
     free(layer->colors);
-    numberlists_release(&layer->tiles);
+    indexlists_release(&layer->tiles);
     *layer = (ThinLayer){0};
 }
 
@@ -92,7 +92,7 @@ static void list_strips(ThinLayer *layer, uint32_t *ends)
 
 Status thinlayer_sort(ThinLayer *layer, const Camera *camera, Err *err)
 {
-    NumberLists *lists = &layer->tiles;
+    IndexLists *lists = &layer->tiles;
     layer->tile_columns = (camera->width + TILE_SIDE - 1) / TILE_SIDE;
     layer->tile_rows = (camera->height + TILE_SIDE - 1) / TILE_SIDE;
     size_t n = (size_t)layer->tile_columns * (size_t)layer->tile_rows;

@@ -14,8 +14,7 @@
  * same cell if the least f it saw exceeds max_gradient times the distance of the two. Scenes of
  * ours do not let it: the last cell missed is always Cell_Guard of templates/povray/isosurface.inc.
  */
-#include "render/cast/povray_isosurface.h"
-
+#include "render/cast/boxcast.h"
 #include "render/cast/povray_bound.h"
 
 #include <float.h>
@@ -23,11 +22,6 @@
 
 /* What POV-Ray calls EPSILON, CLOSE_TOLERANCE, DEPTH_TOLERANCE and BOUND_HUGE (shape/boxes.cpp). */
 static const double flat = 1e-10, close_by = 1e-6, behind = 1e-6, endless = 2e10;
-
-struct PovrayIsosurface {
-    CellTree tree;
-    BoxTree boxes; /* of its cells */
-};
 
 /* ---- one cell -------------------------------------------------------------------------------- */
 
@@ -75,13 +69,13 @@ static double value_at(const CellSearch *search, double t)
     return search->sign * cell_function(search->tree, search->cell, ray_at(search->ray, t));
 }
 
-typedef struct Place {
+typedef struct CellSample {
     double t, f;
-} Place;
+} CellSample;
 
 /* R of above; `rise` is max_gradient times the width. */
-static bool find_root(const CellSearch *search, Place a, Place b, double rise, double width,
-                      double *t)
+static bool find_root(const CellSearch *search, CellSample a, CellSample b, double rise,
+                      double width, double *t)
 {
     if (width < search->cell->accuracy) {
         *t = b.t;
@@ -91,34 +85,43 @@ static bool find_root(const CellSearch *search, Place a, Place b, double rise, d
         return false;
     width *= 0.5;
     rise *= 0.5;
-    Place middle = {a.t + width, 0};
+    CellSample middle = {a.t + width, 0};
     middle.f = value_at(search, middle.t);
     return find_root(search, a, middle, rise, width, t) ||
            find_root(search, middle, b, rise, width, t);
 }
 
-/* The hit of a cell, at *t, and the order in which POV-Ray looks into it. */
-static bool hit_cell(const CellTree *tree, const Cell *cell, Ray ray, const BoundRay *rounded,
-                     double *t, double *order)
+/* The cells, and the ray that is tested against their bounds. */
+typedef struct CellQuery {
+    const CellTree *cells;
+    BoundRay rounded;
+} CellQuery;
+
+/* Sets hits[0].t, and *rank to the order in which POV-Ray looks into the cell. */
+static int cell_crossings(const void *items, uint32_t index, Ray ray, Hit hits[ITEM_CROSSINGS],
+                          double *rank)
 {
+    const CellQuery *query = items;
+    const CellTree *tree = query->cells;
+    const Cell *cell = &tree->cells[index];
     CellSearch search = {tree, cell, ray, 1};
     double t0, t1, accuracy = cell->accuracy;
     if (!cut_box(ray, cell, &t0, &t1) || t1 - t0 < accuracy ||
-        !povray_looks_into(rounded, (Box){cell->low, cell->high}, order))
-        return false;
+        !povray_looks_into(&query->rounded, (Box){cell->low, cell->high}, rank))
+        return 0;
     if (t0 < accuracy && fabs(value_at(&search, t0)) < cell->max_gradient * accuracy * 4) {
         t0 = accuracy * 5;
         if (value_at(&search, t0) < 0)
             search.sign = -1;
     }
-    Place a = {t0, value_at(&search, t0)};
+    CellSample a = {t0, value_at(&search, t0)};
     if (a.f < 0) {
         search.sign *= -1;
         a.f *= -1;
     }
-    Place b = {t1, value_at(&search, t1)};
+    CellSample b = {t1, value_at(&search, t1)};
     double rise = cell->max_gradient * vec3_length(ray.direction) * (t1 - t0);
-    return find_root(&search, a, b, rise, t1 - t0, t);
+    return find_root(&search, a, b, rise, t1 - t0, &hits->t);
 }
 
 static Vec3 cell_normal(const CellTree *tree, const Cell *cell, Vec3 x)
@@ -132,89 +135,41 @@ static Vec3 cell_normal(const CellTree *tree, const Cell *cell, Vec3 x)
 
 /* ---- all cells ------------------------------------------------------------------------------- */
 
-Status povray_isosurface_new(const Geometry *geometry, const CellParams *params,
-                             PovrayIsosurface **out, Err *err)
+static Box cell_box(const RayIndex *index, size_t i)
 {
-    PovrayIsosurface *made = NULL;
-    Box *boxes = NULL;
-    Status status;
-    TRY_GOTO(mem_calloc(&made, 1, sizeof *made, "cells", err));
-    TRY_GOTO(celltree_build(geometry, params, &made->tree, err));
-    TRY_GOTO(mem_calloc(&boxes, made->tree.n_cells, sizeof *boxes, "boxes of cells", err));
-    for (size_t i = 0; i < made->tree.n_cells; i++)
-        boxes[i] = (Box){made->tree.cells[i].low, made->tree.cells[i].high};
-    TRY_GOTO(boxtree_build(boxes, made->tree.n_cells, &made->boxes, err));
-    *out = made;
-    made = NULL;
-done:
-    free(boxes);
-    povray_isosurface_free(made);
-    return status;
+    return (Box){index->cells.cells[i].low, index->cells.cells[i].high};
 }
 
-void povray_isosurface_free(PovrayIsosurface *isosurface)
+static Status build(RayIndex *index, const CellParams *params, Err *err)
 {
-    if (!isosurface)
-        return;
-    celltree_release(&isosurface->tree);
-    boxtree_release(&isosurface->boxes);
-    free(isosurface);
+    TRY(celltree_build(index->geometry, params, &index->cells, err));
+    return rayindex_build_boxes(index, index->cells.n_cells, cell_box, err);
 }
 
-/* The nearest hit in [t_min, t_max), or any with `any`, as *cell and *t. Where
- * two cells are hit at one place, it is the hit of the cell that POV-Ray looks into first; where
- * both boxes begin at one place, which their shifts [surface/celltree.c] avoid, of the lower
- * number. */
-static bool find_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min, double t_max,
-                     bool any, uint32_t *cell, double *t)
+/* Where two cells are hit at one point, the hit is that of the cell that POV-Ray looks into first.
+ * Where both boxes begin at one point, which their shifts [surface/celltree.c] avoid, it is that of
+ * the lower index. */
+static bool first_cell(const RayIndex *index, void *workspace, const RayPart *part, RayHit *hit)
 {
-    BoxWalk walk;
-    BoundRay rounded = bound_ray(ray);
-    double first = 0;
-    bool found = false;
-    *t = t_max;
-    boxwalk_start(&walk, &isosurface->boxes, ray.origin, ray.direction, 0, !any);
-    for (const BoxNode *leaf; !(any && found) && (leaf = boxwalk_leaf(&walk, *t));)
-        for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
-            uint32_t number = isosurface->boxes.items[i];
-            double at, order;
-            bool hit = hit_cell(&isosurface->tree, &isosurface->tree.cells[number], ray, &rounded,
-                                &at, &order);
-            if (!hit || at < t_min)
-                continue;
-            bool sooner = order < first || (order == first && number < *cell);
-            if (at < *t || (found && at == *t && sooner)) {
-                found = true;
-                first = order;
-                *t = at;
-                *cell = number;
-            }
-        }
-    return found;
-}
-
-bool povray_isosurface_first_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min,
-                                 Hit *hit, uint32_t *segment, uint32_t *number)
-{
-    if (!find_hit(isosurface, ray, t_min, HUGE_VAL, false, number, &hit->t))
+    (void)workspace;
+    const CellQuery query = {&index->cells, bound_ray(part->ray)};
+    Hit nearest;
+    if (!boxcast_first(&index->boxes, part, 0, cell_crossings, &query, &nearest, &hit->cell))
         return false;
-    const Cell *cell = &isosurface->tree.cells[*number];
-    Vec3 x = ray_at(ray, hit->t);
-    hit->normal = cell_normal(&isosurface->tree, cell, x);
-    *segment = cell_largest_term(&isosurface->tree, cell, x);
+    const Cell *cell = &index->cells.cells[hit->cell];
+    const Vec3 x = ray_at(part->ray, nearest.t);
+    hit->t = nearest.t;
+    hit->normal = cell_normal(&index->cells, cell, x);
+    hit->index = cell_largest_term(&index->cells, cell, x);
     return true;
 }
 
-double povray_isosurface_mean(const PovrayIsosurface *isosurface, uint32_t cell,
-                              const FieldSegment *segments, const double *numbers, Vec3 x)
+static bool any_cell(const RayIndex *index, void *workspace, const RayPart *part)
 {
-    return cell_mean(&isosurface->tree, &isosurface->tree.cells[cell], segments, numbers, x);
+    (void)workspace;
+    const CellQuery query = {&index->cells, bound_ray(part->ray)};
+    return boxcast_any(&index->boxes, part, 0, cell_crossings, &query);
 }
 
-bool povray_isosurface_any_hit(const PovrayIsosurface *isosurface, Ray ray, double t_min,
-                               double t_max)
-{
-    uint32_t cell;
-    double t;
-    return find_hit(isosurface, ray, nextafter(t_min, HUGE_VAL), t_max, true, &cell, &t);
-}
+const RaySearch cell_search = {
+    .nearest_mm = NEAREST_SEEN_MM, .build = build, .first = first_cell, .any = any_cell};
