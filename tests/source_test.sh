@@ -47,6 +47,15 @@ test_texts_and_json_are_made_by_the_functions_that_carry_a_failure_on() {
     [ -z "$found" ] || fail "expected text_chars, json_with, json_text and text_json in place of: $found"
 }
 
+# Code asks for properties of a model's row, so that a model of known elements is one row.
+test_no_source_names_a_model_outside_the_table() {
+    local names found
+    names=$(sed -n 's/^    X(\([A-Z]*\), .*/\1/p' "$REPO/src/scene/models.h" | paste -sd '|')
+    [ -n "$names" ] || fail "expected the rows of MODEL_TABLE in src/scene/models.h"
+    found=$(cd "$REPO" && grep -rnE "\bSCENE_($names)\b" src || true)
+    [ -z "$found" ] || fail "expected a property of the model [scene/models.h] in place of: $found"
+}
+
 # The later one would run twice and the earlier one never.
 test_no_test_file_names_two_tests_alike() {
     local file twice

@@ -301,13 +301,13 @@ static Status read_stream(FILE *stream, const char *name, const FileForm *form, 
                           size_t *size, Err *err)
 {
     Bytes all = {0};
-    Status status = read_blocks(stream, name, form, &all, err);
-    if (status == STATUS_OK) {
-        *bytes = all.at;
-        *size = all.n;
-    } else {
-        free(all.at);
-    }
+    Status status;
+    TRY_GOTO(read_blocks(stream, name, form, &all, err));
+    *bytes = all.at;
+    *size = all.n;
+    return STATUS_OK;
+done:
+    free(all.at);
     return status;
 }
 
@@ -649,14 +649,14 @@ static Status take_names(OutFile *files, size_t n, Err *err)
         return take_name(files, err);
     TRY(keep_old(files, &spare, err));
     bool is_new = access(files->path, F_OK) != 0, named = files->temporary;
-    Status status = take_name(files, err);
-    if (status == STATUS_OK) {
-        status = take_names(files + 1, n - 1, err);
-        if (status != STATUS_OK && named && (spare || is_new)) {
-            bring_back(files->path, spare);
-            spare = NULL;
-        }
+    Status status;
+    TRY_GOTO(take_name(files, err));
+    status = take_names(files + 1, n - 1, err);
+    if (status != STATUS_OK && named && (spare || is_new)) {
+        bring_back(files->path, spare);
+        spare = NULL;
     }
+done:
     file_forget(spare);
     return status;
 }

@@ -62,11 +62,11 @@ json_t *json_with_item(json_t *array, json_t *value)
 }
 
 /* Where a value stands in the text that is written. */
-typedef struct Place {
+typedef struct JsonPlace {
     int indent, depth;
-} Place;
+} JsonPlace;
 
-static void put_line(Text *text, Place place)
+static void put_line(Text *text, JsonPlace place)
 {
     if (place.indent > 0)
         text_printf(text, "\n%*s", place.indent * place.depth, "");
@@ -93,11 +93,11 @@ static void put_plain(Text *text, const json_t *json)
     }
 }
 
-static void put_value(Text *text, json_t *json, Place place);
+static void put_value(Text *text, json_t *json, JsonPlace place);
 
-static void put_array(Text *text, json_t *json, Place place)
+static void put_array(Text *text, json_t *json, JsonPlace place)
 {
-    const Place inner = {place.indent, place.depth + 1};
+    const JsonPlace inner = {place.indent, place.depth + 1};
     size_t i;
     json_t *item;
     text_puts(text, "[");
@@ -112,9 +112,9 @@ static void put_array(Text *text, json_t *json, Place place)
     text_puts(text, "]");
 }
 
-static void put_object(Text *text, json_t *json, Place place)
+static void put_object(Text *text, json_t *json, JsonPlace place)
 {
-    const Place inner = {place.indent, place.depth + 1};
+    const JsonPlace inner = {place.indent, place.depth + 1};
     const char *key, *before = "";
     json_t *value;
     text_puts(text, "{");
@@ -134,7 +134,7 @@ static void put_object(Text *text, json_t *json, Place place)
     text_puts(text, "}");
 }
 
-static void put_value(Text *text, json_t *json, Place place)
+static void put_value(Text *text, json_t *json, JsonPlace place)
 {
     if (json_is_array(json))
         put_array(text, json, place);
@@ -146,7 +146,7 @@ static void put_value(Text *text, json_t *json, Place place)
 
 void text_json(Text *text, json_t *json, int indent)
 {
-    put_value(text, json, (Place){indent, 0});
+    put_value(text, json, (JsonPlace){indent, 0});
     json_decref(json);
 }
 

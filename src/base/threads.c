@@ -37,12 +37,12 @@ typedef struct Loop {
     cpu_set_t allowed;
 } Loop;
 
-typedef struct Worker {
+typedef struct LoopWorker {
     Loop *loop;
     int number;
-} Worker;
+} LoopWorker;
 
-static void run(const Worker *worker)
+static void run(const LoopWorker *worker)
 {
     Loop *loop = worker->loop;
     size_t index;
@@ -52,7 +52,7 @@ static void run(const Worker *worker)
 
 static void *run_thread(void *argument)
 {
-    const Worker *worker = argument;
+    const LoopWorker *worker = argument;
     if (worker->loop->spread)
         (void)sched_setaffinity(0, sizeof worker->loop->allowed, &worker->loop->allowed);
     run(worker);
@@ -70,7 +70,7 @@ static int another_processor(const cpu_set_t *allowed, int number)
     return processor;
 }
 
-static bool start(pthread_t *thread, Worker *worker)
+static bool start(pthread_t *thread, LoopWorker *worker)
 {
     pthread_attr_t attributes;
     cpu_set_t one;
@@ -97,15 +97,15 @@ void threads_for(size_t count, int threads, void (*body)(size_t index, int worke
         threads = count ? (int)count : 1;
     Loop loop = {.count = count, .body = body, .context = context};
     loop.spread = threads > 1 && allowed_processors(&loop.allowed) && sched_getcpu() >= 0;
-    Worker workers[MAX_THREADS];
+    LoopWorker workers[MAX_THREADS];
     pthread_t handles[MAX_THREADS];
     int started = 1;
     for (; started < threads; started++) {
-        workers[started] = (Worker){&loop, started};
+        workers[started] = (LoopWorker){&loop, started};
         if (!start(&handles[started], &workers[started]))
             break;
     }
-    workers[0] = (Worker){&loop, 0};
+    workers[0] = (LoopWorker){&loop, 0};
     run(&workers[0]);
     for (int i = 1; i < started; i++)
         pthread_join(handles[i], NULL);

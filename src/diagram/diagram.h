@@ -1,71 +1,63 @@
-/* The door of the room diagram: a tree unrolled flat, lengths and diameters true.
+/* The public header of the module diagram: a tree unrolled flat, with true lengths and diameters.
  *
- * Every main branch is a horizontal row of bars, a bar for each segment, as long and as wide as the
- * segment; what lies across is the length of the path from the root. Thin links lead from a branch
- * to those that leave it. Nothing crosses: the branches of a branch lie above and below it, and
- * what overlaps a branch that leaves later lies farther out. In such diagrams people find low wall
- * shear stress far more often than in pictures of three dimensions [Borkin et al., IEEE Trans. Vis.
- * Comput. Graph. 17 (2011) 2479-2488]. */
+ * Every main branch is a horizontal row of bars, one for each segment, as long and as wide as the
+ * segment. The horizontal position is the length of the path from the root. Thin links lead from a
+ * branch to the branches that leave it. Nothing crosses: daughter branches are above and below
+ * their parent, and a branch that would overlap one that leaves farther along the parent is placed
+ * farther out. In such diagrams people find low wall shear stress far more often than in pictures
+ * of three dimensions [Borkin et al., IEEE Trans. Vis. Comput. Graph. 17 (2011) 2479-2488]. */
 #ifndef CORCAST_DIAGRAM_DIAGRAM_H
 #define CORCAST_DIAGRAM_DIAGRAM_H
 
 #include "base/base.h"
+#include "figure/figure.h"
 #include "image/image.h"
 #include "tree/tree.h"
 #include <stddef.h>
-#include <stdint.h>
 
-/* A segment, or the link to the first segment of a branch, as a rectangle: mm, x to the right from
- * the roots, y down from the top. */
-typedef struct DiagramBar {
-    double x[2], y[2]; /* ascending */
-    int32_t node;      /* of the tree: the segment; of a link that to which it leads */
-} DiagramBar;
-
+/* The layout of a tree: mm, x to the right from the roots, y down from the top. A bar stands for
+ * the segment that ends at node FigureBar.index, or for the link to that segment. */
 typedef struct Diagram {
-    DiagramBar *bar; /* owned; links first, then segments in the order of the tree */
+    FigureBar *bar; /* owned; links first, then segments in the order of the tree */
     size_t n, n_links;
     double width_mm, height_mm; /* of all bars */
 } Diagram;
 
-/* The free space between two rows, if it is not given, is the median diameter of the terminals, or
- * more, so that the diagram is about DIAGRAM_ASPECT times as high as wide. */
+/* Height over width that the default space between rows aims at. */
 #define DIAGRAM_ASPECT 0.75
 
-/* Lays out a tree or forest in *diagram (owned; diagram_release), roots on the left. `gap_mm` is
- * the space between rows, or 0 for the one said above. Segments without length have no bar.
- * O(n log n). STATUS_INPUT when no segment has length. */
+/* Lays out a tree or forest, roots on the left. Segments without length have no bar.
+ *
+ * gap_mm   space between rows. 0: the median diameter of the terminals, or more if the diagram
+ *          would else be lower than DIAGRAM_ASPECT times its width
+ * diagram  is owned; release it with diagram_release.
+ * Errors   STATUS_INPUT if no segment has a length, STATUS_MEMORY.
+ * Cost     O(n log n). */
 MUST_CHECK Status diagram_lay_out(const Tree *tree, double gap_mm, Diagram *diagram, Err *err);
 void diagram_release(Diagram *diagram);
 
-/* What a diagram looks like. */
-typedef struct DiagramPaint {
-    const float (*color)[3]; /* linear RGB of each segment, by its node; borrowed */
+/* What a diagram looks like, and the values in its labels. All pointers are borrowed. */
+typedef struct DiagramStyle {
+    const Diagram *diagram;
+    const Tree *tree;
+    const float (*color)[3]; /* per node: linear RGB of its segment */
     float background[3];     /* linear RGB */
     double margin;           /* free part on each side, in [0, 0.45] */
-} DiagramPaint;
-
-/* Draws it as large as it fits, in the middle, into *color (owned): linear RGB of `width` x
- * `height` pixels, each the mean of what it covers, so that bars thinner than a pixel show as
- * faintly as they cover it. */
-MUST_CHECK Status diagram_draw(const Diagram *diagram, const DiagramPaint *paint, int width,
-                               int height, Plane *color, Err *err);
-
-/* What an SVG says beside the bars; all is borrowed. */
-typedef struct DiagramSvg {
-    const char *templates;   /* the folder of templates */
-    const char *description; /* what it shows, and */
-    const char *generator;   /* program and version, and */
-    const char *command;     /* the command that makes it: one line each */
     const char *name, *unit; /* of the values; name NULL: there are none */
-    const double *values;    /* of each segment, by its node; NAN where there is none */
-} DiagramSvg;
+    const double *values;    /* per node: value of its segment; NAN where there is none */
+} DiagramStyle;
 
-/* Appends it as SVG in millimetres, true to size, a `rect` for each bar whose id is "s" and the
- * segment's SWC id, "l" and that of the segment it leads to for a link, with the segment's value as
- * its title. STATUS_INPUT when a template is missing or does not fit. */
-MUST_CHECK Status diagram_put_svg(const Diagram *diagram, const Tree *tree,
-                                  const DiagramPaint *paint, const DiagramSvg *svg, Text *out,
-                                  Err *err);
+/* Returns the bars of a diagram. Their ids are "s" and the SWC id of the segment, or "l" and the
+ * SWC id of the segment that a link leads to. Borrows `style`. */
+FigureBars diagram_bars(const DiagramStyle *style);
+
+/* Makes *page of the bars with their margins, true to size. Release it with figure_release. The
+ * page borrows `bars`. Memory that runs out shows in figure_check. */
+void diagram_make_page(const DiagramStyle *style, const FigureBars *bars, FigurePage *page);
+
+/* Draws the bars as large as they fit, centred, into *color (owned): linear RGB of `width` x
+ * `height` pixels. Errors: STATUS_MEMORY. */
+MUST_CHECK Status diagram_draw(const DiagramStyle *style, const FigureBars *bars, int width,
+                               int height, Plane *color, Err *err);
 
 #endif

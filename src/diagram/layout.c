@@ -330,7 +330,7 @@ static Status choose_gap(Layout *layout, double *gap_mm, Err *err)
 
 /* From the edge of the bar that the branch leaves to that of its own first one; a link has a
  * quarter of the width of what it leads to. */
-static DiagramBar link_to(const Layout *layout, const Branch *branch)
+static FigureBar link_to(const Layout *layout, const Branch *branch)
 {
     const Tree *tree = layout->tree;
     int32_t from = tree->parent[branch->first];
@@ -338,19 +338,19 @@ static DiagramBar link_to(const Layout *layout, const Branch *branch)
     const Branch *parent = &layout->branch[branch->parent];
     double start = parent->row_mm, end = branch->row_mm, own = tree->radius_mm[branch->first];
     double x = layout->path_mm[from], edge = tree->radius_mm[from];
-    DiagramBar bar = {.x = {x, x + 2 * half}, .node = branch->first};
+    FigureBar bar = {.x = {x, x + 2 * half}, .index = branch->first};
     bar.y[0] = branch->side == DOWN ? start + edge : end + own;
     bar.y[1] = branch->side == DOWN ? end - own : start - edge;
     return bar;
 }
 
-static DiagramBar bar_of(const Layout *layout, size_t node)
+static FigureBar bar_of(const Layout *layout, size_t node)
 {
     const Tree *tree = layout->tree;
     double row = layout->branch[layout->of_node[node]].row_mm, radius = tree->radius_mm[node];
-    return (DiagramBar){.x = {layout->path_mm[tree->parent[node]], layout->path_mm[node]},
-                        .y = {row - radius, row + radius},
-                        .node = (int32_t)node};
+    return (FigureBar){.x = {layout->path_mm[tree->parent[node]], layout->path_mm[node]},
+                       .y = {row - radius, row + radius},
+                       .index = (int32_t)node};
 }
 
 static Status make_bars(const Layout *layout, Diagram *diagram, Err *err)

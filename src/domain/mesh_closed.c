@@ -2,7 +2,7 @@
  * direction as in the other. Sorting the corners by place gives equal ones the same number. Sorting
  * the edges by the numbers of their two ends brings equal edges together, and then as many must run
  * up as down. Sorting needs less memory than a hash table, and its result does not depend on the
- * order of the file. Shells are the classes of a union-find over the triangles at each edge. */
+ * order of the file. Shells are the sets that joining the triangles at each edge leaves. */
 #include "domain/mesh.h"
 
 #include <stdlib.h>
@@ -150,18 +150,9 @@ done:
     return status;
 }
 
-/* Returns the class of a triangle, and shortens the path to it. */
-static uint32_t find_class(uint32_t *parent, uint32_t triangle)
-{
-    while (parent[triangle] != triangle) {
-        parent[triangle] = parent[parent[triangle]];
-        triangle = parent[triangle];
-    }
-    return triangle;
-}
-
-/* Turns the classes, whose representatives are their lowest triangles, into numbers from 0 on. */
-static size_t number_classes(uint32_t *parent, size_t n)
+/* Replaces the representatives of the sets, which are their lowest triangles, by numbers from 0 on.
+ */
+static size_t number_sets(uint32_t *parent, size_t n)
 {
     uint32_t shells = 0;
     for (size_t i = 0; i < n; i++)
@@ -171,18 +162,13 @@ static size_t number_classes(uint32_t *parent, size_t n)
 
 static size_t find_shells(const SoupEdge *edges, size_t n_edges, uint32_t *shell, size_t n)
 {
+    sets_begin(shell, n);
+    for (size_t i = 1; i < n_edges; i++)
+        if (compare_edges(&edges[i - 1], &edges[i]) == 0)
+            sets_join(shell, edges[i - 1].triangle, edges[i].triangle);
     for (size_t i = 0; i < n; i++)
-        shell[i] = (uint32_t)i;
-    for (size_t i = 1; i < n_edges; i++) {
-        if (compare_edges(&edges[i - 1], &edges[i]) != 0)
-            continue;
-        uint32_t a = find_class(shell, edges[i - 1].triangle);
-        uint32_t b = find_class(shell, edges[i].triangle);
-        shell[a > b ? a : b] = a > b ? b : a;
-    }
-    for (size_t i = 0; i < n; i++)
-        shell[i] = find_class(shell, (uint32_t)i);
-    return number_classes(shell, n);
+        shell[i] = sets_find(shell, (uint32_t)i);
+    return number_sets(shell, n);
 }
 
 Status soup_find_shells(Soup *soup, const char *path, size_t *n_shells, Err *err)

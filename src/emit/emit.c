@@ -158,14 +158,8 @@ Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err)
 {
     if (!is_of_scenes(emitter) || model_is_of(model, emitter->elements))
         return STATUS_OK;
-    Text able = TEXT_INIT;
-    models_of(emitter->elements, &able);
-    Status status = text_check(&able, err);
-    if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE, "`model` %s: %s holds %s", models[model].name,
-                         emitter->description, text_chars(&able));
-    text_release(&able);
-    return status;
+    return err_set(err, STATUS_USAGE, "`model` %s: %s holds %s", models[model].name,
+                   emitter->description, models_of(emitter->elements).text);
 }
 
 /* What is written: the file, the second one, the settings, and what stands beside. Those that there

@@ -22,7 +22,7 @@ static Status put_joined_macros(Text *out, void *geometry, Err *err)
 
 /* What makes the geometry of models that have the element; the first row that is met holds. */
 static const struct {
-    ModelElement element;
+    unsigned element;
     Status (*put_macros)(Text *out, void *geometry, Err *err);
     Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err);
     /* How many of its pieces POV-Ray reads in some ten seconds, as measured, of a blob and an
@@ -372,7 +372,7 @@ Status povray_load(const EmitParams *params, double *load, Err *err)
 static Status take_surface(const EmitParams *params, Geometry *geometry, Err *err)
 {
     const VesselTree *vessels = params->vessels;
-    *geometry = (Geometry){.model = SCENE_MESH,
+    *geometry = (Geometry){.model = model_with(MODEL_TRIANGLES),
                            .segments = vessels->segments,
                            .n_segments = vessels->n_segments,
                            .mesh = *params->mesh,

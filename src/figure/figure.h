@@ -56,6 +56,9 @@ typedef struct FigureColor {
     uint8_t rgb[3];
 } FigureColor;
 
+/* Returns the sRGB codes of a linear colour. */
+FigureColor figure_color(const float linear[3]);
+
 typedef enum FigureAlign { ALIGN_LEFT, ALIGN_CENTER, ALIGN_RIGHT } FigureAlign;
 
 typedef enum FigureKind {
@@ -64,10 +67,29 @@ typedef enum FigureKind {
     FIGURE_LINE,  /* a polyline, stroked */
     FIGURE_RAMP,  /* a rectangle whose colour changes from the left to the right, or upwards */
     FIGURE_TEXT,
-    FIGURE_STROKES
+    FIGURE_STROKES, /* a line drawing */
+    FIGURE_BARS,    /* a diagram */
+    FIGURE_KINDS
 } FigureKind;
 
 enum { FIGURE_CORNERS = 4, FIGURE_STOPS = 65 };
+
+/* A bar of a diagram: a rectangle, mm. */
+typedef struct FigureBar {
+    double x[2], y[2]; /* ascending */
+    int32_t index;     /* of its colour */
+} FigureBar;
+
+/* The bars of a diagram. No two overlap. All members are borrowed. */
+typedef struct FigureBars {
+    const FigureBar *bars;
+    size_t n;
+    const float (*color)[3]; /* linear RGB, by FigureBar.index */
+    /* Appends what identifies a bar, and what describes it, to texts for an SVG; `title` takes
+     * escaped text. */
+    void (*put_label)(const void *context, size_t bar, Text *id, Text *title);
+    const void *context;
+} FigureBars;
 
 typedef struct FigureItem {
     FigureKind kind;
@@ -82,14 +104,16 @@ typedef struct FigureItem {
     char *text;             /* owned */
     FigureColor *ramp;      /* owned; FIGURE_STOPS colours at equal distances */
     const Strokes *strokes; /* borrowed; their paper's corner is at at[0] */
+    const FigureBars *bars; /* borrowed; their origin is at at[0] */
     const Picture *picture; /* borrowed; 8 bits */
     int column, row;        /* of the picture's first pixel */
 } FigureItem;
 
 typedef struct FigurePage {
     double width_mm, height_mm, dpi; /* 0 < dpi */
+    bool exact;                      /* an SVG states the size with all digits, else to 0.001 mm */
     FigureColor background;
-    const FigureFonts *fonts; /* borrowed */
+    const FigureFonts *fonts; /* borrowed; NULL: the page has no text */
     FigureItem *items;        /* owned */
     size_t n, capacity;
     bool failed;            /* memory ran out while something was added */
@@ -116,6 +140,10 @@ void figure_add_ramp(FigurePage *page, FigureBox box, bool upwards,
 /* A line drawing, borrowed, whose paper has its upper left corner at a point. */
 void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at,
                         FigureColor color);
+
+/* A diagram, borrowed, whose origin is at a point; it covers `width_mm` x `height_mm`. */
+void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, double width_mm,
+                     double height_mm);
 
 typedef struct FigureText {
     const char *text; /* one line of UTF-8; copied; control characters become blanks */
@@ -189,6 +217,16 @@ MUST_CHECK Status figure_write_pdf(const FigurePage *page, const FigureNotes *no
  * resolution from row `first` on: their pictures, then all else, smoothed. The same pixels whatever
  * parts the page is drawn in. STATUS_MEMORY. */
 MUST_CHECK Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err);
+
+/* Draws bars alone over all of `color`, a plane of 3 channels, in linear light. Every pixel is the
+ * mean of what it covers, so that bars thinner than a pixel are as faint as they are thin.
+ *
+ * scale       pixels per mm
+ * offset      pixel position of the bars' origin
+ * background  linear RGB
+ * Errors      STATUS_MEMORY. */
+MUST_CHECK Status figure_draw_bars(const FigureBars *bars, double scale, const double offset[2],
+                                   const float background[3], Plane *color, Err *err);
 
 /* Appends the names and versions of the libraries. */
 void figure_put_libraries(Text *text);

@@ -5,6 +5,7 @@
  * long as the process lives. So it runs in a process of its own, and what it writes is checked
  * before the file is. */
 #include "figure/fonts.h"
+#include "figure/items.h"
 
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
@@ -16,11 +17,11 @@
 enum { REGULAR, BOLD, FACES };
 
 /* What is drawn to: the context's unit is the mm. */
-typedef struct Canvas {
+typedef struct PdfPage {
     cairo_t *cairo;
     cairo_font_face_t *face[FACES];
     const FigurePage *page;
-} Canvas;
+} PdfPage;
 
 static Status check(cairo_status_t failed, Err *err)
 {
@@ -31,23 +32,50 @@ static Status check(cairo_status_t failed, Err *err)
     return err_set(err, STATUS_IO, "the page: %s", cairo_status_to_string(failed));
 }
 
-static void set_color(const Canvas *canvas, FigureColor color)
+static void set_color(const PdfPage *pdf, FigureColor color)
 {
-    cairo_set_source_rgb(canvas->cairo, color.rgb[0] / 255.0, color.rgb[1] / 255.0,
+    cairo_set_source_rgb(pdf->cairo, color.rgb[0] / 255.0, color.rgb[1] / 255.0,
                          color.rgb[2] / 255.0);
 }
 
-static void put_path(const Canvas *canvas, const FigureItem *item)
+static void put_path(const PdfPage *pdf, const FigureItem *item)
 {
-    set_color(canvas, item->color);
+    set_color(pdf, item->color);
     for (int i = 0; i < item->n; i++)
-        cairo_line_to(canvas->cairo, item->at[i].x, item->at[i].y);
+        cairo_line_to(pdf->cairo, item->at[i].x, item->at[i].y);
     if (item->closed || item->kind == FIGURE_SHAPE)
-        cairo_close_path(canvas->cairo);
+        cairo_close_path(pdf->cairo);
 }
 
-static void put_ramp(const Canvas *canvas, const FigureItem *item)
+static Status put_shape(void *context, const FigureItem *item, Err *err)
 {
+    const PdfPage *pdf = context;
+    put_path(pdf, item);
+    cairo_fill(pdf->cairo);
+    return check(cairo_status(pdf->cairo), err);
+}
+
+static Status put_line(void *context, const FigureItem *item, Err *err)
+{
+    const PdfPage *pdf = context;
+    put_path(pdf, item);
+    cairo_set_line_width(pdf->cairo, item->width_mm);
+    cairo_stroke(pdf->cairo);
+    return check(cairo_status(pdf->cairo), err);
+}
+
+static Status put_bars(void *context, const FigureItem *item, Err *err)
+{
+    for (size_t i = 0; i < item->bars->n; i++) {
+        const FigureItem bar = figure_bar(item, i);
+        TRY(put_shape(context, &bar, err));
+    }
+    return STATUS_OK;
+}
+
+static Status put_ramp(void *context, const FigureItem *item, Err *err)
+{
+    const PdfPage *pdf = context;
     const FigureBox *box = &item->box;
     cairo_pattern_t *ramp = item->upwards
                                 ? cairo_pattern_create_linear(0, box->bottom, 0, box->top)
@@ -57,11 +85,12 @@ static void put_ramp(const Canvas *canvas, const FigureItem *item)
         cairo_pattern_add_color_stop_rgb(ramp, (double)i / (FIGURE_STOPS - 1), rgb[0] / 255.0,
                                          rgb[1] / 255.0, rgb[2] / 255.0);
     }
-    cairo_set_source(canvas->cairo, ramp);
-    cairo_rectangle(canvas->cairo, box->left, box->top, box->right - box->left,
+    cairo_set_source(pdf->cairo, ramp);
+    cairo_rectangle(pdf->cairo, box->left, box->top, box->right - box->left,
                     box->bottom - box->top);
-    cairo_fill(canvas->cairo);
+    cairo_fill(pdf->cairo);
     cairo_pattern_destroy(ramp);
+    return check(cairo_status(pdf->cairo), err);
 }
 
 /* Glyphs of one size, which cairo draws at once. */
@@ -82,7 +111,7 @@ static Run first_run(const Glyph *glyph, size_t n, const char *text)
 }
 
 /* A cluster says which bytes of the text a glyph stands for, so that it can be searched. */
-static Status show_run(const Canvas *canvas, const FigureItem *item, const Run *run, Err *err)
+static Status show_run(const PdfPage *pdf, const FigureItem *item, const Run *run, Err *err)
 {
     const double size = item->size_pt * MM_PER_POINT;
     cairo_glyph_t *glyph = NULL;
@@ -96,9 +125,9 @@ static Status show_run(const Canvas *canvas, const FigureItem *item, const Run *
                                    item->at[0].y - from->rise * size};
         cluster[i] = (cairo_text_cluster_t){from->bytes, 1};
     }
-    cairo_set_font_face(canvas->cairo, canvas->face[item->bold ? BOLD : REGULAR]);
-    cairo_set_font_size(canvas->cairo, size * run->glyph->scale);
-    cairo_show_text_glyphs(canvas->cairo, run->text, run->bytes, glyph, (int)run->n, cluster,
+    cairo_set_font_face(pdf->cairo, pdf->face[item->bold ? BOLD : REGULAR]);
+    cairo_set_font_size(pdf->cairo, size * run->glyph->scale);
+    cairo_show_text_glyphs(pdf->cairo, run->text, run->bytes, glyph, (int)run->n, cluster,
                            (int)run->n, 0);
 done:
     free(glyph);
@@ -106,88 +135,65 @@ done:
     return status;
 }
 
-static Status show_glyphs(const Canvas *canvas, const FigureItem *item, const Glyphs *glyphs,
+static Status show_glyphs(const PdfPage *pdf, const FigureItem *item, const Glyphs *glyphs,
                           Err *err)
 {
     const char *text = item->text;
     for (size_t i = 0; i < glyphs->n;) {
         const Run run = first_run(&glyphs->glyph[i], glyphs->n - i, text);
-        TRY(show_run(canvas, item, &run, err));
+        TRY(show_run(pdf, item, &run, err));
         i += run.n;
         text += run.bytes;
     }
     return STATUS_OK;
 }
 
-static Status put_text(const Canvas *canvas, const FigureItem *item, Err *err)
+static Status put_text(void *context, const FigureItem *item, Err *err)
 {
+    const PdfPage *pdf = context;
     Glyphs glyphs;
-    TRY(fonts_shape(canvas->page->fonts, item->text, item->bold, &glyphs, err));
-    set_color(canvas, item->color);
-    Status status = show_glyphs(canvas, item, &glyphs, err);
+    TRY(fonts_shape(pdf->page->fonts, item->text, item->bold, &glyphs, err));
+    set_color(pdf, item->color);
+    Status status = show_glyphs(pdf, item, &glyphs, err);
     glyphs_release(&glyphs);
-    return status;
+    return status == STATUS_OK ? check(cairo_status(pdf->cairo), err) : status;
 }
 
-static void put_strokes(const Canvas *canvas, const FigureItem *item)
+static Status put_strokes(void *context, const FigureItem *item, Err *err)
 {
+    const PdfPage *pdf = context;
     const Strokes *all = item->strokes;
-    cairo_save(canvas->cairo);
-    cairo_translate(canvas->cairo, item->at[0].x, item->at[0].y);
-    cairo_set_line_cap(canvas->cairo, CAIRO_LINE_CAP_ROUND);
-    cairo_set_line_join(canvas->cairo, CAIRO_LINE_JOIN_ROUND);
-    set_color(canvas, item->color);
+    cairo_save(pdf->cairo);
+    cairo_translate(pdf->cairo, item->at[0].x, item->at[0].y);
+    cairo_set_line_cap(pdf->cairo, CAIRO_LINE_CAP_ROUND);
+    cairo_set_line_join(pdf->cairo, CAIRO_LINE_JOIN_ROUND);
+    set_color(pdf, item->color);
     for (size_t i = 0; i < all->n; i++) {
         const Stroke *stroke = &all->strokes[i];
-        cairo_set_line_width(canvas->cairo, stroke->width_mm);
+        cairo_set_line_width(pdf->cairo, stroke->width_mm);
         for (size_t k = 0; k < stroke->n; k++)
-            cairo_line_to(canvas->cairo, all->points[stroke->first + k][0],
+            cairo_line_to(pdf->cairo, all->points[stroke->first + k][0],
                           all->points[stroke->first + k][1]);
-        cairo_stroke(canvas->cairo);
+        cairo_stroke(pdf->cairo);
     }
-    cairo_restore(canvas->cairo);
-}
-
-static Status put_item(const Canvas *canvas, const FigureItem *item, Err *err)
-{
-    switch (item->kind) {
-    case FIGURE_SHAPE:
-        put_path(canvas, item);
-        cairo_fill(canvas->cairo);
-        break;
-    case FIGURE_LINE:
-        put_path(canvas, item);
-        cairo_set_line_width(canvas->cairo, item->width_mm);
-        cairo_stroke(canvas->cairo);
-        break;
-    case FIGURE_RAMP:
-        put_ramp(canvas, item);
-        break;
-    case FIGURE_TEXT:
-        return put_text(canvas, item, err);
-    case FIGURE_STROKES:
-        put_strokes(canvas, item);
-        break;
-    case FIGURE_PICTURE:
-        break;
-    }
-    return STATUS_OK;
+    cairo_restore(pdf->cairo);
+    return check(cairo_status(pdf->cairo), err);
 }
 
 /* Letters as they are: neither hinted nor moved. */
-static Status set_fonts(Canvas *canvas, Err *err)
+static Status set_fonts(PdfPage *pdf, Err *err)
 {
     cairo_font_options_t *options = cairo_font_options_create();
     cairo_status_t failed = cairo_font_options_status(options);
     cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
     cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
-    cairo_set_font_options(canvas->cairo, options);
+    cairo_set_font_options(pdf->cairo, options);
     cairo_font_options_destroy(options);
     for (int i = 0; i < FACES; i++) {
-        canvas->face[i] = cairo_ft_font_face_create_for_ft_face(
-            fonts_face(canvas->page->fonts, i == BOLD), FT_LOAD_NO_HINTING);
+        pdf->face[i] = cairo_ft_font_face_create_for_ft_face(
+            fonts_face(pdf->page->fonts, i == BOLD), FT_LOAD_NO_HINTING);
         if (failed == CAIRO_STATUS_SUCCESS)
-            failed = cairo_font_face_status(canvas->face[i]);
+            failed = cairo_font_face_status(pdf->face[i]);
     }
     return check(failed, err);
 }
@@ -218,35 +224,32 @@ static Status make_surface(const Picture *picture, cairo_surface_t **out, Err *e
 }
 
 /* Nearest: a viewer is not asked to smooth it. */
-static Status put_picture(const Canvas *canvas, const FigureItem *item, Err *err)
+static Status put_picture(void *context, const FigureItem *item, Err *err)
 {
+    const PdfPage *pdf = context;
     cairo_surface_t *surface = NULL;
-    double pixel = MM_PER_INCH / canvas->page->dpi;
+    double pixel = MM_PER_INCH / pdf->page->dpi;
     TRY(make_surface(item->picture, &surface, err));
-    cairo_save(canvas->cairo);
-    cairo_translate(canvas->cairo, item->box.left, item->box.top);
-    cairo_scale(canvas->cairo, pixel, pixel);
-    cairo_set_source_surface(canvas->cairo, surface, 0, 0);
-    cairo_pattern_set_filter(cairo_get_source(canvas->cairo), CAIRO_FILTER_NEAREST);
-    cairo_paint(canvas->cairo);
-    cairo_restore(canvas->cairo);
+    cairo_save(pdf->cairo);
+    cairo_translate(pdf->cairo, item->box.left, item->box.top);
+    cairo_scale(pdf->cairo, pixel, pixel);
+    cairo_set_source_surface(pdf->cairo, surface, 0, 0);
+    cairo_pattern_set_filter(cairo_get_source(pdf->cairo), CAIRO_FILTER_NEAREST);
+    cairo_paint(pdf->cairo);
+    cairo_restore(pdf->cairo);
     cairo_surface_destroy(surface);
-    return STATUS_OK;
+    return check(cairo_status(pdf->cairo), err);
 }
 
-static Status put_page(const Canvas *canvas, Err *err)
+static Status put_page(PdfPage *pdf, Err *err)
 {
-    const FigurePage *page = canvas->page;
-    set_color(canvas, page->background);
-    cairo_paint(canvas->cairo);
-    for (size_t i = 0; i < page->n; i++)
-        if (page->items[i].kind == FIGURE_PICTURE)
-            TRY(put_picture(canvas, &page->items[i], err));
-    for (size_t i = 0; i < page->n; i++) {
-        TRY(put_item(canvas, &page->items[i], err));
-        TRY(check(cairo_status(canvas->cairo), err));
-    }
-    return STATUS_OK;
+    static FigurePut *const put[FIGURE_KINDS] = {
+        [FIGURE_PICTURE] = put_picture, [FIGURE_SHAPE] = put_shape, [FIGURE_LINE] = put_line,
+        [FIGURE_RAMP] = put_ramp,       [FIGURE_TEXT] = put_text,   [FIGURE_BARS] = put_bars,
+        [FIGURE_STROKES] = put_strokes};
+    set_color(pdf, pdf->page->background);
+    cairo_paint(pdf->cairo);
+    return figure_put_items(pdf->page, put, pdf, err);
 }
 
 static cairo_status_t take_bytes(void *bytes, const unsigned char *from, unsigned int n)
@@ -325,12 +328,12 @@ static Status put_pdf(const void *context, Text *bytes, Err *err)
     const FigurePage *page = work->page;
     cairo_surface_t *pdf = cairo_pdf_surface_create_for_stream(
         take_bytes, bytes, page->width_mm / MM_PER_POINT, page->height_mm / MM_PER_POINT);
-    Canvas canvas = {.cairo = cairo_create(pdf), .page = page};
+    PdfPage self = {.cairo = cairo_create(pdf), .page = page};
     set_notes(pdf, work->notes);
-    cairo_scale(canvas.cairo, 1 / MM_PER_POINT, 1 / MM_PER_POINT);
-    TRY(set_fonts(&canvas, err));
-    TRY(put_page(&canvas, err));
-    return check(finish(canvas.cairo, pdf), err);
+    cairo_scale(self.cairo, 1 / MM_PER_POINT, 1 / MM_PER_POINT);
+    TRY(set_fonts(&self, err));
+    TRY(put_page(&self, err));
+    return check(finish(self.cairo, pdf), err);
 }
 
 Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, const char *path,

@@ -3,6 +3,7 @@
  * and lines along the grid keep to whole pixels, so that they are sharp; a ramp has the colour of
  * each pixel's middle. Lines are polygons themselves, one for each of their parts. */
 #include "figure/fonts.h"
+#include "figure/items.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,15 +12,15 @@
 
 /* Rows of the page that are drawn on. Outlines are in 1/64 pixels, x to the right and y up from the
  * upper left corner of `left`, `top`, as spans have short places. */
-typedef struct Target {
+typedef struct PixelRows {
     const FigurePage *page;
     Picture *rows;
     int first; /* row of the page */
     int left, top;
     const uint8_t *color;
-} Target;
+} PixelRows;
 
-static double pixels_of(const Target *target, double mm)
+static double pixels_of(const PixelRows *target, double mm)
 {
     return mm / MM_PER_INCH * target->page->dpi;
 }
@@ -39,7 +40,7 @@ static void blend(Picture *rows, size_t pixel, const uint8_t color[3], unsigned 
 
 static void take_spans(int y, int count, const FT_Span *spans, void *user)
 {
-    const Target *target = user;
+    const PixelRows *target = user;
     const int row = target->top - 1 - y - target->first;
     if (row < 0 || row >= target->rows->height)
         return;
@@ -52,7 +53,7 @@ static void take_spans(int y, int count, const FT_Span *spans, void *user)
         }
 }
 
-static Status fill(Target *target, FT_Outline *outline, Err *err)
+static Status fill(PixelRows *target, FT_Outline *outline, Err *err)
 {
     FT_Raster_Params params = {.source = outline,
                                .flags = FT_RASTER_FLAG_AA | FT_RASTER_FLAG_DIRECT,
@@ -64,12 +65,12 @@ static Status fill(Target *target, FT_Outline *outline, Err *err)
 }
 
 /* In pixels of the page. */
-static FT_Vector vector_of(const Target *target, double x, double y)
+static FT_Vector vector_of(const PixelRows *target, double x, double y)
 {
     return (FT_Vector){lround(64 * (x - target->left)), lround(64 * (target->top - y))};
 }
 
-static Status fill_polygon(Target *target, const FigurePoint *corner, int n, Err *err)
+static Status fill_polygon(PixelRows *target, const FigurePoint *corner, int n, Err *err)
 {
     FT_Vector points[FIGURE_CORNERS];
     char on[FIGURE_CORNERS];
@@ -91,7 +92,7 @@ static bool is_box(const FigureItem *item)
            item->at[0].y == item->at[1].y && item->at[2].y == item->at[3].y;
 }
 
-static Status draw_shape(Target *target, const FigureItem *item, Err *err)
+static Status draw_shape(PixelRows *target, const FigureItem *item, Err *err)
 {
     FigurePoint corner[FIGURE_CORNERS];
     for (int i = 0; i < item->n; i++) {
@@ -102,7 +103,8 @@ static Status draw_shape(Target *target, const FigureItem *item, Err *err)
 }
 
 /* A part of a line with square ends. */
-static Status draw_stroke(Target *target, FigurePoint from, FigurePoint to, double width, Err *err)
+static Status draw_stroke(PixelRows *target, FigurePoint from, FigurePoint to, double width,
+                          Err *err)
 {
     double x = to.x - from.x, y = to.y - from.y, length = elementary_hypot(x, y);
     if (!(length > 0))
@@ -118,7 +120,7 @@ static Status draw_stroke(Target *target, FigurePoint from, FigurePoint to, doub
 
 /* A line of a whole number of pixels, at least one; along the grid its edges are those of pixels.
  */
-static Status draw_line(Target *target, const FigureItem *item, Err *err)
+static Status draw_line(PixelRows *target, const FigureItem *item, Err *err)
 {
     const double width = fmax(1, round(pixels_of(target, item->width_mm)));
     const double half = fmod(width, 2) / 2;
@@ -136,8 +138,9 @@ static Status draw_line(Target *target, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
-static void draw_ramp(Target *target, const FigureItem *item)
+static Status draw_ramp(PixelRows *target, const FigureItem *item, Err *err)
 {
+    (void)err;
     const int left = (int)round(pixels_of(target, item->box.left));
     const int right = (int)round(pixels_of(target, item->box.right));
     const int top = (int)round(pixels_of(target, item->box.top));
@@ -158,11 +161,12 @@ static void draw_ramp(Target *target, const FigureItem *item)
             }
             blend(target->rows, (size_t)y * (size_t)target->rows->width + (size_t)x, color, 255);
         }
+    return STATUS_OK;
 }
 
 /* The glyph's outline is FreeType's own, until the next one is loaded: its points are moved to
  * their places. */
-static Status draw_glyph(Target *target, FT_Face face, const Glyph *glyph, FigurePoint at,
+static Status draw_glyph(PixelRows *target, FT_Face face, const Glyph *glyph, FigurePoint at,
                          double size, Err *err)
 {
     if (FT_Load_Glyph(face, glyph->index, FT_LOAD_NO_SCALE))
@@ -177,7 +181,7 @@ static Status draw_glyph(Target *target, FT_Face face, const Glyph *glyph, Figur
     return fill(target, outline, err);
 }
 
-static Status draw_text(Target *target, const FigureItem *item, Err *err)
+static Status draw_text(PixelRows *target, const FigureItem *item, Err *err)
 {
     const FigureFonts *fonts = target->page->fonts;
     const FigurePoint at = {pixels_of(target, item->box.left), pixels_of(target, item->at[0].y)};
@@ -196,7 +200,7 @@ static Status draw_text(Target *target, const FigureItem *item, Err *err)
 enum { STROKE_POINTS = 256 }; /* at once: an outline has a short number of points */
 
 /* The outline of a part of a stroke, whose points are mm on its paper. */
-static FT_Error stroke_outline(Target *target, FT_Stroker stroker, FigurePoint at,
+static FT_Error stroke_outline(PixelRows *target, FT_Stroker stroker, FigurePoint at,
                                const double (*point)[2], size_t n, FT_Outline *outline)
 {
     FT_UInt points, contours;
@@ -223,7 +227,7 @@ static FT_Error stroke_outline(Target *target, FT_Stroker stroker, FigurePoint a
     return FT_Err_Ok;
 }
 
-static Status draw_stroke_part(Target *target, FT_Stroker stroker, FigurePoint at,
+static Status draw_stroke_part(PixelRows *target, FT_Stroker stroker, FigurePoint at,
                                const double (*point)[2], size_t n, Err *err)
 {
     FT_Outline outline;
@@ -234,7 +238,7 @@ static Status draw_stroke_part(Target *target, FT_Stroker stroker, FigurePoint a
     return status;
 }
 
-static Status draw_strokes(Target *target, const FigureItem *item, Err *err)
+static Status draw_strokes(PixelRows *target, const FigureItem *item, Err *err)
 {
     const Strokes *all = item->strokes;
     FT_Stroker stroker;
@@ -256,8 +260,9 @@ static Status draw_strokes(Target *target, const FigureItem *item, Err *err)
     return status;
 }
 
-static void draw_picture(const Target *target, const FigureItem *item)
+static Status draw_picture(PixelRows *target, const FigureItem *item, Err *err)
 {
+    (void)err;
     const Picture *picture = item->picture;
     Picture *rows = target->rows;
     int columns = picture->width;
@@ -273,46 +278,111 @@ static void draw_picture(const Target *target, const FigureItem *item)
             picture_set(rows, to + i, rows->bits == 8 ? code : (uint16_t)(code * 257));
         }
     }
+    return STATUS_OK;
 }
 
-static Status draw_item(Target *target, const FigureItem *item, Err *err)
+static Status draw_bars(PixelRows *target, const FigureItem *item, Err *err)
 {
-    target->color = item->color.rgb;
-    target->left = (int)floor(pixels_of(target, item->box.left)) - 1;
-    target->top = (int)floor(pixels_of(target, item->box.top)) - 1;
-    switch (item->kind) {
-    case FIGURE_SHAPE:
-        return draw_shape(target, item, err);
-    case FIGURE_LINE:
-        return draw_line(target, item, err);
-    case FIGURE_TEXT:
-        return draw_text(target, item, err);
-    case FIGURE_STROKES:
-        return draw_strokes(target, item, err);
-    case FIGURE_RAMP:
-        draw_ramp(target, item);
-        break;
-    case FIGURE_PICTURE:
-        break;
+    for (size_t i = 0; i < item->bars->n; i++) {
+        const FigureItem bar = figure_bar(item, i);
+        target->color = bar.color.rgb;
+        TRY(draw_shape(target, &bar, err));
     }
     return STATUS_OK;
 }
 
-/* Whether the item may have a pixel in the rows; snapping moves it by one at most. */
-static bool meets(const Target *target, const FigureItem *item)
+/* Returns true if the item may have a pixel in the rows. Snapping moves it by at most one. */
+static bool meets(const PixelRows *target, const FigureItem *item)
 {
     return pixels_of(target, item->box.bottom) + 2 > target->first &&
            pixels_of(target, item->box.top) - 2 < target->first + target->rows->height;
 }
 
+/* A FigurePut. */
+static Status draw_item(void *context, const FigureItem *item, Err *err)
+{
+    static Status (*const draw[FIGURE_KINDS])(PixelRows *, const FigureItem *, Err *) = {
+        [FIGURE_PICTURE] = draw_picture, [FIGURE_SHAPE] = draw_shape, [FIGURE_LINE] = draw_line,
+        [FIGURE_RAMP] = draw_ramp,       [FIGURE_TEXT] = draw_text,   [FIGURE_BARS] = draw_bars,
+        [FIGURE_STROKES] = draw_strokes};
+    PixelRows *target = context;
+    if (!meets(target, item))
+        return STATUS_OK;
+    target->color = item->color.rgb;
+    target->left = (int)floor(pixels_of(target, item->box.left)) - 1;
+    target->top = (int)floor(pixels_of(target, item->box.top)) - 1;
+    return draw[item->kind](target, item, err);
+}
+
 Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err)
 {
-    Target target = {.page = page, .rows = rows, .first = first};
-    for (size_t i = 0; i < page->n; i++)
-        if (page->items[i].kind == FIGURE_PICTURE)
-            draw_picture(&target, &page->items[i]);
-    for (size_t i = 0; i < page->n; i++)
-        if (meets(&target, &page->items[i]))
-            TRY(draw_item(&target, &page->items[i], err));
+    static FigurePut *const put[FIGURE_KINDS] = {draw_item, draw_item, draw_item, draw_item,
+                                                 draw_item, draw_item, draw_item};
+    PixelRows target = {.page = page, .rows = rows, .first = first};
+    return figure_put_items(page, put, &target, err);
+}
+
+/* ---- bars in linear light --------------------------------------------------------------------
+ *
+ * A pixel is the mean of what it covers. Bars do not overlap. The parts of the pixel that they
+ * cover, and the colours of these parts, therefore add up in any order. The rest is background. */
+
+/* Channels of the plane of sums: the colour, and the part of the pixel that is covered. */
+enum { COVERED = 3, SUMS = 4 };
+
+/* Returns the part of pixel `at` that is between two positions. */
+static double covered(int at, double from, double to)
+{
+    return fmax(0, fmin(to, at + 1) - fmax(from, at));
+}
+
+static int first_pixel(double from)
+{
+    return (int)fmax(0, floor(from));
+}
+
+static int end_pixel(double to, int size)
+{
+    return (int)fmin(size, ceil(to));
+}
+
+/* Adds the bar between the pixel positions x[0] and x[1], y[0] and y[1]. */
+static void add_bar(const double x[2], const double y[2], const float color[3], Plane *sums)
+{
+    for (int row = first_pixel(y[0]); row < end_pixel(y[1], sums->height); row++)
+        for (int at = first_pixel(x[0]); at < end_pixel(x[1], sums->width); at++) {
+            float *sum = &sums->values[SUMS * ((size_t)row * (size_t)sums->width + (size_t)at)];
+            float part = (float)(covered(row, y[0], y[1]) * covered(at, x[0], x[1]));
+            for (int c = 0; c < 3; c++)
+                sum[c] += part * color[c];
+            sum[COVERED] += part;
+        }
+}
+
+/* Stores the sums as colours. By rounding they may cover a little more than the whole pixel. */
+static void mix(const Plane *sums, const float background[3], Plane *color)
+{
+    size_t pixels = (size_t)color->width * (size_t)color->height;
+    for (size_t i = 0; i < pixels; i++) {
+        const float *sum = &sums->values[SUMS * i];
+        float part = fmaxf(1, sum[COVERED]), rest = fmaxf(0, 1 - sum[COVERED]);
+        for (int c = 0; c < 3; c++)
+            color->values[3 * i + (size_t)c] = sum[c] / part + rest * background[c];
+    }
+}
+
+Status figure_draw_bars(const FigureBars *bars, double scale, const double offset[2],
+                        const float background[3], Plane *color, Err *err)
+{
+    Plane sums;
+    TRY(plane_init(&sums, color->width, color->height, SUMS, err));
+    for (size_t i = 0; i < bars->n; i++) {
+        const FigureBar *bar = &bars->bars[i];
+        const double x[2] = {offset[0] + scale * bar->x[0], offset[0] + scale * bar->x[1]};
+        const double y[2] = {offset[1] + scale * bar->y[0], offset[1] + scale * bar->y[1]};
+        add_bar(x, y, bars->color[bar->index], &sums);
+    }
+    mix(&sums, background, color);
+    plane_release(&sums);
     return STATUS_OK;
 }

@@ -1,17 +1,19 @@
 /* A template for the page, and one for each kind of item. Text stays text, in a family whose
  * letters are as wide as Arial's and Helvetica's, which stand in where it is not installed. */
-#include "figure/figure.h"
-
+#include "figure/items.h"
 #include "tmpl/tmpl.h"
+
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* Items being written. */
-typedef struct Svg {
+/* The page that is being written. */
+typedef struct SvgPage {
     const FigurePage *page;
-    const FigureNotes *notes;
-    bool pictures; /* these, or all else */
-} Svg;
+    const char *templates; /* the folder */
+    Text *out;             /* borrowed */
+} SvgPage;
 
 /* A number of mm, to a thousandth. */
 static void put_mm(double mm, Text *text)
@@ -47,8 +49,9 @@ static void put_corners(const FigureItem *item, Text *text)
     }
 }
 
-static Status put_text(const Svg *svg, const FigureItem *item, Text *out, Err *err)
+static Status put_text(void *context, const FigureItem *item, Err *err)
 {
+    const SvgPage *svg = context;
     static const char *const anchors[] = {
         [ALIGN_LEFT] = "start", [ALIGN_CENTER] = "middle", [ALIGN_RIGHT] = "end"};
     Markup parts = {0};
@@ -59,23 +62,24 @@ static Status put_text(const Svg *svg, const FigureItem *item, Text *out, Err *e
     text_puts(markup_text(&parts, "anchor"), anchors[item->align]);
     put_color(item->color, markup_text(&parts, "color"));
     text_puts(markup_text(&parts, "text"), item->text);
-    return markup_put(&parts, svg->notes->templates, "figure/text.svg", out, err);
+    return markup_put(&parts, svg->templates, "figure/text.svg", svg->out, err);
 }
 
-static Status put_stops(const Svg *svg, const FigureItem *item, Text *out, Err *err)
+static Status put_stops(const SvgPage *svg, const FigureItem *item, Text *out, Err *err)
 {
     Status status = STATUS_OK;
     for (int i = 0; i < FIGURE_STOPS && status == STATUS_OK; i++) {
         Markup parts = {0};
         text_printf(markup_text(&parts, "offset"), "%.6g", (double)i / (FIGURE_STOPS - 1));
         put_color(item->ramp[i], markup_text(&parts, "color"));
-        status = markup_put(&parts, svg->notes->templates, "figure/stop.svg", out, err);
+        status = markup_put(&parts, svg->templates, "figure/stop.svg", out, err);
     }
     return status;
 }
 
-static Status put_ramp(const Svg *svg, const FigureItem *item, Text *out, Err *err)
+static Status put_ramp(void *context, const FigureItem *item, Err *err)
 {
+    const SvgPage *svg = context;
     Markup parts = {0};
     Status status = put_stops(svg, item, markup_raw(&parts, "stops"), err);
     put_box(&item->box, &parts);
@@ -83,43 +87,47 @@ static Status put_ramp(const Svg *svg, const FigureItem *item, Text *out, Err *e
     text_puts(markup_text(&parts, "y1"), item->upwards ? "1" : "0");
     text_puts(markup_text(&parts, "x2"), item->upwards ? "0" : "1");
     if (status == STATUS_OK)
-        return markup_put(&parts, svg->notes->templates, "figure/ramp.svg", out, err);
+        return markup_put(&parts, svg->templates, "figure/ramp.svg", svg->out, err);
     markup_release(&parts);
     return status;
 }
 
-static Status put_picture(const Svg *svg, const FigureItem *item, Text *out, Err *err)
+static Status put_picture(void *context, const FigureItem *item, Err *err)
 {
+    const SvgPage *svg = context;
     Markup parts = {0};
     put_box(&item->box, &parts);
     Status status = picture_put_uri(item->picture, markup_raw(&parts, "png"), err);
     if (status == STATUS_OK)
-        return markup_put(&parts, svg->notes->templates, "figure/picture.svg", out, err);
+        return markup_put(&parts, svg->templates, "figure/picture.svg", svg->out, err);
     markup_release(&parts);
     return status;
 }
 
-static Status put_shape(const Svg *svg, const FigureItem *item, Text *out, Err *err)
+static Status put_shape(void *context, const FigureItem *item, Err *err)
 {
+    const SvgPage *svg = context;
     Markup parts = {0};
     put_corners(item, markup_text(&parts, "points"));
     put_color(item->color, markup_text(&parts, "color"));
-    return markup_put(&parts, svg->notes->templates, "figure/shape.svg", out, err);
+    return markup_put(&parts, svg->templates, "figure/shape.svg", svg->out, err);
 }
 
-static Status put_line(const Svg *svg, const FigureItem *item, Text *out, Err *err)
+static Status put_line(void *context, const FigureItem *item, Err *err)
 {
+    const SvgPage *svg = context;
     Markup parts = {0};
     put_corners(item, markup_text(&parts, "points"));
     text_puts(markup_text(&parts, "end"), item->closed ? "Z" : "");
     put_color(item->color, markup_text(&parts, "color"));
     put_mm(item->width_mm, markup_text(&parts, "width"));
-    return markup_put(&parts, svg->notes->templates, "figure/line.svg", out, err);
+    return markup_put(&parts, svg->templates, "figure/line.svg", svg->out, err);
 }
 
 /* Strokes of one width, which follow one another, are one path. */
-static Status put_strokes(const Svg *svg, const FigureItem *item, Text *out, Err *err)
+static Status put_strokes(void *context, const FigureItem *item, Err *err)
 {
+    const SvgPage *svg = context;
     const Strokes *all = item->strokes;
     for (size_t i = 0; i < all->n;) {
         Markup parts = {0};
@@ -135,41 +143,106 @@ static Status put_strokes(const Svg *svg, const FigureItem *item, Text *out, Err
             }
         put_color(item->color, markup_text(&parts, "color"));
         put_mm(width_mm, markup_text(&parts, "width"));
-        TRY(markup_put(&parts, svg->notes->templates, "figure/strokes.svg", out, err));
+        TRY(markup_put(&parts, svg->templates, "figure/strokes.svg", svg->out, err));
     }
     return STATUS_OK;
 }
 
+/* ---- bars ------------------------------------------------------------------------------------ */
+
+/* What a bar of the diagram is made of; the texts are used again for every bar. */
+typedef struct SvgBar {
+    Tmpl tmpl;
+    Text id, title;
+} SvgBar;
+
+static Status put_bar(const SvgPage *svg, const FigureBars *bars, size_t i, SvgBar *self, Err *err)
+{
+    const FigureBar *bar = &bars->bars[i];
+    char number[4][NUMBER_TEXT_SIZE], color[8];
+    const FigureColor shown = figure_color(bars->color[bar->index]);
+    text_clear(&self->id);
+    text_clear(&self->title);
+    bars->put_label(bars->context, i, &self->id, &self->title);
+    TRY(text_check(&self->id, err));
+    TRY(text_check(&self->title, err));
+    snprintf(color, sizeof color, "#%02x%02x%02x", shown.rgb[0], shown.rgb[1], shown.rgb[2]);
+    const TmplValue values[] = {{"id", text_chars(&self->id)},
+                                {"x", number_text(bar->x[0], number[0])},
+                                {"y", number_text(bar->y[0], number[1])},
+                                {"width", number_text(bar->x[1] - bar->x[0], number[2])},
+                                {"height", number_text(fmax(0, bar->y[1] - bar->y[0]), number[3])},
+                                {"color", color},
+                                {"title", text_chars(&self->title)}};
+    return tmpl_apply(&self->tmpl, values, sizeof values / sizeof *values, svg->out, err);
+}
+
+/* The part of a group that consists of its bars. */
+typedef struct SvgBars {
+    const SvgPage *svg;
+    const FigureBars *bars;
+} SvgBars;
+
+static Status put_each_bar(Text *out, void *context, Err *err)
+{
+    (void)out;
+    const SvgBars *self = context;
+    SvgBar bar = {.id = TEXT_INIT, .title = TEXT_INIT};
+    char *path = NULL;
+    Status status;
+    TRY_GOTO(file_join(self->svg->templates, "figure/bar.svg", &path, err));
+    TRY_GOTO(tmpl_load(&bar.tmpl, path, err));
+    for (size_t i = 0; i < self->bars->n; i++)
+        TRY_GOTO(put_bar(self->svg, self->bars, i, &bar, err));
+done:
+    tmpl_release(&bar.tmpl);
+    text_release(&bar.id);
+    text_release(&bar.title);
+    free(path);
+    return status;
+}
+
+static void put_number(double value, Text *text)
+{
+    char digits[NUMBER_TEXT_SIZE];
+    text_puts(text, number_text(value, digits));
+}
+
+/* Bars keep all their digits: vessels may be thinner than 0.001 mm. */
+static Status put_bars(void *context, const FigureItem *item, Err *err)
+{
+    SvgPage *svg = context;
+    SvgBars bars = {svg, item->bars};
+    const TmplPart part = {"bars", put_each_bar, &bars};
+    Markup parts = {0};
+    put_number(item->at[0].x, markup_text(&parts, "x"));
+    put_number(item->at[0].y, markup_text(&parts, "y"));
+    return markup_stream(&parts, svg->templates, "figure/bars.svg", &part, 1, svg->out, err);
+}
+
+/* ---- pages ----------------------------------------------------------------------------------- */
+
 static Status put_items(Text *out, void *context, Err *err)
 {
-    static Status (*const put[])(const Svg *, const FigureItem *, Text *, Err *) = {
+    static FigurePut *const put[FIGURE_KINDS] = {
         [FIGURE_PICTURE] = put_picture, [FIGURE_SHAPE] = put_shape, [FIGURE_LINE] = put_line,
-        [FIGURE_RAMP] = put_ramp,       [FIGURE_TEXT] = put_text,   [FIGURE_STROKES] = put_strokes};
-    const Svg *svg = context;
-    for (size_t i = 0; i < svg->page->n; i++) {
-        const FigureItem *item = &svg->page->items[i];
-        if ((item->kind == FIGURE_PICTURE) == svg->pictures)
-            TRY(put[item->kind](svg, item, out, err));
-    }
-    return STATUS_OK;
+        [FIGURE_RAMP] = put_ramp,       [FIGURE_TEXT] = put_text,   [FIGURE_BARS] = put_bars,
+        [FIGURE_STROKES] = put_strokes};
+    SvgPage *svg = context;
+    svg->out = out;
+    return figure_put_items(svg->page, put, svg, err);
 }
 
 Status figure_put_svg(const FigurePage *page, const FigureNotes *notes, Text *out, Err *err)
 {
+    SvgPage svg = {.page = page, .templates = notes->templates};
+    const TmplPart items = {"items", put_items, &svg};
     Markup parts = {0};
-    Svg svg = {.page = page, .notes = notes, .pictures = true};
-    put_mm(page->width_mm, markup_text(&parts, "width"));
-    put_mm(page->height_mm, markup_text(&parts, "height"));
+    (page->exact ? put_number : put_mm)(page->width_mm, markup_text(&parts, "width"));
+    (page->exact ? put_number : put_mm)(page->height_mm, markup_text(&parts, "height"));
     put_color(page->background, markup_text(&parts, "background"));
     text_puts(markup_text(&parts, "description"), notes->description);
     text_puts(markup_text(&parts, "generator"), notes->generator);
     text_puts(markup_text(&parts, "command"), notes->command);
-    Status status = put_items(markup_raw(&parts, "pictures"), &svg, err);
-    svg.pictures = false;
-    if (status == STATUS_OK)
-        status = put_items(markup_raw(&parts, "items"), &svg, err);
-    if (status == STATUS_OK)
-        return markup_put(&parts, notes->templates, "figure/page.svg", out, err);
-    markup_release(&parts);
-    return status;
+    return markup_stream(&parts, notes->templates, "figure/page.svg", &items, 1, out, err);
 }

@@ -1,6 +1,7 @@
 /* The bar is laid out along and across itself, and turned upwards or to the right at the end, so
  * that both forms are one. All its measures are in sizes of its text. */
 #include "figure/fonts.h"
+#include "figure/items.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,14 +21,6 @@ static const double bar_ems = 1.1, tick_ems = 0.25, gap_ems = 0.3, point_ems = 0
 static FigurePoint place(const Layout *layout, double along, double across)
 {
     return layout->legend->across ? (FigurePoint){along, across} : (FigurePoint){across, -along};
-}
-
-static FigureColor color_of(const float linear[3])
-{
-    FigureColor color;
-    for (int c = 0; c < 3; c++)
-        color.rgb[c] = (uint8_t)image_code(linear[c], ENCODING_SRGB, 8);
-    return color;
 }
 
 static FigureBox box_of(const Layout *layout, double from, double to)
@@ -120,7 +113,7 @@ static void put_point(const Layout *layout, double from, double to, const float 
     double width = bar_ems * layout->em;
     const FigurePoint corner[] = {place(layout, from, 0), place(layout, from, width),
                                   place(layout, to, width / 2)};
-    figure_add_shape(layout->page, corner, 3, color_of(linear));
+    figure_add_shape(layout->page, corner, 3, figure_color(linear));
 }
 
 static void put_points(const Layout *layout)
@@ -146,7 +139,7 @@ static void put_ramp(const Layout *layout)
     for (int i = 0; i < FIGURE_STOPS; i++) {
         float color[3];
         colorscale_at(legend->scale, (double)i / (FIGURE_STOPS - 1), color);
-        stops[i] = color_of(color);
+        stops[i] = figure_color(color);
     }
     figure_add_ramp(layout->page, box_of(layout, 0, layout->length), !legend->across, stops);
     int most = (int)fmin(fmax(layout->length / (legend->across ? 2.9 : 2.2) / layout->em, 2), 8);
@@ -182,7 +175,7 @@ static void put_classes(const Layout *layout)
         colorscale_step_color(scale, i, color);
         if (is_under || is_over)
             colorscale_at(scale, is_under ? -HUGE_VAL : HUGE_VAL, color);
-        figure_add_box(layout->page, box_of(layout, i * each, (i + 1) * each), color_of(color));
+        figure_add_box(layout->page, box_of(layout, i * each, (i + 1) * each), figure_color(color));
     }
     for (int i = scale->n_bounds ? 1 : 0; i <= steps - (scale->n_bounds ? 1 : 0); i += apart) {
         values[n] = bound_of(scale, i);
@@ -196,7 +189,7 @@ static void put_classes(const Layout *layout)
 static void put_swatch(const Layout *layout, double from, const float linear[3], const char *label)
 {
     double side = bar_ems * layout->em;
-    figure_add_box(layout->page, box_of(layout, from, from + side), color_of(linear));
+    figure_add_box(layout->page, box_of(layout, from, from + side), figure_color(linear));
     put_label(layout, from + side / 2, side + gap_ems * layout->em, label);
 }
 

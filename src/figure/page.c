@@ -1,6 +1,7 @@
 /* An array of items in the order in which they are drawn, each with the box that it covers, so that
  * what is built up anywhere can be measured, moved to its place, and skipped where it is not. */
 #include "figure/fonts.h"
+#include "figure/items.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -114,6 +115,16 @@ void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at
                            .strokes = strokes});
 }
 
+void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, double width_mm,
+                     double height_mm)
+{
+    add(page, (FigureItem){.kind = FIGURE_BARS,
+                           .box = {at.x, at.y, at.x + width_mm, at.y + height_mm},
+                           .at = {at},
+                           .n = 1,
+                           .bars = bars});
+}
+
 /* Appends the item of a line of these glyphs; takes `chars`, also on failure. */
 static void add_line_of_text(FigurePage *page, const FigureText *text, char *chars,
                              const Glyphs *glyphs)
@@ -150,6 +161,37 @@ void figure_add_text(FigurePage *page, const FigureText *text)
         glyphs_release(&glyphs);
     }
     text_release(&clean);
+}
+
+FigureColor figure_color(const float linear[3])
+{
+    FigureColor color;
+    for (int c = 0; c < 3; c++)
+        color.rgb[c] = (uint8_t)image_code(linear[c], ENCODING_SRGB, 8);
+    return color;
+}
+
+FigureItem figure_bar(const FigureItem *item, size_t i)
+{
+    const FigureBar *bar = &item->bars->bars[i];
+    const double left = item->at[0].x + bar->x[0], right = item->at[0].x + bar->x[1];
+    const double top = item->at[0].y + bar->y[0], bottom = item->at[0].y + bar->y[1];
+    return (FigureItem){.kind = FIGURE_SHAPE,
+                        .color = figure_color(item->bars->color[bar->index]),
+                        .n = 4,
+                        .at = {{left, top}, {right, top}, {right, bottom}, {left, bottom}}};
+}
+
+Status figure_put_items(const FigurePage *page, FigurePut *const put[FIGURE_KINDS], void *context,
+                        Err *err)
+{
+    for (int pictures = 1; pictures >= 0; pictures--)
+        for (size_t i = 0; i < page->n; i++) {
+            const FigureItem *item = &page->items[i];
+            if ((item->kind == FIGURE_PICTURE) == pictures)
+                TRY(put[item->kind](context, item, err));
+        }
+    return STATUS_OK;
 }
 
 Status figure_check(const FigurePage *page, Err *err)

@@ -23,9 +23,10 @@ enum { ROUNDS = 2 };
  * it is. */
 static const double least_part_of_piece = 0.24;
 
-/* The bifurcation at which `segment` would be split for `terminal`. */
-static Bifurcation bifurcation_of(const Network *net, const Rules *rules, int32_t i, Vec3 terminal)
+/* Returns the problem of the bifurcation at which segment i would be split for `terminal`. */
+static Bifurcation bifurcation_of(const Site *site, int32_t i, Vec3 terminal)
 {
+    const Network *net = &site->net;
     const Segment *segment = &net->segment[i];
     int32_t terminals = segment->terminals;
     double gauge = (double)segment->gauge;
@@ -36,8 +37,8 @@ static Bifurcation bifurcation_of(const Network *net, const Rules *rules, int32_
                        .adjoint = {net->sensitivity[i].load, law_lambda_power(&net->law, gauge)},
                        .radius_unit = net->radius_unit * gauge,
                        .extra = net->sensitivity[i].extra,
-                       .least_length = rules->least_length,
-                       .least_widths = length_reserve * rules->thickness,
+                       .least_length = site->rules.least_length,
+                       .least_widths = length_reserve * site->rules.thickness,
                        .least_part = network_is_piece(net, i)
                                          ? least_part_of_piece * segment->length
                                          : (double)INFINITY,
@@ -50,32 +51,38 @@ static Bifurcation bifurcation_of(const Network *net, const Rules *rules, int32_
     return out;
 }
 
-/* The part of a segment at which the point of it next to `terminal` lies, `least` mm or more off
- * the ends. */
+/* Returns the minimum length, mm, of a segment of `radius` mm. */
+static double least_length(const Rules *rules, double radius)
+{
+    return fmax(2 * length_reserve * rules->thickness * radius, rules->least_length);
+}
+
+/* Returns the part of a segment at which it is nearest to `terminal`, `least` mm or more from the
+ * ends. */
 static double nearest_part(Vec3 a, Vec3 b, Vec3 terminal, double length, double least)
 {
     double part = vec3_dot(vec3_sub(terminal, a), vec3_sub(b, a)) / (length * length);
     return fmin(fmax(part, least / length), 1 - least / length);
 }
 
-/* The connection to a segment that keeps its radius: the straight one to the nearest place, as what
- * is spent on the way there changes little along a segment. */
-static bool connect_to_trunk(const Network *net, const Rules *rules, int32_t i, Vec3 terminal,
-                             Connection *out)
+/* Estimates the connection to a segment that keeps its radius: a straight one to the nearest point,
+ * because what is spent up to there changes little along a segment. */
+static bool connect_to_trunk(const Site *site, int32_t i, Vec3 terminal, Connection *out)
 {
+    const Network *net = &site->net;
     const Segment *segment = &net->segment[i];
     double kept = net->trunk->radius[i], length = segment->length;
-    double width = fmax(2 * length_reserve * rules->thickness * kept, rules->least_length);
     Vec3 from = net->position[segment->parent], to = net->position[i];
-    double part =
-        nearest_part(from, to, terminal, length, fmin(width, least_part_of_piece * length));
+    double least = fmin(least_length(&site->rules, kept), least_part_of_piece * length);
+    double part = nearest_part(from, to, terminal, length, least);
     double gauge =
         trunk_gauge((double)segment->gauge, trunk_spent(net, i, segment->terminals + 1, part));
     Vec3 place = vec3_add_scaled(from, vec3_sub(to, from), part);
     Below nothing = {0};
     Reduced fresh =
         law_extend(&net->law, net->fresh_weight, vec3_distance(place, terminal), &nothing);
-    *out = (Connection){.segment = i,
+    *out = (Connection){.terminal = terminal,
+                        .segment = i,
                         .bifurcation = place,
                         .radius = {kept, kept, net->radius_unit * gauge * fresh.rho},
                         .price = law_lambda_power(&net->law, gauge) * fresh.cost +
@@ -84,109 +91,105 @@ static bool connect_to_trunk(const Network *net, const Rules *rules, int32_t i, 
     return isfinite(out->price);
 }
 
-bool connection_estimate(const Network *net, const Rules *rules, int32_t segment, Vec3 terminal,
-                         Connection *out)
+bool connection_estimate(const Site *site, int32_t segment, Vec3 terminal, Connection *out)
 {
-    if (network_kept_radius(net, segment) > 0)
-        return connect_to_trunk(net, rules, segment, terminal, out);
-    Bifurcation problem = bifurcation_of(net, rules, segment, terminal);
-    const Law law = network_law(net, segment);
+    if (network_kept_radius(&site->net, segment) > 0)
+        return connect_to_trunk(site, segment, terminal, out);
+    Bifurcation problem = bifurcation_of(site, segment, terminal);
+    const Law law = network_law(&site->net, segment);
     BifurcationState state;
     Vec3 middle = vec3_scale(vec3_add(problem.end[PROXIMAL], problem.end[DISTAL]), 0.5), place;
     bifurcation_at(&law, &problem, vec3_add_scaled(vec3_scale(middle, 0.75), terminal, 0.25),
                    &state);
     if (!bifurcation_next(&problem, &state, &place))
         return false;
-    *out = (Connection){.segment = segment, .price = state.price, .bifurcation = place};
+    *out = (Connection){
+        .terminal = terminal, .segment = segment, .price = state.price, .bifurcation = place};
     for (int i = 0; i < ENDS; i++)
         out->price += state.weight[i] * (vec3_distance(problem.end[i], place) - state.length[i]);
     return true;
 }
 
-bool connection_may_split(const Network *net, const Grid *grid, const Rules *rules, int32_t segment)
+bool connection_may_split(const Site *site, int32_t segment)
 {
-    if (network_is_piece(net, segment) || network_kept_radius(net, segment) > 0)
+    if (network_is_piece(&site->net, segment) || network_kept_radius(&site->net, segment) > 0)
         return true;
-    const GridItem *item = &grid->item[segment];
-    double width = 2 * length_reserve * rules->thickness * (double)item->radius;
-    double least = 2 * (width > rules->least_length ? width : rules->least_length);
+    const GridItem *item = &site->grid.item[segment];
+    double width = 2 * length_reserve * site->rules.thickness * (double)item->radius;
+    double least = 2 * (width > site->rules.least_length ? width : site->rules.least_length);
     return grid_length2(item) > least * least;
 }
 
-/* Whether the new segment of a connection to the trunk is longer than wide. */
-static bool is_long_enough(const Rules *rules, const Connection *connection, Vec3 terminal)
+/* Takes place, price and radii of the connection from the state of its bifurcation. */
+static void take_state(const BifurcationState *state, Connection *connection)
 {
-    double width = 2 * length_reserve * rules->thickness * connection->radius[FRESH];
-    return vec3_distance(connection->bifurcation, terminal) >= fmax(width, rules->least_length);
+    connection->price = state->price;
+    connection->bifurcation = state->place;
+    memcpy(connection->radius, state->radius, sizeof state->radius);
 }
 
-bool connection_optimise(const Network *net, const Rules *rules, Vec3 terminal,
-                         Connection *connection)
+bool connection_optimise(const Site *site, Connection *connection)
 {
-    if (network_kept_radius(net, connection->segment) > 0)
-        return is_long_enough(rules, connection, terminal);
-    Bifurcation problem = bifurcation_of(net, rules, connection->segment, terminal);
-    const Law law = network_law(net, connection->segment);
+    int32_t host = connection->segment;
+    if (network_kept_radius(&site->net, host) > 0)
+        return vec3_distance(connection->bifurcation, connection->terminal) >=
+               least_length(&site->rules, connection->radius[FRESH]);
+    Bifurcation problem = bifurcation_of(site, host, connection->terminal);
+    const Law law = network_law(&site->net, host);
     Vec3 place = connection->bifurcation;
     for (int round = 0; round <= ROUNDS; round++) {
         BifurcationState state;
         bifurcation_at(&law, &problem, place, &state);
         if (!isfinite(state.price) || !bifurcation_is_long_enough(&problem, &state))
             return round > 0;
-        connection->price = state.price;
-        connection->bifurcation = place;
-        memcpy(connection->radius, state.radius, sizeof state.radius);
+        take_state(&state, connection);
         if (!bifurcation_next(&problem, &state, &place))
             break;
     }
     return true;
 }
 
-bool connection_settle(const Network *net, const Rules *rules, const Domain *domain, Vec3 terminal,
-                       Connection *connection)
+bool connection_settle(const Site *site, Connection *connection)
 {
-    if (network_is_given(net, connection->segment))
+    int32_t host = connection->segment;
+    if (network_is_given(&site->net, host))
         return true;
-    Bifurcation problem = bifurcation_of(net, rules, connection->segment, terminal);
-    const Law law = network_law(net, connection->segment);
+    Bifurcation problem = bifurcation_of(site, host, connection->terminal);
+    const Law law = network_law(&site->net, host);
     BifurcationState state;
-    bifurcation_at(&law, &problem, domain_settle(domain, connection->bifurcation), &state);
-    connection->price = state.price;
-    connection->bifurcation = state.place;
-    memcpy(connection->radius, state.radius, sizeof state.radius);
+    bifurcation_at(&law, &problem, domain_settle(site->domain, connection->bifurcation), &state);
+    take_state(&state, connection);
     return isfinite(state.price) && bifurcation_is_long_enough(&problem, &state);
 }
 
-/* A segment of the connection, as wide as it will be. */
-static Capsule capsule_of(const Network *net, const Connection *connection, Vec3 terminal, int part)
+/* Returns a segment of the connection, as wide as it will be. */
+static Capsule capsule_of(const Network *net, const Connection *connection, int part)
 {
     int32_t host = connection->segment;
-    Capsule capsule = {connection->bifurcation, terminal, connection->radius[part]};
+    Vec3 fork = connection->bifurcation;
+    double radius = connection->radius[part];
     if (part == PROXIMAL)
-        capsule = (Capsule){net->position[net->segment[host].parent], connection->bifurcation,
-                            capsule.radius};
-    else if (part == DISTAL)
-        capsule.b = net->position[host];
-    return capsule;
+        return (Capsule){net->position[net->segment[host].parent], fork, radius};
+    return (Capsule){fork, part == DISTAL ? net->position[host] : connection->terminal, radius};
 }
 
-GridItem connection_item(const Network *net, const Grid *grid, const Rules *rules,
-                         const Connection *connection, Vec3 terminal, int part)
+GridItem connection_item(const Site *site, const Connection *connection, int part)
 {
-    Capsule capsule = capsule_of(net, connection, terminal, part);
+    Capsule capsule = capsule_of(&site->net, connection, part);
     double radius = capsule.radius;
-    capsule.radius = entry_reach(rules, radius);
-    return grid_item(grid, capsule, radius);
+    capsule.radius = site_reach(&site->rules, radius);
+    return grid_item(&site->grid, capsule, radius);
 }
 
-bool connections_are_clear(const Network *net, const Rules *rules, const Connection connection[2],
-                           const Vec3 terminal[2])
+bool connections_are_clear(const Site *site, const Connection connection[2])
 {
+    const Network *net = &site->net;
+    const Rules *rules = &site->rules;
     bool are_mates = network_mate(net, connection[0].segment) == connection[1].segment;
     for (int i = 0; i < ENDS; i++)
         for (int j = 0; j < ENDS; j++) {
-            Capsule a = capsule_of(net, &connection[0], terminal[0], i);
-            Capsule b = capsule_of(net, &connection[1], terminal[1], j);
+            Capsule a = capsule_of(net, &connection[0], i);
+            Capsule b = capsule_of(net, &connection[1], j);
             double clear = clearance_reserve * rules->thickness * (a.radius + b.radius) +
                            rules->gap + rules->apart;
             if (i == j && (i == FRESH || (i == DISTAL && are_mates)))
@@ -197,11 +200,12 @@ bool connections_are_clear(const Network *net, const Rules *rules, const Connect
     return true;
 }
 
-bool connection_is_inside(const Network *net, const Domain *domain, const Connection *connection,
-                          Vec3 terminal)
+bool connection_is_inside(const Site *site, const Connection *connection)
 {
+    const Domain *domain = site->domain;
+    const Network *net = &site->net;
     int32_t host = connection->segment;
-    Vec3 fork = connection->bifurcation;
+    Vec3 fork = connection->bifurcation, terminal = connection->terminal;
     if (network_is_given(net, host))
         return domain_inside(domain, fork, 0) && domain_holds_segment(domain, fork, terminal);
     return domain_inside(domain, fork, 0) &&
@@ -211,26 +215,25 @@ bool connection_is_inside(const Network *net, const Domain *domain, const Connec
              domain_holds_segment(domain, fork, net->position[host])));
 }
 
-/* A new segment that is to keep clear of all others but its kin, those it shares a node with. */
+/* A new segment that must keep clear of all segments but its kin, with which it shares a node. */
 typedef struct Newcomer {
-    const Network *net;
-    const Rules *rules;
+    const Site *site;
     GridItem item;
     GridBoxQuery probe;
     double radius;  /* mm */
-    int32_t mate;   /* the terminal that the one it ends in is paired with; -1: none */
+    int32_t mate;   /* the terminal that is paired with the newcomer's distal end; -1: none */
     int32_t kin[4]; /* the first is the segment that is split */
 } Newcomer;
 
-/* The part of a connection as a newcomer: its kin are the segment that is split and all that end or
- * begin at the newcomer's outer end. */
-static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rules,
-                         const Connection *connection, Vec3 terminal, int part)
+/* Returns a part of a connection as a newcomer: its kin are the segment that is split and all that
+ * end or begin at the newcomer's outer end. */
+static Newcomer newcomer(const Site *site, const Connection *connection, int part)
 {
+    const Network *net = &site->net;
+    const Rules *rules = &site->rules;
     int32_t host = connection->segment;
-    Newcomer out = {.net = net,
-                    .item = connection_item(net, grid, rules, connection, terminal, part),
-                    .rules = rules,
+    Newcomer out = {.site = site,
+                    .item = connection_item(site, connection, part),
                     .radius = connection->radius[part],
                     .mate = part == DISTAL ? network_mate(net, host) : -1,
                     .kin = {host, host, host, host}};
@@ -246,19 +249,21 @@ static Newcomer newcomer(const Network *net, const Grid *grid, const Rules *rule
     return out;
 }
 
-/* Whether the newcomer keeps clear of another segment. It has to keep the reserve as well, unless
- * the segment that is split was as near to the other. What begins in a given vessel of many pieces
- * overlaps the pieces next to its beginning: it only has to keep off their centrelines. */
-static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t other)
+/* Returns true if the newcomer keeps clear of another segment. The newcomer must keep the reserve
+ * as well, unless the segment that is split was as near to the other. A newcomer that begins in a
+ * given vessel of many pieces overlaps the pieces next to its beginning: it only has to keep off
+ * their centrelines. */
+static bool is_clear_of(const Newcomer *newcomer, int32_t other)
 {
-    const GridItem *item = &grid->item[other];
-    const Rules *rules = newcomer->rules;
+    const Network *net = &newcomer->site->net;
+    const Rules *rules = &newcomer->site->rules;
+    const GridItem *items = newcomer->site->grid.item, *item = &items[other];
+    int32_t host = newcomer->kin[0];
     double touch = rules->thickness * (newcomer->radius + (double)item->radius);
     double clear = clearance_reserve * touch + rules->gap;
     double apart2 = grid_distance2(&newcomer->item, item);
     bool is_mate = other == newcomer->mate;
-    bool is_other_tree = rules->apart > 0 && network_tree(newcomer->net, other) !=
-                                                 network_tree(newcomer->net, newcomer->kin[0]);
+    bool is_other_tree = rules->apart > 0 && network_tree(net, other) != network_tree(net, host);
     if (is_other_tree)
         clear += rules->apart;
     if (is_mate)
@@ -267,43 +272,30 @@ static bool is_clear_of(const Grid *grid, const Newcomer *newcomer, int32_t othe
         return true;
     if (is_other_tree || is_mate)
         return false;
-    touch = rules->gap + (network_is_piece(newcomer->net, other) ? 0 : touch);
-    return apart2 >= touch * touch && apart2 >= grid_distance2(&grid->item[newcomer->kin[0]], item);
+    touch = rules->gap + (network_is_piece(net, other) ? 0 : touch);
+    return apart2 >= touch * touch && apart2 >= grid_distance2(&items[host], item);
 }
 
-static bool is_clear(const Grid *grid, const Newcomer *newcomer, const GridCell *cell)
+static bool is_clear(const Newcomer *newcomer)
 {
     const int32_t *kin = newcomer->kin;
-    for (uint32_t k = 0; k < cell->count; k += GRID_LANES) {
-        unsigned near = grid_boxes_near(grid, cell, k, &newcomer->probe);
-        for (const int32_t *tag = cell->tag + k; near; near >>= 1, tag++) {
-            int32_t other = *tag >> 1;
-            if ((near & 1) && other != kin[0] && other != kin[1] && other != kin[2] &&
-                other != kin[3] && !is_clear_of(grid, newcomer, other))
-                return false;
-        }
-    }
-    return true;
-}
-
-static bool is_clear_all_along(const Grid *grid, const Newcomer *newcomer)
-{
-    size_t cell;
-    for (GridWalk walk = grid_walk(grid, &newcomer->item); grid_walk_next(&walk, &cell);)
-        if (!is_clear(grid, newcomer, &grid->cell[cell]))
+    int32_t other;
+    for (GridVisit visit = grid_visit(&newcomer->site->grid, &newcomer->item);
+         grid_visit_near(&visit, &newcomer->probe, &other);)
+        if (other != kin[0] && other != kin[1] && other != kin[2] && other != kin[3] &&
+            !is_clear_of(newcomer, other))
             return false;
     return true;
 }
 
-ConnectionClearance connection_clearance(const Network *net, const Grid *grid, const Rules *rules,
-                                         Box zone, const Connection *connection, Vec3 terminal)
+ConnectionClearance connection_clearance(const Site *site, Box zone, const Connection *connection)
 {
     for (int part = 0; part < ENDS; part++) {
-        Newcomer part_of = newcomer(net, grid, rules, connection, terminal, part);
-        if (!grid_zone_holds(grid, zone, &part_of.item))
+        Newcomer part_of = newcomer(site, connection, part);
+        if (!grid_zone_holds(&site->grid, zone, &part_of.item))
             return CONNECTION_BEYOND;
-        bool is_given = part != FRESH && network_is_given(net, connection->segment);
-        if (!is_given && !is_clear_all_along(grid, &part_of))
+        bool is_given = part != FRESH && network_is_given(&site->net, connection->segment);
+        if (!is_given && !is_clear(&part_of))
             return CONNECTION_BLOCKED;
     }
     return CONNECTION_CLEAR;

@@ -73,7 +73,7 @@ static Status settle_radii(Network *net, const GrowParams *params, double *flow,
     weights_flows(net, flow);
     for (int round = 0; round < MAX_ROUNDS; round++) {
         TRY(sweep_down(net, tree, err));
-        TRY(weights_update(net, params, flow, tree->radius_mm, part, &change, err));
+        TRY(weights_update(net, params, (WeightsAt){flow, tree->radius_mm, part}, &change, err));
         if (change <= agreement)
             return STATUS_OK;
         part = change < last ? part : part / 2;
@@ -105,8 +105,8 @@ static Status check_trunk(const Network *net, const GrowParams *params, Err *err
                    "the way to (%.4g, %.4g, %.4g), where the radius is %.4g mm, they take %.4g "
                    "times the drop from `p_perf` to `p_term`; this tree passes a flow below %.4g "
                    "ml/min",
-                   params->q_perf_ml_min, at.x, at.y, at.z, net->trunk->radius[where], most,
-                   params->q_perf_ml_min * TRUNK_MOST_SPENT / most);
+                   params->blood.q_perf_ml_min, at.x, at.y, at.z, net->trunk->radius[where], most,
+                   params->blood.q_perf_ml_min * TRUNK_MOST_SPENT / most);
 }
 
 /* Radii, and flow shares where terminals have their own. */
@@ -118,7 +118,7 @@ static Status write_radii(Network *net, const GrowParams *params, Tree *tree, Er
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&flow, net->n, sizeof *flow, "flows", err));
     TRY_GOTO(settle_radii(net, params, flow, tree, err));
-    if (params->terminal_flow == TERMINAL_FLOW_EQUAL)
+    if (params->blood.terminal_flow == TERMINAL_FLOW_EQUAL)
         goto done;
     TRY_GOTO(tree_add_flow_shares(tree, err));
     for (size_t i = 0; i < net->n; i++)
@@ -132,17 +132,16 @@ done:
 static Status describe_domain(const Domain *domain, TreeMeta *meta, Err *err)
 {
     Text spec = TEXT_INIT, bare = TEXT_INIT;
+    Status status;
     domain_text(domain, &spec);
-    Status status = text_check(&spec, err);
-    if (status == STATUS_OK) {
-        const char *chars = text_chars(&spec);
-        size_t kind = strcspn(chars, ":") + 1;
-        text_append(&bare, chars, kind);
-        text_put_line(&bare, file_name(chars + kind));
-        status = text_check(&bare, err);
-    }
-    if (status == STATUS_OK)
-        status = meta_set_text(meta, META_DOMAIN, text_chars(&bare), err);
+    TRY_GOTO(text_check(&spec, err));
+    const char *chars = text_chars(&spec);
+    size_t kind = strcspn(chars, ":") + 1;
+    text_append(&bare, chars, kind);
+    text_put_line(&bare, file_name(chars + kind));
+    TRY_GOTO(text_check(&bare, err));
+    TRY_GOTO(meta_set_text(meta, META_DOMAIN, text_chars(&bare), err));
+done:
     text_release(&spec);
     text_release(&bare);
     return status;
@@ -182,8 +181,8 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
     if (params->from)
         TRY_GOTO(continue_restore(params->from, net, &made, err));
     *out = made;
+    return STATUS_OK;
 done:
-    if (status != STATUS_OK)
-        tree_release(&made);
+    tree_release(&made);
     return status;
 }

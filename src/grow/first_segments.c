@@ -4,7 +4,6 @@
  * left to test. */
 #include "grow/first_segments.h"
 
-#include "grow/connection.h"
 #include "grow/mates.h"
 
 /* After every TRIES_PER_NOTCH points that will not do, the distance asked for falls by the fraction
@@ -35,55 +34,62 @@ static bool is_nearest(const Network *net, size_t tree, Vec3 point)
     return true;
 }
 
-/* Whether the fresh segment keeps clear of the root segments of the trees before `tree`. */
-static bool is_clear(const Network *net, size_t tree, const FirstSegment *fresh, const Rules *rules)
+/* Returns true if the fresh segment keeps clear of the root segments of the trees before `tree`. */
+static bool is_clear(const Site *site, size_t tree, const FirstSegment *fresh)
 {
+    const Network *net = &site->net;
     for (size_t k = 0; k < tree; k++) {
         int32_t inlet = net->inlet[k];
         FirstSegment other =
             first_segment(net, net->position[inlet], net->position[net->segment[inlet].child[0]]);
-        double clear = reserve * (fresh->radius + other.radius) + rules->apart;
-        if (rules->pair > 0)
-            clear = clear_of_mate(rules, clear);
+        double clear = reserve * (fresh->radius + other.radius) + site->rules.apart;
+        if (site->rules.pair > 0)
+            clear = clear_of_mate(&site->rules, clear);
         if (segment_distance2(fresh->from, fresh->to, other.from, other.to) < clear * clear)
             return false;
     }
     return true;
 }
 
-/* A random point of the domain; for the second tree of pairs a mate of the first's terminal. */
-static Vec3 sample(const Network *net, size_t tree, const Domain *domain, const Rules *rules,
-                   Random *random)
+/* Returns the terminal of the first tree, which has one. */
+static int32_t first_terminal(const Network *net)
 {
-    if (tree == 0 || rules->pair == 0)
-        return domain_sample(domain, random);
-    return mates_place(net->position[net->segment[net->inlet[0]].child[0]], rules->pair,
-                       domain->dimension, random);
+    return net->segment[net->inlet[0]].child[0];
 }
 
-/* Whether the segment is where that of the tree may be. */
-static bool is_allowed(const Network *net, size_t tree, const Domain *domain, const Rules *rules,
-                       const FirstSegment *fresh)
+/* Draws a random point of the domain; for the second tree of pairs, a mate of the first tree's
+ * terminal. */
+static Vec3 sample(const Site *site, size_t tree, Random *random)
 {
-    return (rules->pair > 0 ? domain_inside(domain, fresh->to, 0)
-                            : is_nearest(net, tree, fresh->to)) &&
+    if (tree == 0 || site->rules.pair == 0)
+        return domain_sample(site->domain, random);
+    return mates_place(site->net.position[first_terminal(&site->net)], site->rules.pair,
+                       site->domain->dimension, random);
+}
+
+/* Returns true if the tree's root segment may be the fresh one. */
+static bool is_allowed(const Site *site, size_t tree, const FirstSegment *fresh)
+{
+    const Domain *domain = site->domain;
+    return (site->rules.pair > 0 ? domain_inside(domain, fresh->to, 0)
+                                 : is_nearest(&site->net, tree, fresh->to)) &&
            (domain_is_convex(domain) || domain_holds_segment(domain, fresh->from, fresh->to)) &&
-           is_clear(net, tree, fresh, rules);
+           is_clear(site, tree, fresh);
 }
 
-static Status add_first_segment(Network *net, size_t tree, const Domain *domain, const Rules *rules,
-                                Random *random, double *distance, uint64_t *tosses, Err *err)
+static Status add_first_segment(Site *site, size_t tree, FirstTosses *tosses, double *distance,
+                                Err *err)
 {
+    Network *net = &site->net;
     int32_t inlet = net->inlet[tree];
     Vec3 from = net->position[inlet];
     for (int tries = 1; tries <= MAX_TRIES; tries++) {
-        FirstSegment fresh = first_segment(net, from, sample(net, tree, domain, rules, random));
-        ++*tosses;
-        if (vec3_distance(fresh.to, from) >= *distance &&
-            is_allowed(net, tree, domain, rules, &fresh)) {
+        FirstSegment fresh = first_segment(net, from, sample(site, tree, tosses->random));
+        tosses->count++;
+        if (vec3_distance(fresh.to, from) >= *distance && is_allowed(site, tree, &fresh)) {
             int32_t end = network_append(net, inlet, fresh.to);
-            if (tree == 1 && rules->pair > 0)
-                network_pair(net, net->segment[net->inlet[0]].child[0], end);
+            if (tree == 1 && site->rules.pair > 0)
+                network_pair(net, first_terminal(net), end);
             return STATUS_OK;
         }
         if (tries % TRIES_PER_NOTCH == 0)
@@ -99,15 +105,14 @@ static Status add_first_segment(Network *net, size_t tree, const Domain *domain,
                    from.x, from.y, from.z);
 }
 
-Status first_segments_add(Network *net, const Domain *domain, const Rules *rules, Random *random,
-                          double *distance, uint64_t *tosses, Err *err)
+Status first_segments_add(Site *site, FirstTosses *tosses, Err *err)
 {
-    double farthest = *distance;
-    for (size_t k = 0; k < net->inlets; k++) {
+    double farthest = tosses->distance;
+    for (size_t k = 0; k < site->net.inlets; k++) {
         double own = farthest;
-        TRY(add_first_segment(net, k, domain, rules, random, &own, tosses, err));
-        *distance = fmin(*distance, own);
+        TRY(add_first_segment(site, k, tosses, &own, err));
+        tosses->distance = fmin(tosses->distance, own);
     }
-    network_resum(net);
+    network_resum(&site->net);
     return STATUS_OK;
 }

@@ -54,9 +54,9 @@ Status forest_init(Forest *forest, size_t trees, const double *share, size_t ter
     TRY_GOTO(mem_calloc(&made.grant, trees, sizeof *made.grant, "trees", err));
     set_quotas(&made, share);
     *forest = made;
+    return STATUS_OK;
 done:
-    if (status != STATUS_OK)
-        forest_release(&made);
+    forest_release(&made);
     return status;
 }
 

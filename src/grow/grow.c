@@ -60,16 +60,13 @@ static const double bytes_per_terminal = 340;
 
 typedef struct Growth {
     const GrowParams *params;
-    const Domain *domain;
+    Site site;
     double size; /* of the domain's box, mm; on a surface, of vessels */
-    Network net;
     Forest forest;
-    Grid grid;
     Random random;
     /* With how many terminals the grid is made anew, radii are refreshed, bifurcations relaxed. */
     size_t grid_until, refresh_until, relax_until;
     double toss_distance; /* mm */
-    Rules rules;
     Round round;
     double skipped; /* the share of the last round's points that lay in full cells */
     uint64_t tosses, rejected;
@@ -86,20 +83,21 @@ static size_t most_added(size_t terminals)
 
 static Status make_grid(Growth *growth, Err *err)
 {
-    Network *net = &growth->net;
+    Network *net = &growth->site.net;
     size_t terminals = net->terminals;
-    grid_release(&growth->grid);
+    grid_release(&growth->site.grid);
     TRY(network_reorder(net, err));
     growth->grid_until = 2 * terminals;
     size_t most = growth->grid_until + most_added(growth->grid_until);
     if (most > growth->params->terminals)
         most = growth->params->terminals;
-    TRY(grid_reset(&growth->grid, growth->domain->bounds, cells_per_terminal * (double)terminals,
-                   net->n + 2 * (most - terminals), growth->round.threads, err));
-    TRY(round_use_grid(&growth->round, &growth->grid, err));
+    TRY(grid_reset(&growth->site.grid, growth->site.domain->bounds,
+                   cells_per_terminal * (double)terminals, net->n + 2 * (most - terminals),
+                   growth->round.threads, err));
+    TRY(round_use_grid(&growth->round, &growth->site.grid, err));
     for (size_t i = 0; i < net->n; i++)
         if (net->segment[i].parent >= 0)
-            TRY(entry_add(&growth->grid, &growth->rules, net, (int32_t)i, err));
+            TRY(site_enter(&growth->site, (int32_t)i, err));
     return STATUS_OK;
 }
 
@@ -107,8 +105,9 @@ static Status make_grid(Growth *growth, Err *err)
 static Status refresh(Growth *growth, WeightsPrecision precision, Err *err)
 {
     if (weights_are_needed(growth->params))
-        return weights_refresh(&growth->net, growth->params, growth->domain, precision, err);
-    network_refresh(&growth->net, growth->round.threads);
+        return weights_refresh(&growth->site.net, growth->params, growth->site.domain, precision,
+                               err);
+    network_refresh(&growth->site.net, growth->round.threads);
     return STATUS_OK;
 }
 
@@ -134,24 +133,24 @@ static double mean_end_radius(const Network *net)
 /* Moves all bifurcations to better places, if the tree has at most params->relax terminals. */
 static Status relax(Growth *growth, Err *err)
 {
-    Network *net = &growth->net;
-    if (net->terminals > growth->params->relax || !growth->grid.item || net->trunk)
+    Network *net = &growth->site.net;
+    if (net->terminals > growth->params->relax || !growth->site.grid.item || net->trunk)
         return STATUS_OK;
     growth->relax_until = 2 * net->terminals;
-    TRY(relax_network(net, &growth->grid, growth->domain, &growth->rules, err));
+    TRY(relax_network(&growth->site, err));
     network_refresh(net, growth->round.threads);
-    return entries_widen(&growth->grid, &growth->rules, net, err);
+    return site_widen(&growth->site, err);
 }
 
 /* Brings what ages with growth up to date when it is due. */
 static Status keep_up(Growth *growth, Err *err)
 {
-    Network *net = &growth->net;
+    Network *net = &growth->site.net;
     size_t terminals = net->terminals;
     if (terminals >= growth->refresh_until) {
         TRY(refresh(growth, WEIGHTS_ROUGH, err));
-        if (growth->grid.item)
-            TRY(entries_widen(&growth->grid, &growth->rules, net, err));
+        if (growth->site.grid.item)
+            TRY(site_widen(&growth->site, err));
         if (terminals >= growth->relax_until)
             TRY(relax(growth, err));
         if (growth->params->min_radius_mm > 0)
@@ -164,13 +163,13 @@ static Status keep_up(Growth *growth, Err *err)
 static void set_toss_distance(Growth *growth, double distance)
 {
     growth->toss_distance = fmin(distance, growth->size);
-    growth->rules.least_length = least_length_share * growth->toss_distance;
+    growth->site.rules.least_length = least_length_share * growth->toss_distance;
 }
 
 /* The map that says how densely terminals are to stand; NULL: evenly. */
 static const Demand *density(const GrowParams *params)
 {
-    return params->terminal_flow == TERMINAL_FLOW_DEMAND ? NULL : params->demand;
+    return params->blood.terminal_flow == TERMINAL_FLOW_DEMAND ? NULL : params->demand;
 }
 
 /* Draws a point where blood is asked for. A map asks for 1e-4 of its maximum in the mean
@@ -184,7 +183,7 @@ static Vec3 toss(Growth *growth)
     Vec3 point;
     for (int i = 0; i < MOST_TOSSES; i++) {
         growth->tosses++;
-        point = domain_sample(growth->domain, &growth->random);
+        point = domain_sample(growth->site.domain, &growth->random);
         if (!demand || demand_at(demand, point) > (dense ? random_uniform(&growth->random) : 0))
             break;
     }
@@ -194,44 +193,45 @@ static Vec3 toss(Growth *growth)
 /* How many terminals the next round should add. */
 static size_t to_be_added(const Growth *growth, bool tiled)
 {
-    size_t terminals = growth->net.terminals, left = growth->params->terminals - terminals;
+    size_t terminals = growth->site.net.terminals, left = growth->params->terminals - terminals;
     size_t added = terminals / (tiled ? TERMINALS_PER_ADDED_IN_TILES : TERMINALS_PER_ADDED);
     added = added < 1 ? 1 : added;
-    added += growth->rules.pair > 0 ? added % 2 : 0;
+    added += growth->site.rules.pair > 0 ? added % 2 : 0;
     return added < left ? added : left;
 }
 
-/* Tosses points for about `added` terminals and connects those that can be; *made: how many. */
-static Status run_round(Growth *growth, size_t added, size_t *made, Err *err)
+/* Tosses points for about `added` terminals and connects those that can be connected. */
+static Status run_round(Growth *growth, size_t added, Err *err)
 {
-    size_t left = growth->params->terminals - growth->net.terminals;
-    double tosses = growth->rules.pair > 0 ? TOSSES_PER_ADDED / 2.0 : TOSSES_PER_ADDED;
+    const GrowParams *params = growth->params;
+    Site *site = &growth->site;
+    Round *round = &growth->round;
+    size_t left = params->terminals - site->net.terminals;
+    double tosses = site->rules.pair > 0 ? TOSSES_PER_ADDED / 2.0 : TOSSES_PER_ADDED;
     size_t points = (size_t)(tosses * (double)added / (1 - fmin(growth->skipped, 0.75)));
-    TRY(round_start(&growth->round, points, err));
+    TRY(round_start(round, points, err));
     for (size_t i = 0; i < points; i++)
-        growth->round.point[i] = toss(growth);
-    forest_limit(&growth->forest, growth->net.terminals);
-    Site site = {.net = &growth->net,
-                 .limit = growth->forest.limit,
-                 .grid = &growth->grid,
-                 .domain = growth->domain,
-                 .rules = &growth->rules,
-                 .toss_distance = growth->toss_distance,
-                 .demand = density(growth->params),
-                 .terminals_only = growth->params->toss == GROW_TOSS_TERMINAL,
-                 .candidates = growth->params->candidates};
-    TRY(round_run(&growth->round, &site, 2 * added < left ? 2 * added : left,
-                  growth->net.terminals >= LEAST_WITH_FULL_CELLS, made, err));
+        round->point[i] = toss(growth);
+    forest_limit(&growth->forest, site->net.terminals);
+    const PlanCommon common = {.site = site,
+                               .limit = growth->forest.limit,
+                               .toss_distance = growth->toss_distance,
+                               .demand = density(params),
+                               .terminals_only = params->toss == GROW_TOSS_TERMINAL,
+                               .candidates = params->candidates};
+    const RoundLimits limits = {.most = 2 * added < left ? 2 * added : left,
+                                .skip = site->net.terminals >= LEAST_WITH_FULL_CELLS};
+    TRY(round_run(round, &common, limits, err));
     forest_count(&growth->forest);
-    network_grown(&growth->net, *made);
-    growth->skipped = (double)growth->round.tally.skipped / (double)points;
+    network_grown(&site->net, round->made);
+    growth->skipped = (double)round->count[PLAN_STATES] / (double)points;
     return STATUS_OK;
 }
 
 /* Steers the share of points that are far enough from the tree to one in TOSSES_PER_ADDED. */
 static void adapt_toss_distance(Growth *growth, bool tiled)
 {
-    const size_t *count = growth->round.tally.count;
+    const size_t *count = growth->round.count;
     size_t far = count[PLAN_CROWDED] + count[PLAN_READY];
     double free = (double)(far + count[PLAN_TOO_NEAR] + count[PLAN_OUTSIDE]);
     if (free > 0) {
@@ -243,20 +243,20 @@ static void adapt_toss_distance(Growth *growth, bool tiled)
 
 /* Counts the points without room. When there are too many, takes vessels for thinner, and at last
  * ends the search with STATUS_INFEASIBLE. */
-static Status be_patient(Growth *growth, size_t made, Err *err)
+static Status be_patient(Growth *growth, Err *err)
 {
-    Rules *rules = &growth->rules;
-    const Tally *tally = &growth->round.tally;
+    Rules *rules = &growth->site.rules;
+    const size_t *count = growth->round.count, made = growth->round.made;
     size_t before = growth->crowded, troubled = growth->crowded + growth->outside;
-    size_t crowded = tally->skipped + tally->count[PLAN_IN_VESSEL] + tally->count[PLAN_CROWDED];
-    growth->rejected += crowded + tally->count[PLAN_OUTSIDE];
+    size_t crowded = count[PLAN_STATES] + count[PLAN_IN_VESSEL] + count[PLAN_CROWDED];
+    growth->rejected += crowded + count[PLAN_OUTSIDE];
     growth->crowded += crowded;
-    growth->outside += tally->count[PLAN_OUTSIDE] + tally->count[PLAN_AHEAD];
+    growth->outside += count[PLAN_OUTSIDE] + count[PLAN_AHEAD];
     if (made * PATIENCE > growth->crowded) {
         growth->crowded = growth->outside = 0;
     } else if (growth->crowded / PATIENCE > before / PATIENCE) {
         rules->thickness = rules->thickness > least_thickness ? rules->thickness / 2 : 0;
-        TRY(round_use_grid(&growth->round, &growth->grid, err));
+        TRY(round_use_grid(&growth->round, &growth->site.grid, err));
     }
     growth->idle = made > 0 ? 0 : growth->idle + 1;
     bool is_patient = troubled == 0 || growth->crowded + growth->outside < LAST_PATIENCE;
@@ -265,28 +265,29 @@ static Status be_patient(Growth *growth, size_t made, Err *err)
     size_t farthest = 0, outside = 0;
     double mm = 0;
     if (growth->params->from)
-        outside = continue_outside(growth->params->from, growth->domain, &farthest, &mm);
+        outside = continue_outside(growth->params->from, growth->site.domain, &farthest, &mm);
     if (outside > 0)
         return err_set(err, STATUS_INFEASIBLE,
                        "no room for terminal %zu of `terminals` %zu in %zu tries: the domain does "
                        "not hold the tree of `from`, of which %zu of %zu nodes are outside, node "
                        "%d by %.3g mm",
-                       growth->net.terminals + 1, growth->params->terminals,
+                       growth->site.net.terminals + 1, growth->params->terminals,
                        growth->crowded + growth->outside, outside, growth->params->from->n,
                        growth->params->from->id[farthest], mm);
-    bool shut_out = rules->pair > 0 && growth->domain->dimension == 2;
-    return err_set(
-        err, STATUS_INFEASIBLE, "no room for terminal %zu of `terminals` %zu in %zu tries: %s",
-        growth->net.terminals + 1, growth->params->terminals, growth->crowded + growth->outside,
-        shut_out ? "in the plane two trees that must not cross shut each other out of "
-                   "what is behind them; `pair_mm` needs a `domain` of three dimensions"
-                 : "lower `terminals`, choose a larger `domain`, or move `gamma` and "
-                   "`lambda` towards 3 and 2");
+    bool shut_out = rules->pair > 0 && growth->site.domain->dimension == 2;
+    return err_set(err, STATUS_INFEASIBLE,
+                   "no room for terminal %zu of `terminals` %zu in %zu tries: %s",
+                   growth->site.net.terminals + 1, growth->params->terminals,
+                   growth->crowded + growth->outside,
+                   shut_out ? "in the plane two trees that must not cross shut each other out of "
+                              "what is behind them; `pair_mm` needs a `domain` of three dimensions"
+                            : "lower `terminals`, choose a larger `domain`, or move `gamma` and "
+                              "`lambda` towards 3 and 2");
 }
 
 static Status check_range(const Growth *growth, Err *err)
 {
-    double cost = network_cost(&growth->net);
+    double cost = network_cost(&growth->site.net);
     if (cost > 0 && isfinite(cost))
         return STATUS_OK;
     return err_set(err, STATUS_INFEASIBLE,
@@ -297,30 +298,29 @@ static Status check_range(const Growth *growth, Err *err)
 
 static Status add_terminals(Growth *growth, Err *err)
 {
-    size_t made;
     TRY(check_range(growth, err));
     TRY(keep_up(growth, err));
     bool tiled = growth->round.is_tiled && growth->crowded + growth->outside == 0;
-    TRY(run_round(growth, to_be_added(growth, tiled), &made, err));
+    TRY(run_round(growth, to_be_added(growth, tiled), err));
     adapt_toss_distance(growth, tiled);
-    return be_patient(growth, made, err);
+    return be_patient(growth, err);
 }
 
 /* New trees at the inlets. */
 static Status start_trees(Growth *growth, Err *err)
 {
     const GrowParams *params = growth->params;
-    Network *net = &growth->net;
-    double distance = growth->toss_distance;
+    Network *net = &growth->site.net;
+    FirstTosses tosses = {&growth->random, growth->toss_distance, 0};
     if (params->inlets == 0)
-        network_append(net, -1, growth->domain->inlet);
+        network_append(net, -1, growth->site.domain->inlet);
     for (size_t k = 0; k < params->inlets; k++)
         network_append(net, -1, params->inlet[k]);
-    TRY(first_segments_add(net, growth->domain, &growth->rules, &growth->random, &distance,
-                           &growth->tosses, err));
-    if (domain_settles(growth->domain)) /* where no straight vessel is longer */
-        growth->size = distance;
-    set_toss_distance(growth, distance);
+    TRY(first_segments_add(&growth->site, &tosses, err));
+    growth->tosses += tosses.count;
+    if (domain_settles(growth->site.domain)) /* where no straight vessel is longer */
+        growth->size = tosses.distance;
+    set_toss_distance(growth, tosses.distance);
     return STATUS_OK;
 }
 
@@ -328,7 +328,7 @@ static Status start_trees(Growth *growth, Err *err)
 static Status start_forest(Growth *growth, Err *err)
 {
     const GrowParams *params = growth->params;
-    const Network *net = &growth->net;
+    const Network *net = &growth->site.net;
     Forest *forest = &growth->forest;
     double share[GROW_MAX_INLETS];
     for (size_t k = 0; k < net->inlets; k++)
@@ -351,13 +351,13 @@ static Status start_forest(Growth *growth, Err *err)
 static Status start(Growth *growth, Err *err)
 {
     const GrowParams *params = growth->params;
-    Box box = growth->domain->bounds;
+    Box box = growth->site.domain->bounds;
     growth->size = vec3_distance(box.low, box.high);
-    growth->rules = (Rules){.thickness = 1,
-                            .gap = 1e-7 * growth->size,
-                            .apart = clearance_spare * params->clearance_mm,
-                            .pair = params->pair_mm,
-                            .widest = growth->size};
+    growth->site.rules = (Rules){.thickness = 1,
+                                 .gap = 1e-7 * growth->size,
+                                 .apart = clearance_spare * params->clearance_mm,
+                                 .pair = params->pair_mm,
+                                 .widest = growth->size};
     set_toss_distance(growth, growth->size);
     growth->refresh_until = growth->grid_until = 1;
     /* Other points than those that made the tree, if that was by the same seed. */
@@ -368,17 +368,18 @@ static Status start(Growth *growth, Err *err)
     inlets = inlets > 0 ? inlets : 1;
     TRY(round_init(&growth->round, params->candidates, inlets, threads, err));
 
-    double drop = pa_from_mmhg(params->p_perf_mmhg) - pa_from_mmhg(params->p_term_mmhg);
+    double drop = pa_from_mmhg(params->blood.p_perf_mmhg) - pa_from_mmhg(params->blood.p_term_mmhg);
     double scale = law_radius_unit(weights_reference_pa_s(params),
-                                   mm3_s_from_ml_min(params->q_perf_ml_min), drop);
+                                   mm3_s_from_ml_min(params->blood.q_perf_ml_min), drop);
     bool traits = params->from || params->inlets > 1 || weights_are_needed(params);
     size_t given = params->from ? params->from->n : 0;
-    TRY(network_init(&growth->net, (Law){params->gamma.value[0], params->lambda}, scale,
-                     given + 2 * params->terminals, inlets, traits, err));
+    const NetworkSize size = {given + 2 * params->terminals, inlets, traits};
+    TRY(network_init(&growth->site.net, (Law){params->gamma.value[0], params->lambda}, scale, size,
+                     err));
     if (params->keep_radii)
-        TRY(network_add_trunk(&growth->net, err));
+        TRY(network_add_trunk(&growth->site.net, err));
     if (params->from)
-        continue_from(params->from, &growth->net);
+        continue_from(params->from, &growth->site.net);
     else
         TRY(start_trees(growth, err));
     return start_forest(growth, err);
@@ -405,7 +406,7 @@ static Status check_apart(const GrowParams *params, const Tree *tree, double *ap
 
 static void report_progress(const Growth *growth, size_t before)
 {
-    size_t terminals = growth->net.terminals;
+    size_t terminals = growth->site.net.terminals;
     if (growth->params->progress && terminals / 256 > before / 256)
         growth->params->progress((double)terminals / (double)growth->params->terminals,
                                  growth->params->progress_context);
@@ -426,11 +427,12 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     TRY(grow_params_check(params, domain, err));
     TRY(mem_check(bytes_per_terminal * (double)params->terminals, "the tree", err));
     double begun = clock_seconds();
-    Growth growth = {.params = params, .domain = domain};
+    Growth growth = {.params = params, .site.domain = domain};
     Status status = STATUS_OK;
     TRY_GOTO(start(&growth, err));
     size_t terminals;
-    while ((terminals = growth.net.terminals) < params->terminals && !is_fine_enough(&growth)) {
+    while ((terminals = growth.site.net.terminals) < params->terminals &&
+           !is_fine_enough(&growth)) {
         status = add_terminals(&growth, err);
         if (status == STATUS_INFEASIBLE && params->partial)
             break;
@@ -442,11 +444,10 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     TRY_GOTO(refresh(&growth, WEIGHTS_FINE, err));
     TRY_GOTO(check_range(&growth, err));
     TRY_GOTO(relax(&growth, err));
-    if (growth.grid.item)
-        TRY_GOTO(repair_network(&growth.net, &growth.grid, domain, &growth.rules,
-                                growth.round.threads, &broken, err));
-    grid_release(&growth.grid);
-    TRY_GOTO(finish_tree(&growth.net, params, domain, out, err));
+    if (growth.site.grid.item)
+        TRY_GOTO(repair_network(&growth.site, growth.round.threads, &broken, err));
+    grid_release(&growth.site.grid);
+    TRY_GOTO(finish_tree(&growth.site.net, params, domain, out, err));
     double apart;
     status = check_apart(params, out, &apart, err);
     if (status != STATUS_OK)
@@ -454,12 +455,12 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     if (!report || status != STATUS_OK)
         goto done;
     *report = (GrowReport){.seconds = clock_seconds() - begun,
-                           .terminals = growth.net.terminals,
+                           .terminals = growth.site.net.terminals,
                            .target = target_of(out),
                            .root_radius_mm = tree_root_radius(out),
                            .tosses = growth.tosses,
                            .rejected = growth.rejected,
-                           .thickness = growth.rules.thickness,
+                           .thickness = growth.site.rules.thickness,
                            .broken = broken,
                            .apart_mm = apart,
                            .complete = complete};
@@ -469,8 +470,8 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
         tree_release(out);
 done:
     round_release(&growth.round);
-    grid_release(&growth.grid);
+    grid_release(&growth.site.grid);
     forest_release(&growth.forest);
-    network_release(&growth.net);
+    network_release(&growth.site.net);
     return status;
 }

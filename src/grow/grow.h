@@ -16,59 +16,61 @@
 
 /* What a new terminal must keep its distance from. */
 typedef enum GrowToss {
-    GROW_TOSS_SEGMENT,  /* the centrelines of all segments [Schreiner & Buxbaum] */
-    GROW_TOSS_TERMINAL, /* the other terminals' end points */
+    GROW_TOSS_SEGMENT, /* the centrelines of all segments [Schreiner & Buxbaum] */
+    GROW_TOSS_TERMINAL /* the end points of the other terminals */
 } GrowToss;
 
 enum { GROW_MAX_TERMINALS = 50000000, GROW_MAX_CANDIDATES = 1000, GROW_MAX_INLETS = 64 };
 
-typedef struct GrowParams {
-    size_t terminals; /* in [1, GROW_MAX_TERMINALS] */
-    /* Murray exponent, constant or a function of the parent segment's radius in mm. The ranges of
-     * this and of the following quantities are those of their keys in the table of tree/meta.h. */
-    LogCurve gamma;
-    double lambda; /* exponent of the target */
-    uint64_t seed; /* of the random points */
-    /* A tree (borrowed) that growth continues, from its own inlets; NULL: none. Its nodes keep
-     * their places, ids and types, its segments stay straight; a node other than an inlet has at
-     * most two children, an inlet one or two. Growth does not read its radii, flow shares and
-     * metadata. */
-    const Tree *from;
-    bool keep_radii; /* whether the segments of `from` keep their radii, which growth then reads */
-    /* The number of inlets, at most GROW_MAX_INLETS, and their places, mm (borrowed): one tree
-     * grows from each. 0: the domain's default inlet, or the inlets of `from`. */
-    size_t inlets;
-    const Vec3 *inlet;
-    /* Each tree's number of terminals relative to the other trees', > 0 (borrowed), one for each
-     * inlet. 0 shares: all trees get equally many, or as many relative to each other as in `from`.
-     */
-    size_t inlet_shares;
-    const double *inlet_share;
-    double p_perf_mmhg;         /* at the inlet */
-    double p_term_mmhg;         /* at every terminal, below p_perf_mmhg */
-    double q_perf_ml_min;       /* through the inlet */
-    TerminalFlow terminal_flow; /* how the terminals share it */
+/* Pressures, flows and viscosity. The ranges are those of the keys in the table of tree/meta.h. */
+typedef struct GrowBlood {
+    double p_perf_mmhg;         /* pressure at the inlet */
+    double p_term_mmhg;         /* pressure at every terminal, below p_perf_mmhg */
+    double q_perf_ml_min;       /* flow through the inlet */
+    TerminalFlow terminal_flow; /* how the terminals share the flow */
     ViscosityLaw viscosity_law;
     double viscosity_cp;        /* of the blood, by the constant law */
     double hematocrit;          /* by Pries's law */
     double plasma_viscosity_cp; /* by Pries's law */
-    /* A map (borrowed) of the relative density of terminals, in terminals per volume. With
-     * TERMINAL_FLOW_DEMAND it says instead how the terminals share the flow, and terminals have the
-     * same density wherever the map is above 0. NULL: the same density everywhere. */
-    const Demand *demand;
-    double min_radius_mm; /* growth is complete when the terminals' mean radius is this; 0: never */
-    double clearance_mm;  /* least distance of the walls of vessels of different trees, >= 0 */
-    /* The distance, mm, of the ends of paired terminals, one of each of two trees; at least the
-     * clearance; 0: terminals are not paired. */
-    double pair_mm;
-    int candidates; /* nearest segments tried for each terminal, in [1, GROW_MAX_CANDIDATES] */
-    /* While there are at most this many terminals, all bifurcations move to better places whenever
-     * the terminals have doubled, and at the end. 0, or with keep_radii: bifurcations never move.
+} GrowBlood;
+
+/* Parameters of growth. All pointers are borrowed. */
+typedef struct GrowParams {
+    size_t terminals; /* in [1, GROW_MAX_TERMINALS] */
+    LogCurve gamma; /* Murray exponent, constant or a function of the parent segment's radius in mm;
+                     * the range is that of its key in tree/meta.h */
+    double lambda;  /* exponent of the target; the range is that of its key */
+    uint64_t seed;  /* of the random points */
+    /* A tree that growth continues, from its own inlets; NULL: none. Its nodes keep their
+     * positions, ids and types, and its segments stay straight. An inlet has one or two children,
+     * any other node at most two. Growth does not read the tree's radii, flow shares and metadata.
      */
+    const Tree *from;
+    bool keep_radii; /* the segments of `from` keep their radii, which growth then reads */
+    size_t inlets;   /* number of inlets, at most GROW_MAX_INLETS; one tree grows from each. 0: the
+                      * domain's default inlet, or the inlets of `from` */
+    const Vec3 *inlet;   /* positions of the inlets, mm */
+    size_t inlet_shares; /* number of inlet_share: one per inlet; or 0: all trees get equally many
+                          * terminals, or as many relative to each other as in `from` */
+    const double *inlet_share; /* per tree: its number of terminals relative to the others', > 0 */
+    GrowBlood blood;
+    /* A map of the relative density of terminals, in terminals per volume; NULL: the same density
+     * everywhere. With TERMINAL_FLOW_DEMAND, the map says instead how the terminals share the flow,
+     * and terminals have the same density wherever the map is above 0. */
+    const Demand *demand;
+    double min_radius_mm; /* growth ends when the terminals' mean radius is this; 0: never */
+    double clearance_mm;  /* minimum distance of the walls of vessels of different trees, >= 0 */
+    double pair_mm; /* distance of the ends of paired terminals, one of each of two trees; at least
+                     * the clearance; 0: terminals are not paired */
+    int candidates; /* number of nearest segments tried for a terminal, in [1, GROW_MAX_CANDIDATES]
+                     */
+    /* While there are at most this many terminals, all bifurcations move to better positions each
+     * time the number of terminals has doubled, and at the end. 0, or with keep_radii: bifurcations
+     * never move. */
     size_t relax;
     GrowToss toss;
     int threads;  /* 0: all processors. The tree does not depend on it */
-    bool partial; /* whether a tree with fewer terminals is a result when no more find room */
+    bool partial; /* a tree with fewer terminals is a result if no more find room */
     void (*progress)(double fraction, void *context); /* NULL: none */
     void *progress_context;
 } GrowParams;

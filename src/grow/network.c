@@ -26,24 +26,23 @@ enum { LEVELS = 8 };
 /* A subtree that one thread refreshes has less than 1 / SUBTREES of the terminals. */
 enum { SUBTREES = 128 };
 
-Status network_init(Network *net, Law law, double radius_scale, size_t capacity, size_t inlets,
-                    bool traits, Err *err)
+Status network_init(Network *net, Law law, double radius_scale, NetworkSize size, Err *err)
 {
-    Network made = {
-        .law = law, .radius_scale = radius_scale, .capacity = capacity, .fresh_weight = 1};
-    Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&made.segment, capacity, sizeof *made.segment, "segments", err));
-    TRY_GOTO(mem_calloc(&made.sensitivity, capacity, sizeof *made.sensitivity, "segments", err));
-    if (traits)
-        TRY_GOTO(mem_calloc(&made.trait, capacity, sizeof *made.trait, "segments", err));
-    TRY_GOTO(mem_calloc(&made.position, capacity, sizeof *made.position, "positions", err));
-    TRY_GOTO(mem_calloc(&made.spare, capacity, sizeof *made.spare, "segments", err));
-    TRY_GOTO(mem_calloc(&made.tops, capacity, sizeof *made.tops, "segments", err));
-    TRY_GOTO(mem_calloc(&made.inlet, inlets, sizeof *made.inlet, "inlets", err));
+    size_t n = size.capacity;
+    Network made = {.law = law, .radius_scale = radius_scale, .capacity = n, .fresh_weight = 1};
+    Status status;
+    TRY_GOTO(mem_calloc(&made.segment, n, sizeof *made.segment, "segments", err));
+    TRY_GOTO(mem_calloc(&made.sensitivity, n, sizeof *made.sensitivity, "segments", err));
+    if (size.has_traits)
+        TRY_GOTO(mem_calloc(&made.trait, n, sizeof *made.trait, "segments", err));
+    TRY_GOTO(mem_calloc(&made.position, n, sizeof *made.position, "positions", err));
+    TRY_GOTO(mem_calloc(&made.spare, n, sizeof *made.spare, "segments", err));
+    TRY_GOTO(mem_calloc(&made.tops, n, sizeof *made.tops, "segments", err));
+    TRY_GOTO(mem_calloc(&made.inlet, size.inlets, sizeof *made.inlet, "inlets", err));
     *net = made;
+    return STATUS_OK;
 done:
-    if (status != STATUS_OK)
-        network_release(&made);
+    network_release(&made);
     return status;
 }
 
@@ -212,26 +211,27 @@ static void tell_ancestors(Network *net, int32_t i, const Reduced *reduced, Box 
     }
 }
 
-void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal,
-                   const int32_t made[2], Box zone)
+void network_split(Network *net, const Split *split, Box zone)
 {
+    int32_t segment = split->segment, proximal = split->made[0], fresh = split->made[1];
     Segment *distal = &net->segment[segment];
-    int32_t above = distal->parent, proximal = made[0], fresh = made[1];
-    net->position[proximal] = bifurcation;
-    net->position[fresh] = terminal;
+    int32_t above = distal->parent;
+    net->position[proximal] = split->bifurcation;
+    net->position[fresh] = split->terminal;
     net->segment[above].child[net->segment[above].child[1] == segment] = proximal;
-    net->segment[proximal] = (Segment){.length = vec3_distance(net->position[above], bifurcation),
-                                       .child = {segment, fresh},
-                                       .parent = above,
-                                       .terminals = distal->terminals + 1,
-                                       .gauge = distal->gauge};
+    net->segment[proximal] =
+        (Segment){.length = vec3_distance(net->position[above], split->bifurcation),
+                  .child = {segment, fresh},
+                  .parent = above,
+                  .terminals = distal->terminals + 1,
+                  .gauge = distal->gauge};
     net->sensitivity[proximal] = net->sensitivity[segment];
-    net->segment[fresh] = (Segment){.length = vec3_distance(bifurcation, terminal),
+    net->segment[fresh] = (Segment){.length = vec3_distance(split->bifurcation, split->terminal),
                                     .child = {-1, -1},
                                     .parent = proximal,
                                     .terminals = 1};
     distal->parent = proximal;
-    distal->length = vec3_distance(bifurcation, net->position[segment]);
+    distal->length = vec3_distance(split->bifurcation, net->position[segment]);
     if (net->trait) {
         net->trait[proximal] = net->trait[segment];
         net->trait[proximal].origin = net->trait[proximal].mate = -1;

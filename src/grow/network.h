@@ -79,10 +79,15 @@ typedef struct Network {
     int32_t *tops; /* workspace of network_refresh */
 } Network;
 
-/* Makes an empty network with room for `capacity` nodes, `inlets` of them inlets; `traits`: whether
- * segments have a Trait. *net is owned by the caller; STATUS_MEMORY. */
-MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, size_t capacity,
-                               size_t inlets, bool traits, Err *err);
+typedef struct NetworkSize {
+    size_t capacity; /* maximum number of nodes */
+    size_t inlets;   /* maximum number of nodes that are inlets */
+    bool has_traits; /* segments have a Trait */
+} NetworkSize;
+
+/* Makes an empty network. Release it with network_release. Errors: STATUS_MEMORY. */
+MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, NetworkSize size,
+                               Err *err);
 void network_release(Network *net);
 /* Has segments keep radii, which the caller then sets: all are 0. STATUS_MEMORY. */
 MUST_CHECK Status network_add_trunk(Network *net, Err *err);
@@ -174,19 +179,27 @@ int32_t network_append(Network *net, int32_t parent, Vec3 position);
 /* Adds spare nodes until there are at least `nodes`. */
 void network_spare(Network *net, size_t nodes);
 
-/* Splits `segment` at `bifurcation` and hangs a new segment to `terminal` there. The proximal part
- * becomes segment made[0], the new segment made[1]; both are spare nodes, which the caller then has
- * to take off the list. The caller also has to call network_grown.
+/* The connection of a new terminal: `segment` is split at `bifurcation`, and a new segment leads
+ * from there to `terminal`. Positions are in mm. */
+typedef struct Split {
+    int32_t segment;
+    Vec3 bifurcation, terminal;
+    int32_t made[2]; /* two spare nodes: the proximal part becomes segment made[0], the new segment
+                      * made[1] */
+} Split;
+
+/* Splits a segment. Then the caller must remove the two nodes from the list of spare nodes, and
+ * call network_grown.
  *
- * Needs the radii and sensitivities of `segment` as of the last refresh. Leaves the sums of the
- * three segments right, and adds the new terminal to those of their nearest 8 ancestors (LEVELS),
- * up to the first whose distal end lies outside `zone`; further up, the sums miss it until
- * network_refresh. O(1).
+ * Needs the segment's radii and sensitivities of the last refresh. Leaves the sums of the three
+ * segments right. Adds the new terminal to the sums of the nearest 8 ancestors (LEVELS), up to the
+ * first ancestor whose distal end is outside `zone`; further up, the sums do not include it until
+ * network_refresh.
  *
- * Thread safety: threads may split at the same time if their zones have no point in common and both
- * ends of each one's segment lie in its own zone. */
-void network_split(Network *net, int32_t segment, Vec3 bifurcation, Vec3 terminal,
-                   const int32_t made[2], Box zone);
+ * Threads  Threads may split at the same time if their zones have no point in common and both ends
+ *          of each one's segment are in its own zone.
+ * Cost     O(1). */
+void network_split(Network *net, const Split *split, Box zone);
 
 /* Adds to the number of terminals, which share the same flow: changes radius_unit. */
 void network_grown(Network *net, size_t terminals);

@@ -10,12 +10,12 @@ GrowParams grow_defaults(void)
                         .gamma = logcurve_constant(3),
                         .lambda = 2,
                         .seed = 1,
-                        .p_perf_mmhg = 100,
-                        .p_term_mmhg = 60,
-                        .q_perf_ml_min = 500,
-                        .viscosity_cp = 3.6,
-                        .hematocrit = 0.45,
-                        .plasma_viscosity_cp = 1.2,
+                        .blood.p_perf_mmhg = 100,
+                        .blood.p_term_mmhg = 60,
+                        .blood.q_perf_ml_min = 500,
+                        .blood.viscosity_cp = 3.6,
+                        .blood.hematocrit = 0.45,
+                        .blood.plasma_viscosity_cp = 1.2,
                         .candidates = 8,
                         .relax = 300,
                         .toss = GROW_TOSS_SEGMENT};
@@ -26,30 +26,30 @@ static const struct {
     MetaKey key;
     size_t offset;
 } numbers[] = {{META_LAMBDA, offsetof(GrowParams, lambda)},
-               {META_P_PERF, offsetof(GrowParams, p_perf_mmhg)},
-               {META_P_TERM, offsetof(GrowParams, p_term_mmhg)},
-               {META_Q_PERF, offsetof(GrowParams, q_perf_ml_min)},
-               {META_VISCOSITY, offsetof(GrowParams, viscosity_cp)},
-               {META_HEMATOCRIT, offsetof(GrowParams, hematocrit)},
-               {META_PLASMA_VISCOSITY, offsetof(GrowParams, plasma_viscosity_cp)},
+               {META_P_PERF, offsetof(GrowParams, blood.p_perf_mmhg)},
+               {META_P_TERM, offsetof(GrowParams, blood.p_term_mmhg)},
+               {META_Q_PERF, offsetof(GrowParams, blood.q_perf_ml_min)},
+               {META_VISCOSITY, offsetof(GrowParams, blood.viscosity_cp)},
+               {META_HEMATOCRIT, offsetof(GrowParams, blood.hematocrit)},
+               {META_PLASMA_VISCOSITY, offsetof(GrowParams, blood.plasma_viscosity_cp)},
                {META_CLEARANCE, offsetof(GrowParams, clearance_mm)}};
 
 enum { N_NUMBERS = sizeof numbers / sizeof *numbers };
 
 void grow_describe(const GrowParams *params, TreeMeta *meta)
 {
-    bool constant = params->viscosity_law == VISCOSITY_CONSTANT;
+    bool constant = params->blood.viscosity_law == VISCOSITY_CONSTANT;
     meta_set_seed(meta, params->seed);
     for (size_t i = 0; i < N_NUMBERS; i++)
         meta_set_number(meta, numbers[i].key,
                         *(const double *)((const char *)params + numbers[i].offset));
     meta_set_gamma(meta, &params->gamma);
-    meta_set_number(meta, META_VISCOSITY_LAW, params->viscosity_law);
-    meta_set_number(meta, META_TERMINAL_FLOW, params->terminal_flow);
+    meta_set_number(meta, META_VISCOSITY_LAW, params->blood.viscosity_law);
+    meta_set_number(meta, META_TERMINAL_FLOW, params->blood.terminal_flow);
     meta->known[META_VISCOSITY] = constant;
     meta->known[META_VISCOSITY_LAW] = meta->known[META_HEMATOCRIT] =
         meta->known[META_PLASMA_VISCOSITY] = !constant;
-    meta->known[META_TERMINAL_FLOW] = params->terminal_flow != TERMINAL_FLOW_EQUAL;
+    meta->known[META_TERMINAL_FLOW] = params->blood.terminal_flow != TERMINAL_FLOW_EQUAL;
     meta->known[META_CLEARANCE] = params->clearance_mm > 0;
 }
 
@@ -61,9 +61,9 @@ void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_K
     if (!given[META_GAMMA] && meta_gamma(meta).n > 0)
         params->gamma = meta_gamma(meta);
     if (!given[META_VISCOSITY_LAW] && !given[META_VISCOSITY])
-        params->viscosity_law = (ViscosityLaw)meta_number(meta, META_VISCOSITY_LAW);
+        params->blood.viscosity_law = (ViscosityLaw)meta_number(meta, META_VISCOSITY_LAW);
     if (!given[META_TERMINAL_FLOW])
-        params->terminal_flow = (TerminalFlow)meta_number(meta, META_TERMINAL_FLOW);
+        params->blood.terminal_flow = (TerminalFlow)meta_number(meta, META_TERMINAL_FLOW);
 }
 
 static Status check_physics(const GrowParams *params, Err *err)
@@ -172,7 +172,7 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
         return err_set(err, STATUS_USAGE, "`candidates` %d: must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);
-    if (params->terminal_flow == TERMINAL_FLOW_DEMAND && !params->demand)
+    if (params->blood.terminal_flow == TERMINAL_FLOW_DEMAND && !params->demand)
         return err_set(err, STATUS_USAGE, "`terminal_flow` demand: needs the map of it, `demand`");
     if (params->demand)
         TRY(demand_check(params->demand, domain, err));

@@ -1,11 +1,9 @@
-/* Whether and where a tossed point is connected to the tree: found without changing anything. */
+/* Plans whether and where a tossed point is connected to the tree, without changing anything. */
 #ifndef CORCAST_GROW_PLAN_H
 #define CORCAST_GROW_PLAN_H
 
-#include "domain/domain.h"
-#include "grow/cco/grid.h"
 #include "grow/connection.h"
-#include "grow/network.h"
+#include "grow/site.h"
 
 typedef enum PlanState {
     PLAN_BEYOND,    /* undecided: needs cells outside the zone, or more terminals than are left */
@@ -18,48 +16,43 @@ typedef enum PlanState {
     PLAN_STATES
 } PlanState;
 
-/* What all points of a round share. The network is as of the last refresh and the splits since; the
- * grid holds its segments. */
-typedef struct Site {
-    Network *net;
-    Grid *grid;
-    const Domain *domain;
-    const Rules *rules;
-    size_t *limit;        /* by tree: how many more terminals it may get */
-    double toss_distance; /* mm; where demand is greatest: elsewhere the distance is greater */
+/* What all points of a round have in common. The network is as of the last refresh, with the splits
+ * since then; the grid holds its segments. All is borrowed. */
+typedef struct PlanCommon {
+    Site *site;
+    size_t *limit;        /* per tree: how many more terminals it may get */
+    double toss_distance; /* mm, where demand is greatest; elsewhere the distance is greater */
     const Demand *demand; /* NULL: the same everywhere */
     bool terminals_only;  /* the toss distance is kept from terminals' ends, not from segments */
-    int candidates;       /* nearest segments that are tried */
-} Site;
+    int candidates;       /* number of nearest segments that are tried */
+} PlanCommon;
 
-/* One thread's workspace. */
+/* Where points are planned. */
+typedef struct Plan {
+    const PlanCommon *common;
+    Box zone;           /* plans read nothing outside of it */
+    const size_t *left; /* per tree: how many terminals it may still get here, at most its limit */
+} Plan;
+
+/* The workspace of one thread. */
 typedef struct Planner {
-    Near *near;             /* the candidates of the point at hand */
-    Connection *connection; /* and their connections */
-    /* mm; an estimate of how far away the candidates are, learnt from point to point; 0: none yet.
-     * The caller sets the first. */
-    double reach;
+    Near *near;             /* the nearest segments of the present point */
+    Connection *connection; /* their connections */
+    double reach;           /* mm; estimated distance of the nearest segments, which adapts from
+                             * point to point; 0: none yet. The caller sets the first. */
 } Planner;
 
+/* Makes room for `candidates` nearest segments. Release with planner_release, also after an error.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status planner_init(Planner *planner, int candidates, Err *err);
 void planner_release(Planner *planner);
 
-/* Plans the connection of `terminal`, mm, which lies in the zone: the cheapest of its candidates
- * for which there is room goes to *out if the result is PLAN_READY. Reads nothing that lies outside
- * the zone. left[k], at most limit[k], is how many terminals tree k may still get from the caller.
- */
-PlanState plan_make(const Site *site, Planner *planner, Box zone, const size_t *left, Vec3 terminal,
-                    Connection *out);
-
-/* Two terminals, of the first and of the second tree, and their connections. */
-typedef struct PlanPair {
-    Vec3 terminal[2]; /* mm */
-    Connection connection[2];
-} PlanPair;
-
-/* As plan_make, for the first tree, and with a mate of the terminal for the second, which is sought
- * in a few directions. */
-PlanState plan_pair(const Site *site, Planner *planner, Box zone, const size_t *left, Vec3 terminal,
-                    PlanPair *out);
+/* Plans the connection of `terminal`, mm, which is in the zone: the cheapest of its candidates that
+ * has room. If the rules pair terminals, plans the connection of `terminal` to the first tree, and
+ * a mate of the terminal for the second tree, which is sought in a few directions.
+ *
+ * connection   receives the connection, and the connection of the mate, if the result is
+ *              PLAN_READY. */
+PlanState plan_make(const Plan *plan, Planner *planner, Vec3 terminal, Connection connection[2]);
 
 #endif

@@ -38,11 +38,8 @@ enum { PLACE_ROUNDS = 2 };
 static const double least_gain = 1e-9;
 
 typedef struct Repair {
-    Network *net;
-    Grid *grid;
-    const Domain *domain;
-    const Rules *rules;
-    bool *close; /* by segment: whether it breaks the rules or is next to doing so */
+    Site *site;
+    bool *close; /* per segment: it breaks the rules or is next to doing so */
 } Repair;
 
 static Vec3 proximal(const Network *net, int32_t i)
@@ -58,21 +55,21 @@ static bool are_joined(const Network *net, int32_t i, int32_t j)
 
 static double width(const Repair *repair, int32_t i)
 {
-    return repair->rules->thickness * (double)repair->net->segment[i].radius;
+    return repair->site->rules.thickness * (double)repair->site->net.segment[i].radius;
 }
 
 static double width_there(const Repair *repair, int32_t i)
 {
-    return repair->rules->thickness * (double)repair->grid->item[i].radius;
+    return repair->site->rules.thickness * (double)repair->site->grid.item[i].radius;
 }
 
 /* How far apart segments i and j should be at a thickness: pieces of a vessel only have to keep
  * their centrelines apart. */
 static double needed(const Repair *repair, int32_t i, int32_t j, double thickness)
 {
-    const Network *net = repair->net;
-    double apart = network_tree(net, i) == network_tree(net, j) ? 0 : repair->rules->apart;
-    return repair->rules->gap + apart +
+    const Network *net = &repair->site->net;
+    double apart = network_tree(net, i) == network_tree(net, j) ? 0 : repair->site->rules.apart;
+    return repair->site->rules.gap + apart +
            (network_is_piece(net, i) || network_is_piece(net, j) ? 0 : thickness);
 }
 
@@ -82,13 +79,13 @@ static double needed(const Repair *repair, int32_t i, int32_t j, double thicknes
 static double overlap(const Repair *repair, int32_t i, const GridItem *item, double radius,
                       double scale, int32_t other)
 {
-    const Network *net = repair->net;
-    double gap = repair->rules->gap;
+    const Network *net = &repair->site->net;
+    double gap = repair->site->rules.gap;
     if (network_is_given(net, i) && network_is_given(net, other))
         return 0;
     double need = needed(repair, i, other, scale * (radius + width_there(repair, other)));
-    double apart2 = grid_distance2(item, &repair->grid->item[other]);
-    return apart2 < gap * gap ? repair->rules->widest : need - sqrt(apart2);
+    double apart2 = grid_distance2(item, &repair->site->grid.item[other]);
+    return apart2 < gap * gap ? repair->site->rules.widest : need - sqrt(apart2);
 }
 
 /* By how many mm segment i is too short, or too near to a segment with an index less than `below`,
@@ -96,31 +93,24 @@ static double overlap(const Repair *repair, int32_t i, const GridItem *item, dou
  * nearest to in that sense; unchanged when there is none. */
 static double fault(const Repair *repair, int32_t i, double margin, int32_t below, int32_t *with)
 {
-    const Network *net = repair->net;
-    const Grid *grid = repair->grid;
+    const Network *net = &repair->site->net;
+    const Grid *grid = &repair->site->grid;
     double radius = width(repair, i), scale = 1 + margin;
-    double gap = repair->rules->gap + repair->rules->apart;
+    double gap = repair->site->rules.gap + repair->site->rules.apart;
     Vec3 a = proximal(net, i), b = net->position[i];
     bool may_be_short = network_is_piece(net, i) || network_kept_radius(net, i) > 0;
     double worst = may_be_short ? 0 : fmax(0, 2 * scale * radius - vec3_distance(a, b));
     GridItem item = grid_item(grid, (Capsule){a, b, scale * radius + gap}, radius);
     GridBoxQuery probe =
-        grid_box_query(&item, scale * radius + gap, scale * repair->rules->thickness);
-    size_t index;
-    for (GridWalk walk = grid_walk(grid, &item); grid_walk_next(&walk, &index);) {
-        const GridCell *cell = &grid->cell[index];
-        for (uint32_t k = 0; k < cell->count; k += GRID_LANES) {
-            unsigned near = grid_boxes_near(grid, cell, k, &probe);
-            for (const int32_t *tag = cell->tag + k; near; near >>= 1, tag++) {
-                int32_t other = *tag >> 1;
-                if (!(near & 1) || other >= below || are_joined(net, i, other))
-                    continue;
-                double depth = overlap(repair, i, &item, radius, scale, other);
-                if (depth > worst) {
-                    worst = depth;
-                    *with = other;
-                }
-            }
+        grid_box_query(&item, scale * radius + gap, scale * repair->site->rules.thickness);
+    int32_t other;
+    for (GridVisit visit = grid_visit(grid, &item); grid_visit_near(&visit, &probe, &other);) {
+        if (other >= below || are_joined(net, i, other))
+            continue;
+        double depth = overlap(repair, i, &item, radius, scale, other);
+        if (depth > worst) {
+            worst = depth;
+            *with = other;
         }
     }
     return worst;
@@ -130,7 +120,7 @@ static double fault(const Repair *repair, int32_t i, double margin, int32_t belo
  * fraction `margin`. Stops adding, and returns what it has, once that is at least `enough`. */
 static double fault_at(const Repair *repair, int32_t node, double margin, double enough)
 {
-    const int32_t *child = repair->net->segment[node].child;
+    const int32_t *child = repair->site->net.segment[node].child;
     int32_t with;
     double sum = fault(repair, node, margin, INT32_MAX, &with);
     for (int slot = 0; slot < 2 && sum < enough; slot++)
@@ -140,22 +130,22 @@ static double fault_at(const Repair *repair, int32_t node, double margin, double
 
 static bool is_inside(const Repair *repair, int32_t node)
 {
-    const Network *net = repair->net;
+    const Network *net = &repair->site->net;
     const int32_t *child = net->segment[node].child;
     Vec3 place = net->position[node];
-    return domain_inside(repair->domain, place, 0) &&
-           (domain_is_convex(repair->domain) ||
-            (domain_holds_segment(repair->domain, proximal(net, node), place) &&
-             domain_holds_segment(repair->domain, place, net->position[child[0]]) &&
-             domain_holds_segment(repair->domain, place, net->position[child[1]])));
+    return domain_inside(repair->site->domain, place, 0) &&
+           (domain_is_convex(repair->site->domain) ||
+            (domain_holds_segment(repair->site->domain, proximal(net, node), place) &&
+             domain_holds_segment(repair->site->domain, place, net->position[child[0]]) &&
+             domain_holds_segment(repair->site->domain, place, net->position[child[1]])));
 }
 
 /* Tries the places a step away from a bifurcation's own, up to the first without fault. */
 static void try_step(const Repair *repair, int32_t node, Vec3 from, double step, Vec3 *best,
                      double *least)
 {
-    Network *net = repair->net;
-    int depth = repair->domain->dimension == 3;
+    Network *net = &repair->site->net;
+    int depth = repair->site->domain->dimension == 3;
     for (int z = -depth; z <= depth; z++)
         for (int y = -1; y <= 1; y++)
             for (int x = -1; x <= 1; x++) {
@@ -174,7 +164,7 @@ static void try_step(const Repair *repair, int32_t node, Vec3 from, double step,
 /* The place around a bifurcation with the least fault. */
 static Vec3 best_place(const Repair *repair, int32_t node)
 {
-    Network *net = repair->net;
+    Network *net = &repair->site->net;
     const Vec3 from = net->position[node];
     Vec3 best = from;
     double least = fault_at(repair, node, spare, INFINITY);
@@ -187,17 +177,17 @@ static Vec3 best_place(const Repair *repair, int32_t node)
 /* Moves a bifurcation, in the grid too. */
 static Status put(const Repair *repair, int32_t node, Vec3 place, Err *err)
 {
-    Network *net = repair->net;
+    Network *net = &repair->site->net;
     const int32_t *child = net->segment[node].child;
     network_move(net, node, place);
     for (int k = 0; k < 3; k++)
-        TRY(entry_renew(repair->grid, repair->rules, net, k < 2 ? child[k] : node, err));
+        TRY(site_renew(repair->site, k < 2 ? child[k] : node, err));
     return STATUS_OK;
 }
 
 static Status move(const Repair *repair, int32_t node, Err *err)
 {
-    Network *net = repair->net;
+    Network *net = &repair->site->net;
     if (net->segment[node].parent < 0 || net->segment[node].child[0] < 0 ||
         network_is_given(net, node) || !(fault_at(repair, node, spare, DBL_MIN) > 0))
         return STATUS_OK;
@@ -211,17 +201,18 @@ static void look_at_chunk(size_t index, int worker, void *context)
 {
     (void)worker;
     const Repair *repair = context;
-    size_t end = (index + 1) * CHUNK < repair->net->n ? (index + 1) * CHUNK : repair->net->n;
+    size_t end =
+        (index + 1) * CHUNK < repair->site->net.n ? (index + 1) * CHUNK : repair->site->net.n;
     for (size_t k = index * CHUNK; k < end; k++) {
         int32_t i = (int32_t)k, with;
         repair->close[k] =
-            repair->net->segment[k].parent >= 0 && fault(repair, i, spare, i, &with) > 0;
+            repair->site->net.segment[k].parent >= 0 && fault(repair, i, spare, i, &with) > 0;
     }
 }
 
 static Status move_ends(const Repair *repair, int32_t i, Err *err)
 {
-    TRY(move(repair, repair->net->segment[i].parent, err));
+    TRY(move(repair, repair->site->net.segment[i].parent, err));
     return move(repair, i, err);
 }
 
@@ -229,7 +220,7 @@ static Status move_ends(const Repair *repair, int32_t i, Err *err)
 static size_t find_broken(const Repair *repair, int32_t *broken)
 {
     size_t count = 0;
-    for (size_t k = 0; k < repair->net->n; k++) {
+    for (size_t k = 0; k < repair->site->net.n; k++) {
         int32_t with;
         if (repair->close[k] && fault(repair, (int32_t)k, 0, INT32_MAX, &with) > 0)
             broken[count++] = (int32_t)k;
@@ -247,10 +238,10 @@ static Status repair_segment(const Repair *repair, int32_t i, Err *err)
     return STATUS_OK;
 }
 
-Status repair_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules,
-                      int threads, size_t *left, Err *err)
+Status repair_network(Site *site, int threads, size_t *left, Err *err)
 {
-    Repair repair = {net, grid, domain, rules, NULL};
+    Network *net = &site->net;
+    Repair repair = {site, NULL};
     int32_t *broken = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&repair.close, net->n, sizeof *repair.close, "segments", err));
@@ -258,7 +249,7 @@ Status repair_network(Network *net, Grid *grid, const Domain *domain, const Rule
     for (int round = 0;; round++) {
         if (round > 0)
             network_refresh(net, threads);
-        TRY_GOTO(entries_widen(grid, rules, net, err));
+        TRY_GOTO(site_widen(site, err));
         if (round == 0)
             threads_for((net->n + CHUNK - 1) / CHUNK, threads, look_at_chunk, &repair);
         *left = find_broken(&repair, broken);
@@ -276,7 +267,7 @@ done:
 /* The bifurcation at a node as it is. */
 static Bifurcation bifurcation_at_node(const Repair *repair, int32_t node)
 {
-    const Network *net = repair->net;
+    const Network *net = &repair->site->net;
     const Segment *segment = &net->segment[node];
     int32_t left = segment->child[0], right = segment->child[1];
     double gauge = (double)segment->gauge;
@@ -288,8 +279,8 @@ static Bifurcation bifurcation_at_node(const Repair *repair, int32_t node)
         .below = {network_below(net, left), network_below(net, right)},
         .adjoint = {net->sensitivity[node].load, law_lambda_power(&net->law, gauge)},
         .radius_unit = net->radius_unit * gauge,
-        .least_length = repair->rules->least_length,
-        .least_widths = (1 + relaxed_spare) * repair->rules->thickness,
+        .least_length = repair->site->rules.least_length,
+        .least_widths = (1 + relaxed_spare) * repair->site->rules.thickness,
         .least_part = INFINITY,
         .margin = off_ends};
 }
@@ -297,7 +288,7 @@ static Bifurcation bifurcation_at_node(const Repair *repair, int32_t node)
 /* Finds the place where the target is least; false when that is no less than here. */
 static bool find_better_place(const Repair *repair, int32_t node, Vec3 *place)
 {
-    const Network *net = repair->net;
+    const Network *net = &repair->site->net;
     Bifurcation problem = bifurcation_at_node(repair, node);
     const Law law = network_law(net, node);
     BifurcationState now, best;
@@ -318,15 +309,15 @@ static bool may_relax(const Network *net, int32_t node)
 
 static Status relax(const Repair *repair, int32_t node, Err *err)
 {
-    Network *net = repair->net;
+    Network *net = &repair->site->net;
     Vec3 from = net->position[node], goal;
     if (!may_relax(net, node) || !find_better_place(repair, node, &goal))
         return STATUS_OK;
     Vec3 step = vec3_sub(goal, from);
     for (int k = 0; k < TRIES; k++, step = vec3_scale(step, 0.5)) {
         Vec3 place = vec3_add(from, step);
-        if (domain_settles(repair->domain) && domain_inside(repair->domain, place, 0))
-            place = domain_settle(repair->domain, place);
+        if (domain_settles(repair->site->domain) && domain_inside(repair->site->domain, place, 0))
+            place = domain_settle(repair->site->domain, place);
         net->position[node] = place;
         bool is_allowed =
             is_inside(repair, node) && !(fault_at(repair, node, relaxed_spare, DBL_MIN) > 0);
@@ -337,10 +328,10 @@ static Status relax(const Repair *repair, int32_t node, Err *err)
     return STATUS_OK;
 }
 
-Status relax_network(Network *net, Grid *grid, const Domain *domain, const Rules *rules, Err *err)
+Status relax_network(Site *site, Err *err)
 {
-    const Repair repair = {net, grid, domain, rules, NULL};
-    for (size_t i = 0; i < net->n; i++)
+    const Repair repair = {site, NULL};
+    for (size_t i = 0; i < site->net.n; i++)
         TRY(relax(&repair, (int32_t)i, err));
     return STATUS_OK;
 }

@@ -16,6 +16,7 @@
 #include "grow/round.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Cells along a tile: about 1,000 terminals. */
 enum { EDGE_2D = 34, EDGE_3D = 10 };
@@ -30,15 +31,13 @@ enum { AHEAD = 2 };
 struct Tile {
     size_t first, end; /* points in `order` */
     Box zone;
-    GridBox box;          /* a little more than its own cells, for warm */
-    const int32_t *spare; /* nodes that it may use */
-    size_t most, made;    /* terminals */
-    size_t over;          /* points left over, which are then the first ones in `order` */
-    size_t *left;         /* by tree: how many terminals it may still get here */
-    double reach;         /* its planner's at the end [plan.h] */
-    Tally tally;
-    Status status;
-    Err err;
+    GridBox box;                   /* a little more than its own cells, for warm */
+    const int32_t *spare;          /* nodes that it may use */
+    size_t most, made;             /* terminals */
+    size_t over;                   /* points left over, which are then the first ones in `order` */
+    size_t *left;                  /* by tree: how many terminals it may still get here */
+    double reach;                  /* its planner's at the end [plan.h] */
+    size_t count[PLAN_STATES + 1]; /* as Round.count */
 };
 
 Status round_init(Round *round, int candidates, size_t trees, int threads, Err *err)
@@ -100,34 +99,17 @@ Status round_start(Round *round, size_t points, Err *err)
     return mem_calloc(&round->order, round->capacity, sizeof *round->order, "points", err);
 }
 
-/* How many terminals a point becomes. */
-static size_t terminals_of_point(const Site *site)
+/* Returns how many terminals a point becomes. */
+static size_t terminals_of_point(const PlanCommon *common)
 {
-    return site->rules->pair > 0 ? 2 : 1;
-}
-
-/* Connects a terminal with the two spare nodes `made`: in the network, and in the grid. */
-static Status connect(const Site *site, int worker, Box zone, const Connection *connection,
-                      Vec3 terminal, const int32_t made[2], Err *err)
-{
-    const int32_t segment[ENDS] = {made[0], connection->segment, made[1]};
-    GridItem item[ENDS];
-    for (int i = 0; i < ENDS; i++)
-        item[i] = connection_item(site->net, site->grid, site->rules, connection, terminal, i);
-    grid_remove(site->grid, connection->segment);
-    network_split(site->net, connection->segment, connection->bifurcation, terminal, made, zone);
-    for (int i = 0; i < ENDS; i++) {
-        bool is_end = site->net->segment[segment[i]].child[0] < 0;
-        TRY(grid_add(site->grid, worker, segment[i], is_end, item[i], err));
-    }
-    return STATUS_OK;
+    return common->site->rules.pair > 0 ? 2 : 1;
 }
 
 /* What threads are working on. */
 typedef struct Running {
     Round *round;
-    const Site *site;
-    bool skip;            /* whether points in full cells are skipped */
+    const PlanCommon *common;
+    bool skip;            /* points in full cells are skipped */
     const uint32_t *turn; /* the tiles of one colour; NULL: one tile, whose zone is all space */
 } Running;
 
@@ -144,62 +126,74 @@ static void fetch(const Round *round, const Tile *tile, const Grid *grid, size_t
         grid_fetch_items(grid, round->point[round->order[k + AHEAD]]);
 }
 
-/* Connects a terminal in the tile. */
-static void add_terminal(const Running *running, int worker, Tile *tile,
-                         const Connection *connection, Vec3 terminal)
+/* Makes a connection in the network and in the grid, with the tile's next two spare nodes. *end
+ * becomes the terminal. */
+static Status connect(const Running *running, int worker, Tile *tile, const Connection *connection,
+                      int32_t *end, Err *err)
 {
-    if (tile->status != STATUS_OK)
-        return;
-    tile->left[network_tree(running->site->net, connection->segment)]--;
-    tile->status = connect(running->site, worker, tile->zone, connection, terminal,
-                           tile->spare + 2 * tile->made++, &tile->err);
+    Site *site = running->common->site;
+    const int32_t *made = tile->spare + 2 * tile->made++;
+    const int32_t segment[ENDS] = {made[0], connection->segment, made[1]};
+    GridItem item[ENDS];
+    tile->left[network_tree(&site->net, connection->segment)]--;
+    for (int i = 0; i < ENDS; i++)
+        item[i] = connection_item(site, connection, i);
+    grid_remove(&site->grid, connection->segment);
+    network_split(
+        &site->net,
+        &(Split){
+            connection->segment, connection->bifurcation, connection->terminal, {made[0], made[1]}},
+        tile->zone);
+    for (int i = 0; i < ENDS; i++) {
+        bool is_end = site->net.segment[segment[i]].child[0] < 0;
+        TRY(grid_add(&site->grid, worker, segment[i], is_end, item[i], err));
+    }
+    *end = made[1];
+    return STATUS_OK;
 }
 
-/* Plans the point, and its mate where terminals are pairs, and connects what can be. */
-static PlanState plan_point(const Running *running, int worker, Tile *tile, Vec3 point)
+/* Plans the point, and its mate where terminals are paired, and makes the connections if the plan
+ * is PLAN_READY. */
+static Status connect_point(const Running *running, int worker, Tile *tile, Vec3 point,
+                            PlanState *state, Err *err)
 {
-    const Site *site = running->site;
-    Planner *planner = &running->round->planner[worker];
-    PlanPair pair = {.terminal = {point}};
-    PlanState state =
-        site->rules->pair > 0
-            ? plan_pair(site, planner, tile->zone, tile->left, point, &pair)
-            : plan_make(site, planner, tile->zone, tile->left, point, &pair.connection[0]);
-    if (state != PLAN_READY)
-        return state;
-    int32_t ends[2] = {tile->spare[2 * tile->made + 1], -1};
-    add_terminal(running, worker, tile, &pair.connection[0], point);
-    if (site->rules->pair > 0) {
-        ends[1] = tile->spare[2 * tile->made + 1];
-        add_terminal(running, worker, tile, &pair.connection[1], pair.terminal[1]);
-        network_pair(site->net, ends[0], ends[1]);
-    }
-    return state;
+    const Plan plan = {running->common, tile->zone, tile->left};
+    Connection connection[2];
+    int32_t end[2];
+    *state = plan_make(&plan, &running->round->planner[worker], point, connection);
+    if (*state != PLAN_READY)
+        return STATUS_OK;
+    TRY(connect(running, worker, tile, &connection[0], &end[0], err));
+    if (!(running->common->site->rules.pair > 0))
+        return STATUS_OK;
+    TRY(connect(running, worker, tile, &connection[1], &end[1], err));
+    network_pair(&running->common->site->net, end[0], end[1]);
+    return STATUS_OK;
 }
 
-static PlanState run_point(const Running *running, int worker, Tile *tile, Vec3 point)
+/* Sets *state to what became of the point; PLAN_STATES: it was skipped. */
+static Status run_point(const Running *running, int worker, Tile *tile, Vec3 point,
+                        PlanState *state, Err *err)
 {
-    const Site *site = running->site;
-    uint8_t *misses = &running->round->misses[grid_cell_at(site->grid, point)];
-    if (running->skip && *misses == ROUND_FULL) {
-        tile->tally.skipped++;
-        return PLAN_STATES;
-    }
-    if (tile->made + terminals_of_point(site) > tile->most)
-        return PLAN_BEYOND;
-    PlanState state = plan_point(running, worker, tile, point);
-    if (state == PLAN_CROWDED)
+    const PlanCommon *common = running->common;
+    uint8_t *misses = &running->round->misses[grid_cell_at(&common->site->grid, point)];
+    bool is_skipped = running->skip && *misses == ROUND_FULL;
+    *state = is_skipped ? PLAN_STATES : PLAN_BEYOND;
+    if (is_skipped || tile->made + terminals_of_point(common) > tile->most)
+        return STATUS_OK;
+    TRY(connect_point(running, worker, tile, point, state, err));
+    if (*state == PLAN_CROWDED)
         *misses = (uint8_t)(*misses + (*misses < ROUND_FULL));
-    if (state == PLAN_READY)
+    if (*state == PLAN_READY)
         *misses = 0;
-    return state;
+    return STATUS_OK;
 }
 
-/* Prefetches all that lies in those cells of a box that there are at once: looked up one by one,
- * each would be waited for. */
+/* Prefetches all that lies in the cells of a box at once: looked up one by one, each would be
+ * waited for. The box may reach beyond the grid. */
 static void warm(const Site *site, const GridBox *box)
 {
-    const Grid *grid = site->grid;
+    const Grid *grid = &site->grid;
     int low[3], high[3];
     for (int axis = 0; axis < 3; axis++) {
         int last = grid->count[axis] - 1;
@@ -216,55 +210,60 @@ static void warm(const Site *site, const GridBox *box)
                     for (uint32_t i = 0; step == 1 && i < cell->count; i++) {
                         int32_t segment = cell->tag[i] >> 1;
                         __builtin_prefetch(&grid->item[segment]);
-                        __builtin_prefetch(&site->net->segment[segment]);
+                        __builtin_prefetch(&site->net.segment[segment]);
                     }
                 }
 }
 
-static void run_tile(const Running *running, int worker, Tile *tile)
+static Status run_tile(const Running *running, int worker, Tile *tile, Err *err)
 {
     Round *round = running->round;
     Planner *planner = &round->planner[worker];
+    const Site *site = running->common->site;
     planner->reach = round->reach;
     if (running->turn)
-        warm(running->site, &tile->box);
-    for (size_t k = tile->first; k < tile->end && tile->status == STATUS_OK; k++) {
-        fetch(round, tile, running->site->grid, k);
-        PlanState state = run_point(running, worker, tile, round->point[round->order[k]]);
+        warm(site, &tile->box);
+    for (size_t k = tile->first; k < tile->end; k++) {
+        PlanState state;
+        fetch(round, tile, &site->grid, k);
+        TRY(run_point(running, worker, tile, round->point[round->order[k]], &state, err));
         if (state == PLAN_BEYOND)
             round->order[tile->first + tile->over++] = round->order[k];
-        else if (state < PLAN_STATES)
-            tile->tally.count[state]++;
+        else
+            tile->count[state]++;
     }
     tile->reach = planner->reach;
+    return STATUS_OK;
 }
 
-static void run_turn(size_t index, int worker, void *context)
+static Status run_turn(size_t index, int worker, void *context, Err *err)
 {
     const Running *running = context;
-    run_tile(running, worker, &running->round->tile[running->turn[index]]);
+    return run_tile(running, worker, &running->round->tile[running->turn[index]], err);
 }
 
 /* How the grid is cut into tiles for one round. */
-typedef struct Cut {
+typedef struct TileCut {
     int edge, shift[3], count[3];
-} Cut;
+    size_t tiles;
+} TileCut;
 
 /* Every round moves the seams on by the golden section of a tile, along each axis. */
-static Cut make_cut(const Round *round, const Grid *grid)
+static TileCut make_cut(const Round *round, const Grid *grid)
 {
     const double golden = 0.618033988749895;
-    Cut cut = {.edge = round->tile_edge};
+    TileCut cut = {.edge = round->tile_edge, .tiles = 1};
     double at = golden * round->number;
     for (int axis = 0; axis < 3; axis++) {
         int cells = grid->count[axis];
         cut.shift[axis] = cells > 1 ? (int)((at - floor(at)) * cut.edge) : 0;
         cut.count[axis] = (cells - 1 + cut.shift[axis]) / cut.edge + 1;
+        cut.tiles *= (size_t)cut.count[axis];
     }
     return cut;
 }
 
-static size_t tile_at(const Cut *cut, const Grid *grid, Vec3 point)
+static size_t tile_at(const TileCut *cut, const Grid *grid, Vec3 point)
 {
     GridBox own = grid_box(grid, point, 0);
     size_t index = 0;
@@ -274,7 +273,7 @@ static size_t tile_at(const Cut *cut, const Grid *grid, Vec3 point)
 }
 
 /* A tile's cells and `margin` more on all sides, also where the grid has none. */
-static GridBox box_of(const Cut *cut, size_t index, int margin)
+static GridBox box_of(const TileCut *cut, size_t index, int margin)
 {
     GridBox box;
     for (int axis = 0; axis < 3; axis++) {
@@ -286,7 +285,7 @@ static GridBox box_of(const Cut *cut, size_t index, int margin)
     return box;
 }
 
-static int colour_of(const Cut *cut, size_t index)
+static int colour_of(const TileCut *cut, size_t index)
 {
     int x = (int)(index % cut->count[0]), y = (int)(index / cut->count[0] % cut->count[1]);
     int z = (int)(index / cut->count[0] / cut->count[1]);
@@ -294,9 +293,9 @@ static int colour_of(const Cut *cut, size_t index)
 }
 
 /* Sorts the points by tile. */
-static void sort(Round *round, const Cut *cut, const Grid *grid, size_t tiles)
+static void sort(Round *round, const TileCut *cut, const Grid *grid)
 {
-    for (size_t t = 0; t < tiles; t++)
+    for (size_t t = 0; t < cut->tiles; t++)
         round->tile[t] = (Tile){0};
     for (size_t i = 0; i < round->n; i++) {
         size_t t = tile_at(cut, grid, round->point[i]);
@@ -304,7 +303,7 @@ static void sort(Round *round, const Cut *cut, const Grid *grid, size_t tiles)
         round->tile[t].end++;
     }
     size_t sum = 0;
-    for (size_t t = 0; t < tiles; t++) {
+    for (size_t t = 0; t < cut->tiles; t++) {
         size_t points = round->tile[t].end;
         round->tile[t].first = round->tile[t].end = sum;
         sum += points;
@@ -321,31 +320,32 @@ static size_t part_of(const Round *round, const Tile *tile, size_t whole)
 
 /* Gives every tile its zone, and in proportion to its points spare nodes and its part of the
  * terminals that may be connected, of all trees and of each. */
-static void endow(Round *round, const Site *site, const Cut *cut, size_t tiles, size_t most)
+static void endow(Round *round, const PlanCommon *common, const TileCut *cut, size_t most)
 {
+    Site *site = common->site;
     size_t nodes = 0;
-    for (size_t t = 0; t < tiles; t++) {
+    for (size_t t = 0; t < cut->tiles; t++) {
         Tile *tile = &round->tile[t];
         size_t points = tile->end - tile->first, part = part_of(round, tile, most);
-        tile->zone = grid_zone(site->grid, box_of(cut, t, cut->edge / 2));
+        tile->zone = grid_zone(&site->grid, box_of(cut, t, cut->edge / 2));
         tile->box = box_of(cut, t, 1);
-        tile->most = terminals_of_point(site) * points / POINTS_PER_CONNECTED;
+        tile->most = terminals_of_point(common) * points / POINTS_PER_CONNECTED;
         tile->most = tile->most < part ? tile->most : part;
         tile->left = round->left + t * round->trees;
         for (size_t k = 0; k < round->trees; k++)
-            tile->left[k] = part_of(round, tile, site->limit[k]);
+            tile->left[k] = part_of(round, tile, common->limit[k]);
         nodes += 2 * tile->most;
     }
-    network_spare(site->net, nodes);
+    network_spare(&site->net, nodes);
     nodes = 0;
-    for (size_t t = 0; t < tiles; t++) {
-        round->tile[t].spare = site->net->spare + nodes;
+    for (size_t t = 0; t < cut->tiles; t++) {
+        round->tile[t].spare = site->net.spare + nodes;
         nodes += 2 * round->tile[t].most;
     }
 }
 
-/* Takes the nodes that tiles have used off the spare ones. */
-static void settle_nodes(Round *round, Network *net, size_t tiles)
+/* Removes the nodes that tiles have used from the spare nodes. */
+static void settle_nodes(const Round *round, Network *net, size_t tiles)
 {
     size_t kept = 0, k = 0;
     for (size_t t = 0; t < tiles; t++) {
@@ -358,86 +358,85 @@ static void settle_nodes(Round *round, Network *net, size_t tiles)
     net->spares = kept;
 }
 
-/* Takes off the limits what trees got in tiles. */
-static void settle_limits(const Round *round, const Site *site, size_t tiles)
+/* Subtracts from the limits what trees got in tiles. */
+static void settle_limits(const Round *round, const PlanCommon *common, size_t tiles)
 {
     for (size_t k = 0; k < round->trees; k++) {
         size_t got = 0;
         for (size_t t = 0; t < tiles; t++) {
             const Tile *tile = &round->tile[t];
-            got += part_of(round, tile, site->limit[k]) - tile->left[k];
+            got += part_of(round, tile, common->limit[k]) - tile->left[k];
         }
-        site->limit[k] -= got;
+        common->limit[k] -= got;
     }
 }
 
-/* Adds up what became of the points; those left over are listed at the beginning of `order`. */
-static Status gather(Round *round, const Site *site, size_t tiles, size_t *made, size_t *over,
-                     Err *err)
+/* Adds up what became of the points. Lists the points that are left over at the beginning of
+ * `order`, and returns their number. */
+static size_t gather(Round *round, Network *net, size_t tiles)
 {
     double reach = 0;
-    size_t points = 0;
-    *over = 0;
+    size_t points = 0, over = 0;
     for (size_t t = 0; t < tiles; t++) {
         const Tile *tile = &round->tile[t];
         reach += tile->reach * (double)(tile->end - tile->first);
         points += tile->end - tile->first;
-        if (tile->status != STATUS_OK)
-            return err_set(err, tile->status, "%s", tile->err.text);
-        *made += tile->made;
-        round->tally.skipped += tile->tally.skipped;
-        for (int state = 0; state < PLAN_STATES; state++)
-            round->tally.count[state] += tile->tally.count[state];
+        round->made += tile->made;
+        for (int state = 0; state <= PLAN_STATES; state++)
+            round->count[state] += tile->count[state];
         for (size_t k = 0; k < tile->over; k++)
-            round->order[(*over)++] = round->order[tile->first + k];
+            round->order[over++] = round->order[tile->first + k];
     }
     if (points > 0)
         round->reach = reach / (double)points;
-    settle_nodes(round, site->net, tiles);
-    return STATUS_OK;
+    settle_nodes(round, net, tiles);
+    return over;
 }
 
-/* Connects the points in tiles, and lists those left over. */
-static Status run_tiles(Round *round, const Site *site, size_t most, bool skip, size_t *made,
-                        size_t *over, Err *err)
+/* Connects the points in tiles, and lists the *over points that are left over. */
+static Status run_tiles(Round *round, const PlanCommon *common, RoundLimits limits, size_t *over,
+                        Err *err)
 {
     enum { COLOURS = 8 };
-    Cut cut = make_cut(round, site->grid);
-    size_t tiles = (size_t)cut.count[0] * cut.count[1] * cut.count[2];
-    sort(round, &cut, site->grid, tiles);
-    endow(round, site, &cut, tiles, most);
+    Site *site = common->site;
+    TileCut cut = make_cut(round, &site->grid);
+    sort(round, &cut, &site->grid);
+    endow(round, common, &cut, limits.most);
     uint32_t *turn = round->tile_of; /* which only `sort` needed */
     for (int colour = 0; colour < COLOURS; colour++) {
         size_t count = 0;
-        for (size_t t = 0; t < tiles; t++)
+        for (size_t t = 0; t < cut.tiles; t++)
             if (colour_of(&cut, t) == colour)
                 turn[count++] = (uint32_t)t;
-        Running running = {round, site, skip, turn};
-        threads_for(count, round->threads, run_turn, &running);
+        Running running = {round, common, limits.skip, turn};
+        TRY(threads_try(count, round->threads, run_turn, &running, err));
     }
-    settle_limits(round, site, tiles);
-    return gather(round, site, tiles, made, over, err);
+    settle_limits(round, common, cut.tiles);
+    *over = gather(round, &site->net, cut.tiles);
+    return STATUS_OK;
 }
 
-Status round_run(Round *round, const Site *site, size_t most, bool skip, size_t *made, Err *err)
+Status round_run(Round *round, const PlanCommon *common, RoundLimits limits, Err *err)
 {
-    *made = 0;
-    round->tally = (Tally){0};
+    Network *net = &common->site->net;
+    round->made = 0;
+    memset(round->count, 0, sizeof round->count);
     size_t over = round->n;
     if (round->is_tiled && round->n >= LEAST_POINTS * round->tiles)
-        TRY(run_tiles(round, site, most, skip, made, &over, err));
+        TRY(run_tiles(round, common, limits, &over, err));
     else
         for (size_t i = 0; i < round->n; i++)
             round->order[i] = (uint32_t)i;
-    size_t rest = most - *made < over ? most - *made : over;
-    network_spare(site->net, 2 * rest);
+    size_t rest = limits.most - round->made < over ? limits.most - round->made : over;
+    network_spare(net, 2 * rest);
     const Vec3 everywhere = vec3(INFINITY, INFINITY, INFINITY);
     round->tile[0] = (Tile){.end = over,
                             .zone = {vec3_scale(everywhere, -1), everywhere},
-                            .spare = site->net->spare,
+                            .spare = net->spare,
                             .most = rest,
-                            .left = site->limit};
-    Running running = {round, site, skip, NULL};
-    run_tile(&running, 0, &round->tile[0]);
-    return gather(round, site, 1, made, &over, err);
+                            .left = common->limit};
+    Running running = {round, common, limits.skip, NULL};
+    TRY(run_tile(&running, 0, &round->tile[0], err));
+    gather(round, net, 1);
+    return STATUS_OK;
 }

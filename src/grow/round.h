@@ -7,51 +7,56 @@
 
 typedef struct Tile Tile;
 
-/* What became of the points of a round. */
-typedef struct Tally {
-    size_t skipped;            /* in cells that count as full */
-    size_t count[PLAN_STATES]; /* of the others */
-} Tally;
-
+/* All arrays are owned. */
 typedef struct Round {
-    Vec3 *point;        /* mm; the caller fills them in */
+    Vec3 *point;        /* mm; the caller sets them */
     size_t n, capacity; /* of points */
-    uint32_t *tile_of;  /* by point: its tile */
-    uint32_t *order;    /* the points' indices, tile by tile */
+    uint32_t *tile_of;  /* per point: its tile */
+    uint32_t *order;    /* indices of the points, tile by tile */
     Tile *tile;
     int tile_edge;       /* in cells of the grid */
-    size_t tiles;        /* the most that the grid is cut into, wherever their seams are */
-    bool is_tiled;       /* whether there are enough to work on several at a time */
-    size_t trees, *left; /* by tile and tree: how many terminals it may still get there */
-    Planner *planner;    /* by thread */
+    size_t tiles;        /* maximum number of tiles in the grid, wherever their seams are */
+    bool is_tiled;       /* there are enough tiles to work on several at a time */
+    size_t trees, *left; /* per tile and tree: how many terminals it may still get there */
+    Planner *planner;    /* per thread */
     int threads;
     uint32_t number; /* of rounds so far */
     double reach;    /* mm; what planners begin with [plan.h] */
-    uint8_t *misses; /* by cell: crowded points in it since one was connected, up to ROUND_FULL */
-    Tally tally;     /* of the last round */
+    uint8_t *misses; /* per cell: crowded points in it since one was connected, up to ROUND_FULL */
+    /* Results of the last round: */
+    size_t made;                   /* number of terminals that were connected */
+    size_t count[PLAN_STATES + 1]; /* number of points by what became of them; the last: points that
+                                    * were skipped because they are in full cells */
 } Round;
 
 /* A cell with this many crowded points in succession counts as full: its points are skipped. */
 enum { ROUND_FULL = 2 };
 
-/* Initialises *round, whatever it holds, for a forest of `trees`, with `candidates` candidates for
- * each point and on `threads` threads. To be released also on failure, STATUS_MEMORY. */
+/* Sets up *round, which may hold anything, for a forest of `trees`, `candidates` candidates for
+ * each point and `threads` threads. Release it with round_release, also after an error. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status round_init(Round *round, int candidates, size_t trees, int threads, Err *err);
 void round_release(Round *round);
 
-/* To be called for every new grid, and when the rules change: cuts the grid into tiles, and forgets
- * which cells are full. */
+/* Cuts a grid into tiles, and forgets which cells are full. Call it for every new grid, and when
+ * the rules change. Errors: STATUS_MEMORY. */
 MUST_CHECK Status round_use_grid(Round *round, const Grid *grid, Err *err);
 
-/* Begins a round: makes room for `points` points, which the caller then sets. */
+/* Begins a round: makes room for `points` points, which the caller then sets. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status round_start(Round *round, size_t points, Err *err);
 
-/* Connects points: at most `most`, and for each tree no more than site->limit allows, which is
- * counted down. *made: how many terminals were connected. Skips points in full cells if `skip`.
- * Fills the tally. Needs the radii and sensitivities of the last refresh. Afterwards the sums miss
- * new terminals except near them [network_split], and the caller has to call network_grown. The
- * result does not depend on the number of threads. STATUS_MEMORY. */
-MUST_CHECK Status round_run(Round *round, const Site *site, size_t most, bool skip, size_t *made,
-                            Err *err);
+typedef struct RoundLimits {
+    size_t most; /* maximum number of terminals to connect */
+    bool skip;   /* skip points in full cells */
+} RoundLimits;
+
+/* Connects points, for each tree at most common->limit, which is counted down. Needs the radii and
+ * sensitivities of the last refresh. Afterwards the sums do not include new terminals except near
+ * them [network_split], and the caller must call network_grown.
+ *
+ * Errors   STATUS_MEMORY; the network is then only fit for network_release.
+ * Threads  The result does not depend on the number of threads. */
+MUST_CHECK Status round_run(Round *round, const PlanCommon *common, RoundLimits limits, Err *err);
 
 #endif

@@ -20,21 +20,22 @@ enum { FINE_ROUNDS = 3 };
 
 bool weights_are_needed(const GrowParams *params)
 {
-    return params->viscosity_law != VISCOSITY_CONSTANT ||
-           params->terminal_flow != TERMINAL_FLOW_EQUAL || params->gamma.n > 1;
+    return params->blood.viscosity_law != VISCOSITY_CONSTANT ||
+           params->blood.terminal_flow != TERMINAL_FLOW_EQUAL || params->gamma.n > 1;
 }
 
 double weights_reference_pa_s(const GrowParams *params)
 {
-    return pa_s_from_cp(params->viscosity_law == VISCOSITY_PRIES ? params->plasma_viscosity_cp
-                                                                 : params->viscosity_cp);
+    return pa_s_from_cp(params->blood.viscosity_law == VISCOSITY_PRIES
+                            ? params->blood.plasma_viscosity_cp
+                            : params->blood.viscosity_cp);
 }
 
 static double relative_viscosity(const GrowParams *params, double radius)
 {
-    if (params->viscosity_law == VISCOSITY_CONSTANT)
+    if (params->blood.viscosity_law == VISCOSITY_CONSTANT)
         return 1;
-    return viscosity_pries_pa_s(radius, params->hematocrit, 1);
+    return viscosity_pries_pa_s(radius, params->blood.hematocrit, 1);
 }
 
 static int threads_of(const GrowParams *params)
@@ -42,17 +43,20 @@ static int threads_of(const GrowParams *params)
     return params->threads > 0 ? params->threads : threads_available();
 }
 
-/* Gives all terminals their shares of the flow; `share` has room for one number for each node. */
+/* Gives all terminals their shares of the flow. `share` is a workspace of one number per node. */
 static Status set_shares(Network *net, const GrowParams *params, const Domain *domain,
                          WeightsPrecision precision, double *share, Err *err)
 {
-    double points = rough_points;
+    bool equal = params->blood.terminal_flow == TERMINAL_FLOW_EQUAL;
+    TerritoryParams territory = {.domain = domain, .points = rough_points};
+    territory.threads = threads_of(params);
+    if (params->blood.terminal_flow == TERMINAL_FLOW_DEMAND)
+        territory.demand = params->demand;
     if (precision == WEIGHTS_FINE)
-        points = fmin(fmax(all_points / (double)net->terminals, least_points), most_points);
-    bool equal = params->terminal_flow == TERMINAL_FLOW_EQUAL;
-    const Demand *demand = params->terminal_flow == TERMINAL_FLOW_DEMAND ? params->demand : NULL;
+        territory.points =
+            fmin(fmax(all_points / (double)net->terminals, least_points), most_points);
     if (!equal)
-        TRY(territory_count(net, domain, demand, points, threads_of(params), share, err));
+        TRY(territory_count(net, &territory, share, err));
     for (size_t i = 0; i < net->n; i++)
         net->trait[i].share = equal ? network_is_end(net, (int32_t)i) : share[i];
     return STATUS_OK;
@@ -74,9 +78,10 @@ void weights_flows(const Network *net, double *flow)
         flow[i] *= (double)net->terminals / sum;
 }
 
-Status weights_update(Network *net, const GrowParams *params, const double *flow,
-                      const double *radius, double part, double *change, Err *err)
+Status weights_update(Network *net, const GrowParams *params, WeightsAt at, double *change,
+                      Err *err)
 {
+    const double *radius = at.radius, part = at.part;
     double sum = 0;
     *change = 0;
     for (size_t i = 0; i < net->n; i++) {
@@ -89,7 +94,7 @@ Status weights_update(Network *net, const GrowParams *params, const double *flow
                            "with %zu terminals there is one; lower `terminals` or raise `q_perf`",
                            2e3 * radius[i], net->terminals);
         Trait *trait = &net->trait[i];
-        double ratio = flow[i] / net->segment[i].terminals * viscosity / trait->weight;
+        double ratio = at.flow[i] / net->segment[i].terminals * viscosity / trait->weight;
         double gamma = logcurve_at(&params->gamma, radius[i]);
         *change = fmax(*change, fmax(fabs(ratio - 1), fabs(gamma - trait->gamma)));
         trait->weight *= part == 1 ? ratio : elementary_pow(ratio, part);
@@ -109,7 +114,7 @@ static Status follow_radii(Network *net, const GrowParams *params, const double 
     double change;
     for (size_t i = 0; i < net->n; i++)
         radius[i] = (double)net->segment[i].radius;
-    TRY(weights_update(net, params, flow, radius, 1, &change, err));
+    TRY(weights_update(net, params, (WeightsAt){flow, radius, 1}, &change, err));
     network_refresh(net, threads_of(params));
     return STATUS_OK;
 }

@@ -17,7 +17,7 @@ enum { WHOLE = 1 << 20 };
 /* Cells of the grid a terminal. */
 static const double cells_per_terminal = 1;
 
-typedef struct Survey {
+typedef struct TerritorySurvey {
     const Domain *domain;
     const Demand *demand; /* NULL: the same everywhere */
     Grid grid;
@@ -25,7 +25,7 @@ typedef struct Survey {
     size_t count[3]; /* its points along each axis */
     size_t nodes;
     uint64_t *points; /* by worker and node: what the lattice points nearest to it count for */
-} Survey;
+} TerritorySurvey;
 
 static size_t lattice_count(double size, double spacing)
 {
@@ -33,7 +33,7 @@ static size_t lattice_count(double size, double spacing)
 }
 
 /* Spreads the lattice evenly over the domain's box. */
-static void lay_lattice(Survey *survey, double points)
+static void lay_lattice(TerritorySurvey *survey, double points)
 {
     Box box = survey->domain->bounds;
     Vec3 size = vec3_sub(box.high, box.low);
@@ -51,7 +51,7 @@ static void lay_lattice(Survey *survey, double points)
                         size.z / (double)survey->count[2]);
 }
 
-static Status enter_terminals(Survey *survey, const Network *net, Err *err)
+static Status enter_terminals(TerritorySurvey *survey, const Network *net, Err *err)
 {
     TRY(grid_reset(&survey->grid, survey->domain->bounds,
                    cells_per_terminal * (double)net->terminals, net->n, 1, err));
@@ -66,7 +66,7 @@ static Status enter_terminals(Survey *survey, const Network *net, Err *err)
 
 static void survey_row(size_t index, int worker, void *context)
 {
-    const Survey *survey = context;
+    const TerritorySurvey *survey = context;
     uint64_t *points = survey->points + (size_t)worker * survey->nodes;
     size_t y = index % survey->count[1], z = index / survey->count[1];
     Vec3 step = survey->step;
@@ -82,22 +82,21 @@ static void survey_row(size_t index, int worker, void *context)
     }
 }
 
-Status territory_count(const Network *net, const Domain *domain, const Demand *demand,
-                       double points, int threads, double *share, Err *err)
+Status territory_count(const Network *net, const TerritoryParams *params, double *share, Err *err)
 {
-    Survey survey = {.domain = domain, .demand = demand, .nodes = net->n};
+    TerritorySurvey survey = {.domain = params->domain, .demand = params->demand, .nodes = net->n};
     Status status = STATUS_OK;
-    lay_lattice(&survey, points * (double)net->terminals);
+    size_t threads = (size_t)params->threads;
+    lay_lattice(&survey, params->points * (double)net->terminals);
     TRY_GOTO(enter_terminals(&survey, net, err));
-    TRY_GOTO(mem_calloc(&survey.points, (size_t)threads * net->n, sizeof *survey.points,
-                        "territories", err));
-    threads_for(survey.count[1] * survey.count[2], threads, survey_row, &survey);
+    TRY_GOTO(
+        mem_calloc(&survey.points, threads * net->n, sizeof *survey.points, "territories", err));
+    threads_for(survey.count[1] * survey.count[2], params->threads, survey_row, &survey);
     for (size_t i = 0; i < net->n; i++) {
-        bool terminal = network_is_end(net, (int32_t)i);
         uint64_t sum = 0;
-        for (int worker = 0; worker < threads; worker++)
-            sum += survey.points[(size_t)worker * net->n + i];
-        share[i] = terminal ? fmax((double)sum / WHOLE, 0.5) : 0;
+        for (size_t worker = 0; worker < threads; worker++)
+            sum += survey.points[worker * net->n + i];
+        share[i] = network_is_end(net, (int32_t)i) ? fmax((double)sum / WHOLE, 0.5) : 0;
     }
 done:
     free(survey.points);

@@ -5,12 +5,20 @@
 #include "domain/domain.h"
 #include "grow/network.h"
 
-/* Sets share[i], one for each node, to the number of points of a square or cubic lattice over the
- * domain that are nearer to the terminal i than to any other, or with a map to the sum of what
- * these ask for [demand_at], but to 1/2 at least; and to 0 for nodes that are no terminals. The
- * lattice has `points` points for each terminal. Needs no sums. The result is the same for any
- * number of threads. STATUS_MEMORY. */
-MUST_CHECK Status territory_count(const Network *net, const Domain *domain, const Demand *demand,
-                                  double points, int threads, double *share, Err *err);
+typedef struct TerritoryParams {
+    const Domain *domain;
+    const Demand *demand; /* what a point asks for [demand_at]; NULL: every point asks for 1 */
+    double points;        /* number of lattice points per terminal */
+    int threads;
+} TerritoryParams;
+
+/* Counts the points of a square or cubic lattice over the domain that are nearer to a terminal than
+ * to any other terminal, or adds up what these points ask for. Needs no sums.
+ *
+ * share    receives, per node, the result for a terminal, but at least 1/2; 0 for other nodes.
+ * Errors   STATUS_MEMORY.
+ * Threads  The result does not depend on the number of threads. */
+MUST_CHECK Status territory_count(const Network *net, const TerritoryParams *params, double *share,
+                                  Err *err);
 
 #endif

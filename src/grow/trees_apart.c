@@ -46,48 +46,57 @@ static Box box_of(const Tree *tree, size_t i)
                          tree->position[i], radius);
 }
 
-/* Looks at all segments of other trees than that of segment i, and with a lower index. */
-static void look(const Tree *tree, const BoxTree *boxes, const int32_t *root, size_t i,
-                 double within, double *apart, size_t pair[2])
+typedef struct ApartSearch {
+    const Tree *tree;
+    BoxTree boxes; /* of the segments */
+    int32_t *root; /* per node: the root of its tree; owned */
+    double within; /* mm; larger distances are not looked for */
+    double apart;  /* mm; the least distance so far */
+    size_t pair[2];
+} ApartSearch;
+
+/* Compares segment i with the segments of other trees that have a lower index. */
+static void compare(ApartSearch *search, size_t i)
 {
+    const Tree *tree = search->tree;
     uint32_t j;
     Vec3 a = tree->position[tree->parent[i]], b = tree->position[i];
-    for (BoxWalk walk = boxwalk_box(boxes, box_padded(box_of(tree, i), within));
+    for (BoxWalk walk = boxwalk_box(&search->boxes, box_padded(box_of(tree, i), search->within));
          boxwalk_next(&walk, &j);) {
-        if (j >= i || !tree_is_segment(tree, j) || root[j] == root[i])
+        if (j >= i || !tree_is_segment(tree, j) || search->root[j] == search->root[i])
             continue;
         double distance = axis_distance(a, b, tree->position[tree->parent[j]], tree->position[j]) -
                           tree->radius_mm[i] - tree->radius_mm[j];
-        if (distance >= within || distance >= *apart)
+        if (distance >= search->within || distance >= search->apart)
             continue;
-        *apart = distance;
-        pair[0] = j;
-        pair[1] = i;
+        search->apart = distance;
+        search->pair[0] = j;
+        search->pair[1] = i;
     }
 }
 
 Status trees_apart(const Tree *tree, double within, double *apart, size_t pair[2], Err *err)
 {
+    ApartSearch search = {.tree = tree, .within = within, .apart = INFINITY};
     Box *box = NULL;
-    int32_t *root = NULL;
-    BoxTree boxes = {0};
     Status status = STATUS_OK;
-    double least = INFINITY;
     TRY_GOTO(mem_calloc(&box, tree->n, sizeof *box, "boxes", err));
-    TRY_GOTO(mem_calloc(&root, tree->n, sizeof *root, "roots", err));
+    TRY_GOTO(mem_calloc(&search.root, tree->n, sizeof *search.root, "roots", err));
     for (size_t i = 0; i < tree->n; i++) {
         box[i] = box_of(tree, i);
-        root[i] = tree_is_segment(tree, i) ? root[tree->parent[i]] : (int32_t)i;
+        search.root[i] = tree_is_segment(tree, i) ? search.root[tree->parent[i]] : (int32_t)i;
     }
-    TRY_GOTO(boxtree_build(box, tree->n, &boxes, err));
+    TRY_GOTO(boxtree_build(box, tree->n, &search.boxes, err));
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i))
-            look(tree, &boxes, root, i, within, &least, pair);
-    *apart = least;
+            compare(&search, i);
+    *apart = search.apart;
+    pair[0] = search.pair[0];
+    pair[1] = search.pair[1];
 done:
-    boxtree_release(&boxes);
+    boxtree_release(&search.boxes);
     free(box);
-    free(root);
+    free(search.root);
     return status;
 }
 

@@ -29,12 +29,18 @@ static float alpha_at(const Image *image, size_t pixel)
     return (float)picture_code(&image->picture, at) / (image->picture.bits == 8 ? 255 : 65535);
 }
 
-/* How many of the first pixels are opaque. */
+/* Returns the number of opaque pixels before the first one that is not. */
 static size_t count_opaque(const Image *image)
 {
-    size_t n = pixels_of(image), i = 0;
-    while (i < n && alpha_at(image, i) == 1)
-        i++;
+    size_t n = pixels_of(image), samples = (size_t)channels_of(image), i = 0;
+    const Picture *picture = &image->picture;
+    const uint16_t opaque = picture->bits == 8 ? 255 : 65535;
+    if (image->plane.values)
+        while (i < n && image->plane.values[(i + 1) * samples - 1] == 1)
+            i++;
+    else
+        while (i < n && picture_code(picture, (i + 1) * samples - 1) == opaque)
+            i++;
     return i;
 }
 

@@ -1,146 +1,189 @@
-/* The file formats behind image_read and ImageWriter; private to the room image. Readers take a
- * whole file and its name for the error sentence. No reader asks for memory for the pixels that a
- * header announces before it has held them against the size of the file: PNM and PFM exactly, PNG,
- * TIFF and OpenEXR by image_check_claim. */
+/* The file formats behind image_read, ImageReader and ImageWriter; private to the module image.
+ *
+ * A format is an ImageDecoder, a RowEncoder, or both: tables of functions over a state of the
+ * format's own. Every function runs in a guard. No decoder allocates memory for the pixels that a
+ * header announces before it has compared their size with the size of the file: PNM and PFM
+ * exactly, the other formats by image_check_claim. */
 #ifndef CORCAST_IMAGE_FORMATS_H
 #define CORCAST_IMAGE_FORMATS_H
 
+#include "image/guard.h"
 #include "image/image.h"
 
 typedef struct ImageBytes {
-    const char *name;
+    const char *name; /* of the file, for errors */
     const uint8_t *bytes;
     size_t size;
-    const char *layer; /* that is asked for, of formats that have some; or NULL */
+    const char *layer; /* the requested layer, of formats that have layers; NULL: none */
 } ImageBytes;
 
-/* STATUS_INPUT unless both sides, as a header states them, are in [1, IMAGE_MAX_SIDE]. */
+/* ---- checks that formats share --------------------------------------------------------------- */
+
+/* Errors: STATUS_INPUT unless both sides, as a header states them, are in [1, IMAGE_MAX_SIDE]. */
 MUST_CHECK Status image_check_sides(const char *name, long long width, long long height, Err *err);
 
-/* STATUS_INPUT, naming the file, its size and the sides, when `bytes` of pixels are more than
- * `most`, the bytes that a file of this size can hold however well it is compressed. */
+/* Errors: STATUS_INPUT, naming the file, its size and the sides, if `bytes` of pixels exceed
+ * `maximum`, the bytes that a file of this size can hold at the best compression. */
 MUST_CHECK Status image_check_claim(const ImageBytes *file, long long width, long long height,
-                                    size_t bytes, size_t most, Err *err);
+                                    size_t bytes, size_t maximum, Err *err);
 
-/* STATUS_MEMORY when the machine has fewer than `bytes` for an image of these sides. */
+/* Errors: STATUS_MEMORY if the machine has less than `bytes` of memory for an image of these
+ * sides. */
 MUST_CHECK Status image_check_memory(int width, int height, size_t bytes, Err *err);
 
-/* Whether chromaticities, x and y of red, green, blue and white, are sRGB's to 0.002. */
+/* Returns true if chromaticities, x and y of red, green, blue and white, are within 0.002 of those
+ * of sRGB. */
 bool image_is_srgb(const double xy[8]);
-/* STATUS_INPUT naming the file: its colours are of another space, as `where` in it says. */
+/* Returns STATUS_INPUT: the file's colours are of another space, as its part `where` states. */
 Status image_other_colors(const char *name, const char *where, Err *err);
-/* The description in an ICC profile, what is no printable ASCII left out; "" when it has none. */
+/* Stores the description in an ICC profile, without characters that are not printable ASCII; "" if
+ * it has none. */
 void image_profile_name(const uint8_t *profile, size_t size, char text[IMAGE_PROFILE_NAME]);
-/* STATUS_INPUT, naming file and profile, unless an ICC profile is of sRGB. */
+/* Errors: STATUS_INPUT, naming file and profile, unless an ICC profile is one of sRGB. */
 MUST_CHECK Status image_check_profile(const char *name, const uint8_t *profile, size_t size,
                                       Err *err);
 
-/* STATUS_INPUT naming the file: it is a picture that cannot be read row by row. */
+/* Returns STATUS_INPUT: the picture cannot be read row by row. */
 Status image_no_rows(const char *name, Err *err);
 
-/* Four bytes, the most significant first. */
+/* Returns the number in four bytes, the most significant first. */
 static inline uint32_t image_u32(const uint8_t *at)
 {
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
 }
 
-/* A library's words as part of a sentence: what is no printable ASCII becomes a blank. */
-void image_plain_text(char *text);
-
-/* Walks the header of a PNM or PFM file: words between blanks, '#' comments skipped. */
+/* Reads the header of a PNM or PFM file: words between blanks. Skips '#' comments. */
 typedef struct HeaderCursor {
     ImageBytes file;
     size_t at;
 } HeaderCursor;
 
-/* The next word as a whole number in [minimum, maximum]; `what` names it. */
+/* Reads the next word as an integer in [minimum, maximum]; `what` names it in errors. */
 MUST_CHECK Status header_integer(HeaderCursor *cursor, const char *what, long long minimum,
                                  long long maximum, long long *out, Err *err);
-/* The next word, truncated to size - 1 characters. */
+/* Reads the next word, truncated to size - 1 characters; "" at the end of the file. */
 void header_word(HeaderCursor *cursor, char *word, size_t size);
-/* Steps over the one blank between header and pixels, and checks that `needed` bytes of pixels
- * follow it. */
+/* Steps over the one blank between header and pixels. Errors: STATUS_INPUT unless exactly `needed`
+ * bytes of pixels follow it. */
 MUST_CHECK Status header_end(HeaderCursor *cursor, size_t needed, Err *err);
 
-/* How a format is written. Rows come from the top down, `n` at a time, the first of them row
- * `first`; values are codes of 8 or 16 bits or floats, as the form says. */
-typedef struct RowEncoder {
-    /* Writes what comes first; *self is owned by the caller, who releases it, also on failure. */
-    Status (*begin)(FILE *stream, const ImageForm *form, void **self, Err *err);
-    Status (*rows)(void *self, const void *values, int first, int n, Err *err);
-    Status (*end)(void *self, Err *err); /* writes what comes last; may be NULL */
-    void (*release)(void *self);         /* NULL is allowed */
-    double folds;     /* a file is at most this many times smaller than its values; 0: not known */
-    bool keeps_dpi;   /* has a place for the resolution on paper */
-    bool keeps_inks;  /* takes codes of 4 channels: cyan magenta yellow black */
-    bool keeps_alpha; /* takes codes of 4 channels: red green blue alpha */
-    bool floats;      /* takes floats, not codes */
-} RowEncoder;
+/* ---- reading --------------------------------------------------------------------------------- */
 
-extern const RowEncoder ppm_encoder, pgm_encoder, png_encoder, tiff_encoder, jpeg_encoder,
-    pfm_encoder, exr_encoder;
+/* A file that is being read. The state of every decoder begins with an ImageInput; the rest of it
+ * is zeroed. */
+typedef struct ImageInput {
+    Guard guard;
+    const struct ImageDecoder *decoder;
+    ImageBytes file; /* the whole file; no bytes if rows are read */
+    FILE *stream;    /* seekable; at the beginning of the file */
+    /* Results; the decoder need not release them on failure. */
+    Image image;      /* of `decode`; alpha is the last of 2 or 4 channels */
+    ImageFacts facts; /* of `get_facts` */
+    ImageForm form;   /* of `begin`; its notes are owned by the decoder's state */
+    /* Arguments of `rows`: */
+    void *rows; /* receives rows of codes of form.bits bits */
+    int n_rows;
+} ImageInput;
 
-/* The text of a note; NULL when there is none of this key. */
-const char *image_note(const ImageNotes *notes, const char *key);
-/* All notes but software and shard, a line each, for formats that have one place for them; in *text
- * (owned). */
-MUST_CHECK Status image_description(const ImageNotes *notes, char **text, Err *err);
-
-/* The bytes of an ICC profile. */
-typedef struct ImageProfile {
-    uint8_t *bytes;
-    size_t size;
-} ImageProfile;
-
-/* The profile that a file of this form carries, in *profile (its bytes owned): the press's, or
- * sRGB's; without bytes where the codes are grey or linear. */
-MUST_CHECK Status image_profile(const ImageForm *form, ImageProfile *profile, Err *err);
-
-/* `n` pixels of three codes, of as many bits as the inks were read for, to four. */
-void inks_convert(const Inks *inks, const void *rgb, void *cmyk, size_t n);
-int inks_bits(const Inks *inks);
-
-/* How a format is read a few rows at a time, from a stream with places. */
-typedef struct RowDecoder {
-    bool (*is)(const ImageBytes *file); /* by the first bytes, all that may be there */
-    /* Reads what comes first into *form, whose notes last as long as *self, which is owned by the
-     * caller, who releases it, also on failure. STATUS_INPUT for what cannot be read so. */
-    Status (*begin)(FILE *stream, const char *name, ImageForm *form, void **self, Err *err);
-    /* The next `n` rows, codes of 8 or 16 bits as the form says. */
-    Status (*rows)(void *self, void *values, int n, Err *err);
-    Status (*end)(void *self, Err *err); /* reads what comes last */
-    void (*release)(void *self);         /* NULL is allowed */
-} RowDecoder;
-
-extern const RowDecoder png_rows_decoder, tiff_rows_decoder;
-
-/* How a format is read. */
+/* How a format is read. Functions other than `is` and `release` get the state. */
 typedef struct ImageDecoder {
-    bool (*is)(const ImageBytes *file); /* by the first bytes, all that may be there */
-    /* Fills in the picture or the plane of a zeroed image; it is untouched on failure. */
-    Status (*decode)(const ImageBytes *file, Image *image, Err *err);
+    const char *format; /* for errors */
+    size_t state_size;
+    bool (*is)(const ImageBytes *file); /* by the first bytes; there may be no more */
+    GuardedWork *decode;                /* the whole file */
+    GuardedWork *get_facts;             /* NULL: the format has no facts */
+    /* Rows from a stream; NULL: the format can be read as a whole only. */
+    GuardedWork *begin;          /* Errors: image_no_rows for what `rows` cannot read. */
+    GuardedWork *rows;           /* the next rows */
+    GuardedWork *end;            /* the rest of the file */
+    void (*release)(void *self); /* releases what the state owns; NULL: nothing */
     bool has_layers;
 } ImageDecoder;
 
 extern const ImageDecoder png_decoder, pnm_decoder, pfm_decoder, exr_decoder, tiff_decoder,
     jpeg_decoder, webp_decoder;
 
-/* Deflate shrinks at most 1032-fold, which bounds what a PNG's header may claim. */
-enum { DEFLATE_MAX_RATIO = 1032 };
+/* Makes the state of a decoder for a file in memory, or, if `stream` is not NULL, for the rows of a
+ * stream, which is borrowed. *out is owned: close it with imageinput_close. Errors:
+ * STATUS_MEMORY. */
+MUST_CHECK Status imageinput_open(const ImageDecoder *decoder, const ImageBytes *file, FILE *stream,
+                                  ImageInput **out, Err *err);
+void imageinput_close(ImageInput *input); /* NULL is allowed */
 
-/* Decodes a PNG of the common form; false, leaving *picture as it is, on any other, broken ones
- * included. */
-bool png_decode_plain(const ImageBytes *file, Picture *picture);
-
-/* What becomes of an alpha channel that is not opaque throughout; one that is, is left out. */
+/* What happens to an alpha channel that is not opaque throughout. An opaque one is always left
+ * out. */
 typedef enum ImageAlpha {
     ALPHA_REFUSED,
     ALPHA_KEPT,   /* grey pictures become coloured */
     ALPHA_IS_MASK /* as picture_read_mask reads it */
 } ImageAlpha;
 
-/* Makes an image as a decoder hands it over, alpha the last of 2 or 4 channels, what readers of
- * this kind expect. STATUS_INPUT, naming the file, when it is transparent and refused. */
+/* Removes or converts the alpha channel of an image as a decoder leaves it, the last of 2 or 4
+ * channels. Errors: STATUS_INPUT, naming the file, if the image is transparent and that is
+ * refused. */
 MUST_CHECK Status image_settle_alpha(Image *image, ImageAlpha alpha, const char *name, Err *err);
+
+/* ---- writing --------------------------------------------------------------------------------- */
+
+/* The bytes of an ICC profile. */
+typedef struct ImageProfile {
+    uint8_t *bytes; /* owned */
+    size_t size;    /* 0: no profile */
+} ImageProfile;
+
+/* A file that is being written. The state of every encoder begins with an ImageOutput; the rest of
+ * it is zeroed. */
+typedef struct ImageOutput {
+    Guard guard;
+    const struct RowEncoder *encoder;
+    FILE *stream; /* borrowed */
+    ImageForm form;
+    size_t row_bytes;     /* bytes of a row in memory */
+    ImageProfile profile; /* if the encoder has profiles */
+    char *description;    /* owned; all notes except software and shard, a line each; if the encoder
+                           * has profiles */
+    int chunk_rows; /* `begin` sets it: `rows` gets this many rows at a time, and fewer only at
+                     * the end of the image; 0: as many as the caller has */
+    uint8_t *chunk; /* owned; NULL if chunk_rows is 0. `rows` may change it */
+    int n_gathered; /* rows in the chunk */
+    /* Arguments of `rows`: */
+    const void *values; /* codes or floats, as the form states; the chunk unless chunk_rows is 0 */
+    int first, n;       /* index in the image of the first row; number of rows */
+} ImageOutput;
+
+/* How a format is written, from the top row down. */
+typedef struct RowEncoder {
+    const char *format; /* for errors */
+    size_t state_size;
+    GuardedWork *begin; /* writes what comes before the rows */
+    GuardedWork *rows;  /* writes the next rows */
+    GuardedWork *end;   /* writes what comes after the rows; NULL: nothing */
+    void (*release)(
+        void *self);  /* releases what the state owns; runs in the guard; NULL: nothing */
+    int channels;     /* in the file; 0: as the form states */
+    double folds;     /* a file is at most this many times smaller than its values; 0: unknown */
+    bool keeps_dpi;   /* stores the resolution on paper */
+    bool has_profile; /* stores an ICC profile, and codes of cyan, magenta, yellow and black */
+    bool keeps_alpha; /* stores codes of red, green, blue and alpha */
+    bool floats;      /* stores floats, not codes */
+} RowEncoder;
+
+extern const RowEncoder ppm_encoder, pgm_encoder, png_encoder, tiff_encoder, jpeg_encoder,
+    pfm_encoder, exr_encoder;
+
+/* Errors: STATUS_IO if the output is a pipe: the format must be able to go back in the file. */
+MUST_CHECK Status imageoutput_check_seekable(const ImageOutput *output, Err *err);
+
+/* Returns the text of the note with this key; NULL if there is none. */
+const char *image_note(const ImageNotes *notes, const char *key);
+
+/* Makes the profile that a file of this form carries: the output profile of the inks, or the one of
+ * sRGB; none if the codes are grey or linear. Errors: STATUS_MEMORY. */
+MUST_CHECK Status image_profile(const ImageForm *form, ImageProfile *profile, Err *err);
+
+/* Converts `n` pixels of three codes to four. Codes have the number of bits that the inks were read
+ * for. */
+void inks_convert(const Inks *inks, const void *rgb, void *cmyk, size_t n);
+int inks_bits(const Inks *inks);
 
 #endif

@@ -7,13 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-void image_plain_text(char *text)
-{
-    for (; *text; text++)
-        if (*text < ' ' || *text > '~')
-            *text = ' ';
-}
-
 Status image_check_sides(const char *name, long long width, long long height, Err *err)
 {
     if (width >= 1 && width <= IMAGE_MAX_SIDE && height >= 1 && height <= IMAGE_MAX_SIDE)

@@ -1,6 +1,6 @@
-/* The format of a file is recognised by its first bytes, whatever its name. The whole file is read
- * before it is decoded: readers then know how much there is, and need no file that can be wound
- * back, so that standard input will do. */
+/* The format of a file is recognised by its first bytes, not by its name. The whole file is read
+ * before it is decoded. Decoders then know its size, and can go back in it even if it came from
+ * standard input. */
 #include "image/formats.h"
 
 #include <stdlib.h>
@@ -10,7 +10,7 @@ static const ImageDecoder *const decoders[] = {&png_decoder, &pnm_decoder,  &pfm
                                                &exr_decoder, &tiff_decoder, &jpeg_decoder,
                                                &webp_decoder};
 
-/* NULL when the file is of no known format. */
+/* Returns NULL if the file is of no known format. */
 static const ImageDecoder *decoder_of(const ImageBytes *file)
 {
     for (size_t i = 0; i < sizeof decoders / sizeof *decoders; i++)
@@ -30,6 +30,58 @@ static const char *name_of(const char *path)
     return strcmp(path, "-") ? path : "standard input";
 }
 
+Status imageinput_open(const ImageDecoder *decoder, const ImageBytes *file, FILE *stream,
+                       ImageInput **out, Err *err)
+{
+    ImageInput *input;
+    TRY(mem_calloc(&input, 1, decoder->state_size, "readers", err));
+    input->guard.format = decoder->format;
+    input->guard.name = file->name;
+    input->decoder = decoder;
+    input->file = *file;
+    /* The bytes are only read, whatever the declaration of fmemopen states. */
+    input->stream = stream ? stream : fmemopen((void *)(uintptr_t)file->bytes, file->size, "rb");
+    if (input->stream) {
+        *out = input;
+        return STATUS_OK;
+    }
+    free(input);
+    return mem_out_of("to read", file->name, err);
+}
+
+void imageinput_close(ImageInput *input)
+{
+    if (!input)
+        return;
+    if (input->decoder->release)
+        input->decoder->release(input);
+    if (input->file.bytes)
+        fclose(input->stream);
+    image_release(&input->image);
+    free(input);
+}
+
+/* Decodes a file in memory, whose layer may be NULL. */
+static Status decode(const ImageBytes *file, ImageAlpha alpha, Image *image, Err *err)
+{
+    const ImageDecoder *decoder = decoder_of(file);
+    if (file->layer && !decoder->has_layers)
+        return err_set(err, STATUS_INPUT, "%s: has no layer '%s': only OpenEXR files have layers",
+                       file->name, file->layer);
+    ImageInput *input = NULL;
+    Status status;
+    TRY_GOTO(imageinput_open(decoder, file, NULL, &input, err));
+    TRY_GOTO(guard_run(&input->guard, decoder->decode, input, err));
+    TRY_GOTO(image_settle_alpha(&input->image, alpha, file->name, err));
+    *image = input->image;
+    input->image = (Image){0};
+done:
+    if (status == STATUS_MEMORY)
+        err_prefix(err, "%s: ", file->name);
+    imageinput_close(input);
+    return status;
+}
+
 /* `layer` may be NULL. */
 static Status read_image(Image *image, const char *path, const char *layer, ImageAlpha alpha,
                          Err *err)
@@ -41,23 +93,9 @@ static Status read_image(Image *image, const char *path, const char *layer, Imag
     char *bytes;
     size_t size;
     TRY(file_read(path, &form, &bytes, &size, err));
-    ImageBytes file = {name_of(path), (const uint8_t *)bytes, size, layer};
-    Image made = {0};
-    const ImageDecoder *decoder = decoder_of(&file);
-    Status status =
-        layer && !decoder->has_layers
-            ? err_set(err, STATUS_INPUT, "%s: has no layer '%s': only OpenEXR files have layers",
-                      file.name, layer)
-            : decoder->decode(&file, &made, err);
+    const ImageBytes file = {name_of(path), (const uint8_t *)bytes, size, layer};
+    Status status = decode(&file, alpha, image, err);
     free(bytes);
-    if (status == STATUS_OK)
-        status = image_settle_alpha(&made, alpha, file.name, err);
-    if (status == STATUS_MEMORY)
-        err_prefix(err, "%s: ", file.name);
-    if (status == STATUS_OK)
-        *image = made;
-    else
-        image_release(&made);
     return status;
 }
 

@@ -1,5 +1,5 @@
-/* What a reader adds to the format's decoder: the file, and the number of the next row, so that the
- * end of the file is compared with its last row. */
+/* An ImageReader adds two things to the format's decoder: the file, and the index of the next row.
+ * After the last row, the rest of the file is read, too. */
 #include "image/formats.h"
 
 #include <assert.h>
@@ -7,15 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const RowDecoder *const decoders[] = {&png_rows_decoder, &tiff_rows_decoder};
+static const ImageDecoder *const decoders[] = {&png_decoder, &tiff_decoder};
 
 struct ImageReader {
-    const RowDecoder *decoder;
-    void *state;
-    FILE *stream;
-    char *path; /* owned */
-    ImageForm form;
-    int next; /* row */
+    ImageInput *input; /* owned */
+    FILE *stream;      /* owned */
+    char *path;        /* owned */
+    int next;          /* index of the next row */
 };
 
 Status image_no_rows(const char *name, Err *err)
@@ -27,23 +25,23 @@ Status image_no_rows(const char *name, Err *err)
         name);
 }
 
-static Status choose_decoder(ImageReader *reader, Err *err)
+/* *decoder is NULL if the file is of no format that is read row by row. */
+static Status choose_decoder(ImageReader *reader, const ImageDecoder **decoder, Err *err)
 {
     uint8_t start[8];
-    const ImageBytes file = {.name = reader->path,
-                             .bytes = start,
-                             .size = fread(start, 1, sizeof start, reader->stream)};
+    const ImageBytes file = {.bytes = start, .size = fread(start, 1, sizeof start, reader->stream)};
     if (ferror(reader->stream))
         return err_set(err, STATUS_IO, "%s: cannot be read: %s", reader->path, strerror(errno));
     rewind(reader->stream);
-    for (size_t i = 0; i < sizeof decoders / sizeof *decoders && !reader->decoder; i++)
+    for (size_t i = 0; i < sizeof decoders / sizeof *decoders && !*decoder; i++)
         if (decoders[i]->is(&file))
-            reader->decoder = decoders[i];
-    return reader->decoder ? STATUS_OK : image_no_rows(reader->path, err);
+            *decoder = decoders[i];
+    return STATUS_OK;
 }
 
 static Status begin(ImageReader *reader, const char *path, Err *err)
 {
+    const ImageDecoder *decoder = NULL;
     TRY(mem_strdup(&reader->path, path, err));
     TRY(file_check_regular(path, err));
     reader->stream = fopen(path, "rb");
@@ -51,8 +49,12 @@ static Status begin(ImageReader *reader, const char *path, Err *err)
         return mem_out_of("to read", path, err);
     if (!reader->stream)
         return err_set(err, STATUS_INPUT, "%s: cannot be read: %s", path, strerror(errno));
-    TRY(choose_decoder(reader, err));
-    return reader->decoder->begin(reader->stream, reader->path, &reader->form, &reader->state, err);
+    TRY(choose_decoder(reader, &decoder, err));
+    if (!decoder)
+        return image_no_rows(path, err);
+    const ImageBytes file = {.name = reader->path};
+    TRY(imageinput_open(decoder, &file, reader->stream, &reader->input, err));
+    return guard_run(&reader->input->guard, decoder->begin, reader->input, err);
 }
 
 Status imagereader_open(ImageReader **out, const char *path, Err *err)
@@ -69,35 +71,33 @@ Status imagereader_open(ImageReader **out, const char *path, Err *err)
 
 const ImageForm *imagereader_form(const ImageReader *reader)
 {
-    return &reader->form;
+    return &reader->input->form;
 }
 
 const char *imagereader_note(const ImageReader *reader, const char *key)
 {
-    const ImageNotes *notes = reader->form.notes;
-    for (int i = 0; i < notes->count; i++)
-        if (strcmp(notes->notes[i].key, key) == 0)
-            return notes->notes[i].text;
-    return NULL;
+    return image_note(reader->input->form.notes, key);
 }
 
 Status imagereader_codes(ImageReader *reader, Picture *rows, Err *err)
 {
-    const ImageForm *form = &reader->form;
-    void *values = rows->bits == 8 ? (void *)rows->codes8 : (void *)rows->codes16;
+    ImageInput *input = reader->input;
+    const ImageForm *form = &input->form;
     assert(rows->width == form->width && rows->channels == form->channels &&
            rows->bits == form->bits && reader->next + rows->height <= form->height);
-    TRY(reader->decoder->rows(reader->state, values, rows->height, err));
+    input->rows = rows->bits == 8 ? (void *)rows->codes8 : (void *)rows->codes16;
+    input->n_rows = rows->height;
+    TRY(guard_run(&input->guard, input->decoder->rows, input, err));
     reader->next += rows->height;
-    return reader->next == form->height ? reader->decoder->end(reader->state, err) : STATUS_OK;
+    return reader->next == form->height ? guard_run(&input->guard, input->decoder->end, input, err)
+                                        : STATUS_OK;
 }
 
 void imagereader_close(ImageReader *reader)
 {
     if (!reader)
         return;
-    if (reader->decoder)
-        reader->decoder->release(reader->state);
+    imageinput_close(reader->input);
     if (reader->stream)
         fclose(reader->stream);
     free(reader->path);

@@ -1,5 +1,6 @@
-/* What a writer adds to the format's encoder: the file, under a temporary name until it is whole,
- * and the number of the next row. Whole pictures and planes go the same way in one step. */
+/* An ImageWriter adds two things to the format's encoder: the file, which has a temporary name
+ * until it is complete, and the index of the next row. Whole pictures and planes are written in one
+ * step. */
 #include "image/formats.h"
 
 #include <assert.h>
@@ -10,12 +11,12 @@
 
 struct ImageWriter {
     const RowEncoder *encoder;
-    void *state;
+    ImageOutput *output; /* owned */
     OutFile file;
-    char *path;      /* owned; for sentences */
-    ImageForm form;  /* of what is handed over */
-    int next;        /* row */
-    void *inked_row; /* owned; NULL unless colours become inks */
+    char *path;      /* owned; for errors */
+    ImageForm form;  /* of the rows that the caller hands over */
+    int next;        /* index of the next row */
+    void *inked_row; /* owned; NULL unless colours are converted to inks */
 };
 
 const char *image_note(const ImageNotes *notes, const char *key)
@@ -26,17 +27,118 @@ const char *image_note(const ImageNotes *notes, const char *key)
     return NULL;
 }
 
-Status image_description(const ImageNotes *notes, char **text, Err *err)
+/* ---- encoders -------------------------------------------------------------------------------- */
+
+/* Sets output->description. */
+static Status describe(ImageOutput *output, Err *err)
 {
+    const ImageNotes *notes = output->form.notes;
     Text lines = TEXT_INIT;
     for (int i = 0, n = 0; notes && i < notes->count; i++)
         if (strcmp(notes->notes[i].key, "Software") != 0 &&
             strcmp(notes->notes[i].key, "Shard") != 0)
             text_printf(&lines, "%s%s", n++ ? "\n" : "", notes->notes[i].text);
-    Status status = text_take(&lines, text, err);
+    Status status = text_take(&lines, &output->description, err);
     text_release(&lines);
     return status;
 }
+
+/* A GuardedWork. */
+static Status release_encoder(void *self, Err *err)
+{
+    (void)err;
+    ImageOutput *output = self;
+    output->encoder->release(output);
+    return STATUS_OK;
+}
+
+static void free_output(ImageOutput *output)
+{
+    if (!output)
+        return;
+    if (output->encoder->release)
+        (void)!guard_run(&output->guard, release_encoder, output, NULL);
+    free(output->profile.bytes);
+    free(output->description);
+    free(output->chunk);
+    free(output);
+}
+
+static Status begin_output(ImageOutput *output, Err *err)
+{
+    const ImageForm *form = &output->form;
+    output->row_bytes = (size_t)form->width * (size_t)form->channels * (size_t)form->bits / 8;
+    if (output->encoder->has_profile) {
+        TRY(image_profile(form, &output->profile, err));
+        TRY(describe(output, err));
+    }
+    TRY(guard_run(&output->guard, output->encoder->begin, output, err));
+    return output->chunk_rows ? mem_calloc(&output->chunk, (size_t)output->chunk_rows,
+                                           output->row_bytes, "rows of a file", err)
+                              : STATUS_OK;
+}
+
+/* Writes what comes before the rows. On failure *out is unchanged. Else free it with
+ * free_output. */
+static Status open_output(const RowEncoder *encoder, FILE *stream, const ImageForm *form,
+                          ImageOutput **out, Err *err)
+{
+    ImageOutput *output;
+    TRY(mem_calloc(&output, 1, encoder->state_size, "writers", err));
+    output->guard.format = encoder->format;
+    output->guard.stream = stream;
+    output->encoder = encoder;
+    output->stream = stream;
+    output->form = *form;
+    Status status = begin_output(output, err);
+    if (status == STATUS_OK)
+        *out = output;
+    else
+        free_output(output);
+    return status;
+}
+
+static Status encode(ImageOutput *output, const void *values, int n, Err *err)
+{
+    output->values = values;
+    output->n = n;
+    TRY(guard_run(&output->guard, output->encoder->rows, output, err));
+    output->first += n;
+    return STATUS_OK;
+}
+
+/* Writes the next `n` rows, or gathers them until a chunk is full. */
+static Status put_rows(ImageOutput *output, const void *values, int n, Err *err)
+{
+    if (!output->chunk)
+        return encode(output, values, n, err);
+    for (int y = 0; y < n; y++) {
+        memcpy(output->chunk + (size_t)output->n_gathered++ * output->row_bytes,
+               (const uint8_t *)values + (size_t)y * output->row_bytes, output->row_bytes);
+        if (output->n_gathered < output->chunk_rows &&
+            output->first + output->n_gathered < output->form.height)
+            continue;
+        TRY(encode(output, output->chunk, output->n_gathered, err));
+        output->n_gathered = 0;
+    }
+    return STATUS_OK;
+}
+
+static Status end_output(ImageOutput *output, Err *err)
+{
+    return output->encoder->end ? guard_run(&output->guard, output->encoder->end, output, err)
+                                : STATUS_OK;
+}
+
+Status imageoutput_check_seekable(const ImageOutput *output, Err *err)
+{
+    if (fseeko(output->stream, 0, SEEK_CUR) == 0)
+        return STATUS_OK;
+    return err_set(err, STATUS_IO, "the format %s needs a file, not a pipe",
+                   output->encoder->format);
+}
+
+/* ---- files ----------------------------------------------------------------------------------- */
 
 /* NULL when the extension is none of theirs. */
 static const RowEncoder *encoder_of(const char *path)
@@ -63,7 +165,7 @@ bool image_keeps_dpi(const char *path)
 bool image_keeps_inks(const char *path)
 {
     const RowEncoder *encoder = encoder_of(path);
-    return encoder && encoder->keeps_inks;
+    return encoder && encoder->has_profile;
 }
 
 bool image_keeps_alpha(const char *path)
@@ -83,7 +185,7 @@ static Status check_inks(const char *path, const ImageForm *form, const RowEncod
 {
     if (!form->packing.inks)
         return STATUS_OK;
-    if (!encoder->keeps_inks)
+    if (!encoder->has_profile)
         return err_set(err, STATUS_USAGE, "%s: only .tif and .jpg hold colours of a press", path);
     if (form->channels != 3)
         return err_set(err, STATUS_USAGE, "%s: only opaque pictures in colour go to a press", path);
@@ -115,17 +217,18 @@ static Status choose_encoder(const char *path, const ImageForm *form, const RowE
 
 static Status begin(ImageWriter *writer, Err *err)
 {
-    ImageForm form = writer->form; /* as the file has it */
-    int channels = writer->encoder == &ppm_encoder ? 3 : form.channels;
+    const RowEncoder *encoder = writer->encoder;
+    ImageForm form = writer->form; /* of the file */
+    int channels = encoder->channels ? encoder->channels : form.channels;
     double bytes = (double)form.width * form.height * channels * form.bits / 8;
-    if (writer->encoder->folds > 0)
-        TRY(outfile_check_room(&writer->file, bytes / writer->encoder->folds, err));
+    if (encoder->folds > 0)
+        TRY(outfile_check_room(&writer->file, bytes / encoder->folds, err));
     if (form.packing.inks) {
         form.channels = 4;
         TRY(mem_calloc(&writer->inked_row, (size_t)form.width, (size_t)form.bits / 2,
                        "bytes of a row", err));
     }
-    Status status = writer->encoder->begin(writer->file.stream, &form, &writer->state, err);
+    Status status = open_output(encoder, writer->file.stream, &form, &writer->output, err);
     if (status != STATUS_OK)
         err_prefix(err, "%s: ", writer->path);
     return status;
@@ -134,23 +237,22 @@ static Status begin(ImageWriter *writer, Err *err)
 Status imagewriter_open(ImageWriter **out, const char *path, const ImageForm *form, Err *err)
 {
     const RowEncoder *encoder = NULL;
+    ImageWriter *writer = NULL;
+    Status status;
     TRY(choose_encoder(path, form, &encoder, err));
-    ImageWriter *writer;
     TRY(mem_calloc(&writer, 1, sizeof *writer, "writers", err));
     *writer = (ImageWriter){.encoder = encoder, .form = *form};
-    Status status = mem_strdup(&writer->path, path, err);
-    if (status == STATUS_OK)
-        status = outfile_open(&writer->file, path, err);
-    if (status == STATUS_OK)
-        status = begin(writer, err);
-    if (status != STATUS_OK) {
-        imagewriter_discard(writer);
-        return status;
-    }
+    TRY_GOTO(mem_strdup(&writer->path, path, err));
+    TRY_GOTO(outfile_open(&writer->file, path, err));
+    TRY_GOTO(begin(writer, err));
     *out = writer;
     return STATUS_OK;
+done:
+    imagewriter_discard(writer);
+    return status;
 }
 
+/* Releases all but the encoder and the file. */
 static void release(ImageWriter *writer)
 {
     free(writer->inked_row);
@@ -158,7 +260,7 @@ static void release(ImageWriter *writer)
     free(writer);
 }
 
-/* Row by row, in the colours of the press. */
+/* Converts the colours to inks, row by row. */
 static Status write_inked(ImageWriter *writer, const uint8_t *values, int n, Err *err)
 {
     const ImageForm *form = &writer->form;
@@ -166,7 +268,7 @@ static Status write_inked(ImageWriter *writer, const uint8_t *values, int n, Err
     for (int y = 0; y < n; y++) {
         inks_convert(form->packing.inks, values + (size_t)y * row_bytes, writer->inked_row,
                      (size_t)form->width);
-        TRY(writer->encoder->rows(writer->state, writer->inked_row, writer->next + y, 1, err));
+        TRY(put_rows(writer->output, writer->inked_row, 1, err));
     }
     return STATUS_OK;
 }
@@ -174,9 +276,8 @@ static Status write_inked(ImageWriter *writer, const uint8_t *values, int n, Err
 static Status write_rows(ImageWriter *writer, const void *values, int n, Err *err)
 {
     assert(n >= 0 && writer->next + n <= writer->form.height);
-    Status status = writer->inked_row
-                        ? write_inked(writer, values, n, err)
-                        : writer->encoder->rows(writer->state, values, writer->next, n, err);
+    Status status = writer->inked_row ? write_inked(writer, values, n, err)
+                                      : put_rows(writer->output, values, n, err);
     writer->next += n;
     if (status == STATUS_OK && ferror(writer->file.stream))
         status = err_set(err, STATUS_IO, "writing failed: %s", strerror(errno));
@@ -185,12 +286,17 @@ static Status write_rows(ImageWriter *writer, const void *values, int n, Err *er
     return status;
 }
 
+/* Returns the codes of all rows. */
+static const void *codes_of(const Picture *picture)
+{
+    return picture->bits == 8 ? (const void *)picture->codes8 : (const void *)picture->codes16;
+}
+
 Status imagewriter_codes(ImageWriter *writer, const Picture *rows, Err *err)
 {
     assert(rows->width == writer->form.width && rows->channels == writer->form.channels &&
            rows->bits == writer->form.bits);
-    const void *values = rows->bits == 8 ? (const void *)rows->codes8 : (const void *)rows->codes16;
-    return write_rows(writer, values, rows->height, err);
+    return write_rows(writer, codes_of(rows), rows->height, err);
 }
 
 Status imagewriter_floats(ImageWriter *writer, const Plane *rows, Err *err)
@@ -200,13 +306,12 @@ Status imagewriter_floats(ImageWriter *writer, const Plane *rows, Err *err)
     return write_rows(writer, rows->values, rows->height, err);
 }
 
-/* An encoder's last words go to the file, so it is released first. */
+/* An encoder may still write to the file when it is released, so the file is closed last. */
 Status imagewriter_commit(ImageWriter *writer, Err *err)
 {
     assert(writer->next == writer->form.height);
-    const RowEncoder *encoder = writer->encoder;
-    Status status = encoder->end ? encoder->end(writer->state, err) : STATUS_OK;
-    encoder->release(writer->state);
+    Status status = end_output(writer->output, err);
+    free_output(writer->output);
     if (status == STATUS_OK) {
         status = outfile_commit(&writer->file, err);
     } else {
@@ -221,10 +326,12 @@ void imagewriter_discard(ImageWriter *writer)
 {
     if (!writer)
         return;
-    writer->encoder->release(writer->state);
+    free_output(writer->output);
     outfile_discard(&writer->file);
     release(writer);
 }
+
+/* ---- whole images ---------------------------------------------------------------------------- */
 
 static ImageForm form_of(const Picture *picture, Encoding encoding, const ImageNotes *notes)
 {
@@ -278,32 +385,39 @@ Status plane_write_packed(const Plane *plane, const char *path, ImagePacking pac
     return finish(writer, imagewriter_floats(writer, plane, err), err);
 }
 
+/* Writes the PNG file to a stream. */
+static Status stream_png(const Picture *picture, const ImageForm *form, FILE *stream, Err *err)
+{
+    ImageOutput *output = NULL;
+    Status status;
+    TRY_GOTO(open_output(&png_encoder, stream, form, &output, err));
+    TRY_GOTO(put_rows(output, codes_of(picture), picture->height, err));
+    status = end_output(output, err);
+done:
+    free_output(output);
+    return status;
+}
+
 Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNotes *notes, Text *out,
                       Err *err)
 {
     const ImageForm form = form_of(picture, encoding, notes);
-    const void *codes =
-        picture->bits == 8 ? (const void *)picture->codes8 : (const void *)picture->codes16;
     char *bytes = NULL;
     size_t size = 0;
-    void *state = NULL;
+    Status status;
     FILE *stream = open_memstream(&bytes, &size);
     if (!stream)
         return err_set(err, STATUS_MEMORY, "out of memory: no room for a PNG: %s", strerror(errno));
-    Status status = png_encoder.begin(stream, &form, &state, err);
-    if (status == STATUS_OK)
-        status = png_encoder.rows(state, codes, 0, picture->height, err);
-    if (status == STATUS_OK)
-        status = png_encoder.end(state, err);
-    png_encoder.release(state);
-    /* Closing gives the bytes a block of their own, and tells only by NULL that there was no
-     * room. */
-    if ((fclose(stream) != 0 || !bytes) && status == STATUS_OK)
-        status = err_set(err, STATUS_MEMORY, "out of memory: no room for a PNG of %zu bytes", size);
-    if (status == STATUS_OK) {
+    status = stream_png(picture, &form, stream, err);
+    /* Closing moves the bytes to a block of their own. A failure shows only as NULL. */
+    bool closed = fclose(stream) == 0 && bytes;
+    TRY_GOTO(status);
+    if (closed)
         text_append(out, bytes, size);
-        status = text_check(out, err);
-    }
+    status =
+        closed ? text_check(out, err)
+               : err_set(err, STATUS_MEMORY, "out of memory: no room for a PNG of %zu bytes", size);
+done:
     free(bytes);
     return status;
 }

@@ -4,89 +4,70 @@
  * the black of the press (black point compensation), as layout programs do. */
 #include "image/formats.h"
 
-#include <assert.h>
-#include <errno.h>
 #include <lcms2_plugin.h>
-#include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct Inks {
+    Guard guard;
     cmsContext context;
     cmsHTRANSFORM transform;
     int bits;
     InkIntent intent;
-    ImageProfile profile; /* owned */
-    const char *fault;    /* of the profile, in our words; NULL: none */
-    char complaint[200];  /* and in lcms's, "" when there is none */
+    ImageProfile profile;
+    const char *fault; /* what is wrong with the profile; NULL: nothing */
 };
 
-/* ---- memory ---------------------------------------------------------------------------------- */
+/* ---- memory and errors ----------------------------------------------------------------------- */
 
-static _Thread_local jmp_buf *way_out; /* NULL outside of guarded */
-
-static void *take(cmsContext context, cmsUInt32Number size)
+/* Little CMS crashes where some allocations fail, so a failed one leaves the guard. */
+static void *on_malloc(cmsContext context, cmsUInt32Number size)
 {
     (void)context;
     void *memory = malloc(size);
-    if (!memory && way_out)
-        longjmp(*way_out, 1);
+    if (!memory)
+        guard_leave_without_memory();
     return memory;
 }
 
-static void *take_more(cmsContext context, void *memory, cmsUInt32Number size)
+static void *on_realloc(cmsContext context, void *memory, cmsUInt32Number size)
 {
     (void)context;
     void *moved = realloc(memory, size);
-    if (!moved && way_out)
-        longjmp(*way_out, 1);
+    if (!moved)
+        guard_leave_without_memory();
     return moved;
 }
 
-static void give(cmsContext context, void *memory)
+static void on_free(cmsContext context, void *memory)
 {
     (void)context;
     free(memory);
 }
 
-static cmsContext make_context(char *complaint)
+static void on_error(cmsContext context, cmsUInt32Number code, const char *message)
+{
+    (void)context;
+    (void)code;
+    guard_complain(message);
+}
+
+static cmsContext make_context(void)
 {
     cmsPluginMemHandler plugin = {.base = {.Magic = cmsPluginMagicNumber,
                                            .ExpectedVersion = LCMS_VERSION,
                                            .Type = cmsPluginMemHandlerSig},
-                                  .MallocPtr = take,
-                                  .FreePtr = give,
-                                  .ReallocPtr = take_more};
-    return cmsCreateContext(&plugin, complaint);
-}
-
-/* Whether `work`, which calls lcms, came to its end. Where it did not, what it had is lost. */
-static bool guarded(void (*work)(void *self), void *self)
-{
-    jmp_buf here;
-    if (setjmp(here)) {
-        way_out = NULL;
-        return false;
-    }
-    way_out = &here;
-    work(self);
-    way_out = NULL;
-    return true;
-}
-
-static void on_error(cmsContext context, cmsUInt32Number code, const char *message)
-{
-    (void)code;
-    char *complaint = cmsGetContextUserData(context);
-    if (complaint && !*complaint) {
-        snprintf(complaint, 200, "%s", message);
-        image_plain_text(complaint);
-    }
+                                  .MallocPtr = on_malloc,
+                                  .FreePtr = on_free,
+                                  .ReallocPtr = on_realloc};
+    cmsContext context = cmsCreateContext(&plugin, NULL);
+    cmsSetLogErrorHandlerTHR(context, on_error);
+    return context;
 }
 
 /* ---- the profile of sRGB --------------------------------------------------------------------- */
 
-/* Leaves the profile without bytes when there is no room for them. */
+/* Leaves the profile without bytes, and ENOMEM in errno, if memory runs out. */
 static void save(cmsHPROFILE from, ImageProfile *profile)
 {
     static const uint8_t date[12] = {2026 >> 8, 2026 & 255, 0, 1, 0, 1};
@@ -99,25 +80,28 @@ static void save(cmsHPROFILE from, ImageProfile *profile)
     memcpy(profile->bytes + DATE, date, sizeof date);
 }
 
-static void make_srgb(void *profile)
+/* A GuardedWork. */
+static Status make_srgb(void *profile, Err *err)
 {
-    cmsContext context = make_context(NULL);
+    (void)err;
+    cmsContext context = make_context();
     cmsHPROFILE srgb = cmsCreate_sRGBProfileTHR(context);
     save(srgb, profile);
     cmsCloseProfile(srgb);
     cmsDeleteContext(context);
+    return STATUS_OK;
 }
 
 static Status srgb_profile(ImageProfile *profile, Err *err)
 {
+    Guard guard = {.format = "ICC", .name = "the colour profile"};
     ImageProfile made = {0};
-    errno = 0;
-    if (guarded(make_srgb, &made) && made.bytes && errno != ENOMEM) {
+    Status status = guard_run(&guard, make_srgb, &made, err);
+    if (status == STATUS_OK)
         *profile = made;
-        return STATUS_OK;
-    }
-    free(made.bytes);
-    return mem_out_of("for", "the colour profile", err);
+    else
+        free(made.bytes);
+    return status;
 }
 
 Status image_profile(const ImageForm *form, ImageProfile *profile, Err *err)
@@ -148,38 +132,36 @@ static void make_transform(Inks *inks, cmsHPROFILE press)
     cmsCloseProfile(srgb);
 }
 
-/* Leaves in inks->fault what is wrong with the profile, NULL when nothing is. */
-static void open_profile(void *self)
+/* A GuardedWork. Sets inks->fault to what is wrong with the profile. */
+static Status open_profile(void *self, Err *err)
 {
+    (void)err;
     Inks *inks = self;
     inks->fault = "is not a sound ICC profile";
-    inks->context = make_context(inks->complaint);
-    cmsSetLogErrorHandlerTHR(inks->context, on_error);
+    inks->context = make_context();
     cmsHPROFILE press = cmsOpenProfileFromMemTHR(inks->context, inks->profile.bytes,
                                                  (cmsUInt32Number)inks->profile.size);
     if (!press)
-        return;
+        return STATUS_OK;
     inks->fault = "is the profile of other colours than cyan, magenta, yellow and black";
     if (cmsGetColorSpace(press) == cmsSigCmykData) {
         make_transform(inks, press);
         inks->fault = inks->transform ? NULL : "is no profile that colours can be printed by";
     }
     cmsCloseProfile(press);
+    return STATUS_OK;
 }
 
 static Status prepare(Inks *inks, const char *path, Err *err)
 {
-    errno = 0;
-    if (!guarded(open_profile, inks)) {
-        inks->context = inks->transform = NULL;
-        return mem_out_of("for the profile", path, err);
-    }
-    if (errno == ENOMEM)
-        return mem_out_of("for the profile", path, err);
+    inks->guard.format = "ICC";
+    inks->guard.name = path;
+    TRY(guard_run(&inks->guard, open_profile, inks, err));
+    const char *complaint = inks->guard.complaint;
     if (!inks->fault)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "%s: %s%s%s", path, inks->fault, *inks->complaint ? ": " : "",
-                   inks->complaint);
+    return err_set(err, STATUS_INPUT, "%s: %s%s%s", path, inks->fault, *complaint ? ": " : "",
+                   complaint);
 }
 
 static bool is_profile(const char *start, size_t count)
@@ -191,30 +173,30 @@ Status inks_read(Inks **out, const char *path, InkIntent intent, int bits, Err *
 {
     static const FileForm form = {
         .name = "an ICC profile", .most_bytes = 64e6, .begins = is_profile};
-    Inks *inks;
+    Inks *inks = NULL;
     char *bytes = NULL;
-    TRY(mem_calloc(&inks, 1, sizeof *inks, "profiles", err));
+    Status status;
+    TRY_GOTO(mem_calloc(&inks, 1, sizeof *inks, "profiles", err));
     inks->bits = bits;
     inks->intent = intent;
-    Status status = file_read(path, &form, &bytes, &inks->profile.size, err);
+    TRY_GOTO(file_read(path, &form, &bytes, &inks->profile.size, err));
     inks->profile.bytes = (uint8_t *)bytes;
-    if (status == STATUS_OK)
-        status = prepare(inks, path, err);
-    if (status != STATUS_OK) {
-        inks_free(inks);
-        return status;
-    }
+    TRY_GOTO(prepare(inks, path, err));
     *out = inks;
     return STATUS_OK;
+done:
+    inks_free(inks);
+    return status;
 }
 
+/* A context whose guard was left cannot be used, and what it holds is lost. */
 void inks_free(Inks *inks)
 {
     if (!inks)
         return;
-    if (inks->transform)
+    if (inks->transform && !inks->guard.left)
         cmsDeleteTransform(inks->transform);
-    if (inks->context)
+    if (inks->context && !inks->guard.left)
         cmsDeleteContext(inks->context);
     free(inks->profile.bytes);
     free(inks);

@@ -31,8 +31,11 @@ static void write_float(uint8_t *bytes, float value)
         bytes[i] = (uint8_t)(bits >> 8 * i & 255);
 }
 
-static Status pfm_decode(const ImageBytes *file, Image *image, Err *err)
+static Status decode(void *work, Err *err)
 {
+    ImageInput *input = work;
+    const ImageBytes *file = &input->file;
+    Plane *plane = &input->image.plane;
     HeaderCursor cursor = {.file = *file, .at = 2};
     long long width, height;
     double scale;
@@ -53,71 +56,70 @@ static Status pfm_decode(const ImageBytes *file, Image *image, Err *err)
     int channels = file->bytes[1] == 'F' ? 3 : 1;
     size_t row_values = (size_t)width * (size_t)channels;
     TRY(header_end(&cursor, row_values * (size_t)height * 4, err));
-    Plane made;
-    TRY(plane_init(&made, (int)width, (int)height, channels, err));
-    for (int y = 0; y < made.height; y++) {
+    TRY(plane_init(plane, (int)width, (int)height, channels, err));
+    for (int y = 0; y < plane->height; y++) {
         const uint8_t *from =
-            file->bytes + cursor.at + (size_t)(made.height - 1 - y) * row_values * 4;
-        float *to = made.values + (size_t)y * row_values;
+            file->bytes + cursor.at + (size_t)(plane->height - 1 - y) * row_values * 4;
+        float *to = plane->values + (size_t)y * row_values;
         for (size_t i = 0; i < row_values; i++)
             to[i] = read_float(from + 4 * i, scale < 0);
     }
-    image->plane = made;
     return STATUS_OK;
 }
 
-const ImageDecoder pfm_decoder = {.is = pfm_is, .decode = pfm_decode};
+const ImageDecoder pfm_decoder = {
+    .format = "PFM", .state_size = sizeof(ImageInput), .is = pfm_is, .decode = decode};
 
 /* ------------------------------------------------------------------------------------ writing */
 
 typedef struct PfmWriter {
-    FILE *stream;
-    int height;
-    size_t row_values;
-    off_t start;  /* of the pixels */
+    ImageOutput output;
+    off_t start;  /* offset of the pixels in the file */
     uint8_t *row; /* owned */
 } PfmWriter;
 
-static void release_writer(void *self)
+static Status begin(void *work, Err *err)
 {
-    PfmWriter *writer = self;
-    if (writer)
-        free(writer->row);
-    free(writer);
+    PfmWriter *self = work;
+    const ImageForm *form = &self->output.form;
+    self->start = fprintf(self->output.stream, "%s\n%d %d\n-1.0\n",
+                          form->channels == 3 ? "PF" : "Pf", form->width, form->height);
+    return mem_calloc(&self->row, self->output.row_bytes, 1, "bytes of a row", err);
 }
 
-static Status begin(FILE *stream, const ImageForm *form, void **self, Err *err)
+/* The file begins with the last row. Unless the whole plane is written at once, the file must be
+ * seekable. */
+static Status write_rows(void *work, Err *err)
 {
-    PfmWriter *writer;
-    TRY(mem_calloc(&writer, 1, sizeof *writer, "writers", err));
-    *self = writer;
-    *writer = (PfmWriter){.stream = stream,
-                          .height = form->height,
-                          .row_values = (size_t)form->width * (size_t)form->channels};
-    writer->start = fprintf(stream, "%s\n%d %d\n-1.0\n", form->channels == 3 ? "PF" : "Pf",
-                            form->width, form->height);
-    return mem_calloc(&writer->row, writer->row_values, 4, "bytes of a row", err);
-}
-
-/* The file begins with the last row, so all but whole planes need a file with places. */
-static Status write_rows(void *self, const void *values, int first, int n, Err *err)
-{
-    PfmWriter *writer = self;
-    off_t rows_below = writer->height - first - n;
-    if (n < writer->height &&
-        fseeko(writer->stream, writer->start + rows_below * (off_t)writer->row_values * 4,
-               SEEK_SET) != 0)
+    PfmWriter *self = work;
+    const ImageOutput *output = &self->output;
+    const int height = output->form.height;
+    const size_t row_bytes = output->row_bytes, row_values = row_bytes / sizeof(float);
+    off_t rows_below = height - output->first - output->n;
+    if (output->n < height &&
+        fseeko(output->stream, self->start + rows_below * (off_t)row_bytes, SEEK_SET) != 0)
         return err_set(err, STATUS_IO,
                        "a PFM begins with its last row, so one that does not fit into memory needs "
                        "a file, not a pipe");
-    for (int y = n - 1; y >= 0; y--) {
-        const float *from = (const float *)values + (size_t)y * writer->row_values;
-        for (size_t i = 0; i < writer->row_values; i++)
-            write_float(writer->row + 4 * i, from[i]);
-        fwrite(writer->row, 4, writer->row_values, writer->stream);
+    for (int y = output->n - 1; y >= 0; y--) {
+        const float *from = (const float *)output->values + (size_t)y * row_values;
+        for (size_t i = 0; i < row_values; i++)
+            write_float(self->row + 4 * i, from[i]);
+        fwrite(self->row, 1, row_bytes, output->stream);
     }
     return STATUS_OK;
 }
 
-const RowEncoder pfm_encoder = {
-    .begin = begin, .rows = write_rows, .release = release_writer, .folds = 1, .floats = true};
+static void release(void *work)
+{
+    PfmWriter *self = work;
+    free(self->row);
+}
+
+const RowEncoder pfm_encoder = {.format = "PFM",
+                                .state_size = sizeof(PfmWriter),
+                                .begin = begin,
+                                .rows = write_rows,
+                                .release = release,
+                                .folds = 1,
+                                .floats = true};

@@ -165,8 +165,11 @@ static void rescale(Picture *picture, unsigned maximum)
                     (uint16_t)((picture_code(picture, i) * wanted + maximum / 2) / maximum));
 }
 
-static Status pnm_decode(const ImageBytes *file, Image *image, Err *err)
+static Status decode(void *work, Err *err)
 {
+    ImageInput *input = work;
+    const ImageBytes *file = &input->file;
+    Picture *picture = &input->image.picture;
     HeaderCursor cursor = {.file = *file};
     PnmHeader header;
     TRY(file->bytes[1] == '7' ? read_pam_header(&cursor, &header, err)
@@ -178,93 +181,77 @@ static Status pnm_decode(const ImageBytes *file, Image *image, Err *err)
         return err_set(err, STATUS_INPUT,
                        "%s: its header announces %zu values, more than its %zu bytes can hold",
                        file->name, n, file->size);
-    Picture made;
-    TRY(picture_init(&made, header.width, header.height, header.channels,
+    TRY(picture_init(picture, header.width, header.height, header.channels,
                      header.maximum > 255 ? 16 : 8, err));
-    Status status = header.plain ? read_plain(&cursor, &header, &made, err)
-                                 : read_binary(&cursor, &header, &made, err);
-    if (status != STATUS_OK) {
-        picture_release(&made);
-        return status;
-    }
-    rescale(&made, header.maximum);
-    image->picture = made;
+    TRY(header.plain ? read_plain(&cursor, &header, picture, err)
+                     : read_binary(&cursor, &header, picture, err));
+    rescale(picture, header.maximum);
     return STATUS_OK;
 }
 
-const ImageDecoder pnm_decoder = {.is = pnm_is, .decode = pnm_decode};
+const ImageDecoder pnm_decoder = {
+    .format = "PNM", .state_size = sizeof(ImageInput), .is = pnm_is, .decode = decode};
 
-/* ------------------------------------------------------------------------------------ writing */
+/* ---- writing --------------------------------------------------------------------------------- */
 
 typedef struct PnmWriter {
-    FILE *stream;
-    size_t samples; /* a row, in memory */
-    int copies;     /* of each in the file */
-    bool deep;
-    uint8_t *row; /* owned */
+    ImageOutput output;
+    int copies;   /* of each code in the file */
+    uint8_t *row; /* owned; NULL: the rows in memory have the bytes of the file */
 } PnmWriter;
 
-static void release_writer(void *self)
+/* There are no comment lines, since libvips cannot read them. */
+static Status begin(void *work, Err *err)
 {
-    PnmWriter *writer = self;
-    if (writer)
-        free(writer->row);
-    free(writer);
+    PnmWriter *self = work;
+    const ImageForm *form = &self->output.form;
+    const int channels = self->output.encoder->channels;
+    self->copies = channels / form->channels;
+    fprintf(self->output.stream, "P%c\n%d %d\n%d\n", channels == 1 ? '5' : '6', form->width,
+            form->height, form->bits == 16 ? 65535 : 255);
+    return form->bits == 8 && self->copies == 1
+               ? STATUS_OK
+               : mem_calloc(&self->row, self->output.row_bytes, (size_t)self->copies,
+                            "bytes of a row", err);
 }
 
-/* No comment lines: libvips stumbles over them. */
-static Status begin(FILE *stream, const ImageForm *form, int channels, void **self, Err *err)
+static Status write_rows(void *work, Err *err)
 {
-    PnmWriter *writer;
-    TRY(mem_calloc(&writer, 1, sizeof *writer, "writers", err));
-    *self = writer;
-    *writer = (PnmWriter){.stream = stream,
-                          .samples = (size_t)form->width * (size_t)form->channels,
-                          .copies = channels / form->channels,
-                          .deep = form->bits == 16};
-    fprintf(stream, "P%c\n%d %d\n%d\n", channels == 1 ? '5' : '6', form->width, form->height,
-            writer->deep ? 65535 : 255);
-    return mem_calloc(&writer->row, writer->samples, (size_t)writer->copies * 2, "bytes of a row",
-                      err);
-}
-
-static Status begin_ppm(FILE *stream, const ImageForm *form, void **self, Err *err)
-{
-    return begin(stream, form, 3, self, err);
-}
-
-static Status begin_pgm(FILE *stream, const ImageForm *form, void **self, Err *err)
-{
-    return begin(stream, form, 1, self, err);
-}
-
-static Status write_rows(void *self, const void *values, int first, int n, Err *err)
-{
-    (void)first;
     (void)err;
-    PnmWriter *writer = self;
-    const uint8_t *codes8 = values;
-    const uint16_t *codes16 = values;
-    if (!writer->deep && writer->copies == 1) { /* the file's own bytes */
-        fwrite(codes8, writer->samples, (size_t)n, writer->stream);
+    PnmWriter *self = work;
+    const ImageOutput *output = &self->output;
+    const bool deep = output->form.bits == 16;
+    const size_t samples = output->row_bytes / (deep ? 2 : 1);
+    const uint8_t *codes8 = output->values;
+    const uint16_t *codes16 = output->values;
+    if (!self->row) {
+        fwrite(codes8, output->row_bytes, (size_t)output->n, output->stream);
         return STATUS_OK;
     }
-    for (int y = 0; y < n; y++) {
-        uint8_t *at = writer->row;
-        for (size_t i = 0; i < writer->samples; i++) {
-            uint16_t code = writer->deep ? *codes16++ : *codes8++;
-            for (int copy = 0; copy < writer->copies; copy++) {
-                if (writer->deep)
+    for (int y = 0; y < output->n; y++) {
+        uint8_t *at = self->row;
+        for (size_t i = 0; i < samples; i++) {
+            uint16_t code = deep ? *codes16++ : *codes8++;
+            for (int copy = 0; copy < self->copies; copy++) {
+                if (deep)
                     *at++ = (uint8_t)(code >> 8);
                 *at++ = (uint8_t)(code & 255);
             }
         }
-        fwrite(writer->row, 1, (size_t)(at - writer->row), writer->stream);
+        fwrite(self->row, 1, (size_t)(at - self->row), output->stream);
     }
     return STATUS_OK;
 }
 
-const RowEncoder ppm_encoder = {
-    .begin = begin_ppm, .rows = write_rows, .release = release_writer, .folds = 1};
-const RowEncoder pgm_encoder = {
-    .begin = begin_pgm, .rows = write_rows, .release = release_writer, .folds = 1};
+static void release(void *work)
+{
+    PnmWriter *self = work;
+    free(self->row);
+}
+
+#define PNM_ENCODER(file_channels)                                                                 \
+    {                                                                                              \
+        .format = "PNM", .state_size = sizeof(PnmWriter), .begin = begin, .rows = write_rows,      \
+        .release = release, .channels = (file_channels), .folds = 1                                \
+    }
+const RowEncoder ppm_encoder = PNM_ENCODER(3), pgm_encoder = PNM_ENCODER(1);

@@ -1,24 +1,20 @@
-/* libtiff 4.5 does not look at all that it is given: of 57 allocations of reading a small file it
- * reads through NULL after 3 that fail, and of 44 of writing one after 4. It takes its memory by
- * its own _TIFFmalloc, _TIFFcalloc and _TIFFrealloc, and calls these as any program may: so those
- * here come first, and a failed one does not return to libtiff but jumps out of it. Where a libtiff
- * is linked so that it calls its own, these are never called, and all is as libtiff has it. */
+/* libtiff 4.5 does not check all its allocations: of the 57 of reading a small file it reads
+ * through NULL after 3 that fail, and of the 44 of writing one after 4. It allocates by its own
+ * functions _TIFFmalloc, _TIFFcalloc and _TIFFrealloc, and calls them through the linker. The
+ * functions of these names here therefore replace them. A failed allocation does not return to
+ * libtiff but leaves the guard. A libtiff that is linked so that it calls its own functions never
+ * calls these, and behaves as libtiff does. */
 #include "image/tiff_stream.h"
 
-#include <errno.h>
-#include <setjmp.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/types.h>
 #include <tiffio.h>
 
-static _Thread_local jmp_buf *way_out; /* NULL outside of tiff_guard */
-
 static void *memory_or_leave(void *memory)
 {
-    if (!memory && way_out)
-        longjmp(*way_out, 1);
+    if (!memory)
+        guard_leave_without_memory();
     return memory;
 }
 
@@ -38,38 +34,7 @@ void *_TIFFrealloc(void *memory, tmsize_t size)
     return size > 0 ? memory_or_leave(moved) : moved;
 }
 
-Status tiff_guard(TiffWork *work, void *self, TiffStream *tiff, const char *name, Err *err)
-{
-    jmp_buf here;
-    if (setjmp(here)) {
-        way_out = NULL;
-        tiff->handle = NULL;
-        return mem_out_of("for the TIFF", name, err);
-    }
-    way_out = &here;
-    Status status = work(self, err);
-    way_out = NULL;
-    return status;
-}
-
-/* ---- what libtiff calls ---------------------------------------------------------------------- */
-
-Status tiff_guard_bytes(TiffWork *work, void *self, TiffStream *tiff, const ImageBytes *file,
-                        Err *err)
-{
-    errno = 0;
-    /* It is only read, whatever fmemopen's declaration says. */
-    tiff->bytes = (void *)(uintptr_t)file->bytes;
-    tiff->size = file->size;
-    tiff->stream = fmemopen(tiff->bytes, file->size, "rb");
-    if (!tiff->stream)
-        return mem_out_of("to read", file->name, err);
-    Status status = tiff_guard(work, self, tiff, file->name, err);
-    if (tiff->handle)
-        TIFFClose(tiff->handle);
-    fclose(tiff->stream);
-    return status;
-}
+/* ---- callbacks ------------------------------------------------------------------------------- */
 
 static tmsize_t on_read(thandle_t user, void *out, tmsize_t size)
 {
@@ -103,11 +68,12 @@ static toff_t on_size(thandle_t user)
     return (toff_t)size;
 }
 
-/* libtiff then reads where the bytes are, and goes to the stream for little but the header. */
+/* libtiff then reads from memory, and uses the stream for little more than the header. */
 static int on_map(thandle_t user, void **bytes, toff_t *size)
 {
     const TiffStream *tiff = user;
-    *bytes = tiff->bytes;
+    /* The bytes are only read, whatever the declaration of libtiff states. */
+    *bytes = (void *)(uintptr_t)tiff->bytes;
     *size = tiff->size;
     return tiff->bytes != NULL;
 }
@@ -125,10 +91,24 @@ static int on_complaint(TIFF *handle, void *user, const char *module, const char
                         va_list values)
 {
     (void)handle;
+    (void)user;
     (void)module;
-    TiffStream *tiff = user;
-    if (tiff && !*tiff->complaint)
-        vsnprintf(tiff->complaint, sizeof tiff->complaint, format, values);
+    char text[GUARD_TEXT];
+    vsnprintf(text, sizeof text, format, values);
+    guard_complain(text);
+    return 1;
+}
+
+static int on_warning(TIFF *handle, void *user, const char *module, const char *format,
+                      va_list values) PRINTF_LIKE(4, 0);
+static int on_warning(TIFF *handle, void *user, const char *module, const char *format,
+                      va_list values)
+{
+    (void)handle;
+    (void)user;
+    (void)module;
+    (void)format;
+    (void)values;
     return 1;
 }
 
@@ -137,8 +117,8 @@ bool tiff_open(TiffStream *tiff, const char *name, const char *mode)
     TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
     if (!options)
         return false;
-    TIFFOpenOptionsSetErrorHandlerExtR(options, on_complaint, tiff);
-    TIFFOpenOptionsSetWarningHandlerExtR(options, on_complaint, *mode == 'w' ? tiff : NULL);
+    TIFFOpenOptionsSetErrorHandlerExtR(options, on_complaint, NULL);
+    TIFFOpenOptionsSetWarningHandlerExtR(options, *mode == 'w' ? on_complaint : on_warning, NULL);
     tiff->handle = TIFFClientOpenExt(name, mode, tiff, on_read, on_write, on_seek, on_close,
                                      on_size, on_map, on_unmap, options);
     TIFFOpenOptionsFree(options);

@@ -2,7 +2,6 @@
  * where it has some. Only what VP8 compressed is lossy; VP8L keeps every code. */
 #include "image/formats.h"
 
-#include <errno.h>
 #include <string.h>
 #include <webp/decode.h>
 
@@ -10,11 +9,6 @@ static bool webp_is(const ImageBytes *file)
 {
     return file->size >= 12 && memcmp(file->bytes, "RIFF", 4) == 0 &&
            memcmp(file->bytes + 8, "WEBP", 4) == 0;
-}
-
-static Status unsound(const ImageBytes *file, Err *err)
-{
-    return err_set(err, STATUS_INPUT, "%s: is not a sound WebP file", file->name);
 }
 
 /* The bytes of a chunk of the container [WebP Container Specification], NULL when there is none. */
@@ -47,28 +41,24 @@ static Status check_features(const ImageBytes *file, const WebPBitstreamFeatures
                              file->size * 10000 + BLANK, err);
 }
 
-static Status webp_decode(const ImageBytes *file, Image *image, Err *err)
+/* libwebp does not distinguish a failed allocation from a broken file, but leaves ENOMEM. */
+static Status decode(void *work, Err *err)
 {
+    ImageInput *input = work;
+    const ImageBytes *file = &input->file;
+    Picture *picture = &input->image.picture;
     WebPBitstreamFeatures features;
-    Picture made;
     if (WebPGetFeatures(file->bytes, file->size, &features) != VP8_STATUS_OK)
-        return unsound(file, err);
+        return guard_failure(err);
     TRY(check_features(file, &features, err));
-    TRY(picture_init(&made, features.width, features.height, features.has_alpha ? 4 : 3, 8, err));
-    size_t stride = picture_stride(&made), bytes = stride * (size_t)made.height;
-    errno = 0; /* libwebp does not tell a failed allocation from a broken file, but leaves ENOMEM */
-    bool decoded =
-        features.has_alpha
-            ? WebPDecodeRGBAInto(file->bytes, file->size, made.codes8, bytes, (int)stride) != NULL
-            : WebPDecodeRGBInto(file->bytes, file->size, made.codes8, bytes, (int)stride) != NULL;
-    if (!decoded) {
-        const bool no_memory = errno == ENOMEM;
-        picture_release(&made);
-        return no_memory ? mem_out_of("to decode", file->name, err) : unsound(file, err);
-    }
-    image->picture = made;
-    image->lossy = features.format == 2 ? NULL : "WebP";
-    return STATUS_OK;
+    TRY(picture_init(picture, features.width, features.height, features.has_alpha ? 4 : 3, 8, err));
+    const size_t stride = picture_stride(picture), bytes = stride * (size_t)picture->height;
+    uint8_t *(*into)(const uint8_t *, size_t, uint8_t *, size_t, int) =
+        features.has_alpha ? WebPDecodeRGBAInto : WebPDecodeRGBInto;
+    input->image.lossy = features.format == 2 ? NULL : "WebP";
+    return into(file->bytes, file->size, picture->codes8, bytes, (int)stride) ? STATUS_OK
+                                                                              : guard_failure(err);
 }
 
-const ImageDecoder webp_decoder = {.is = webp_is, .decode = webp_decode};
+const ImageDecoder webp_decoder = {
+    .format = "WebP", .state_size = sizeof(ImageInput), .is = webp_is, .decode = decode};

@@ -1,7 +1,7 @@
 /* Lattice, cut, collapse, split, and then the proof: every edge has two triangles, one each way, or
- * lies on a rim; the rims are one closed way for each arm, which goes about its axis once; the
- * piece is connected; and points - edges + triangles = 2 - arms, that of a sphere with a
- * hole for each arm. */
+ * lies on a rim; the rims are one closed way for each stub, which goes about its axis once; the
+ * piece is connected; and points - edges + triangles = 2 - stubs, that of a sphere with a
+ * hole for each stub. */
 #include "mesh/junctionmesh.h"
 
 #include "mesh/patchcross.h"
@@ -25,105 +25,55 @@ static const double wide_hole = 0.25;
 static const double most_stopped = 0.1, lasting = 0.9;
 
 typedef struct Maker {
-    ZoneWorker *worker;
+    JunctionWorkspace *worker;
     const VesselTree *tree;
-    const ZonePlan *plan;
-    ZonePiece *piece;
+    const JunctionPlan *plan;
+    JunctionMesh *piece;
     PatchCrossing *crossing; /* of the last attempt */
     Err *err;
 } Maker;
 
-void zonepiece_release(ZonePiece *piece)
+void junctionmesh_release(JunctionMesh *piece)
 {
     free(piece->points);
     free(piece->triangles);
     free(piece->rims);
     free(piece->rim_points);
-    *piece = (ZonePiece){0};
+    *piece = (JunctionMesh){0};
 }
 
-void zoneworker_release(ZoneWorker *worker)
+void junctionworkspace_release(JunctionWorkspace *worker)
 {
-    zonetree_release(&worker->tree);
+    octree_release(&worker->tree);
     lattice_release(&worker->lattice);
-    mender_release(&worker->mender);
+    repairer_release(&worker->repairer);
     planecutter_release(&worker->cutter);
     collapser_release(&worker->collapser);
     refiner_release(&worker->refiner);
-    pairtable_release(&worker->edges);
+    keymap_release(&worker->edges);
     patch_release(&worker->patch);
     free(worker->next);
     free(worker->order);
-    *worker = (ZoneWorker){0};
-}
-
-static uint32_t root_of(uint32_t *root, uint32_t point)
-{
-    while (root[point] != point)
-        point = root[point] = root[root[point]];
-    return point;
-}
-
-/* How many connected parts the patch has; next[] becomes a forest of their points. */
-static size_t find_parts(const ZoneWorker *worker)
-{
-    const Patch *patch = &worker->patch;
-    size_t parts = patch->n_points;
-    for (uint32_t i = 0; i < patch->n_points; i++)
-        worker->next[i] = i;
-    for (size_t i = 0; i < patch->n_triangles; i++)
-        for (int k = 1; k < 3; k++) {
-            uint32_t a = root_of(worker->next, patch->triangles[i].at[0]);
-            uint32_t b = root_of(worker->next, patch->triangles[i].at[k]);
-            worker->next[a] = b;
-            parts -= a != b;
-        }
-    return parts;
-}
-
-/* Leaves the part with the most points alone: the others are tails of arms that another vessel
- * hid from the cut. What else is lost with them is found missing. */
-static Status keep_largest(ZoneWorker *worker, Err *err)
-{
-    Patch *patch = &worker->patch;
-    PlaneCutter *cutter = &worker->cutter; /* for its room, one number a point */
-    uint32_t best = 0;
-    TRY(mem_reserve(&worker->next, &worker->next_capacity, patch->n_points, sizeof *worker->next,
-                    "points of a junction", err));
-    if (find_parts(worker) < 2)
-        return STATUS_OK;
-    for (size_t i = 0; i < patch->n_points; i++)
-        cutter->renamed[i] = 0;
-    for (uint32_t i = 0; i < patch->n_points; i++) {
-        uint32_t root = root_of(worker->next, i);
-        cutter->renamed[root]++;
-        if (cutter->renamed[root] > cutter->renamed[best])
-            best = root;
-    }
-    for (size_t i = 0; i < patch->n_triangles; i++)
-        if (root_of(worker->next, patch->triangles[i].at[0]) != best)
-            patch->triangles[i].at[0] = NONE;
-    patch_compact(patch, cutter->renamed);
-    return STATUS_OK;
+    *worker = (JunctionWorkspace){0};
 }
 
 /* Fills next[] with the next point along a rim, NONE off the rims. False when an edge has two
  * triangles on one side, or is open off the rims. */
 static Status follow_edges(const Maker *maker, size_t *n_edges, bool *sound)
 {
-    ZoneWorker *worker = maker->worker;
+    JunctionWorkspace *worker = maker->worker;
     const Patch *patch = &worker->patch;
     TRY(mem_reserve(&worker->next, &worker->next_capacity, patch->n_points, sizeof *worker->next,
                     "points of a junction", maker->err));
     size_t corners = 3 * patch->n_triangles, open = 0;
-    TRY(pairtable_begin(&worker->edges, corners, maker->err));
+    TRY(keymap_begin(&worker->edges, corners, "points of a junction", maker->err));
     *sound = true;
     for (size_t i = 0; i < corners; i++) {
         const uint32_t *at = patch->triangles[i / 3].at;
         uint32_t *place;
         bool is_new;
         uint64_t key = (uint64_t)at[i % 3] << 32 | at[(i + 1) % 3];
-        TRY(pairtable_place(&worker->edges, key, &place, &is_new, maker->err));
+        TRY(keymap_put(&worker->edges, key, &place, &is_new, maker->err));
         *sound = *sound && is_new;
     }
     for (size_t i = 0; i < patch->n_points; i++)
@@ -131,11 +81,11 @@ static Status follow_edges(const Maker *maker, size_t *n_edges, bool *sound)
     for (size_t i = 0; i < corners; i++) {
         const uint32_t *at = patch->triangles[i / 3].at;
         uint32_t a = at[i % 3], b = at[(i + 1) % 3];
-        if (pairtable_find(&worker->edges, (uint64_t)b << 32 | a))
+        if (keymap_find(&worker->edges, (uint64_t)b << 32 | a))
             continue;
         open++;
-        *sound = *sound && patch->points[a].arm != NO_ARM &&
-                 patch->points[a].arm == patch->points[b].arm && worker->next[a] == NONE;
+        *sound = *sound && patch->points[a].stub != NO_STUB &&
+                 patch->points[a].stub == patch->points[b].stub && worker->next[a] == NONE;
         worker->next[a] = b;
     }
     *n_edges = (corners + open) / 2;
@@ -149,17 +99,17 @@ static double angle_of(const FieldSegment *segment, Vec3 x)
     return elementary_atan2(vec3_dot(from, v), vec3_dot(from, u));
 }
 
-/* Puts the rim of an arm into the piece. The wall's own edges go about the axis one way at one end
+/* Puts the rim of an stub into the piece. The wall's own edges go about the axis one way at one end
  * of the segment, the other way at the other. False when the rim does not go about it once. */
-static bool add_rim(const Maker *maker, size_t arm_number, uint32_t *n_points)
+static bool add_rim(const Maker *maker, size_t stub_index, uint32_t *n_points)
 {
-    const Arm *arm = &maker->plan->arms[arm_number];
+    const BranchStub *stub = &maker->plan->stubs[stub_index];
     const Patch *patch = &maker->worker->patch;
-    const FieldSegment *segment = &maker->tree->segments[arm->segment];
+    const FieldSegment *segment = &maker->tree->segments[stub->segment];
     uint32_t start = NONE, total = 0, n = 0;
     double lowest = HUGE_VAL;
     for (uint32_t i = 0; i < patch->n_points; i++) {
-        if (patch->points[i].arm != arm_number)
+        if (patch->points[i].stub != stub_index)
             continue;
         double angle = angle_of(segment, patch->points[i].x);
         total++;
@@ -170,12 +120,12 @@ static bool add_rim(const Maker *maker, size_t arm_number, uint32_t *n_points)
     }
     uint32_t *rim = &maker->piece->rim_points[*n_points], at = start;
     for (; at != NONE && n < total; n++, at = maker->worker->next[at])
-        rim[n == 0 || arm->end == 1 ? n : total - n] = at;
+        rim[n == 0 || stub->end == 1 ? n : total - n] = at;
     for (uint32_t i = 1; i < n; i++)
         if (!(angle_of(segment, patch->points[rim[i]].x) >
               angle_of(segment, patch->points[rim[i - 1]].x)))
             return false;
-    maker->piece->rims[arm_number] = (Rim){arm->segment, arm->end, *n_points, total};
+    maker->piece->rims[stub_index] = (Rim){stub->segment, stub->end, *n_points, total};
     *n_points += total;
     return total >= 3 && n == total && at == start;
 }
@@ -184,33 +134,35 @@ static bool add_rim(const Maker *maker, size_t arm_number, uint32_t *n_points)
 static Status prove(const Maker *maker, bool *sound)
 {
     const Patch *patch = &maker->worker->patch;
-    ZonePiece *piece = maker->piece;
-    size_t n_edges, n_arms = maker->plan->n_arms, n_on_rims = 0;
+    JunctionMesh *piece = maker->piece;
+    size_t n_edges, n_stubs = maker->plan->n_stubs, n_on_rims = 0;
     uint32_t n_points = 0;
     TRY(follow_edges(maker, &n_edges, sound));
     long long euler =
         (long long)patch->n_points - (long long)n_edges + (long long)patch->n_triangles;
-    *sound = *sound && patch->n_triangles > 0 && euler == 2 - (long long)n_arms;
+    *sound = *sound && patch->n_triangles > 0 && euler == 2 - (long long)n_stubs;
     if (!*sound)
         return STATUS_OK;
     for (size_t i = 0; i < patch->n_points; i++)
-        n_on_rims += patch->points[i].arm != NO_ARM;
-    TRY(mem_calloc(&piece->rims, n_arms, sizeof *piece->rims, "rims", maker->err));
+        n_on_rims += patch->points[i].stub != NO_STUB;
+    TRY(mem_calloc(&piece->rims, n_stubs, sizeof *piece->rims, "rims", maker->err));
     TRY(mem_calloc(&piece->rim_points, n_on_rims + 1, sizeof *piece->rim_points, "rims",
                    maker->err));
-    piece->n_rims = n_arms;
-    for (size_t k = 0; k < n_arms && *sound; k++)
+    piece->n_rims = n_stubs;
+    for (size_t k = 0; k < n_stubs && *sound; k++)
         *sound = add_rim(maker, k, &n_points);
-    *sound = *sound && find_parts(maker->worker) == 1;
+    size_t parts;
+    TRY(patch_count_parts(&maker->worker->patch, &parts, maker->err));
+    *sound = *sound && parts == 1;
     return STATUS_OK;
 }
 
-/* Whether a point lies in an arm, which the field of the zone has only a part of. */
-static bool is_in_arm(const Maker *maker, Vec3 x)
+/* Whether a point lies in an stub, which the field of the junction has only a part of. */
+static bool is_in_stub(const Maker *maker, Vec3 x)
 {
-    for (size_t k = 0; k < maker->plan->n_arms; k++) {
-        const FieldSegment *arm = &maker->tree->segments[maker->plan->arms[k].segment];
-        if (segment_distance_to(arm, x) < arm->radius_mm)
+    for (size_t k = 0; k < maker->plan->n_stubs; k++) {
+        const FieldSegment *stub = &maker->tree->segments[maker->plan->stubs[k].segment];
+        if (segment_distance_to(stub, x) < stub->radius_mm)
             return true;
     }
     return false;
@@ -218,11 +170,11 @@ static bool is_in_arm(const Maker *maker, Vec3 x)
 
 /* Whether the wall about a segment, where its own term is the largest, has a point at all; then
  * *at is one. */
-static bool find_own_wall(const Maker *maker, const FieldPart *all, uint32_t number, Vec3 *at)
+static bool find_own_wall(const Maker *maker, const LocalField *all, uint32_t number, Vec3 *at)
 {
     enum { PLACES = 5, ANGLES = 8 };
-    const ZonePlan *plan = maker->plan;
-    const ZoneTree *tree = &maker->worker->tree;
+    const JunctionPlan *plan = maker->plan;
+    const Octree *tree = &maker->worker->tree;
     const FieldSegment *segment = &maker->tree->segments[number];
     Vec3 u, v, axis = vec3_sub(segment->b, segment->a);
     vec3_across(vec3_normalized(axis), &u, &v);
@@ -233,90 +185,91 @@ static bool find_own_wall(const Maker *maker, const FieldPart *all, uint32_t num
                             vec3_scale(v, elementary_sin(angle))),
              gradient;
         double low = 0, high = 2.5 * segment->radius_mm;
-        if (fieldpart_value(&plan->field, &tree->stack, all, from).phi < FIELD_LEVEL)
+        if (localfield_value(&plan->field, &tree->stack, all, from).phi < FIELD_LEVEL)
             continue;
         for (int k = 0; k < 40; k++) {
             double middle = 0.5 * (low + high);
             Vec3 x = vec3_add_scaled(from, way, middle);
-            bool inside = fieldpart_value(&plan->field, &tree->stack, all, x).phi >= FIELD_LEVEL;
+            bool inside = localfield_value(&plan->field, &tree->stack, all, x).phi >= FIELD_LEVEL;
             *(inside ? &low : &high) = middle;
         }
         *at = vec3_add_scaled(from, way, low);
-        FieldValue value = fieldpart_gradient(&plan->field, &tree->stack, all, *at, &gradient);
-        if (plan->field.terms[value.largest].segment == number && !is_in_arm(maker, *at))
+        FieldValue value = localfield_gradient(&plan->field, &tree->stack, all, *at, &gradient);
+        if (plan->field.terms[value.largest_term].segment == number && !is_in_stub(maker, *at))
             return true;
     }
     return false;
 }
 
-/* The fate of a segment that lies wholly in the zone and that no point of the patch is nearest
- * to. */
-static Status look_for(const Maker *maker, uint32_t number, double ratio, uint8_t *fate)
+/* The status of a segment that lies wholly in the junction and that no point of the patch is
+ * nearest to. */
+static Status look_for(const Maker *maker, uint32_t number, double ratio, uint8_t *status)
 {
     const Patch *patch = &maker->worker->patch;
     const FieldSegment *segment = &maker->tree->segments[number];
-    ZoneTree *tree = &maker->worker->tree;
-    FieldPart all, near;
-    PartBounds bounds;
+    Octree *tree = &maker->worker->tree;
+    LocalField all, near;
+    FieldBounds bounds;
     Vec3 at, middle = vec3_scale(vec3_add(segment->a, segment->b), 0.5);
     double reach = vec3_distance(segment->a, middle) + 3 * segment->radius_mm;
-    TRY(fieldpart_all(&maker->plan->field, &tree->stack, &all, maker->err));
-    TRY(fieldpart_narrow(&maker->plan->field, &tree->stack, &all, middle, reach, 0, &near, &bounds,
-                         maker->err));
-    *fate = SEGMENT_SWALLOWED;
-    if (near.n_terms <= MOST_PART_TERMS && find_own_wall(maker, &near, number, &at)) {
+    TRY(localfield_all(&maker->plan->field, &tree->stack, &all, maker->err));
+    TRY(localfield_narrow(&maker->plan->field, &tree->stack, &all, middle, reach, 0, &near, &bounds,
+                          maker->err));
+    *status = SEGMENT_ENCLOSED;
+    if (near.n_terms <= MAX_LOCAL_TERMS && find_own_wall(maker, &near, number, &at)) {
         double nearest = HUGE_VAL;
         for (size_t i = 0; i < patch->n_points; i++)
             nearest = fmin(nearest, vec3_distance(patch->points[i].x, at));
-        *fate = nearest <= ratio * segment->radius_mm ? SEGMENT_PRESENT : SEGMENT_MISSING;
+        *status = nearest <= ratio * segment->radius_mm ? SEGMENT_PRESENT : SEGMENT_MISSING;
     }
     tree->stack.n_terms = tree->stack.n_groups = 0;
     return STATUS_OK;
 }
 
-static bool is_arm(const ZonePlan *plan, uint32_t segment)
+static bool is_stub(const JunctionPlan *plan, uint32_t segment)
 {
-    for (size_t k = 0; k < plan->n_arms; k++)
-        if (plan->arms[k].segment == segment)
+    for (size_t k = 0; k < plan->n_stubs; k++)
+        if (plan->stubs[k].segment == segment)
             return true;
     return false;
 }
 
 /* Arms are present when their tubes are. */
-static Status find_fates(const Maker *maker, double ratio, uint8_t *fates)
+static Status find_statuses(const Maker *maker, double ratio, uint8_t *segment_status)
 {
     const Patch *patch = &maker->worker->patch;
-    const ZoneField *field = &maker->plan->field;
+    const JunctionField *field = &maker->plan->field;
     for (uint32_t i = 0; i < field->n_terms; i++)
-        if (!is_arm(maker->plan, field->terms[i].segment))
-            fates[field->terms[i].segment] = SEGMENT_MISSING;
+        if (!is_stub(maker->plan, field->terms[i].segment))
+            segment_status[field->terms[i].segment] = SEGMENT_MISSING;
     for (size_t i = 0; i < patch->n_points; i++)
-        if (fates[patch->points[i].segment] == SEGMENT_MISSING &&
-            !is_arm(maker->plan, patch->points[i].segment))
-            fates[patch->points[i].segment] = SEGMENT_PRESENT;
+        if (segment_status[patch->points[i].segment] == SEGMENT_MISSING &&
+            !is_stub(maker->plan, patch->points[i].segment))
+            segment_status[patch->points[i].segment] = SEGMENT_PRESENT;
     for (uint32_t i = 0; i < field->n_terms; i++) {
         uint32_t segment = field->terms[i].segment;
-        if (!is_arm(maker->plan, segment) && fates[segment] == SEGMENT_MISSING)
-            TRY(look_for(maker, segment, ratio, &fates[segment]));
+        if (!is_stub(maker->plan, segment) && segment_status[segment] == SEGMENT_MISSING)
+            TRY(look_for(maker, segment, ratio, &segment_status[segment]));
     }
     return STATUS_OK;
 }
 
 /* Makes what the lattice has left into a piece. */
-static Status finish(const Maker *maker, const ZoneFineness *fineness, uint8_t *fates, bool *sound)
+static Status finish(const Maker *maker, const MeshFineness *fineness, uint8_t *segment_status,
+                     bool *sound)
 {
-    ZoneWorker *worker = maker->worker;
-    TRY(planecut_make(&worker->cutter, maker->plan, &worker->tree, fineness->cells.ratio,
-                      &worker->patch, sound, maker->err));
+    JunctionWorkspace *worker = maker->worker;
+    TRY(planecut_apply(&worker->cutter, maker->plan, &worker->tree, fineness->cells.ratio,
+                       &worker->patch, sound, maker->err));
     if (!*sound)
         return STATUS_OK;
-    TRY(keep_largest(worker, maker->err));
-    TRY(find_fates(maker, fineness->cells.ratio, fates));
-    TRY(collapse_make(&worker->collapser, &worker->patch, fineness->sagitta, maker->err));
+    TRY(patch_keep_largest(&worker->patch, maker->err));
+    TRY(find_statuses(maker, fineness->cells.ratio, segment_status));
+    TRY(collapse_apply(&worker->collapser, &worker->patch, fineness->sagitta, maker->err));
     maker->piece->off = (MeshOff){0};
     size_t n_points = worker->patch.n_points;
-    TRY(refine_make(&worker->refiner, maker->plan, &worker->tree, fineness->split, &worker->patch,
-                    &maker->piece->off, maker->err));
+    TRY(facerefine_apply(&worker->refiner, maker->plan, &worker->tree, fineness->split,
+                         &worker->patch, &maker->piece->off, maker->err));
     TRY(prove(maker, sound));
     *maker->crossing = PATCHCROSS_NONE;
     if (*sound && worker->patch.n_points > n_points)
@@ -327,22 +280,22 @@ static Status finish(const Maker *maker, const ZoneFineness *fineness, uint8_t *
 }
 
 /* One attempt; *hole is how wide a tunnel is that makes the wall unsound, over the local radius. */
-static Status attempt(const Maker *maker, const ZoneFineness *fineness, uint8_t *fates, bool *sound,
-                      double *hole)
+static Status attempt(const Maker *maker, const MeshFineness *fineness, uint8_t *segment_status,
+                      bool *sound, double *hole)
 {
-    ZoneWorker *worker = maker->worker;
+    JunctionWorkspace *worker = maker->worker;
     *hole = 0;
-    TRY(zonetree_build(&worker->tree, maker->plan, &fineness->cells, maker->err));
+    TRY(octree_build(&worker->tree, maker->plan, &fineness->cells, maker->err));
     TRY(lattice_make(&worker->lattice, &worker->tree, maker->plan, &worker->patch, maker->err));
-    TRY(finish(maker, fineness, fates, sound));
+    TRY(finish(maker, fineness, segment_status, sound));
     if (*sound || *maker->crossing == PATCHCROSS_ROUNDING)
         return STATUS_OK;
-    TRY(mend_make(&worker->mender, &worker->lattice, &worker->tree, maker->plan, fineness->farthest,
-                  &worker->patch, hole, maker->err));
-    return *hole <= fineness->farthest ? finish(maker, fineness, fates, sound) : STATUS_OK;
+    TRY(repair_apply(&worker->repairer, &worker->lattice, &worker->tree, maker->plan,
+                     fineness->farthest, &worker->patch, hole, maker->err));
+    return *hole <= fineness->farthest ? finish(maker, fineness, segment_status, sound) : STATUS_OK;
 }
 
-static bool is_member(const ZoneField *field, uint32_t group, uint32_t term)
+static bool is_member(const JunctionField *field, uint32_t group, uint32_t term)
 {
     for (uint32_t i = field->first[group]; i < field->first[group + 1]; i++)
         if (field->members[i] == term)
@@ -350,11 +303,11 @@ static bool is_member(const ZoneField *field, uint32_t group, uint32_t term)
     return false;
 }
 
-/* The gap between the walls of the two segments of the zone that blend nowhere and are the nearest
- * to each other, over the radius of the thinner. */
+/* The gap between the walls of the two segments of the junction that blend nowhere and are the
+ * nearest to each other, over the radius of the thinner. */
 static double find_gap(const Maker *maker, uint32_t pair[2])
 {
-    const ZoneField *field = &maker->plan->field;
+    const JunctionField *field = &maker->plan->field;
     double least = HUGE_VAL;
     for (uint32_t i = 0; i < field->n_terms; i++)
         for (uint32_t k = i + 1; k < field->n_terms; k++) {
@@ -393,10 +346,10 @@ static int compare_placed(const void *a, const void *b)
 
 /* The triangles by the Morton codes of their first points, so that those next to each other in
  * memory are so in space. */
-static Status order_triangles(ZoneWorker *worker, Err *err)
+static Status order_triangles(JunctionWorkspace *worker, Err *err)
 {
     const Patch *patch = &worker->patch;
-    const ZoneTree *tree = &worker->tree;
+    const Octree *tree = &worker->tree;
     TRY(mem_reserve(&worker->order, &worker->order_capacity, patch->n_triangles,
                     sizeof *worker->order, "triangles of a junction", err));
     for (uint32_t i = 0; i < patch->n_triangles; i++) {
@@ -412,9 +365,9 @@ static Status order_triangles(ZoneWorker *worker, Err *err)
     return STATUS_OK;
 }
 
-static PiecePoint rounded_point(const PatchPoint *point, double grid)
+static JunctionPoint rounded_point(const PatchPoint *point, double grid)
 {
-    PiecePoint kept = {.segment = point->segment};
+    JunctionPoint kept = {.segment = point->segment};
     for (int axis = 0; axis < 3; axis++) {
         kept.x[axis] = patch_rounded(vec3_component(point->x, axis), grid);
         kept.normal[axis] = (float)vec3_component(point->normal, axis);
@@ -423,7 +376,7 @@ static PiecePoint rounded_point(const PatchPoint *point, double grid)
 }
 
 /* The worker's patch, in as little room as it takes. */
-static Status keep_patch(ZoneWorker *worker, double grid, ZonePiece *piece, Err *err)
+static Status keep_patch(JunctionWorkspace *worker, double grid, JunctionMesh *piece, Err *err)
 {
     const Patch *patch = &worker->patch;
     TRY(order_triangles(worker, err));
@@ -467,7 +420,7 @@ static bool is_own_tunnel(const Maker *maker, double hole, double before)
     return hole > lasting * before && hole <= most_stopped && find_gap(maker, pair) >= 0;
 }
 
-static void make_finer(ZoneFineness *fineness, double factor)
+static void make_finer(MeshFineness *fineness, double factor)
 {
     fineness->cells.ratio *= factor;
     fineness->cells.bending *= factor * factor;
@@ -493,14 +446,15 @@ static int steps_finer(const Maker *maker, double hole, double before, double ce
 
 /* Attempts with finer and finer cells until the wall is sound or none would help; *used are those
  * of the last one. */
-static Status make_sound(const Maker *maker, ZoneFineness *used, uint8_t *fates, bool *sound)
+static Status make_sound(const Maker *maker, MeshFineness *used, uint8_t *segment_status,
+                         bool *sound)
 {
     double hole, before = HUGE_VAL;
     for (int steps = 1; steps; maker->piece->repeats += steps) {
         int repeats = maker->piece->repeats;
-        zonepiece_release(maker->piece);
+        junctionmesh_release(maker->piece);
         maker->piece->repeats = repeats;
-        TRY(attempt(maker, used, fates, sound, &hole));
+        TRY(attempt(maker, used, segment_status, sound, &hole));
         steps = *sound
                     ? 0
                     : steps_finer(maker, hole, before, used->cells.ratio, MOST_REPEATS - repeats);
@@ -515,16 +469,16 @@ static Status make_sound(const Maker *maker, ZoneFineness *used, uint8_t *fates,
 /* Where a triangle is too far off the wall, as over the bottom of a groove, which is too narrow to
  * be found by splitting, cells so much finer as it is too far are tried, and the nearest kept.
  * Triangles that are none of the wall, and that finer cells do not bring nearer, stay so. */
-static Status come_near(const Maker *maker, ZoneFineness *used, uint8_t *fates)
+static Status come_near(const Maker *maker, MeshFineness *used, uint8_t *segment_status)
 {
-    ZoneFineness tried = *used;
+    MeshFineness tried = *used;
     bool sound = true, is_nearest = true;
     double hole, off = maker->piece->off.ratio;
     for (int i = 0; i < MOST_NEARER && off > used->worst; i++) {
         int repeats = maker->piece->repeats;
         make_finer(&tried, fmax(least_part, finer * used->worst / off));
-        zonepiece_release(maker->piece);
-        TRY(attempt(maker, &tried, fates, &sound, &hole));
+        junctionmesh_release(maker->piece);
+        TRY(attempt(maker, &tried, segment_status, &sound, &hole));
         maker->piece->repeats = repeats + 1;
         is_nearest = sound && maker->piece->off.ratio < off;
         if (is_nearest) {
@@ -536,28 +490,29 @@ static Status come_near(const Maker *maker, ZoneFineness *used, uint8_t *fates)
     }
     if (is_nearest)
         return STATUS_OK;
-    zonepiece_release(maker->piece);
-    return attempt(maker, used, fates, &sound, &hole);
+    junctionmesh_release(maker->piece);
+    return attempt(maker, used, segment_status, &sound, &hole);
 }
 
-Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan,
-                      const ZoneFineness *fineness, ZonePiece *piece, uint8_t *fates, Err *err)
+Status junctionmesh_make(JunctionWorkspace *worker, const VesselTree *tree, JunctionPlan *plan,
+                         const MeshFineness *fineness, JunctionMesh *piece, uint8_t *segment_status,
+                         Err *err)
 {
-    ZonePiece made = {0};
+    JunctionMesh made = {0};
     PatchCrossing crossing = PATCHCROSS_NONE;
     const Maker maker = {worker, tree, plan, &made, &crossing, err};
-    ZoneFineness used = *fineness;
+    MeshFineness used = *fineness;
     bool sound = false;
     Status status;
-    TRY_GOTO(make_sound(&maker, &used, fates, &sound));
+    TRY_GOTO(make_sound(&maker, &used, segment_status, &sound));
     if (sound)
-        TRY_GOTO(come_near(&maker, &used, fates));
+        TRY_GOTO(come_near(&maker, &used, segment_status));
     if (!sound || made.off.ratio > farthest_off)
         TRY_GOTO(refuse(&maker, fineness->grid_mm, err));
     TRY_GOTO(keep_patch(worker, fineness->grid_mm, &made, err));
     *piece = made;
-    made = (ZonePiece){0};
+    made = (JunctionMesh){0};
 done:
-    zonepiece_release(&made);
+    junctionmesh_release(&made);
     return status;
 }

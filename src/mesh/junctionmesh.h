@@ -1,4 +1,4 @@
-/* The finished wall of one zone. */
+/* The finished wall of one junction. */
 #ifndef CORCAST_MESH_JUNCTIONMESH_H
 #define CORCAST_MESH_JUNCTIONMESH_H
 
@@ -7,7 +7,7 @@
 #include "mesh/lattice/planecut.h"
 #include "mesh/lattice/repair.h"
 
-/* The points on the rim of an arm: rim_points[first .. first + n), by rising angle about the axis
+/* The points on the rim of an stub: rim_points[first .. first + n), by rising angle about the axis
  * of the segment, from its first to its second end. */
 typedef struct Rim {
     uint32_t segment;
@@ -16,13 +16,13 @@ typedef struct Rim {
 } Rim;
 
 /* A point of a finished wall, in as few bytes as it takes. */
-typedef struct PiecePoint {
+typedef struct JunctionPoint {
     float x[3], normal[3]; /* on the grid of the mesh; unit */
     uint32_t segment;      /* whose term is largest there */
-} PiecePoint;
+} JunctionPoint;
 
-typedef struct ZonePiece {
-    PiecePoint *points; /* owned, as all of it */
+typedef struct JunctionMesh {
+    JunctionPoint *points; /* owned, as all of it */
     Triangle *triangles;
     size_t n_points, n_triangles;
     Rim *rims;
@@ -30,26 +30,26 @@ typedef struct ZonePiece {
     uint32_t *rim_points;
     int repeats; /* with finer cells */
     MeshOff off; /* of the triangles' middles and longest edges */
-} ZonePiece;
+} JunctionMesh;
 
-void zonepiece_release(ZonePiece *piece);
+void junctionmesh_release(JunctionMesh *piece);
 
 /* What has become of a segment. */
-typedef enum SegmentFate {
+typedef enum SegmentStatus {
     SEGMENT_MISSING, /* it has a wall, which is not in the mesh */
     SEGMENT_PRESENT,
-    SEGMENT_SWALLOWED, /* it lies within others */
-    SEGMENT_SLIVER     /* it has a wall, but so narrow a one that no triangle is its own */
-} SegmentFate;
+    SEGMENT_ENCLOSED, /* it lies within others */
+    SEGMENT_SLIVER    /* it has a wall, but so narrow a one that no triangle is its own */
+} SegmentStatus;
 
-typedef struct ZoneFineness {
+typedef struct MeshFineness {
     CellSize cells;
     double sagitta;  /* of the local radius, for edges */
     double split;    /* likewise, triangles that are farther off the wall are split */
     double farthest; /* likewise, of points that close a gap, off the wall */
-    double worst;    /* likewise; zones with triangles farther off get finer cells */
+    double worst;    /* likewise; junctions with triangles farther off get finer cells */
     double grid_mm;  /* coordinates are rounded to its multiples */
-} ZoneFineness;
+} MeshFineness;
 
 /* A triangle and where it stands among others that are near in space. */
 typedef struct PlacedTriangle {
@@ -57,27 +57,27 @@ typedef struct PlacedTriangle {
 } PlacedTriangle;
 
 /* Workspace of a thread; zeroed before the first use. */
-typedef struct ZoneWorker {
-    ZoneTree tree;
+typedef struct JunctionWorkspace {
+    Octree tree;
     Lattice lattice;
-    Mender mender;
+    Repairer repairer;
     PlaneCutter cutter;
     Collapser collapser;
     Refiner refiner;
-    PairTable edges;
+    KeyMap edges;
     Patch patch;
     uint32_t *next;
     PlacedTriangle *order;
     size_t next_capacity, order_capacity;
-} ZoneWorker;
+} JunctionWorkspace;
 
-void zoneworker_release(ZoneWorker *worker);
+void junctionworkspace_release(JunctionWorkspace *worker);
 
-/* Makes the wall of a zone; of the segments that lie wholly in it, fates[segment] is set. Repeats
- * with finer cells what is not a sphere with one hole for each arm. STATUS_INFEASIBLE, naming the
- * id of a segment, when that does not help. */
-MUST_CHECK Status zonepiece_make(ZoneWorker *worker, const VesselTree *tree, ZonePlan *plan,
-                                 const ZoneFineness *fineness, ZonePiece *piece, uint8_t *fates,
-                                 Err *err);
+/* Makes the wall of a junction; of the segments that lie wholly in it, segment_status[segment] is
+ * set. Repeats with finer cells what is not a sphere with one hole for each stub.
+ * STATUS_INFEASIBLE, naming the id of a segment, when that does not help. */
+MUST_CHECK Status junctionmesh_make(JunctionWorkspace *worker, const VesselTree *tree,
+                                    JunctionPlan *plan, const MeshFineness *fineness,
+                                    JunctionMesh *piece, uint8_t *segment_status, Err *err);
 
 #endif

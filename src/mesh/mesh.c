@@ -1,13 +1,13 @@
-/* The tree is cut into junction zones and tubes (zones.c); each zone's wall is made by a lattice
- * of its own (zonetree.c, lattice.c), cut at the planes of its arms (planecut.c), thinned out
- * (collapse.c) and proved to be a sphere with holes (zonepiece.c); strips and caps join them
- * (assemble.c). Over a tree that gives a sphere for each: zones are spheres with k holes, strips
- * rings, caps discs. What can go wrong beyond that, vessels that meet though they do not blend, and
- * roundings, is found on the finished triangles (meshtopology.c, crossings.c). If some cross, all
- * is made again, of finer cells in the zones about them.
+/* The tree is cut into junction junctions and tubes (junctions.c); each junction's wall is made by
+ * a lattice of its own (zonetree.c, lattice.c), cut at the planes of its stubs (planecut.c),
+ * thinned out (collapse.c) and proved to be a sphere with holes (zonepiece.c); strips and caps join
+ * them (assemble.c). Over a tree that gives a sphere for each: junctions are spheres with k holes,
+ * strips rings, caps discs. What can go wrong beyond that, vessels that meet though they do not
+ * blend, and roundings, is found on the finished triangles (meshtopology.c, crossings.c). If some
+ * cross, all is made again, of finer cells in the junctions about them.
  *
  * One octree for all was tried, and was not sound: cells join vessels whose gap is below a cell.
- * Swept rings alone cannot be: two junctions of five lie in zones of several nodes. */
+ * Swept rings alone cannot be: two junctions of five lie in junctions of several nodes. */
 #include "mesh/mesh.h"
 
 #include "mesh/assemble.h"
@@ -24,7 +24,7 @@ static const double cells_at = 0.02, cell_ratio = 0.54, bending_ratio = 0.25, sa
 /* Of a round body: its balls bend both ways, and its creases are cut off. */
 static const double round_sagitta_part = 0.24, round_farthest_part = 1.75;
 
-/* The most cells of a zone: with all that is made from them, they take 4 GB of memory. */
+/* The most cells of a junction: with all that is made from them, they take 4 GB of memory. */
 enum { MOST_CELLS = 5000000 };
 
 /* How often all is made again where triangles cross, and by how much finer then the cells are. */
@@ -33,31 +33,29 @@ enum { MOST_ROUNDS = 4 };
 enum { FOLDED_PART = 20 };
 static const double finer = 0.8;
 
-/* After a zone of more terms a thread does not keep its room: it would be ten times what most need.
+/* After a junction of more terms a thread does not keep its room: it would be ten times what most
+ * need.
  */
 enum { TERMS_TO_KEEP = 100 };
 
-typedef struct Build {
+typedef struct MeshBuild {
     const VesselTree *tree;
     const MeshParams *params;
-    IndexLists incident, blending;
-    Zones zones;
-    ZoneFineness fineness;
-    ZonePiece *pieces;
-    ZoneWorker *workers;
-    uint8_t *fates; /* one a segment: SegmentFate */
-    uint8_t *finer; /* by zone: how many times its cells were made finer */
-    Status *statuses;
-    Err *errors;    /* of the lowest zone that has failed in each thread */
-    size_t *failed; /* that zone */
-    atomic_size_t lowest_failed, done;
-} Build;
+    int n_workers;
+    Junctions junctions;
+    MeshFineness fineness;
+    JunctionMesh *meshes;          /* per region */
+    JunctionWorkspace *workspaces; /* per thread */
+    uint8_t *segment_status;       /* per segment: SegmentStatus */
+    uint8_t *finer;                /* per region: how many times its cells were made finer */
+    atomic_size_t done;
+} MeshBuild;
 
-static ZoneFineness fineness_of(const VesselTree *tree, double tolerance, double grid_mm)
+static MeshFineness fineness_of(const VesselTree *tree, double tolerance, double grid_mm)
 {
     bool is_round = tree->body == BODY_ROUND;
     double ratio = fmin(cell_ratio * sqrt(tolerance / cells_at), 0.7);
-    return (ZoneFineness){{ratio, bending_ratio * tolerance / cells_at, MOST_CELLS},
+    return (MeshFineness){{ratio, bending_ratio * tolerance / cells_at, MOST_CELLS},
                           (is_round ? round_sagitta_part : sagitta_part) * tolerance,
                           split_part * tolerance,
                           (is_round ? round_farthest_part : farthest_part) * tolerance,
@@ -113,109 +111,79 @@ MeshEstimate vesselmesh_estimate(const VesselTree *tree, const MeshParams *param
                               radii * (seconds_a * per_tolerance + seconds_b) / workers_of(params)};
 }
 
-static void release_workers(Build *build, int n_workers)
+static void release_workspaces(MeshBuild *build)
 {
-    for (int i = 0; i < n_workers && build->workers; i++)
-        zoneworker_release(&build->workers[i]);
-    free(build->workers);
-    build->workers = NULL;
+    for (int i = 0; i < build->n_workers && build->workspaces; i++)
+        junctionworkspace_release(&build->workspaces[i]);
+    free(build->workspaces);
+    build->workspaces = NULL;
 }
 
-static void release_build(Build *build, int n_workers)
+static void release_build(MeshBuild *build)
 {
-    release_workers(build, n_workers);
-    indexlists_release(&build->incident);
-    indexlists_release(&build->blending);
-    for (uint32_t z = 0; z < build->zones.n_zones && build->pieces; z++)
-        zonepiece_release(&build->pieces[z]);
-    zones_release(&build->zones);
-    free(build->pieces);
-    free(build->fates);
+    release_workspaces(build);
+    for (uint32_t i = 0; i < build->junctions.n_junctions && build->meshes; i++)
+        junctionmesh_release(&build->meshes[i]);
+    junctions_release(&build->junctions);
+    free(build->meshes);
+    free(build->segment_status);
     free(build->finer);
-    free(build->statuses);
-    free(build->errors);
-    free(build->failed);
 }
 
-static void note_failure(Build *build, size_t index, int worker, Status status, const Err *err)
+static MeshFineness fineness_in(const MeshBuild *build, size_t junction)
 {
-    size_t lowest = atomic_load(&build->lowest_failed);
-    while (index < lowest && !atomic_compare_exchange_weak(&build->lowest_failed, &lowest, index))
-        continue;
-    if (build->statuses[worker] != STATUS_OK && build->failed[worker] < index)
-        return;
-    build->statuses[worker] = status;
-    build->errors[worker] = *err;
-    build->failed[worker] = index;
-}
-
-static ZoneFineness fineness_in(const Build *build, size_t zone)
-{
-    ZoneFineness fineness = build->fineness;
-    double factor = elementary_pow(finer, build->finer[zone]);
+    MeshFineness fineness = build->fineness;
+    double factor = elementary_pow(finer, build->finer[junction]);
     fineness.cells.ratio *= factor;
     fineness.cells.bending *= factor * factor;
     fineness.sagitta *= factor * factor;
     return fineness;
 }
 
-/* Zones beyond one that has failed are left out; those before it are made, so that what is said is
- * the same for any number of threads. */
-static void make_zone(size_t index, int worker, void *context)
+static Status build_junction(size_t index, int worker, void *context, Err *err)
 {
-    Build *build = context;
-    Err err = {0};
-    ZonePlan plan;
-    if (index > atomic_load(&build->lowest_failed))
-        return;
-    Status status = zoneplan_make(build->tree, &build->incident, &build->blending, &build->zones,
-                                  (uint32_t)index, &plan, &err);
-    if (status == STATUS_OK) {
-        const ZoneFineness fineness = fineness_in(build, index);
-        status = zonepiece_make(&build->workers[worker], build->tree, &plan, &fineness,
-                                &build->pieces[index], build->fates, &err);
-        if (plan.field.n_terms > TERMS_TO_KEEP)
-            zoneworker_release(&build->workers[worker]);
-        zoneplan_release(&plan);
-    }
-    if (status != STATUS_OK)
-        note_failure(build, index, worker, status, &err);
+    MeshBuild *build = context;
+    const MeshFineness fineness = fineness_in(build, index);
+    JunctionWorkspace *workspace = &build->workspaces[worker];
+    JunctionPlan plan;
+    TRY(junctionplan_make(build->tree, &build->junctions, (uint32_t)index, &plan, err));
+    Status status = junctionmesh_make(workspace, build->tree, &plan, &fineness,
+                                      &build->meshes[index], build->segment_status, err);
+    if (plan.field.n_terms > TERMS_TO_KEEP)
+        junctionworkspace_release(workspace);
+    junctionplan_release(&plan);
+    TRY(status);
     size_t done = atomic_fetch_add(&build->done, 1) + 1;
     if (build->params->progress && worker == 0)
-        build->params->progress((double)done / (double)build->zones.n_zones,
+        build->params->progress((double)done / (double)build->junctions.n_junctions,
                                 build->params->context);
-}
-
-static Status reserve_build(Build *build, int n_workers, Err *err)
-{
-    size_t n_zones = build->zones.n_zones, n = (size_t)n_workers;
-    TRY(mem_calloc(&build->pieces, n_zones, sizeof *build->pieces, "zones", err));
-    TRY(mem_calloc(&build->finer, n_zones, sizeof *build->finer, "zones", err));
-    TRY(mem_calloc(&build->fates, build->tree->n_segments, sizeof *build->fates, "segments", err));
-    TRY(mem_calloc(&build->statuses, n, sizeof *build->statuses, "threads", err));
-    TRY(mem_calloc(&build->errors, n, sizeof *build->errors, "threads", err));
-    return mem_calloc(&build->failed, n, sizeof *build->failed, "threads", err);
-}
-
-static Status make_zones(Build *build, int n_workers, Err *err)
-{
-    size_t n_zones = build->zones.n_zones;
-    TRY(mem_calloc(&build->workers, (size_t)n_workers, sizeof *build->workers, "threads", err));
-    atomic_store(&build->lowest_failed, SIZE_MAX);
-    atomic_store(&build->done, 0);
-    for (size_t i = 0; i < build->tree->n_segments; i++)
-        build->fates[i] = build->zones.is_tube[i] ? SEGMENT_PRESENT : SEGMENT_MISSING;
-    threads_for(n_zones, n_workers, make_zone, build);
-    release_workers(build, n_workers);
-    size_t lowest = atomic_load(&build->lowest_failed);
-    for (int i = 0; i < n_workers; i++)
-        if (build->statuses[i] != STATUS_OK && build->failed[i] == lowest)
-            return err_set(err, build->statuses[i], "%s", build->errors[i].text);
     return STATUS_OK;
 }
 
+static Status reserve_build(MeshBuild *build, Err *err)
+{
+    size_t n = build->junctions.n_junctions, n_segments = build->tree->n_segments;
+    TRY(mem_calloc(&build->meshes, n, sizeof *build->meshes, "junctions", err));
+    TRY(mem_calloc(&build->finer, n, sizeof *build->finer, "junctions", err));
+    return mem_calloc(&build->segment_status, n_segments, sizeof *build->segment_status, "segments",
+                      err);
+}
+
+static Status build_junctions(MeshBuild *build, Err *err)
+{
+    TRY(mem_calloc(&build->workspaces, (size_t)build->n_workers, sizeof *build->workspaces,
+                   "threads", err));
+    atomic_store(&build->done, 0);
+    for (size_t i = 0; i < build->tree->n_segments; i++)
+        build->segment_status[i] = build->junctions.is_tube[i] ? SEGMENT_PRESENT : SEGMENT_MISSING;
+    Status status =
+        threads_try(build->junctions.n_junctions, build->n_workers, build_junction, build, err);
+    release_workspaces(build);
+    return status;
+}
+
 /* Finds the segments that have a wall and yet no triangle of the mesh. */
-static Status find_slivers(Build *build, const VesselMesh *mesh, Err *err)
+static Status find_slivers(MeshBuild *build, const VesselMesh *mesh, Err *err)
 {
     bool *has_triangle = NULL;
     size_t n = build->tree->n_segments;
@@ -223,35 +191,36 @@ static Status find_slivers(Build *build, const VesselMesh *mesh, Err *err)
     for (size_t i = 0; i < mesh->n_triangles; i++)
         has_triangle[mesh_segment(mesh, i)] = true;
     for (size_t i = 0; i < n; i++)
-        if (build->fates[i] == SEGMENT_PRESENT && !has_triangle[i])
-            build->fates[i] = SEGMENT_SLIVER;
+        if (build->segment_status[i] == SEGMENT_PRESENT && !has_triangle[i])
+            build->segment_status[i] = SEGMENT_SLIVER;
     free(has_triangle);
     return STATUS_OK;
 }
 
-/* The segments of one fate, in *list (owned). */
-static Status list_fate(const Build *build, SegmentFate fate, uint32_t **list, size_t *n, Err *err)
+/* The segments of one status, in *list (owned). */
+static Status list_status(const MeshBuild *build, SegmentStatus status, uint32_t **list, size_t *n,
+                          Err *err)
 {
     size_t count = 0;
     for (size_t i = 0; i < build->tree->n_segments; i++)
-        count += build->fates[i] == fate;
+        count += build->segment_status[i] == status;
     TRY(mem_calloc(list, count, sizeof **list, "segments", err));
     for (uint32_t i = 0; i < build->tree->n_segments; i++)
-        if (build->fates[i] == fate)
+        if (build->segment_status[i] == status)
             (*list)[(*n)++] = i;
     return STATUS_OK;
 }
 
 /* The segments with an end that nothing else meets, but that is not cut off flat. */
-static Status list_round(const Build *build, MeshReport *report, Err *err)
+static Status list_round(const MeshBuild *build, MeshReport *report, Err *err)
 {
     const VesselTree *tree = build->tree;
     size_t capacity = 0;
     for (uint32_t i = 0; i < tree->n_segments; i++)
         for (int end = 0; end < 2; end++) {
             uint32_t node = tree->nodes[i][end];
-            const uint32_t *first = &build->incident.first[node];
-            if (first[1] - first[0] != 1 || build->zones.zone[node] == NO_ZONE)
+            const uint32_t *first = &build->junctions.incident.first[node];
+            if (first[1] - first[0] != 1 || build->junctions.of_node[node] == NO_JUNCTION)
                 continue;
             TRY(mem_reserve(&report->round, &capacity, report->n_round + 1, sizeof *report->round,
                             "segments", err));
@@ -260,18 +229,19 @@ static Status list_round(const Build *build, MeshReport *report, Err *err)
     return STATUS_OK;
 }
 
-static Status refuse_overlap(const Build *build, Err *err)
+static Status refuse_overlap(const MeshBuild *build, Err *err)
 {
-    const NearPair *pair = build->zones.strangers;
+    const NearPair *pair = build->junctions.strangers;
     const uint32_t *ids = build->tree->ids;
     return err_set(
         err, STATUS_INPUT,
         "the vessels of segments %u and %u, which do not belong together, overlap by %.3g "
         "mm (%zu such pairs); their walls cannot both be kept (`part_overlaps` thins them)",
-        ids[pair->segments[0]], ids[pair->segments[1]], -pair->gap_mm, build->zones.n_overlapping);
+        ids[pair->segments[0]], ids[pair->segments[1]], -pair->gap_mm,
+        build->junctions.n_overlapping);
 }
 
-static Status fill_report(Build *build, const VesselMesh *mesh, atomic_bool *crossed,
+static Status fill_report(MeshBuild *build, const VesselMesh *mesh, atomic_bool *crossed,
                           MeshReport *report, Err *err)
 {
     uint32_t *trees;
@@ -283,64 +253,57 @@ static Status fill_report(Build *build, const VesselMesh *mesh, atomic_bool *cro
     TRY(meshcheck_crossings(mesh, build->fineness.grid_mm, build->params->threads, crossed,
                             &report->crossings, err));
     TRY(find_slivers(build, mesh, err));
-    TRY(list_fate(build, SEGMENT_SLIVER, &report->slivers, &report->n_slivers, err));
-    TRY(list_fate(build, SEGMENT_MISSING, &report->missing, &report->n_missing, err));
-    TRY(list_fate(build, SEGMENT_SWALLOWED, &report->swallowed, &report->n_swallowed, err));
+    TRY(list_status(build, SEGMENT_SLIVER, &report->slivers, &report->n_slivers, err));
+    TRY(list_status(build, SEGMENT_MISSING, &report->missing, &report->n_missing, err));
+    TRY(list_status(build, SEGMENT_ENCLOSED, &report->enclosed, &report->n_enclosed, err));
     return build->tree->body != BODY_ROUND ? list_round(build, report, err) : STATUS_OK;
 }
 
-static Status cut_tree(Build *build, Err *err)
-{
-    TRY(vesseltree_incident(build->tree, &build->incident, err));
-    TRY(vesseltree_blending(build->tree, &build->incident, &build->blending, err));
-    TRY(zones_find(build->tree, &build->incident, &build->blending, build->params, &build->zones,
-                   err));
-    return build->zones.n_overlapping ? refuse_overlap(build, err) : STATUS_OK;
-}
-
-/* Makes all zones, and the mesh and the report of them. */
-static Status make_mesh(Build *build, int n_workers, VesselMesh *mesh, MeshReport *report, Err *err)
+/* Makes all junctions, and the mesh and the report of them. */
+static Status make_mesh(MeshBuild *build, VesselMesh *mesh, MeshReport *report, Err *err)
 {
     const MeshParams *params = build->params;
-    TRY(make_zones(build, n_workers, err));
-    *report = (MeshReport){.tolerance = tolerance_of(params), .zones = build->zones.n_zones};
-    for (uint32_t z = 0; z < build->zones.n_zones; z++) {
-        report->repeated += build->pieces[z].repeats > 0 || build->finer[z] > 0;
-        report->off.mm = fmax(report->off.mm, build->pieces[z].off.mm);
-        report->off.ratio = fmax(report->off.ratio, build->pieces[z].off.ratio);
+    TRY(build_junctions(build, err));
+    *report =
+        (MeshReport){.tolerance = tolerance_of(params), .junctions = build->junctions.n_junctions};
+    for (uint32_t z = 0; z < build->junctions.n_junctions; z++) {
+        report->repeated += build->meshes[z].repeats > 0 || build->finer[z] > 0;
+        report->off.mm = fmax(report->off.mm, build->meshes[z].off.mm);
+        report->off.ratio = fmax(report->off.ratio, build->meshes[z].off.ratio);
     }
-    return assemble_mesh(build->tree, &build->zones, build->pieces,
-                         sides_of(cap_part * report->tolerance), params->tube_edge,
-                         build->fineness.grid_mm, mesh, &report->off, err);
+    const TubeParams tubes = {sides_of(cap_part * report->tolerance), params->tube_edge,
+                              build->fineness.grid_mm};
+    return assemble_mesh(build->tree, &build->junctions, build->meshes, &tubes, mesh, &report->off,
+                         err);
 }
 
-/* Has the zones made finer that triangles which cross lie in, of tubes those at both ends; whether
- * there are any. */
-static bool refine_crossed(Build *build, const VesselMesh *mesh, const atomic_bool *crossed,
+/* Has the junctions made finer that triangles which cross lie in, of tubes those at both ends;
+ * whether there are any. */
+static bool refine_crossed(MeshBuild *build, const VesselMesh *mesh, const atomic_bool *crossed,
                            int round)
 {
-    const Zones *zones = &build->zones;
+    const Junctions *junctions = &build->junctions;
     bool any = false;
     for (size_t i = 0; i < mesh->n_triangles; i++)
         for (int end = 0; end < 2 && crossed[i]; end++) {
-            uint32_t zone = zones->zone[build->tree->nodes[mesh_segment(mesh, i)][end]];
-            if (zone == NO_ZONE)
+            uint32_t junction = junctions->of_node[build->tree->nodes[mesh_segment(mesh, i)][end]];
+            if (junction == NO_JUNCTION)
                 continue;
-            build->finer[zone] = (uint8_t)round;
+            build->finer[junction] = (uint8_t)round;
             any = true;
         }
     return any;
 }
 
 /* One round of vesselmesh_build; *again when another may help. */
-static Status build_once(Build *build, int n_workers, int round, VesselMesh *mesh,
-                         MeshReport *report, bool *again, Err *err)
+static Status build_once(MeshBuild *build, int round, VesselMesh *mesh, MeshReport *report,
+                         bool *again, Err *err)
 {
     atomic_bool *crossed = NULL;
     Status status;
     vesselmesh_release(mesh);
     meshreport_release(report);
-    TRY_GOTO(make_mesh(build, n_workers, mesh, report, err));
+    TRY_GOTO(make_mesh(build, mesh, report, err));
     TRY_GOTO(mem_calloc(&crossed, mesh->n_triangles, sizeof *crossed, "triangles", err));
     TRY_GOTO(fill_report(build, mesh, crossed, report, err));
     /* where roundings fold many triangles over each other, smaller ones only make it worse */
@@ -356,23 +319,26 @@ done:
 Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, VesselMesh *mesh,
                         MeshReport *report, Err *err)
 {
-    int n_workers = workers_of(params);
-    Build build = {.tree = tree,
-                   .params = params,
-                   .fineness = fineness_of(tree, tolerance_of(params),
-                                           mesh_grid(fmax(mesh_reach(tree), params->reach_mm)))};
+    double grid_mm = mesh_grid(fmax(mesh_reach(tree), params->reach_mm));
+    MeshBuild build = {.tree = tree,
+                       .params = params,
+                       .n_workers = workers_of(params),
+                       .fineness = fineness_of(tree, tolerance_of(params), grid_mm)};
+    Junctions *junctions = &build.junctions;
     VesselMesh made = {0};
     MeshReport found = {0};
     Status status;
-    TRY_GOTO(cut_tree(&build, err));
-    TRY_GOTO(reserve_build(&build, n_workers, err));
     bool again = true;
+    TRY_GOTO(junctions_find(tree, params, junctions, err));
+    if (junctions->n_overlapping)
+        TRY_GOTO(refuse_overlap(&build, err));
+    TRY_GOTO(reserve_build(&build, err));
     for (int round = 0; again; round++)
-        TRY_GOTO(build_once(&build, n_workers, round, &made, &found, &again, err));
-    found.near = build.zones.strangers;
-    found.n_near = build.zones.n_strangers;
-    found.n_overlapping = build.zones.n_overlapping;
-    build.zones.strangers = NULL;
+        TRY_GOTO(build_once(&build, round, &made, &found, &again, err));
+    found.near = junctions->strangers;
+    found.n_near = junctions->n_strangers;
+    found.n_overlapping = junctions->n_overlapping;
+    junctions->strangers = NULL;
     *mesh = made;
     *report = found;
     made = (VesselMesh){0};
@@ -380,6 +346,6 @@ Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, Vessel
 done:
     vesselmesh_release(&made);
     meshreport_release(&found);
-    release_build(&build, n_workers);
+    release_build(&build);
     return status;
 }

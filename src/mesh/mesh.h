@@ -9,13 +9,12 @@
 #define CORCAST_MESH_MESH_H
 
 #include "base/base.h"
-#include "mesh/meshreport.h"        // IWYU pragma: export
-#include "mesh/precision.h"         // IWYU pragma: export
-#include "mesh/proof/meshcheck.h"   // IWYU pragma: export
-#include "mesh/zones/adjust.h"      // IWYU pragma: export
-#include "mesh/zones/closestpair.h" // IWYU pragma: export
-#include "mesh/zones/junctions.h"   // IWYU pragma: export
-#include "mesh/zones/nearpairs.h"   // IWYU pragma: export
+#include "mesh/meshreport.h"      // IWYU pragma: export
+#include "mesh/precision.h"       // IWYU pragma: export
+#include "mesh/proof/meshcheck.h" // IWYU pragma: export
+#include "mesh/zones/adjust.h"    // IWYU pragma: export
+#include "mesh/zones/junctions.h" // IWYU pragma: export
+#include "mesh/zones/nearpairs.h" // IWYU pragma: export
 #include "scene/scene.h"
 
 /* What the mesh of a tree takes, within a factor of 2 as a rule. */

@@ -7,7 +7,7 @@
 void meshreport_release(MeshReport *report)
 {
     free(report->missing);
-    free(report->swallowed);
+    free(report->enclosed);
     free(report->slivers);
     free(report->round);
     free(report->near);

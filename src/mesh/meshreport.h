@@ -41,21 +41,21 @@ typedef struct MeshReport {
     size_t expected_components, expected_genus; /* of a sound mesh: one for each tree, and 0, unless
                                                  * it was made into a solid for printing */
     long long euler;                            /* points - edges + triangles, of all */
-    size_t open_edges;  /* that not two triangles share, one each way; 0: closed and oriented */
-    size_t crossings;   /* pairs of triangles that meet elsewhere than in what they share */
-    size_t bridges;     /* components that hold segments of several trees */
-    size_t n_missing;   /* segments with a wall that has no triangle */
-    size_t n_swallowed; /* segments that lie within others, so that they have no wall */
-    size_t n_slivers;   /* segments whose wall is so narrow that no triangle is their own */
-    size_t n_round;     /* ends that could not be cut flat, because other vessels are in the way */
-    uint32_t *missing, *swallowed, *slivers, *round; /* their segments; owned */
+    size_t open_edges; /* that not two triangles share, one each way; 0: closed and oriented */
+    size_t crossings;  /* pairs of triangles that meet elsewhere than in what they share */
+    size_t bridges;    /* components that hold segments of several trees */
+    size_t n_missing;  /* segments with a wall that has no triangle */
+    size_t n_enclosed; /* segments that lie within others, so that they have no wall */
+    size_t n_slivers;  /* segments whose wall is so narrow that no triangle is their own */
+    size_t n_round;    /* ends that could not be cut flat, because other vessels are in the way */
+    uint32_t *missing, *enclosed, *slivers, *round; /* their segments; owned */
     NearPair *near; /* owned; gaps below NEAR_GAP of the thinner radius, overlaps first */
     size_t n_near, n_overlapping;
     double volume_mm3;
     double tolerance; /* that the triangles were made for: above what was asked where `lod` is below
                          1 */
     MeshOff off;      /* of junctions at the middle of each triangle and of its longest edge */
-    size_t zones, repeated; /* junction zones, and those that needed finer cells */
+    size_t junctions, repeated; /* junction junctions, and those that needed finer cells */
 } MeshReport;
 
 #define NEAR_GAP 0.4

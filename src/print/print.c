@@ -120,7 +120,8 @@ static Status prepare(Making *making, Err *err)
         TRY(vesseltree_free_ends(&making->outer, &params->mesh, &report->longer, &report->n_longer,
                                  err));
     TRY(take_changes(making, err));
-    TRY(leastgap_find(&making->outer, &params->mesh, &report->closest, &report->has_closest, err));
+    TRY(vesseltree_closest_pair(&making->outer, &params->mesh, &report->closest,
+                                &report->has_closest, err));
     if (!params->base.is_there)
         return STATUS_OK;
     TRY(pins_add(&making->outer, &params->base, print_has_wall(params), &params->mesh,
@@ -274,8 +275,8 @@ static void name_owners(Making *making, MeshReport *report)
 {
     const Pins *pins = &making->pins;
     VesselMesh *mesh = &making->solid.mesh;
-    uint32_t *const lists[] = {report->swallowed, report->slivers, report->round};
-    const size_t counts[] = {report->n_swallowed, report->n_slivers, report->n_round};
+    uint32_t *const lists[] = {report->enclosed, report->slivers, report->round};
+    const size_t counts[] = {report->n_enclosed, report->n_slivers, report->n_round};
     enum { LISTS = sizeof counts / sizeof *counts };
     if (pins->n_added == 0)
         return;

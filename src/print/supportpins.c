@@ -242,24 +242,24 @@ static Status add_pin(Standing *standing, Foot foot, bool open_ends)
 }
 
 /* Whether a pin is not cut off flat at the plate, or overlaps a vessel. */
-static bool is_spoilt(const Standing *standing, const Zones *zones, uint32_t segment)
+static bool is_spoilt(const Standing *standing, const Junctions *junctions, uint32_t segment)
 {
-    for (size_t i = 0; i < zones->n_overlapping; i++)
-        if (zones->strangers[i].segments[0] == segment ||
-            zones->strangers[i].segments[1] == segment)
+    for (size_t i = 0; i < junctions->n_overlapping; i++)
+        if (junctions->strangers[i].segments[0] == segment ||
+            junctions->strangers[i].segments[1] == segment)
             return true;
-    return zones->zone[standing->tree->nodes[segment][1]] != NO_ZONE;
+    return junctions->of_node[standing->tree->nodes[segment][1]] != NO_JUNCTION;
 }
 
 /* Takes away what is spoilt, and tells how many pins that were. */
-static size_t take_spoilt(Standing *standing, const Zones *zones)
+static size_t take_spoilt(Standing *standing, const Junctions *junctions)
 {
     VesselTree *tree = standing->tree;
     Pins *pins = &standing->pins;
     size_t kept = 0, n = pins->n_added;
     for (size_t i = 0; i < n; i++) {
         size_t from = pins->n_segments + i, to = pins->n_segments + kept;
-        if (pins->is_pin[i] && is_spoilt(standing, zones, (uint32_t)from))
+        if (pins->is_pin[i] && is_spoilt(standing, junctions, (uint32_t)from))
             continue;
         tree->segments[to] = tree->segments[from];
         tree->nodes[to][0] = tree->nodes[from][0];
@@ -275,24 +275,15 @@ static size_t take_spoilt(Standing *standing, const Zones *zones)
     return n - kept;
 }
 
-/* Leaves the pins that are cut off flat. */
+/* Removes pins until all others are cut off flat. */
 static Status keep_flat(Standing *standing, const MeshParams *params)
 {
     bool done = false;
     while (!done) {
-        IndexLists incident = {0}, blending = {0};
-        Zones zones = {0};
-        Status status;
-        Err *err = standing->err;
-        TRY_GOTO(vesseltree_incident(standing->tree, &incident, err));
-        TRY_GOTO(vesseltree_blending(standing->tree, &incident, &blending, err));
-        TRY_GOTO(zones_find(standing->tree, &incident, &blending, params, &zones, err));
-        done = take_spoilt(standing, &zones) == 0;
-    done:
-        indexlists_release(&incident);
-        indexlists_release(&blending);
-        zones_release(&zones);
-        TRY(status);
+        Junctions junctions;
+        TRY(junctions_find(standing->tree, params, &junctions, standing->err));
+        done = take_spoilt(standing, &junctions) == 0;
+        junctions_release(&junctions);
     }
     return STATUS_OK;
 }

@@ -1,44 +1,58 @@
 /* Both tables are made of the one list of rows. */
 #include "scene/models.h"
 
+#include <stdio.h>
+#include <string.h>
+
 const Model models[SCENE_MODELS] = {
-#define X(symbol, called, said, made_of, held)                                                     \
+#define X(symbol, named, described, has, held)                                                     \
     [SCENE_##symbol] = {                                                                           \
-        .name = called, .description = said, .elements = made_of, .proof = PROOF_##held},
+        .name = named, .description = described, .properties = has, .proof = PROOF_##held},
     MODEL_TABLE(X)
 #undef X
 };
 
 const char *const model_names[] = {
-#define X(symbol, called, said, made_of, held) called,
+#define X(symbol, named, described, has, held) named,
     MODEL_TABLE(X)
 #undef X
         NULL};
 
-/* The elements of a model that must be there, or that alone may be. */
-static void list_models(unsigned any, unsigned alone, Text *out)
+SceneModel model_with(unsigned properties)
+{
+    SceneModel model = 0;
+    while (!model_has(model, properties))
+        model++;
+    return model;
+}
+
+/* Names the models that have any of the properties and no other elements than those allowed. */
+static ModelNames list_models(unsigned properties, unsigned allowed)
 {
     bool listed[SCENE_MODELS];
-    int n = 0;
+    int left = 0;
+    ModelNames names = {""};
     for (int i = 0; i < SCENE_MODELS; i++) {
-        listed[i] = model_has((SceneModel)i, any) && model_is_of((SceneModel)i, alone);
-        n += listed[i];
+        listed[i] = model_has((SceneModel)i, properties) && model_is_of((SceneModel)i, allowed);
+        left += listed[i];
     }
-    for (int i = 0, at = 0; i < SCENE_MODELS; i++) {
-        if (!listed[i])
-            continue;
-        text_puts(out, at == 0 ? "" : at + 1 == n ? " and " : ", ");
-        text_puts(out, models[i].name);
-        at++;
+    for (int i = 0; i < SCENE_MODELS; i++) {
+        size_t length = strlen(names.text);
+        if (listed[i])
+            snprintf(names.text + length, sizeof names.text - length, "%s%s", models[i].name,
+                     --left == 0 ? ""
+                     : left == 1 ? " and "
+                                 : ", ");
     }
+    return names;
 }
 
-void models_with(unsigned elements, Text *out)
+ModelNames models_with(unsigned properties)
 {
-    list_models(elements, ~0U, out);
+    return list_models(properties, MODEL_ELEMENTS);
 }
 
-void models_of(unsigned elements, Text *out)
+ModelNames models_of(unsigned elements)
 {
-    list_models(~0U, elements, out);
+    return list_models(MODEL_ELEMENTS, elements);
 }

@@ -1,40 +1,47 @@
-/* The models: the ways to give vessels a shape, a row for each. What stages, emitters, renderers
- * and judges do with a model depends on what its row says, never on which model it is, so that a
- * model made of what there is needs a row and a stage. */
+/* The table of models: the geometries that vessels can be given. Stages, emitters, renderers and
+ * checks act on the properties of a model's row and never ask which model it is. A model that
+ * combines known elements is therefore one row and a stage, and a new element touches only what
+ * draws it. */
 #ifndef CORCAST_SCENE_MODELS_H
 #define CORCAST_SCENE_MODELS_H
 
 #include "base/base.h"
 
-/* What the geometry of a model is made of. */
-typedef enum ModelElement {
-    MODEL_CYLINDERS = 1, /* closed cylinders */
-    MODEL_BALLS = 2,     /* a ball about each place where cylinders begin or end */
-    MODEL_JOINTS = 4,    /* ruled surfaces from cylinder to cylinder, which are cut back for them */
-    MODEL_POTENTIAL = 8, /* segments of the Gaussian line potential */
-    MODEL_BLOB = 16,     /* segments of the blob that stands in for it */
-    MODEL_TRIANGLES = 32, /* triangles of the surface of the potential */
+/* The properties of a model, as bits. The elements say what its geometry is made of; engines and
+ * emitters name the elements that they can draw. The other properties say what a model is for. */
+typedef enum ModelProperty {
+    MODEL_CYLINDERS = 1 << 0, /* closed cylinders */
+    MODEL_BALLS = 1 << 1,     /* balls at nodes */
+    MODEL_JOINTS = 1 << 2,    /* ruled surfaces between cylinders, which are shortened for them */
+    MODEL_POTENTIAL = 1 << 3, /* segments of the Gaussian line potential */
+    MODEL_BLOB = 1 << 4,      /* segments of the blob that approximates the potential */
+    MODEL_TRIANGLES = 1 << 5, /* a mesh of the surface of the potential */
 
     MODEL_PRIMITIVES = MODEL_CYLINDERS | MODEL_BALLS | MODEL_JOINTS,
-    MODEL_FIELD = MODEL_POTENTIAL | MODEL_BLOB
-} ModelElement;
+    MODEL_FIELD = MODEL_POTENTIAL | MODEL_BLOB, /* the colours of such segments can blend */
+    MODEL_ELEMENTS = MODEL_PRIMITIVES | MODEL_FIELD | MODEL_TRIANGLES,
 
-/* How `verify` holds the model against POV-Ray. */
+    MODEL_ROUND_ENDS = 1 << 6, /* at every node a ball covers the ends of all cylinders there */
+    MODEL_VOXELS = 1 << 7,     /* volumes are filled from this model; one row */
+    MODEL_DEFAULT = 1 << 8     /* drawn if no model is specified; one row */
+} ModelProperty;
+
+/* How `verify` compares a picture of the model with POV-Ray's. */
 typedef enum ModelProof {
-    PROOF_IDENTITY, /* the same picture */
-    PROOF_STEPS,    /* the same picture, by repeating POV-Ray's steps; and that one against where
-                     * the surface is [surface_tolerance] */
-    PROOF_FIELD     /* the same picture; where it is not, the field along the ray has the say */
+    PROOF_IDENTITY, /* requires the same picture */
+    PROOF_STEPS,    /* requires the same picture when POV-Ray's steps are repeated, and bounds the
+                     * distance of these steps from the surface [surface_tolerance] */
+    PROOF_FIELD     /* where pictures differ, the field along the ray decides which is right */
 } ModelProof;
 
-/* SCENE_..., name, description, elements, PROOF_... In this order the keys of `view` and all lists
- * of models have them. */
+/* SCENE_..., name, description, properties, PROOF_... The keys of `view` and all lists of models
+ * follow this order. Outside this table no source names a SCENE_... */
 #define MODEL_TABLE(X)                                                                             \
     X(CYLINDERS, "cylinders", "a closed cylinder for each segment", MODEL_CYLINDERS, IDENTITY)     \
     X(JOINED, "joined", "cylinders, cut back and joined by ruled surfaces", MODEL_PRIMITIVES,      \
       IDENTITY)                                                                                    \
     X(ROUNDED, "rounded", "cylinders, and a ball where they meet or end",                          \
-      MODEL_CYLINDERS | MODEL_BALLS, IDENTITY)                                                     \
+      MODEL_CYLINDERS | MODEL_BALLS | MODEL_ROUND_ENDS | MODEL_VOXELS | MODEL_DEFAULT, IDENTITY)   \
     X(ISOSURFACE, "isosurface", "the level set of a sum of Gaussian line potentials",              \
       MODEL_POTENTIAL, STEPS)                                                                      \
     X(BLOB, "blob", "nearly that surface, as a blob of POV-Ray", MODEL_BLOB, FIELD)                \
@@ -42,7 +49,7 @@ typedef enum ModelProof {
       IDENTITY)
 
 typedef enum SceneModel {
-#define X(symbol, name, description, elements, proof) SCENE_##symbol,
+#define X(symbol, name, description, properties, proof) SCENE_##symbol,
     MODEL_TABLE(X)
 #undef X
         SCENE_MODELS
@@ -51,30 +58,37 @@ typedef enum SceneModel {
 typedef struct Model {
     const char *name; /* "rounded" */
     const char *description;
-    unsigned elements; /* bits: ModelElement */
+    unsigned properties; /* bits: ModelProperty; one element at least */
     ModelProof proof;
 } Model;
 
 extern const Model models[SCENE_MODELS];
-/* Their names; NULL ends them. */
+/* The names of all models, in order. NULL ends the list. */
 extern const char *const model_names[];
 
-/* Whether the model is made of any of these elements. */
-static inline bool model_has(SceneModel model, unsigned elements)
+/* Returns true if the model has any of these properties. */
+static inline bool model_has(SceneModel model, unsigned properties)
 {
-    return (models[model].elements & elements) != 0;
+    return (models[model].properties & properties) != 0;
 }
 
-/* Whether the model is made of nothing but these. */
+/* Returns true if the model has no other elements than these. */
 static inline bool model_is_of(SceneModel model, unsigned elements)
 {
-    return (models[model].elements & ~elements) == 0;
+    return (models[model].properties & MODEL_ELEMENTS & ~elements) == 0;
 }
 
-/* Appends the names of the models that have any of these elements: "cylinders, joined and
- * rounded". */
-void models_with(unsigned elements, Text *out);
-/* Likewise of those that are made of nothing but these. */
-void models_of(unsigned elements, Text *out);
+/* Returns the first model that has any of these properties. At least one model must. */
+SceneModel model_with(unsigned properties);
+
+/* Names of models for a sentence: "cylinders, joined and rounded". */
+typedef struct ModelNames {
+    char text[128];
+} ModelNames;
+
+/* Returns the names of the models that have any of these properties. */
+ModelNames models_with(unsigned properties);
+/* Returns the names of the models that have no other elements than these. */
+ModelNames models_of(unsigned elements);
 
 #endif

@@ -35,20 +35,29 @@ static void escape(Text *text)
     *text = escaped;
 }
 
-Status markup_put(Markup *self, const char *templates, const char *file, Text *out, Err *err)
+Status markup_stream(Markup *self, const char *templates, const char *file, const TmplPart *parts,
+                     size_t n_parts, Text *out, Err *err)
 {
     TmplValue values[sizeof self->parts / sizeof *self->parts];
-    char *path;
+    Tmpl tmpl = {0};
+    char *path = NULL;
+    Status status;
     for (size_t i = 0; i < self->n; i++) {
         if (!self->parts[i].markup)
             escape(&self->parts[i].text);
         values[i] = (TmplValue){self->parts[i].name, text_chars(&self->parts[i].text)};
     }
-    Status status = file_join(templates, file, &path, err);
-    if (status == STATUS_OK) {
-        status = tmpl_expand(path, values, self->n, out, err);
-        free(path);
-    }
+    TRY_GOTO(file_join(templates, file, &path, err));
+    TRY_GOTO(tmpl_load(&tmpl, path, err));
+    status = tmpl_stream(&tmpl, values, self->n, parts, n_parts, out, err);
+done:
+    tmpl_release(&tmpl);
+    free(path);
     markup_release(self);
     return status;
+}
+
+Status markup_put(Markup *self, const char *templates, const char *file, Text *out, Err *err)
+{
+    return markup_stream(self, templates, file, NULL, 0, out, err);
 }

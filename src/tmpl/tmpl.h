@@ -64,5 +64,9 @@ void markup_release(Markup *self);
  * failure, too. STATUS_INPUT as tmpl_apply. */
 MUST_CHECK Status markup_put(Markup *self, const char *templates, const char *file, Text *out,
                              Err *err);
+/* As markup_put, for a text that may have a stream, with parts that are appended as they are made.
+ * On failure `out` is as tmpl_stream leaves it. */
+MUST_CHECK Status markup_stream(Markup *self, const char *templates, const char *file,
+                                const TmplPart *parts, size_t n_parts, Text *out, Err *err);
 
 #endif

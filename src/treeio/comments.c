@@ -24,13 +24,16 @@ static const char *key_value(const char *comment, MetaKey *key)
     return *key == META_KEYS ? NULL : comment_value(name, meta_rows[*key].name);
 }
 
-Status comment_read(TreeMeta *meta, const char *comment, Err *err)
+Status comment_keep(TreeMeta *meta, const char *comment, Err *err)
 {
     MetaKey key;
     const char *value = key_value(comment, &key);
-    if (value)
-        return meta_parse(meta, key, value, err);
-    return meta_add_text(meta, META_KEYS, comment + (*comment == ' '), err);
+    return value ? meta_parse(meta, key, value, err) : meta_add_text(meta, META_KEYS, comment, err);
+}
+
+Status comment_read(TreeMeta *meta, const char *comment, Err *err)
+{
+    return comment_keep(meta, comment + (*comment == ' '), err);
 }
 
 Status comment_read_key(TreeMeta *meta, const char *comment, Err *err)
@@ -63,15 +66,16 @@ static bool begins_with_one(const char *comment, const char *const *names)
     return false;
 }
 
-Status comments_write(const TreeMeta *meta, const char *const *but, FILE *stream, Err *err)
+void comments_put(const TreeMeta *meta, const char *const *except, Text *text)
 {
     Text line = TEXT_INIT;
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);) {
         const char *chars = text_chars(&line);
-        if (chars && !begins_with_one(chars, but))
-            fprintf(stream, *chars ? "# %s\n" : "#%s\n", chars);
+        if (chars && begins_with_one(chars, except))
+            continue;
+        text_puts(text, chars && *chars ? "# " : "#");
+        text_puts(text, chars);
+        text_puts(text, "\n");
     }
-    Status status = text_check(&line, err);
     text_release(&line);
-    return status;
 }

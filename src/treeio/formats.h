@@ -12,7 +12,6 @@
 #define CORCAST_TREEIO_FORMATS_H
 
 #include "tree/tree.h"
-#include <stdio.h>
 
 /* Whether a file that begins with these bytes, zero-terminated, is of the format. */
 typedef bool TreeDetect(const char *start);
@@ -21,8 +20,10 @@ typedef bool TreeDetect(const char *start);
 typedef Status TreeRead(TreeBuilder *builder, char *bytes, size_t size, Err *err);
 /* Likewise to a graph, in the file's own unit. */
 typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
-/* Writes a tree that tree_check accepts; errors of the stream are the caller's matter. */
-typedef Status TreeWrite(const Tree *tree, FILE *stream, Err *err);
+/* Appends the file of a tree that tree_check accepts. The text may flow into a stream; the caller
+ * checks it at the end. Errors: STATUS_INPUT, without the file's name, for a tree that the format
+ * cannot hold; STATUS_MEMORY. */
+typedef Status TreeWrite(const Tree *tree, Text *text, Err *err);
 
 /* Whether a column of the tree is written, although columns as such are not. */
 typedef bool TreeKeeps(const TreeColumn *column);
@@ -54,20 +55,10 @@ MUST_CHECK Status check_elements(const char *what, double count, size_t size, Er
 /* STATUS_INPUT, without the file, for more bytes of numbers than that. */
 MUST_CHECK Status check_unpacked(double bytes, size_t size, Err *err);
 
-/* Takes in one line (zero-terminated, without its end; may be changed), the file's `number`th.
- * STATUS_INPUT without file and line. */
-typedef Status ReadLine(void *reader, size_t number, char *line, Err *err);
-/* Hands all lines of a text to `read`, and says of which of the file `name` it was that it refuses.
- */
-MUST_CHECK Status lines_read(const char *name, char *text, ReadLine *read, void *reader, Err *err);
-
 /* Of a text that may begin with comments and empty lines, the first line behind them, at its first
  * character that is no blank. */
 const char *text_first_row(const char *start);
 
-/* Cuts a line in place into its fields [text_field]; returns how many there are, of which the first
- * `most` go to `field`. */
-size_t fields_cut(char *line, char **field, size_t most);
 /* Refuses a line of fields that holds a number with a decimal comma, as "10,5" between blanks or
  * semicolons: a comma separates fields. STATUS_INPUT, without file and line. */
 MUST_CHECK Status fields_check_commas(const char *line, Err *err);

@@ -9,15 +9,6 @@
 
 enum { SHOWN = 40 /* characters of a bad value */ };
 
-Status lines_read(const char *name, char *text, ReadLine *read, void *reader, Err *err)
-{
-    const TreeBuilder named = {.name = name};
-    size_t number = 1;
-    for (char *line; (line = text_line(&text)); number++)
-        TRY(builder_blame(&named, number, read(reader, number, line, err), err));
-    return STATUS_OK;
-}
-
 Status check_elements(const char *what, double count, size_t size, Err *err)
 {
     char bytes[BYTES_TEXT_SIZE];
@@ -47,15 +38,6 @@ const char *text_first_row(const char *start)
         start += strspn(start, blanks);
     }
     return start;
-}
-
-size_t fields_cut(char *line, char **field, size_t most)
-{
-    size_t count = 0;
-    for (char *word; (word = text_field(&line)); count++)
-        if (count < most)
-            field[count] = word;
-    return count;
 }
 
 /* Whether the first `length` characters are a number such as "-10,5" or "1,5e-3". */

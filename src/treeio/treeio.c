@@ -636,7 +636,7 @@ Status tree_read(Tree *tree, const char *path, Err *err)
     return tree_read_as(tree, path, NULL, NULL, err);
 }
 
-static Status write_to(const char *path, const Tree *tree, FILE *stream, Err *err)
+static Status write_to(const char *path, const Tree *tree, Text *text, Err *err)
 {
     const Format *format = find_written(path);
     Tree written = *tree; /* borrows all */
@@ -648,7 +648,7 @@ static Status write_to(const char *path, const Tree *tree, FILE *stream, Err *er
                        path, format->form.name);
     if (loses_rule(format, tree))
         written.meta.known[META_TERMINAL_FLOW] = false;
-    return format->write(&written, stream, err);
+    return format->write(&written, text, err);
 }
 
 Status tree_write(const Tree *tree, const char *path, Err *err)
@@ -657,7 +657,11 @@ Status tree_write(const Tree *tree, const char *path, Err *err)
     TRY(tree_format_check(path, err));
     TRY(tree_check(tree, err));
     TRY(outfile_open(&file, path, err));
-    Status status = write_to(path, tree, file.stream, err);
+    Text text = TEXT_TO(file.stream);
+    Status status = write_to(path, tree, &text, err);
+    if (status == STATUS_OK)
+        status = text_flush(&text, err);
+    text_release(&text);
     if (status == STATUS_IO)
         err_prefix(err, "%s: ", path);
     if (status == STATUS_OK)
@@ -668,21 +672,8 @@ Status tree_write(const Tree *tree, const char *path, Err *err)
 
 Status tree_write_text(const Tree *tree, const char *path, Text *out, Err *err)
 {
-    char *bytes = NULL;
-    size_t size = 0;
     TRY(tree_format_check(path, err));
     TRY(tree_check(tree, err));
-    FILE *stream = open_memstream(&bytes, &size);
-    if (!stream)
-        return mem_out_of("for", "a tree", err);
-    Status status = write_to(path, tree, stream, err);
-    /* Closing tells only by NULL that there was no room for the bytes. */
-    if ((fclose(stream) != 0 || !bytes) && status == STATUS_OK)
-        status = mem_out_of("for", "a tree", err);
-    if (status == STATUS_OK) {
-        text_append(out, bytes, size);
-        status = text_check(out, err);
-    }
-    free(bytes);
-    return status;
+    TRY(write_to(path, tree, out, err));
+    return text_check(out, err);
 }

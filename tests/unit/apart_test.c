@@ -14,7 +14,7 @@ static Tree forest(const char *spec, double clearance)
     params.terminals = 220;
     params.inlets = 3;
     params.inlet = inlet;
-    params.q_perf_ml_min = 90;
+    params.blood.q_perf_ml_min = 90;
     params.clearance_mm = clearance;
     return test_grown_by(&params, spec);
 }

@@ -11,7 +11,7 @@ static Tree grown(size_t terminals, double lambda, const char *spec, TerminalFlo
     GrowParams params = grow_defaults();
     params.terminals = terminals;
     params.lambda = lambda;
-    params.terminal_flow = flow;
+    params.blood.terminal_flow = flow;
     params.seed = 23;
     return test_grown_by(&params, spec);
 }

@@ -35,14 +35,14 @@ static bool overlap(const double a[2], const double b[2])
 static void check_bars(const Tree *tree, const Diagram *diagram)
 {
     for (size_t i = 0; i < diagram->n; i++) {
-        const DiagramBar *bar = &diagram->bar[i];
+        const FigureBar *bar = &diagram->bar[i];
         assert_true(bar->x[0] >= 0 && bar->y[0] >= -1e-9);
         assert_true(bar->y[1] <= diagram->height_mm + 1e-9);
         if (i < diagram->n_links)
             continue;
-        double length = tree_segment_length(tree, (size_t)bar->node);
+        double length = tree_segment_length(tree, (size_t)bar->index);
         assert_true(fabs(bar->x[1] - bar->x[0] - length) < 1e-9 * diagram->width_mm);
-        assert_true(fabs(bar->y[1] - bar->y[0] - 2 * tree->radius_mm[bar->node]) < 1e-9);
+        assert_true(fabs(bar->y[1] - bar->y[0] - 2 * tree->radius_mm[bar->index]) < 1e-9);
         assert_true(bar->x[1] <= diagram->width_mm + 1e-9);
     }
 }
@@ -52,10 +52,11 @@ static void check_apart(const Tree *tree, const Diagram *diagram)
 {
     for (size_t i = 0; i < diagram->n; i++)
         for (size_t k = 0; k < i; k++) {
-            const DiagramBar *a = &diagram->bar[i], *b = &diagram->bar[k];
-            bool one_place = k < diagram->n_links && tree->parent[a->node] == tree->parent[b->node];
+            const FigureBar *a = &diagram->bar[i], *b = &diagram->bar[k];
+            bool one_place =
+                k < diagram->n_links && tree->parent[a->index] == tree->parent[b->index];
             if (!one_place && overlap(a->x, b->x) && overlap(a->y, b->y))
-                fail_msg("the bars of nodes %d and %d overlap", a->node, b->node);
+                fail_msg("the bars of nodes %d and %d overlap", a->index, b->index);
         }
 }
 
@@ -105,14 +106,14 @@ static void the_thickest_daughter_continues_the_row(void **state)
     must(diagram_lay_out(&tree, 2.385, &diagram, &err), &err);
     assert_int_equal(diagram.n, 4);
     assert_int_equal(diagram.n_links, 1);
-    const DiagramBar *link = diagram.bar, *bar = diagram.bar + 1;
+    const FigureBar *link = diagram.bar, *bar = diagram.bar + 1;
     assert_true(bar[0].x[0] == 0 && bar[0].x[1] == 10 && bar[1].x[1] == 15 && bar[2].x[1] == 20);
     assert_true(bar[0].y[0] + bar[0].y[1] == bar[1].y[0] + bar[1].y[1]);
     /* 0.7 mm and the gap above the thickest of the row */
     assert_true(fabs(bar[0].y[0] - bar[2].y[1] - 2.385) < 1e-12);
     assert_true(fabs(diagram.height_mm - (3 + 2.385 + 1.4)) < 1e-12);
     assert_true(diagram.width_mm == 20);
-    assert_int_equal(link->node, 3);
+    assert_int_equal(link->index, 3);
     assert_true(link->y[0] == bar[2].y[1] && fabs(link->y[1] - bar[0].y[0]) < 1e-12);
     diagram_release(&diagram);
     tree_release(&tree);
@@ -132,8 +133,10 @@ static void pixels_add_up_to_the_area_of_the_bars(void **state)
     for (size_t i = 0; i < tree.n; i++)
         for (int c = 0; c < 3; c++)
             white[i][c] = 1;
-    const DiagramPaint paint = {.color = (const float(*)[3])white, .margin = 0.05};
-    must(diagram_draw(&diagram, &paint, 211, 167, &color, &err), &err);
+    const DiagramStyle style = {
+        .diagram = &diagram, .tree = &tree, .color = (const float(*)[3])white, .margin = 0.05};
+    const FigureBars bars = diagram_bars(&style);
+    must(diagram_draw(&style, &bars, 211, 167, &color, &err), &err);
     double sum = 0, area = 0;
     for (size_t i = 0; i < 211 * 167; i++)
         sum += (double)color.values[3 * i + 1];

@@ -35,10 +35,8 @@ typedef struct Answer {
     Viewpoint eye;
 } Answer;
 
-static void keep_answer(const SeenTile *seen, int worker, void *context)
+static void keep_answer(const SeenTile *seen, Answer *answer)
 {
-    (void)worker;
-    Answer *answer = context;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         answer->hit[sample] = seen->hits && seen->hits->state[sample] == TILE_HIT;
         if (!answer->hit[sample])
@@ -54,16 +52,21 @@ static void keep_answer(const SeenTile *seen, int worker, void *context)
 
 static void ask(const Geometry *geometry, const Camera *camera, int kernel, Answer *answer)
 {
-    const FieldKernels *kernels =
-        fieldkernels_for(geometry, (RenderKernels)(KERNELS_PORTABLE + kernel));
-    const double places[] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const SampleGrid grid = {
-        .columns = places, .rows = places, .n_columns = 8, .n_rows = 8, .spacing = 1};
+    const FieldTilesParams params = {.geometry = geometry,
+                                     .camera = camera,
+                                     .grid = {.side = 1, .n_columns = 8, .n_rows = 8},
+                                     .z_min = 1e-4,
+                                     .workers = 1,
+                                     .kernels = (RenderKernels)(KERNELS_PORTABLE + kernel)};
     FieldTiles *tiles;
-    assert_int_equal(fieldtiles_new(geometry, camera, &grid, 1e-4, 1, &tiles, NULL), STATUS_OK);
-    fieldtiles_use_kernel(tiles, kernels->trace);
+    TileHits hits;
+    SeenTile seen = {
+        .n_columns = 8, .n_rows = 8, .perspective = camera->projection == PROJECTION_PERSPECTIVE};
+    assert_int_equal(fieldtiles_new(&params, &tiles, NULL), STATUS_OK);
+    assert_int_equal(fieldtiles_list(tiles, 0, 0, NULL), STATUS_OK);
+    assert_int_equal(fieldtiles_trace(tiles, 0, &seen, &hits, NULL), STATUS_OK);
     *answer = (Answer){.eye = viewpoint_of_camera(camera)};
-    assert_int_equal(fieldtiles_trace(tiles, 0, 0, NULL, keep_answer, answer, NULL), STATUS_OK);
+    keep_answer(&seen, answer);
     fieldtiles_free(tiles);
 }
 

@@ -32,10 +32,8 @@ typedef struct Sight {
     uint8_t shadowed[TILE_SAMPLES];
 } Sight;
 
-static void keep_sight(const SeenTile *tile, int worker, void *context)
+static void keep_sight(const SeenTile *tile, Sight *sight)
 {
-    (void)worker;
-    Sight *sight = context;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (!tile->hits || tile->hits->state[sample] != TILE_HIT)
             continue;
@@ -52,13 +50,20 @@ static void keep_sight(const SeenTile *tile, int worker, void *context)
 
 static void look(const Geometry *geometry, const Camera *camera, Sight *sight)
 {
-    const double places[] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const SampleGrid grid = {
-        .columns = places, .rows = places, .n_columns = 8, .n_rows = 8, .spacing = 1};
+    const FieldTilesParams params = {.geometry = geometry,
+                                     .camera = camera,
+                                     .grid = {.side = 1, .n_columns = 8, .n_rows = 8},
+                                     .z_min = 1e-4,
+                                     .workers = 1};
     FieldTiles *tiles;
+    TileHits hits;
+    SeenTile seen = {
+        .n_columns = 8, .n_rows = 8, .perspective = camera->projection == PROJECTION_PERSPECTIVE};
     *sight = (Sight){.seen = 0};
-    assert_int_equal(fieldtiles_new(geometry, camera, &grid, 1e-4, 1, &tiles, NULL), STATUS_OK);
-    assert_int_equal(fieldtiles_trace(tiles, 0, 0, NULL, keep_sight, sight, NULL), STATUS_OK);
+    assert_int_equal(fieldtiles_new(&params, &tiles, NULL), STATUS_OK);
+    assert_int_equal(fieldtiles_list(tiles, 0, 0, NULL), STATUS_OK);
+    assert_int_equal(fieldtiles_trace(tiles, 0, &seen, &hits, NULL), STATUS_OK);
+    keep_sight(&seen, sight);
     fieldtiles_free(tiles);
 }
 

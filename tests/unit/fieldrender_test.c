@@ -255,29 +255,15 @@ typedef struct Tile {
     float color[3][TILE_SAMPLES];
 } Tile;
 
-typedef struct KernelVisit {
-    const TileKernels *kernels;
-    const TileLook *look;
-    Tile *tiles;
-    size_t n;
-} KernelVisit;
-
-static void keep_tile(const SeenTile *seen, int worker, void *context)
+static void shade_tile(const TileKernels *kernels, const TileLook *look, Tile *tile)
 {
-    (void)worker;
-    KernelVisit *visit = context;
-    Tile *tile = &visit->tiles[visit->n++];
-    memset(tile, 0, sizeof *tile);
-    if (!seen->hits)
-        return;
-    tile->hits = *seen->hits;
-    TileSurface surface = {.hits = seen->hits};
+    TileSurface surface = {.hits = &tile->hits};
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         surface.direction[2][sample] = 1;
         for (int c = 0; c < 3; c++)
             surface.pigment[c][sample] = 0.3f;
     }
-    visit->kernels->shade(visit->look, &surface, tile->color);
+    kernels->shade(look, &surface, tile->color);
 }
 
 static void all_kernels_agree(void **state)
@@ -288,23 +274,24 @@ static void all_kernels_agree(void **state)
     Staged staged;
     stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
     const TileLook look = {staged.scene.appearance.finish, {light}, 1};
-    double places[64];
-    for (int i = 0; i < 64; i++)
-        places[i] = i;
-    const SampleGrid grid = {
-        .columns = places, .rows = places, .n_columns = 64, .n_rows = 64, .spacing = 1};
+    FieldTilesParams params = {.geometry = &staged.scene.geometry,
+                               .camera = &staged.scene.view.camera,
+                               .grid = {.side = 1, .n_columns = 64, .n_rows = 64},
+                               .workers = 1};
     int n_kernels = kernels_usable();
     static Tile tiles[KINDS_OF_KERNELS][64];
     for (int k = 0; k < n_kernels; k++) {
         FieldTiles *field;
-        KernelVisit visit = {tilekernels[k], &look, tiles[k], 0};
-        assert_int_equal(fieldtiles_new(&staged.scene.geometry, &staged.scene.view.camera, &grid, 0,
-                                        1, &field, NULL),
-                         STATUS_OK);
-        fieldtiles_use_kernel(field, potentialkernels[k].trace);
-        for (size_t row = 0; row < fieldtiles_rows(field); row++)
-            assert_int_equal(fieldtiles_trace(field, row, 0, NULL, keep_tile, &visit, NULL),
-                             STATUS_OK);
+        params.kernels = (RenderKernels)(KERNELS_PORTABLE + k);
+        assert_int_equal(fieldtiles_new(&params, &field, NULL), STATUS_OK);
+        for (int n = 0; n < 64; n++) {
+            SeenTile seen = {.column = n % 8 * 8, .row = n / 8 * 8, .n_columns = 8, .n_rows = 8};
+            memset(&tiles[k][n], 0, sizeof tiles[k][n]);
+            assert_int_equal(fieldtiles_list(field, n / 8, 0, NULL), STATUS_OK);
+            assert_int_equal(fieldtiles_trace(field, 0, &seen, &tiles[k][n].hits, NULL), STATUS_OK);
+            if (seen.hits)
+                shade_tile(tilekernels[k], &look, &tiles[k][n]);
+        }
         fieldtiles_free(field);
     }
     int hits = 0;

@@ -12,7 +12,7 @@ static Tree grow_in(const Domain *domain, size_t terminals, GrowReport *report)
     GrowParams params = grow_defaults();
     params.terminals = terminals;
     params.seed = 2385;
-    params.q_perf_ml_min = 60;
+    params.blood.q_perf_ml_min = 60;
     Tree tree;
     Err err = {{0}};
     must(grow_tree(&params, domain, &tree, report, &err), &err);

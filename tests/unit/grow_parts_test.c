@@ -122,15 +122,18 @@ static void a_territory_counts_the_points_that_are_nearest_whatever_the_threads(
     Domain domain;
     Network net;
     assert_int_equal(domain_parse(&domain, "rect:30,10", NULL), STATUS_OK);
-    assert_int_equal(network_init(&net, (Law){3, 2}, 1, 8, 1, false, NULL), STATUS_OK);
+    assert_int_equal(network_init(&net, (Law){3, 2}, 1, (NetworkSize){8, 1, false}, NULL),
+                     STATUS_OK);
     int32_t inlet = network_append(&net, -1, vec3(0, 5, 0));
     int32_t fork = network_append(&net, inlet, vec3(0, 0, 0));
     int32_t left = network_append(&net, fork, vec3(-10, 0, 0));
     int32_t right = network_append(&net, fork, vec3(4, 1, 0));
     network_resum(&net);
     double one[4], many[4];
-    assert_int_equal(territory_count(&net, &domain, NULL, 5000, 1, one, NULL), STATUS_OK);
-    assert_int_equal(territory_count(&net, &domain, NULL, 5000, 3, many, NULL), STATUS_OK);
+    assert_int_equal(territory_count(&net, &(TerritoryParams){&domain, NULL, 5000, 1}, one, NULL),
+                     STATUS_OK);
+    assert_int_equal(territory_count(&net, &(TerritoryParams){&domain, NULL, 5000, 3}, many, NULL),
+                     STATUS_OK);
     assert_memory_equal(one, many, sizeof one);
     assert_true(one[inlet] == 0 && one[fork] == 0);
     /* The points as near to (-10, 0) as to (4, 1) meet y = 0, the middle, at x = (17 - 100) /

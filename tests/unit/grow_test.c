@@ -79,10 +79,10 @@ static void laws_hold_for_any_flow_pressure_and_size(void **state)
     (void)state;
     GrowParams params = grow_defaults();
     params.terminals = 120;
-    params.p_perf_mmhg = 23.85;
-    params.p_term_mmhg = -71.5;
-    params.q_perf_ml_min = 0.37;
-    params.viscosity_cp = 1.2;
+    params.blood.p_perf_mmhg = 23.85;
+    params.blood.p_term_mmhg = -71.5;
+    params.blood.q_perf_ml_min = 0.37;
+    params.blood.viscosity_cp = 1.2;
     params.toss = GROW_TOSS_TERMINAL;
     params.candidates = 1;
     const Vec3 inlet = vec3(3e-7, -7e-7, 0);
@@ -151,7 +151,7 @@ static void vessels_without_room_count_as_thinner_by_halves_down_to_lines(void *
         GrowParams params = grow_defaults();
         params.terminals = 200;
         params.seed = 3;
-        params.q_perf_ml_min = cases[k].flow;
+        params.blood.q_perf_ml_min = cases[k].flow;
         params.gamma = logcurve_constant(cases[k].gamma);
         GrowReport report;
         Tree tree = grown(&params, "disc:50", &report);

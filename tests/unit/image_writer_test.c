@@ -1,6 +1,6 @@
 #include "any_file.h"
 #include "image/image.h"
-#include "image/png_stripes.h"
+#include "image/png_fast.h"
 #include "unit.h"
 #include <math.h>
 #include <pthread.h>
@@ -144,7 +144,7 @@ static void writes_a_png_of_the_same_bytes_on_any_number_of_threads(void **state
 
 enum { WIDE = 21, HIGH = 15 };
 
-/* A stream as PngStripes hands it over. */
+/* A stream as PngDeflater hands it over. */
 typedef struct Deflated {
     uint8_t bytes[WIDE * HIGH * 2];
     size_t n;
@@ -161,13 +161,13 @@ static void keep(void *context, const uint8_t *bytes, size_t n)
 static void *deflate_runs(void *context)
 {
     static const ImageForm form = {.width = WIDE, .height = HIGH, .channels = 1, .bits = 8};
-    PngStripes *stripes;
+    PngDeflater *deflater;
     uint8_t codes[WIDE * HIGH];
     for (size_t i = 0; i < sizeof codes; i++)
         codes[i] = i >= WIDE && i * i % 23 < 4 ? 4 : 9;
-    assert_int_equal(pngstripes_open(&stripes, &form, false, &err), STATUS_OK);
-    pngstripes_rows(stripes, codes, HIGH, keep, context);
-    pngstripes_free(stripes);
+    assert_int_equal(pngdeflater_open(&deflater, &form, false, &err), STATUS_OK);
+    pngdeflater_rows(deflater, codes, HIGH, keep, context);
+    pngdeflater_free(deflater);
     return NULL;
 }
 

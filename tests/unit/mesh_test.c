@@ -189,27 +189,10 @@ static void triangles_that_are_too_far_off_are_split(void **state)
     }
 }
 
-/* What leads from a tree to its zones. */
-typedef struct Cut {
-    IndexLists incident, blending;
-    Zones zones;
-} Cut;
-
-static void cut(const VesselTree *tree, Cut *made)
+static void cut(const VesselTree *tree, Junctions *junctions)
 {
     const MeshParams params = {.tolerance = 0.02, .threads = 1};
-    *made = (Cut){.zones = {0}};
-    assert_int_equal(vesseltree_incident(tree, &made->incident, NULL), STATUS_OK);
-    assert_int_equal(vesseltree_blending(tree, &made->incident, &made->blending, NULL), STATUS_OK);
-    assert_int_equal(
-        zones_find(tree, &made->incident, &made->blending, &params, &made->zones, NULL), STATUS_OK);
-}
-
-static void release_cut(Cut *made)
-{
-    indexlists_release(&made->incident);
-    indexlists_release(&made->blending);
-    zones_release(&made->zones);
+    assert_int_equal(junctions_find(tree, &params, junctions, NULL), STATUS_OK);
 }
 
 /* A trunk with twigs 2.18 radii apart, whose segments are clear of both ends nowhere. */
@@ -231,15 +214,15 @@ static void a_trunk_is_cut_between_its_twigs(void **state)
     (void)state;
     Sketch sketch;
     Made made;
-    Cut zones;
+    Junctions junctions;
     sketch_trunk(&sketch);
-    cut(&sketch.tree, &zones);
-    assert_int_equal(zones.zones.n_zones, 5);
+    cut(&sketch.tree, &junctions);
+    assert_int_equal(junctions.n_junctions, 5);
     int n_close = 0;
     for (size_t i = 0; i < sketch.tree.n_segments; i++)
-        n_close += zones.zones.is_close[i];
+        n_close += junctions.is_close[i];
     assert_int_equal(n_close, 4);
-    release_cut(&zones);
+    junctions_release(&junctions);
     make(&sketch.tree, &made);
     expect_sound(&made, 1);
     expect_near(&sketch.tree, &made, 0.003, 0.025);
@@ -250,23 +233,21 @@ static void a_zone_of_too_many_cells_is_refused(void **state)
 {
     (void)state;
     Sketch sketch;
-    Cut zones;
-    ZonePlan plan;
-    ZoneTree tree = {0};
+    Junctions junctions;
+    JunctionPlan plan;
+    Octree tree = {0};
     Err err;
     CellSize size = {.ratio = 0.5, .bending = 0.2, .most = 2385};
     sketch_trunk(&sketch);
-    cut(&sketch.tree, &zones);
-    assert_int_equal(
-        zoneplan_make(&sketch.tree, &zones.incident, &zones.blending, &zones.zones, 0, &plan, NULL),
-        STATUS_OK);
-    assert_int_equal(zonetree_build(&tree, &plan, &size, &err), STATUS_INFEASIBLE);
+    cut(&sketch.tree, &junctions);
+    assert_int_equal(junctionplan_make(&sketch.tree, &junctions, 0, &plan, NULL), STATUS_OK);
+    assert_int_equal(octree_build(&tree, &plan, &size, &err), STATUS_INFEASIBLE);
     assert_non_null(strstr(err.text, "its surface needs more than 2385 cells"));
     size.most = 100000;
-    assert_int_equal(zonetree_build(&tree, &plan, &size, NULL), STATUS_OK);
-    zonetree_release(&tree);
-    zoneplan_release(&plan);
-    release_cut(&zones);
+    assert_int_equal(octree_build(&tree, &plan, &size, NULL), STATUS_OK);
+    octree_release(&tree);
+    junctionplan_release(&plan);
+    junctions_release(&junctions);
 }
 
 static void a_trifurcation_of_unlike_radii_is_one_sphere(void **state)
@@ -309,7 +290,7 @@ static void a_twig_in_a_groove_is_one_sphere(void **state)
     sketch_to(&sketch, fork, vec3(0.445, -7.605, 0), 0.13);
     make(&sketch.tree, &made);
     expect_sound(&made, 1);
-    assert_int_equal(made.report.n_swallowed, 0);
+    assert_int_equal(made.report.n_enclosed, 0);
     expect_near(&sketch.tree, &made, 0.003, 0.05);
     release(&made);
 }
@@ -397,8 +378,8 @@ static void a_twig_within_a_trunk_is_swallowed_not_missing(void **state)
     sketch_to(&sketch, fork, vec3(10.2, 1.1, 0), 0.1);
     make(&sketch.tree, &made);
     expect_sound(&made, 1);
-    assert_int_equal(made.report.n_swallowed, 1);
-    assert_int_equal(made.report.swallowed[0], 2);
+    assert_int_equal(made.report.n_enclosed, 1);
+    assert_int_equal(made.report.enclosed[0], 2);
     release(&made);
 }
 
@@ -414,8 +395,8 @@ static void a_twig_along_the_axis_of_a_trunk_is_swallowed_not_missing(void **sta
     sketch_to(&sketch, fork, vec3(3.055, -3.894, 0), 0.249);
     make(&sketch.tree, &made);
     expect_sound(&made, 1);
-    assert_int_equal(made.report.n_swallowed, 1);
-    assert_int_equal(made.report.swallowed[0], 1);
+    assert_int_equal(made.report.n_enclosed, 1);
+    assert_int_equal(made.report.enclosed[0], 1);
     release(&made);
 }
 
@@ -431,8 +412,8 @@ static void a_twig_that_ends_deep_in_a_trunk_does_not_come_out_behind_a_plane(vo
     sketch_to(&sketch, fork, vec3(-0.66, -0.044, -0.21), 0.03);
     make(&sketch.tree, &made);
     expect_sound(&made, 1);
-    assert_int_equal(made.report.n_swallowed, 1);
-    assert_int_equal(made.report.swallowed[0], 2);
+    assert_int_equal(made.report.n_enclosed, 1);
+    assert_int_equal(made.report.enclosed[0], 2);
     release(&made);
 }
 

@@ -110,7 +110,7 @@ static GrowParams params_on(const Tree *from, size_t terminals)
     params.from = from;
     params.keep_radii = true;
     params.terminals = terminals;
-    params.q_perf_ml_min = 60;
+    params.blood.q_perf_ml_min = 60;
     return params;
 }
 
@@ -155,8 +155,8 @@ static void a_trunk_by_pries_and_territory_keeps_its_radii(void **state)
     (void)state;
     Tree from = trunk(1), tree;
     GrowParams params = params_on(&from, 300);
-    params.viscosity_law = VISCOSITY_PRIES;
-    params.terminal_flow = TERMINAL_FLOW_TERRITORY;
+    params.blood.viscosity_law = VISCOSITY_PRIES;
+    params.blood.terminal_flow = TERMINAL_FLOW_TERRITORY;
     Err err = {""};
     must(grow_on(&params, &tree, &err), &err);
     free(assert_kept(&from, &tree));
@@ -171,13 +171,13 @@ static void a_trunk_too_narrow_for_its_flow_says_which_flow_passes(void **state)
     (void)state;
     Tree from = trunk(1), tree;
     GrowParams params = params_on(&from, 200);
-    params.q_perf_ml_min = 23850;
+    params.blood.q_perf_ml_min = 23850;
     Err err;
     assert_int_equal(grow_on(&params, &tree, &err), STATUS_INFEASIBLE);
     const char *said = strstr(err.text, "passes a flow below ");
     assert_non_null(said);
     assert_non_null(strstr(err.text, "too narrow for `q_perf` 23850 ml/min"));
-    params.q_perf_ml_min = strtod(said + strlen("passes a flow below "), NULL) / 3;
+    params.blood.q_perf_ml_min = strtod(said + strlen("passes a flow below "), NULL) / 3;
     assert_int_equal(grow_on(&params, &tree, &err), STATUS_OK);
     tree_release(&tree);
     tree_release(&from);

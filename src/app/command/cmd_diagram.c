@@ -78,8 +78,9 @@ typedef struct Drawing {
     Look look;
     Appearance appearance;
     Diagram diagram;
-    DiagramPaint paint;
-    float (*color)[3]; /* owned; what paint.color borrows */
+    DiagramStyle style;
+    FigureBars bars;
+    float (*color)[3]; /* owned; what style.color borrows */
 } Drawing;
 
 static void drawing_release(Drawing *drawing)
@@ -99,9 +100,15 @@ static Status paint(const DiagramOptions *options, Drawing *drawing, Err *err)
         memcpy(drawing->color[i], &color, sizeof color);
     }
     const Rgb background = rgb_of_option(options->background);
-    drawing->paint = (DiagramPaint){.color = (const float(*)[3])drawing->color,
+    const Appearance *appearance = &drawing->appearance;
+    drawing->style = (DiagramStyle){.diagram = &drawing->diagram,
+                                    .tree = &drawing->of.tree,
+                                    .color = (const float(*)[3])drawing->color,
                                     .background = {background.r, background.g, background.b},
-                                    .margin = options->margin};
+                                    .margin = options->margin,
+                                    .name = appearance->colors ? appearance->scale.name : NULL,
+                                    .unit = appearance->scale.unit,
+                                    .values = appearance->values};
     return STATUS_OK;
 }
 
@@ -122,6 +129,7 @@ static Status make_drawing(const DiagramOptions *options, const Parsed *parsed, 
     Status status = diagram_lay_out(&drawing->of.tree, options->gap_mm, &drawing->diagram, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", of->path);
+    drawing->bars = diagram_bars(&drawing->style);
     return status;
 }
 
@@ -130,7 +138,7 @@ static Status write_picture(const DiagramOptions *options, const Drawing *drawin
 {
     Frame frame = {0};
     TRY(picture_fits(options->size.pixels[0], options->size.pixels[1], 40, err));
-    TRY(diagram_draw(&drawing->diagram, &drawing->paint, options->size.pixels[0],
+    TRY(diagram_draw(&drawing->style, &drawing->bars, options->size.pixels[0],
                      options->size.pixels[1], &frame.color, err));
     const FramesForm form = {.path = options->output,
                              .bits = press->bits,
@@ -145,41 +153,21 @@ static Status write_picture(const DiagramOptions *options, const Drawing *drawin
     return status;
 }
 
-static Status put_svg(const Drawing *drawing, const DiagramSvg *svg, const char *path, Err *err)
-{
-    OutFile file;
-    TRY(outfile_open(&file, path, err));
-    Text text = TEXT_TO(file.stream);
-    Status status =
-        diagram_put_svg(&drawing->diagram, &drawing->of.tree, &drawing->paint, svg, &text, err);
-    if (status == STATUS_OK)
-        status = text_flush(&text, err);
-    text_release(&text);
-    if (status == STATUS_IO)
-        err_prefix(err, "%s: ", path);
-    if (status == STATUS_OK)
-        return outfile_commit(&file, err);
-    outfile_discard(&file);
-    return status;
-}
-
 static Status write_svg(const DiagramOptions *options, const Drawing *drawing, const char *tree,
                         const char *command, Err *err)
 {
     char *templates = NULL, *name = NULL;
+    FigurePage page = {0};
     Status status = STATUS_OK;
     TRY_GOTO(templates_folder(&templates, err));
     TRY_GOTO(shown_name(tree, &name, err));
-    const Appearance *appearance = &drawing->appearance;
-    const DiagramSvg svg = {.templates = templates,
-                            .description = name,
-                            .generator = GENERATOR,
-                            .command = command,
-                            .name = appearance->colors ? appearance->scale.name : NULL,
-                            .unit = appearance->scale.unit,
-                            .values = appearance->values};
-    status = put_svg(drawing, &svg, options->output, err);
+    const FigureNotes notes = {
+        .templates = templates, .description = name, .generator = GENERATOR, .command = command};
+    diagram_make_page(&drawing->style, &drawing->bars, &page);
+    TRY_GOTO(figure_check(&page, err));
+    status = frames_write_page(&page, &notes, options->output, err);
 done:
+    figure_release(&page);
     free(templates);
     free(name);
     return status;

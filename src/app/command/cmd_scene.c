@@ -64,7 +64,7 @@ static Status check_format(const Emitter *emitter, const PictureOptions *picture
     static const char of_vessels[] = "is for vessels; a polyhedron is the surface of all";
     const bool view = emitter->has_view, povray = strcmp(emitter->extension, "pov") == 0;
     const bool scad = strcmp(emitter->extension, "scad") == 0;
-    const bool vessels = !emitter->of_meshes, mesh = picture->model == SCENE_MESH;
+    const bool vessels = !emitter->of_meshes, mesh = model_has(picture->model, MODEL_TRIANGLES);
     const bool on_paper = view && size_is_on_paper(&picture->size);
     const OptionNeed needs[] = {{"size", view, of_view},
                                 {"dpi", on_paper, NEEDS_PAPER},
@@ -100,7 +100,7 @@ static Status check(const SceneOptions *options, const Emitter *emitter, const P
     if (options->ini && strcmp(options->output, "-") == 0)
         return err_set(err, STATUS_USAGE, "--ini is a file beside S.pov; standard output has none");
     if (emitter->of_meshes)
-        picture.model = SCENE_MESH;
+        picture.model = model_with(MODEL_TRIANGLES);
     TRY(picture_check_needs(&picture, parsed, err));
     TRY(picture_check_povray(&picture, err));
     return emit_check_model(emitter, (SceneModel)picture.model, err);
@@ -170,7 +170,7 @@ static ScadForm asked_form(const SceneOptions *options, const Parsed *parsed)
 {
     if (options->scad != SCAD_AUTO)
         return options->scad;
-    if (options->picture.model == SCENE_MESH)
+    if (model_has(options->picture.model, MODEL_TRIANGLES))
         return SCAD_POLYHEDRON;
     bool of_vessels = options_typed(parsed, "model") || options_typed(parsed, "look") ||
                       options_typed(parsed, "color-by");

@@ -131,14 +131,8 @@ static Status check_method(const RenderOptions *options, Err *err)
         elements |= MODEL_BLOB;
     if (model_is_of(model, elements))
         return STATUS_OK;
-    Text able = TEXT_INIT;
-    models_of(elements, &able);
-    Status status = text_check(&able, err);
-    if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE, "--method %s is for %s, not for %s",
-                         methods[options->method], text_chars(&able), models[model].name);
-    text_release(&able);
-    return status;
+    return err_set(err, STATUS_USAGE, "--method %s is for %s, not for %s", methods[options->method],
+                   models_of(elements).text, models[model].name);
 }
 
 /* What the file holds: 8 bits of a page, and nothing over floats. */

@@ -250,11 +250,18 @@ Status frames_write_page(const FigurePage *page, const FigureNotes *notes, const
 {
     if (strcmp(file_extension(path), "pdf") == 0)
         return figure_write_pdf(page, notes, path, err);
-    Text svg = TEXT_INIT;
+    OutFile file;
+    TRY(outfile_open(&file, path, err));
+    Text svg = TEXT_TO(file.stream);
     Status status = figure_put_svg(page, notes, &svg, err);
     if (status == STATUS_OK)
-        status = file_write_text(path, &svg, err);
+        status = text_flush(&svg, err);
     text_release(&svg);
+    if (status == STATUS_OK)
+        return outfile_commit(&file, err);
+    if (status == STATUS_IO)
+        err_prefix(err, "%s: ", path);
+    outfile_discard(&file);
     return status;
 }
 

@@ -23,11 +23,9 @@ Status line_drawing_check(const PictureOptions *picture, const char *output, con
     if (!frames_is_page(output))
         return err_set(err, STATUS_USAGE,
                        "--ink draws lines for an .svg or .pdf; --look ink draws pixels");
-    if (picture->model != SCENE_ROUNDED && picture->model != SCENE_CYLINDERS &&
-        picture->model != SCENE_JOINED)
-        return err_set(err, STATUS_USAGE, "--ink is for --model %s, %s and %s, not %s",
-                       models[SCENE_CYLINDERS].name, models[SCENE_JOINED].name,
-                       models[SCENE_ROUNDED].name, models[picture->model].name);
+    if (!model_is_of(picture->model, MODEL_PRIMITIVES))
+        return err_set(err, STATUS_USAGE, "--ink is for --model %s, not %s",
+                       models_of(MODEL_PRIMITIVES).text, models[picture->model].name);
     for (size_t i = 0; i < parsed->n_settings; i++)
         if (parsed->settings[i].typed && is_of_surfaces(parsed->settings[i].option))
             return err_set(err, STATUS_USAGE, "--%s has no effect on a line drawing (--ink)",

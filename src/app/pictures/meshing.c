@@ -88,9 +88,9 @@ static void say_result(const Meshing *made, bool quiet)
     if (made->n_longer)
         fprintf(stderr, "corcast: %zu end%s lengthened to be cut off flat\n", made->n_longer,
                 made->n_longer == 1 ? " is" : "s are");
-    if (report->n_swallowed)
+    if (report->n_enclosed)
         fprintf(stderr, "corcast: %zu segments lie wholly within others and have no wall\n",
-                report->n_swallowed);
+                report->n_enclosed);
     if (report->n_round && !quiet)
         fprintf(stderr,
                 "corcast: %zu ends are round, because other vessels are in the way of a flat one\n",
@@ -205,9 +205,9 @@ static json_t *manifest(const Meshing *made)
         {"bridges", json_count(report->bridges)},
         {"segments", json_count(vessels->n_segments)},
         {"segments_present", json_count(vessels->n_segments - report->n_missing -
-                                        report->n_swallowed - report->n_slivers)},
+                                        report->n_enclosed - report->n_slivers)},
         {"segments_missing", segment_ids(vessels, report->missing, report->n_missing)},
-        {"segments_swallowed", segment_ids(vessels, report->swallowed, report->n_swallowed)},
+        {"segments_swallowed", segment_ids(vessels, report->enclosed, report->n_enclosed)},
         {"segments_slivers", segment_ids(vessels, report->slivers, report->n_slivers)},
         {"segments_thinned", segment_ids(vessels, made->thinned, made->n_thinned)},
         {"segments_lengthened", segment_ids(vessels, made->longer, made->n_longer)},

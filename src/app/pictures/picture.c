@@ -195,7 +195,7 @@ const OptionTable picture_table = OPTION_TABLE(rows);
 void picture_set_defaults(PictureOptions *picture)
 {
     *picture = (PictureOptions){.stage = view_defaults(),
-                                .model = SCENE_ROUNDED,
+                                .model = model_with(MODEL_DEFAULT),
                                 .tolerance = MESHING_TOLERANCE,
                                 .size = {.pixels = {1000, 1000}},
                                 .antialias = 1,
@@ -267,14 +267,8 @@ bool picture_takes(const PictureOptions *options, const Option *option)
 
 static Status refuse(const Option *option, const ModelOption *of, Err *err)
 {
-    Text able = TEXT_INIT;
-    models_with(of->elements, &able);
-    Status status = text_check(&able, err);
-    if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE, "--%s is for --model %s%s", option->name,
-                         text_chars(&able), of->rest);
-    text_release(&able);
-    return status;
+    return err_set(err, STATUS_USAGE, "--%s is for --model %s%s", option->name,
+                   models_with(of->elements).text, of->rest);
 }
 
 Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, Err *err)

@@ -155,7 +155,7 @@ typedef struct Volumes {
 static Status take_geometry(Volumes *made, Err *err)
 {
     StageReport report;
-    const GeometryParams rounded = {.model = SCENE_ROUNDED};
+    const GeometryParams rounded = {.model = model_with(MODEL_VOXELS)};
     TRY(stage_geometry(&made->of->tree, &rounded, &made->geometry, &report, err));
     if (report.dropped)
         fprintf(stderr, "corcast: %zu segments have no length or no radius and are left out\n",

@@ -106,12 +106,12 @@ static Status check_stage(const Staging *staging, const char *name, Err *err)
         return STATUS_OK;
     if (!params->keep_radii && !logcurve_is_same(&params->gamma, &staging->last_gamma))
         return refuse_gamma(staging, name, err);
-    if (params->keep_radii && params->p_term_mmhg >= staging->last_p_term)
+    if (params->keep_radii && params->blood.p_term_mmhg >= staging->last_p_term)
         return err_set(err, STATUS_INPUT,
                        "%s: [%s]: p-term %g mmHg leaves nothing to drop beyond stage [%s], whose "
                        "radii are kept and whose terminals are at %g; it must fall from stage to "
                        "stage",
-                       staging->path, name, params->p_term_mmhg, staging->last_name,
+                       staging->path, name, params->blood.p_term_mmhg, staging->last_name,
                        staging->last_p_term);
     if (params->terminals <= staging->last_terminals)
         return err_set(
@@ -126,7 +126,7 @@ static void take_note(Staging *staging, const char *name)
     const GrowParams *params = &staging->growing->params;
     staging->last_name = name;
     staging->last_gamma = params->gamma;
-    staging->last_p_term = params->p_term_mmhg;
+    staging->last_p_term = params->blood.p_term_mmhg;
     staging->last_terminals = params->min_radius_mm > 0 ? 0 : params->terminals;
 }
 

@@ -25,16 +25,16 @@ enum { MAX_STEPS = 80, MAX_STEPS_A_SMOOTHING = 25 };
 /* Outlets whose drops differ by a smaller share have one pressure. */
 static const double same_drop = 1e-6;
 
-typedef struct Search {
+typedef struct BoundSearch {
     Problem problem;
     Newton newton;
     Dual dual;
     double smoothing; /* mm */
     double best;
     int steps;
-} Search;
+} BoundSearch;
 
-static void search_release(Search *search)
+static void search_release(BoundSearch *search)
 {
     problem_release(&search->problem);
     newton_release(&search->newton);
@@ -42,13 +42,13 @@ static void search_release(Search *search)
 }
 
 /* INFINITY as long as nothing is proved. */
-static double gap(const Search *search)
+static double gap(const BoundSearch *search)
 {
     return search->best / search->dual.bound - 1;
 }
 
 /* Minimises at the present smoothing. */
-static void settle(Search *search)
+static void settle(BoundSearch *search)
 {
     Problem *problem = &search->problem;
     Newton *newton = &search->newton;
@@ -67,7 +67,7 @@ static void settle(Search *search)
 
 /* The target of the geometry with the radii that Murray's law gives, lengths smoothed, as a
  * terminal of no length has no radius. `law` has the exponents. */
-static Status murray_target(const Search *search, const Law *law, double *target, Err *err)
+static Status murray_target(const BoundSearch *search, const Law *law, double *target, Err *err)
 {
     const Problem *problem = &search->problem;
     Below *below = NULL;
@@ -94,7 +94,7 @@ static Status murray_target(const Search *search, const Law *law, double *target
     return STATUS_OK;
 }
 
-static Status run(Search *search, Err *err)
+static Status run(BoundSearch *search, Err *err)
 {
     Problem *problem = &search->problem;
     TRY(newton_init(&search->newton, problem->n, err));
@@ -112,7 +112,7 @@ static Status run(Search *search, Err *err)
 }
 
 /* Writes what was found to *out, which is zeroed. */
-static Status report(const Search *search, const Tree *tree, Bound *out, Err *err)
+static Status report(const BoundSearch *search, const Tree *tree, Bound *out, Err *err)
 {
     const Problem *problem = &search->problem;
     out->target = problem->target;
@@ -145,7 +145,7 @@ Status bound_tree(const Tree *tree, double lambda, Bound *out, Err *err)
     if (!range_has(BOUND_LAMBDA_RANGE, lambda))
         return err_set(err, STATUS_USAGE, "`lambda` %g: must be %s", lambda,
                        range_text(BOUND_LAMBDA_RANGE, range));
-    Search search = {0};
+    BoundSearch search = {0};
     Bound made = {.lambda = lambda};
     Status status = problem_init(&search.problem, tree, lambda, err);
     if (status == STATUS_OK)

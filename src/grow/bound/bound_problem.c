@@ -14,15 +14,15 @@
 #include <stdlib.h>
 
 /* What the tree says of each node; owned. */
-typedef struct Survey {
+typedef struct ProblemSurvey {
     double *share; /* what leaves there */
     double *flow;  /* the shares at and below it */
     double *drop;  /* from the inlet */
     int32_t *ways; /* children with flow, and one more at an outlet */
     int32_t *joint;
-} Survey;
+} ProblemSurvey;
 
-static void survey_release(Survey *survey)
+static void survey_release(ProblemSurvey *survey)
 {
     free(survey->share);
     free(survey->flow);
@@ -32,17 +32,18 @@ static void survey_release(Survey *survey)
 }
 
 /* Whether blood flows through segment i. */
-static bool is_open(const Tree *tree, const Survey *survey, size_t i)
+static bool is_open(const Tree *tree, const ProblemSurvey *survey, size_t i)
 {
     return tree_is_segment(tree, i) && survey->flow[i] > 0;
 }
 
-static bool is_outlet(const Tree *tree, const Survey *survey, size_t i)
+static bool is_outlet(const Tree *tree, const ProblemSurvey *survey, size_t i)
 {
     return tree_is_segment(tree, i) && survey->share[i] > 0;
 }
 
-static Status survey_node(const Tree *tree, Survey *survey, size_t i, Problem *problem, Err *err)
+static Status survey_node(const Tree *tree, ProblemSurvey *survey, size_t i, Problem *problem,
+                          Err *err)
 {
     double length = tree_segment_length(tree, i), radius = tree->radius_mm[i];
     if (!(radius > 0))
@@ -64,7 +65,7 @@ static Status survey_node(const Tree *tree, Survey *survey, size_t i, Problem *p
     return STATUS_OK;
 }
 
-static Status survey_init(Survey *survey, const Tree *tree, Problem *problem, Err *err)
+static Status survey_init(ProblemSurvey *survey, const Tree *tree, Problem *problem, Err *err)
 {
     size_t n = tree->n;
     TRY(tree_flow_shares(tree, &survey->share, err));
@@ -87,7 +88,7 @@ static Status survey_init(Survey *survey, const Tree *tree, Problem *problem, Er
 }
 
 /* Whether node i is a joint, and not only passed. */
-static bool is_joint(const Tree *tree, const Survey *survey, size_t i)
+static bool is_joint(const Tree *tree, const ProblemSurvey *survey, size_t i)
 {
     return !tree_is_segment(tree, i) || (survey->flow[i] > 0 && survey->ways[i] > 1) ||
            is_outlet(tree, survey, i);
@@ -107,7 +108,7 @@ static Joint *add_joint(Problem *problem, const Tree *tree, size_t i, int32_t pa
 }
 
 /* Numbers node i, which leads on where its parent's number leads if it is no joint. */
-static void add_node(Problem *problem, const Tree *tree, Survey *survey, size_t i)
+static void add_node(Problem *problem, const Tree *tree, ProblemSurvey *survey, size_t i)
 {
     int32_t parent = tree_is_segment(tree, i) ? survey->joint[tree->parent[i]] : -1;
     survey->joint[i] = parent;
@@ -167,7 +168,7 @@ static void start(Problem *problem, const Hanging *hanging)
     }
 }
 
-static Status build(Problem *problem, const Tree *tree, Survey *survey, Err *err)
+static Status build(Problem *problem, const Tree *tree, ProblemSurvey *survey, Err *err)
 {
     TRY(survey_init(survey, tree, problem, err));
     size_t outlets = 0;
@@ -192,7 +193,7 @@ static Status build(Problem *problem, const Tree *tree, Survey *survey, Err *err
 Status problem_init(Problem *problem, const Tree *tree, double lambda, Err *err)
 {
     Problem made = {.a = lambda / 4};
-    Survey survey = {0};
+    ProblemSurvey survey = {0};
     Status status = build(&made, tree, &survey, err);
     survey_release(&survey);
     if (status == STATUS_OK)

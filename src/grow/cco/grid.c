@@ -72,9 +72,9 @@ Status grid_reset(Grid *grid, Box box, double cells, size_t segments, int worker
     TRY_GOTO(mem_calloc(&made.arena, (size_t)workers, sizeof *made.arena, "threads", err));
     TRY_GOTO(mem_calloc(&made.cell, grid_cells(&made), sizeof *made.cell, "grid cells", err));
     *grid = made;
+    return STATUS_OK;
 done:
-    if (status != STATUS_OK)
-        grid_release(&made);
+    grid_release(&made);
     return status;
 }
 

@@ -125,9 +125,15 @@ GridVicinity grid_vicinity(const Grid *grid, Vec3 point, double distance, bool t
  * look at cells that reach beyond `within` mm from the point along some axis. */
 int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *out);
 
-/* The same, faster, if there are at least `limit` segments within `reach` mm, and not very many
- * more; else false, with *out undefined. */
+/* As grid_nearest, but faster. Returns false, with *out undefined, if there are fewer than `limit`
+ * segments within `reach` mm, or very many more. */
 bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, Near *out);
+
+/* As grid_nearest, but faster from point to point: searches first within *reach mm, which was
+ * enough for the last points, and adapts *reach. Start with a guess, or 0. Also returns -1 if
+ * `limit` segments were found that are not well within `within`. */
+int grid_nearest_guessed(const Grid *grid, Vec3 point, double within, int limit, double *reach,
+                         Near *out);
 
 /* Where two segments are nearest to each other: at the parts s of the first and t of the second, in
  * [0, 1], from where they begin; and the way there from the second to the first, mm. */
@@ -177,20 +183,72 @@ static inline size_t grid_index(const Grid *grid, int x, int y, int z)
     return ((size_t)z * grid->count[1] + y) * grid->count[0] + x;
 }
 
-/* A walk over the cells that may meet an item's capsule, each once:
+/* A walk over the cells that may meet an item's capsule, each cell once:
  *     for (GridWalk walk = grid_walk(grid, item); grid_walk_next(&walk, &cell);)
  * Two capsules that meet have a cell in common. */
 typedef struct GridWalk {
     const Grid *grid;
     double from[3], span[3], radius;
-    int axis;            /* the one along which the capsule is longest */
+    int axis;            /* the axis along which the capsule is longest */
     int slab, last_slab; /* of cells across that axis */
     GridBox box;         /* within the slab */
     int at[3];
 } GridWalk;
 
 GridWalk grid_walk(const Grid *grid, const GridItem *item);
-/* The next cell in *cell; false when there is none. */
+/* Sets *cell to the next cell; returns false if there is none. */
 bool grid_walk_next(GridWalk *walk, size_t *cell);
+
+/* A visit of the segments in the cells that may meet an item's capsule:
+ *     for (GridVisit visit = grid_visit(grid, item); grid_visit_next(&visit, &segment);)
+ * A segment comes once for each of these cells that it is in. The grid must not change. */
+typedef struct GridVisit {
+    GridWalk walk;
+    const GridCell *cell; /* the present cell; NULL: none yet */
+    uint32_t k;           /* index in the cell of the next segment */
+    unsigned near;        /* of the GRID_LANES segments before k: those still to come, as bits */
+} GridVisit;
+
+static inline GridVisit grid_visit(const Grid *grid, const GridItem *item)
+{
+    return (GridVisit){.walk = grid_walk(grid, item)};
+}
+
+/* Goes to the next cell that has segments left; returns false if there is none. */
+static inline bool grid_visit_cell(GridVisit *visit)
+{
+    size_t index;
+    while (!visit->cell || visit->k >= visit->cell->count) {
+        if (!grid_walk_next(&visit->walk, &index))
+            return false;
+        visit->cell = &visit->walk.grid->cell[index];
+        visit->k = 0;
+    }
+    return true;
+}
+
+/* Sets *segment to the next segment; returns false if there is none. */
+static inline bool grid_visit_next(GridVisit *visit, int32_t *segment)
+{
+    if (!grid_visit_cell(visit))
+        return false;
+    *segment = visit->cell->tag[visit->k++] >> 1;
+    return true;
+}
+
+/* As grid_visit_next, but leaves out segments that are not near by the query. A visit uses one of
+ * the two functions only. */
+static inline bool grid_visit_near(GridVisit *visit, const GridBoxQuery *query, int32_t *segment)
+{
+    while (!visit->near) {
+        if (!grid_visit_cell(visit))
+            return false;
+        visit->near = grid_boxes_near(visit->walk.grid, visit->cell, visit->k, query);
+        visit->k += GRID_LANES;
+    }
+    *segment = visit->cell->tag[visit->k - GRID_LANES + (uint32_t)__builtin_ctz(visit->near)] >> 1;
+    visit->near &= visit->near - 1;
+    return true;
+}
 
 #endif

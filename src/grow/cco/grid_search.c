@@ -49,10 +49,10 @@ typedef float Floats __attribute__((vector_size(16)));
 typedef int32_t Ints __attribute__((vector_size(16)));
 
 /* The points of segments next to a point. */
-typedef struct Foot {
+typedef struct GridFoot {
     Ints segment;
     Floats at[3], distance2, radius;
-} Foot;
+} GridFoot;
 
 static inline void transpose(Floats row[LANES])
 {
@@ -89,9 +89,10 @@ static inline void load_items(const Grid *grid, const GridCell *cell, uint32_t k
 }
 
 /* As point_distance2, of such segments. */
-static inline Foot foot_of(const Grid *grid, const GridCell *cell, uint32_t k, const float point[3])
+static inline GridFoot foot_of(const Grid *grid, const GridCell *cell, uint32_t k,
+                               const float point[3])
 {
-    Foot out;
+    GridFoot out;
     Floats item[2 * LANES];
     load_items(grid, cell, k, item, &out.segment);
     Floats ux = item[3] - item[0], uy = item[4] - item[1], uz = item[5] - item[2];
@@ -160,7 +161,7 @@ static GridVicinity cell_vicinity_along(const Grid *grid, const GridCell *cell, 
 {
     Ints in = {0};
     for (uint32_t k = 0; k < cell->count; k += LANES) {
-        Foot foot = foot_of(grid, cell, k, query->at);
+        GridFoot foot = foot_of(grid, cell, k, query->at);
         if (any(foot.distance2 < query->distance2))
             return GRID_TOO_NEAR;
         Floats radius = query->thickness * foot.radius;
@@ -216,15 +217,15 @@ static bool nearer(Near a, Near b)
 }
 
 /* A search for the nearest segments, those found so far sorted in `list`. */
-typedef struct Search {
+typedef struct NearestSearch {
     const Grid *grid;
     float at[3]; /* the point */
     int home[3]; /* its cell */
     int limit, count;
     Near *list;
-} Search;
+} NearestSearch;
 
-static void gather_cell(Search *search, size_t index)
+static void gather_cell(NearestSearch *search, size_t index)
 {
     Near *list = search->list;
     const GridCell *cell = &search->grid->cell[index];
@@ -247,7 +248,7 @@ static void gather_cell(Search *search, size_t index)
 
 /* Squared distance, mm^2, of the point along one axis from the slab of cells that have the index
  * `cell` along it. */
-static double excess2(const Search *search, int cell, int axis)
+static double excess2(const NearestSearch *search, int cell, int axis)
 {
     double low = cell * search->grid->edge, at = (double)search->at[axis];
     double excess = greatest(0, greatest(low - at, at - low - search->grid->edge));
@@ -261,7 +262,7 @@ static int first_from(int low, int step)
 }
 
 /* Gathers every `step`-th cell of a row, except what is further than all that is wanted. */
-static void gather_row(Search *search, int ring, int step, int y, int z)
+static void gather_row(NearestSearch *search, int ring, int step, int y, int z)
 {
     const Grid *grid = search->grid;
     double across2 = excess2(search, y, 1) + excess2(search, z, 2);
@@ -274,7 +275,7 @@ static void gather_row(Search *search, int ring, int step, int y, int z)
 }
 
 /* Whether one of the ring's two faces across `axis` is in the grid. */
-static bool has_face(const Search *search, int ring, int axis)
+static bool has_face(const NearestSearch *search, int ring, int axis)
 {
     int home = search->home[axis];
     return home >= ring || search->grid->count[axis] - home > ring;
@@ -284,7 +285,7 @@ static bool has_face(const Search *search, int ring, int axis)
  * across z as layers, those across y as rows, those across x as the two ends of rows. Layers and
  * rows without any are stepped over, or a ring in a long and thin grid would take as many steps as
  * its number. */
-static void gather_ring(Search *search, int ring)
+static void gather_ring(NearestSearch *search, int ring)
 {
     const int *home = search->home, *count = search->grid->count;
     int apart = ring > 0 ? 2 * ring : 1; /* of two faces */
@@ -302,7 +303,7 @@ static void gather_ring(Search *search, int ring)
 
 int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *out)
 {
-    Search search = {.grid = grid, .limit = limit, .list = out};
+    NearestSearch search = {.grid = grid, .limit = limit, .list = out};
     grid_store(grid, point, search.at);
     GridBox own = grid_box(grid, point, 0);
     int farthest = 0;
@@ -345,7 +346,7 @@ static void catch_cell(const Grid *grid, const GridCell *cell, float bounds[3][2
 {
     size_t n = out->n;
     for (uint32_t k = 0; k < cell->count; k += LANES) {
-        Foot foot = foot_of(grid, cell, k, point);
+        GridFoot foot = foot_of(grid, cell, k, point);
         Ints in = foot.distance2 <= reach2;
         for (int axis = 0; axis < 3; axis++)
             in &= (foot.at[axis] >= bounds[axis][0]) & (foot.at[axis] < bounds[axis][1]);
@@ -397,4 +398,17 @@ bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, N
         return false;
     sort_catch(&found, limit, out);
     return true;
+}
+
+int grid_nearest_guessed(const Grid *grid, Vec3 point, double within, int limit, double *reach,
+                         Near *out)
+{
+    int count = limit;
+    if (!(*reach + grid->edge < within) || !grid_nearest_quick(grid, point, *reach, limit, out))
+        count = grid_nearest(grid, point, within, limit, out);
+    if (count < limit)
+        return count;
+    double last = sqrt((double)out[limit - 1].distance2);
+    *reach += (*reach > 0 ? 0.1 : 1) * (1.25 * last - *reach);
+    return last + 2 * grid->edge < within ? count : -1; /* whichever search it was */
 }

@@ -101,15 +101,10 @@ static void make_room(Joints *joints, const Arbor *arbor, const Clearance *clear
     double radius = clearance->level * clearance->radius[i];
     Capsule capsule = {shape->from, shape->to, clearance_reach(clearance, i, radius)};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
-    size_t index;
-    for (GridWalk walk = grid_walk(&clearance->grid, &item); grid_walk_next(&walk, &index);) {
-        const GridCell *cell = &clearance->grid.cell[index];
-        for (uint32_t k = 0; k < cell->count; k++) {
-            int32_t other = cell->tag[k] >> 1;
-            if (other != i && !arbor_are_joined(arbor, i, other))
-                separate(joints, arbor, clearance, i, other);
-        }
-    }
+    int32_t other;
+    for (GridVisit visit = grid_visit(&clearance->grid, &item); grid_visit_next(&visit, &other);)
+        if (other != i && !arbor_are_joined(arbor, i, other))
+            separate(joints, arbor, clearance, i, other);
 }
 
 /* Whether the node is elsewhere than at its start. */

@@ -140,11 +140,11 @@ Status arbor_init(Arbor *arbor, const Tree *tree, Err *err)
     TRY_GOTO(allocate(&made, err));
     TRY_GOTO(fill(&made, tree, parent, err));
     *arbor = made;
+    made = (Arbor){0};
 done:
     free(children);
     free(parent);
-    if (status != STATUS_OK)
-        arbor_release(&made);
+    arbor_release(&made);
     return status;
 }
 

@@ -70,8 +70,8 @@ double clearance_reach(const Clearance *clearance, int32_t i, double reserved_ra
 
 /* What a segment of `radius` reserves when it is given this share of its wish: at 0 the radius, at
  * 1 the reserve as well, at -1 nothing. Never more than its length allows. */
-static double reservation(const Clearance *clearance, const Branch *branch, double radius,
-                          double share)
+static inline double reservation(const Clearance *clearance, const Branch *branch, double radius,
+                                 double share)
 {
     double longest = most_reservation(branch), least = fmin(clearance->level * radius, longest);
     if (share < 0)
@@ -79,13 +79,22 @@ static double reservation(const Clearance *clearance, const Branch *branch, doub
     return least + (fmin(reserve * clearance->level * radius, longest) - least) * share;
 }
 
-/* The greatest share that two segments can both be given that are so far apart, less what has to be
- * between what they reserve. */
-static double common_share(const Clearance *clearance, const Branch *a, double radius_a,
-                           const Branch *b, double radius_b, double apart)
+/* Returns the sum of what two segments reserve when both are given this share. */
+static inline double both_reserve(const Clearance *clearance, const Arbor *arbor, int32_t i,
+                                  int32_t j, double share)
 {
-    double least = reservation(clearance, a, radius_a, 0) + reservation(clearance, b, radius_b, 0);
-    double most = reservation(clearance, a, radius_a, 1) + reservation(clearance, b, radius_b, 1);
+    return reservation(clearance, &arbor->branch[i], clearance->radius[i], share) +
+           reservation(clearance, &arbor->branch[j], clearance->radius[j], share);
+}
+
+/* Returns the greatest share that two segments can both be given. */
+static inline double common_share(const Clearance *clearance, const Arbor *arbor, int32_t i,
+                                  int32_t j)
+{
+    double apart =
+        distance_of(&arbor->shape[i], &arbor->shape[j]) - clearance_between(clearance, arbor, i, j);
+    double least = both_reserve(clearance, arbor, i, j, 0);
+    double most = both_reserve(clearance, arbor, i, j, 1);
     if (apart >= most)
         return 1;
     return apart >= least ? (apart - least) / (most - least) : fmax(apart, 0) / least - 1;
@@ -93,34 +102,21 @@ static double common_share(const Clearance *clearance, const Branch *a, double r
 
 double clearance_due(const Clearance *clearance, const Arbor *arbor, int32_t i, int32_t j)
 {
-    return reservation(clearance, &arbor->branch[i], clearance->radius[i], 0) +
-           reservation(clearance, &arbor->branch[j], clearance->radius[j], 0) +
-           clearance_between(clearance, arbor, i, j);
+    return both_reserve(clearance, arbor, i, j, 0) + clearance_between(clearance, arbor, i, j);
 }
 
 /* The greatest share that segment i and all it meets leave to each other. */
-static double fair_share(const Clearance *clearance, const Arbor *arbor, const double *radius,
-                         int32_t i)
+static double fair_share(const Clearance *clearance, const Arbor *arbor, int32_t i)
 {
     const Shape *shape = &arbor->shape[i];
-    const Branch *branch = arbor->branch;
     Capsule capsule = {shape->from, shape->to,
                        clearance_reach(clearance, i, shape->reserved_radius)};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
     double share = 1;
-    size_t index;
-    for (GridWalk walk = grid_walk(&clearance->grid, &item); grid_walk_next(&walk, &index);) {
-        const GridCell *cell = &clearance->grid.cell[index];
-        for (uint32_t k = 0; k < cell->count; k++) {
-            int32_t other = cell->tag[k] >> 1;
-            if (other != i && !arbor_are_joined(arbor, i, other))
-                share =
-                    fmin(share, common_share(clearance, &branch[i], radius[i], &branch[other],
-                                             radius[other],
-                                             distance_of(shape, &arbor->shape[other]) -
-                                                 clearance_between(clearance, arbor, i, other)));
-        }
-    }
+    int32_t other;
+    for (GridVisit visit = grid_visit(&clearance->grid, &item); grid_visit_next(&visit, &other);)
+        if (other != i && !arbor_are_joined(arbor, i, other))
+            share = fmin(share, common_share(clearance, arbor, i, other));
     return share;
 }
 
@@ -150,8 +146,7 @@ static void share_out(size_t batch, int worker, void *context)
     size_t from = batch * BATCH, to = from + BATCH;
     for (size_t i = from; i < to && i < sharing->arbor->n; i++)
         if (!arbor_is_inlet(sharing->arbor, (int32_t)i))
-            clearance->share[i] =
-                fair_share(clearance, sharing->arbor, clearance->radius, (int32_t)i);
+            clearance->share[i] = fair_share(clearance, sharing->arbor, (int32_t)i);
 }
 
 /* Reserves radii for all segments at the level; *clear: the share of segments that keep the rules.
@@ -235,31 +230,30 @@ Status clearance_waive(Clearance *clearance, Arbor *arbor, double reserved, Err 
     return STATUS_OK;
 }
 
+/* Returns the most that segment i can reserve beside the reservation of segment j; INFINITY if they
+ * share a node. */
+static double room_beside(const Clearance *clearance, const Arbor *arbor, int32_t i, int32_t j)
+{
+    const Shape *there = &arbor->shape[j];
+    if (j == i || arbor_are_joined(arbor, i, j))
+        return INFINITY;
+    return distance_of(&arbor->shape[i], there) - there->reserved_radius -
+           clearance_between(clearance, arbor, i, j);
+}
+
 /* The most that segment i can reserve, up to `wish`, beside the others' reservations. */
 static double most_room(const Clearance *clearance, const Arbor *arbor, int32_t i, double wish)
 {
     const Shape *shape = &arbor->shape[i];
     double most = fmin(wish, most_reservation(&arbor->branch[i]));
-    size_t index;
+    int32_t other;
     Capsule capsule = {shape->from, shape->to, clearance_reach(clearance, i, most)};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
-    for (GridWalk walk = grid_walk(&clearance->grid, &item); grid_walk_next(&walk, &index);) {
-        const GridCell *cell = &clearance->grid.cell[index];
-        for (uint32_t k = 0; k < cell->count; k++) {
-            int32_t other = cell->tag[k] >> 1;
-            const Shape *there = &arbor->shape[other];
-            if (there->saved != arbor->move && !arbor_are_joined(arbor, i, other))
-                most = fmin(most, distance_of(shape, there) - there->reserved_radius -
-                                      clearance_between(clearance, arbor, i, other));
-        }
-    }
-    for (int k = 0; k < arbor->n_saved_shapes; k++) { /* the grid has them as they were */
-        int32_t other = arbor->saved_shape[k].i;
-        const Shape *there = &arbor->shape[other];
-        if (other != i && !arbor_are_joined(arbor, i, other))
-            most = fmin(most, distance_of(shape, there) - there->reserved_radius -
-                                  clearance_between(clearance, arbor, i, other));
-    }
+    for (GridVisit visit = grid_visit(&clearance->grid, &item); grid_visit_next(&visit, &other);)
+        if (arbor->shape[other].saved != arbor->move)
+            most = fmin(most, room_beside(clearance, arbor, i, other));
+    for (int k = 0; k < arbor->n_saved_shapes; k++) /* the grid has them as they were */
+        most = fmin(most, room_beside(clearance, arbor, i, arbor->saved_shape[k].i));
     return most;
 }
 

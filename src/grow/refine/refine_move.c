@@ -168,12 +168,12 @@ Status move_bifurcation(LocalSearch *search, int32_t i, Err *err)
     return STATUS_OK;
 }
 
-typedef struct Candidate {
+typedef struct MoveCandidate {
     int32_t host;
     double price; /* of connecting there, by the marginals */
     Bifurcation problem;
     BifurcationState state;
-} Candidate;
+} MoveCandidate;
 
 /* The marginal of a segment: the stored one where the present move has changed nothing beside it.
  */
@@ -186,7 +186,7 @@ static Marginal marginal_of(const Arbor *arbor, int32_t i)
 }
 
 /* Prices the connection of `subtree`, which is pruned, to `host`. */
-static bool price(const LocalSearch *search, int32_t subtree, int32_t host, Candidate *out)
+static bool price(const LocalSearch *search, int32_t subtree, int32_t host, MoveCandidate *out)
 {
     const Arbor *arbor = &search->arbor;
     const Shape *shape = &arbor->shape[host];
@@ -207,7 +207,7 @@ static bool price(const LocalSearch *search, int32_t subtree, int32_t host, Cand
 
 typedef struct Candidates {
     int count;
-    Candidate list[CANDIDATES]; /* the first is where the subtree came from */
+    MoveCandidate list[CANDIDATES]; /* the first is where the subtree came from */
 } Candidates;
 
 static void propose(const LocalSearch *search, int32_t subtree, int32_t host, Candidates *out)
@@ -217,21 +217,6 @@ static void propose(const LocalSearch *search, int32_t subtree, int32_t host, Ca
             return;
     if (out->count < CANDIDATES)
         out->count += price(search, subtree, host, &out->list[out->count]);
-}
-
-/* Finds the nearest segments; looks first as far as was enough for the last points, and a little
- * more. */
-static int find_near(LocalSearch *search, Vec3 point, Near *near)
-{
-    const Grid *grid = &search->clearance.grid;
-    double reach = search->reach;
-    int count = NEIGHBOURS;
-    if (!grid_nearest_quick(grid, point, reach, NEIGHBOURS, near))
-        count = grid_nearest(grid, point, INFINITY, NEIGHBOURS, near);
-    if (count == NEIGHBOURS)
-        search->reach +=
-            (reach > 0 ? 0.1 : 1) * (1.25 * sqrt((double)near[NEIGHBOURS - 1].distance2) - reach);
-    return count;
 }
 
 /* Finds connections of `subtree`, which is pruned: to the segment that it came from, to those that
@@ -252,14 +237,16 @@ static void find_candidates(LocalSearch *search, int32_t subtree, int32_t origin
     }
     for (int side = 0; side < 2 && below[0] >= 0; side++)
         propose(search, subtree, below[side], out);
-    int found = find_near(search, arbor->shape[subtree].to, near);
+    int found = grid_nearest_guessed(&search->clearance.grid, arbor->shape[subtree].to, INFINITY,
+                                     NEIGHBOURS, &search->reach, near);
     for (int k = 0; k < found; k++)
         if (near[k].segment != fork && arbor_is_same_tree(arbor, near[k].segment, subtree) &&
             !arbor_is_below(arbor, near[k].segment, subtree))
             propose(search, subtree, near[k].segment, out);
 }
 
-static int choose(LocalSearch *search, const Candidate *candidate, int count, double temperature)
+static int choose(LocalSearch *search, const MoveCandidate *candidate, int count,
+                  double temperature)
 {
     int best = 0;
     for (int k = 1; k < count; k++)
@@ -286,7 +273,7 @@ static double tolerance(LocalSearch *search, double temperature)
 
 /* Connects `subtree`, which is pruned, as the candidate says, if S_root and penalties are then
  * below `limit`. If not, the move is to be undone. */
-static bool connect(LocalSearch *search, int32_t subtree, Candidate *to, double limit)
+static bool connect(LocalSearch *search, int32_t subtree, MoveCandidate *to, double limit)
 {
     Arbor *arbor = &search->arbor;
     const Law law = arbor_law(arbor, to->host);
@@ -308,7 +295,7 @@ Status move_subtree(LocalSearch *search, int32_t i, double temperature, Err *err
     const int32_t here[] = {i, fork, origin};
     double cost = arbor_cost(arbor);
     Candidates candidates;
-    Candidate *candidate = candidates.list;
+    MoveCandidate *candidate = candidates.list;
     arbor_begin(arbor);
     double due = penalty(search, here, 3);
     arbor_prune(arbor, i);

@@ -58,8 +58,8 @@ void penalties_raise(Penalties *penalties, const Clearance *clearance, const Arb
 }
 
 /* What two segments pay together. */
-static double penalty_between(const Penalties *penalties, const Clearance *clearance,
-                              const Arbor *arbor, int32_t i, int32_t j)
+static inline double penalty_between(const Penalties *penalties, const Clearance *clearance,
+                                     const Arbor *arbor, int32_t i, int32_t j)
 {
     const Shape *a = &arbor->shape[i], *b = &arbor->shape[j];
     double reach =
@@ -80,23 +80,16 @@ static double penalty_of_segment(Penalties *penalties, const Clearance *clearanc
                        shape->reserved_radius + clearance->gap + clearance->apart};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
     GridBoxQuery probe = grid_box_query(&item, capsule.radius, 1);
-    size_t index;
-    for (GridWalk walk = grid_walk(&clearance->grid, &item); grid_walk_next(&walk, &index);) {
-        const GridCell *cell = &clearance->grid.cell[index];
-        for (uint32_t k = 0; k < cell->count; k += GRID_LANES) {
-            unsigned near = grid_boxes_near(&clearance->grid, cell, k, &probe);
-            for (const int32_t *tag = cell->tag + k; near; near >>= 1, tag++) {
-                int32_t other = *tag >> 1;
-                if (!(near & 1) || penalties->seen[other] == penalties->count ||
-                    arbor->shape[other].saved == arbor->move)
-                    continue;
-                penalties->seen[other] = penalties->count;
-                sum += penalty_between(penalties, clearance, arbor, i, other);
-            }
-        }
+    int32_t other;
+    for (GridVisit visit = grid_visit(&clearance->grid, &item);
+         grid_visit_near(&visit, &probe, &other);) {
+        if (penalties->seen[other] == penalties->count || arbor->shape[other].saved == arbor->move)
+            continue;
+        penalties->seen[other] = penalties->count;
+        sum += penalty_between(penalties, clearance, arbor, i, other);
     }
     for (int k = 0; k < arbor->n_saved_shapes; k++) { /* the grid has them as they were */
-        int32_t other = arbor->saved_shape[k].i;
+        other = arbor->saved_shape[k].i;
         if (penalties->seen[other] != penalties->count)
             sum += penalty_between(penalties, clearance, arbor, i, other);
     }

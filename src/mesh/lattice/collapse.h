@@ -1,23 +1,22 @@
-/* Fewer triangles where a surface is nearly flat, along a vessel above all. */
+/* Removes points where the surface is nearly flat, most of all along vessels. */
 #ifndef CORCAST_MESH_LATTICE_COLLAPSE_H
 #define CORCAST_MESH_LATTICE_COLLAPSE_H
 
 #include "mesh/lattice/patch.h"
 
-/* Workspace of a thread; zeroed before the first use. */
+/* Workspace of one thread. Zero it before first use; release it with collapser_release. */
 typedef struct Collapser {
-    uint32_t *next;  /* one a corner: the next corner of the same point */
-    uint32_t *first; /* one a point: its first corner */
-    uint32_t *stamp, *renamed;
-    bool *settled; /* one a point: nothing about it has changed since it could not go */
-    size_t next_capacity, first_capacity, stamp_capacity, renamed_capacity, settled_capacity;
+    ARRAY(uint32_t) next;  /* per corner: the next corner at the same point */
+    ARRAY(uint32_t) first; /* per point: its first corner */
+    ARRAY(uint32_t) stamp; /* per point */
+    ARRAY(bool) settled; /* per point: nothing near it has changed since it could not be removed */
 } Collapser;
 
 void collapser_release(Collapser *collapser);
 
-/* Moves points into neighbours while no new edge is farther from the surface between its ends than
- * `sagitta` of the local radius. All points stay on the surface; a rim's points stay on the rim.
- * What the patch is topologically does not change. */
-MUST_CHECK Status collapse_make(Collapser *collapser, Patch *patch, double sagitta, Err *err);
+/* Merges points into neighbours as long as the surface stays within `sagitta` local radii of each
+ * new edge. All points stay on the surface, and rim points stay on their rim. The topology of the
+ * patch does not change. Errors: STATUS_MEMORY. */
+MUST_CHECK Status collapse_apply(Collapser *collapser, Patch *patch, double sagitta, Err *err);
 
 #endif

@@ -1,63 +1,65 @@
-/* In rounds: the triangles that are new are measured; of one that is too far off, the longest edge
- * is to be split at the point of the wall that the field's slope leads to from its middle. It is
- * not where that would turn one of the triangles at the edge over, or where the wall's normal there
- * is unlike those at the ends: then two walls face each other in a groove. A triangle with several
- * such edges is halved at the longest of them first, so that both triangles at an edge agree. */
+/* In rounds: new triangles are measured. If a triangle is too far from the surface, its longest
+ * edge is to be split at a point of the surface, which Newton steps along the field's gradient
+ * reach from the edge's middle. An edge is not split if that would turn one of its triangles over,
+ * or if the normal at the new point is unlike the normals at the edge's ends: then two surfaces
+ * face each other in a groove. A triangle with several edges to be split is halved at the longest
+ * of them first, so that both triangles at an edge agree. */
 #include "mesh/lattice/facerefine.h"
 
 #include <stdlib.h>
 
-enum { MOST_ROUNDS = 6, MOST_STEPS = 8 };
+enum { MAX_ROUNDS = 6, MAX_NEWTON_STEPS = 8 };
 #define NONE UINT32_MAX
-/* Cosines: the least that the normals at the ends of an edge and at its point agree, and that point
- * and the triangles at it. */
-static const double alike = 0.3, least_facing = 0.1;
-/* Over what is too far off. */
+/* Minimum cosine between the normal at a new point and the normals at the ends of its edge. */
+static const double alike = 0.3;
+/* Minimum cosine between the normal at a new point and the normals of the triangles at it. */
+static const double least_facing = 0.1;
+/* In units of the limit: below this distance at two places, a triangle is not measured at others.
+ */
 static const double little = 0.6;
-/* Over the length of an edge: how far its middle may be moved. */
+/* In units of the edge's length: maximum distance of a new point from the middle of its edge. */
 static const double most_moved = 0.3;
-/* Of the level: how near it the field is at a point of the wall. */
+/* In units of the level: maximum difference of the field from the level at a point of the surface.
+ */
 static const double precisely = 1e-6;
 
 typedef enum TriangleState {
     TRIANGLE_NEW,
-    TRIANGLE_FAR,     /* to be split */
-    TRIANGLE_STUBBORN /* or measured for good */
+    TRIANGLE_FAR,    /* to be split */
+    TRIANGLE_SETTLED /* near enough, or cannot be split */
 } TriangleState;
 
-typedef struct Refining {
+typedef struct FaceRefining {
     Refiner *refiner;
-    const ZoneField *field;
-    const ZoneTree *tree;
+    const JunctionField *field;
+    const Octree *tree;
     Patch *patch;
     MeshOff *off;
-    double split, limit; /* in the last round nothing is too far off */
+    double split, limit; /* in local radii; in the last round the limit is infinite */
     Err *err;
-} Refining;
+} FaceRefining;
 
 void refiner_release(Refiner *refiner)
 {
-    pairtable_release(&refiner->edges);
-    free(refiner->states);
-    free(refiner->renamed);
-    *refiner = (Refiner){0};
+    keymap_release(&refiner->edges);
+    ARRAY_RELEASE(&refiner->states);
 }
 
 /* Whether a place is inside the wall, as far as is known: behind a plane it is as `otherwise`. */
-static bool is_inside(const Refining *refining, Vec3 x, bool otherwise)
+static bool is_inside(const FaceRefining *refining, Vec3 x, bool otherwise)
 {
-    const ZoneTree *tree = refining->tree;
-    const ZoneCell *cell = zonetree_leaf(tree, x);
+    const Octree *tree = refining->tree;
+    const OctreeCell *cell = octree_leaf(tree, x);
     if (!cell || cell->state == CELL_OUTSIDE)
         return false;
     if (cell->state == CELL_ACTIVE)
-        return fieldpart_value(refining->field, &tree->kept, &cell->part, x).phi >= FIELD_LEVEL;
+        return localfield_value(refining->field, &tree->kept, &cell->part, x).phi >= FIELD_LEVEL;
     return cell->state == CELL_INSIDE || otherwise;
 }
 
 /* How far x, which is inside or not, is from the wall along `outward` or against it, up to a
  * radius. */
-static double search_wall(const Refining *refining, Vec3 x, bool inside, Vec3 outward,
+static double search_wall(const FaceRefining *refining, Vec3 x, bool inside, Vec3 outward,
                           double radius_mm)
 {
     double low = 0, high = 0.01 * radius_mm, sign = inside ? 1 : -1;
@@ -77,17 +79,17 @@ static double search_wall(const Refining *refining, Vec3 x, bool inside, Vec3 ou
 /* How far a point of a triangle is off the wall: by the field's value and slope if it is near and
  * the field about as steep as at a vessel's wall, where its slope is 4 FIELD_LEVEL / r; else
  * searched for along the field's slope and the triangle's normal. */
-static double measure_at(const Refining *refining, Vec3 x, Vec3 normal, double radius_mm)
+static double measure_at(const FaceRefining *refining, Vec3 x, Vec3 normal, double radius_mm)
 {
     static const double near = 0.02, steep = FIELD_LEVEL;
-    const ZoneTree *tree = refining->tree;
-    const ZoneCell *cell = zonetree_leaf(tree, x);
+    const Octree *tree = refining->tree;
+    const OctreeCell *cell = octree_leaf(tree, x);
     Vec3 gradient;
     if (!cell || cell->state == CELL_BEHIND)
         return 0;
     if (cell->state != CELL_ACTIVE)
         return search_wall(refining, x, cell->state == CELL_INSIDE, normal, radius_mm);
-    FieldValue value = fieldpart_gradient(refining->field, &tree->kept, &cell->part, x, &gradient);
+    FieldValue value = localfield_gradient(refining->field, &tree->kept, &cell->part, x, &gradient);
     double slope = vec3_length(gradient), off = fabs(value.phi - FIELD_LEVEL) / slope;
     if (off <= near * radius_mm && slope * radius_mm >= steep)
         return off;
@@ -99,25 +101,25 @@ static double measure_at(const Refining *refining, Vec3 x, Vec3 normal, double r
     return fmin(one, search_wall(refining, x, inside, down, radius_mm));
 }
 
-static const PatchPoint *corner(const Refining *refining, const Triangle *triangle, int i)
+static const PatchPoint *corner(const FaceRefining *refining, const Triangle *triangle, int i)
 {
     return &refining->patch->points[triangle->at[i % 3]];
 }
 
-static Vec3 middle_of(const Refining *refining, uint32_t a, uint32_t b)
+static Vec3 middle_of(const FaceRefining *refining, uint32_t a, uint32_t b)
 {
     const PatchPoint *points = refining->patch->points;
     return vec3_scale(vec3_add(points[a].x, points[b].x), 0.5);
 }
 
-static double length_of(const Refining *refining, uint32_t a, uint32_t b)
+static double length_of(const FaceRefining *refining, uint32_t a, uint32_t b)
 {
     const PatchPoint *points = refining->patch->points;
     return vec3_distance(points[a].x, points[b].x);
 }
 
 /* The longest edge of a triangle, from this corner to the next. */
-static int longest_edge(const Refining *refining, const Triangle *triangle)
+static int longest_edge(const FaceRefining *refining, const Triangle *triangle)
 {
     int longest = 0;
     double length[3];
@@ -136,20 +138,20 @@ static Vec3 normal_of(Vec3 a, Vec3 b, Vec3 c)
 
 /* The point of the wall near the middle of an edge. False when there is none that the edge may be
  * split at. */
-static bool find_point(const Refining *refining, uint32_t a, uint32_t b, PatchPoint *point)
+static bool find_point(const FaceRefining *refining, uint32_t a, uint32_t b, PatchPoint *point)
 {
     const PatchPoint *one = &refining->patch->points[a], *other = &refining->patch->points[b];
     Vec3 middle = middle_of(refining, a, b), x = middle, gradient;
     double most = most_moved * length_of(refining, a, b);
-    for (int i = 0; i < MOST_STEPS; i++) {
-        const ZoneCell *cell = zonetree_leaf(refining->tree, x);
+    for (int i = 0; i < MAX_NEWTON_STEPS; i++) {
+        const OctreeCell *cell = octree_leaf(refining->tree, x);
         if (!cell || cell->state != CELL_ACTIVE || vec3_distance(x, middle) > most)
             return false;
         FieldValue value =
-            fieldpart_gradient(refining->field, &refining->tree->kept, &cell->part, x, &gradient);
+            localfield_gradient(refining->field, &refining->tree->kept, &cell->part, x, &gradient);
         double steepness = vec3_length(gradient);
         if (fabs(value.phi - FIELD_LEVEL) <= precisely * FIELD_LEVEL) {
-            *point = patch_wall_point(refining->field, x, &value, gradient);
+            *point = patch_surface_point(refining->field, x, &value, gradient);
             return vec3_dot(point->normal, one->normal) >= alike &&
                    vec3_dot(point->normal, other->normal) >= alike;
         }
@@ -161,16 +163,16 @@ static bool find_point(const Refining *refining, uint32_t a, uint32_t b, PatchPo
 }
 
 /* Has an edge split, if it can be. */
-static Status mark_edge(const Refining *refining, uint32_t a, uint32_t b, bool *marked)
+static Status mark_edge(const FaceRefining *refining, uint32_t a, uint32_t b, bool *marked)
 {
     const PatchPoint *points = refining->patch->points;
     uint32_t *place;
     PatchPoint point;
-    bool is_new, on_rim = points[a].arm != NO_ARM && points[a].arm == points[b].arm;
+    bool is_new, on_rim = points[a].stub != NO_STUB && points[a].stub == points[b].stub;
     *marked = false;
     if (on_rim)
         return STATUS_OK;
-    TRY(pairtable_place(&refining->refiner->edges, pair_key(a, b), &place, &is_new, refining->err));
+    TRY(keymap_put(&refining->refiner->edges, key_of_pair(a, b), &place, &is_new, refining->err));
     if (is_new) {
         *place = NONE;
         if (find_point(refining, a, b, &point))
@@ -182,8 +184,8 @@ static Status mark_edge(const Refining *refining, uint32_t a, uint32_t b, bool *
 
 /* How far a place on a triangle is off the wall: no farther than over one of its corners. Where the
  * triangle stops up a tunnel, the wall is not where its normal or the slope leads. */
-static double measure_on(const Refining *refining, const Triangle *triangle, Vec3 x, Vec3 normal,
-                         double radius_mm)
+static double measure_on(const FaceRefining *refining, const Triangle *triangle, Vec3 x,
+                         Vec3 normal, double radius_mm)
 {
     double off = measure_at(refining, x, normal, radius_mm);
     for (int i = 0; i < 3 && off > refining->split * radius_mm; i++) {
@@ -195,7 +197,7 @@ static double measure_on(const Refining *refining, const Triangle *triangle, Vec
 
 /* How far a triangle is off the wall, mm: at its middle and that of its longest edge, and where
  * that is not a little at those of the others. */
-static double measure_triangle(const Refining *refining, const Triangle *triangle, int longest,
+static double measure_triangle(const FaceRefining *refining, const Triangle *triangle, int longest,
                                double radius_mm)
 {
     const PatchPoint *a = corner(refining, triangle, 0), *b = corner(refining, triangle, 1);
@@ -212,10 +214,10 @@ static double measure_triangle(const Refining *refining, const Triangle *triangl
 }
 
 /* Looks at a triangle; if it is too far off, has its longest edge split. */
-static Status look_at(const Refining *refining, size_t number)
+static Status look_at(const FaceRefining *refining, size_t number)
 {
     const Triangle triangle = refining->patch->triangles[number];
-    uint8_t *state = &refining->refiner->states[number];
+    uint8_t *state = &refining->refiner->states.items[number];
     int longest = longest_edge(refining, &triangle);
     double radius = HUGE_VAL;
     for (int i = 0; i < 3; i++)
@@ -224,16 +226,16 @@ static Status look_at(const Refining *refining, size_t number)
     bool marked = false;
     if (off > refining->limit * radius && *state == TRIANGLE_NEW)
         TRY(mark_edge(refining, triangle.at[longest], triangle.at[(longest + 1) % 3], &marked));
-    *state = marked ? TRIANGLE_FAR : TRIANGLE_STUBBORN;
+    *state = marked ? TRIANGLE_FAR : TRIANGLE_SETTLED;
     if (!marked)
         meshoff_add(refining->off, off, radius);
     return STATUS_OK;
 }
 
 /* The point that an edge is to be split at, or NONE. */
-static uint32_t point_on(const Refining *refining, uint32_t a, uint32_t b)
+static uint32_t point_on(const FaceRefining *refining, uint32_t a, uint32_t b)
 {
-    const uint32_t *place = pairtable_find(&refining->refiner->edges, pair_key(a, b));
+    const uint32_t *place = keymap_find(&refining->refiner->edges, key_of_pair(a, b));
     return place ? *place : NONE;
 }
 
@@ -245,12 +247,12 @@ static bool faces(Vec3 a, Vec3 b, Vec3 c, Vec3 normal)
 }
 
 /* Leaves those edges of a triangle whole whose split would turn it over. */
-static void spare_edges(const Refining *refining, const Triangle *triangle)
+static void spare_edges(const FaceRefining *refining, const Triangle *triangle)
 {
     const PatchPoint *points = refining->patch->points;
     for (int i = 0; i < 3; i++) {
         uint32_t a = triangle->at[i], b = triangle->at[(i + 1) % 3], c = triangle->at[(i + 2) % 3];
-        uint32_t *place = pairtable_find(&refining->refiner->edges, pair_key(a, b));
+        uint32_t *place = keymap_find(&refining->refiner->edges, key_of_pair(a, b));
         if (!place || *place == NONE)
             continue;
         const PatchPoint *at = &points[*place];
@@ -261,7 +263,7 @@ static void spare_edges(const Refining *refining, const Triangle *triangle)
 }
 
 /* Puts what a triangle is split into in its place and behind the others. */
-static Status split(const Refining *refining, size_t number)
+static Status split(const FaceRefining *refining, size_t number)
 {
     Patch *patch = refining->patch;
     const Triangle triangle = patch->triangles[number];
@@ -285,22 +287,21 @@ static Status split(const Refining *refining, size_t number)
     TRY(patch_add_triangle(patch, (Triangle){{at[best], b, c}}, refining->err));
     size_t other = patch->n_triangles - 1;
     Refiner *refiner = refining->refiner;
-    TRY(mem_reserve(&refiner->states, &refiner->state_capacity, other + 1, sizeof *refiner->states,
-                    "triangles of a junction", refining->err));
-    refiner->states[number] = refiner->states[other] = TRIANGLE_NEW;
+    TRY(ARRAY_RESERVE(&refiner->states, other + 1, "triangles of a junction", refining->err));
+    refiner->states.items[number] = refiner->states.items[other] = TRIANGLE_NEW;
     TRY(split(refining, number));
     return split(refining, other);
 }
 
 /* One round. */
-static Status refine_once(const Refining *refining, bool *changed)
+static Status refine_once(const FaceRefining *refining, bool *changed)
 {
     Refiner *refiner = refining->refiner;
     const Patch *patch = refining->patch;
     size_t n = patch->n_triangles, n_points = patch->n_points;
-    TRY(pairtable_begin(&refiner->edges, 0, refining->err));
+    TRY(keymap_begin(&refiner->edges, 0, "points of a junction", refining->err));
     for (size_t i = 0; i < n; i++)
-        if (refiner->states[i] != TRIANGLE_STUBBORN)
+        if (refiner->states.items[i] != TRIANGLE_SETTLED)
             TRY(look_at(refining, i));
     *changed = patch->n_points > n_points;
     for (size_t i = 0; i < n && *changed; i++)
@@ -310,24 +311,18 @@ static Status refine_once(const Refining *refining, bool *changed)
     return STATUS_OK;
 }
 
-Status refine_make(Refiner *refiner, const ZonePlan *plan, const ZoneTree *tree, double limit,
-                   Patch *patch, MeshOff *off, Err *err)
+Status facerefine_apply(Refiner *refiner, const JunctionPlan *plan, const Octree *tree,
+                        double limit, Patch *patch, MeshOff *off, Err *err)
 {
-    Refining refining = {refiner, &plan->field, tree, patch, off, limit, limit, err};
+    FaceRefining refining = {refiner, &plan->field, tree, patch, off, limit, limit, err};
     size_t n_points = patch->n_points;
     bool changed = true;
-    TRY(mem_reserve(&refiner->states, &refiner->state_capacity, patch->n_triangles,
-                    sizeof *refiner->states, "triangles of a junction", err));
+    TRY(ARRAY_RESERVE(&refiner->states, patch->n_triangles, "triangles of a junction", err));
     for (size_t i = 0; i < patch->n_triangles; i++)
-        refiner->states[i] = TRIANGLE_NEW;
-    for (int round = 0; round <= MOST_ROUNDS && changed; round++) {
-        refining.limit = round < MOST_ROUNDS ? limit : HUGE_VAL;
+        refiner->states.items[i] = TRIANGLE_NEW;
+    for (int round = 0; round <= MAX_ROUNDS && changed; round++) {
+        refining.limit = round < MAX_ROUNDS ? limit : HUGE_VAL;
         TRY(refine_once(&refining, &changed));
     }
-    if (patch->n_points == n_points)
-        return STATUS_OK;
-    TRY(mem_reserve(&refiner->renamed, &refiner->renamed_capacity, patch->n_points,
-                    sizeof *refiner->renamed, "points of a junction", err));
-    patch_compact(patch, refiner->renamed);
-    return STATUS_OK;
+    return patch->n_points > n_points ? patch_compact(patch, err) : STATUS_OK;
 }

@@ -27,15 +27,15 @@ enum { FEW_TERMS = 512 };
 
 typedef struct Cutter {
     Lattice *lattice;
-    const ZoneTree *tree;
-    const ZonePlan *plan;
+    const Octree *tree;
+    const JunctionPlan *plan;
     Patch *patch;
     Err *err;
     TetrahedronList *list; /* where all tetrahedra go instead of being cut; or NULL */
-    ZoneTree *away;        /* where also those away from active cells count: the tree, whose stack
+    Octree *away;          /* where also those away from active cells count: the tree, whose stack
                             * has `whole`: */
-    FieldPart whole;       /* all terms, for points away from active cells */
-    FieldPart local;       /* of many terms, those that matter within local_mm of local_at */
+    LocalField whole;      /* all terms, for points away from active cells */
+    LocalField local;      /* of many terms, those that matter within local_mm of local_at */
     Vec3 local_at;
     double local_mm;
 } Cutter;
@@ -45,16 +45,16 @@ void lattice_release(Lattice *lattice)
     free(lattice->points);
     free(lattice->centers);
     free(lattice->crossings);
-    pairtable_release(&lattice->corners);
+    keymap_release(&lattice->corners);
     *lattice = (Lattice){0};
 }
 
 /* Moves a point by a vector, unless its height is then less than this. */
-static bool move_point(const Cutter *cutter, const FieldPart *part, Vec3 by, double least_height,
+static bool move_point(const Cutter *cutter, const LocalField *part, Vec3 by, double least_height,
                        LatticePoint *point)
 {
     Vec3 moved = vec3_add(point->x, by);
-    FieldValue value = fieldpart_value(&cutter->plan->field, &cutter->tree->kept, part, moved);
+    FieldValue value = localfield_value(&cutter->plan->field, &cutter->tree->kept, part, moved);
     double height = field_height(value.phi);
     if (!(fabs(height) >= least_height))
         return false;
@@ -64,12 +64,12 @@ static bool move_point(const Cutter *cutter, const FieldPart *part, Vec3 by, dou
 
 /* Moves a point off the wall, on its own side; to the inside where it would come too near another
  * wall, as outside in a crease. */
-static void clear_wall(const Cutter *cutter, const FieldPart *part, double side,
+static void clear_wall(const Cutter *cutter, const LocalField *part, double side,
                        LatticePoint *point)
 {
     Vec3 gradient;
     FieldValue value =
-        fieldpart_gradient(&cutter->plan->field, &cutter->tree->kept, part, point->x, &gradient);
+        localfield_gradient(&cutter->plan->field, &cutter->tree->kept, part, point->x, &gradient);
     double steepness = vec3_length(gradient), least = clearance * side;
     double inside = (value.phi - FIELD_LEVEL) / steepness; /* mm, about */
     if (!(fabs(inside) < least))
@@ -84,26 +84,26 @@ static void clear_wall(const Cutter *cutter, const FieldPart *part, double side,
 /* Makes cutter->local what matters near x, of few enough terms. */
 static Status find_local(Cutter *cutter, Vec3 x)
 {
-    PartPool *stack = &cutter->away->stack;
-    PartBounds bounds;
+    LocalFieldPool *stack = &cutter->away->stack;
+    FieldBounds bounds;
     const double widest = cutter->away->side / 16;
     double reach = widest;
     do {
         stack->n_terms = cutter->whole.first_term + cutter->whole.n_terms;
         stack->n_groups =
             cutter->whole.first_group + (size_t)cutter->whole.words * cutter->whole.n_groups;
-        TRY(fieldpart_narrow(&cutter->plan->field, stack, &cutter->whole, x, reach, reach,
-                             &cutter->local, &bounds, cutter->err));
+        TRY(localfield_narrow(&cutter->plan->field, stack, &cutter->whole, x, reach, reach,
+                              &cutter->local, &bounds, cutter->err));
         cutter->local_at = x;
         cutter->local_mm = reach;
         reach /= 2;
-    } while (cutter->local.n_terms > MOST_PART_TERMS && reach > 1e-6 * widest);
-    return cutter->local.n_terms > MOST_PART_TERMS ? zonefield_refuse(cutter->err) : STATUS_OK;
+    } while (cutter->local.n_terms > MAX_LOCAL_TERMS && reach > 1e-6 * widest);
+    return cutter->local.n_terms > MAX_LOCAL_TERMS ? localfield_refuse(cutter->err) : STATUS_OK;
 }
 
 /* What matters at a point away from active cells: all terms, or, where those are too many at once,
  * those that matter near by; the points of a walk lie close together. */
-static Status part_away(Cutter *cutter, Vec3 x, const FieldPart **part)
+static Status part_away(Cutter *cutter, Vec3 x, const LocalField **part)
 {
     bool few = cutter->whole.n_terms <= FEW_TERMS;
     if (!few && !(vec3_distance(x, cutter->local_at) < cutter->local_mm))
@@ -113,7 +113,7 @@ static Status part_away(Cutter *cutter, Vec3 x, const FieldPart **part)
 }
 
 /* A point whose field is that of the cell `from` if that is active. */
-static Status add_point(Cutter *cutter, const ZoneCell *from, Vec3 x, uint32_t *number)
+static Status add_point(Cutter *cutter, const OctreeCell *from, Vec3 x, uint32_t *number)
 {
     Lattice *lattice = cutter->lattice;
     TRY(mem_reserve(&lattice->points, &lattice->capacity, lattice->n_points + 1,
@@ -121,37 +121,37 @@ static Status add_point(Cutter *cutter, const ZoneCell *from, Vec3 x, uint32_t *
     bool is_near = from && from->state == CELL_ACTIVE;
     FieldValue value;
     if (is_near)
-        value = fieldpart_value(&cutter->plan->field, &cutter->tree->kept, &from->part, x);
+        value = localfield_value(&cutter->plan->field, &cutter->tree->kept, &from->part, x);
     else {
-        const FieldPart *part;
+        const LocalField *part;
         TRY(part_away(cutter, x, &part));
-        value = fieldpart_value(&cutter->plan->field, &cutter->away->stack, part, x);
+        value = localfield_value(&cutter->plan->field, &cutter->away->stack, part, x);
     }
     LatticePoint point = {x, field_height(value.phi), NO_CROSSING, false};
     if (is_near && fabs(point.height) < nearly)
-        clear_wall(cutter, &from->part, zonetree_side(cutter->tree, from->level), &point);
+        clear_wall(cutter, &from->part, octree_side(cutter->tree, from->level), &point);
     *number = (uint32_t)lattice->n_points;
     lattice->points[lattice->n_points++] = point;
     return STATUS_OK;
 }
 
-static Status add_center(Cutter *cutter, const ZoneCell *from, uint32_t cell)
+static Status add_center(Cutter *cutter, const OctreeCell *from, uint32_t cell)
 {
-    return add_point(cutter, from, zonetree_center(cutter->tree, &cutter->tree->cells[cell]),
+    return add_point(cutter, from, octree_center(cutter->tree, &cutter->tree->cells[cell]),
                      &cutter->lattice->centers[cell]);
 }
 
 /* `at` in units of the smallest cells. */
-static Status corner_at(Cutter *cutter, const ZoneCell *from, const uint32_t at[3],
+static Status corner_at(Cutter *cutter, const OctreeCell *from, const uint32_t at[3],
                         uint32_t *number)
 {
-    const ZoneTree *tree = cutter->tree;
+    const Octree *tree = cutter->tree;
     uint64_t key = (uint64_t)at[0] << 42 | (uint64_t)at[1] << 21 | at[2];
     uint32_t *place;
     bool is_new;
-    TRY(pairtable_place(&cutter->lattice->corners, key, &place, &is_new, cutter->err));
+    TRY(keymap_put(&cutter->lattice->corners, key, &place, &is_new, cutter->err));
     if (is_new) {
-        double unit = zonetree_side(tree, ZONETREE_LEVELS);
+        double unit = octree_side(tree, OCTREE_LEVELS);
         Vec3 x = vec3(tree->corner.x + unit * at[0], tree->corner.y + unit * at[1],
                       tree->corner.z + unit * at[2]);
         TRY(add_point(cutter, from, x, place));
@@ -171,45 +171,45 @@ static double step_to_wall(double phi)
 /* Where the wall crosses the way from a point inside to one outside: Newton's steps from where it
  * would if the height were linear, which it nearly is; a step that would leave what is left of the
  * way halves that. A last step is made without looking where it ends. */
-static PatchPoint find_crossing(const Cutter *cutter, const FieldPart *part,
+static PatchPoint find_crossing(const Cutter *cutter, const LocalField *part,
                                 const LatticePoint *inside, const LatticePoint *outside)
 {
-    const ZoneField *field = &cutter->plan->field;
+    const JunctionField *field = &cutter->plan->field;
     Vec3 way = vec3_sub(outside->x, inside->x), gradient;
     double low = 0, high = 1, t = inside->height / (inside->height - outside->height);
     for (int i = 0;; i++) {
         Vec3 x = vec3_add_scaled(inside->x, way, t);
-        FieldValue value = fieldpart_gradient(field, &cutter->tree->kept, part, x, &gradient);
+        FieldValue value = localfield_gradient(field, &cutter->tree->kept, part, x, &gradient);
         double step = step_to_wall(value.phi) / vec3_dot(gradient, way);
         *(value.phi > FIELD_LEVEL ? &low : &high) = t;
         t += step;
         if (!(t > low && t < high))
             t = 0.5 * (low + high);
         else if (fabs(step) < last_step)
-            return patch_wall_point(field, vec3_add_scaled(inside->x, way, t), &value, gradient);
+            return patch_surface_point(field, vec3_add_scaled(inside->x, way, t), &value, gradient);
         if (i == MOST_STEPS)
-            return patch_wall_point(field, x, &value, gradient);
+            return patch_surface_point(field, x, &value, gradient);
     }
 }
 
 /* In place of a crossing, where a point is inside only by decree; away from active cells there is
  * no other. */
-static Status find_middle(Cutter *cutter, const ZoneCell *from, const LatticePoint *inside,
+static Status find_middle(Cutter *cutter, const OctreeCell *from, const LatticePoint *inside,
                           const LatticePoint *outside, PatchPoint *point)
 {
-    const ZoneField *field = &cutter->plan->field;
-    const FieldPart *part = from ? &from->part : NULL;
+    const JunctionField *field = &cutter->plan->field;
+    const LocalField *part = from ? &from->part : NULL;
     Vec3 x = vec3_scale(vec3_add(inside->x, outside->x), 0.5), gradient;
     if (!from)
         TRY(part_away(cutter, x, &part));
-    const PartPool *pool = from ? &cutter->tree->kept : &cutter->away->stack;
-    FieldValue value = fieldpart_gradient(field, pool, part, x, &gradient);
-    *point = patch_wall_point(field, x, &value, gradient);
+    const LocalFieldPool *pool = from ? &cutter->tree->kept : &cutter->away->stack;
+    FieldValue value = localfield_gradient(field, pool, part, x, &gradient);
+    *point = patch_surface_point(field, x, &value, gradient);
     return STATUS_OK;
 }
 
 /* The point of the wall between two points of the lattice, of which `a` is inside. */
-static Status crossing_of(Cutter *cutter, const ZoneCell *from, uint32_t a, uint32_t b,
+static Status crossing_of(Cutter *cutter, const OctreeCell *from, uint32_t a, uint32_t b,
                           uint32_t *number)
 {
     Lattice *lattice = cutter->lattice;
@@ -221,7 +221,7 @@ static Status crossing_of(Cutter *cutter, const ZoneCell *from, uint32_t a, uint
     TRY(mem_reserve(&lattice->crossings, &lattice->crossing_capacity, cutter->patch->n_points + 1,
                     sizeof *lattice->crossings, "points of a junction", cutter->err));
     PatchPoint point;
-    if (points[a].is_mended || !from)
+    if (points[a].is_repaired || !from)
         TRY(find_middle(cutter, from, &points[a], &points[b], &point));
     else
         point = find_crossing(cutter, &from->part, &points[a], &points[b]);
@@ -239,7 +239,8 @@ static bool is_inside(const Cutter *cutter, uint32_t point)
 /* Corner `lone` is on its own side, the other three on the other. Their order is that of a
  * tetrahedron turned as all are, so that the triangle of the crossings faces away from the lone
  * corner. */
-static Status cut_corner(Cutter *cutter, const ZoneCell *from, const uint32_t corners[4], int lone)
+static Status cut_corner(Cutter *cutter, const OctreeCell *from, const uint32_t corners[4],
+                         int lone)
 {
     static const int others[4][3] = {{1, 2, 3}, {0, 3, 2}, {3, 0, 1}, {2, 1, 0}};
     uint32_t apex = corners[lone], at[3];
@@ -254,7 +255,7 @@ static Status cut_corner(Cutter *cutter, const ZoneCell *from, const uint32_t co
 
 /* Points a and b are inside, c and d outside, and a, b, c, d are turned as all tetrahedra are: a
  * quadrilateral, cut along its shorter diagonal. */
-static Status cut_middle(Cutter *cutter, const ZoneCell *from, uint32_t a, uint32_t b, uint32_t c,
+static Status cut_middle(Cutter *cutter, const OctreeCell *from, uint32_t a, uint32_t b, uint32_t c,
                          uint32_t d)
 {
     uint32_t ac, ad, bc, bd;
@@ -272,7 +273,7 @@ static Status cut_middle(Cutter *cutter, const ZoneCell *from, uint32_t a, uint3
 /* The corners are turned alike in all tetrahedra: det(at[1] - at[0], at[2] - at[0], at[3] - at[0])
  * is positive. Triangles take their turn from that and not from where the crossings lie: of a
  * triangle that is small beside what the crossings are found to, that would be chance. */
-static Status cut_tetrahedron(Cutter *cutter, const ZoneCell *from, const uint32_t at[4])
+static Status cut_tetrahedron(Cutter *cutter, const OctreeCell *from, const uint32_t at[4])
 {
     int in[4], out[4], n_in = 0, n_out = 0;
     for (int i = 0; i < 4; i++)
@@ -289,16 +290,16 @@ static Status cut_tetrahedron(Cutter *cutter, const ZoneCell *from, const uint32
 }
 
 /* The ends of the smallest edge among four leaves about it, along `axis`. */
-static Status edge_ends(Cutter *cutter, const uint32_t around[4], int axis, const ZoneCell *from,
+static Status edge_ends(Cutter *cutter, const uint32_t around[4], int axis, const OctreeCell *from,
                         uint32_t ends[2])
 {
-    const ZoneCell *cells = cutter->tree->cells;
+    const OctreeCell *cells = cutter->tree->cells;
     int smallest = 0;
     for (int i = 1; i < 4; i++)
         if (cells[around[i]].level > cells[around[smallest]].level)
             smallest = i;
-    const ZoneCell *cell = &cells[around[smallest]];
-    int u = (axis + 1) % 3, v = (axis + 2) % 3, shift = ZONETREE_LEVELS - cell->level;
+    const OctreeCell *cell = &cells[around[smallest]];
+    int u = (axis + 1) % 3, v = (axis + 2) % 3, shift = OCTREE_LEVELS - cell->level;
     for (int end = 0; end < 2; end++) {
         uint32_t at[3];
         at[axis] = (uint32_t)(cell->at[axis] + end) << shift;
@@ -309,20 +310,11 @@ static Status edge_ends(Cutter *cutter, const uint32_t around[4], int axis, cons
     return STATUS_OK;
 }
 
-static Status list_tetrahedron(const Cutter *cutter, const uint32_t at[4])
-{
-    TetrahedronList *list = cutter->list;
-    TRY(mem_reserve(&list->items, &list->capacity, list->n + 1, sizeof *list->items,
-                    "points of a junction", cutter->err));
-    list->items[list->n++] = (Tetrahedron){{at[0], at[1], at[2], at[3]}};
-    return STATUS_OK;
-}
-
 /* Four leaves about a smallest edge; the second and third from the first one across. */
 static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
 {
     static const int turn[5] = {0, 1, 3, 2, 0};
-    const ZoneCell *cells = cutter->tree->cells, *active = NULL;
+    const OctreeCell *cells = cutter->tree->cells, *active = NULL;
     bool is_behind = false;
     for (int i = 0; i < 4; i++) {
         is_behind = is_behind || cells[around[i]].state == CELL_BEHIND;
@@ -335,7 +327,7 @@ static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
     TRY(edge_ends(cutter, around, axis, active, at));
     for (int i = 0; i < 4; i++) {
         uint32_t a = around[turn[i]], b = around[turn[i + 1]];
-        const ZoneCell *from = cells[a].state == CELL_ACTIVE ? &cells[a] : &cells[b];
+        const OctreeCell *from = cells[a].state == CELL_ACTIVE ? &cells[a] : &cells[b];
         from = from->state == CELL_ACTIVE ? from : NULL;
         if (a == b || (!from && !cutter->away))
             continue;
@@ -343,7 +335,9 @@ static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
         TRY(centers[b] ? STATUS_OK : add_center(cutter, from, b));
         at[2] = centers[a];
         at[3] = centers[b];
-        TRY(cutter->list ? list_tetrahedron(cutter, at) : cut_tetrahedron(cutter, from, at));
+        TRY(cutter->list ? ARRAY_PUSH(cutter->list, "points of a junction", cutter->err,
+                                      (Tetrahedron){{at[0], at[1], at[2], at[3]}})
+                         : cut_tetrahedron(cutter, from, at));
     }
     return STATUS_OK;
 }
@@ -463,8 +457,8 @@ static Status walk_cell(Cutter *cutter, uint32_t cell)
 /* Walks the tree with all that counts away from active cells, too. */
 static Status walk_all(Cutter *cutter)
 {
-    ZoneTree *tree = cutter->away;
-    TRY(fieldpart_all(&cutter->plan->field, &tree->stack, &cutter->whole, cutter->err));
+    Octree *tree = cutter->away;
+    TRY(localfield_all(&cutter->plan->field, &tree->stack, &cutter->whole, cutter->err));
     Status status = walk_cell(cutter, 0);
     tree->stack.n_terms = tree->stack.n_groups = 0;
     return status;
@@ -477,11 +471,11 @@ static void begin_cut(Lattice *lattice, Patch *patch)
         lattice->points[i].first = NO_CROSSING;
 }
 
-Status lattice_make(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan, Patch *patch,
+Status lattice_make(Lattice *lattice, const Octree *tree, const JunctionPlan *plan, Patch *patch,
                     Err *err)
 {
     Cutter cutter = {lattice, tree, plan, patch, err, .list = NULL};
-    TRY(pairtable_begin(&lattice->corners, tree->n_cells / 2, err));
+    TRY(keymap_begin(&lattice->corners, tree->n_cells / 2, "points of a junction", err));
     TRY(mem_reserve(&lattice->centers, &lattice->center_capacity, tree->n_cells,
                     sizeof *lattice->centers, "points of a junction", err));
     for (size_t i = 0; i < tree->n_cells; i++)
@@ -493,14 +487,14 @@ Status lattice_make(Lattice *lattice, const ZoneTree *tree, const ZonePlan *plan
     return walk_cell(&cutter, 0);
 }
 
-Status lattice_cut(Lattice *lattice, ZoneTree *tree, const ZonePlan *plan, Patch *patch, Err *err)
+Status lattice_cut(Lattice *lattice, Octree *tree, const JunctionPlan *plan, Patch *patch, Err *err)
 {
     Cutter cutter = {lattice, tree, plan, patch, err, .away = tree};
     begin_cut(lattice, patch);
     return walk_all(&cutter);
 }
 
-Status lattice_list(Lattice *lattice, ZoneTree *tree, const ZonePlan *plan, TetrahedronList *list,
+Status lattice_list(Lattice *lattice, Octree *tree, const JunctionPlan *plan, TetrahedronList *list,
                     Err *err)
 {
     Cutter cutter = {lattice, tree, plan, NULL, err, list, .away = tree};

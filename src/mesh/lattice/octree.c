@@ -1,10 +1,10 @@
 /* A cell is split while it is larger than what suits the thinnest vessel that may matter in it, and
  * an active one while the normal turns too much across it, as in the crotch of a bifurcation. Where
  * vessels that do not blend pass each other, cells are a sixth: the gap between them must hold
- * cells. Cells behind the plane of an arm are not split below the arm's own size and make no wall;
- * what lies there is cut off anyway.
+ * cells. Cells behind the plane of an stub are not split below the stub's own size and make no
+ * wall; what lies there is cut off anyway.
  *
- * The root's side is a power of two times a cell that suits the arms: of the eighth parts of an
+ * The root's side is a power of two times a cell that suits the stubs: of the eighth parts of an
  * octave that one is taken which makes the fewest cells along them. */
 #include "mesh/lattice/octree.h"
 
@@ -26,42 +26,43 @@ static const double surely = 1e-3;
 static const double lone = 0.03;
 
 typedef struct Builder {
-    ZoneTree *tree;
-    const ZonePlan *plan;
+    Octree *tree;
+    const JunctionPlan *plan;
     const CellSize *size;
 } Builder;
 
-void zonetree_release(ZoneTree *tree)
+void octree_release(Octree *tree)
 {
     free(tree->cells);
-    partpool_release(&tree->kept);
-    partpool_release(&tree->stack);
-    *tree = (ZoneTree){0};
+    localfieldpool_release(&tree->kept);
+    localfieldpool_release(&tree->stack);
+    *tree = (Octree){0};
 }
 
-/* Whether the ball lies behind the plane of the arm whose wall is the only one that it may hold. */
-static bool is_behind(const Builder *builder, const PartBounds *bounds, Vec3 center, double ball)
+/* Whether the ball lies behind the plane of the stub whose wall is the only one that it may hold.
+ */
+static bool is_behind(const Builder *builder, const FieldBounds *bounds, Vec3 center, double ball)
 {
-    const ZonePlan *plan = builder->plan;
-    if (bounds->all - bounds->largest > 0.1 * FIELD_LEVEL)
+    const JunctionPlan *plan = builder->plan;
+    if (bounds->sum_upper - bounds->largest_upper > 0.1 * FIELD_LEVEL)
         return false;
-    uint16_t number = plan->field.terms[bounds->largest_term].arm;
-    if (number == NO_ARM)
+    uint16_t number = plan->field.terms[bounds->largest_term].stub;
+    if (number == NO_STUB)
         return false;
-    const Arm *arm = &plan->arms[number];
-    double behind = vec3_dot(vec3_sub(center, arm->at), arm->outward);
-    return behind - ball > margin_behind * builder->size->ratio * arm->radius_mm;
+    const BranchStub *stub = &plan->stubs[number];
+    double behind = vec3_dot(vec3_sub(center, stub->at), stub->outward);
+    return behind - ball > margin_behind * builder->size->ratio * stub->radius_mm;
 }
 
-static Vec3 normal_at(const Builder *builder, const FieldPart *part, Vec3 x)
+static Vec3 normal_at(const Builder *builder, const LocalField *part, Vec3 x)
 {
     Vec3 gradient;
-    fieldpart_gradient(&builder->plan->field, &builder->tree->stack, part, x, &gradient);
+    localfield_gradient(&builder->plan->field, &builder->tree->stack, part, x, &gradient);
     double steepness = vec3_length(gradient);
     return vec3_scale(gradient, steepness > 0 ? -1 / steepness : 0);
 }
 
-static Vec3 turn_along(const Builder *builder, const FieldPart *part, Vec3 x, Vec3 by)
+static Vec3 turn_along(const Builder *builder, const LocalField *part, Vec3 x, Vec3 by)
 {
     return vec3_sub(normal_at(builder, part, vec3_add(x, by)),
                     normal_at(builder, part, vec3_sub(x, by)));
@@ -70,11 +71,11 @@ static Vec3 turn_along(const Builder *builder, const FieldPart *part, Vec3 x, Ve
 /* The most that the normal turns across a cell in any direction, the larger singular value of how
  * it turns along two; measured on the tangent plane of the wall's point nearest to the centre. 0
  * when the wall does not come near. */
-static double turn_across(const Builder *builder, const FieldPart *part, Vec3 center, double side)
+static double turn_across(const Builder *builder, const LocalField *part, Vec3 center, double side)
 {
     Vec3 gradient, u, v, x = center;
     FieldValue value =
-        fieldpart_gradient(&builder->plan->field, &builder->tree->stack, part, x, &gradient);
+        localfield_gradient(&builder->plan->field, &builder->tree->stack, part, x, &gradient);
     double steepness = vec3_length(gradient);
     double off = (FIELD_LEVEL - value.phi) / fmax(steepness, 1e-300);
     if (fabs(off) > 1.5 * side)
@@ -88,37 +89,39 @@ static double turn_across(const Builder *builder, const FieldPart *part, Vec3 ce
     return sqrt(0.5 * (uu + vv) + sqrt(half * half + uv * uv));
 }
 
-static bool must_split(const Builder *builder, const FieldPart *part, const PartBounds *bounds,
+static bool must_split(const Builder *builder, const LocalField *part, const FieldBounds *bounds,
                        Vec3 center, double side)
 {
-    double usual = builder->size->ratio * bounds->thinnest;
+    double usual = builder->size->ratio * bounds->min_radius_mm;
     if (side > usual)
         return true;
-    if (bounds->parted)
+    if (bounds->has_unblended_pair)
         return side > parted_part * usual;
-    if (side * bounds->crease > crease_part * builder->size->bending * bounds->thinnest)
+    if (side * bounds->max_normal_difference >
+        crease_part * builder->size->bending * bounds->min_radius_mm)
         return true;
-    if (side < 2 * least_part * usual || bounds->all - bounds->largest < lone * FIELD_LEVEL)
+    if (side < 2 * least_part * usual ||
+        bounds->sum_upper - bounds->largest_upper < lone * FIELD_LEVEL)
         return false;
     return side * turn_across(builder, part, center, side) >
-           builder->size->bending * bounds->thinnest;
+           builder->size->bending * bounds->min_radius_mm;
 }
 
-static Status split(Builder *builder, uint32_t cell, const FieldPart *part, Err *err);
+static Status split(Builder *builder, uint32_t cell, const LocalField *part, Err *err);
 
 /* Finds the state of a cell of which `part` holds all that may matter, and splits it. */
-static Status settle(Builder *builder, uint32_t number, const FieldPart *part, Err *err)
+static Status settle(Builder *builder, uint32_t number, const LocalField *part, Err *err)
 {
-    ZoneTree *tree = builder->tree;
-    PartPool *stack = &tree->stack;
+    Octree *tree = builder->tree;
+    LocalFieldPool *stack = &tree->stack;
     size_t n_terms = stack->n_terms, n_groups = stack->n_groups;
-    const ZoneCell cell = tree->cells[number];
-    double side = zonetree_side(tree, cell.level), ball = half_diagonal * side;
-    Vec3 center = zonetree_center(tree, &cell);
-    FieldPart own;
-    PartBounds bounds;
-    TRY(fieldpart_narrow(&builder->plan->field, stack, part, center, known_reach * side, ball, &own,
-                         &bounds, err));
+    const OctreeCell cell = tree->cells[number];
+    double side = octree_side(tree, cell.level), ball = half_diagonal * side;
+    Vec3 center = octree_center(tree, &cell);
+    LocalField own;
+    FieldBounds bounds;
+    TRY(localfield_narrow(&builder->plan->field, stack, part, center, known_reach * side, ball,
+                          &own, &bounds, err));
     CellState state = CELL_ACTIVE;
     if (bounds.upper < (1 - surely) * FIELD_LEVEL)
         state = CELL_OUTSIDE;
@@ -127,14 +130,14 @@ static Status settle(Builder *builder, uint32_t number, const FieldPart *part, E
     else if (is_behind(builder, &bounds, center, ball))
         state = CELL_BEHIND;
     tree->cells[number].state = (uint8_t)state;
-    if (state == CELL_ACTIVE && side <= builder->size->ratio * bounds.thinnest &&
-        own.n_terms > MOST_PART_TERMS)
-        return zonefield_refuse(err);
-    if (state == CELL_ACTIVE && cell.level < ZONETREE_LEVELS &&
+    if (state == CELL_ACTIVE && side <= builder->size->ratio * bounds.min_radius_mm &&
+        own.n_terms > MAX_LOCAL_TERMS)
+        return localfield_refuse(err);
+    if (state == CELL_ACTIVE && cell.level < OCTREE_LEVELS &&
         must_split(builder, &own, &bounds, center, side))
         TRY(split(builder, number, &own, err));
     else if (state == CELL_ACTIVE)
-        TRY(fieldpart_copy(stack, &own, &tree->kept, &tree->cells[number].part, err));
+        TRY(localfield_copy(stack, &own, &tree->kept, &tree->cells[number].part, err));
     stack->n_terms = n_terms;
     stack->n_groups = n_groups;
     return STATUS_OK;
@@ -150,9 +153,9 @@ static Status refuse(const Builder *builder, Err *err)
 }
 
 /* Gives a cell children; of an active one they are settled, else they are as it is. */
-static Status split(Builder *builder, uint32_t number, const FieldPart *part, Err *err)
+static Status split(Builder *builder, uint32_t number, const LocalField *part, Err *err)
 {
-    ZoneTree *tree = builder->tree;
+    Octree *tree = builder->tree;
     if (tree->n_cells + 8 > builder->size->most)
         return refuse(builder, err);
     TRY(mem_reserve(&tree->cells, &tree->capacity, tree->n_cells + 8, sizeof *tree->cells,
@@ -160,9 +163,9 @@ static Status split(Builder *builder, uint32_t number, const FieldPart *part, Er
     uint32_t first = (uint32_t)tree->n_cells;
     tree->n_cells += 8;
     tree->cells[number].children = first;
-    const ZoneCell parent = tree->cells[number];
+    const OctreeCell parent = tree->cells[number];
     for (uint32_t i = 0; i < 8; i++) {
-        ZoneCell child = {.level = (uint8_t)(parent.level + 1), .state = parent.state};
+        OctreeCell child = {.level = (uint8_t)(parent.level + 1), .state = parent.state};
         for (int axis = 0; axis < 3; axis++)
             child.at[axis] = 2 * parent.at[axis] + (int32_t)(i >> axis & 1);
         tree->cells[first + i] = child;
@@ -173,7 +176,7 @@ static Status split(Builder *builder, uint32_t number, const FieldPart *part, Er
 }
 
 /* The leaf of `level` or above that holds a cell of that level; UINT32_MAX outside the tree. */
-static uint32_t leaf_at(const ZoneTree *tree, const int64_t at[3], int level)
+static uint32_t leaf_at(const Octree *tree, const int64_t at[3], int level)
 {
     for (int axis = 0; axis < 3; axis++)
         if (at[axis] < 0 || at[axis] >> level)
@@ -187,23 +190,23 @@ static uint32_t leaf_at(const ZoneTree *tree, const int64_t at[3], int level)
     return cell;
 }
 
-const ZoneCell *zonetree_leaf(const ZoneTree *tree, Vec3 x)
+const OctreeCell *octree_leaf(const Octree *tree, Vec3 x)
 {
-    double unit = zonetree_side(tree, ZONETREE_LEVELS);
+    double unit = octree_side(tree, OCTREE_LEVELS);
     Vec3 from = vec3_scale(vec3_sub(x, tree->corner), 1 / unit);
     const int64_t at[3] = {(int64_t)floor(from.x), (int64_t)floor(from.y), (int64_t)floor(from.z)};
-    uint32_t leaf = leaf_at(tree, at, ZONETREE_LEVELS);
+    uint32_t leaf = leaf_at(tree, at, OCTREE_LEVELS);
     return leaf != UINT32_MAX ? &tree->cells[leaf] : NULL;
 }
 
 /* Splits a leaf that has only been found too large by its neighbour. */
 static Status split_leaf(Builder *builder, uint32_t number, Err *err)
 {
-    ZoneTree *tree = builder->tree;
-    FieldPart part = {0};
+    Octree *tree = builder->tree;
+    LocalField part = {0};
     if (tree->cells[number].state == CELL_ACTIVE) {
-        const FieldPart kept = tree->cells[number].part;
-        TRY(fieldpart_copy(&tree->kept, &kept, &tree->stack, &part, err));
+        const LocalField kept = tree->cells[number].part;
+        TRY(localfield_copy(&tree->kept, &kept, &tree->stack, &part, err));
     }
     TRY(split(builder, number, &part, err));
     tree->stack.n_terms = tree->stack.n_groups = 0;
@@ -211,7 +214,7 @@ static Status split_leaf(Builder *builder, uint32_t number, Err *err)
 }
 
 /* Whether the cell that stands by this from another is one of the same eight. */
-static bool is_sibling(const ZoneCell *cell, const int by[3])
+static bool is_sibling(const OctreeCell *cell, const int by[3])
 {
     bool same = true;
     for (int axis = 0; axis < 3; axis++)
@@ -223,8 +226,8 @@ static bool is_sibling(const ZoneCell *cell, const int by[3])
  * it. */
 static Status grade_about(Builder *builder, uint32_t number, Err *err)
 {
-    ZoneTree *tree = builder->tree;
-    const ZoneCell cell = tree->cells[number];
+    Octree *tree = builder->tree;
+    const OctreeCell cell = tree->cells[number];
     for (int i = 0; i < 27; i++) {
         const int by[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
         if (abs(by[0]) + abs(by[1]) + abs(by[2]) > 2 || is_sibling(&cell, by))
@@ -244,7 +247,7 @@ static Status grade_about(Builder *builder, uint32_t number, Err *err)
  * splits are looked at at once. */
 static Status grade(Builder *builder, Err *err)
 {
-    ZoneTree *tree = builder->tree;
+    Octree *tree = builder->tree;
     for (uint32_t i = 0; i < tree->n_cells; i++)
         if (tree->cells[i].children)
             TRY(grade_about(builder, i, err));
@@ -252,7 +255,7 @@ static Status grade(Builder *builder, Err *err)
 }
 
 /* The side of a cell that makes the fewest cells along the segments when halved to suit each. */
-static double best_side(const ZonePlan *plan, double ratio)
+static double best_side(const JunctionPlan *plan, double ratio)
 {
     double best = 0, least = HUGE_VAL, widest = 0;
     for (uint32_t i = 0; i < plan->field.n_terms; i++)
@@ -273,11 +276,11 @@ static double best_side(const ZonePlan *plan, double ratio)
     return best;
 }
 
-static void place_root(ZoneTree *tree, const ZonePlan *plan, double ratio)
+static void place_root(Octree *tree, const JunctionPlan *plan, double ratio)
 {
     Box box = box_empty();
     for (uint32_t i = 0; i < plan->field.n_terms; i++) {
-        const ZoneTerm *term = &plan->field.terms[i];
+        const PotentialTerm *term = &plan->field.terms[i];
         Vec3 b = vec3_add_scaled(term->a, term->axis, term->length_k / term->k);
         box =
             box_with_ball(box_with_ball(box, term->a, 2 * term->radius_mm), b, 2 * term->radius_mm);
@@ -290,7 +293,7 @@ static void place_root(ZoneTree *tree, const ZonePlan *plan, double ratio)
     tree->corner = vec3_sub(center, vec3(tree->side / 2, tree->side / 2, tree->side / 2));
 }
 
-Status zonetree_build(ZoneTree *tree, const ZonePlan *plan, const CellSize *size, Err *err)
+Status octree_build(Octree *tree, const JunctionPlan *plan, const CellSize *size, Err *err)
 {
     Builder builder = {tree, plan, size};
     tree->n_cells = 0;
@@ -298,9 +301,9 @@ Status zonetree_build(ZoneTree *tree, const ZonePlan *plan, const CellSize *size
     place_root(tree, plan, size->ratio);
     TRY(mem_reserve(&tree->cells, &tree->capacity, 1, sizeof *tree->cells, "cells of a junction",
                     err));
-    tree->cells[tree->n_cells++] = (ZoneCell){0};
-    FieldPart all;
-    TRY(fieldpart_all(&plan->field, &tree->stack, &all, err));
+    tree->cells[tree->n_cells++] = (OctreeCell){0};
+    LocalField all;
+    TRY(localfield_all(&plan->field, &tree->stack, &all, err));
     TRY(settle(&builder, 0, &all, err));
     tree->stack.n_terms = tree->stack.n_groups = 0;
     return grade(&builder, err);

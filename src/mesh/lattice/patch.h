@@ -1,4 +1,4 @@
-/* A piece of the vessel surface in the making. */
+/* The triangles of one junction region while they are made. */
 #ifndef CORCAST_MESH_LATTICE_PATCH_H
 #define CORCAST_MESH_LATTICE_PATCH_H
 
@@ -10,39 +10,55 @@
 typedef struct PatchPoint {
     Vec3 x;           /* mm */
     Vec3 normal;      /* unit, outward */
-    double radius_mm; /* of the vessel whose term is largest there */
+    double radius_mm; /* radius of the vessel whose term is largest here */
     uint32_t segment; /* that vessel */
-    uint16_t tube;    /* that vessel's arm, or NO_ARM */
-    uint16_t arm;     /* the arm on the rim of whose plane it lies, or NO_ARM */
+    uint16_t tube;    /* the branch stub of that vessel, or NO_STUB */
+    uint16_t stub;    /* the stub whose rim the point is on, or NO_STUB */
 } PatchPoint;
 
+/* Indices of three points, counterclockwise seen from outside. */
 typedef struct Triangle {
-    uint32_t at[3]; /* points, counterclockwise from outside */
+    uint32_t at[3];
 } Triangle;
 
+/* In place of a triangle's first point: patch_compact removes the triangle. */
+#define REMOVED UINT32_MAX
+
+/* All arrays are owned. Zero it before first use; release it with patch_release. */
 typedef struct Patch {
-    PatchPoint *points; /* owned, as all of it */
+    PatchPoint *points;
     size_t n_points, point_capacity;
     Triangle *triangles;
     size_t n_triangles, triangle_capacity;
+    uint32_t *scratch; /* per point */
+    size_t scratch_capacity;
 } Patch;
 
 void patch_release(Patch *patch);
 
-/* A point of the wall where the field has this value and gradient. */
-PatchPoint patch_wall_point(const ZoneField *field, Vec3 x, const FieldValue *value, Vec3 gradient);
+/* Returns the point of the surface at x, where the field has this value and gradient. */
+PatchPoint patch_surface_point(const JunctionField *field, Vec3 x, const FieldValue *value,
+                               Vec3 gradient);
 
-MUST_CHECK Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *number, Err *err);
+/* Appends a point, and sets *index to its index. Errors: STATUS_MEMORY. */
+MUST_CHECK Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *index, Err *err);
+/* Appends a triangle. Errors: STATUS_MEMORY. */
 MUST_CHECK Status patch_add_triangle(Patch *patch, Triangle triangle, Err *err);
 
-/* Returns a coordinate as the nearest integer multiple of `grid_mm`. */
+/* Returns the multiple of `grid_mm` that is nearest to a coordinate. */
 static inline float patch_rounded(double x_mm, double grid_mm)
 {
     return (float)(round(x_mm / grid_mm) * grid_mm);
 }
 
-/* Leaves out the triangles whose first point is UINT32_MAX, and the points that no triangle has;
- * the order of the others stays. `renamed` has room for the points. */
-void patch_compact(Patch *patch, uint32_t *renamed);
+/* Removes the triangles whose first point is REMOVED, and the points that no triangle uses. The
+ * others stay in order. Errors: STATUS_MEMORY. */
+MUST_CHECK Status patch_compact(Patch *patch, Err *err);
+
+/* Counts the connected parts of the patch. Errors: STATUS_MEMORY. */
+MUST_CHECK Status patch_count_parts(Patch *patch, size_t *parts, Err *err);
+
+/* Removes all connected parts except the one with most points. Errors: STATUS_MEMORY. */
+MUST_CHECK Status patch_keep_largest(Patch *patch, Err *err);
 
 #endif

@@ -1,124 +1,129 @@
-/* A plane is put into the widest gap between the points near it, so that no sliver is cut off. What
- * is on an arm's tube and beyond its plane is behind; each edge from before to behind gets
- * one point, found by the lattice's straight line and put on the circle, or on the wall. */
+/* A plane is shifted into the widest gap between the points near it, so that no sliver is cut off.
+ * A point is beyond a plane if it belongs to the stub's tube and is on the outer side of the plane.
+ * Each edge that leads from a point that is not beyond to one that is gets one rim point. The rim
+ * point is found on the straight edge, and is then moved to the circle or to the surface. */
 #include "mesh/lattice/planecut.h"
 
 #include <stdlib.h>
 
-/* How far the wall of an arm may be from its axis, in radii. */
+/* In units of the radius: maximum distance of a stub's surface from its axis. */
 static const double tube_reach = 1.1;
-/* Cosine: the wall of an arm faces away from where its plane meets its axis. That of a thin vessel
- * close to it may not, where the arm's term is the larger one. */
+/* Minimum cosine between the normal of a stub's surface and the direction from the point where the
+ * plane meets the axis. The surface of a thin vessel close to the stub has a smaller one where the
+ * stub's term is the larger one. */
 static const double least_outward = 0.25;
+/* Newton steps of a rim point from the edge to the surface. */
+enum { SURFACE_STEPS = 4 };
 
-/* Newton's steps of a point from a triangle to the wall. */
-enum { WALL_STEPS = 4 };
-
-typedef struct Cut {
+typedef struct PlaneCut {
     PlaneCutter *cutter;
-    const ZoneTree *tree;
-    const ZoneField *field;
+    const Octree *tree;
+    const JunctionField *field;
     Patch *patch;
-    Arm *arms;
-    size_t n_arms;
-    size_t n_whole; /* triangles before any is cut */
-} Cut;
+    BranchStub *stubs;
+    size_t n_stubs;
+    Err *err;
+} PlaneCut;
 
 void planecutter_release(PlaneCutter *cutter)
 {
-    pairtable_release(&cutter->crossings);
-    free(cutter->behind);
-    free(cutter->renamed);
-    free(cutter->near);
-    free(cutter->arms);
-    *cutter = (PlaneCutter){0};
+    keymap_release(&cutter->rim_points);
+    ARRAY_RELEASE(&cutter->stub_beyond);
+    ARRAY_RELEASE(&cutter->offsets);
+    ARRAY_RELEASE(&cutter->stubs);
 }
 
-/* How far a point lies beyond the plane of its arm, mm; -HUGE_VAL when it is on no arm's tube. */
-static double along_tube(const Cut *cut, const PatchPoint *point)
+/* Returns how far a point is beyond the plane of its stub, mm, or -HUGE_VAL if it is not on the
+ * tube of a stub. */
+static double along_tube(const PlaneCut *cut, const PatchPoint *point)
 {
-    if (point->tube == NO_ARM)
+    if (point->tube == NO_STUB)
         return -HUGE_VAL;
-    const Arm *arm = &cut->arms[point->tube];
-    Vec3 from = vec3_sub(point->x, arm->at);
-    double along = vec3_dot(from, arm->outward), reach = tube_reach * arm->radius_mm;
+    const BranchStub *stub = &cut->stubs[point->tube];
+    Vec3 from = vec3_sub(point->x, stub->at);
+    double along = vec3_dot(from, stub->outward), reach = tube_reach * stub->radius_mm;
     double from2 = vec3_dot(from, from), across2 = from2 - along * along;
-    if (across2 > reach * reach || along > (ARM_TAIL + 1) * arm->radius_mm ||
+    if (across2 > reach * reach || along > (STUB_TAIL + 1) * stub->radius_mm ||
         vec3_dot(from, point->normal) < least_outward * sqrt(from2))
         return -HUGE_VAL;
     return along;
 }
 
-static int compare_places(const void *a, const void *b)
+static int compare_offsets(const void *a, const void *b)
 {
-    const PlaneNear *one = a, *other = b;
-    return one->arm != other->arm ? (one->arm > other->arm) - (one->arm < other->arm)
-                                  : (one->along > other->along) - (one->along < other->along);
+    const PlaneOffset *one = a, *other = b;
+    if (one->stub != other->stub)
+        return one->stub < other->stub ? -1 : 1;
+    return (one->offset_mm > other->offset_mm) - (one->offset_mm < other->offset_mm);
 }
 
-/* Moves the plane into the middle of the widest gap between places, of which there are two at
- * least. */
-static void move_plane(Arm *arm, const PlaneNear *places, size_t n)
+/* Shifts the plane into the middle of the widest gap between at least two offsets. */
+static void shift_plane(BranchStub *stub, const PlaneOffset *offsets, size_t n)
 {
-    size_t widest = 0;
-    for (size_t i = 1; i + 1 < n; i++)
-        if (places[i + 1].along - places[i].along > places[widest + 1].along - places[widest].along)
-            widest = i;
-    double by = 0.5 * (places[widest].along + places[widest + 1].along);
-    arm->at = vec3_add_scaled(arm->at, arm->outward, by);
+    double by = 0, widest = -1;
+    for (size_t i = 0; i + 1 < n; i++) {
+        double gap = offsets[i + 1].offset_mm - offsets[i].offset_mm;
+        if (gap > widest) {
+            widest = gap;
+            by = 0.5 * (offsets[i].offset_mm + offsets[i + 1].offset_mm);
+        }
+    }
+    stub->at = vec3_add_scaled(stub->at, stub->outward, by);
 }
 
-/* How far the plane of an arm may be moved, mm. */
-static double room_of(const Arm *arm, double ratio)
+/* Returns the maximum shift of a stub's plane, mm. */
+static double room_of(const BranchStub *stub, double ratio)
 {
-    return fmin(0.25 * ratio, arm->is_close ? CLOSE_MOVE : PLANE_MOVE) * arm->radius_mm;
+    return fmin(0.25 * ratio, stub->is_close ? CLOSE_MOVE : PLANE_MOVE) * stub->radius_mm;
 }
 
-/* Moves each plane into the widest gap between points near it. */
-static Status move_planes(const Cut *cut, double ratio, Err *err)
+static Status shift_planes(const PlaneCut *cut, double ratio)
 {
     PlaneCutter *cutter = cut->cutter;
     size_t n = 0;
-    TRY(mem_reserve(&cutter->near, &cutter->near_capacity, cut->patch->n_points + 2 * cut->n_arms,
-                    sizeof *cutter->near, "points of a junction", err));
-    for (size_t k = 0; k < cut->n_arms; k++)
+    TRY(ARRAY_RESERVE(&cutter->offsets, cut->patch->n_points + 2 * cut->n_stubs,
+                      "points of a junction", cut->err));
+    PlaneOffset *offsets = cutter->offsets.items;
+    for (size_t k = 0; k < cut->n_stubs; k++)
         for (int side = -1; side < 2; side += 2)
-            cutter->near[n++] = (PlaneNear){(uint16_t)k, side * room_of(&cut->arms[k], ratio)};
+            offsets[n++] = (PlaneOffset){(uint16_t)k, side * room_of(&cut->stubs[k], ratio)};
     for (size_t i = 0; i < cut->patch->n_points; i++) {
         const PatchPoint *point = &cut->patch->points[i];
         double along = along_tube(cut, point);
-        if (point->tube != NO_ARM && fabs(along) < room_of(&cut->arms[point->tube], ratio))
-            cutter->near[n++] = (PlaneNear){point->tube, along};
+        if (point->tube != NO_STUB && fabs(along) < room_of(&cut->stubs[point->tube], ratio))
+            offsets[n++] = (PlaneOffset){point->tube, along};
     }
-    qsort(cutter->near, n, sizeof *cutter->near, compare_places);
+    qsort(offsets, n, sizeof *offsets, compare_offsets);
     for (size_t from = 0, to = 0; from < n; from = to) {
-        while (to < n && cutter->near[to].arm == cutter->near[from].arm)
+        while (to < n && offsets[to].stub == offsets[from].stub)
             to++;
-        move_plane(&cut->arms[cutter->near[from].arm], &cutter->near[from], to - from);
+        shift_plane(&cut->stubs[offsets[from].stub], &offsets[from], to - from);
     }
     return STATUS_OK;
 }
 
-static void mark_behind(const Cut *cut)
+static void mark_beyond(const PlaneCut *cut)
 {
     for (size_t i = 0; i < cut->patch->n_points; i++) {
         const PatchPoint *point = &cut->patch->points[i];
-        cut->cutter->behind[i] = along_tube(cut, point) > 0 ? point->tube : NO_ARM;
+        bool is_beyond = along_tube(cut, point) > 0;
+        cut->cutter->stub_beyond.items[i] = is_beyond ? point->tube : NO_STUB;
     }
 }
 
-/* Moves a point of a rim that is no circle onto the wall, in the plane, towards the axis or away
- * from it: by Newton's steps. */
-static void reach_wall(const Cut *cut, const Arm *arm, Vec3 away, PatchPoint *point)
+/* Moves a point of a rim that is not a circle to the surface, along `away`, which leads away from
+ * the axis in the plane. */
+static void move_to_surface(const PlaneCut *cut, const BranchStub *stub, Vec3 away,
+                            PatchPoint *point)
 {
-    const ZoneCell *cell = zonetree_leaf(cut->tree, point->x);
+    const OctreeCell *cell = octree_leaf(cut->tree, point->x);
     if (!cell || cell->state != CELL_ACTIVE)
         return;
-    for (int i = 0; i < WALL_STEPS; i++) {
+    for (int i = 0; i < SURFACE_STEPS; i++) {
         Vec3 gradient;
         FieldValue value =
-            fieldpart_gradient(cut->field, &cut->tree->kept, &cell->part, point->x, &gradient);
-        double slope = vec3_dot(gradient, away), most = 0.1 * arm->radius_mm;
+            localfield_gradient(cut->field, &cut->tree->kept, &cell->part, point->x, &gradient);
+        double slope = vec3_dot(gradient, away), most = 0.1 * stub->radius_mm;
         double by = (FIELD_LEVEL - value.phi) / slope;
         if (!(slope < 0) || !(fabs(by) < most))
             return;
@@ -127,101 +132,102 @@ static void reach_wall(const Cut *cut, const Arm *arm, Vec3 away, PatchPoint *po
     }
 }
 
-/* The point on the rim between one before the plane and one behind it. */
-static Status rim_point(const Cut *cut, uint32_t before, uint32_t behind, uint32_t *number,
-                        Err *err)
+/* Returns the rim point of an edge. */
+static PatchPoint cut_edge(const PlaneCut *cut, uint32_t before, uint32_t beyond)
 {
-    uint32_t *place;
-    bool is_new;
-    TRY(pairtable_place(&cut->cutter->crossings, pair_key(before, behind), &place, &is_new, err));
-    if (is_new) {
-        uint16_t arm_number = cut->cutter->behind[behind];
-        const Arm *arm = &cut->arms[arm_number];
-        Vec3 a = cut->patch->points[before].x, b = cut->patch->points[behind].x;
-        double from = vec3_dot(vec3_sub(a, arm->at), arm->outward);
-        double to = vec3_dot(vec3_sub(b, arm->at), arm->outward);
-        Vec3 x = vec3_add_scaled(a, vec3_sub(b, a), from / (from - to));
-        Vec3 across = vec3_sub(x, arm->at);
-        across = vec3_add_scaled(across, arm->outward, -vec3_dot(across, arm->outward));
-        Vec3 normal = vec3_normalized(across);
-        PatchPoint point = {.x = vec3_add_scaled(arm->at, normal, arm->radius_mm),
-                            .normal = normal,
-                            .radius_mm = arm->radius_mm,
-                            .segment = arm->segment,
-                            .tube = arm_number,
-                            .arm = arm_number};
-        if (arm->is_close) {
-            point.x = vec3_add(arm->at, across);
-            reach_wall(cut, arm, normal, &point);
-        }
-        TRY(patch_add_point(cut->patch, point, place, err));
+    uint16_t index = cut->cutter->stub_beyond.items[beyond];
+    const BranchStub *stub = &cut->stubs[index];
+    Vec3 a = cut->patch->points[before].x, b = cut->patch->points[beyond].x;
+    double from = vec3_dot(vec3_sub(a, stub->at), stub->outward);
+    double to = vec3_dot(vec3_sub(b, stub->at), stub->outward);
+    Vec3 x = vec3_add_scaled(a, vec3_sub(b, a), from / (from - to));
+    Vec3 across = vec3_sub(x, stub->at);
+    across = vec3_add_scaled(across, stub->outward, -vec3_dot(across, stub->outward));
+    Vec3 normal = vec3_normalized(across);
+    PatchPoint point = {.x = vec3_add_scaled(stub->at, normal, stub->radius_mm),
+                        .normal = normal,
+                        .radius_mm = stub->radius_mm,
+                        .segment = stub->segment,
+                        .tube = index,
+                        .stub = index};
+    if (stub->is_close) {
+        point.x = vec3_add(stub->at, across);
+        move_to_surface(cut, stub, normal, &point);
     }
-    *number = *place;
+    return point;
+}
+
+static Status rim_point(const PlaneCut *cut, uint32_t before, uint32_t beyond, uint32_t *index)
+{
+    uint32_t *value;
+    bool is_new;
+    TRY(keymap_put(&cut->cutter->rim_points, key_of_pair(before, beyond), &value, &is_new,
+                   cut->err));
+    if (is_new)
+        TRY(patch_add_point(cut->patch, cut_edge(cut, before, beyond), value, cut->err));
+    *index = *value;
     return STATUS_OK;
 }
 
-/* The part of a triangle before the plane; its corner `lone` stands alone on its side. */
-static Status add_part(const Cut *cut, Triangle triangle, int lone, bool lone_is_before, Err *err)
+/* Adds the part of a triangle before the plane. Its corner `lone` is alone on its side. */
+static Status add_part(const PlaneCut *cut, Triangle triangle, int lone, bool lone_is_before)
 {
     uint32_t a = triangle.at[lone], b = triangle.at[(lone + 1) % 3],
              c = triangle.at[(lone + 2) % 3];
     uint32_t ab, ac;
     if (lone_is_before) {
-        TRY(rim_point(cut, a, b, &ab, err));
-        TRY(rim_point(cut, a, c, &ac, err));
-        return patch_add_triangle(cut->patch, (Triangle){{a, ab, ac}}, err);
+        TRY(rim_point(cut, a, b, &ab));
+        TRY(rim_point(cut, a, c, &ac));
+        return patch_add_triangle(cut->patch, (Triangle){{a, ab, ac}}, cut->err);
     }
-    TRY(rim_point(cut, b, a, &ab, err));
-    TRY(rim_point(cut, c, a, &ac, err));
+    TRY(rim_point(cut, b, a, &ab));
+    TRY(rim_point(cut, c, a, &ac));
     const PatchPoint *points = cut->patch->points;
     bool shorter =
         vec3_distance(points[b].x, points[ac].x) < vec3_distance(points[c].x, points[ab].x);
-    TRY(patch_add_triangle(cut->patch, (Triangle){{b, c, shorter ? ac : ab}}, err));
-    return patch_add_triangle(cut->patch,
-                              shorter ? (Triangle){{b, ac, ab}} : (Triangle){{c, ac, ab}}, err);
+    TRY(patch_add_triangle(cut->patch, (Triangle){{b, c, shorter ? ac : ab}}, cut->err));
+    return patch_add_triangle(
+        cut->patch, shorter ? (Triangle){{b, ac, ab}} : (Triangle){{c, ac, ab}}, cut->err);
 }
 
-/* Leaves out triangles behind a plane, and cuts those that it crosses. */
-static Status cut_triangle(const Cut *cut, size_t i, bool *sound, Err *err)
+/* Removes a triangle if it is beyond a plane, and cuts it if the plane crosses it. */
+static Status cut_triangle(const PlaneCut *cut, size_t i, bool *valid)
 {
+    const uint16_t *stub_beyond = cut->cutter->stub_beyond.items;
     const Triangle triangle = cut->patch->triangles[i];
-    int n_behind = 0, lone = 0;
-    uint16_t arm = NO_ARM;
+    int n_beyond = 0, lone = 0;
+    uint16_t stub = NO_STUB;
     for (int k = 0; k < 3; k++) {
-        uint16_t behind = cut->cutter->behind[triangle.at[k]];
-        n_behind += behind != NO_ARM;
-        *sound = *sound && (behind == NO_ARM || arm == NO_ARM || behind == arm);
-        arm = behind != NO_ARM ? behind : arm;
+        uint16_t beyond = stub_beyond[triangle.at[k]];
+        n_beyond += beyond != NO_STUB;
+        *valid = *valid && (beyond == NO_STUB || stub == NO_STUB || beyond == stub);
+        stub = beyond != NO_STUB ? beyond : stub;
     }
-    if (n_behind == 0)
+    if (n_beyond == 0)
         return STATUS_OK;
-    cut->patch->triangles[i].at[0] = UINT32_MAX;
-    if (n_behind == 3)
+    cut->patch->triangles[i].at[0] = REMOVED;
+    if (n_beyond == 3)
         return STATUS_OK;
     for (int k = 0; k < 3; k++)
-        if ((cut->cutter->behind[triangle.at[k]] != NO_ARM) == (n_behind == 1))
+        if ((stub_beyond[triangle.at[k]] != NO_STUB) == (n_beyond == 1))
             lone = k;
-    return add_part(cut, triangle, lone, n_behind == 2, err);
+    return add_part(cut, triangle, lone, n_beyond == 2);
 }
 
-Status planecut_make(PlaneCutter *cutter, const ZonePlan *plan, const ZoneTree *tree, double ratio,
-                     Patch *patch, bool *sound, Err *err)
+Status planecut_apply(PlaneCutter *cutter, const JunctionPlan *plan, const Octree *tree,
+                      double ratio, Patch *patch, bool *valid, Err *err)
 {
-    *sound = true;
-    TRY(mem_reserve(&cutter->arms, &cutter->arm_capacity, plan->n_arms, sizeof *cutter->arms,
-                    "arms", err));
-    for (size_t k = 0; k < plan->n_arms; k++)
-        cutter->arms[k] = plan->arms[k];
-    Cut cut = {cutter, tree, &plan->field, patch, cutter->arms, plan->n_arms, patch->n_triangles};
-    TRY(pairtable_begin(&cutter->crossings, 0, err));
-    TRY(mem_reserve(&cutter->behind, &cutter->behind_capacity, patch->n_points,
-                    sizeof *cutter->behind, "points of a junction", err));
-    TRY(move_planes(&cut, ratio, err));
-    mark_behind(&cut);
-    for (size_t i = 0; i < cut.n_whole; i++)
-        TRY(cut_triangle(&cut, i, sound, err));
-    TRY(mem_reserve(&cutter->renamed, &cutter->renamed_capacity, patch->n_points,
-                    sizeof *cutter->renamed, "points of a junction", err));
-    patch_compact(patch, cutter->renamed);
-    return STATUS_OK;
+    const size_t n_whole = patch->n_triangles, n_stubs = plan->n_stubs;
+    *valid = true;
+    TRY(keymap_begin(&cutter->rim_points, 0, "points of a junction", err));
+    TRY(ARRAY_RESERVE(&cutter->stub_beyond, patch->n_points, "points of a junction", err));
+    TRY(ARRAY_RESERVE(&cutter->stubs, n_stubs, "stubs", err));
+    for (size_t k = 0; k < n_stubs; k++)
+        cutter->stubs.items[k] = plan->stubs[k];
+    const PlaneCut cut = {cutter, tree, &plan->field, patch, cutter->stubs.items, n_stubs, err};
+    TRY(shift_planes(&cut, ratio));
+    mark_beyond(&cut);
+    for (size_t i = 0; i < n_whole; i++)
+        TRY(cut_triangle(&cut, i, valid));
+    return patch_compact(patch, err);
 }

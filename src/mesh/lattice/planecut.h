@@ -1,34 +1,38 @@
-/* Cutting a zone's wall off at the planes of its arms. */
+/* Cuts the surface of a junction region at the end planes of its branch stubs. Until it is cut, a
+ * stub's surface continues STUB_TAIL radii beyond its plane. */
 #ifndef CORCAST_MESH_LATTICE_PLANECUT_H
 #define CORCAST_MESH_LATTICE_PLANECUT_H
 
 #include "mesh/lattice/octree.h"
-#include "mesh/lattice/pairtable.h"
 #include "mesh/lattice/patch.h"
 
-/* A point on an arm's tube: how far it lies beyond the plane, mm. */
-typedef struct PlaneNear {
-    uint16_t arm;
-    double along;
-} PlaneNear;
+/* The position of a point relative to the end plane of its stub. */
+typedef struct PlaneOffset {
+    uint16_t stub;
+    double offset_mm; /* distance beyond the plane along the stub's axis; below 0: inside */
+} PlaneOffset;
 
-/* Workspace of a thread; zeroed before the first use. */
+/* Workspace of one thread. Zero it before first use; release it with planecutter_release. */
 typedef struct PlaneCutter {
-    PairTable crossings; /* edge -> point on the rim */
-    uint16_t *behind;    /* one a point: the arm whose plane it lies behind, or NO_ARM */
-    uint32_t *renamed;
-    PlaneNear *near;
-    Arm *arms; /* with their planes moved */
-    size_t arm_capacity, behind_capacity, renamed_capacity, near_capacity;
+    KeyMap rim_points;           /* edge -> point where the edge crosses a plane */
+    ARRAY(uint16_t) stub_beyond; /* per point: the stub whose plane it is beyond, or NO_STUB */
+    ARRAY(PlaneOffset) offsets;
+    ARRAY(BranchStub) stubs; /* copies of the plan's stubs, with shifted planes */
 } PlaneCutter;
 
 void planecutter_release(PlaneCutter *cutter);
 
-/* Moves the planes by at most a quarter of `ratio` radii, or so many as they may, to where few
- * points lie, and cuts the wall there; points on the rims lie on the circle about the axis, or of
- * close planes on the wall, and name the arm. *sound is false when a triangle reaches behind two
- * planes. */
-MUST_CHECK Status planecut_make(PlaneCutter *cutter, const ZonePlan *plan, const ZoneTree *tree,
-                                double ratio, Patch *patch, bool *sound, Err *err);
+/* Cuts `patch` at the end plane of each stub and removes the triangles beyond it.
+ *
+ * First each plane is shifted along its axis into the widest gap between nearby points, so that the
+ * cut leaves no slivers. The shift is at most `ratio` / 4 radii, and at most PLANE_MOVE radii
+ * (CLOSE_MOVE if the stub is_close). `ratio` is the cell size over the local radius. A new rim
+ * point is on the circle about the axis, or on the surface if the stub is_close. Its
+ * PatchPoint.stub is the index of the stub.
+ *
+ * valid    receives false if one triangle has points beyond two different planes, else true.
+ * Errors   STATUS_MEMORY. */
+MUST_CHECK Status planecut_apply(PlaneCutter *cutter, const JunctionPlan *plan, const Octree *tree,
+                                 double ratio, Patch *patch, bool *valid, Err *err);
 
 #endif

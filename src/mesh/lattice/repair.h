@@ -1,33 +1,31 @@
-/* Closing what is narrower than the cells of a lattice. */
+/* Closes tunnels and hollows that are narrower than the cells of a lattice. */
 #ifndef CORCAST_MESH_LATTICE_REPAIR_H
 #define CORCAST_MESH_LATTICE_REPAIR_H
 
 #include "mesh/lattice/lattice.h"
 
-/* A point that may be given to the outside. */
-typedef struct MendItem {
-    double height;
-    uint32_t point;
-} MendItem;
-
-/* Workspace of a thread; zeroed before the first use. */
-typedef struct Mender {
+/* Workspace of one thread. Zero it before first use; release it with repairer_release. */
+typedef struct Repairer {
     TetrahedronList all;
-    uint32_t *first, *around; /* of each point: its tetrahedra, around[first[i] .. first[i + 1]) */
-    uint8_t *states;          /* one a point */
-    uint32_t *slots;          /* one a point: its place in the link that is looked at */
-    MendItem *heap;
-    size_t n_heap, heap_capacity, first_capacity, around_capacity, state_capacity, slot_capacity;
-} Mender;
+    IndexLists around;     /* per lattice point: its tetrahedra */
+    ARRAY(uint8_t) states; /* per lattice point */
+    ARRAY(uint32_t) slots; /* per lattice point: its position in the current link */
+    Heap heap;             /* points outside that may be joined to the outside */
+} Repairer;
 
-void mender_release(Mender *mender);
+void repairer_release(Repairer *repairer);
 
-/* Takes the wall that lattice_make has left in *patch for another one that bounds a ball, which the
- * arms of the zone leave through the planes; points of the lattice that lie in tunnels and hollows
- * become inside for that. *width is how far they are from the wall at most, over the local radius;
- * where it is above `farthest`, the patch stays as it was: a tunnel so wide is no flaw of the
- * lattice. */
-MUST_CHECK Status mend_make(Mender *mender, Lattice *lattice, ZoneTree *tree, const ZonePlan *plan,
-                            double farthest, Patch *patch, double *width, Err *err);
+/* Replaces the surface that lattice_make left in *patch by one that bounds a ball, from which the
+ * stubs of the region lead out through their planes. Lattice points in tunnels and hollows become
+ * inside for that.
+ *
+ * farthest  in local radii: a wider tunnel is not an artefact of the lattice. If there is one, the
+ *           patch stays as it was.
+ * width     receives the maximum distance from the surface of the points that became inside, in
+ * local radii; HUGE_VAL if the surface meets the faces of the octree's root. Errors STATUS_MEMORY.
+ */
+MUST_CHECK Status repair_apply(Repairer *repairer, Lattice *lattice, Octree *tree,
+                               const JunctionPlan *plan, double farthest, Patch *patch,
+                               double *width, Err *err);
 
 #endif

@@ -1,6 +1,6 @@
-/* Runs of eight things are the leaves of a complete binary tree of boxes, in the order of the
- * Morton codes of their middles; node i has the children 2 i and 2 i + 1. Pairs of nodes whose
- * boxes meet are descended, those of one level being the work that threads share. */
+/* Runs of eight items are the leaves of a complete binary tree of boxes, in the order of the Morton
+ * codes of their middles. Node i has the children 2 i and 2 i + 1. Pairs of nodes whose boxes meet
+ * are descended. The pairs of one level of the tree are the units of work that threads share. */
 #include "mesh/proof/boxpairs.h"
 
 #include <math.h>
@@ -9,10 +9,10 @@
 
 enum { RUN = 8, UNITS = 256, KEPT_RUNS = 256 };
 
-typedef struct Leaf {
+typedef struct RunLeaf {
     uint64_t code;
     uint32_t number;
-} Leaf;
+} RunLeaf;
 
 /* The boxes that one unit of work keeps of runs that it has met: each at its number's place. */
 typedef struct KeptRuns {
@@ -24,14 +24,14 @@ typedef struct UnitPair {
     uint32_t a, b; /* nodes, a <= b */
 } UnitPair;
 
-typedef struct Forest {
+typedef struct RunTree {
     const BoxPairs *pairs;
-    Leaf *leaves;
+    RunLeaf *leaves;
     FloatBox *boxes;         /* of nodes from 1 on */
     uint32_t n_leaves, size; /* a power of 2, at least n_leaves: the first node that is a leaf */
     UnitPair *units;
     size_t n_units;
-} Forest;
+} RunTree;
 
 static const FloatBox nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 
@@ -43,13 +43,13 @@ static void widen(FloatBox *box, const FloatBox *by)
     }
 }
 
-static uint32_t run_length(const Forest *forest, uint32_t leaf)
+static uint32_t run_length(const RunTree *forest, uint32_t leaf)
 {
     uint32_t rest = forest->pairs->count - leaf * RUN;
     return rest < RUN ? rest : RUN;
 }
 
-static FloatBox box_of_run(const Forest *forest, uint32_t leaf)
+static FloatBox box_of_run(const RunTree *forest, uint32_t leaf)
 {
     FloatBox box = nothing;
     for (uint32_t i = 0; i < run_length(forest, leaf); i++) {
@@ -84,14 +84,14 @@ static uint64_t morton_code(const FloatBox *box, const FloatBox *all)
 
 static int compare_leaves(const void *a, const void *b)
 {
-    const Leaf *one = a, *other = b;
+    const RunLeaf *one = a, *other = b;
     if (one->code != other->code)
         return one->code < other->code ? -1 : 1;
     return (one->number > other->number) - (one->number < other->number);
 }
 
 /* The boxes of runs stand where the leaves do until these are in order. */
-static void order_leaves(Forest *forest)
+static void order_leaves(RunTree *forest)
 {
     FloatBox all = nothing, *runs = &forest->boxes[forest->size];
     for (uint32_t i = 0; i < forest->n_leaves; i++) {
@@ -99,7 +99,7 @@ static void order_leaves(Forest *forest)
         widen(&all, &runs[i]);
     }
     for (uint32_t i = 0; i < forest->n_leaves; i++)
-        forest->leaves[i] = (Leaf){morton_code(&runs[i], &all), i};
+        forest->leaves[i] = (RunLeaf){morton_code(&runs[i], &all), i};
     qsort(forest->leaves, forest->n_leaves, sizeof *forest->leaves, compare_leaves);
     for (uint32_t i = 0; i < forest->size; i++)
         runs[i] = i < forest->n_leaves ? box_of_run(forest, forest->leaves[i].number) : nothing;
@@ -109,7 +109,7 @@ static void order_leaves(Forest *forest)
     }
 }
 
-static const FloatBox *boxes_of(const Forest *forest, KeptRuns *kept, uint32_t run)
+static const FloatBox *boxes_of(const RunTree *forest, KeptRuns *kept, uint32_t run)
 {
     uint32_t *place = &kept->runs[run % KEPT_RUNS];
     FloatBox *boxes = kept->boxes[run % KEPT_RUNS];
@@ -120,7 +120,7 @@ static const FloatBox *boxes_of(const Forest *forest, KeptRuns *kept, uint32_t r
 }
 
 /* Those of a run whose boxes meet `other`, and their boxes. */
-static uint32_t boxes_near(const Forest *forest, KeptRuns *kept, uint32_t run,
+static uint32_t boxes_near(const RunTree *forest, KeptRuns *kept, uint32_t run,
                            const FloatBox *other, FloatBox near[RUN], uint32_t items[RUN])
 {
     uint32_t n = 0;
@@ -135,14 +135,14 @@ static uint32_t boxes_near(const Forest *forest, KeptRuns *kept, uint32_t run,
 
 /* One unit of work. */
 typedef struct Descent {
-    const Forest *forest;
+    const RunTree *forest;
     KeptRuns kept;
     int worker;
 } Descent;
 
-static void tell_pairs(Descent *descent, uint32_t node_a, uint32_t node_b)
+static void report_pairs(Descent *descent, uint32_t node_a, uint32_t node_b)
 {
-    const Forest *forest = descent->forest;
+    const RunTree *forest = descent->forest;
     const BoxPairs *pairs = forest->pairs;
     uint32_t items[2][RUN], n[2] = {0};
     FloatBox boxes[2][RUN];
@@ -162,12 +162,12 @@ static void tell_pairs(Descent *descent, uint32_t node_a, uint32_t node_b)
 /* Both nodes are of one level, a <= b. */
 static void descend(Descent *descent, uint32_t a, uint32_t b)
 {
-    const Forest *forest = descent->forest;
+    const RunTree *forest = descent->forest;
     if (!floatbox_meets(&forest->boxes[a], &forest->boxes[b]))
         return;
     if (a >= forest->size) {
         if (b - forest->size < forest->n_leaves)
-            tell_pairs(descent, a, b);
+            report_pairs(descent, a, b);
         return;
     }
     descend(descent, 2 * a, 2 * b);
@@ -179,7 +179,7 @@ static void descend(Descent *descent, uint32_t a, uint32_t b)
 
 static void descend_unit(size_t index, int worker, void *context)
 {
-    const Forest *forest = context;
+    const RunTree *forest = context;
     Descent descent;
     descent.forest = forest;
     descent.worker = worker;
@@ -188,7 +188,7 @@ static void descend_unit(size_t index, int worker, void *context)
     descend(&descent, forest->units[index].a, forest->units[index].b);
 }
 
-static Status find_units(Forest *forest, Err *err)
+static Status find_units(RunTree *forest, Err *err)
 {
     uint32_t first = forest->size < UNITS ? forest->size : UNITS;
     size_t capacity = 0;
@@ -207,7 +207,7 @@ Status boxpairs_find(const BoxPairs *pairs, Err *err)
 {
     if (pairs->count == 0)
         return STATUS_OK;
-    Forest forest = {.pairs = pairs, .n_leaves = (pairs->count + RUN - 1) / RUN, .size = 1};
+    RunTree forest = {.pairs = pairs, .n_leaves = (pairs->count + RUN - 1) / RUN, .size = 1};
     while (forest.size < forest.n_leaves)
         forest.size *= 2;
     Status status;

@@ -1,9 +1,9 @@
-/* Two triangles cross when an edge of one meets the other. All is decided by the sign of the volume
- * of four points. Coordinates are whole multiples of a grid, so that their differences have 26 bits
- * and the volume fits into 128; in double precision its error is below 2^-49 of the sum of the
- * magnitudes of its products, and only closer to zero the whole numbers are asked. Most pairs are
- * settled by the plane of one of them, which the other does not reach through, and nearly all that
- * share a corner by what is proved of all triangles there [fans.h]. */
+/* Two triangles cross if an edge of one meets the other. Every decision is the sign of the volume
+ * of four points. Coordinates are integer multiples of a grid, so their differences have 26 bits,
+ * and the volume fits into 128 bits. In double precision the error of the volume is below 2^-49 of
+ * the sum of the magnitudes of its products. Integers are only used closer to zero. Most pairs are
+ * decided because one triangle does not reach through the plane of the other, and nearly all pairs
+ * that share a corner by what is proved of all triangles at a point [fans.h]. */
 #include "mesh/proof/meshcheck.h"
 
 #include "mesh/proof/boxpairs.h"
@@ -13,19 +13,17 @@
 
 __extension__ typedef __int128 Wide;
 
-enum { MAX_WORKERS = 256 };
-
-typedef struct Search {
+typedef struct CrossSearch {
     const VesselMesh *mesh;
-    double per_mm;              /* units of the grid */
-    bool *is_fan;               /* one a point */
-    atomic_bool *crossed;       /* one a triangle, or NULL */
-    size_t counts[MAX_WORKERS]; /* of crossings, one a thread */
-} Search;
+    double per_mm;        /* units of the grid */
+    bool *is_fan;         /* one a point */
+    atomic_bool *crossed; /* one a triangle, or NULL */
+    atomic_size_t n_crossings;
+} CrossSearch;
 
 static FloatBox box_of(uint32_t item, const void *context)
 {
-    const VesselMesh *mesh = ((const Search *)context)->mesh;
+    const VesselMesh *mesh = ((const CrossSearch *)context)->mesh;
     const float *a = mesh->points[mesh->triangles[item][0]];
     const float *b = mesh->points[mesh->triangles[item][1]];
     const float *c = mesh->points[mesh->triangles[item][2]];
@@ -39,7 +37,7 @@ static FloatBox box_of(uint32_t item, const void *context)
     return box;
 }
 
-static int exact_side(const Search *search, const float *const p[4])
+static int exact_side(const CrossSearch *search, const float *const p[4])
 {
     int64_t d[3][3];
     for (int i = 0; i < 3; i++)
@@ -54,8 +52,9 @@ static int exact_side(const Search *search, const float *const p[4])
     return (sum > 0) - (sum < 0);
 }
 
-/* On which side of the plane through a, b and c the point d lies: 0 on it. */
-static int side_of(const Search *search, const float *a, const float *b, const float *c,
+/* Returns the side of the plane through a, b and c that the point d is on: 1, -1, or 0 on the
+ * plane. */
+static int side_of(const CrossSearch *search, const float *a, const float *b, const float *c,
                    const float *d)
 {
     const float *const p[4] = {a, b, c, d};
@@ -100,8 +99,9 @@ static Face face_of(const VesselMesh *mesh, uint32_t triangle)
     return face;
 }
 
-/* On which side of the face's plane a point lies: 1 where the normal points, 0 on it. */
-static int side_of_face(const Search *search, const Face *face, const float *p)
+/* Returns the side of the face's plane that a point is on: 1 where the normal points, 0 on the
+ * plane. */
+static int side_of_face(const CrossSearch *search, const Face *face, const float *p)
 {
     double height = 0, far = 0;
     for (int axis = 0; axis < 3; axis++) {
@@ -114,9 +114,9 @@ static int side_of_face(const Search *search, const Face *face, const float *p)
     return -side_of(search, face->at[0], face->at[1], face->at[2], p);
 }
 
-/* Whether the edge from p to q, whose ends do not lie on one side of the face's plane, meets the
- * face. */
-static bool edge_meets(const Search *search, const float *p, const float *q, const Face *face)
+/* Returns true if the edge from p to q meets the face. The ends are not both on one side of its
+ * plane. */
+static bool edge_meets(const CrossSearch *search, const float *p, const float *q, const Face *face)
 {
     int one = side_of(search, p, q, face->at[0], face->at[1]);
     int other = side_of(search, p, q, face->at[1], face->at[2]);
@@ -133,8 +133,8 @@ static int turn_of(const float *p, const float *q, const float *r, int axis)
     return (turn > 0) - (turn < 0);
 }
 
-/* Whether an edge in the face's plane meets the face: no side of the face has all of the edge
- * beyond it, nor the edge all of the face beside it. */
+/* Returns true if an edge in the face's plane meets the face: the edge is not all beyond one side
+ * of the face, and the face is not all on one side of the edge. */
 static bool flat_edge_meets(const float *p, const float *q, const Face *face)
 {
     int axis = 0, beside = 0;
@@ -151,9 +151,10 @@ static bool flat_edge_meets(const float *p, const float *q, const Face *face)
     return abs(beside) < 3;
 }
 
-/* On which sides of a face's plane the corners of another triangle lie; `shared` is the corner that
- * both have, or -1. False when all others lie on one side, where the triangles cannot meet. */
-static bool find_sides(const Search *search, const float *const corners[3], const Face *face,
+/* Finds the sides of a face's plane that the corners of another triangle are on. `shared` is the
+ * corner that both have, or -1. Returns false if all other corners are on one side: then the
+ * triangles do not meet. */
+static bool find_sides(const CrossSearch *search, const float *const corners[3], const Face *face,
                        int shared, int sides[3])
 {
     int sum = 0;
@@ -164,10 +165,10 @@ static bool find_sides(const Search *search, const float *const corners[3], cons
     return abs(sum) < (shared < 0 ? 3 : 2);
 }
 
-/* Whether an edge of `a` meets `b`; side[] is where the corners of `a` lie, `shared` the one that
- * both have, or -1. */
-static bool an_edge_meets(const Search *search, const Face *a, const Face *b, const int side[3],
-                          int shared)
+/* Returns true if an edge of `a` meets `b`. side[] has the sides of the corners of `a`; `shared` is
+ * the corner that both have, or -1. */
+static bool an_edge_meets(const CrossSearch *search, const Face *a, const Face *b,
+                          const int side[3], int shared)
 {
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
@@ -180,9 +181,10 @@ static bool an_edge_meets(const Search *search, const Face *a, const Face *b, co
     return false;
 }
 
-/* Triangles with a common edge cross when they lie in one plane on the same side of it: then their
- * normals are opposite. `lone` is the corner of `b` that is not on the edge. */
-static bool folds(const Search *search, const Face *a, const Face *b, int lone)
+/* Returns true if triangles with a common edge cross: they are in one plane and on the same side of
+ * the edge, so that their normals are opposite. `lone` is the corner of `b` that is not on the
+ * edge. */
+static bool folds(const CrossSearch *search, const Face *a, const Face *b, int lone)
 {
     double cosine = 0;
     for (int axis = 0; axis < 3; axis++)
@@ -190,9 +192,10 @@ static bool folds(const Search *search, const Face *a, const Face *b, int lone)
     return cosine <= 0 && side_of_face(search, a, b->at[lone]) == 0;
 }
 
-/* Whether triangles that share a corner at most meet elsewhere; shared[] is that corner of either,
- * or -1. */
-static bool faces_meet(const Search *search, uint32_t first, uint32_t second, const int shared[2])
+/* Returns true if two triangles that share at most one corner meet elsewhere. shared[] is that
+ * corner in each of them, or -1. */
+static bool faces_meet(const CrossSearch *search, uint32_t first, uint32_t second,
+                       const int shared[2])
 {
     int of_a[3], of_b[3];
     Face b = face_of(search->mesh, second);
@@ -209,7 +212,8 @@ static bool faces_meet(const Search *search, uint32_t first, uint32_t second, co
 
 static void test_pair(uint32_t first, uint32_t second, int worker, void *context)
 {
-    Search *search = context;
+    (void)worker;
+    CrossSearch *search = context;
     const uint32_t *one = search->mesh->triangles[first], *other = search->mesh->triangles[second];
     int shared[2] = {-1, -1}, n_shared = 0, lone = 3;
     for (int i = 0; i < 3; i++)
@@ -229,8 +233,10 @@ static void test_pair(uint32_t first, uint32_t second, int worker, void *context
         Face a = face_of(search->mesh, first), b = face_of(search->mesh, second);
         cross = folds(search, &a, &b, lone);
     }
-    search->counts[worker] += cross;
-    if (cross && search->crossed) {
+    if (!cross)
+        return;
+    atomic_fetch_add_explicit(&search->n_crossings, 1, memory_order_relaxed);
+    if (search->crossed) {
         atomic_store_explicit(&search->crossed[first], true, memory_order_relaxed);
         atomic_store_explicit(&search->crossed[second], true, memory_order_relaxed);
     }
@@ -239,15 +245,14 @@ static void test_pair(uint32_t first, uint32_t second, int worker, void *context
 Status meshcheck_crossings(const VesselMesh *mesh, double grid_mm, int threads,
                            atomic_bool *crossed, size_t *crossings, Err *err)
 {
-    Search search = {.mesh = mesh, .per_mm = 1 / grid_mm, .crossed = crossed};
+    CrossSearch search = {.mesh = mesh, .per_mm = 1 / grid_mm, .crossed = crossed};
     const BoxPairs pairs = {(uint32_t)mesh->n_triangles, box_of, test_pair, &search, threads};
     Status status;
     *crossings = 0;
     TRY_GOTO(mem_calloc(&search.is_fan, mesh->n_points, sizeof *search.is_fan, "points", err));
     TRY_GOTO(fans_find(mesh, threads, search.is_fan, err));
     TRY_GOTO(boxpairs_find(&pairs, err));
-    for (int i = 0; i < MAX_WORKERS; i++)
-        *crossings += search.counts[i];
+    *crossings = search.n_crossings;
 done:
     free(search.is_fan);
     return status;

@@ -1,47 +1,34 @@
-/* The triangles at a point are a fan if they follow each other round it, each sharing an edge with
- * the next, and if, seen along some direction, all face the viewer and go round the point once:
- * then they lie side by side in that view, and so they do in space. The direction is the sum of
- * their normals. What is to be above zero must be so by far more than rounding. */
+/* The triangles at a point are a fan if each shares an edge with the next, all the way round, and
+ * if there is a direction from which all of them face the viewer and go round the point once. Then
+ * they do not overlap in that view, and so they do not meet in space. The direction is the sum of
+ * their normals. A number counts as positive only if it is larger than rounding errors by far. */
 #include "mesh/proof/fans.h"
 
 #include "geom/geom.h"
 #include <stdlib.h>
 
-enum { MOST_TRIANGLES = 24, POINTS_A_UNIT = 4096 };
-/* Rounding is below 2^-49 of the sum of the magnitudes of the products. */
+/* A point with more triangles is not proved. One thread takes POINTS_PER_UNIT points at a time. */
+enum { MAX_FAN = 24, POINTS_PER_UNIT = 4096 };
+/* In units of the sum of the magnitudes of the products: rounding errors are below 2^-49 of it. */
 static const double surely = 0x1p-40;
 
 typedef struct FanSearch {
     const VesselMesh *mesh;
-    uint32_t *first, *around; /* of each point: its triangles, around[first[i] .. first[i + 1]) */
+    IndexLists around; /* per point: its triangles */
     bool *is_fan;
 } FanSearch;
 
-static Status list_triangles(FanSearch *search, Err *err)
+/* Lists the points about one in the order of its triangles. Returns their number, or 0 if the
+ * triangles do not lead round to the first. */
+static int list_ring(const FanSearch *search, uint32_t point, uint32_t ring[MAX_FAN])
 {
-    const VesselMesh *mesh = search->mesh;
-    size_t n_corners = 3 * mesh->n_triangles;
-    TRY(mem_calloc(&search->first, mesh->n_points + 2, sizeof *search->first, "points", err));
-    TRY(mem_calloc(&search->around, n_corners, sizeof *search->around, "points", err));
-    for (size_t i = 0; i < n_corners; i++)
-        search->first[mesh->triangles[i / 3][i % 3] + 2]++;
-    for (size_t i = 2; i < mesh->n_points + 2; i++)
-        search->first[i] += search->first[i - 1];
-    for (size_t i = 0; i < n_corners; i++)
-        search->around[search->first[mesh->triangles[i / 3][i % 3] + 1]++] = (uint32_t)(i / 3);
-    return STATUS_OK;
-}
-
-/* Lists the points about one in the order in which its triangles follow each other; 0 when they do
- * not come back to the first. */
-static int list_ring(const FanSearch *search, uint32_t point, uint32_t ring[MOST_TRIANGLES])
-{
-    uint32_t from[MOST_TRIANGLES], to[MOST_TRIANGLES];
-    int n = (int)(search->first[point + 1] - search->first[point]);
-    if (n < 3 || n > MOST_TRIANGLES)
+    uint32_t from[MAX_FAN], to[MAX_FAN];
+    const uint32_t *around = &search->around.items[search->around.first[point]];
+    int n = (int)indexlists_length(&search->around, point);
+    if (n < 3 || n > MAX_FAN)
         return 0;
     for (int i = 0; i < n; i++) {
-        const uint32_t *at = search->mesh->triangles[search->around[search->first[point] + i]];
+        const uint32_t *at = search->mesh->triangles[around[i]];
         int own = at[0] == point ? 0 : at[1] == point ? 1 : 2;
         from[i] = at[(own + 1) % 3];
         to[i] = at[(own + 2) % 3];
@@ -66,7 +53,7 @@ static double magnitude(Vec3 a)
     return fabs(a.x) + fabs(a.y) + fabs(a.z);
 }
 
-/* The sign of the turn from a to b, seen from where `view` points: 0 when it is not sure. */
+/* Returns the sign of the turn from a to b, seen against `view`; 0 if it is not certain. */
 static int turn_of(Vec3 view, Vec3 a, Vec3 b)
 {
     double turn = vec3_dot(view, vec3_cross(a, b));
@@ -76,8 +63,8 @@ static int turn_of(Vec3 view, Vec3 a, Vec3 b)
 
 static bool is_fan(const FanSearch *search, uint32_t point)
 {
-    uint32_t ring[MOST_TRIANGLES];
-    Vec3 spokes[MOST_TRIANGLES], view = vec3(0, 0, 0);
+    uint32_t ring[MAX_FAN];
+    Vec3 spokes[MAX_FAN], view = vec3(0, 0, 0);
     int n = list_ring(search, point, ring);
     const float *center = search->mesh->points[point];
     for (int i = 0; i < n; i++) {
@@ -102,19 +89,19 @@ static void find_some(size_t unit, int worker, void *context)
 {
     (void)worker;
     FanSearch *search = context;
-    size_t n = search->mesh->n_points, end = (unit + 1) * POINTS_A_UNIT;
-    for (size_t i = unit * POINTS_A_UNIT; i < (end < n ? end : n); i++)
+    size_t n = search->mesh->n_points, end = (unit + 1) * POINTS_PER_UNIT;
+    for (size_t i = unit * POINTS_PER_UNIT; i < (end < n ? end : n); i++)
         search->is_fan[i] = is_fan(search, (uint32_t)i);
 }
 
 Status fans_find(const VesselMesh *mesh, int threads, bool *is_fan_at, Err *err)
 {
     FanSearch search = {.mesh = mesh, .is_fan = is_fan_at};
-    Status status;
-    TRY_GOTO(list_triangles(&search, err));
-    threads_for((mesh->n_points + POINTS_A_UNIT - 1) / POINTS_A_UNIT, threads, find_some, &search);
-done:
-    free(search.first);
-    free(search.around);
+    const ItemKeys corners = {(const uint32_t *)mesh->triangles, mesh->n_triangles, 3};
+    size_t units = (mesh->n_points + POINTS_PER_UNIT - 1) / POINTS_PER_UNIT;
+    Status status = indexlists_sort(&search.around, mesh->n_points, corners, "points", err);
+    if (status == STATUS_OK)
+        threads_for(units, threads, find_some, &search);
+    indexlists_release(&search.around);
     return status;
 }

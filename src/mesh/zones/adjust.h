@@ -1,20 +1,26 @@
-/* Changes of a tree that has no sound mesh, or no flat ends. Exported by the door of the room mesh.
- */
+/* Changes to a tree that has no valid mesh, or that has vessel ends that are not flat. Exported by
+ * the public header of the module mesh. */
 #ifndef CORCAST_MESH_ZONES_ADJUST_H
 #define CORCAST_MESH_ZONES_ADJUST_H
 
 #include "mesh/meshreport.h"
 
-/* Thins vessels that do not belong together and overlap, and what blends with them, until they are
- * apart; *thinned (owned) lists their indices, rising. STATUS_INPUT when that would leave less than
- * a twentieth of a radius. */
+/* Makes vessels thinner that overlap although they do not belong together, and the vessels that
+ * blend with them, until no vessels overlap.
+ *
+ * thinned  receives the indices of the thinned segments, rising (owned by the caller).
+ * Errors   STATUS_INPUT if a segment would keep less than a twentieth of its radius; as
+ *          vesselmesh_build. */
 MUST_CHECK Status vesseltree_part(VesselTree *tree, const MeshParams *params, uint32_t **thinned,
                                   size_t *n, Err *err);
 
-/* Lengthens ends that could not be cut off flat because of what meets nearby, along their axes by
- * at most LENGTHENED_MOST of their radii and not into other vessels, until they can; *lengthened
- * (owned) lists the indices of their segments, rising. */
+/* In units of the radius: maximum length added by vesseltree_free_ends. */
 #define LENGTHENED_MOST 3
+/* Makes ends longer that could not be cut off flat because of other vessels nearby. An end moves
+ * along its axis, not into other vessels. An end that does not become flat stays where it was.
+ *
+ * lengthened  receives the indices of the changed segments, rising (owned by the caller).
+ * Errors      as vesselmesh_build. */
 MUST_CHECK Status vesseltree_free_ends(VesselTree *tree, const MeshParams *params,
                                        uint32_t **lengthened, size_t *n, Err *err);
 

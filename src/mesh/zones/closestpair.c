@@ -1,9 +1,8 @@
-/* Pairs whose boxes, widened by half a reach, meet have all gaps up to the reach among them; a
- * reach that finds none, or none so near, is doubled. */
-#include "mesh/zones/closestpair.h"
-
-#include "mesh/proof/boxpairs.h"
+/* If two boxes are padded by the radius and half a reach, they meet whenever the gap of the vessels
+ * is at most the reach. The search begins with a small reach and doubles it until it finds a gap of
+ * at most the reach. */
 #include "mesh/zones/junctions.h"
+
 #include "mesh/zones/nearpairs.h"
 #include <stdlib.h>
 
@@ -11,38 +10,31 @@ enum { MAX_WORKERS = 256 };
 
 typedef struct GapSearch {
     const VesselTree *tree;
-    const Zones *zones;
+    Junctions junctions;
     double reach_mm;
-    NearPair best[MAX_WORKERS]; /* of each thread */
+    NearPair best[MAX_WORKERS]; /* per thread */
 } GapSearch;
 
 static FloatBox box_of(uint32_t item, const void *context)
 {
     const GapSearch *search = context;
     const FieldSegment *segment = &search->tree->segments[item];
-    double reach = segment->radius_mm + search->reach_mm / 2;
-    Box box = box_with_ball(box_with_ball(box_empty(), segment->a, reach), segment->b, reach);
-    FloatBox wide;
-    for (int axis = 0; axis < 3; axis++) {
-        wide.low[axis] = nextafterf((float)vec3_component(box.low, axis), -INFINITY);
-        wide.high[axis] = nextafterf((float)vec3_component(box.high, axis), INFINITY);
-    }
-    return wide;
+    return segment_floatbox(segment, segment->radius_mm + search->reach_mm / 2);
 }
 
 static bool belong_together(const GapSearch *search, uint32_t a, uint32_t b)
 {
-    const uint32_t *zone = search->zones->zone;
+    const uint32_t *of_node = search->junctions.of_node;
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < 2; k++) {
             uint32_t one = search->tree->nodes[a][i], other = search->tree->nodes[b][k];
-            if (one == other || (zone[one] != NO_ZONE && zone[one] == zone[other]))
+            if (one == other || (of_node[one] != NO_JUNCTION && of_node[one] == of_node[other]))
                 return true;
         }
     return false;
 }
 
-/* Whether a pair comes before another: the nearer one, or that of the lower numbers. */
+/* Orders pairs by gap, then by index, so that the result does not depend on the threads. */
 static bool is_before(const NearPair *one, const NearPair *other)
 {
     if (one->gap_mm != other->gap_mm)
@@ -54,9 +46,8 @@ static bool is_before(const NearPair *one, const NearPair *other)
 static void note_pair(uint32_t a, uint32_t b, int worker, void *context)
 {
     GapSearch *search = context;
-    const FieldSegment *one = &search->tree->segments[a], *other = &search->tree->segments[b];
-    const NearPair pair = {{a, b},
-                           segments_distance(one, other) - one->radius_mm - other->radius_mm};
+    const FieldSegment *segments = search->tree->segments;
+    const NearPair pair = {{a, b}, segments_gap(&segments[a], &segments[b])};
     if (is_before(&pair, &search->best[worker]) && !belong_together(search, a, b))
         search->best[worker] = pair;
 }
@@ -77,47 +68,31 @@ static Status search_within(GapSearch *search, int threads, NearPair *best, Err 
 static double extent_of(const VesselTree *tree)
 {
     Box box = box_empty();
-    for (size_t i = 0; i < tree->n_segments; i++) {
-        box = box_with_ball(box, tree->segments[i].a, 0);
-        box = box_with_ball(box, tree->segments[i].b, 0);
-    }
+    for (size_t i = 0; i < tree->n_segments; i++)
+        box = box_union(box, segment_box(&tree->segments[i], 0));
     return vec3_distance(box.low, box.high);
 }
 
-static Status search_wider(GapSearch *search, int threads, NearPair *pair, bool *found, Err *err)
+Status vesseltree_closest_pair(const VesselTree *tree, const MeshParams *params, NearPair *pair,
+                               bool *found, Err *err)
 {
-    double extent = extent_of(search->tree);
-    NearPair best = {.gap_mm = HUGE_VAL};
-    search->reach_mm = extent;
-    for (size_t i = 0; i < search->tree->n_segments; i++)
-        search->reach_mm = fmin(search->reach_mm, search->tree->segments[i].radius_mm);
-    while (best.gap_mm > search->reach_mm && search->reach_mm < extent) {
-        search->reach_mm = fmin(2 * search->reach_mm, extent);
-        TRY(search_within(search, threads, &best, err));
-    }
-    *found = best.gap_mm < HUGE_VAL;
-    *pair = best;
-    return STATUS_OK;
-}
-
-Status leastgap_find(const VesselTree *tree, const MeshParams *params, NearPair *pair, bool *found,
-                     Err *err)
-{
-    IndexLists incident = {0}, blending = {0};
-    Zones zones = {0};
-    GapSearch *search = NULL;
+    GapSearch *search;
+    double extent = extent_of(tree);
     Status status;
-    TRY_GOTO(vesseltree_incident(tree, &incident, err));
-    TRY_GOTO(vesseltree_blending(tree, &incident, &blending, err));
-    TRY_GOTO(zones_find(tree, &incident, &blending, params, &zones, err));
-    TRY_GOTO(mem_calloc(&search, 1, sizeof *search, "near vessels", err));
+    TRY(mem_calloc(&search, 1, sizeof *search, "near vessels", err));
     search->tree = tree;
-    search->zones = &zones;
-    TRY_GOTO(search_wider(search, params->threads, pair, found, err));
+    TRY_GOTO(junctions_find(tree, params, &search->junctions, err));
+    *pair = (NearPair){.gap_mm = HUGE_VAL};
+    search->reach_mm = extent;
+    for (size_t i = 0; i < tree->n_segments; i++)
+        search->reach_mm = fmin(search->reach_mm, tree->segments[i].radius_mm);
+    while (pair->gap_mm > search->reach_mm && search->reach_mm < extent) {
+        search->reach_mm = fmin(2 * search->reach_mm, extent);
+        TRY_GOTO(search_within(search, params->threads, pair, err));
+    }
+    *found = pair->gap_mm < HUGE_VAL;
 done:
-    indexlists_release(&incident);
-    indexlists_release(&blending);
-    zones_release(&zones);
+    junctions_release(&search->junctions);
     free(search);
     return status;
 }

@@ -1,66 +1,64 @@
-/* From each end of a segment, those that it blends with on that side of it are felt up to the last
- * place where, on the circle of the wall, they add more than they may to the potential.
- * Nearer to the end the segment's own term ceases, and the others make up for it: of a straight
- * chain the sum is the cylinder's all along. So the wall is even where the sum of both is nearly
- * that of the segment alone, if it went on.
+/* The vessels that blend with a segment on one side change its surface up to the last place where,
+ * on the circle of its surface, they add more to the potential than is allowed. Nearer to the end,
+ * the segment's own term falls off, and the other vessels make up for it: along a straight chain of
+ * segments the sum is that of a cylinder everywhere. So the surface is even where the sum of both
+ * is nearly that of the segment alone, if it continued.
  *
- * Places are tried by steps from the far end on, and then halved in between. */
+ * Places are tried in steps from the far end on. The interval that the last one is in is halved. */
 #include "mesh/zones/freeends.h"
 
 #include "mesh/zones/junctionfield.h"
 #include "mesh/zones/nearpairs.h"
 #include <stdlib.h>
 
-/* The wall moves by a quarter of these parts of the level, in radii: what others may add where it
- * is a cylinder, which the tolerance decides between bounds, and where it is nearly one. */
+/* In units of the level: what other vessels may add. Adding a part p moves the surface by p / 4
+ * radii. least_part and most_part bound the tolerance where the surface must be a cylinder;
+ * uneven_part is for where it must nearly be one. */
 static const double least_part = 5e-3, most_part = 2e-2, uneven_part = 5e-2;
-/* Of the radius: the step of the search, and how far it goes beyond the other end, as the arms of
- * zones do; how often a step is halved. */
+/* In units of the radius: the step of the search, and how far the search goes beyond the other end,
+ * as the stubs of regions do. */
 static const double search_step = 0.15, run_on = 1;
+/* Points on the circle of a place; how often the last step is halved. */
 enum { CIRCLE_POINTS = 12, HALVINGS = 3 };
-/* Beyond so many of its radii from its axis a vessel adds less than a tenth of the least:
- * e^(-2 x^2) = 5e-4 e^-2. */
+/* In units of a vessel's radius: beyond this distance from its axis, its term is below a tenth of
+ * least_part, e^(-2 x^2) = 5e-4 e^-2. */
 static const double field_reach = 2.2;
 
-/* A vessel that blends at the end of another, and how far from there it may disturb that one. */
-typedef struct Neighbor {
+/* A vessel that blends with the segment, and the distance up to which it may disturb it. */
+typedef struct Disturber {
     double last_mm;
     uint32_t segment;
-} Neighbor;
+} Disturber;
 
 typedef struct FreeSearch {
-    const VesselTree *tree;
-    const IndexLists *incident, *blending;
-    const TreeOrder *order;
-    double disturbance; /* what others may add where the wall is a cylinder */
+    const FreeEndInput *input;
+    double disturbance; /* what others may add where the surface is a cylinder */
     FreeEnd (*ends)[2];
-    Status *statuses; /* one a segment */
 } FreeSearch;
 
-/* A node where the segment blends, reached through another, `from`. */
-typedef struct Step {
+/* A node within BLEND_REACH, reached along the segment `from`. */
+typedef struct BlendStep {
     uint32_t node, from;
-    double way_mm;
-} Step;
+    double path_mm;
+} BlendStep;
 
-/* One end of a segment, and who may be felt there. */
+/* The search at one end of a segment. */
 typedef struct EndSearch {
     const VesselTree *tree;
     double disturbance;
     const FieldSegment *self;
     int end;
-    double length_mm; /* that is searched */
+    double length_mm; /* of the part that is searched */
     Vec3 axis;
-    Neighbor *neighbors; /* those that reach farthest first */
-    ZoneTerm *terms;     /* likewise */
+    Disturber *disturbers; /* by falling last_mm */
+    PotentialTerm *terms;  /* of the disturbers */
     size_t n;
-    Step *steps;
-    uint32_t *others;
-    size_t n_others, step_capacity, other_capacity;
+    ARRAY(BlendStep) steps;
+    ARRAY(uint32_t) others; /* segments that blend with this one; may repeat */
 } EndSearch;
 
-/* Tells whether the sum of others on the wall, where the segment's own term lacks `ceased`, is
- * more than it may be. */
+/* A test of one place on the segment's surface. Returns true if `others`, the sum of the terms of
+ * other vessels, is too large. `ceased` is what the segment's own term lacks there. */
 typedef bool TooMuch(const EndSearch *search, double others, double ceased);
 
 static bool is_disturbed(const EndSearch *search, double others, double ceased)
@@ -82,24 +80,24 @@ static Vec3 place_at(const EndSearch *search, double mm)
                        : vec3_add_scaled(self->a, search->axis, mm);
 }
 
-static double sum_at(const ZoneTerm *terms, size_t n, Vec3 x)
+static double sum_at(const PotentialTerm *terms, size_t n, Vec3 x)
 {
     double sum = 0;
     for (size_t i = 0; i < n; i++)
-        sum += zoneterm_value(&terms[i], x);
+        sum += potentialterm_value(&terms[i], x);
     return sum;
 }
 
-/* The point of the other vessel's axis that is nearest to x. */
-static Vec3 nearest_of(const ZoneTerm *other, Vec3 x)
+/* Returns the point of the other vessel's axis that is nearest to x. */
+static Vec3 nearest_of(const PotentialTerm *other, Vec3 x)
 {
     double along = vec3_dot(vec3_sub(x, other->a), other->axis);
     return vec3_add_scaled(other->a, other->axis, fmin(fmax(along, 0), other->length_k / other->k));
 }
 
-/* Whether there is too much somewhere on the circle so far from the end, of the first `near`
- * others. Tries points all round the circle, and those that face each other vessel, which may be
- * thinner than the points are apart. */
+/* Tests the circle at a distance from the end against the first `near` disturbers. Tries points all
+ * round the circle, and the point that faces each disturber, because a vessel may be thinner than
+ * the distance between the points. */
 static bool is_too_much(const EndSearch *search, size_t near, double mm, TooMuch *too_much)
 {
     Vec3 u, v, center = place_at(search, mm);
@@ -111,7 +109,7 @@ static bool is_too_much(const EndSearch *search, size_t near, double mm, TooMuch
     for (size_t i = 0; i < CIRCLE_POINTS + near; i++) {
         double angle = FULL_TURN * (double)i / CIRCLE_POINTS;
         if (i >= CIRCLE_POINTS) {
-            const ZoneTerm *other = &search->terms[i - CIRCLE_POINTS];
+            const PotentialTerm *other = &search->terms[i - CIRCLE_POINTS];
             Vec3 towards = vec3_sub(nearest_of(other, center), center);
             angle = elementary_atan2(vec3_dot(towards, v), vec3_dot(towards, u));
         }
@@ -128,8 +126,8 @@ static double distance_at(const EndSearch *search, double mm, const FieldSegment
     return segment_distance_to(other, place_at(search, mm));
 }
 
-/* How far from the end of a segment the place is that is nearest to another. The distance is convex
- * along a line. */
+/* Returns the distance from the end to the place that is nearest to another segment. The distance
+ * of a segment is convex along a line. */
 static double nearest_place(const EndSearch *search, const FieldSegment *other)
 {
     double low = 0, high = search->length_mm;
@@ -143,8 +141,8 @@ static double nearest_place(const EndSearch *search, const FieldSegment *other)
     return low;
 }
 
-/* How far from the end of a segment another may disturb its wall: the last place whose distance
- * from the other's axis is within reach. */
+/* Returns the distance from the end up to which another vessel may disturb the surface: that of the
+ * last place within reach of the other vessel's axis. */
 static double last_near(const EndSearch *search, const FieldSegment *other)
 {
     double radius = search->self->radius_mm, length = search->length_mm;
@@ -164,7 +162,7 @@ static double last_near(const EndSearch *search, const FieldSegment *other)
 
 static int compare_reach(const void *a, const void *b)
 {
-    const Neighbor *one = a, *other = b;
+    const Disturber *one = a, *other = b;
     if (one->last_mm != other->last_mm)
         return one->last_mm > other->last_mm ? -1 : 1;
     return (one->segment > other->segment) - (one->segment < other->segment);
@@ -176,79 +174,73 @@ static int compare_numbers(const void *a, const void *b)
     return (one > other) - (one < other);
 }
 
-/* Lists the segments on this side that blend with the segment at one of the nodes where it blends,
- * each once or several times. */
-static Status list_others(EndSearch *search, const FreeSearch *all, uint32_t segment)
+/* Lists the segments on this side that blend with the segment at one of the nodes where it blends.
+ * A segment may be listed several times. */
+static Status list_others(EndSearch *search, const FreeEndInput *input, uint32_t segment, Err *err)
 {
-    const VesselTree *tree = all->tree;
-    const IndexLists *blending = all->blending, *incident = all->incident;
+    const VesselTree *tree = input->tree;
+    const IndexLists *blending = input->blending, *incident = input->incident;
     double limit = BLEND_REACH * search->self->radius_mm;
-    TRY(mem_reserve(&search->steps, &search->step_capacity, 1, sizeof *search->steps, "terms",
-                    NULL));
-    search->steps[0] = (Step){tree->nodes[segment][search->end], segment, 0};
-    size_t n_steps = 1;
-    for (size_t i = 0; i < n_steps; i++) {
-        const Step step = search->steps[i];
+    TRY(ARRAY_PUSH(&search->steps, "terms", err,
+                   (BlendStep){tree->nodes[segment][search->end], segment, 0}));
+    for (size_t i = 0; i < search->steps.n; i++) {
+        const BlendStep step = search->steps.items[i];
         for (uint32_t k = blending->first[step.node]; k < blending->first[step.node + 1]; k++) {
             uint32_t other = blending->items[k];
-            if (other == segment ||
-                treeorder_end_towards(all->order, tree, segment, other) != search->end)
-                continue;
-            TRY(mem_reserve(&search->others, &search->other_capacity, search->n_others + 1,
-                            sizeof *search->others, "terms", NULL));
-            search->others[search->n_others++] = other;
+            if (other != segment &&
+                treeorder_end_towards(input->order, tree, segment, other) == search->end)
+                TRY(ARRAY_PUSH(&search->others, "terms", err, other));
         }
         for (uint32_t k = incident->first[step.node]; k < incident->first[step.node + 1]; k++) {
             uint32_t next = incident->items[k];
-            const FieldSegment *way = &tree->segments[next];
-            double way_mm = step.way_mm + vec3_distance(way->a, way->b);
+            double path_mm = step.path_mm + segment_length(&tree->segments[next]);
             uint32_t beyond = tree->nodes[next][!segment_end_at(tree, next, step.node)];
-            if (next == step.from || way_mm > limit)
-                continue;
-            TRY(mem_reserve(&search->steps, &search->step_capacity, n_steps + 1,
-                            sizeof *search->steps, "terms", NULL));
-            search->steps[n_steps++] = (Step){beyond, next, way_mm};
+            if (next != step.from && path_mm <= limit)
+                TRY(ARRAY_PUSH(&search->steps, "terms", err, (BlendStep){beyond, next, path_mm}));
         }
     }
     return STATUS_OK;
 }
 
-/* Makes the neighbours of the others that may disturb the segment, and their terms. */
-static Status find_neighbors(EndSearch *search)
+/* Finds which of the others may disturb the segment, and makes their terms. */
+static Status find_disturbers(EndSearch *search, Err *err)
 {
     const VesselTree *tree = search->tree;
-    const uint32_t *others = search->others;
-    if (search->n_others == 0)
+    const uint32_t *others = search->others.items;
+    size_t n = search->others.n;
+    if (n == 0)
         return STATUS_OK;
-    TRY(mem_calloc(&search->neighbors, search->n_others, sizeof *search->neighbors, "terms", NULL));
-    TRY(mem_calloc(&search->terms, search->n_others, sizeof *search->terms, "terms", NULL));
-    qsort(search->others, search->n_others, sizeof *search->others, compare_numbers);
-    for (size_t i = 0; i < search->n_others; i++) {
+    TRY(mem_calloc(&search->disturbers, n, sizeof *search->disturbers, "terms", err));
+    TRY(mem_calloc(&search->terms, n, sizeof *search->terms, "terms", err));
+    qsort(search->others.items, n, sizeof *search->others.items, compare_numbers);
+    for (size_t i = 0; i < n; i++) {
         bool again = i > 0 && others[i] == others[i - 1];
         double last = again ? 0 : last_near(search, &tree->segments[others[i]]);
         if (last > 0)
-            search->neighbors[search->n++] = (Neighbor){last, others[i]};
+            search->disturbers[search->n++] = (Disturber){last, others[i]};
     }
-    qsort(search->neighbors, search->n, sizeof *search->neighbors, compare_reach);
+    qsort(search->disturbers, search->n, sizeof *search->disturbers, compare_reach);
     for (size_t i = 0; i < search->n; i++) {
-        uint32_t number = search->neighbors[i].segment;
-        const FieldSegment *other = &tree->segments[number];
-        search->terms[i] = zoneterm_of(other->a, other->b, other->radius_mm, number, tree->body);
+        uint32_t index = search->disturbers[i].segment;
+        const FieldSegment *other = &tree->segments[index];
+        search->terms[i] =
+            potentialterm_make(other->a, other->b, other->radius_mm, index, tree->body);
     }
     return STATUS_OK;
 }
 
-/* How many of the others may be felt so far from the end. */
+/* Returns the number of disturbers that reach this far from the end. */
 static size_t count_near(const EndSearch *search, double mm)
 {
     size_t near = 0;
-    while (near < search->n && search->neighbors[near].last_mm >= mm)
+    while (near < search->n && search->disturbers[near].last_mm >= mm)
         near++;
     return near;
 }
 
-/* From where on there is nowhere too much, up to `most`: beyond the last place where there is, as a
- * thin vessel that leaves a thick one at a small angle comes out of its wall far from the node. */
+/* Returns the distance, at most `most`, beyond the last place that fails the test. The last place
+ * counts, not the first that passes: a thin vessel that leaves a thick one at a small angle comes
+ * out of its surface far from the node. */
 static double last_place(const EndSearch *search, double most, TooMuch *too_much)
 {
     double step = search_step * search->self->radius_mm;
@@ -266,13 +258,13 @@ static double last_place(const EndSearch *search, double most, TooMuch *too_much
     return 0;
 }
 
-/* The farthest place, from the end on, beside which another vessel ends within the segment's own:
- * it may not be felt at the wall, and yet must not come out behind a plane. */
+/* Returns the distance of the farthest place beside which another vessel ends inside the segment's
+ * own. Such a vessel may not change the surface, but it must not come out of it behind a plane. */
 static double last_within(const EndSearch *search)
 {
     double last = 0, sign = search->end ? -1 : 1;
     for (size_t i = 0; i < search->n; i++) {
-        const FieldSegment *other = &search->tree->segments[search->neighbors[i].segment];
+        const FieldSegment *other = &search->tree->segments[search->disturbers[i].segment];
         for (int end = 0; end < 2; end++) {
             Vec3 from = vec3_sub(end ? other->b : other->a, place_at(search, 0));
             double along = sign * vec3_dot(from, search->axis);
@@ -284,41 +276,41 @@ static double last_within(const EndSearch *search)
     return last;
 }
 
-static Status find_free(const FreeSearch *all, uint32_t segment, int end)
+static Status find_free(const FreeSearch *all, uint32_t segment, int end, Err *err)
 {
-    const VesselTree *tree = all->tree;
+    const VesselTree *tree = all->input->tree;
     const FieldSegment *self = &tree->segments[segment];
-    double length = vec3_distance(self->a, self->b), radius = self->radius_mm;
+    double radius = self->radius_mm;
     EndSearch search = {.tree = tree,
                         .disturbance = all->disturbance,
                         .self = self,
                         .end = end,
-                        .length_mm = length + run_on * radius,
-                        .axis = vec3_normalized(vec3_sub(self->b, self->a))};
+                        .length_mm = segment_length(self) + run_on * radius,
+                        .axis = segment_axis(self)};
     Status status;
-    TRY_GOTO(list_others(&search, all, segment));
-    TRY_GOTO(find_neighbors(&search));
+    TRY_GOTO(list_others(&search, all->input, segment, err));
+    TRY_GOTO(find_disturbers(&search, err));
     if (search.n) {
-        double clear = last_place(&search, search.neighbors[0].last_mm, is_disturbed), even = clear;
+        double clear = last_place(&search, search.disturbers[0].last_mm, is_disturbed),
+               even = clear;
         if (tree->body != BODY_ROUND)
             even = last_place(&search, fmax(clear, radius), is_uneven);
         even = fmax(even, last_within(&search));
         all->ends[segment][end] = (FreeEnd){even, fmax(clear, even)};
     }
 done:
-    free(search.neighbors);
+    free(search.disturbers);
     free(search.terms);
-    free(search.steps);
-    free(search.others);
+    ARRAY_RELEASE(&search.steps);
+    ARRAY_RELEASE(&search.others);
     return status;
 }
 
-static void find_both_free(size_t index, int worker, void *context)
+static Status find_both_free(size_t index, int worker, void *context, Err *err)
 {
     (void)worker;
-    const FreeSearch *search = context;
-    for (int end = 0; end < 2 && search->statuses[index] == STATUS_OK; end++)
-        search->statuses[index] = find_free(search, (uint32_t)index, end);
+    TRY(find_free(context, (uint32_t)index, 0, err));
+    return find_free(context, (uint32_t)index, 1, err);
 }
 
 double freeends_moved(const MeshParams *params)
@@ -326,18 +318,9 @@ double freeends_moved(const MeshParams *params)
     return 0.25 * fmin(fmax(params->tolerance, least_part), most_part);
 }
 
-Status freeends_find(const VesselTree *tree, const IndexLists *incident, const IndexLists *blending,
-                     const TreeOrder *order, const MeshParams *params, FreeEnd (*ends)[2], Err *err)
+Status freeends_find(const FreeEndInput *input, FreeEnd (*ends)[2], Err *err)
 {
-    size_t n = tree->n_segments;
-    double disturbance = 4 * freeends_moved(params) * FIELD_LEVEL;
-    FreeSearch search = {tree, incident, blending, order, disturbance, ends, NULL};
-    TRY(mem_calloc(&search.statuses, n, sizeof *search.statuses, "segments", err));
-    threads_for(n, params->threads, find_both_free, &search);
-    Status status = STATUS_OK;
-    for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        if (search.statuses[i] != STATUS_OK)
-            status = mem_out_of("for", "the terms of a junction", err);
-    free(search.statuses);
-    return status;
+    FreeSearch search = {input, 4 * freeends_moved(input->params) * FIELD_LEVEL, ends};
+    return threads_try(input->tree->n_segments, input->params->threads, find_both_free, &search,
+                       err);
 }

@@ -1,25 +1,31 @@
-/* Where a segment may be cut across. */
+/* Where along a segment the vessels at its ends no longer change its surface, so that it may be cut
+ * there. */
 #ifndef CORCAST_MESH_ZONES_FREEENDS_H
 #define CORCAST_MESH_ZONES_FREEENDS_H
 
 #include "mesh/meshreport.h"
 #include "mesh/zones/treeorder.h"
 
-/* What the vessels that meet at one end of a segment do to its wall. */
+/* The influence of the vessels that meet at one end of a segment. Distances are from that end. */
 typedef struct FreeEnd {
-    double even_mm;  /* from here on, from the end, the wall is nearly the cylinder */
-    double clear_mm; /* from here on it is the cylinder as far as those at this end matter; may be
+    double even_mm;  /* from here on, the surface is nearly the cylinder */
+    double clear_mm; /* from here on, it is the cylinder as far as these vessels matter; may be
                       * beyond the other end */
 } FreeEnd;
 
-/* How far others may move the wall of a tube at most, in radii: a quarter of the tolerance, within
- * bounds. */
+/* Returns the maximum distance by which other vessels may move the surface of a tube, in units of
+ * its radius: a quarter of the tolerance, within bounds. */
 double freeends_moved(const MeshParams *params);
 
-/* Fills ends[], one pair a segment, zeroed before; `blending` lists the segments that blend at each
- * node. */
-MUST_CHECK Status freeends_find(const VesselTree *tree, const IndexLists *incident,
-                                const IndexLists *blending, const TreeOrder *order,
-                                const MeshParams *params, FreeEnd (*ends)[2], Err *err);
+/* The tree, with lists of segments per node. All pointers are borrowed. */
+typedef struct FreeEndInput {
+    const VesselTree *tree;
+    const IndexLists *incident, *blending; /* segments with an end at the node; that blend there */
+    const TreeOrder *order;
+    const MeshParams *params;
+} FreeEndInput;
+
+/* Fills ends[segment][end] for each segment. The array must be zero. Errors: STATUS_MEMORY. */
+MUST_CHECK Status freeends_find(const FreeEndInput *input, FreeEnd (*ends)[2], Err *err);
 
 #endif

@@ -15,17 +15,18 @@ static const double out_of_reach = 3.4;
 static const double crease_slack = 1.2;
 static const double inv_sqrt_pi = 0.56418958354775628695;
 
-ZoneTerm zoneterm_of(Vec3 a, Vec3 b, double radius_mm, uint32_t segment, VesselBody body)
+PotentialTerm potentialterm_make(Vec3 a, Vec3 b, double radius_mm, uint32_t segment,
+                                 VesselBody body)
 {
     double length = vec3_distance(a, b), k = sqrt(2) / radius_mm;
-    return (ZoneTerm){.a = a,
-                      .axis = vec3_scale(vec3_sub(b, a), 1 / length),
-                      .k = k,
-                      .length_k = k * length,
-                      .radius_mm = radius_mm,
-                      .segment = segment,
-                      .arm = NO_ARM,
-                      .is_round = body == BODY_ROUND};
+    return (PotentialTerm){.a = a,
+                           .axis = vec3_scale(vec3_sub(b, a), 1 / length),
+                           .k = k,
+                           .length_k = k * length,
+                           .radius_mm = radius_mm,
+                           .segment = segment,
+                           .stub = NO_STUB,
+                           .is_round = body == BODY_ROUND};
 }
 
 /* A place in the coordinates of a term: how far inside either end, how far from the axis. */
@@ -34,7 +35,7 @@ typedef struct TermPlace {
     Vec3 across; /* mm */
 } TermPlace;
 
-static inline TermPlace place_in(const ZoneTerm *term, Vec3 x)
+static inline TermPlace place_in(const PotentialTerm *term, Vec3 x)
 {
     Vec3 from_a = vec3_sub(x, term->a);
     double along = vec3_dot(from_a, term->axis);
@@ -56,7 +57,7 @@ static inline double distance2(const TermPlace *place)
     return inside < 0 ? place->e2 + inside * inside : place->e2;
 }
 
-static inline double value_at(const ZoneTerm *term, const TermPlace *place)
+static inline double value_at(const PotentialTerm *term, const TermPlace *place)
 {
     double from_segment = distance2(place);
     if (from_segment > out_of_reach * out_of_reach)
@@ -67,20 +68,20 @@ static inline double value_at(const ZoneTerm *term, const TermPlace *place)
 }
 
 /* From the nearest point of the segment to the place, mm. */
-static Vec3 from_nearest(const ZoneTerm *term, const TermPlace *place)
+static Vec3 from_nearest(const PotentialTerm *term, const TermPlace *place)
 {
     double beyond = fmax(0, -place->v) - fmax(0, -place->u);
     return vec3_add_scaled(place->across, term->axis, beyond / term->k);
 }
 
-double zoneterm_value(const ZoneTerm *term, Vec3 x)
+double potentialterm_value(const PotentialTerm *term, Vec3 x)
 {
     TermPlace place = place_in(term, x);
     return value_at(term, &place);
 }
 
 /* Of a term at a place, given its value there. */
-static inline Vec3 term_gradient(const ZoneTerm *term, const TermPlace *place, double value)
+static inline Vec3 term_gradient(const PotentialTerm *term, const TermPlace *place, double value)
 {
     if (term->is_round)
         return vec3_scale(from_nearest(term, place), -2 * term->k * term->k * value);
@@ -91,7 +92,7 @@ static inline Vec3 term_gradient(const ZoneTerm *term, const TermPlace *place, d
                            term->k * inv_sqrt_pi * (felt[0] - felt[1]));
 }
 
-static double upper_bound(const ZoneTerm *term, const TermPlace *place, double rho)
+static double upper_bound(const PotentialTerm *term, const TermPlace *place, double rho)
 {
     if (term->is_round) {
         double from_segment = fmax(0, sqrt(distance2(place)) - rho);
@@ -102,7 +103,7 @@ static double upper_bound(const ZoneTerm *term, const TermPlace *place, double r
     return exp_minus(across * across) * axial(place->u + towards, place->v - towards);
 }
 
-static double lower_bound(const ZoneTerm *term, const TermPlace *place, double rho)
+static double lower_bound(const PotentialTerm *term, const TermPlace *place, double rho)
 {
     double across = sqrt(term->is_round ? distance2(place) : place->e2) + rho;
     if (across > 2)
@@ -114,15 +115,15 @@ static double lower_bound(const ZoneTerm *term, const TermPlace *place, double r
     return exp_minus(across * across) * fmax(0, fmin(one, other));
 }
 
-void partpool_release(PartPool *pool)
+void localfieldpool_release(LocalFieldPool *pool)
 {
     free(pool->terms);
     free(pool->groups);
     free(pool->work);
-    *pool = (PartPool){0};
+    *pool = (LocalFieldPool){0};
 }
 
-static Status reserve_part(PartPool *pool, size_t terms, size_t words, Err *err)
+static Status reserve_part(LocalFieldPool *pool, size_t terms, size_t words, Err *err)
 {
     TRY(mem_reserve(&pool->terms, &pool->term_capacity, pool->n_terms + terms, sizeof *pool->terms,
                     "terms of a junction", err));
@@ -130,23 +131,23 @@ static Status reserve_part(PartPool *pool, size_t terms, size_t words, Err *err)
                        sizeof *pool->groups, "terms of a junction", err);
 }
 
-Status zonefield_refuse(Err *err)
+Status localfield_refuse(Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
                    "more than %d segments come together at one place; leave some out",
-                   MOST_PART_TERMS);
+                   MAX_LOCAL_TERMS);
 }
 
 /* An empty part on top of the pool; its groups come after. */
-static FieldPart begin_part(const PartPool *pool, uint32_t n_terms)
+static LocalField begin_part(const LocalFieldPool *pool, uint32_t n_terms)
 {
-    return (FieldPart){(uint32_t)pool->n_terms, n_terms, (uint32_t)pool->n_groups, 0,
-                       (n_terms + 63) / 64};
+    return (LocalField){(uint32_t)pool->n_terms, n_terms, (uint32_t)pool->n_groups, 0,
+                        (n_terms + 63) / 64};
 }
 
-Status fieldpart_all(const ZoneField *field, PartPool *pool, FieldPart *out, Err *err)
+Status localfield_all(const JunctionField *field, LocalFieldPool *pool, LocalField *out, Err *err)
 {
-    FieldPart part = begin_part(pool, field->n_terms);
+    LocalField part = begin_part(pool, field->n_terms);
     size_t words = (size_t)part.words * field->n_groups;
     TRY(reserve_part(pool, field->n_terms, words, err));
     for (uint32_t i = 0; i < field->n_terms; i++)
@@ -164,12 +165,12 @@ Status fieldpart_all(const ZoneField *field, PartPool *pool, FieldPart *out, Err
     return STATUS_OK;
 }
 
-Status fieldpart_copy(const PartPool *from, const FieldPart *part, PartPool *to, FieldPart *out,
-                      Err *err)
+Status localfield_copy(const LocalFieldPool *from, const LocalField *part, LocalFieldPool *to,
+                       LocalField *out, Err *err)
 {
     size_t words = (size_t)part->words * part->n_groups;
     TRY(reserve_part(to, part->n_terms, words, err));
-    FieldPart copy = begin_part(to, part->n_terms);
+    LocalField copy = begin_part(to, part->n_terms);
     copy.n_groups = part->n_groups;
     for (uint32_t i = 0; i < part->n_terms; i++)
         to->terms[to->n_terms++] = from->terms[part->first_term + i];
@@ -192,7 +193,7 @@ static bool is_subset(const uint64_t *a, const uint64_t *b, uint32_t words)
 
 /* Adds the group on top of the pool to the part, unless it is a subset of one there, and takes out
  * those that are subsets of it. */
-static void add_group(PartPool *pool, FieldPart *part)
+static void add_group(LocalFieldPool *pool, LocalField *part)
 {
     uint64_t *groups = &pool->groups[part->first_group];
     uint32_t words = part->words, kept = 0;
@@ -217,7 +218,7 @@ static void add_group(PartPool *pool, FieldPart *part)
 }
 
 /* The groups of `part`, cut down to the terms at the places of the pool's work. */
-static Status narrow_groups(PartPool *pool, const FieldPart *part, FieldPart *out, Err *err)
+static Status narrow_groups(LocalFieldPool *pool, const LocalField *part, LocalField *out, Err *err)
 {
     for (uint32_t g = 0; g < part->n_groups; g++) {
         TRY(reserve_part(pool, 0, out->words, err));
@@ -226,7 +227,7 @@ static Status narrow_groups(PartPool *pool, const FieldPart *part, FieldPart *ou
         for (uint32_t i = 0; i < out->words; i++)
             narrow[i] = 0;
         for (uint32_t i = 0; i < out->n_terms; i++)
-            narrow[i / 64] |= (group[pool->work[i].place / 64] >> pool->work[i].place % 64 & 1)
+            narrow[i / 64] |= (group[pool->work[i].index / 64] >> pool->work[i].index % 64 & 1)
                               << i % 64;
         add_group(pool, out);
     }
@@ -243,13 +244,13 @@ static double group_sum(const uint64_t *group, uint32_t words, const double *val
     return sum;
 }
 
-static const uint64_t *group_of(const PartPool *pool, const FieldPart *part, uint32_t number)
+static const uint64_t *group_of(const LocalFieldPool *pool, const LocalField *part, uint32_t number)
 {
     return &pool->groups[part->first_group + (size_t)number * part->words];
 }
 
 /* The group that stands for the ball: its sum is bounded the highest from below. */
-static uint32_t leading_group(const PartPool *pool, const FieldPart *part)
+static uint32_t leading_group(const LocalFieldPool *pool, const LocalField *part)
 {
     const size_t stride = sizeof *pool->work / sizeof pool->work->lower;
     double most = -1;
@@ -266,11 +267,11 @@ static uint32_t leading_group(const PartPool *pool, const FieldPart *part)
 
 /* Whether the sum over group `a` is below that over `b` in the whole ball: what both have is left
  * out. */
-static bool is_below(const PartPool *pool, const FieldPart *part, const uint64_t *a,
+static bool is_below(const LocalFieldPool *pool, const LocalField *part, const uint64_t *a,
                      const uint64_t *b)
 {
     const size_t stride = sizeof *pool->work / sizeof pool->work->lower;
-    uint64_t only_a[MOST_PART_TERMS / 64], only_b[MOST_PART_TERMS / 64];
+    uint64_t only_a[MAX_LOCAL_TERMS / 64], only_b[MAX_LOCAL_TERMS / 64];
     for (uint32_t w = 0; w < part->words; w++) {
         only_a[w] = a[w] & ~b[w];
         only_b[w] = b[w] & ~a[w];
@@ -281,11 +282,11 @@ static bool is_below(const PartPool *pool, const FieldPart *part, const uint64_t
 
 /* Whether two terms that may matter are in no group together, of groups whose sum may be the
  * largest somewhere in the ball. */
-static bool has_parted(const PartPool *pool, const FieldPart *part)
+static bool has_parted(const LocalFieldPool *pool, const LocalField *part)
 {
-    if (part->n_terms > MOST_PART_TERMS)
+    if (part->n_terms > MAX_LOCAL_TERMS)
         return false;
-    uint64_t matters[MOST_PART_TERMS / 64] = {0};
+    uint64_t matters[MAX_LOCAL_TERMS / 64] = {0};
     const uint64_t *leader = group_of(pool, part, leading_group(pool, part));
     for (uint32_t g = 0; g < part->n_groups; g++) {
         const uint64_t *group = group_of(pool, part, g);
@@ -317,16 +318,16 @@ static bool walls_meet(const NearWall *a, const NearWall *b, double radius_mm)
 }
 
 /* How much the normals of walls differ at most that meet in the ball. */
-static double find_crease(const ZoneField *field, const PartPool *pool, const FieldPart *part,
-                          Vec3 center, double radius_mm)
+static double find_crease(const JunctionField *field, const LocalFieldPool *pool,
+                          const LocalField *part, Vec3 center, double radius_mm)
 {
-    NearWall walls[MOST_PART_TERMS];
+    NearWall walls[MAX_LOCAL_TERMS];
     uint32_t n = 0;
     double most = 0;
-    for (uint32_t i = 0; i < part->n_terms && n < MOST_PART_TERMS; i++) {
+    for (uint32_t i = 0; i < part->n_terms && n < MAX_LOCAL_TERMS; i++) {
         if (pool->work[i].upper < FIELD_LEVEL || pool->work[i].lower > FIELD_LEVEL)
             continue;
-        const ZoneTerm *term = &field->terms[pool->terms[part->first_term + i]];
+        const PotentialTerm *term = &field->terms[pool->terms[part->first_term + i]];
         TermPlace place = place_in(term, center);
         Vec3 from = from_nearest(term, &place);
         walls[n] = (NearWall){vec3_normalized(from), vec3_length(from) - term->radius_mm};
@@ -338,26 +339,26 @@ static double find_crease(const ZoneField *field, const PartPool *pool, const Fi
     return most;
 }
 
-static void sum_bounds(const ZoneField *field, const PartPool *pool, const FieldPart *part,
-                       Vec3 center, double radius_mm, PartBounds *bounds)
+static void sum_bounds(const JunctionField *field, const LocalFieldPool *pool,
+                       const LocalField *part, Vec3 center, double radius_mm, FieldBounds *bounds)
 {
-    *bounds = (PartBounds){.thinnest = HUGE_VAL};
+    *bounds = (FieldBounds){.min_radius_mm = HUGE_VAL};
     for (uint32_t i = 0; i < part->n_terms; i++) {
         uint32_t number = pool->terms[part->first_term + i];
         double radius = field->terms[number].radius_mm, upper = pool->work[i].upper;
-        bounds->all += upper;
-        if (upper > bounds->largest) {
-            bounds->largest = upper;
+        bounds->sum_upper += upper;
+        if (upper > bounds->largest_upper) {
+            bounds->largest_upper = upper;
             bounds->largest_term = number;
         }
         if (upper > significant) {
-            bounds->thinnest = fmin(bounds->thinnest, radius);
-            bounds->widest = fmax(bounds->widest, radius);
+            bounds->min_radius_mm = fmin(bounds->min_radius_mm, radius);
+            bounds->max_radius_mm = fmax(bounds->max_radius_mm, radius);
         }
     }
     for (uint32_t g = 0; g < part->n_groups; g++) {
         const uint64_t *group = &pool->groups[part->first_group + (size_t)g * part->words];
-        const TermWork *work = pool->work;
+        const TermBounds *work = pool->work;
         const size_t stride = sizeof *work / sizeof work->upper;
         double upper = group_sum(group, part->words, &work->upper, stride);
         double lower = group_sum(group, part->words, &work->lower, stride);
@@ -366,29 +367,29 @@ static void sum_bounds(const ZoneField *field, const PartPool *pool, const Field
     }
     bool is_round = field->n_terms > 0 && field->terms[0].is_round;
     if (is_round)
-        bounds->crease = find_crease(field, pool, part, center, radius_mm);
+        bounds->max_normal_difference = find_crease(field, pool, part, center, radius_mm);
     else
-        bounds->parted = part->n_groups > 1 && has_parted(pool, part);
+        bounds->has_unblended_pair = part->n_groups > 1 && has_parted(pool, part);
 }
 
-Status fieldpart_narrow(const ZoneField *field, PartPool *pool, const FieldPart *part, Vec3 center,
-                        double radius_mm, double inner_mm, FieldPart *out, PartBounds *bounds,
-                        Err *err)
+Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool, const LocalField *part,
+                         Vec3 center, double radius_mm, double inner_mm, LocalField *out,
+                         FieldBounds *bounds, Err *err)
 {
     TRY(reserve_part(pool, part->n_terms, 0, err));
     TRY(mem_reserve(&pool->work, &pool->work_capacity, part->n_terms, sizeof *pool->work, "terms",
                     err));
-    TermWork *work = pool->work;
-    FieldPart narrow = begin_part(pool, 0);
+    TermBounds *work = pool->work;
+    LocalField narrow = begin_part(pool, 0);
     for (uint32_t i = 0; i < part->n_terms; i++) {
         uint32_t number = pool->terms[part->first_term + i];
-        const ZoneTerm *term = &field->terms[number];
+        const PotentialTerm *term = &field->terms[number];
         TermPlace place = place_in(term, center);
         double reach = out_of_reach + term->k * radius_mm, inner = term->k * inner_mm;
         if (distance2(&place) > reach * reach)
             continue;
         work[narrow.n_terms++] =
-            (TermWork){i, upper_bound(term, &place, inner), lower_bound(term, &place, inner)};
+            (TermBounds){i, upper_bound(term, &place, inner), lower_bound(term, &place, inner)};
         pool->terms[pool->n_terms++] = number;
     }
     narrow.words = (narrow.n_terms + 63) / 64;
@@ -399,7 +400,8 @@ Status fieldpart_narrow(const ZoneField *field, PartPool *pool, const FieldPart 
 }
 
 /* Where the sum over a group is largest; values[] are those of the part's terms. */
-static FieldValue largest_group(const PartPool *pool, const FieldPart *part, const double *values)
+static FieldValue largest_group(const LocalFieldPool *pool, const LocalField *part,
+                                const double *values)
 {
     FieldValue best = {.phi = 0};
     for (uint32_t g = 0; g < part->n_groups; g++) {
@@ -411,17 +413,17 @@ static FieldValue largest_group(const PartPool *pool, const FieldPart *part, con
     return best;
 }
 
-FieldValue fieldpart_value(const ZoneField *field, const PartPool *pool, const FieldPart *part,
-                           Vec3 x)
+FieldValue localfield_value(const JunctionField *field, const LocalFieldPool *pool,
+                            const LocalField *part, Vec3 x)
 {
-    double values[MOST_PART_TERMS], sum = 0;
+    double values[MAX_LOCAL_TERMS], sum = 0;
     const uint32_t *terms = &pool->terms[part->first_term];
     for (uint32_t i = 0; i < part->n_terms && part->n_groups == 1; i++)
-        sum += zoneterm_value(&field->terms[terms[i]], x);
+        sum += potentialterm_value(&field->terms[terms[i]], x);
     if (part->n_groups < 2)
         return (FieldValue){.phi = sum};
     for (uint32_t i = 0; i < part->n_terms; i++)
-        values[i] = zoneterm_value(&field->terms[terms[i]], x);
+        values[i] = potentialterm_value(&field->terms[terms[i]], x);
     return largest_group(pool, part, values);
 }
 
@@ -432,7 +434,7 @@ typedef struct GradientSum {
     uint32_t largest_term;
 } GradientSum;
 
-static inline void add_term(GradientSum *sum, const ZoneTerm *term, uint32_t number,
+static inline void add_term(GradientSum *sum, const PotentialTerm *term, uint32_t number,
                             const TermPlace *place, double value)
 {
     if (value == 0)
@@ -446,11 +448,11 @@ static inline void add_term(GradientSum *sum, const ZoneTerm *term, uint32_t num
 }
 
 /* Of many groups the values tell which one's gradient it is. */
-static FieldValue gradient_of_largest(const ZoneField *field, const PartPool *pool,
-                                      const FieldPart *part, Vec3 x, Vec3 *gradient)
+static FieldValue gradient_of_largest(const JunctionField *field, const LocalFieldPool *pool,
+                                      const LocalField *part, Vec3 x, Vec3 *gradient)
 {
-    double values[MOST_PART_TERMS];
-    TermPlace places[MOST_PART_TERMS];
+    double values[MAX_LOCAL_TERMS];
+    TermPlace places[MAX_LOCAL_TERMS];
     const uint32_t *terms = &pool->terms[part->first_term];
     GradientSum sum = {.largest = 0};
     for (uint32_t i = 0; i < part->n_terms; i++) {
@@ -463,25 +465,25 @@ static FieldValue gradient_of_largest(const ZoneField *field, const PartPool *po
         if (group[i / 64] >> i % 64 & 1)
             add_term(&sum, &field->terms[terms[i]], terms[i], &places[i], values[i]);
     *gradient = sum.gradient;
-    best.largest = sum.largest_term;
+    best.largest_term = sum.largest_term;
     return best;
 }
 
 /* A lone group, as most parts have, holds all terms. */
-FieldValue fieldpart_gradient(const ZoneField *field, const PartPool *pool, const FieldPart *part,
-                              Vec3 x, Vec3 *gradient)
+FieldValue localfield_gradient(const JunctionField *field, const LocalFieldPool *pool,
+                               const LocalField *part, Vec3 x, Vec3 *gradient)
 {
     const uint32_t *terms = &pool->terms[part->first_term];
     GradientSum sum = {.largest = 0};
     if (part->n_groups > 1)
         return gradient_of_largest(field, pool, part, x, gradient);
     for (uint32_t i = 0; i < part->n_terms && part->n_groups == 1; i++) {
-        const ZoneTerm *term = &field->terms[terms[i]];
+        const PotentialTerm *term = &field->terms[terms[i]];
         TermPlace place = place_in(term, x);
         add_term(&sum, term, terms[i], &place, value_at(term, &place));
     }
     *gradient = sum.gradient;
-    return (FieldValue){.phi = sum.phi, .largest = sum.largest_term};
+    return (FieldValue){.phi = sum.phi, .largest_term = sum.largest_term};
 }
 
 double field_height(double phi)

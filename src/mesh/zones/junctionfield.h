@@ -1,5 +1,5 @@
-/* The field of a junction zone, and the part of it that matters in a ball: the largest, over the
- * zone's nodes, of the sum of the terms of the node's group. */
+/* The potential field of a junction region, and the local part of it that matters in a ball. Each
+ * node of the region has a group of terms. The field is the largest of the groups' sums. */
 #ifndef CORCAST_MESH_ZONES_JUNCTIONFIELD_H
 #define CORCAST_MESH_ZONES_JUNCTIONFIELD_H
 
@@ -7,101 +7,112 @@
 #include "scene/scene.h"
 #include <stdint.h>
 
-/* A term of the potential, prepared: lengths times k are in units of radius / sqrt2. Of a round
- * body a term is exp(-(k d)^2), d being the distance from the segment itself: at FIELD_LEVEL a
- * cylinder with balls at its ends. */
-typedef struct ZoneTerm {
-    Vec3 a, axis;    /* from a on; unit */
-    double k;        /* sqrt2 / radius, 1/mm */
-    double length_k; /* of the segment, times k */
+/* One segment's term of the potential, with precomputed constants. A length times k is a length in
+ * units of radius / sqrt 2. The term of a BODY_ROUND segment is exp(-(k d)^2), where d is the
+ * distance to the segment: its level set at FIELD_LEVEL is a capsule of the segment's radius. */
+typedef struct PotentialTerm {
+    Vec3 a, axis;    /* the segment's first end, and the unit direction from there */
+    double k;        /* sqrt 2 / radius, 1/mm */
+    double length_k; /* length of the segment, times k */
     double radius_mm;
-    uint32_t segment; /* of the tree */
-    uint16_t arm;     /* of the zone, that the term is of, or NO_ARM */
-    bool is_round;
-} ZoneTerm;
+    uint32_t segment; /* index of the segment in the tree */
+    uint16_t stub;    /* index of the branch stub in the region, or NO_STUB */
+    bool is_round;    /* the tree's body is BODY_ROUND */
+} PotentialTerm;
 
-#define NO_ARM UINT16_MAX
+#define NO_STUB UINT16_MAX
 
-/* The term of a segment that is no arm. */
-ZoneTerm zoneterm_of(Vec3 a, Vec3 b, double radius_mm, uint32_t segment, VesselBody body);
-/* The term at x, in [0, 1]. */
-double zoneterm_value(const ZoneTerm *term, Vec3 x);
+/* Returns the term of a segment that is not a branch stub. */
+PotentialTerm potentialterm_make(Vec3 a, Vec3 b, double radius_mm, uint32_t segment,
+                                 VesselBody body);
+/* Returns the term's value at x, in [0, 1]. */
+double potentialterm_value(const PotentialTerm *term, Vec3 x);
 
-/* Of the terms of one zone: groups[i] lists the numbers of those that blend at its i-th node; of a
- * round body none blend, and each is a group. */
-typedef struct ZoneField {
-    ZoneTerm *terms;
+/* The terms of one junction region, and their groups. Group i holds the terms that blend at the
+ * region's i-th node. BODY_ROUND terms do not blend: each is a group of its own. */
+typedef struct JunctionField {
+    PotentialTerm *terms;
     uint32_t n_terms;
-    uint32_t *first, *members; /* of group g: members[first[g] .. first[g + 1]) */
+    uint32_t *first, *members; /* group g has the terms members[first[g] .. first[g + 1]) */
     uint32_t n_groups;
-} ZoneField;
+} JunctionField;
 
-/* Terms and groups that matter in a ball; places in a PartPool. A group is a set of the part's
- * terms, `words` words of bits. Of few groups none is a subset of another. */
-typedef struct FieldPart {
+/* The terms and groups that matter in a ball, as offsets into a LocalFieldPool. A group is a bit
+ * set over the local terms, `words` 64-bit words long. localfield_narrow removes a group that is a
+ * subset of another, but stops comparing when it has 256 groups. */
+typedef struct LocalField {
     uint32_t first_term, n_terms, first_group, n_groups, words;
-} FieldPart;
+} LocalField;
 
-/* A term of a part that is being narrowed. */
-typedef struct TermWork {
-    size_t place; /* in the wider part */
+/* Bounds of one term, while a local field is narrowed. */
+typedef struct TermBounds {
+    size_t index; /* of the term in the wider local field */
     double upper, lower;
-} TermWork;
+} TermBounds;
 
-typedef struct PartPool {
+/* The storage of local fields, used as a stack. Zero it before first use. */
+typedef struct LocalFieldPool {
     uint32_t *terms;
     uint64_t *groups;
-    TermWork *work;
+    TermBounds *work;
     size_t work_capacity;
     size_t n_terms, n_groups, term_capacity, group_capacity;
-} PartPool;
+} LocalFieldPool;
 
-void partpool_release(PartPool *pool);
+void localfieldpool_release(LocalFieldPool *pool);
 
-/* Of a part whose field is asked for. */
-enum { MOST_PART_TERMS = 2048 };
+/* Maximum number of terms of a local field that is evaluated. Evaluation keeps one value per term
+ * on the stack, so callers must check the number first. */
+enum { MAX_LOCAL_TERMS = 2048 };
 
-/* STATUS_INFEASIBLE, saying that a part has more. */
-Status zonefield_refuse(Err *err);
+/* Sets the error "more than MAX_LOCAL_TERMS segments" and returns STATUS_INFEASIBLE. */
+Status localfield_refuse(Err *err);
 
-/* All terms and groups of a field, put into the pool. */
-MUST_CHECK Status fieldpart_all(const ZoneField *field, PartPool *pool, FieldPart *out, Err *err);
-/* A copy of a part of `from` in `to`. */
-MUST_CHECK Status fieldpart_copy(const PartPool *from, const FieldPart *part, PartPool *to,
-                                 FieldPart *out, Err *err);
+/* Appends all terms and groups of a field to the pool. */
+MUST_CHECK Status localfield_all(const JunctionField *field, LocalFieldPool *pool, LocalField *out,
+                                 Err *err);
+/* Appends a copy of a local field of the pool `from` to the pool `to`. */
+MUST_CHECK Status localfield_copy(const LocalFieldPool *from, const LocalField *local,
+                                  LocalFieldPool *to, LocalField *out, Err *err);
 
-/* What bounds the field in a ball. */
-typedef struct PartBounds {
-    double lower, upper;     /* of the field */
-    double all;              /* of the sum of all terms, from above */
-    double largest;          /* of the largest term, from above */
-    uint32_t largest_term;   /* number of that term in the field */
-    double thinnest, widest; /* radii of terms that may exceed a tenth of the level, mm */
-    bool parted;             /* two such terms do not blend: no group holds both */
-    double crease; /* of a round body: how much the normals of walls that may pass differ at most */
-} PartBounds;
+/* Bounds on the field in a ball. */
+typedef struct FieldBounds {
+    double lower, upper;   /* of the field */
+    double sum_upper;      /* upper bound of the sum of all terms */
+    double largest_upper;  /* upper bound of the largest term */
+    uint32_t largest_term; /* index in the field of the term with that bound */
+    /* Radii of the terms that may exceed FIELD_LEVEL / 10. Without such a term, HUGE_VAL and 0. */
+    double min_radius_mm, max_radius_mm;
+    bool has_unblended_pair;      /* two such terms share no group; false for BODY_ROUND */
+    double max_normal_difference; /* BODY_ROUND: maximum of |n1 - n2| over the unit normals of
+                                   * surfaces that may meet in the ball; else 0 */
+} FieldBounds;
 
-/* The part of `part` that matters in the ball: terms that may exceed 10^-5 there; and what bounds
- * them in the smaller ball of `inner_mm` about the same centre. Put on top of the same pool. */
-MUST_CHECK Status fieldpart_narrow(const ZoneField *field, PartPool *pool, const FieldPart *part,
-                                   Vec3 center, double radius_mm, double inner_mm, FieldPart *out,
-                                   PartBounds *bounds, Err *err);
+/* Finds the terms of `local` that may exceed 1e-5 in the ball of radius_mm about `center`, and
+ * appends them, with their groups, to the pool as *out. Sets *bounds for the concentric ball of
+ * radius inner_mm. */
+MUST_CHECK Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool,
+                                    const LocalField *local, Vec3 center, double radius_mm,
+                                    double inner_mm, LocalField *out, FieldBounds *bounds,
+                                    Err *err);
 
-/* The field at a place. */
+/* The field at a point. */
 typedef struct FieldValue {
     double phi;
-    uint32_t group;   /* where the sum is largest, of the part */
-    uint32_t largest; /* number in the field of that group's largest term */
+    uint32_t group;        /* index of the local group with the largest sum */
+    uint32_t largest_term; /* index in the field of that group's largest term; set by
+                            * localfield_gradient, 0 from localfield_value */
 } FieldValue;
 
-FieldValue fieldpart_value(const ZoneField *field, const PartPool *pool, const FieldPart *part,
-                           Vec3 x);
-/* Likewise, and the gradient of the group's sum, 1/mm. */
-FieldValue fieldpart_gradient(const ZoneField *field, const PartPool *pool, const FieldPart *part,
-                              Vec3 x, Vec3 *gradient);
+/* Returns the field at x. */
+FieldValue localfield_value(const JunctionField *field, const LocalFieldPool *pool,
+                            const LocalField *local, Vec3 x);
+/* Returns the field at x. Sets *gradient to the gradient of the largest group's sum, 1/mm. */
+FieldValue localfield_gradient(const JunctionField *field, const LocalFieldPool *pool,
+                               const LocalField *local, Vec3 x, Vec3 *gradient);
 
-/* sqrt(-2 ln phi) - 2, which is linear in the distance to a lone vessel's wall: (d - r) / s, below
- * 0 inside. phi is clamped to [1e-12, 0.9]. */
+/* Returns sqrt(-2 ln phi) - 2, which is linear in the distance d to the axis of a lone vessel:
+ * (d - r) / (r / 2), below 0 inside. phi is clamped to [1e-12, 0.9]. */
 double field_height(double phi);
 
 #endif

@@ -1,101 +1,102 @@
-/* The field of a zone holds the segments with an end in it. Those that leave it are cut off, or
- * prolonged, to end a little behind the plane where their tube begins: so far that the end is not
- * felt at the plane, and not so far that it could meet something else. */
+/* The field of a region holds the segments with an end in it. A segment that leaves the region
+ * becomes a stub: it is cut off, or prolonged, to end a little behind the plane where its tube
+ * begins. That is far enough that the end does not change the field at the plane, and near enough
+ * that the stub does not meet other vessels. */
 #include "mesh/zones/junctions.h"
 
+#include "mesh/zones/nearpairs.h"
 #include <stdlib.h>
 
 typedef struct Planner {
     const VesselTree *tree;
-    const IndexLists *incident, *blending;
-    const Zones *zones;
-    uint32_t zone;
-    ZonePlan plan;
-    size_t arm_capacity, term_capacity, member_capacity, n_members;
+    const Junctions *junctions;
+    JunctionPlan plan;
+    size_t stub_capacity, term_capacity, member_capacity, n_members;
 } Planner;
 
-void zoneplan_release(ZonePlan *plan)
+void junctionplan_release(JunctionPlan *plan)
 {
     free(plan->field.terms);
     free(plan->field.first);
     free(plan->field.members);
-    free(plan->arms);
-    *plan = (ZonePlan){0};
+    free(plan->stubs);
+    *plan = (JunctionPlan){0};
 }
 
-static Status add_arm(Planner *planner, uint32_t segment, int end, Err *err)
+static Status add_stub(Planner *planner, uint32_t segment, int end, Err *err)
 {
-    ZonePlan *plan = &planner->plan;
+    JunctionPlan *plan = &planner->plan;
     const FieldSegment *self = &planner->tree->segments[segment];
-    Vec3 from = end ? self->b : self->a, to = end ? self->a : self->b;
-    Vec3 outward = vec3_normalized(vec3_sub(to, from));
-    double plane = planner->zones->plane[segment][end], radius = self->radius_mm;
-    TRY(mem_reserve(&plan->arms, &planner->arm_capacity, plan->n_arms + 1, sizeof *plan->arms,
+    Vec3 from = segment_end(self, end), outward = segment_inward(self, end);
+    double plane = planner->junctions->plane[segment][end], radius = self->radius_mm;
+    TRY(mem_reserve(&plan->stubs, &planner->stub_capacity, plan->n_stubs + 1, sizeof *plan->stubs,
                     "tubes", err));
-    ZoneTerm *term = &plan->field.terms[plan->field.n_terms++];
-    *term = zoneterm_of(from, vec3_add_scaled(from, outward, plane + ARM_TAIL * radius), radius,
-                        segment, planner->tree->body);
-    term->arm = (uint16_t)plan->n_arms;
-    plan->arms[plan->n_arms++] = (Arm){segment, end,    vec3_add_scaled(from, outward, plane),
-                                       outward, radius, planner->zones->is_close[segment]};
+    PotentialTerm *term = &plan->field.terms[plan->field.n_terms++];
+    *term = potentialterm_make(from, vec3_add_scaled(from, outward, plane + STUB_TAIL * radius),
+                               radius, segment, planner->tree->body);
+    term->stub = (uint16_t)plan->n_stubs;
+    plan->stubs[plan->n_stubs++] =
+        (BranchStub){segment, end,    vec3_add_scaled(from, outward, plane),
+                     outward, radius, planner->junctions->is_close[segment]};
     return STATUS_OK;
 }
 
-/* The segments at one node: whole ones once, at their first end. */
+/* Adds the segments at one node. A whole segment is added only at its first end. */
 static Status add_node(Planner *planner, uint32_t node, Err *err)
 {
-    ZonePlan *plan = &planner->plan;
-    const uint32_t *first = planner->incident->first;
+    JunctionPlan *plan = &planner->plan;
+    const uint32_t *first = planner->junctions->incident.first;
     TRY(mem_reserve(&plan->field.terms, &planner->term_capacity,
                     plan->field.n_terms + first[node + 1] - first[node], sizeof *plan->field.terms,
                     "terms", err));
     for (uint32_t i = first[node]; i < first[node + 1]; i++) {
-        uint32_t segment = planner->incident->items[i];
+        uint32_t segment = planner->junctions->incident.items[i];
         const FieldSegment *self = &planner->tree->segments[segment];
         int end = segment_end_at(planner->tree, segment, node);
-        if (planner->zones->is_tube[segment])
-            TRY(add_arm(planner, segment, end, err));
+        if (planner->junctions->is_tube[segment])
+            TRY(add_stub(planner, segment, end, err));
         else if (end == 0)
             plan->field.terms[plan->field.n_terms++] =
-                zoneterm_of(self->a, self->b, self->radius_mm, segment, planner->tree->body);
+                potentialterm_make(self->a, self->b, self->radius_mm, segment, planner->tree->body);
     }
     return STATUS_OK;
 }
 
 static int compare_terms(const void *a, const void *b)
 {
-    const ZoneTerm *one = a, *other = b;
+    const PotentialTerm *one = a, *other = b;
     return (one->segment > other->segment) - (one->segment < other->segment);
 }
 
-/* The number of a segment among the terms in order, or n_terms. */
-static uint32_t term_number(const ZoneField *field, uint32_t segment)
+/* Returns the index of a segment's term, or n_terms. The terms are ordered by segment. */
+static uint32_t term_index(const JunctionField *field, uint32_t segment)
 {
-    const ZoneTerm key = {.segment = segment};
-    const ZoneTerm *found = bsearch(&key, field->terms, field->n_terms, sizeof key, compare_terms);
+    const PotentialTerm key = {.segment = segment};
+    const PotentialTerm *found =
+        bsearch(&key, field->terms, field->n_terms, sizeof key, compare_terms);
     return found ? (uint32_t)(found - field->terms) : field->n_terms;
 }
 
 static Status add_group(Planner *planner, uint32_t node, Err *err)
 {
-    ZoneField *field = &planner->plan.field;
-    const uint32_t *first = planner->blending->first;
+    JunctionField *field = &planner->plan.field;
+    const uint32_t *first = planner->junctions->blending.first;
     TRY(mem_reserve(&field->members, &planner->member_capacity,
                     planner->n_members + first[node + 1] - first[node], sizeof *field->members,
                     "terms", err));
     for (uint32_t i = first[node]; i < first[node + 1]; i++) {
-        uint32_t number = term_number(field, planner->blending->items[i]);
-        if (number < field->n_terms)
-            field->members[planner->n_members++] = number;
+        uint32_t index = term_index(field, planner->junctions->blending.items[i]);
+        if (index < field->n_terms)
+            field->members[planner->n_members++] = index;
     }
     field->first[++field->n_groups] = (uint32_t)planner->n_members;
     return STATUS_OK;
 }
 
-/* Each term a group. */
+/* Makes each term a group of its own. */
 static Status add_lone_groups(Planner *planner, Err *err)
 {
-    ZoneField *field = &planner->plan.field;
+    JunctionField *field = &planner->plan.field;
     TRY(mem_calloc(&field->first, field->n_terms + 1, sizeof *field->first, "terms", err));
     TRY(mem_calloc(&field->members, field->n_terms, sizeof *field->members, "terms", err));
     for (uint32_t i = 0; i < field->n_terms; i++) {
@@ -107,7 +108,7 @@ static Status add_lone_groups(Planner *planner, Err *err)
 
 static Status add_groups(Planner *planner, const uint32_t *nodes, uint32_t n_nodes, Err *err)
 {
-    ZoneField *field = &planner->plan.field;
+    JunctionField *field = &planner->plan.field;
     if (planner->tree->body == BODY_ROUND)
         return add_lone_groups(planner, err);
     TRY(mem_calloc(&field->first, n_nodes + 1, sizeof *field->first, "nodes", err));
@@ -116,13 +117,13 @@ static Status add_groups(Planner *planner, const uint32_t *nodes, uint32_t n_nod
     return STATUS_OK;
 }
 
-Status zoneplan_make(const VesselTree *tree, const IndexLists *incident, const IndexLists *blending,
-                     const Zones *zones, uint32_t zone, ZonePlan *out, Err *err)
+Status junctionplan_make(const VesselTree *tree, const Junctions *junctions, uint32_t index,
+                         JunctionPlan *out, Err *err)
 {
-    Planner planner = {tree, incident, blending, zones, .zone = zone};
-    ZonePlan *plan = &planner.plan;
-    const uint32_t *nodes = &zones->nodes.items[zones->nodes.first[zone]];
-    uint32_t n_nodes = zones->nodes.first[zone + 1] - zones->nodes.first[zone];
+    Planner planner = {.tree = tree, .junctions = junctions};
+    JunctionPlan *plan = &planner.plan;
+    const uint32_t *nodes = &junctions->nodes.items[junctions->nodes.first[index]];
+    uint32_t n_nodes = indexlists_length(&junctions->nodes, index);
     Status status;
     for (uint32_t i = 0; i < n_nodes; i++)
         TRY_GOTO(add_node(&planner, nodes[i], err));
@@ -131,6 +132,6 @@ Status zoneplan_make(const VesselTree *tree, const IndexLists *incident, const I
     *out = *plan;
     return STATUS_OK;
 done:
-    zoneplan_release(plan);
+    junctionplan_release(plan);
     return status;
 }

@@ -1,58 +1,79 @@
-/* Where a tree is cut: junction zones, whose walls a lattice makes, and the straight tubes between
- * them. */
+/* Where a tree is cut: into junction regions and straight tubes between them.
+ *
+ * A junction region holds one or several nodes, and the parts of the segments about them. The
+ * surface of a region comes from a lattice. A tube is the part of a segment between two regions;
+ * its surface is a cylinder. A branch stub is the part of such a segment that belongs to a region:
+ * it ends at a plane across the segment, where the tube begins. */
 #ifndef CORCAST_MESH_ZONES_JUNCTIONS_H
 #define CORCAST_MESH_ZONES_JUNCTIONS_H
 
 #include "mesh/meshreport.h"
 #include "mesh/zones/junctionfield.h"
 
-#define NO_ZONE UINT32_MAX
+#define NO_JUNCTION UINT32_MAX
 
-typedef struct Zones {
-    uint32_t *zone; /* one a node; NO_ZONE: the vessel is cut off flat there */
-    uint32_t n_zones;
-    IndexLists nodes;    /* of each zone, in place of segments of nodes */
-    double (*plane)[2];  /* one a segment: where its tube begins, from either end, mm; where the end
-                          * is flat, 0 */
-    bool *is_tube;       /* one a segment; else it lies in one zone, whole */
-    bool *is_close;      /* one a segment: its planes are so near its ends that their rims are no
-                          * circles */
-    double moved;        /* how far others move the wall of a tube at most, in radii */
-    NearPair *strangers; /* near pairs without a common zone; those that overlap first */
-    size_t n_strangers, n_overlapping;
-} Zones;
+/* All arrays are owned. */
+typedef struct Junctions {
+    IndexLists incident; /* per node: the segments with an end there */
+    IndexLists blending; /* per node: the segments that blend there */
+    uint32_t *of_node;   /* per node: its region, or NO_JUNCTION if the vessel is cut off flat */
+    uint32_t n_junctions;
+    IndexLists nodes;   /* per region: its nodes */
+    double (*plane)[2]; /* per segment that is a tube: distance of its two planes from its ends, mm;
+                         * 0 at a flat end */
+    bool *is_tube;      /* per segment: it is cut into stubs and a tube; else all of it belongs to
+                         * one region */
+    bool *is_close;     /* per segment: its planes are so near its ends that the rims there are not
+                         * circles */
+    double moved;       /* maximum distance by which other vessels move a tube's surface, in units
+                         * of its radius */
+    NearPair *strangers; /* near pairs that share no region, by rising gap */
+    size_t n_strangers;
+    size_t n_overlapping; /* number of pairs in `strangers` with a gap below 0 */
+} Junctions;
 
-/* Cuts the tree. */
-MUST_CHECK Status zones_find(const VesselTree *tree, const IndexLists *incident,
-                             const IndexLists *blending, const MeshParams *params, Zones *out,
-                             Err *err);
-void zones_release(Zones *zones);
+/* Cuts the tree. The result does not depend on the number of threads.
+ *
+ * out      receives the regions; release them with junctions_release.
+ * Errors   STATUS_INPUT if the tree is too far from the origin [precision.h], STATUS_MEMORY. */
+MUST_CHECK Status junctions_find(const VesselTree *tree, const MeshParams *params, Junctions *out,
+                                 Err *err);
+void junctions_release(Junctions *junctions);
 
-/* A tube that leaves a zone: to be cut across at `at`, where `outward` (unit) leads out of the zone
- * along the axis. */
-typedef struct Arm {
+/* Finds the two segments with the smallest gap between their surfaces, among the pairs that share
+ * no node and no region.
+ *
+ * found    receives false if there is no such pair.
+ * Errors   as junctions_find.
+ * Cost     O(n log n) expected, if the vessels fill a volume evenly. */
+MUST_CHECK Status vesseltree_closest_pair(const VesselTree *tree, const MeshParams *params,
+                                          NearPair *pair, bool *found, Err *err);
+
+/* A branch stub: the surface is cut at the plane through `at` across `outward`. */
+typedef struct BranchStub {
     uint32_t segment;
-    int end; /* of the segment, that lies in the zone */
-    Vec3 at, outward;
+    int end;          /* the end of the segment, 0 or 1, that is in the region */
+    Vec3 at, outward; /* on the axis; unit vector along the axis, out of the region */
     double radius_mm;
-    bool is_close; /* the rim is no circle */
-} Arm;
+    bool is_close; /* the rim is not a circle [Junctions] */
+} BranchStub;
 
-/* What a lattice needs to know of one zone. Arms run on behind their planes by ARM_TAIL radii. */
-typedef struct ZonePlan {
-    ZoneField field;
-    Arm *arms; /* owned */
-    size_t n_arms;
-} ZonePlan;
+/* One region as the lattice needs it. */
+typedef struct JunctionPlan {
+    JunctionField field; /* a stub continues STUB_TAIL radii beyond its plane */
+    BranchStub *stubs;   /* owned */
+    size_t n_stubs;
+} JunctionPlan;
 
-#define ARM_TAIL 1.6
-/* Of the radius: how far a plane may be moved, and one of those that are close. */
+/* In units of the radius: how far a stub continues beyond its plane, so that its end does not
+ * change the field at the plane; how far a plane may be shifted; and how far if it is_close. */
+#define STUB_TAIL 1.6
 #define PLANE_MOVE 0.125
 #define CLOSE_MOVE 0.06
 
-MUST_CHECK Status zoneplan_make(const VesselTree *tree, const IndexLists *incident,
-                                const IndexLists *blending, const Zones *zones, uint32_t zone,
-                                ZonePlan *out, Err *err);
-void zoneplan_release(ZonePlan *plan);
+/* Makes the plan of the region with this index. Errors: STATUS_MEMORY. */
+MUST_CHECK Status junctionplan_make(const VesselTree *tree, const Junctions *junctions,
+                                    uint32_t index, JunctionPlan *out, Err *err);
+void junctionplan_release(JunctionPlan *plan);
 
 #endif

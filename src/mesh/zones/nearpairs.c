@@ -1,22 +1,18 @@
-/* The distance of two segments is the least of those of their ends to the other segment, unless
- * the common perpendicular of their lines meets both. */
+/* Each thread lists the pairs that it finds, so that threads need no lock; the lists are then
+ * joined and sorted, so that the order does not depend on the threads.
+ *
+ * The distance of two segments is the smallest distance of one of their four ends from the other
+ * segment, unless the common perpendicular of their lines meets both segments. */
 #include "mesh/zones/nearpairs.h"
 
-#include "mesh/proof/boxpairs.h"
 #include <stdlib.h>
 
 enum { MAX_WORKERS = 256 };
 
-typedef struct PairList {
-    NearPair *pairs;
-    size_t n, capacity;
-    Status status;
-    Err err;
-} PairList;
-
 typedef struct NearSearch {
     const VesselTree *tree;
-    PairList lists[MAX_WORKERS];
+    ARRAY(NearPair) lists[MAX_WORKERS]; /* per thread */
+    FirstFail fail;
 } NearSearch;
 
 double segment_distance_to(const FieldSegment *segment, Vec3 x)
@@ -41,18 +37,32 @@ double segments_distance(const FieldSegment *a, const FieldSegment *b)
     return fmin(least, vec3_length(apart));
 }
 
-/* Of the wall and half the gap that counts as near. */
+double segments_gap(const FieldSegment *a, const FieldSegment *b)
+{
+    return segments_distance(a, b) - a->radius_mm - b->radius_mm;
+}
+
+Box segment_box(const FieldSegment *segment, double radius_mm)
+{
+    return box_with_ball(box_with_ball(box_empty(), segment->a, radius_mm), segment->b, radius_mm);
+}
+
+FloatBox segment_floatbox(const FieldSegment *segment, double radius_mm)
+{
+    Box box = segment_box(segment, radius_mm);
+    FloatBox wide;
+    for (int axis = 0; axis < 3; axis++) {
+        wide.low[axis] = nextafterf((float)vec3_component(box.low, axis), -INFINITY);
+        wide.high[axis] = nextafterf((float)vec3_component(box.high, axis), INFINITY);
+    }
+    return wide;
+}
+
+/* Two boxes meet if the gap is below NEAR_GAP times the smaller radius. */
 static FloatBox near_box(uint32_t item, const void *context)
 {
-    const NearSearch *search = context;
-    const FieldSegment *segment = &search->tree->segments[item];
-    double reach = (1 + NEAR_GAP / 2) * segment->radius_mm;
-    Box box = box_with_ball(box_with_ball(box_empty(), segment->a, reach), segment->b, reach);
-    return (FloatBox){
-        {nextafterf((float)box.low.x, -INFINITY), nextafterf((float)box.low.y, -INFINITY),
-         nextafterf((float)box.low.z, -INFINITY)},
-        {nextafterf((float)box.high.x, INFINITY), nextafterf((float)box.high.y, INFINITY),
-         nextafterf((float)box.high.z, INFINITY)}};
+    const FieldSegment *segment = &((const NearSearch *)context)->tree->segments[item];
+    return segment_floatbox(segment, (1 + NEAR_GAP / 2) * segment->radius_mm);
 }
 
 static bool share_node(const VesselTree *tree, uint32_t a, uint32_t b)
@@ -64,17 +74,16 @@ static bool share_node(const VesselTree *tree, uint32_t a, uint32_t b)
 static void note_pair(uint32_t a, uint32_t b, int worker, void *context)
 {
     NearSearch *search = context;
-    PairList *list = &search->lists[worker];
     const FieldSegment *one = &search->tree->segments[a], *other = &search->tree->segments[b];
-    if (share_node(search->tree, a, b) || list->status != STATUS_OK)
+    Err err;
+    if (share_node(search->tree, a, b))
         return;
-    double gap = segments_distance(one, other) - one->radius_mm - other->radius_mm;
-    if (gap >= NEAR_GAP * fmin(one->radius_mm, other->radius_mm))
-        return;
-    list->status = mem_reserve(&list->pairs, &list->capacity, list->n + 1, sizeof *list->pairs,
-                               "near vessels", &list->err);
-    if (list->status == STATUS_OK)
-        list->pairs[list->n++] = (NearPair){{a, b}, gap};
+    double gap = segments_gap(one, other);
+    if (gap < NEAR_GAP * fmin(one->radius_mm, other->radius_mm))
+        firstfail_note(
+            &search->fail, 0,
+            ARRAY_PUSH(&search->lists[worker], "near vessels", &err, (NearPair){{a, b}, gap}),
+            &err);
 }
 
 static int compare_pairs(const void *a, const void *b)
@@ -84,21 +93,18 @@ static int compare_pairs(const void *a, const void *b)
     return (one[axis] > other[axis]) - (one[axis] < other[axis]);
 }
 
-/* All lists in one, in order. */
+/* Joins the lists of all threads, in order. */
 static Status gather(const NearSearch *search, NearPair **pairs, size_t *n, Err *err)
 {
     size_t total = 0;
-    for (int i = 0; i < MAX_WORKERS; i++) {
-        if (search->lists[i].status != STATUS_OK)
-            return err_set(err, search->lists[i].status, "%s", search->lists[i].err.text);
+    for (int i = 0; i < MAX_WORKERS; i++)
         total += search->lists[i].n;
-    }
     NearPair *all;
     TRY(mem_calloc(&all, total, sizeof *all, "near vessels", err));
     *n = 0;
     for (int i = 0; i < MAX_WORKERS; i++)
         for (size_t j = 0; j < search->lists[i].n; j++)
-            all[(*n)++] = search->lists[i].pairs[j];
+            all[(*n)++] = search->lists[i].items[j];
     qsort(all, total, sizeof *all, compare_pairs);
     *pairs = all;
     return STATUS_OK;
@@ -107,21 +113,28 @@ static Status gather(const NearSearch *search, NearPair **pairs, size_t *n, Err 
 Status nearpairs_find(const VesselTree *tree, int threads, NearPair **pairs, size_t *n, Err *err)
 {
     NearSearch *search;
+    Status status;
     TRY(mem_calloc(&search, 1, sizeof *search, "near vessels", err));
     search->tree = tree;
     const BoxPairs boxes = {(uint32_t)tree->n_segments, near_box, note_pair, search, threads};
-    Status status = boxpairs_find(&boxes, err);
-    if (status == STATUS_OK)
-        status = gather(search, pairs, n, err);
+    TRY_GOTO(boxpairs_find(&boxes, err));
+    TRY_GOTO(firstfail_status(&search->fail, err));
+    TRY_GOTO(gather(search, pairs, n, err));
+done:
     for (int i = 0; i < MAX_WORKERS; i++)
-        free(search->lists[i].pairs);
+        ARRAY_RELEASE(&search->lists[i]);
     free(search);
     return status;
 }
 
-Box segment_box(const FieldSegment *segment, double radius_mm)
+Box vesseltree_box(const VesselTree *tree, double margin_mm)
 {
-    return box_with_ball(box_with_ball(box_empty(), segment->a, radius_mm), segment->b, radius_mm);
+    Box box = box_empty();
+    for (size_t i = 0; i < tree->n_segments; i++) {
+        const FieldSegment *segment = &tree->segments[i];
+        box = box_union(box, segment_box(segment, segment->radius_mm + margin_mm));
+    }
+    return box;
 }
 
 Status segments_boxtree(const VesselTree *tree, BoxTree *out, Err *err)

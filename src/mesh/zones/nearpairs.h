@@ -1,21 +1,57 @@
-/* Vessels without a common node whose walls come near. */
+/* Vessels that share no node, but whose surfaces are near each other; distances of segments. */
 #ifndef CORCAST_MESH_ZONES_NEARPAIRS_H
 #define CORCAST_MESH_ZONES_NEARPAIRS_H
 
 #include "mesh/meshreport.h"
+#include "mesh/proof/boxpairs.h"
 
-/* Pairs of segments without a common node and with a gap below NEAR_GAP of the thinner radius, in
- * *pairs (owned), by rising indices. */
+/* Lists the pairs of segments that share no node and whose gap is below NEAR_GAP times the smaller
+ * radius.
+ *
+ * pairs    receives the pairs by rising indices (owned by the caller).
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status nearpairs_find(const VesselTree *tree, int threads, NearPair **pairs, size_t *n,
                                  Err *err);
 
-/* The distance of the point x from a segment, and between two segments, mm. */
-double segment_distance_to(const FieldSegment *segment, Vec3 x);
-double segments_distance(const FieldSegment *a, const FieldSegment *b);
+/* Returns the length of a segment, mm. */
+static inline double segment_length(const FieldSegment *segment)
+{
+    return vec3_distance(segment->a, segment->b);
+}
 
-/* Returns the box about a segment, `radius_mm` wider on all sides. */
+/* Returns the unit vector from a segment's first end to its second. */
+static inline Vec3 segment_axis(const FieldSegment *segment)
+{
+    return vec3_normalized(vec3_sub(segment->b, segment->a));
+}
+
+/* Returns the segment's end 0 or 1. */
+static inline Vec3 segment_end(const FieldSegment *segment, int end)
+{
+    return end ? segment->b : segment->a;
+}
+
+/* Returns the unit vector along the axis from the segment's end 0 or 1 to its other end. */
+static inline Vec3 segment_inward(const FieldSegment *segment, int end)
+{
+    return vec3_normalized(vec3_sub(segment_end(segment, !end), segment_end(segment, end)));
+}
+
+/* Returns the distance of the point x from a segment, mm. */
+double segment_distance_to(const FieldSegment *segment, Vec3 x);
+/* Returns the distance between two segments, mm. */
+double segments_distance(const FieldSegment *a, const FieldSegment *b);
+/* Returns the gap between the surfaces of two vessels, mm; below 0, they overlap. */
+double segments_gap(const FieldSegment *a, const FieldSegment *b);
+
+/* Returns the box about a segment, padded by `radius_mm`; the second rounds outwards to floats. */
 Box segment_box(const FieldSegment *segment, double radius_mm);
-/* Builds a tree of the boxes of all vessels of the tree, which must have one. STATUS_MEMORY. */
+FloatBox segment_floatbox(const FieldSegment *segment, double radius_mm);
+
+/* Returns the box about all vessels of a tree, padded by `margin_mm`. */
+Box vesseltree_box(const VesselTree *tree, double margin_mm);
+/* Builds a tree of the boxes of all vessels of the tree, which has at least one. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status segments_boxtree(const VesselTree *tree, BoxTree *out, Err *err);
 
 #endif

@@ -4,34 +4,36 @@
 
 #include "render/field/fieldkernels.h"
 #include "render/field/vessellists.h"
-#include "render/tile/viewpoint.h"
 
-/* Constant once built but for the workspaces, one a worker. */
+/* Immutable after construction, except one workspace per worker. */
 typedef struct FieldTiles FieldTiles;
 
-/* Prepares the segments of an implicit model for a camera; geometry and grid are borrowed. Nothing
- * is seen nearer than z_min mm along a ray. */
-MUST_CHECK Status fieldtiles_new(const Geometry *geometry, const Camera *camera,
-                                 const SampleGrid *grid, double z_min, int workers,
-                                 FieldTiles **out, Err *err);
+/* What a FieldTiles is made for. Geometry, camera and `hidden` are borrowed. */
+typedef struct FieldTilesParams {
+    const Geometry *geometry;
+    const Camera *camera;
+    SampleGrid grid;
+    const bool *hidden; /* per segment: not seen; NULL: none is hidden */
+    double z_min;       /* nothing is seen nearer along a ray, mm */
+    int workers;
+    RenderKernels kernels;
+} FieldTilesParams;
+
+/* Moves the segments to the camera's frame and sorts them into the rows of tiles of the grid.
+ * Errors: STATUS_MEMORY. */
+MUST_CHECK Status fieldtiles_new(const FieldTilesParams *params, FieldTiles **out, Err *err);
 void fieldtiles_free(FieldTiles *tiles);
 
-/* Rows of tiles. */
-size_t fieldtiles_rows(const FieldTiles *tiles);
-/* Tiles in a row. */
-size_t fieldtiles_columns(const FieldTiles *tiles);
+/* Makes the lists of one row of tiles in the worker's workspace, until its next call. Errors:
+ * STATUS_MEMORY. */
+MUST_CHECK Status fieldtiles_list(FieldTiles *tiles, int row, int worker, Err *err);
+/* Returns true if the tile in this column of the row has segments. */
+bool fieldtiles_is_listed(const FieldTiles *tiles, int column, int worker);
 
-/* Is shown a tile whose samples are known, none of them TILE_UNSURE. Its sample n is that of the
- * grid at (column + tile_sample_x(n), row + tile_sample_y(n)) if that is inside the grid. */
-typedef void TileVisitor(const SeenTile *seen, int worker, void *context);
-
-/* Finds the hits of one row of tiles and shows each tile to `visit`, from left to right: those only
- * whose byte in `wanted`, one a column of tiles, is not 0, or all when that is NULL. STATUS_MEMORY
- * when a workspace cannot grow. */
-MUST_CHECK Status fieldtiles_trace(FieldTiles *tiles, size_t row, int worker, const uint8_t *wanted,
-                                   TileVisitor *visit, void *context, Err *err);
-
-/* Traces with this kernel from now on, not with the fastest. */
-void fieldtiles_use_kernel(FieldTiles *tiles, FieldKernel *trace);
+/* Sets the sample positions of a tile of the row whose column, row, columns and rows are set, and
+ * its hits. seen->hits becomes `hits`, or NULL if no sample hits anything. No sample is TILE_UNSURE
+ * then. Errors: STATUS_MEMORY. */
+MUST_CHECK Status fieldtiles_trace(FieldTiles *tiles, int worker, SeenTile *seen, TileHits *hits,
+                                   Err *err);
 
 #endif

@@ -62,8 +62,8 @@ static TileSpan rows_of(const VesselLists *lists, const FrameSegment *segment)
     if (side > 0)
         range = capsule_shadow(lists->eye.perspective, segment->a.y, segment->a.z, segment->b.y,
                                segment->b.z, segment->reach);
-    TileSpan rows = tiles_within(samples_within(range, lists->y[0], lists->per_y), lists->stray,
-                                 lists->grid.n_rows);
+    TileSpan rows =
+        tiles_within(samples_within(range, lists->y[0], lists->per_y), lists->stray, lists->n_rows);
     return tiles_common(rows, lists->listed_rows);
 }
 
@@ -103,7 +103,7 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
         out->sine = sqrt(out->axis.x * out->axis.x + out->axis.y * out->axis.y);
         out->per_sine = out->sine > 0 ? 1 / out->sine : 0;
         out->reach = reach_of(job->geometry, segment);
-        const bool hidden = lists->grid.hidden && lists->grid.hidden[i];
+        const bool hidden = lists->hidden && lists->hidden[i];
         lists->segment_rows[i] = out->reach > 0 && !hidden ? rows_of(lists, out) : NOWHERE;
     }
 }
@@ -124,32 +124,34 @@ static Status fill_lists(const Geometry *geometry, int threads, VesselLists *lis
     return STATUS_OK;
 }
 
-/* Makes room for the places of so many samples. */
-static Status begin_lists(const Viewpoint *eye, const SampleGrid *grid, VesselLists *lists,
+/* Allocates the positions of a view's samples. */
+static Status begin_lists(const Viewpoint *eye, int n_columns, int n_rows, VesselLists *lists,
                           Err *err)
 {
     lists->eye = *eye;
-    lists->grid = *grid;
-    lists->tile_columns = (grid->n_columns + TILE_SIDE - 1) / TILE_SIDE;
-    lists->tile_rows = (grid->n_rows + TILE_SIDE - 1) / TILE_SIDE;
+    lists->n_columns = n_columns;
+    lists->n_rows = n_rows;
+    lists->tile_columns = (n_columns + TILE_SIDE - 1) / TILE_SIDE;
+    lists->tile_rows = (n_rows + TILE_SIDE - 1) / TILE_SIDE;
     lists->listed_columns = (TileSpan){0, lists->tile_columns - 1};
     lists->listed_rows = (TileSpan){0, lists->tile_rows - 1};
-    TRY(mem_calloc(&lists->x, (size_t)grid->n_columns, sizeof *lists->x, "columns", err));
-    return mem_calloc(&lists->y, (size_t)grid->n_rows, sizeof *lists->y, "rows", err);
+    TRY(mem_calloc(&lists->x, (size_t)n_columns, sizeof *lists->x, "columns", err));
+    return mem_calloc(&lists->y, (size_t)n_rows, sizeof *lists->y, "rows", err);
 }
 
 Status vessellists_make(const Geometry *geometry, const Camera *camera, const SampleGrid *grid,
                         int threads, VesselLists *lists, Err *err)
 {
     const Viewpoint eye = viewpoint_of_camera(camera);
+    const double spacing = 1.0 / grid->side;
     double width = vec3_length(camera->right), height = vec3_length(camera->up);
-    TRY(begin_lists(&eye, grid, lists, err));
+    TRY(begin_lists(&eye, grid->n_columns, grid->n_rows, lists, err));
     for (int i = 0; i < grid->n_columns; i++)
-        lists->x[i] = ((grid->columns[i] + 0.5) / camera->width - 0.5) * width;
+        lists->x[i] = ((samplegrid_at(grid, i) + 0.5) / camera->width - 0.5) * width;
     for (int j = 0; j < grid->n_rows; j++)
-        lists->y[j] = (0.5 - (grid->rows[j] + 0.5) / camera->height) * height;
-    lists->per_x = camera->width / (grid->spacing * width);
-    lists->per_y = -camera->height / (grid->spacing * height);
+        lists->y[j] = (0.5 - (samplegrid_at(grid, j) + 0.5) / camera->height) * height;
+    lists->per_x = camera->width / (spacing * width);
+    lists->per_y = -camera->height / (spacing * height);
     return fill_lists(geometry, threads, lists, err);
 }
 
@@ -157,8 +159,7 @@ Status vessellists_of_light(const Geometry *geometry, const LightView *view, int
                             VesselLists *lists, Err *err)
 {
     const int samples = view->tiles * TILE_SIDE;
-    const SampleGrid grid = {.n_columns = samples, .n_rows = samples, .spacing = 1};
-    TRY(begin_lists(&view->eye, &grid, lists, err));
+    TRY(begin_lists(&view->eye, samples, samples, lists, err));
     for (int i = 0; i < samples; i++) {
         lists->x[i] = view->left + i * view->step_x;
         lists->y[i] = view->top + i * view->step_y;
@@ -210,7 +211,7 @@ static TileSpan columns_of(const VesselLists *lists, const FrameSegment *segment
     Interval range =
         capsule_shadow(lists->eye.perspective, first.x, first.z, last.x, last.z, segment->reach);
     TileSpan columns = tiles_within(samples_within(range, lists->x[0], lists->per_x), lists->stray,
-                                    lists->grid.n_columns);
+                                    lists->n_columns);
     return tiles_common(columns, lists->listed_columns);
 }
 
@@ -220,7 +221,7 @@ Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns, 
     const uint32_t *segments = lists->rows.items + lists->rows.offsets[row];
     size_t n = lists->rows.offsets[row + 1] - lists->rows.offsets[row];
     int first = (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
-    last = last < lists->grid.n_rows ? last : lists->grid.n_rows - 1;
+    last = last < lists->n_rows ? last : lists->n_rows - 1;
     double more = lists->stray / lists->per_y;
     for (size_t i = 0; i < n; i++)
         columns[i] = columns_of(lists, &lists->segments[segments[i]], lists->y[last] + more,

@@ -3,17 +3,9 @@
 #define CORCAST_RENDER_VESSELLISTS_H
 
 #include "render/field/fieldterms.h"
-#include "render/light/lightview.h"
 #include "render/tile/interval.h"
-
-/* Where rays go through the picture: every pair of a column and a row, in pixels as camera_ray
- * takes them. Both ascend in steps of `spacing`. */
-typedef struct SampleGrid {
-    const double *columns, *rows; /* borrowed */
-    int n_columns, n_rows;
-    double spacing;
-    const bool *hidden; /* per segment: not seen; NULL: none is hidden. Borrowed. */
-} SampleGrid;
+#include "render/light/lightview.h"
+#include "render/tile/samplegrid.h"
 
 /* Numbers sorted into bins, ascending in each: those of bin i are
  * items[offsets[i] .. offsets[i + 1]). */
@@ -26,10 +18,11 @@ typedef struct BinLists {
 /* Constant once built. */
 typedef struct VesselLists {
     Viewpoint eye;
-    SampleGrid grid;
-    double *x, *y;       /* of the grid's columns and rows, in the camera's plane */
-    double per_x, per_y; /* samples in a unit there, per_y below 0 */
-    double stray;        /* samples are up to so much off their places, in samples */
+    const bool *hidden;    /* per segment: not seen; NULL: none is hidden. Borrowed; set before. */
+    int n_columns, n_rows; /* samples */
+    double *x, *y;         /* of the grid's columns and rows, in the camera's plane */
+    double per_x, per_y;   /* samples in a unit there, per_y below 0 */
+    double stray;          /* samples are up to so much off their places, in samples */
     int tile_columns, tile_rows;
     TileSpan listed_columns, listed_rows; /* of tiles: those whose lists are not left empty */
     FrameSegment *segments;
@@ -40,7 +33,7 @@ typedef struct VesselLists {
 } VesselLists;
 
 /* Moves the segments to the frame of the camera and sorts them into the rows of tiles of the grid.
- * *lists is zeroed before, and the caller's even when this fails. STATUS_MEMORY. */
+ * *lists is zeroed before except `hidden`, and the caller's even when this fails. STATUS_MEMORY. */
 MUST_CHECK Status vessellists_make(const Geometry *geometry, const Camera *camera,
                                    const SampleGrid *grid, int threads, VesselLists *lists,
                                    Err *err);

@@ -272,7 +272,7 @@ static int order_points(const void *a, const void *b)
 /* Whether a cylinder's end is neither in a ball nor a joint's. */
 static bool ends_in_disc(const InkDrawing *ink, Vec3 end)
 {
-    return ink->geometry->model != SCENE_ROUNDED &&
+    return !model_has(ink->geometry->model, MODEL_ROUND_ENDS) &&
            !bsearch(&end, ink->joined, ink->n_joined, sizeof end, order_points);
 }
 

@@ -11,7 +11,7 @@ typedef struct InkParams {
     int threads;     /* 0: all processors */
 } InkParams;
 
-/* Draws the models of cylinders, joints and balls (SCENE_CYLINDERS, SCENE_JOINED, SCENE_ROUNDED) in
+/* Draws the models of cylinders, joints and balls (MODEL_PRIMITIVES) in
  * *strokes (owned). A vessel wider on paper than two lines is drawn by its outlines, inside it, so
  * that their outer edges are the vessel's true edges; a thinner one by one line as wide as the
  * vessel. What lies behind or inside a vessel is left out, to a hundredth of a line; hidden parts

@@ -237,6 +237,7 @@ RASTER_FN void resolve_block(const RasterTile *tile, RasterHits *hits, int block
     int first = block * LANES;
     LaneMask items = load_items(&hits->item[first]), seen = items != (int32_t)RASTER_NOTHING;
     lanes_to_bytes(&surface->state[first], seen); /* TILE_HIT or TILE_MISS */
+    lanes_to_doubles(&surface->z[first], lanes_load(&hits->z[first]), tile->z_middle);
     store_items(&surface->segment[first], items & (int32_t)RASTER_NUMBER);
     LaneMask open = seen & ((items & (int32_t)~RASTER_NUMBER) != 0);
     for (uint32_t left = lanes_bits(open); left;) {

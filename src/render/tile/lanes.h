@@ -228,6 +228,20 @@ LANE_FN Lanes lanes_of_doubles(const double *values, double more)
     return lanes;
 }
 
+/* Stores the sums, in double precision, of a number and each lane. */
+LANE_FN void lanes_to_doubles(double *to, Lanes lanes, double more)
+{
+    enum { HALF = LANES / 2 };
+    typedef double Doubles __attribute__((vector_size(8 * HALF)));
+    typedef float Floats __attribute__((vector_size(4 * HALF)));
+    Floats halves[2];
+    __builtin_memcpy(halves, &lanes, sizeof lanes);
+    for (int half = 0; half < 2; half++) {
+        Doubles wide = __builtin_convertvector(halves[half], Doubles) + more;
+        __builtin_memcpy(to + half * HALF, &wide, sizeof wide);
+    }
+}
+
 typedef uint8_t LaneBytes __attribute__((vector_size(LANES)));
 
 /* Bytes that are 1 where true and 0 where false. */

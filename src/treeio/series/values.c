@@ -7,6 +7,7 @@
  * sorted by segment and time, what is missing or stands twice is beside its neighbours. */
 #include "treeio/series/values.h"
 
+#include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include <math.h>
 #include <stdlib.h>
@@ -533,7 +534,7 @@ static Status read_csv(ValuesReader *reader, Err *err)
     char *bytes = NULL;
     size_t size = 0;
     TRY(file_read(reader->path, &form, &bytes, &size, err));
-    Status status = lines_read(reader->path, bytes, read_line, reader, err);
+    Status status = lines_read(reader->path, bytes, size, read_line, reader, err);
     if (status == STATUS_OK)
         status = fill_times(reader, err);
     if (status == STATUS_OK && !reader->first)

@@ -1,180 +1,105 @@
-/* Networks of Amira and Avizo (.am): a header of words that says how many elements of each kind
- * there are and which block holds which of their numbers, then the blocks, "@1" and so on, each on
- * a line of its own, in text, as packed numbers, or as these compressed by HxByteRLE (a byte n
- * above 127: the next n - 128 bytes as they are; else: the next byte n times) or HxZip (zlib).
+/* Networks of Amira and Avizo (.am): a header of words that states how many elements there are of each
+ * kind, and which block holds which of their numbers. The blocks "@1" and so on follow, each after a
+ * line of its own: as text, as packed numbers, or as numbers compressed by HxByteRLE (a byte n above
+ * 127: the next n - 128 bytes as they are; otherwise: the next byte n times) or HxZip (zlib).
  *
- * The ContentType says how elements are connected; all become polylines of what VTK's files have:
- * HxSpatialGraph: the points of an edge run from its first vertex to its second, both included,
- * edge after edge; edges that share a vertex are joined. Numbers of vertices go to the points that
- *     lie there.
+ * The ContentType says how elements are connected. All networks become polylines of VtkData.
+ * HxSpatialGraph: the points of an edge run from its first vertex to its second, both included, edge
+ *     after edge. Edges that share a vertex are joined. Numbers of a vertex go to the points there.
  * HxLineSet: LineIdx lists the vertices of a line, and -1 ends it.
- * SkeletonGraph: NeighbourList lists the neighbours of each vertex, NeighbourCount of them; Origins
+ * SkeletonGraph: NeighbourList lists the neighbours of each vertex, NeighbourCount of them. Origins
  *     are roots. */
+#include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
+#include "treeio/vtk/vtpbytes.h"
 
 #include <ctype.h>
-#include <libdeflate.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 /* Kinds of elements. LINES have the entries of LineIdx, NEIGHBOURS those of NeighbourList. */
-typedef enum Element {
-    VERTEX,
-    EDGE,
-    POINT,
-    VERTICES,
-    LINES,
-    NEIGHBOURS,
-    ORIGINS,
-    ELEMENTS
-} Element;
+enum { VERTEX, EDGE, POINT, VERTICES, LINES, NEIGHBOURS, ORIGINS, ELEMENTS };
 
-/* Without regard to case. */
-static const char *const element_names[] = {
-    [VERTEX] = "VERTEX", [EDGE] = "EDGE",       [POINT] = "POINT",          [VERTICES] = "Vertices",
-    [LINES] = "Lines",   [ORIGINS] = "Origins", [NEIGHBOURS] = "Neighbours"};
+static const char *const element_names[ELEMENTS] = {
+    "VERTEX", "EDGE", "POINT", "Vertices", "Lines", "Neighbours", "Origins"};
 
 /* How elements are connected. */
-typedef enum Content { NO_NETWORK, SPATIAL_GRAPH, LINE_SET, SKELETON, CONTENTS } Content;
+typedef enum AmiraContent { SPATIAL_GRAPH, LINE_SET, SKELETON, CONTENTS } AmiraContent;
 
-static const char *const content_names[] = {[NO_NETWORK] = "",
-                                            [SPATIAL_GRAPH] = "HxSpatialGraph",
-                                            [LINE_SET] = "HxLineSet",
-                                            [SKELETON] = "SkeletonGraph"};
+static const char *const content_names[CONTENTS] = {"HxSpatialGraph", "HxLineSet", "SkeletonGraph"};
 
-typedef enum Packing { PLAIN, BYTE_RLE, ZIP } Packing;
+typedef enum AmiraPacking { BYTE_RLE, ZIP, PLAIN } AmiraPacking;
 
-static const char *const packing_names[] = {[BYTE_RLE] = "HxByteRLE", [ZIP] = "HxZip"};
+static const char *const packing_names[PLAIN] = {"HxByteRLE", "HxZip"};
 
-enum { N_PACKINGS = sizeof packing_names / sizeof *packing_names };
+static const CursorSyntax syntax = {
+    .between = " \t\r\n\v\f,=", .alone = "{}()", .comment = '#', .has_quotes = true};
 
-/* Amira's types of numbers, as legacy VTK calls them. */
-static const struct {
-    const char *name, *legacy;
-} types[] = {{"float", "float"}, {"double", "double"},         {"int", "int"},
-             {"short", "short"}, {"ushort", "unsigned_short"}, {"byte", "unsigned_char"},
-             {"long", "long"}};
-
-enum { N_TYPES = sizeof types / sizeof *types, MOST_COMPONENTS = 16 };
-
-/* Numbers of all vertices, edges or points. */
-typedef struct Field {
-    Element of;
+/* Numbers of all elements of a kind. */
+typedef struct AmiraField {
+    size_t of;  /* index of the kind of elements */
     char *name; /* owned */
-    const VtkType *type;
+    VtkType type;
     size_t components;
     long long block;
-    Packing packing;
-    size_t packed; /* bytes in the file, when packed */
-    double *value; /* owned; NULL until its block has been read */
-} Field;
+    AmiraPacking packing;
+    size_t packed; /* bytes in the file if the block is packed */
+    double *value; /* owned; NULL until the block has been read */
+} AmiraField;
 
-typedef struct Reader {
+typedef struct AmiraReader {
     Graph *graph;
-    char *bytes, *at, *end; /* of the whole file */
+    Cursor cursor;
+    size_t size; /* of the file */
     bool is_text, is_big_endian;
-    Content content;
+    AmiraContent content;
     char content_name[40];
     bool has_count[ELEMENTS];
     size_t count[ELEMENTS];
-    Field *field;
-    size_t n_fields, capacity;
-    double taken; /* bytes that the numbers of all blocks take so far */
+    ARRAY(AmiraField) fields;
+    double taken; /* bytes of the numbers of all blocks so far */
     VtkData data;
-} Reader;
+} AmiraReader;
 
-static void release(Reader *reader)
+static void release(AmiraReader *reader)
 {
-    for (size_t i = 0; i < reader->n_fields; i++) {
-        free(reader->field[i].name);
-        free(reader->field[i].value);
+    for (size_t i = 0; i < reader->fields.n; i++) {
+        free(reader->fields.items[i].name);
+        free(reader->fields.items[i].value);
     }
-    free(reader->field);
+    ARRAY_RELEASE(&reader->fields);
     vtk_release(&reader->data);
 }
 
-/* Puts file and line in front of the sentence. */
-static Status blame(const Reader *reader, Status status, Err *err)
+/* ---- header ---------------------------------------------------------------------------------- */
+
+static void take_unit(Graph *graph, const char *name)
 {
-    size_t line = 1;
-    for (const char *at = reader->bytes; at < reader->at; at++)
-        line += *at == '\n';
-    if (status == STATUS_INPUT)
-        err_prefix(err, "%s:%zu: ", reader->graph->name, line);
-    return status;
-}
-
-/* ---- header ---- */
-
-enum { WORD_SIZE = 256 };
-
-/* The next word of the header, which ends at `end`: a text in quotes, one of { } ( ) or what stands
- * between blanks, commas, '=' and these. False at the end. */
-static bool next_word(Reader *reader, const char *end, char word[WORD_SIZE])
-{
-    static const char alone[] = "{}()", between[] = " \t\r\n\v\f,=";
-    size_t n = 0;
-    while (reader->at < end && (strchr(between, *reader->at) || *reader->at == '#'))
-        if (*reader->at++ == '#')
-            while (reader->at < end && *reader->at != '\n')
-                reader->at++;
-    if (reader->at == end)
-        return false;
-    bool quoted = *reader->at == '"';
-    if (quoted)
-        reader->at++;
-    const char *from = reader->at;
-    while (reader->at < end && (quoted ? *reader->at != '"'
-                                       : *reader->at != '\0' && !strchr(alone, *reader->at) &&
-                                             !strchr(between, *reader->at) && *reader->at != '"'))
-        reader->at++;
-    if (reader->at == from && !quoted)
-        reader->at++;
-    n = (size_t)(reader->at - from);
-    n = n < WORD_SIZE ? n : WORD_SIZE - 1;
-    memcpy(word, from, n);
-    word[n] = '\0';
-    reader->at += quoted && reader->at < end;
-    return true;
-}
-
-static bool is_word(Reader *reader, const char *end, const char *expected)
-{
-    char word[WORD_SIZE];
-    char *before = reader->at;
-    if (next_word(reader, end, word) && strcmp(word, expected) == 0)
-        return true;
-    reader->at = before;
-    return false;
-}
-
-static void take_unit(Graph *graph, const char *said)
-{
-    bool is_micro = strcmp(said, "\xc2\xb5m") == 0 || strcmp(said, "\xb5m") == 0;
+    bool is_micro = strcmp(name, "\xc2\xb5m") == 0 || strcmp(name, "\xb5m") == 0;
     for (int unit = 0; unit < LENGTH_UNITS; unit++)
-        if (strcmp(is_micro ? "um" : said, length_unit_names[unit]) == 0) {
+        if (strcmp(is_micro ? "um" : name, length_unit_names[unit]) == 0) {
             graph->unit = (LengthUnit)unit;
             graph->unit_said = true;
         }
 }
 
-static void set_content(Reader *reader, const char *name)
+static void set_content(AmiraReader *reader, const char *name)
 {
+    size_t content = keyword_find(name, content_names, CONTENTS);
     snprintf(reader->content_name, sizeof reader->content_name, "%.39s", name);
-    for (int content = SPATIAL_GRAPH; content < CONTENTS; content++)
-        if (strcasecmp(name, content_names[content]) == 0)
-            reader->content = (Content)content;
+    if (content < CONTENTS)
+        reader->content = (AmiraContent)content;
 }
 
-/* What stands in braces behind "Parameters" and the like. */
-static Status read_parameters(Reader *reader, const char *end, Err *err)
+/* Reads what stands in braces after "Parameters" and the like. */
+static Status read_parameters(AmiraReader *reader, Err *err)
 {
-    char word[WORD_SIZE], last[WORD_SIZE] = "";
+    char word[CURSOR_WORD], last[CURSOR_WORD] = "";
     for (size_t depth = 1; depth > 0; memcpy(last, word, sizeof last)) {
-        if (!next_word(reader, end, word))
+        if (!cursor_word(&reader->cursor, word))
             return err_set(err, STATUS_INPUT, "a brace of the header is not closed");
         depth += strcmp(word, "{") == 0;
         depth -= strcmp(word, "}") == 0;
@@ -186,62 +111,50 @@ static Status read_parameters(Reader *reader, const char *end, Err *err)
     return STATUS_OK;
 }
 
-/* ELEMENTS for another word. */
-static Element element_called(const char *name)
+/* Reads "define VERTEX 3" after "define", or "3" after "nVertices". */
+static Status read_count(AmiraReader *reader, const char *name, Err *err)
 {
-    int of = 0;
-    while (of < ELEMENTS && strcasecmp(name, element_names[of]) != 0)
-        of++;
-    return (Element)of;
-}
-
-/* Reads "define VERTEX 3" behind "define", or "3" behind "nVertices". */
-static Status read_count(Reader *reader, const char *end, const char *name, Err *err)
-{
-    char count[WORD_SIZE];
-    Element of = element_called(name);
+    char count[CURSOR_WORD];
+    size_t of = keyword_find(name, element_names, ELEMENTS);
     int32_t number;
-    if (!next_word(reader, end, count))
+    if (!cursor_word(&reader->cursor, count))
         return err_set(err, STATUS_INPUT, "the header ends behind '%.40s'", name);
     if (of == ELEMENTS)
         return STATUS_OK;
     TRY(field_whole(name, count, 0, INT32_MAX, &number, err));
     reader->count[of] = (size_t)number;
     reader->has_count[of] = true;
-    return check_elements(name, number, (size_t)(reader->end - reader->bytes), err);
+    return check_elements(name, number, reader->size, err);
 }
 
-/* "float[3]" or "int". */
-static Status read_type(Field *field, const char *word, Err *err)
+/* Reads "float[3]" or "int". */
+static Status read_type(AmiraField *field, const char *word, Err *err)
 {
+    enum { MAX_COMPONENTS = 16 };
     size_t length = strcspn(word, "[");
     long long components = 1;
-    char number[WORD_SIZE];
+    char number[CURSOR_WORD];
     snprintf(number, sizeof number, "%s", word[length] ? word + length + 1 : "1]");
     number[strcspn(number, "]")] = '\0';
-    for (size_t i = 0; i < N_TYPES && !field->type; i++)
-        if (strlen(types[i].name) == length && strncasecmp(types[i].name, word, length) == 0)
-            field->type = vtk_type_of_legacy(types[i].legacy, strlen(types[i].legacy));
-    if (!field->type || !integer_parse(number, 1, MOST_COMPONENTS, &components))
+    field->type = vtk_type_called(NAMING_AMIRA, word, length);
+    if (field->type == VTK_TYPES || !integer_parse(number, 1, MAX_COMPONENTS, &components))
         return err_set(err, STATUS_INPUT, "'%.40s' is no type of numbers that is read", word);
     field->components = (size_t)components;
     return STATUS_OK;
 }
 
-/* "(HxZip,123)" behind the number of a block. */
-static Status read_packing(Reader *reader, const char *end, Field *field, Err *err)
+/* Reads "(HxZip,123)" after the number of a block. */
+static Status read_packing(Cursor *cursor, AmiraField *field, Err *err)
 {
-    char name[WORD_SIZE], bytes[WORD_SIZE];
+    char name[CURSOR_WORD], bytes[CURSOR_WORD];
     long long size = 0;
-    if (!is_word(reader, end, "("))
+    if (!cursor_take(cursor, "("))
         return STATUS_OK;
-    if (!next_word(reader, end, name) || !next_word(reader, end, bytes) ||
-        !integer_parse(bytes, 0, INT64_MAX, &size) || !is_word(reader, end, ")"))
+    if (!cursor_word(cursor, name) || !cursor_word(cursor, bytes) ||
+        !integer_parse(bytes, 0, INT64_MAX, &size) || !cursor_take(cursor, ")"))
         return err_set(err, STATUS_INPUT, "the block @%lld is packed in no way that is known",
                        field->block);
-    for (int packing = BYTE_RLE; packing < N_PACKINGS; packing++)
-        if (strcasecmp(name, packing_names[packing]) == 0)
-            field->packing = (Packing)packing;
+    field->packing = (AmiraPacking)keyword_find(name, packing_names, PLAIN);
     field->packed = (size_t)size;
     if (field->packing == PLAIN)
         return err_set(err, STATUS_INPUT,
@@ -250,122 +163,97 @@ static Status read_packing(Reader *reader, const char *end, Field *field, Err *e
     return STATUS_OK;
 }
 
-/* "{ float[3] VertexCoordinates } @1" behind "VERTEX". */
-static Status read_declaration(Reader *reader, const char *end, Element of, Err *err)
+/* Reads "{ float[3] VertexCoordinates } @1" after "VERTEX". */
+static Status read_declaration(AmiraReader *reader, size_t of, Err *err)
 {
-    char type[WORD_SIZE], name[WORD_SIZE], block[WORD_SIZE];
-    Field field = {.of = of};
-    if (!is_word(reader, end, "{") || !next_word(reader, end, type) ||
-        !next_word(reader, end, name) || !is_word(reader, end, "}") ||
-        !next_word(reader, end, block) || *block != '@' ||
+    Cursor *cursor = &reader->cursor;
+    char type[CURSOR_WORD], name[CURSOR_WORD], block[CURSOR_WORD];
+    AmiraField field = {.of = of, .packing = PLAIN};
+    if (!cursor_take(cursor, "{") || !cursor_word(cursor, type) || !cursor_word(cursor, name) ||
+        !cursor_take(cursor, "}") || !cursor_word(cursor, block) || *block != '@' ||
         !integer_parse(block + 1, 0, INT32_MAX, &field.block))
         return err_set(err, STATUS_INPUT, "a declaration is '%s { TYPE NAME } @BLOCK'",
                        element_names[of]);
     TRY(read_type(&field, type, err));
-    TRY(read_packing(reader, end, &field, err));
-    TRY(mem_reserve(&reader->field, &reader->capacity, reader->n_fields + 1, sizeof field, "arrays",
-                    err));
+    TRY(read_packing(cursor, &field, err));
+    TRY(ARRAY_RESERVE(&reader->fields, 1, "arrays", err));
     TRY(mem_strdup(&field.name, name, err));
-    reader->field[reader->n_fields++] = field;
+    reader->fields.items[reader->fields.n++] = field;
     return STATUS_OK;
 }
 
-static Status read_statement(Reader *reader, const char *end, const char *word, Err *err)
+static Status read_statement(AmiraReader *reader, const char *word, Err *err)
 {
-    char name[WORD_SIZE];
+    char name[CURSOR_WORD];
     if (strcasecmp(word, "define") == 0)
-        return next_word(reader, end, name)
-                   ? read_count(reader, end, name, err)
+        return cursor_word(&reader->cursor, name)
+                   ? read_count(reader, name, err)
                    : err_set(err, STATUS_INPUT, "the header ends behind 'define'");
-    Element of = element_called(word);
+    size_t of = keyword_find(word, element_names, ELEMENTS);
     if (of < ELEMENTS)
-        return read_declaration(reader, end, of, err);
-    if (*word == 'n' && element_called(word + 1) < ELEMENTS)
-        return read_count(reader, end, word + 1, err);
-    return is_word(reader, end, "{") ? read_parameters(reader, end, err) : STATUS_OK;
+        return read_declaration(reader, of, err);
+    if (*word == 'n' && keyword_find(word + 1, element_names, ELEMENTS) < ELEMENTS)
+        return read_count(reader, word + 1, err);
+    return cursor_take(&reader->cursor, "{") ? read_parameters(reader, err) : STATUS_OK;
 }
 
-static Status check_header(const Reader *reader, Err *err)
+static Status check_header(const AmiraReader *reader, Err *err)
 {
-    static const Element needed[CONTENTS][3] = {[SPATIAL_GRAPH] = {VERTEX, EDGE, POINT},
-                                                [LINE_SET] = {VERTICES, VERTICES, LINES},
-                                                [SKELETON] = {VERTICES, VERTICES, NEIGHBOURS}};
-    if (reader->content == NO_NETWORK)
+    static const size_t needed[CONTENTS][3] = {[SPATIAL_GRAPH] = {VERTEX, EDGE, POINT},
+                                               [LINE_SET] = {VERTICES, VERTICES, LINES},
+                                               [SKELETON] = {VERTICES, VERTICES, NEIGHBOURS}};
+    if (reader->content == CONTENTS)
         return err_set(err, STATUS_INPUT,
                        "the ContentType is '%s'; networks are HxSpatialGraph, HxLineSet or "
                        "SkeletonGraph",
                        reader->content_name);
     for (size_t k = 0; k < 3; k++) {
-        Element of = needed[reader->content][k];
+        size_t of = needed[reader->content][k];
         if (!reader->has_count[of])
             return err_set(err, STATUS_INPUT, "the header does not define %s", element_names[of]);
     }
     return STATUS_OK;
 }
 
-/* Where the first line begins that is "@" and a number; NULL when there is none. */
-static char *first_block(const Reader *reader)
+/* Returns where the first line begins that is "@" and a number, or NULL. */
+static char *first_block(const Cursor *cursor)
 {
-    for (char *at = reader->bytes; (at = memmem(at, (size_t)(reader->end - at), "\n@", 2)); at++)
+    for (char *at = cursor->start; (at = memmem(at, (size_t)(cursor->end - at), "\n@", 2)); at++)
         if (isdigit((unsigned char)at[2]))
             return at + 1;
     return NULL;
 }
 
-static Status read_header(Reader *reader, Err *err)
+static Status read_header(AmiraReader *reader, Err *err)
 {
-    char word[WORD_SIZE];
-    char *end = first_block(reader);
-    size_t length = strcspn(reader->bytes, "\n");
+    Cursor *cursor = &reader->cursor;
+    char word[CURSOR_WORD], *end_of_file = cursor->end, *end = first_block(cursor);
+    size_t length = strcspn(cursor->start, "\n");
     if (!end)
         return err_set(err, STATUS_INPUT, "the file has no block of numbers");
-    bool is_little = memmem(reader->bytes, length, "LITTLE-ENDIAN", 13) != NULL;
-    reader->is_text = memmem(reader->bytes, length, "ASCII", 5) != NULL;
+    bool is_little = memmem(cursor->start, length, "LITTLE-ENDIAN", 13) != NULL;
+    reader->is_text = memmem(cursor->start, length, "ASCII", 5) != NULL;
     reader->is_big_endian = !reader->is_text && !is_little;
-    while (next_word(reader, end, word))
-        TRY(read_statement(reader, end, word, err));
+    cursor->end = end;
+    while (cursor_word(cursor, word))
+        TRY(read_statement(reader, word, err));
     TRY(check_header(reader, err));
-    reader->at = end;
+    cursor->at = end;
+    cursor->end = end_of_file;
     return STATUS_OK;
 }
 
-/* ---- blocks ---- */
+/* ---- blocks ---------------------------------------------------------------------------------- */
 
-static size_t bytes_left(const Reader *reader)
-{
-    return (size_t)(reader->end - reader->at);
-}
-
-static Status read_text(Reader *reader, double *value, size_t n, Err *err)
-{
-    enum { NUMBER_SIZE = 400 };
-    for (size_t i = 0; i < n; i++) {
-        char number[NUMBER_SIZE];
-        while (reader->at < reader->end && isspace((unsigned char)*reader->at))
-            reader->at++;
-        const char *from = reader->at;
-        while (reader->at < reader->end && !isspace((unsigned char)*reader->at))
-            reader->at++;
-        size_t length = (size_t)(reader->at - from);
-        length = length < NUMBER_SIZE ? length : NUMBER_SIZE - 1;
-        memcpy(number, from, length);
-        number[length] = '\0';
-        if (!number_parse(number, &value[i]))
-            return err_set(err, STATUS_INPUT, "'%.40s' is no number, and %zu are to come%s", number,
-                           n - i, decimal_comma_hint(number));
-    }
-    return STATUS_OK;
-}
-
-/* False when what is packed is not exactly `size` bytes. */
-static bool unpack_rle(const char *from, size_t packed, char *to, size_t size)
+/* Unpacks run lengths. Errors: STATUS_INPUT unless they are exactly `size` bytes. */
+static Status unpack_rle(const char *from, size_t packed, char *to, size_t size, Err *err)
 {
     size_t at = 0, n = 0;
     while (at < packed) {
         unsigned char control = (unsigned char)from[at++];
         size_t count = control & 0x7f, takes = control > 0x7f ? count : 1;
         if (takes > packed - at || count > size - n)
-            return false;
+            break;
         if (control > 0x7f)
             memcpy(to + n, from + at, count);
         else
@@ -373,128 +261,114 @@ static bool unpack_rle(const char *from, size_t packed, char *to, size_t size)
         n += count;
         at += takes;
     }
-    return n == size;
+    return n == size && at == packed ? STATUS_OK
+                                     : err_set(err, STATUS_INPUT, "no runs of %zu bytes", size);
 }
 
-static Status unpack_zip(const char *from, size_t packed, char *to, size_t size, bool *fits,
-                         Err *err)
+static Status unpack(AmiraReader *reader, const AmiraField *field, size_t n, Err *err)
 {
-    struct libdeflate_decompressor *inflater = libdeflate_alloc_decompressor();
-    if (!inflater)
-        return mem_out_of("to inflate", "a block", err);
-    *fits =
-        libdeflate_zlib_decompress(inflater, from, packed, to, size, NULL) == LIBDEFLATE_SUCCESS;
-    libdeflate_free_decompressor(inflater);
-    return STATUS_OK;
-}
-
-static Status unpack(Reader *reader, const Field *field, size_t n, double *value, Err *err)
-{
-    size_t size = n * field->type->size;
+    size_t size = n * vtk_type_size(field->type);
+    const char *from = reader->cursor.at;
     char *bytes = NULL;
-    bool fits = false;
     TRY(mem_calloc(&bytes, size, 1, "bytes of a block", err));
-    Status status = STATUS_OK;
-    if (field->packing == BYTE_RLE)
-        fits = unpack_rle(reader->at, field->packed, bytes, size);
-    else
-        status = unpack_zip(reader->at, field->packed, bytes, size, &fits, err);
-    if (status == STATUS_OK && !fits)
-        status = err_set(err, STATUS_INPUT, "the %zu bytes of @%lld do not unpack to %zu",
-                         field->packed, field->block, size);
+    Status status = field->packing == BYTE_RLE
+                        ? unpack_rle(from, field->packed, bytes, size, err)
+                        : bytes_inflate(from, field->packed, bytes, size, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "the %zu bytes of @%lld are ", field->packed, field->block);
     if (status == STATUS_OK)
-        vtk_numbers(field->type, reader->is_big_endian, bytes, n, value);
+        vtk_numbers(field->type, reader->is_big_endian, bytes, n, field->value);
+    reader->cursor.at += field->packed;
     free(bytes);
     return status;
 }
 
-/* Whether as many numbers can be in the file: zlib makes at most 1032 bytes of one. */
-static Status check_claim(const Reader *reader, const Field *field, size_t n, Err *err)
+/* Checks that as many numbers can be in the file. zlib compresses by at most 1032. */
+static Status check_claim(const AmiraReader *reader, const AmiraField *field, size_t n, Err *err)
 {
-    enum { MOST_OF_RLE = 64, MOST_OF_ZIP = 1032 };
-    double needs = (double)n * (reader->is_text ? 2 : (double)field->type->size);
-    double has = (double)bytes_left(reader) + reader->is_text;
+    static const double max_ratio[] = {[BYTE_RLE] = 64, [ZIP] = 1032};
+    size_t left = cursor_left(&reader->cursor);
+    double needs = (double)n * (reader->is_text ? 2 : (double)vtk_type_size(field->type));
+    double has = (double)left + reader->is_text;
     if (field->packing != PLAIN) {
-        if (field->packed > bytes_left(reader))
+        if (field->packed > left)
             return err_set(err, STATUS_INPUT, "the file ends within the %zu bytes of @%lld",
                            field->packed, field->block);
-        has = (double)field->packed * (field->packing == ZIP ? MOST_OF_ZIP : MOST_OF_RLE);
+        has = (double)field->packed * max_ratio[field->packing];
     }
     if (needs > has)
-        return err_set(err, STATUS_INPUT, "%zu numbers of '%.40s' cannot be in the %.0f bytes left",
-                       n, field->name, (double)bytes_left(reader));
+        return err_set(err, STATUS_INPUT, "%zu numbers of '%.40s' cannot be in the %zu bytes left",
+                       n, field->name, left);
     return STATUS_OK;
 }
 
-static Status read_block(Reader *reader, Field *field, Err *err)
+static Status read_block(AmiraReader *reader, AmiraField *field, Err *err)
 {
-    size_t n = reader->count[field->of] * field->components;
+    Cursor *cursor = &reader->cursor;
+    size_t n = reader->count[field->of] * field->components, size = vtk_type_size(field->type);
     TRY(check_claim(reader, field, n, err));
     reader->taken += (double)n * sizeof *field->value;
-    TRY(check_unpacked(reader->taken, (size_t)(reader->end - reader->bytes), err));
-    TRY(mem_check(reader->taken + (double)n * (double)field->type->size, reader->graph->name, err));
+    TRY(check_unpacked(reader->taken, reader->size, err));
+    TRY(mem_check(reader->taken + (double)n * (double)size, reader->graph->name, err));
     free(field->value);
     field->value = NULL;
     TRY(mem_calloc(&field->value, n, sizeof *field->value, "numbers of a block", err));
     if (reader->is_text)
-        return read_text(reader, field->value, n, err);
-    if (field->packing != PLAIN) {
-        TRY(unpack(reader, field, n, field->value, err));
-        reader->at += field->packed;
-        return STATUS_OK;
-    }
-    vtk_numbers(field->type, reader->is_big_endian, reader->at, n, field->value);
-    reader->at += n * field->type->size;
+        return cursor_numbers(cursor, field->name, n, field->value, err);
+    if (field->packing != PLAIN)
+        return unpack(reader, field, n, err);
+    vtk_numbers(field->type, reader->is_big_endian, cursor->at, n, field->value);
+    cursor->at += n * size;
     return STATUS_OK;
 }
 
-/* The number of a block, whose line ends behind it. */
-static Status read_block_line(Reader *reader, long long *block, Err *err)
+/* Reads the number of a block and passes over the rest of its line. */
+static Status read_block_line(Cursor *cursor, long long *block, Err *err)
 {
     char word[32];
     size_t length = 0;
-    while (length < bytes_left(reader) && length < sizeof word - 1 &&
-           !isspace((unsigned char)reader->at[length]))
+    while (length < cursor_left(cursor) && length < sizeof word - 1 &&
+           !isspace((unsigned char)cursor->at[length]))
         length++;
-    memcpy(word, reader->at, length);
+    memcpy(word, cursor->at, length);
     word[length] = '\0';
     if (*word != '@' || !integer_parse(word + 1, 0, INT32_MAX, block))
         return err_set(err, STATUS_INPUT, "'%.30s' stands where a block begins", word);
-    const char *stop = memchr(reader->at, '\n', bytes_left(reader));
-    reader->at = stop ? reader->at + (stop - reader->at) + 1 : reader->end;
+    cursor_skip_line(cursor);
     return STATUS_OK;
 }
 
-static Status read_blocks(Reader *reader, Err *err)
+static Status read_blocks(AmiraReader *reader, Err *err)
 {
+    Cursor *cursor = &reader->cursor;
     for (;;) {
         long long block;
         size_t i = 0;
-        while (reader->at < reader->end && isspace((unsigned char)*reader->at))
-            reader->at++;
-        if (reader->at == reader->end)
+        while (cursor->at < cursor->end && isspace((unsigned char)*cursor->at))
+            cursor->at++;
+        if (cursor->at == cursor->end)
             return STATUS_OK;
-        TRY(read_block_line(reader, &block, err));
-        while (i < reader->n_fields && reader->field[i].block != block)
+        TRY(read_block_line(cursor, &block, err));
+        while (i < reader->fields.n && reader->fields.items[i].block != block)
             i++;
-        if (i == reader->n_fields)
+        if (i == reader->fields.n)
             return err_set(err, STATUS_INPUT, "the block @%lld is not declared", block);
-        TRY(read_block(reader, &reader->field[i], err));
+        TRY(read_block(reader, &reader->fields.items[i], err));
     }
 }
 
-/* ---- the network ---- */
+/* ---- the network ----------------------------------------------------------------------------- */
 
-static Field *find_field(const Reader *reader, Element of, const char *name)
+static AmiraField *find_field(const AmiraReader *reader, size_t of, const char *name)
 {
-    for (size_t i = 0; i < reader->n_fields; i++)
-        if (reader->field[i].of == of && strcasecmp(reader->field[i].name, name) == 0)
-            return &reader->field[i];
+    for (size_t i = 0; i < reader->fields.n; i++)
+        if (reader->fields.items[i].of == of && strcasecmp(reader->fields.items[i].name, name) == 0)
+            return &reader->fields.items[i];
     return NULL;
 }
 
-static Status need_field(const Reader *reader, Element of, const char *name, size_t components,
-                         Field **field, Err *err)
+static Status need_field(const AmiraReader *reader, size_t of, const char *name, size_t components,
+                         AmiraField **field, Err *err)
 {
     *field = find_field(reader, of, name);
     if (*field && (*field)->value && (*field)->components == components)
@@ -505,7 +379,7 @@ static Status need_field(const Reader *reader, Element of, const char *name, siz
 }
 
 /* Where the points of each edge end, in *end (owned). */
-static Status find_ends(const Reader *reader, const Field *counts, size_t **end, Err *err)
+static Status find_ends(const AmiraReader *reader, const AmiraField *counts, size_t **end, Err *err)
 {
     size_t edges = reader->count[EDGE], points = reader->count[POINT], at = 0;
     size_t *made = NULL;
@@ -529,7 +403,7 @@ static Status find_ends(const Reader *reader, const Field *counts, size_t **end,
 }
 
 /* Joins the end of an edge with the first that has the same vertex. */
-static Status join_vertex(const Reader *reader, double vertex, size_t point, size_t *first,
+static Status join_vertex(const AmiraReader *reader, double vertex, size_t point, size_t *first,
                           Err *err)
 {
     if (!(vertex >= 0 && vertex < (double)reader->count[VERTEX]) || vertex != floor(vertex))
@@ -544,7 +418,7 @@ static Status join_vertex(const Reader *reader, double vertex, size_t point, siz
 }
 
 /* The vertex + 1 that lies at each point, in *vertex (owned). */
-static Status join_edges(const Reader *reader, const Field *ends, const size_t *end,
+static Status join_edges(const AmiraReader *reader, const AmiraField *ends, const size_t *end,
                          size_t **vertex, Err *err)
 {
     size_t *first = NULL, *made = NULL;
@@ -567,7 +441,7 @@ done:
 }
 
 /* Numbers of vertices as numbers of points, NAN between vertices. */
-static Status spread(const Reader *reader, const Field *field, const size_t *vertex, double **value,
+static Status spread(const AmiraReader *reader, const AmiraField *field, const size_t *vertex, double **value,
                      Err *err)
 {
     size_t n = reader->count[POINT], components = field->components;
@@ -580,7 +454,7 @@ static Status spread(const Reader *reader, const Field *field, const size_t *ver
 }
 
 /* Hands a field over as an array of VTK's. */
-static Status add_array(Reader *reader, Field *field, const size_t *vertex, Err *err)
+static Status add_array(AmiraReader *reader, AmiraField *field, const size_t *vertex, Err *err)
 {
     VtkArray array = {.n = reader->count[field->of == VERTEX ? POINT : field->of],
                       .components = field->components};
@@ -593,26 +467,26 @@ static Status add_array(Reader *reader, Field *field, const size_t *vertex, Err 
         array.value = field->value;
         field->value = NULL;
     }
-    return vtk_add_array(field->of == EDGE ? &data->of_cells : &data->of_points, &array, err);
+    return vtk_add_array(field->of == EDGE ? &data->arrays[GRAPH_LINES] : &data->arrays[GRAPH_POINTS], &array, err);
 }
 
 /* Those that are needed to connect points are no arrays. */
-static Status add_arrays(Reader *reader, const size_t *vertex, Err *err)
+static Status add_arrays(AmiraReader *reader, const size_t *vertex, Err *err)
 {
     static const char *const own[] = {"VertexCoordinates",    "EdgeConnectivity", "NumEdgePoints",
                                       "EdgePointCoordinates", "Coordinates",      "NeighbourCount"};
-    for (size_t i = 0; i < reader->n_fields; i++) {
-        Element of = reader->field[i].of;
-        bool is_own = !reader->field[i].value || of == LINES || of == NEIGHBOURS || of == ORIGINS;
+    for (size_t i = 0; i < reader->fields.n; i++) {
+        size_t of = reader->fields.items[i].of;
+        bool is_own = !reader->fields.items[i].value || of == LINES || of == NEIGHBOURS || of == ORIGINS;
         for (size_t k = 0; k < sizeof own / sizeof *own && !is_own; k++)
-            is_own = strcasecmp(reader->field[i].name, own[k]) == 0;
+            is_own = strcasecmp(reader->fields.items[i].name, own[k]) == 0;
         if (!is_own)
-            TRY(add_array(reader, &reader->field[i], vertex, err));
+            TRY(add_array(reader, &reader->fields.items[i], vertex, err));
     }
     return STATUS_OK;
 }
 
-static Status add_lines(Reader *reader, const Field *places, size_t *end, Err *err)
+static Status add_lines(AmiraReader *reader, const AmiraField *places, size_t *end, Err *err)
 {
     VtkData *data = &reader->data;
     size_t points = reader->count[POINT], edges = reader->count[EDGE];
@@ -630,28 +504,28 @@ static Status add_lines(Reader *reader, const Field *places, size_t *end, Err *e
     return STATUS_OK;
 }
 
-static Status add_spatial_graph(Reader *reader, Err *err)
+static Status add_spatial_graph(AmiraReader *reader, Err *err)
 {
-    Field *vertices, *ends, *counts, *places;
+    AmiraField *vertices, *ends, *counts, *places;
     size_t *end = NULL, *vertex = NULL;
+    Status status = STATUS_OK;
     TRY(need_field(reader, VERTEX, "VertexCoordinates", 3, &vertices, err));
     TRY(need_field(reader, EDGE, "EdgeConnectivity", 2, &ends, err));
     TRY(need_field(reader, EDGE, "NumEdgePoints", 1, &counts, err));
     TRY(need_field(reader, POINT, "EdgePointCoordinates", 3, &places, err));
     TRY(find_ends(reader, counts, &end, err));
-    Status status = add_lines(reader, places, end, err);
-    if (status == STATUS_OK)
-        status = join_edges(reader, ends, end, &vertex, err);
-    if (status == STATUS_OK)
-        status = add_arrays(reader, vertex, err);
+    TRY_GOTO(add_lines(reader, places, end, err));
+    TRY_GOTO(join_edges(reader, ends, end, &vertex, err));
+    TRY_GOTO(add_arrays(reader, vertex, err));
+done:
     free(vertex);
     return status;
 }
 
 /* The vertices are the points of the network. */
-static Status add_vertices(Reader *reader, Err *err)
+static Status add_vertices(AmiraReader *reader, Err *err)
 {
-    Field *places;
+    AmiraField *places;
     TRY(need_field(reader, VERTICES, "Coordinates", 3, &places, err));
     reader->data.point = places->value;
     reader->data.n_points = reader->count[VERTICES];
@@ -661,9 +535,9 @@ static Status add_vertices(Reader *reader, Err *err)
 
 /* The radius of a line set has no name of its own: it is the first array of one number per vertex,
  * which Amira calls Data or Data0, unless another is called a radius. */
-static Status name_radius(Reader *reader, Err *err)
+static Status name_radius(AmiraReader *reader, Err *err)
 {
-    Field *data = find_field(reader, VERTICES, "Data0");
+    AmiraField *data = find_field(reader, VERTICES, "Data0");
     data = data ? data : find_field(reader, VERTICES, "Data");
     if (!data || !data->value || data->components != 1 || find_field(reader, VERTICES, "radius") ||
         find_field(reader, VERTICES, "thickness") ||
@@ -675,10 +549,10 @@ static Status name_radius(Reader *reader, Err *err)
     return mem_strdup(&data->name, "radius", err);
 }
 
-static Status add_line_set(Reader *reader, Err *err)
+static Status add_line_set(AmiraReader *reader, Err *err)
 {
     VtkData *data = &reader->data;
-    Field *lines;
+    AmiraField *lines;
     size_t first = 0;
     TRY(need_field(reader, LINES, "LineIdx", 1, &lines, err));
     TRY(add_vertices(reader, err));
@@ -692,30 +566,29 @@ static Status add_line_set(Reader *reader, Err *err)
     return name_radius(reader, err);
 }
 
-/* Points that the file calls origins, as the array "root" of VTK's files. */
-static Status add_origins(Reader *reader, Err *err)
+/* Adds the points that the file calls origins as an array "root" [vtkmeaning.c]. */
+static Status add_origins(AmiraReader *reader, Err *err)
 {
-    const Field *origins = find_field(reader, ORIGINS, "Origins");
-    VtkArray array = {.n = reader->data.n_points, .components = 1};
-    if (!origins || !origins->value || origins->components != 1)
+    VtkData *data = &reader->data;
+    const AmiraField *origins = find_field(reader, ORIGINS, "Origins");
+    if (!origins || !origins->value || origins->components != 1 || data->n_points == 0)
         return STATUS_OK;
-    Status status = mem_strdup(&array.name, "root", err);
-    if (status == STATUS_OK)
-        status = mem_calloc(&array.value, array.n, sizeof *array.value, "numbers of points", err);
-    for (size_t i = 0; status == STATUS_OK && i < reader->count[ORIGINS]; i++)
-        if (origins->value[i] >= 0 && origins->value[i] < (double)array.n)
-            array.value[(size_t)origins->value[i]] = 1;
-    if (status == STATUS_OK)
-        return vtk_add_array(&reader->data.of_points, &array, err);
-    vtk_release_array(&array);
-    return status;
+    VtkArrays *arrays = &data->arrays[GRAPH_POINTS];
+    TRY(vtk_set_number(arrays, "root", data->n_points - 1, 0, reader->size, err));
+    double *root = vtk_find_array(arrays, "root")->value;
+    for (size_t i = 0; i < data->n_points; i++)
+        root[i] = 0;
+    for (size_t i = 0; i < reader->count[ORIGINS]; i++)
+        if (origins->value[i] >= 0 && origins->value[i] < (double)data->n_points)
+            root[(size_t)origins->value[i]] = 1;
+    return STATUS_OK;
 }
 
 /* Each edge is in the lists of both its vertices; it is added from the lower one. */
-static Status add_skeleton(Reader *reader, Err *err)
+static Status add_skeleton(AmiraReader *reader, Err *err)
 {
     VtkData *data = &reader->data;
-    Field *counts, *list;
+    AmiraField *counts, *list;
     size_t at = 0, n = reader->count[NEIGHBOURS];
     TRY(need_field(reader, VERTICES, "NeighbourCount", 1, &counts, err));
     TRY(need_field(reader, NEIGHBOURS, "NeighbourList", 1, &list, err));
@@ -734,26 +607,23 @@ static Status add_skeleton(Reader *reader, Err *err)
     return add_origins(reader, err);
 }
 
-static Status add_network(Reader *reader, Err *err)
-{
-    Status status = reader->content == SPATIAL_GRAPH ? add_spatial_graph(reader, err)
-                    : reader->content == LINE_SET    ? add_line_set(reader, err)
-                                                     : add_skeleton(reader, err);
-    if (status == STATUS_OK && reader->content != SPATIAL_GRAPH)
-        status = add_arrays(reader, NULL, err);
-    return status == STATUS_OK ? vtk_to_graph(&reader->data, reader->graph, err) : status;
-}
-
 Status amira_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
-    Reader reader = {.graph = graph, .bytes = bytes, .at = bytes, .end = bytes + size};
+    static Status (*const add[CONTENTS])(AmiraReader *, Err *) = {
+        [SPATIAL_GRAPH] = add_spatial_graph, [LINE_SET] = add_line_set, [SKELETON] = add_skeleton};
+    AmiraReader reader = {.graph = graph,
+                          .cursor = cursor_of(graph->name, &syntax, bytes, size),
+                          .size = size,
+                          .content = CONTENTS};
+    Status status = STATUS_OK;
     graph->unit = LENGTH_UM;
-    Status status = read_header(&reader, err);
-    if (status == STATUS_OK)
-        status = read_blocks(&reader, err);
-    status = blame(&reader, status, err);
-    if (status == STATUS_OK)
-        status = add_network(&reader, err);
+    TRY_GOTO(cursor_blame(&reader.cursor, read_header(&reader, err), err));
+    TRY_GOTO(cursor_blame(&reader.cursor, read_blocks(&reader, err), err));
+    TRY_GOTO(add[reader.content](&reader, err));
+    if (reader.content != SPATIAL_GRAPH)
+        TRY_GOTO(add_arrays(&reader, NULL, err));
+    TRY_GOTO(vtk_to_graph(&reader.data, graph, err));
+done:
     release(&reader);
     return status;
 }

@@ -2,6 +2,7 @@
  * every tree has; all others become columns of the tree. Quotes are taken off in place, as what is
  * left is never longer. */
 #include "treeio/comments.h"
+#include "treeio/cursor.h"
 #include "treeio/formats.h"
 
 #include <math.h>
@@ -128,15 +129,15 @@ static Status read_row(TreeBuilder *builder, const Columns *columns, size_t line
 }
 
 /* What is read so far; `value` has room for one row. */
-typedef struct Reader {
+typedef struct CsvReader {
     TreeBuilder *builder;
     Columns columns;
     double *value; /* owned */
-} Reader;
+} CsvReader;
 
 static Status read_line(void *context, size_t number, char *line, Err *err)
 {
-    Reader *reader = context;
+    CsvReader *reader = context;
     TreeBuilder *builder = reader->builder;
     if (*line == '#')
         return comment_read(&builder->meta, line + 1, err);
@@ -151,9 +152,8 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
 
 Status csv_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
 {
-    (void)size;
-    Reader reader = {.builder = builder};
-    Status status = lines_read(builder->name, bytes, read_line, &reader, err);
+    CsvReader reader = {.builder = builder};
+    Status status = lines_read(builder->name, bytes, size, read_line, &reader, err);
     free(reader.columns.column);
     free(reader.value);
     return status;
@@ -175,13 +175,13 @@ bool csv_segments_detect(const char *start)
     return strncmp(text_first_row(start), titles, strlen(titles)) == 0;
 }
 
-static void write_quoted(const char *text, FILE *stream)
+static void put_quoted(const char *chars, Text *text)
 {
-    for (; *text; text++) {
-        if (*text == '"')
-            putc('"', stream);
-        putc(*text, stream);
+    for (const char *quote; (quote = strchr(chars, '"')); chars = quote + 1) {
+        text_append(text, chars, (size_t)(quote - chars));
+        text_puts(text, "\"\"");
     }
+    text_puts(text, chars);
 }
 
 static bool is_among(const char *name, const char *const *names, size_t n)
@@ -192,90 +192,86 @@ static bool is_among(const char *name, const char *const *names, size_t n)
 }
 
 /* A column of the tree that is called like one of the file's own gets another title. */
-static void write_title(const TreeColumn *column, FILE *stream)
+static void put_title(const TreeColumn *column, Text *text)
 {
     bool is_taken = is_among(column->name, node_columns, NODE_COLUMNS) ||
                     is_among(column->name, csv_segment_titles, CSV_SEGMENT_TITLES);
-    fputs(is_taken ? ",\"value of " : ",\"", stream);
-    write_quoted(column->name, stream);
+    text_puts(text, is_taken ? ",\"value of " : ",\"");
+    put_quoted(column->name, text);
     if (*column->unit) {
-        fputs(" [", stream);
-        write_quoted(column->unit, stream);
-        putc(']', stream);
+        text_puts(text, " [");
+        put_quoted(column->unit, text);
+        text_puts(text, "]");
     }
-    putc('"', stream);
+    text_puts(text, "\"");
 }
 
-static void write_titles(const Tree *tree, FILE *stream)
+static void put_titles(const Tree *tree, const char *const *titles, size_t n, Text *text)
 {
-    for (int column = 0; column < (tree->flow_share ? NODE_COLUMNS : SHARE); column++)
-        fprintf(stream, "%s%s", column ? "," : "", node_columns[column]);
+    for (size_t k = 0; k < n; k++) {
+        text_puts(text, k ? "," : "");
+        text_puts(text, titles[k]);
+    }
     for (size_t k = 0; k < tree->n_columns; k++)
-        write_title(&tree->column[k], stream);
-    putc('\n', stream);
+        put_title(&tree->column[k], text);
+    text_puts(text, "\n");
 }
 
-static void write_number(double value, FILE *stream)
+static void put_number(double value, Text *text)
 {
-    char number[NUMBER_TEXT_SIZE];
-    putc(',', stream);
+    text_puts(text, ",");
     if (!isnan(value))
-        fputs(number_text(value, number), stream);
+        text_number(text, value);
 }
 
-static void write_row(const Tree *tree, size_t i, FILE *stream)
+static void put_position(Vec3 position, Text *text)
 {
-    Vec3 at = tree->position[i];
-    fprintf(stream, "%d,%d", tree->id[i],
-            tree_is_segment(tree, i) ? tree->id[tree->parent[i]] : -1);
-    write_number(at.x, stream);
-    write_number(at.y, stream);
-    write_number(at.z, stream);
-    write_number(tree->radius_mm[i], stream);
-    fprintf(stream, ",%d", tree->type[i]);
-    if (tree->flow_share)
-        write_number(tree->flow_share[i], stream);
+    put_number(position.x, text);
+    put_number(position.y, text);
+    put_number(position.z, text);
+}
+
+/* Appends the values of the tree's columns, and ends the row. */
+static void put_values(const Tree *tree, size_t i, Text *text)
+{
     for (size_t k = 0; k < tree->n_columns; k++)
-        write_number(tree->column[k].value[i], stream);
-    putc('\n', stream);
+        put_number(tree->column[k].value[i], text);
+    text_puts(text, "\n");
 }
 
-Status csv_write(const Tree *tree, FILE *stream, Err *err)
+Status csv_write(const Tree *tree, Text *text, Err *err)
 {
-    TRY(comments_write(&tree->meta, NULL, stream, err));
-    write_titles(tree, stream);
-    for (size_t i = 0; i < tree->n; i++)
-        write_row(tree, i, stream);
+    (void)err;
+    comments_put(&tree->meta, NULL, text);
+    put_titles(tree, node_columns, tree->flow_share ? NODE_COLUMNS : SHARE, text);
+    for (size_t i = 0; i < tree->n; i++) {
+        text_printf(text, "%d,%d", tree->id[i],
+                    tree_is_segment(tree, i) ? tree->id[tree->parent[i]] : -1);
+        put_position(tree->position[i], text);
+        put_number(tree->radius_mm[i], text);
+        text_printf(text, ",%d", tree->type[i]);
+        if (tree->flow_share)
+            put_number(tree->flow_share[i], text);
+        put_values(tree, i, text);
+    }
     return STATUS_OK;
 }
 
-/* Both ends of each segment, the proximal one first. */
-static void write_segment(const Tree *tree, size_t i, FILE *stream)
+/* Each row has both ends of a segment, the proximal one first. */
+Status csv_segments_write(const Tree *tree, Text *text, Err *err)
 {
-    const size_t ends[] = {(size_t)tree->parent[i], i};
-    fprintf(stream, "%d,%d", tree->id[i], tree->id[tree->parent[i]]);
-    for (size_t k = 0; k < 2; k++) {
-        write_number(tree->position[ends[k]].x, stream);
-        write_number(tree->position[ends[k]].y, stream);
-        write_number(tree->position[ends[k]].z, stream);
+    (void)err;
+    comments_put(&tree->meta, NULL, text);
+    put_titles(tree, csv_segment_titles, CSV_SEGMENT_TITLES, text);
+    for (size_t i = 0; i < tree->n; i++) {
+        if (!tree_is_segment(tree, i))
+            continue;
+        text_printf(text, "%d,%d", tree->id[i], tree->id[tree->parent[i]]);
+        put_position(tree->position[tree->parent[i]], text);
+        put_position(tree->position[i], text);
+        put_number(tree->radius_mm[i], text);
+        put_number(tree_segment_length(tree, i), text);
+        put_values(tree, i, text);
     }
-    write_number(tree->radius_mm[i], stream);
-    write_number(tree_segment_length(tree, i), stream);
-    for (size_t k = 0; k < tree->n_columns; k++)
-        write_number(tree->column[k].value[i], stream);
-    putc('\n', stream);
-}
-
-Status csv_segments_write(const Tree *tree, FILE *stream, Err *err)
-{
-    TRY(comments_write(&tree->meta, NULL, stream, err));
-    for (size_t k = 0; k < CSV_SEGMENT_TITLES; k++)
-        fprintf(stream, "%s%s", k ? "," : "", csv_segment_titles[k]);
-    for (size_t k = 0; k < tree->n_columns; k++)
-        write_title(&tree->column[k], stream);
-    putc('\n', stream);
-    for (size_t i = 0; i < tree->n; i++)
-        if (tree_is_segment(tree, i))
-            write_segment(tree, i, stream);
     return STATUS_OK;
 }

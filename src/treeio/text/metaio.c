@@ -8,8 +8,10 @@
  * Older versions of MetaIO reserve more room for packed points than they fill: what lies between
  * the last point and the next object is skipped. Children lead away from their parents, so that a
  * tube hangs with one end on its parent's point, or on the nearest one where none is said. */
+#include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include "treeio/names.h"
+#include "treeio/vtk/vtkdata.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -19,78 +21,55 @@
 
 enum { MAX_COLUMNS = 200 };
 
-typedef enum ElementType { ELEMENT_FLOAT, ELEMENT_DOUBLE, ELEMENT_TYPES } ElementType;
-
-static const char *const element_types[] = {
-    [ELEMENT_FLOAT] = "MET_FLOAT", [ELEMENT_DOUBLE] = "MET_DOUBLE"};
-static const size_t element_sizes[] = {[ELEMENT_FLOAT] = 4, [ELEMENT_DOUBLE] = 8};
-
 /* What its header says of an object. */
-typedef struct Header {
+typedef struct TubeHeader {
     bool is_tube, is_root, is_binary, is_big_endian;
     double artery;                                /* 1 or 0; NAN: not said */
     int32_t dimensions, id, parent, parent_point; /* -1: none */
     char *id_text, *parent_text;                  /* borrowed */
     int32_t points;
     double spacing[3], matrix[9], center[3], offset[3];
-    ElementType type;
+    VtkType type; /* of packed numbers */
     bool has_point_dim;
     size_t n_columns;
     int32_t meaning[MAX_COLUMNS]; /* of each number of a point: a Meaning, or a column */
-} Header;
+} TubeHeader;
 
 /* Numbers of a point that are no columns. */
 typedef enum Meaning { MEANS_X = -4, MEANS_Y, MEANS_Z, MEANS_RADIUS } Meaning;
 
 /* An object that has been read; points, of a tube, as the graph numbers them. */
-typedef struct Object {
+typedef struct TubeObject {
     int32_t id, parent_point;
     char *parent; /* its ID; NULL: it has none */
     size_t first, count;
     size_t line;
     bool is_moved; /* by a matrix or an offset */
-} Object;
+} TubeObject;
 
 /* The first columns of the graph; behind them come those of PointDim. */
 enum { TUBE, ARTERY, OWN_COLUMNS };
 
-typedef struct Reader {
+typedef struct TubeReader {
     Graph *graph;
-    char *at, *end;
-    size_t line; /* number of the one read last */
-    Header header;
-    Object *object;
-    size_t n_objects, capacity;
+    Cursor cursor;
+    TubeHeader header;
+    ARRAY(TubeObject) objects;
     const char *column[MAX_COLUMNS]; /* names of PointDim that are columns (borrowed) */
     size_t n_columns;
     Names ids;      /* of objects */
     size_t assumed; /* tubes without PointDim */
-} Reader;
+} TubeReader;
 
-static const Header no_header = {.artery = (double)NAN,
+static const TubeHeader no_header = {.artery = (double)NAN,
                                  .dimensions = 3,
                                  .id = -1,
                                  .parent = -1,
                                  .parent_point = -1,
                                  .points = -1,
+                                 .type = VTK_FLOAT,
                                  .spacing = {1, 1, 1},
                                  .matrix = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-
-/* The next line, cut off in place without its end; NULL behind the last. */
-static char *next_line(Reader *reader)
-{
-    if (reader->at == reader->end)
-        return NULL;
-    char *line = reader->at, *stop = memchr(line, '\n', (size_t)(reader->end - line));
-    reader->line++;
-    reader->at = stop ? stop + 1 : reader->end;
-    if (!stop)
-        stop = reader->end;
-    *stop = '\0';
-    if (stop > line && stop[-1] == '\r')
-        stop[-1] = '\0';
-    return line;
-}
 
 /* ---- headers ---- */
 
@@ -110,7 +89,7 @@ static Status read_numbers(const char *key, const char *value, size_t count, dou
 }
 
 /* A matrix of as many rows and columns as there are dimensions. */
-static Status read_matrix(Header *header, const char *value, Err *err)
+static Status read_matrix(TubeHeader *header, const char *value, Err *err)
 {
     size_t n = (size_t)header->dimensions;
     double number[9];
@@ -120,16 +99,13 @@ static Status read_matrix(Header *header, const char *value, Err *err)
     return STATUS_OK;
 }
 
-static Status read_type(Header *header, const char *value, Err *err)
+static Status read_type(TubeHeader *header, const char *value, Err *err)
 {
-    for (int type = 0; type < ELEMENT_TYPES; type++) {
-        if (strcasecmp(value, element_types[type]) == 0) {
-            header->type = (ElementType)type;
-            return STATUS_OK;
-        }
-    }
-    return err_set(err, STATUS_INPUT, "ElementType is '%.40s'; it must be MET_FLOAT or MET_DOUBLE",
-                   value);
+    header->type = vtk_type_called(NAMING_METAIO, value, strlen(value));
+    return header->type < VTK_TYPES
+               ? STATUS_OK
+               : err_set(err, STATUS_INPUT,
+                         "ElementType is '%.40s'; it must be MET_FLOAT or MET_DOUBLE", value);
 }
 
 static int32_t meaning_of(const char *name)
@@ -144,7 +120,7 @@ static int32_t meaning_of(const char *name)
 }
 
 /* The column of a name of PointDim, in *column. */
-static Status find_column(Reader *reader, const char *name, int32_t *column, Err *err)
+static Status find_column(TubeReader *reader, const char *name, int32_t *column, Err *err)
 {
     size_t k = 0, number;
     while (k < reader->n_columns && strcmp(reader->column[k], name) != 0)
@@ -159,9 +135,9 @@ static Status find_column(Reader *reader, const char *name, int32_t *column, Err
     return STATUS_OK;
 }
 
-static Status read_point_dim(Reader *reader, char *value, Err *err)
+static Status read_point_dim(TubeReader *reader, char *value, Err *err)
 {
-    Header *header = &reader->header;
+    TubeHeader *header = &reader->header;
     header->n_columns = 0;
     header->has_point_dim = true;
     for (char *name; (name = text_field(&value)); header->n_columns++) {
@@ -190,27 +166,27 @@ static const struct {
     KeyKind kind;
     size_t member; /* of the header, where the kind has one */
 } keys[] = {
-    {"ID", KEY_WHOLE, offsetof(Header, id)},
-    {"ParentID", KEY_WHOLE, offsetof(Header, parent)},
-    {"ParentPoint", KEY_WHOLE, offsetof(Header, parent_point)},
-    {"NPoints", KEY_WHOLE, offsetof(Header, points)},
-    {"Root", KEY_TRUTH, offsetof(Header, is_root)},
-    {"BinaryData", KEY_TRUTH, offsetof(Header, is_binary)},
-    {"BinaryDataByteOrderMSB", KEY_TRUTH, offsetof(Header, is_big_endian)},
-    {"ElementByteOrderMSB", KEY_TRUTH, offsetof(Header, is_big_endian)},
-    {"ElementSpacing", KEY_VECTOR, offsetof(Header, spacing)},
-    {"CenterOfRotation", KEY_VECTOR, offsetof(Header, center)},
-    {"Offset", KEY_VECTOR, offsetof(Header, offset)},
-    {"Position", KEY_VECTOR, offsetof(Header, offset)},
+    {"ID", KEY_WHOLE, offsetof(TubeHeader, id)},
+    {"ParentID", KEY_WHOLE, offsetof(TubeHeader, parent)},
+    {"ParentPoint", KEY_WHOLE, offsetof(TubeHeader, parent_point)},
+    {"NPoints", KEY_WHOLE, offsetof(TubeHeader, points)},
+    {"Root", KEY_TRUTH, offsetof(TubeHeader, is_root)},
+    {"BinaryData", KEY_TRUTH, offsetof(TubeHeader, is_binary)},
+    {"BinaryDataByteOrderMSB", KEY_TRUTH, offsetof(TubeHeader, is_big_endian)},
+    {"ElementByteOrderMSB", KEY_TRUTH, offsetof(TubeHeader, is_big_endian)},
+    {"ElementSpacing", KEY_VECTOR, offsetof(TubeHeader, spacing)},
+    {"CenterOfRotation", KEY_VECTOR, offsetof(TubeHeader, center)},
+    {"Offset", KEY_VECTOR, offsetof(TubeHeader, offset)},
+    {"Position", KEY_VECTOR, offsetof(TubeHeader, offset)},
     {"TransformMatrix", KEY_MATRIX, 0},
     {"Orientation", KEY_MATRIX, 0},
     {"ElementType", KEY_TYPE, 0},
     {"PointDim", KEY_COLUMNS, 0},
 };
 
-static Status read_value(Reader *reader, size_t k, char *value, Err *err)
+static Status read_value(TubeReader *reader, size_t k, char *value, Err *err)
 {
-    Header *header = &reader->header;
+    TubeHeader *header = &reader->header;
     void *member = (char *)header + keys[k].member;
     switch (keys[k].kind) {
     case KEY_TRUTH:
@@ -230,33 +206,30 @@ static Status read_value(Reader *reader, size_t k, char *value, Err *err)
     return STATUS_OK;
 }
 
-static bool is_moved(const Header *header)
+static bool is_moved(const TubeHeader *header)
 {
     return memcmp(header->matrix, no_header.matrix, sizeof header->matrix) != 0 ||
            memcmp(header->offset, no_header.offset, sizeof header->offset) != 0;
 }
 
 /* Keeps the object whose header has been read. */
-static Status add_object(Reader *reader, Err *err)
+static Status add_object(TubeReader *reader, Err *err)
 {
-    const Header *header = &reader->header;
-    TRY(mem_reserve(&reader->object, &reader->capacity, reader->n_objects + 1,
-                    sizeof *reader->object, "objects", err));
-    reader->object[reader->n_objects] =
-        (Object){.id = header->id,
-                 .parent = header->parent < 0 ? NULL : header->parent_text,
-                 .parent_point = header->parent_point,
-                 .first = reader->graph->n_points,
-                 .line = reader->line,
-                 .is_moved = is_moved(header)};
+    const TubeHeader *header = &reader->header;
+    const size_t line = reader->cursor.line;
     if (header->id >= 0)
-        TRY(names_add(&reader->ids, header->id_text, reader->n_objects, reader->line, err));
-    reader->n_objects++;
-    return STATUS_OK;
+        TRY(names_add(&reader->ids, header->id_text, reader->objects.n, line, err));
+    return ARRAY_PUSH(&reader->objects, "objects", err,
+                      (TubeObject){.id = header->id,
+                               .parent = header->parent < 0 ? NULL : header->parent_text,
+                               .parent_point = header->parent_point,
+                               .first = reader->graph->n_points,
+                               .line = line,
+                               .is_moved = is_moved(header)});
 }
 
 /* A new object begins; one without points has ended with its header. */
-static Status begin_object(Reader *reader, const char *type, Err *err)
+static Status begin_object(TubeReader *reader, const char *type, Err *err)
 {
     if (!reader->header.is_tube && reader->header.id >= 0)
         TRY(add_object(reader, err));
@@ -265,9 +238,9 @@ static Status begin_object(Reader *reader, const char *type, Err *err)
     return STATUS_OK;
 }
 
-static Status read_key(Reader *reader, const char *key, char *value, Err *err)
+static Status read_key(TubeReader *reader, const char *key, char *value, Err *err)
 {
-    Header *header = &reader->header;
+    TubeHeader *header = &reader->header;
     if (strcasecmp(key, "ObjectType") == 0)
         return begin_object(reader, value, err);
     if (strcasecmp(key, "NDims") == 0)
@@ -287,7 +260,7 @@ static Status read_key(Reader *reader, const char *key, char *value, Err *err)
 /* ---- points ---- */
 
 /* From voxels to where the object is. */
-static Vec3 place(const Header *header, const double voxel[3])
+static Vec3 place(const TubeHeader *header, const double voxel[3])
 {
     double out[3];
     for (size_t row = 0; row < 3; row++) {
@@ -299,13 +272,13 @@ static Vec3 place(const Header *header, const double voxel[3])
     return vec3(out[0], out[1], out[2]);
 }
 
-static Status add_point(Reader *reader, const double *number, Err *err)
+static Status add_point(TubeReader *reader, const double *number, Err *err)
 {
-    const Header *header = &reader->header;
+    const TubeHeader *header = &reader->header;
     Graph *graph = reader->graph;
     size_t at = graph->n_points;
     double voxel[3] = {0, 0, 0};
-    GraphPoint point = {.radius = (double)NAN, .record = reader->line};
+    GraphPoint point = {.radius = (double)NAN, .record = reader->cursor.line};
     for (size_t k = 0; k < header->n_columns; k++) {
         if (header->meaning[k] == MEANS_RADIUS)
             point.radius = number[k] * header->spacing[0];
@@ -313,7 +286,7 @@ static Status add_point(Reader *reader, const double *number, Err *err)
             voxel[header->meaning[k] - MEANS_X] = number[k];
     }
     point.position = place(header, voxel);
-    point.is_inlet = header->is_root && at == reader->object[reader->n_objects - 1].first;
+    point.is_inlet = header->is_root && at == reader->objects.items[reader->objects.n - 1].first;
     TRY(graph_point(graph, &point, err));
     for (size_t k = 0; k < header->n_columns; k++)
         if (header->meaning[k] >= 0)
@@ -324,11 +297,11 @@ static Status add_point(Reader *reader, const double *number, Err *err)
     return STATUS_OK;
 }
 
-static Status read_row(Reader *reader, Err *err)
+static Status read_row(TubeReader *reader, Err *err)
 {
     double number[MAX_COLUMNS];
     size_t n = reader->header.n_columns;
-    char *line = next_line(reader);
+    char *line = cursor_line(&reader->cursor);
     if (!line)
         return err_set(err, STATUS_INPUT, "the file ends within the points of a tube");
     size_t found = 0;
@@ -341,41 +314,26 @@ static Status read_row(Reader *reader, Err *err)
     return add_point(reader, number, err);
 }
 
-static double unpack(const char *bytes, size_t size, bool is_big_endian)
+static Status read_packed(TubeReader *reader, Err *err)
 {
-    unsigned char native[8];
-    for (size_t i = 0; i < size; i++)
-        native[i] = (unsigned char)bytes[is_big_endian ? size - 1 - i : i];
-    float single;
-    double number;
-    if (size == sizeof single) {
-        memcpy(&single, native, sizeof single);
-        return (double)single;
-    }
-    memcpy(&number, native, sizeof number);
-    return number;
-}
-
-static Status read_packed(Reader *reader, Err *err)
-{
-    const Header *header = &reader->header;
+    const TubeHeader *header = &reader->header;
+    Cursor *cursor = &reader->cursor;
     double number[MAX_COLUMNS];
-    size_t size = element_sizes[header->type], n = header->n_columns;
-    if ((size_t)header->points > (size_t)(reader->end - reader->at) / (n * size))
+    size_t n = header->n_columns, size = n * vtk_type_size(header->type);
+    if ((size_t)header->points > cursor_left(cursor) / size)
         return err_set(err, STATUS_INPUT,
                        "the file ends within the points of a tube, which are to take %.0f bytes",
-                       (double)header->points * (double)(n * size));
-    for (int32_t i = 0; i < header->points; i++) {
-        for (size_t k = 0; k < n; k++, reader->at += size)
-            number[k] = unpack(reader->at, size, header->is_big_endian);
+                       (double)header->points * (double)size);
+    for (int32_t i = 0; i < header->points; i++, cursor->at += size) {
+        vtk_numbers(header->type, header->is_big_endian, cursor->at, n, number);
         TRY(add_point(reader, number, err));
     }
-    const char *next = memmem(reader->at, (size_t)(reader->end - reader->at), "ObjectType", 10);
-    reader->at = next ? reader->at + (next - reader->at) : reader->end;
+    const char *next = memmem(cursor->at, cursor_left(cursor), "ObjectType", 10);
+    cursor->at = next ? cursor->at + (next - cursor->at) : cursor->end;
     return STATUS_OK;
 }
 
-static bool has(const Header *header, Meaning meaning)
+static bool has(const TubeHeader *header, Meaning meaning)
 {
     for (size_t k = 0; k < header->n_columns; k++)
         if (header->meaning[k] == (int32_t)meaning)
@@ -383,7 +341,7 @@ static bool has(const Header *header, Meaning meaning)
     return false;
 }
 
-static Status check_header(const Header *header, bool gives_radius, Err *err)
+static Status check_header(const TubeHeader *header, bool gives_radius, Err *err)
 {
     if (header->points < 0)
         return err_set(err, STATUS_INPUT, "the tube does not say NPoints");
@@ -398,10 +356,10 @@ static Status check_header(const Header *header, bool gives_radius, Err *err)
 /* Without PointDim, the numbers of a point are in the order in which MetaIO writes them. What
  * follows the radius, as a colour, has no name. Packed points have a size that only PointDim
  * states. */
-static Status assume_point_dim(Reader *reader, Err *err)
+static Status assume_point_dim(TubeReader *reader, Err *err)
 {
     static const int32_t order[] = {MEANS_X, MEANS_Y, MEANS_Z, MEANS_RADIUS};
-    Header *header = &reader->header;
+    TubeHeader *header = &reader->header;
     if (header->is_binary)
         return err_set(err, STATUS_INPUT, "packed points need PointDim, which names their numbers");
     for (size_t k = 0; k < 4; k++)
@@ -413,15 +371,15 @@ static Status assume_point_dim(Reader *reader, Err *err)
                         "a tube without PointDim has x, y, z and the radius first in each row");
 }
 
-static Status read_tube(Reader *reader, Err *err)
+static Status read_tube(TubeReader *reader, Err *err)
 {
-    Header *header = &reader->header;
+    TubeHeader *header = &reader->header;
     Graph *graph = reader->graph;
     if (!header->has_point_dim)
         TRY(assume_point_dim(reader, err));
     TRY(check_header(header, graph->options && graph->options->radius_mm > 0, err));
     TRY(add_object(reader, err));
-    Object *object = &reader->object[reader->n_objects - 1];
+    TubeObject *object = &reader->objects.items[reader->objects.n - 1];
     if (header->is_binary)
         TRY(read_packed(reader, err));
     for (int32_t i = 0; !header->is_binary && i < header->points; i++)
@@ -435,7 +393,7 @@ static Status read_tube(Reader *reader, Err *err)
     return STATUS_OK;
 }
 
-static Status read_line(Reader *reader, char *line, Err *err)
+static Status read_line(TubeReader *reader, char *line, Err *err)
 {
     char *equals = strchr(line, '=');
     if (equals)
@@ -450,7 +408,7 @@ static Status read_line(Reader *reader, char *line, Err *err)
 
 /* ---- children ---- */
 
-static size_t nearest(const Graph *graph, const Object *object, Vec3 to)
+static size_t nearest(const Graph *graph, const TubeObject *object, Vec3 to)
 {
     size_t best = object->first;
     for (size_t i = object->first; i < object->first + object->count; i++)
@@ -461,28 +419,28 @@ static size_t nearest(const Graph *graph, const Object *object, Vec3 to)
 }
 
 /* A line that leads from a point of the parent to an end of the tube. */
-typedef struct Link {
+typedef struct TubeLink {
     size_t from, to;
     double distance;
-} Link;
+} TubeLink;
 
 /* From the point that the tube names, or else the nearest one, to the end. */
-static Link link_to(const Graph *graph, const Object *tube, const Object *parent, size_t end)
+static TubeLink link_to(const Graph *graph, const TubeObject *tube, const TubeObject *parent, size_t end)
 {
     Vec3 at = graph->point[end].position;
     size_t from = tube->parent_point < 0 ? nearest(graph, parent, at)
                                          : parent->first + (size_t)tube->parent_point;
-    return (Link){from, end, vec3_distance(graph->point[from].position, at)};
+    return (TubeLink){from, end, vec3_distance(graph->point[from].position, at)};
 }
 
-static Status hang(const Reader *reader, const Object *tube, Err *err)
+static Status hang(const TubeReader *reader, const TubeObject *tube, Err *err)
 {
     Graph *graph = reader->graph;
     size_t number;
     if (!tube->parent || tube->count == 0)
         return STATUS_OK;
     TRY(names_find(&reader->ids, tube->parent, &number, err));
-    const Object *parent = &reader->object[number];
+    const TubeObject *parent = &reader->objects.items[number];
     if (parent->is_moved)
         return err_set(err, STATUS_INPUT,
                        "the object %d moves those that it holds, which is not read", parent->id);
@@ -491,9 +449,9 @@ static Status hang(const Reader *reader, const Object *tube, Err *err)
     if (tube->parent_point >= 0 && (size_t)tube->parent_point >= parent->count)
         return err_set(err, STATUS_INPUT, "ParentPoint is %d; tube %d has %zu points",
                        tube->parent_point, parent->id, parent->count);
-    Link first = link_to(graph, tube, parent, tube->first);
-    Link last = link_to(graph, tube, parent, tube->first + tube->count - 1);
-    Link link = last.distance < first.distance ? last : first;
+    TubeLink first = link_to(graph, tube, parent, tube->first);
+    TubeLink last = link_to(graph, tube, parent, tube->first + tube->count - 1);
+    TubeLink link = last.distance < first.distance ? last : first;
     return graph_line(graph,
                       &(GraphLine){.a = link.from,
                                    .b = link.to,
@@ -503,31 +461,30 @@ static Status hang(const Reader *reader, const Object *tube, Err *err)
                       err);
 }
 
-static Status read_all(Reader *reader, Err *err)
+static Status read_all(TubeReader *reader, Err *err)
 {
     Graph *graph = reader->graph;
     size_t column;
     TRY(graph_column(graph, GRAPH_POINTS, "tube", "", &column, err));
     TRY(graph_column(graph, GRAPH_POINTS, "artery", "", &column, err));
-    for (char *line; (line = next_line(reader));)
-        TRY(graph_blame(graph, GRAPH_LINES, reader->line, read_line(reader, line, err), err));
-    if (reader->n_objects == 0)
+    for (char *line; (line = cursor_line(&reader->cursor));)
+        TRY(cursor_blame(&reader->cursor, read_line(reader, line, err), err));
+    if (reader->objects.n == 0)
         return err_set(err, STATUS_INPUT, "%s: there is no tube in the file", graph->name);
-    for (size_t i = 0; i < reader->n_objects; i++)
-        TRY(graph_blame(graph, GRAPH_LINES, reader->object[i].line,
-                        hang(reader, &reader->object[i], err), err));
+    for (size_t i = 0; i < reader->objects.n; i++)
+        TRY(graph_blame(graph, GRAPH_LINES, reader->objects.items[i].line,
+                        hang(reader, &reader->objects.items[i], err), err));
     return STATUS_OK;
 }
 
 Status metaio_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
-    Reader reader = {.graph = graph,
-                     .at = bytes,
-                     .end = bytes + size,
+    TubeReader reader = {.graph = graph,
+                     .cursor = cursor_of(graph->name, NULL, bytes, size),
                      .header = no_header,
                      .ids = {.what = "object of the ID"}};
     Status status = read_all(&reader, err);
-    free(reader.object);
+    ARRAY_RELEASE(&reader.objects);
     names_release(&reader.ids);
     return status;
 }

@@ -1,197 +1,105 @@
-/* Decks of SimVascular's svOneDSolver: a card a line, its fields as that program's reader takes
- * them (cvOneDOptionsLegacySerializer.cxx). Nodes that lie apart are one where a JOINT card says
- * that the segments that they end are joined. A segment tapers from one area to the other; in a
- * tree it has the radius of the distal one, as nodes of other formats have, and both areas are
- * columns.
- *
- * All cards are collected before any name in them is looked up, since they may come in any
- * order. */
+/* Decks of SimVascular's svOneDSolver: one card per line, with the fields of that program's reader
+ * (cvOneDOptionsLegacySerializer.cxx). Nodes at different positions are one node if a JOINT card joins
+ * the segments that they end. A segment tapers from one area to the other. Its radius in a tree is
+ * that of the outlet, because nodes of other formats have the radius of the segment's distal end. Both
+ * areas are columns. Cards may come in any order, so names are looked up at the end. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
-#include "treeio/names.h"
+#include "treeio/text/dialect.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-/* Fields of a SEGMENT card. */
-typedef enum SegmentField {
-    SEGMENT_NAME = 1,
-    SEGMENT_ID,
-    SEGMENT_LENGTH,
-    SEGMENT_ELEMENTS,
-    SEGMENT_IN_NODE,
-    SEGMENT_OUT_NODE,
-    SEGMENT_IN_AREA,
-    SEGMENT_OUT_AREA,
-    SEGMENT_FIELDS /* those that are read */
-} SegmentField;
-
-enum { MAX_FIELDS = 1000 /* of a card */ };
-
-typedef struct Segment {
-    char *in_node, *out_node; /* borrowed from the text, as all words here */
-    size_t in, out;           /* points, once all nodes are there */
-    size_t line;
-    double length, elements, in_area, out_area;
-} Segment;
+/* Cards. Those after DATA_TABLE say nothing about the tree. */
+enum { NODE, SEGMENT, JOINT, JOINT_INLET, JOINT_OUTLET, DATA_TABLE, OTHER_CARDS, CARDS = 11 };
 
 /* The segments that a JOINTINLET or JOINTOUTLET card names. */
 typedef struct SegmentList {
-    size_t first, count; /* in Deck.word */
+    size_t first, count; /* in DeckState.word */
 } SegmentList;
 
-/* Those of one of the two cards, by their names. */
-typedef struct Lists {
+/* The lists of all cards of one kind, by their names. */
+typedef struct SegmentLists {
     bool enters; /* blood enters the joint through these segments */
     Names names;
-    SegmentList *list;
-    size_t capacity;
-} Lists;
+    ARRAY(SegmentList) list;
+} SegmentLists;
 
-typedef struct Joint {
-    char *inlet, *outlet;
+typedef struct DeckJoint {
+    char *inlet, *outlet; /* names of lists */
     size_t line;
-} Joint;
+} DeckJoint;
 
-typedef struct Deck {
-    Graph *graph;
-    Names nodes, segments;
-    Lists inlets, outlets;
-    Segment *segment;
-    size_t segments_capacity;
-    Joint *joint;
-    size_t n_joints, joints_capacity;
-    char **word;
-    size_t n_words, words_capacity;
+/* What a deck says beyond nodes and segments. Texts are borrowed from the file. */
+typedef struct DeckState {
+    SegmentLists inlets, outlets;
+    ARRAY(DeckJoint) joint;
+    ARRAY(char *) word;
     bool in_table;
-} Deck;
+} DeckState;
 
-static void release(Deck *deck)
+static Status read_joint(DialectReader *reader, DialectRow *row, Err *err)
 {
-    names_release(&deck->nodes);
-    names_release(&deck->segments);
-    names_release(&deck->inlets.names);
-    names_release(&deck->outlets.names);
-    free(deck->inlets.list);
-    free(deck->outlets.list);
-    free(deck->segment);
-    free(deck->joint);
-    free(deck->word);
+    DeckState *deck = reader->own;
+    return ARRAY_PUSH(&deck->joint, "joints", err,
+                      (DeckJoint){row->field[3], row->field[4], row->line});
 }
 
-/* A card and its fields, field[0] being its name. */
-typedef struct Card {
-    char **field;
-    size_t count, line;
-} Card;
-
-typedef Status ReadCard(Deck *deck, const Card *card, Err *err);
-
-static Status read_node(Deck *deck, const Card *card, Err *err)
+static Status read_list(DialectReader *reader, DialectRow *row, Err *err)
 {
-    GraphPoint point = {.radius = (double)NAN, .record = card->line};
-    double *const coordinate[] = {&point.position.x, &point.position.y, &point.position.z};
-    for (size_t i = 0; i < 3; i++)
-        TRY(field_number("coordinate", card->field[2 + i], -HUGE_VAL, coordinate[i], err));
-    TRY(names_add(&deck->nodes, card->field[1], deck->graph->n_points, card->line, err));
-    return graph_point(deck->graph, &point, err);
-}
-
-static Status read_segment(Deck *deck, const Card *card, Err *err)
-{
-    char **field = card->field;
-    Segment segment = {
-        .in_node = field[SEGMENT_IN_NODE], .out_node = field[SEGMENT_OUT_NODE], .line = card->line};
-    TRY(field_number("length", field[SEGMENT_LENGTH], 0, &segment.length, err));
-    TRY(field_number("number of elements", field[SEGMENT_ELEMENTS], 0, &segment.elements, err));
-    TRY(field_number("inlet area", field[SEGMENT_IN_AREA], 0, &segment.in_area, err));
-    TRY(field_number("outlet area", field[SEGMENT_OUT_AREA], 0, &segment.out_area, err));
-    TRY(names_add(&deck->segments, field[SEGMENT_ID], deck->segments.n, card->line, err));
-    TRY(mem_reserve(&deck->segment, &deck->segments_capacity, deck->segments.n,
-                    sizeof *deck->segment, "segments", err));
-    deck->segment[deck->segments.n - 1] = segment;
-    return STATUS_OK;
-}
-
-static Status read_joint(Deck *deck, const Card *card, Err *err)
-{
-    TRY(mem_reserve(&deck->joint, &deck->joints_capacity, deck->n_joints + 1, sizeof *deck->joint,
-                    "joints", err));
-    deck->joint[deck->n_joints++] = (Joint){card->field[3], card->field[4], card->line};
-    return STATUS_OK;
-}
-
-static Status read_list(Deck *deck, Lists *lists, const Card *card, Err *err)
-{
+    DeckState *deck = reader->own;
+    SegmentLists *lists = reader->section == JOINT_INLET ? &deck->inlets : &deck->outlets;
+    size_t n = lists->list.n, first = deck->word.n;
     int32_t count = 0;
-    size_t n = lists->names.n;
-    TRY(field_whole("number of segments", card->field[2], 1, MAX_FIELDS - 3, &count, err));
-    if ((size_t)count != card->count - 3)
+    TRY(field_whole("number of segments", row->field[2], 1, INT32_MAX, &count, err));
+    if ((size_t)count != row->count - 3)
         return err_set(err, STATUS_INPUT, "the card says %d segments and names %zu", count,
-                       card->count - 3);
-    TRY(names_add(&lists->names, card->field[1], n, card->line, err));
-    TRY(mem_reserve(&lists->list, &lists->capacity, n + 1, sizeof *lists->list, "lists of segments",
-                    err));
-    TRY(mem_reserve(&deck->word, &deck->words_capacity, deck->n_words + (size_t)count,
-                    sizeof *deck->word, "segments of joints", err));
-    lists->list[n] = (SegmentList){deck->n_words, (size_t)count};
-    memcpy(deck->word + deck->n_words, card->field + 3, (size_t)count * sizeof *deck->word);
-    deck->n_words += (size_t)count;
+                       row->count - 3);
+    TRY(names_add(&lists->names, row->field[1], n, row->line, err));
+    TRY(ARRAY_PUSH(&lists->list, "lists of segments", err, (SegmentList){first, (size_t)count}));
+    for (size_t k = 3; k < row->count; k++)
+        TRY(ARRAY_PUSH(&deck->word, "segments of joints", err, row->field[k]));
     return STATUS_OK;
 }
 
-static Status read_inlet(Deck *deck, const Card *card, Err *err)
+static Status begin_table(DialectReader *reader, DialectRow *row, Err *err)
 {
-    return read_list(deck, &deck->inlets, card, err);
-}
-
-static Status read_outlet(Deck *deck, const Card *card, Err *err)
-{
-    return read_list(deck, &deck->outlets, card, err);
-}
-
-static Status begin_table(Deck *deck, const Card *card, Err *err)
-{
-    (void)card;
-    (void)err;
+    DeckState *deck = reader->own;
+    (void)row, (void)err;
     deck->in_table = true;
     return STATUS_OK;
 }
 
-static const struct {
-    const char *name;
-    size_t fewest, most; /* fields, its name among them */
-    ReadCard *read;      /* NULL: it says nothing about the tree */
-} cards[] = {
-    {"NODE", 5, 5, read_node},
-    {"JOINT", 5, 5, read_joint},
-    {"JOINTINLET", 4, MAX_FIELDS, read_inlet},
-    {"JOINTOUTLET", 4, MAX_FIELDS, read_outlet},
-    {"SEGMENT", SEGMENT_FIELDS, 17, read_segment},
-    {"DATATABLE", 2, MAX_FIELDS, begin_table},
-    {"MODEL", 1, MAX_FIELDS, NULL},
-    {"SOLVEROPTIONS", 1, MAX_FIELDS, NULL},
-    {"MATERIAL", 1, MAX_FIELDS, NULL},
-    {"OUTPUT", 1, MAX_FIELDS, NULL},
-    {"COUPLING", 1, MAX_FIELDS, NULL},
+static const DialectSection cards[CARDS] = {
+    [NODE] = {"NODE", "a NODE card", 5, 5, GRAPH_POINTS, NULL},
+    [SEGMENT] = {"SEGMENT", "a SEGMENT card", 9, 17, GRAPH_LINES, NULL},
+    [JOINT] = {"JOINT", "a JOINT card", 5, 5, GRAPH_LINES, read_joint},
+    [JOINT_INLET] = {"JOINTINLET", "a JOINTINLET card", 4, 0, GRAPH_LINES, read_list},
+    [JOINT_OUTLET] = {"JOINTOUTLET", "a JOINTOUTLET card", 4, 0, GRAPH_LINES, read_list},
+    [DATA_TABLE] = {"DATATABLE", "a DATATABLE card", 2, 0, GRAPH_LINES, begin_table},
+    [OTHER_CARDS] = {.title = "MODEL"}, {.title = "SOLVEROPTIONS"}, {.title = "MATERIAL"},
+    {.title = "OUTPUT"}, {.title = "COUPLING"},
 };
 
-enum { N_CARDS = sizeof cards / sizeof *cards };
+/* The columns come first, in their order in trees. */
+enum { LENGTH, IN_AREA, OUT_AREA, ELEMENTS, DECK_COLUMNS };
 
-/* The first word is the name of a card. */
-bool oned_detect(const char *start)
-{
-    start = text_first_row(start);
-    size_t i = 0, length = strcspn(start, TEXT_BLANKS "\r\n");
-    while (i < N_CARDS &&
-           (strlen(cards[i].name) != length || strncasecmp(cards[i].name, start, length) != 0))
-        i++;
-    return i < N_CARDS;
-}
+static const DialectField fields[] = {
+    [LENGTH] = {SEGMENT, 3, FIELD_NUMBER, "length", "cm", true},
+    [IN_AREA] = {SEGMENT, 7, FIELD_NUMBER, "inlet area", "cm2", true},
+    [OUT_AREA] = {SEGMENT, 8, FIELD_NUMBER, "outlet area", "cm2", true},
+    [ELEMENTS] = {SEGMENT, 4, FIELD_NUMBER, "elements", "", true},
+    {SEGMENT, 2, FIELD_SEGMENT, "number", "", false},
+    {SEGMENT, 5, FIELD_FROM, "node", "", false},
+    {SEGMENT, 6, FIELD_TO, "node", "", false},
+    {SEGMENT, 8, FIELD_AREA, "outlet area", "cm2", true},
+    {NODE, 2, FIELD_POSITION, "coordinate", "cm", false},
+    {NODE, 1, FIELD_POINT, "node", "", false},
+};
 
-/* SimVascular heads its decks with "UNITS IN CGS", corcast with "Units: cm, g, s". */
+/* SimVascular begins its decks with "UNITS IN CGS", corcast with "Units: cm, g, s". */
 static Status read_comment(Graph *graph, const char *comment, Err *err)
 {
     if (strcasestr(comment, "units in cgs") || strcasestr(comment, "units: cm, g, s"))
@@ -199,121 +107,101 @@ static Status read_comment(Graph *graph, const char *comment, Err *err)
     return comment_read_key(&graph->meta, comment, err);
 }
 
-static Status read_line(void *reader, size_t number, char *line, Err *err)
+/* Finds the card, and passes over the lines of a DATATABLE. */
+static Status choose_card(DialectReader *reader, DialectRow *row, bool *is_row, Err *err)
 {
-    Deck *deck = reader;
-    char *field[MAX_FIELDS];
-    line += strspn(line, TEXT_BLANKS);
-    if (*line == '#')
-        return read_comment(deck->graph, line + 1, err);
-    TRY(fields_check_commas(line, err));
-    Card card = {field, fields_cut(line, field, MAX_FIELDS), number};
-    if (card.count == 0)
-        return STATUS_OK;
+    DeckState *deck = reader->own;
+    *is_row = !deck->in_table;
     if (deck->in_table) {
-        deck->in_table = strcasecmp(field[0], "ENDDATATABLE") != 0;
+        deck->in_table = strcasecmp(row->field[0], "ENDDATATABLE") != 0;
         return STATUS_OK;
     }
-    size_t i = 0;
-    while (i < N_CARDS && strcasecmp(cards[i].name, field[0]) != 0)
-        i++;
-    if (i == N_CARDS)
-        return err_set(err, STATUS_INPUT, "'%.40s' is no card of a deck of svOneDSolver", field[0]);
-    if (card.count < cards[i].fewest || card.count > cards[i].most)
-        return err_set(err, STATUS_INPUT,
-                       "the %s card has %zu fields behind its name; it has %s%zu", cards[i].name,
-                       card.count - 1, cards[i].fewest == cards[i].most ? "" : "at least ",
-                       cards[i].fewest - 1);
-    return cards[i].read ? cards[i].read(deck, &card, err) : STATUS_OK;
+    reader->section = dialect_find_section(reader->dialect, row->field[0]);
+    return reader->section < CARDS ? STATUS_OK
+                                   : err_set(err, STATUS_INPUT,
+                                             "'%.40s' is no card of a deck of svOneDSolver",
+                                             row->field[0]);
 }
 
-/* ---- what the cards mean ---- */
+static const Dialect dialect = {.section = cards,
+                                .n_sections = CARDS,
+                                .field = fields,
+                                .n_fields = sizeof fields / sizeof *fields,
+                                .comment = read_comment,
+                                .choose = choose_card};
 
-typedef enum DeckColumn { LENGTH, IN_AREA, OUT_AREA, ELEMENTS, DECK_COLUMNS } DeckColumn;
-
-static const struct {
-    const char *name, *unit;
-} deck_columns[DECK_COLUMNS] = {[LENGTH] = {"length", "cm"},
-                                [IN_AREA] = {"inlet area", "cm2"},
-                                [OUT_AREA] = {"outlet area", "cm2"},
-                                [ELEMENTS] = {"elements", ""}};
-
-static Status add_segment(Deck *deck, size_t i, Err *err)
+/* The first word is the name of a card. */
+bool oned_detect(const char *start)
 {
-    Graph *graph = deck->graph;
-    Segment *segment = &deck->segment[i];
-    TRY(names_find(&deck->nodes, segment->in_node, &segment->in, err));
-    TRY(names_find(&deck->nodes, segment->out_node, &segment->out, err));
-    const GraphLine line = {.a = segment->in,
-                            .b = segment->out,
-                            .radius = sqrt(segment->out_area / PI),
-                            .is_directed = true,
-                            .record = segment->line};
-    TRY(graph_line(graph, &line, err));
-    const double value[DECK_COLUMNS] = {[LENGTH] = segment->length,
-                                        [IN_AREA] = segment->in_area,
-                                        [OUT_AREA] = segment->out_area,
-                                        [ELEMENTS] = segment->elements};
-    for (size_t k = 0; k < DECK_COLUMNS; k++)
-        TRY(graph_value(graph, k, i, value[k], err));
-    return STATUS_OK;
+    char word[32];
+    start = text_first_row(start);
+    size_t length = strcspn(start, TEXT_BLANKS "\r\n");
+    snprintf(word, sizeof word, "%.*s", length < sizeof word ? (int)length : 0, start);
+    return dialect_find_section(&dialect, word) < CARDS;
 }
 
-/* Joins the ends of the segments of a list with *point, or makes the first *point. */
-static Status join_list(Deck *deck, const Lists *lists, char *name, size_t *point, Err *err)
+/* ---- joints ---------------------------------------------------------------------------------- */
+
+/* Joins the ends of the segments of a list to *point. If *point is no point yet, it becomes the first
+ * of them. */
+static Status join_list(DialectReader *reader, const SegmentLists *lists, char *name, size_t *point,
+                        Err *err)
 {
+    const DeckState *deck = reader->own;
     size_t number;
     TRY(names_find(&lists->names, name, &number, err));
-    const SegmentList *list = &lists->list[number];
+    const SegmentList *list = &lists->list.items[number];
     for (size_t i = 0; i < list->count; i++) {
-        TRY(names_find(&deck->segments, deck->word[list->first + i], &number, err));
-        const Segment *segment = &deck->segment[number];
-        size_t end = lists->enters ? segment->out : segment->in;
-        if (*point == deck->graph->n_points)
+        TRY(names_find(&reader->segments, deck->word.items[list->first + i], &number, err));
+        const GraphLine *line = &reader->kept.items[number].line;
+        size_t end = lists->enters ? line->b : line->a;
+        if (*point == reader->graph->n_points)
             *point = end;
-        TRY(graph_join(deck->graph, *point, end, err));
+        TRY(graph_join(reader->graph, *point, end, err));
     }
     return STATUS_OK;
 }
 
-static Status join_ends(Deck *deck, const Joint *joint, Err *err)
+static Status join_ends(DialectReader *reader, const DeckJoint *joint, Err *err)
 {
-    size_t point = deck->graph->n_points;
-    TRY(join_list(deck, &deck->inlets, joint->inlet, &point, err));
-    return join_list(deck, &deck->outlets, joint->outlet, &point, err);
+    const DeckState *deck = reader->own;
+    size_t point = reader->graph->n_points;
+    TRY(join_list(reader, &deck->inlets, joint->inlet, &point, err));
+    return join_list(reader, &deck->outlets, joint->outlet, &point, err);
 }
 
-static Status add_segments(Deck *deck, Err *err)
+static void release_lists(SegmentLists *lists)
 {
-    Graph *graph = deck->graph;
-    size_t column;
-    for (size_t k = 0; k < DECK_COLUMNS; k++)
-        TRY(graph_column(graph, GRAPH_LINES, deck_columns[k].name, deck_columns[k].unit, &column,
-                         err));
-    for (size_t i = 0; i < deck->segments.n; i++)
-        TRY(graph_blame(graph, GRAPH_LINES, deck->segment[i].line, add_segment(deck, i, err), err));
-    for (size_t i = 0; i < deck->n_joints; i++)
-        TRY(graph_blame(graph, GRAPH_LINES, deck->joint[i].line,
-                        join_ends(deck, &deck->joint[i], err), err));
-    return reading_note(graph->reading, err,
-                        "a segment has the radius of its outlet area; materials, tables and "
-                        "boundary conditions are left out");
+    names_release(&lists->names);
+    ARRAY_RELEASE(&lists->list);
 }
 
 Status oned_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
-    (void)size;
-    Deck deck = {.graph = graph,
-                 .nodes = {.what = "NODE"},
-                 .segments = {.what = "SEGMENT of number"},
-                 .inlets = {.names = {.what = "JOINTINLET"}, .enters = true},
-                 .outlets = {.names = {.what = "JOINTOUTLET"}}};
+    DeckState deck = {.inlets = {.names = {.what = "JOINTINLET"}, .enters = true},
+                      .outlets = {.names = {.what = "JOINTOUTLET"}}};
+    DialectReader reader = {.dialect = &dialect,
+                            .graph = graph,
+                            .own = &deck,
+                            .points = {.what = "NODE"},
+                            .segments = {.what = "SEGMENT of number"}};
+    Status status = STATUS_OK;
     graph->unit = LENGTH_CM;
     graph->is_named = true;
-    Status status = lines_read(graph->name, bytes, read_line, &deck, err);
-    if (status == STATUS_OK)
-        status = add_segments(&deck, err);
-    release(&deck);
+    TRY_GOTO(dialect_read(&reader, bytes, size, err));
+    TRY_GOTO(dialect_add_segments(&reader, err));
+    for (size_t i = 0; i < deck.joint.n; i++)
+        TRY_GOTO(graph_blame(graph, GRAPH_LINES, deck.joint.items[i].line,
+                             join_ends(&reader, &deck.joint.items[i], err), err));
+    TRY_GOTO(reading_note(graph->reading, err,
+                          "a segment has the radius of its outlet area; materials, tables and "
+                          "boundary conditions are left out"));
+done:
+    dialect_release(&reader);
+    release_lists(&deck.inlets);
+    release_lists(&deck.outlets);
+    ARRAY_RELEASE(&deck.joint);
+    ARRAY_RELEASE(&deck.word);
     return status;
 }
 
@@ -352,52 +240,50 @@ static void put_nodes(const DeckTree *deck)
 }
 
 /* The joint at the end of segment i, whose children are `outlet`. */
-static void put_joint(const DeckTree *deck, size_t i, const int32_t *outlet)
+static void put_joint(const DeckTree *deck, size_t i, const uint32_t *outlet)
 {
     int32_t count = deck->children[i];
     text_printf(deck->text, "JOINT J%zu %zu IN%zu OUT%zu\nJOINTINLET IN%zu 1 %zu\n", i, i, i, i, i,
                 i - 1);
     text_printf(deck->text, "JOINTOUTLET OUT%zu %d", i, count);
     for (int32_t k = 0; k < count; k++)
-        text_printf(deck->text, " %d", outlet[k] - 1);
+        text_printf(deck->text, " %u", outlet[k] - 1);
     text_puts(deck->text, "\n");
 }
 
-/* Children of a node stand together in `child`, those of node i from first[i] on. */
+/* Appends the joint of each node that has children. */
 static Status put_joints(const DeckTree *deck, Err *err)
 {
     const Tree *tree = deck->tree;
-    size_t *first = NULL;
-    int32_t *child = NULL;
+    IndexLists children = {0};
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&first, tree->n + 1, sizeof *first, "children", err));
-    TRY_GOTO(mem_calloc(&child, tree->n, sizeof *child, "children", err));
-    for (size_t i = 0; i < tree->n; i++)
-        first[i + 1] = first[i] + (size_t)deck->children[i];
-    for (size_t i = tree->n; i-- > 1;)
-        child[--first[tree->parent[i] + 1]] = (int32_t)i;
+    TRY_GOTO(indexlists_begin(&children, tree->n, "children", err));
+    for (size_t i = 1; i < tree->n; i++)
+        indexlists_count(&children, (size_t)tree->parent[i]);
+    TRY_GOTO(indexlists_allot(&children, "children", err));
+    for (size_t i = 1; i < tree->n; i++)
+        indexlists_put(&children, (size_t)tree->parent[i], (uint32_t)i);
     for (size_t i = 1; i < tree->n; i++)
         if (deck->children[i] > 0)
-            put_joint(deck, i, &child[first[i + 1]]);
+            put_joint(deck, i, children.items + children.first[i]);
 done:
-    free(first);
-    free(child);
+    indexlists_release(&children);
     return status;
 }
 
 bool oned_keeps(const TreeColumn *column)
 {
     for (size_t k = 0; k < DECK_COLUMNS; k++)
-        if (strcmp(column->name, deck_columns[k].name) == 0 &&
-            strcmp(column->unit, deck_columns[k].unit) == 0)
+        if (strcmp(column->name, fields[k].name) == 0 &&
+            strcmp(column->unit, fields[k].unit) == 0)
             return true;
     return false;
 }
 
 /* The value of a column that a deck brought, or else `otherwise`. */
-static double deck_value(const Tree *tree, DeckColumn k, size_t i, double otherwise)
+static double deck_value(const Tree *tree, size_t k, size_t i, double otherwise)
 {
-    const TreeColumn *column = tree_column(tree, deck_columns[k].name);
+    const TreeColumn *column = tree_column(tree, fields[k].name);
     return column && oned_keeps(column) && column->value[i] > 0 ? column->value[i] : otherwise;
 }
 
@@ -498,18 +384,15 @@ static Status put_deck(DeckTree *deck, Err *err)
     return STATUS_OK;
 }
 
-Status oned_write(const Tree *tree, FILE *stream, Err *err)
+Status oned_write(const Tree *tree, Text *text, Err *err)
 {
-    Text text = TEXT_TO(stream);
-    DeckTree deck = {.tree = tree, .text = &text};
+    DeckTree deck = {.tree = tree, .text = text};
     Status status = STATUS_OK;
-    TRY_GOTO(comments_write(&tree->meta, NULL, stream, err));
+    comments_put(&tree->meta, NULL, text);
     TRY_GOTO(tree_child_counts(tree, &deck.children, err));
     TRY_GOTO(tree_flow_shares(tree, &deck.share, err));
     TRY_GOTO(put_deck(&deck, err));
-    TRY_GOTO(text_flush(&text, err));
 done:
-    text_release(&text);
     free(deck.children);
     free(deck.share);
     return status;

@@ -1,5 +1,6 @@
-/* Edge lists of OpenCCO: a segment a line, "x y z x y z radius", its distal end first. Ends are the
- * same point where they are at the same place. The root's segment is not in the list. */
+/* Edge lists of OpenCCO: one segment per line, "x y z x y z radius", its distal end first. Ends at the
+ * same position are one point. The root's segment is not in the list. */
+#include "treeio/cursor.h"
 #include "treeio/formats.h"
 
 #include <math.h>
@@ -7,9 +8,9 @@
 
 enum { N_NUMBERS = 7 };
 
-static Status read_line(void *reader, size_t number, char *line, Err *err)
+static Status read_line(void *context, size_t number, char *line, Err *err)
 {
-    Graph *graph = reader;
+    Graph *graph = context;
     double v[N_NUMBERS];
     if (!line[strspn(line, TEXT_BLANKS)])
         return STATUS_OK;
@@ -18,21 +19,21 @@ static Status read_line(void *reader, size_t number, char *line, Err *err)
         return err_set(
             err, STATUS_INPUT,
             "the line '%.40s' is not seven numbers: the ends of a segment and its radius", line);
-    const size_t distal = graph->n_points;
-    const GraphPoint ends[] = {
-        {.position = {v[0], v[1], v[2]}, .radius = (double)NAN, .record = number},
-        {.position = {v[3], v[4], v[5]}, .radius = (double)NAN, .record = number}};
-    TRY(graph_point(graph, &ends[0], err));
-    TRY(graph_point(graph, &ends[1], err));
-    const GraphLine segment = {
-        .a = distal + 1, .b = distal, .radius = v[6], .is_directed = true, .record = number};
+    GraphPoint end = {.position = {v[0], v[1], v[2]}, .radius = (double)NAN, .record = number};
+    const GraphLine segment = {.a = graph->n_points + 1,
+                               .b = graph->n_points,
+                               .radius = v[6],
+                               .is_directed = true,
+                               .record = number};
+    TRY(graph_point(graph, &end, err));
+    end.position = vec3(v[3], v[4], v[5]);
+    TRY(graph_point(graph, &end, err));
     return graph_line(graph, &segment, err);
 }
 
 Status opencco_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
-    (void)size;
-    TRY(lines_read(graph->name, bytes, read_line, graph, err));
+    TRY(lines_read(graph->name, bytes, size, read_line, graph, err));
     return reading_note(graph->reading, err, "the root's segment is not in such a file");
 }
 

@@ -1,183 +1,116 @@
-/* Networks of Secomb's programs (network.dat), as GreensV4 reads them: six lines about the tissue,
- * and three tables, each behind a line that says how many rows it has and one that names its
- * columns: segments, nodes, boundary nodes. What follows the numbers of a line is a remark.
- * Diameters are in um, as coordinates are; flow is negative where it runs from the second node to
- * the first. Segments are kept until the nodes that they name are there. */
+/* Networks of Secomb's programs (network.dat), as GreensV4 reads them: six lines about the tissue, and
+ * three tables of segments, nodes and boundary nodes. Before each table, one line states the number of
+ * its rows and one names its columns. Text after the numbers of a row is a remark. Diameters and
+ * coordinates are in um. Flow is negative if it runs from the second node to the first. */
 #include "treeio/formats.h"
-#include "treeio/names.h"
+#include "treeio/text/dialect.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+enum { HEADER_LINES = 6 };
 
-enum { HEADER_LINES = 6, MAX_FIELDS = 100 };
+enum { SEGMENTS, NODES, BOUNDARY, TABLES };
 
-typedef enum Table { SEGMENTS, NODES, BOUNDARY, TABLES } Table;
+/* Fields that decide about directions and inlets. */
+enum { FLOW = 5, BOUNDARY_TYPE = 1, BOUNDARY_VALUE = 2 };
 
-static const struct {
-    const char *rows, *count;
-    size_t fewest; /* numbers in a row */
-} tables[TABLES] = {[SEGMENTS] = {"segments", "number of segments", 5},
-                    [NODES] = {"nodes", "number of nodes", 4},
-                    [BOUNDARY] = {"boundary nodes", "number of boundary nodes", 3}};
+/* The table whose rows are read. */
+typedef struct SecombState {
+    size_t table;
+    int32_t left; /* number of rows to come; 0: the line that states the number of rows */
+} SecombState;
 
-/* Columns of the segments and of the boundary nodes: where in a row, what they are called. */
-typedef struct NetworkColumn {
-    Table table;
-    size_t field;
-    const char *name, *unit;
-} NetworkColumn;
-
-static const NetworkColumn columns[] = {{SEGMENTS, 1, "type", ""},
-                                        {SEGMENTS, 5, "flow", "nl/min"},
-                                        {SEGMENTS, 6, "hematocrit", ""},
-                                        {BOUNDARY, 1, "boundary type", ""},
-                                        {BOUNDARY, 2, "boundary value", ""}};
-
-enum { N_COLUMNS = sizeof columns / sizeof *columns };
-
-typedef struct Segment {
-    char *from, *to; /* borrowed from the text */
-    double diameter, flow;
-    size_t line;
-} Segment;
-
-typedef struct Reader {
-    Graph *graph;
-    Table table;
-    size_t skip;  /* lines that come before what is read next */
-    int32_t left; /* rows of the table; -1: not said yet */
-    Segment *segment;
-    size_t n_segments, capacity;
-    Names nodes;
-} Reader;
-
-static Status put_values(Reader *reader, size_t at, char *const *field, size_t count, Err *err)
+static Status direct_segment(DialectReader *reader, DialectRow *row, Err *err)
 {
-    for (size_t k = 0; k < N_COLUMNS; k++) {
-        double value;
-        if (columns[k].table != reader->table || columns[k].field >= count ||
-            strcmp(field[columns[k].field], "*") == 0)
-            continue;
-        TRY(field_number(columns[k].name, field[columns[k].field], -HUGE_VAL, &value, err));
-        TRY(graph_value(reader->graph, k, at, value, err));
+    double flow = 0;
+    char *from = row->from;
+    (void)reader, (void)err;
+    if (row->count > FLOW)
+        number_parse(row->field[FLOW], &flow);
+    row->segment.is_directed = flow != 0;
+    if (flow < 0) {
+        row->from = row->to;
+        row->to = from;
     }
     return STATUS_OK;
 }
 
-static Status read_segment(Reader *reader, char *const *field, size_t count, size_t line, Err *err)
+/* Boundary type 2 prescribes the flow, which enters the network if it is positive. */
+static Status find_inlet(DialectReader *reader, DialectRow *row, Err *err)
 {
-    Segment segment = {.from = field[2], .to = field[3], .line = line};
-    TRY(field_radius(reader->graph->options, "diameter", field[4], &segment.diameter, err));
-    if (count > 5 && strcmp(field[5], "*") != 0)
-        TRY(field_number("flow", field[5], -HUGE_VAL, &segment.flow, err));
-    TRY(mem_reserve(&reader->segment, &reader->capacity, reader->n_segments + 1,
-                    sizeof *reader->segment, "segments", err));
-    reader->segment[reader->n_segments] = segment;
-    return put_values(reader, reader->n_segments++, field, count, err);
-}
-
-static Status read_node(Reader *reader, char *const *field, size_t line, Err *err)
-{
-    GraphPoint point = {.radius = (double)NAN, .record = line};
-    double *const coordinate[] = {&point.position.x, &point.position.y, &point.position.z};
-    for (size_t i = 0; i < 3; i++)
-        TRY(field_number("coordinate", field[1 + i], -HUGE_VAL, coordinate[i], err));
-    TRY(names_add(&reader->nodes, field[0], reader->graph->n_points, line, err));
-    return graph_point(reader->graph, &point, err);
-}
-
-/* Boundary type 2 prescribes the flow, which enters the network where it is positive. */
-static Status read_boundary(Reader *reader, char *const *field, size_t count, Err *err)
-{
-    size_t node;
-    double type, value;
-    TRY(names_find(&reader->nodes, field[0], &node, err));
-    TRY(field_number("boundary type", field[1], -HUGE_VAL, &type, err));
-    TRY(field_number("boundary value", field[2], -HUGE_VAL, &value, err));
+    double type = 0, value = 0;
+    (void)err;
+    number_parse(row->field[BOUNDARY_TYPE], &type);
+    number_parse(row->field[BOUNDARY_VALUE], &value);
     if (type == 2 && value > 0)
-        reader->graph->point[node].is_inlet = true;
-    return put_values(reader, node, field, count, err);
+        reader->graph->point[row->element].is_inlet = true;
+    return STATUS_OK;
 }
 
-static Status read_row(Reader *reader, char *const *field, size_t count, size_t line, Err *err)
-{
-    if (count < tables[reader->table].fewest)
-        return err_set(err, STATUS_INPUT, "the row of the %s has %zu fields; it has at least %zu",
-                       tables[reader->table].rows, count, tables[reader->table].fewest);
-    switch (reader->table) {
-    case SEGMENTS:
-        return read_segment(reader, field, count, line, err);
-    case NODES:
-        return read_node(reader, field, line, err);
-    default:
-        return read_boundary(reader, field, count, err);
-    }
-}
+static const DialectSection tables[TABLES] = {
+    [SEGMENTS] = {"segments", "a row of the segments", 5, 0, GRAPH_LINES, direct_segment},
+    [NODES] = {"nodes", "a row of the nodes", 4, 0, GRAPH_POINTS, NULL},
+    [BOUNDARY] = {"boundary nodes", "a row of the boundary nodes", 3, 0, GRAPH_POINTS, find_inlet},
+};
 
-static Status read_line(void *context, size_t number, char *line, Err *err)
+static const DialectField fields[] = {
+    {SEGMENTS, 1, FIELD_NUMBER, "type", "", false},
+    {SEGMENTS, 2, FIELD_FROM, "node", "", false},
+    {SEGMENTS, 3, FIELD_TO, "node", "", false},
+    {SEGMENTS, 4, FIELD_DIAMETER, "diameter", "", false},
+    {SEGMENTS, FLOW, FIELD_NUMBER, "flow", "nl/min", false},
+    {SEGMENTS, 6, FIELD_NUMBER, "hematocrit", "", false},
+    {NODES, 0, FIELD_POINT, "node", "", false},
+    {NODES, 1, FIELD_POSITION, "coordinate", "", false},
+    {BOUNDARY, 0, FIELD_OF_POINT, "node", "", false},
+    {BOUNDARY, BOUNDARY_TYPE, FIELD_NUMBER, "boundary type", "", false},
+    {BOUNDARY, BOUNDARY_VALUE, FIELD_NUMBER, "boundary value", "", false},
+};
+
+/* Counts the rows of each table, and passes over the line that names its columns. */
+static Status choose_table(DialectReader *reader, DialectRow *row, bool *is_row, Err *err)
 {
-    Reader *reader = context;
-    char *field[MAX_FIELDS];
-    if (reader->skip > 0) {
-        reader->skip--;
+    SecombState *state = reader->own;
+    char what[64];
+    *is_row = state->left > 0;
+    reader->section = state->table;
+    if (*is_row) {
+        state->table += --state->left == 0;
         return STATUS_OK;
     }
-    TRY(fields_check_commas(line, err));
-    size_t count = fields_cut(line, field, MAX_FIELDS);
-    if (reader->left == 0) {
-        reader->table++;
-        reader->left = -1;
-    }
-    if (count == 0 || reader->table == TABLES)
+    if (state->table == TABLES)
         return STATUS_OK;
-    if (reader->left > 0) {
-        reader->left--;
-        return read_row(reader, field, count, number, err);
-    }
+    snprintf(what, sizeof what, "number of %s", tables[state->table].title);
+    TRY(field_whole(what, row->field[0], 0, TREE_MAX_ID, &state->left, err));
+    state->table += state->left == 0;
     reader->skip = 1;
-    return field_whole(tables[reader->table].count, field[0], 0, TREE_MAX_ID, &reader->left, err);
+    return STATUS_OK;
 }
 
-static Status add_segment(const Reader *reader, const Segment *segment, Err *err)
-{
-    GraphLine line = {.radius = segment->diameter / 2,
-                      .is_directed = segment->flow != 0,
-                      .record = segment->line};
-    bool turned = segment->flow < 0;
-    TRY(names_find(&reader->nodes, segment->from, turned ? &line.b : &line.a, err));
-    TRY(names_find(&reader->nodes, segment->to, turned ? &line.a : &line.b, err));
-    return graph_line(reader->graph, &line, err);
-}
-
-static Status add_segments(const Reader *reader, Err *err)
-{
-    Graph *graph = reader->graph;
-    if (reader->table < BOUNDARY && reader->left != 0)
-        return err_set(err, STATUS_INPUT, "%s: the file ends before all its %s are there",
-                       graph->name, tables[reader->table].rows);
-    for (size_t i = 0; i < reader->n_segments; i++) {
-        const Segment *segment = &reader->segment[i];
-        TRY(graph_blame(graph, GRAPH_LINES, segment->line, add_segment(reader, segment, err), err));
-    }
-    return reading_note(graph->reading, err,
-                        "radii are half the diameters of the file; flow is from the first node of "
-                        "a segment to the second, and enters at boundary nodes of type 2");
-}
+static const Dialect dialect = {.section = tables,
+                                .n_sections = TABLES,
+                                .field = fields,
+                                .n_fields = sizeof fields / sizeof *fields,
+                                .none = "*",
+                                .choose = choose_table};
 
 Status secomb_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
-    (void)size;
-    size_t column;
-    Reader reader = {.graph = graph, .skip = HEADER_LINES, .left = -1, .nodes = {.what = "node"}};
+    SecombState state = {0};
+    DialectReader reader = {.dialect = &dialect,
+                            .graph = graph,
+                            .own = &state,
+                            .skip = HEADER_LINES,
+                            .points = {.what = "node"}};
+    Status status = STATUS_OK;
     graph->unit = LENGTH_UM;
-    for (size_t k = 0; k < N_COLUMNS; k++)
-        TRY(graph_column(graph, columns[k].table == SEGMENTS ? GRAPH_LINES : GRAPH_POINTS,
-                         columns[k].name, columns[k].unit, &column, err));
-    Status status = lines_read(graph->name, bytes, read_line, &reader, err);
-    if (status == STATUS_OK)
-        status = add_segments(&reader, err);
-    free(reader.segment);
-    names_release(&reader.nodes);
+    TRY_GOTO(dialect_read(&reader, bytes, size, err));
+    if (state.table < BOUNDARY)
+        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: the file ends before all its %s are there",
+                         graph->name, tables[state.table].title));
+    TRY_GOTO(dialect_add_segments(&reader, err));
+    TRY_GOTO(reading_note(graph->reading, err,
+                          "radii are half the diameters of the file; flow is from the first node "
+                          "of a segment to the second, and enters at boundary nodes of type 2"));
+done:
+    dialect_release(&reader);
     return status;
 }

@@ -156,13 +156,23 @@ static Status read_comment(Reader *reader, size_t line, const char *comment, Err
     return comment_read(&reader->builder->meta, comment, err);
 }
 
+/* Cuts a line into fields, of which `field` receives the first MAX_FIELDS. Returns their number. */
+static size_t cut_fields(char *line, char **field)
+{
+    size_t count = 0;
+    for (char *word; (word = text_field(&line)); count++)
+        if (count < MAX_FIELDS)
+            field[count] = word;
+    return count;
+}
+
 /* The columns behind the seventh have the names that a line gives to as many columns as there are,
  * or else "column 8" and so on. */
 static Status add_columns(const Reader *reader, Err *err)
 {
     char *copy = NULL, *title[MAX_FIELDS], number[32];
     TRY(mem_strdup(&copy, reader->titles ? reader->titles : "", err));
-    bool named = fields_cut(copy + strspn(copy, "#"), title, MAX_FIELDS) == reader->n_fields;
+    bool named = cut_fields(copy + strspn(copy, "#"), title) == reader->n_fields;
     Status status = STATUS_OK;
     for (size_t i = N_FIELDS, column; status == STATUS_OK && i < reader->n_fields; i++) {
         snprintf(number, sizeof number, "column %zu", i + 1);
@@ -207,7 +217,7 @@ static Status read_line(Reader *reader, char *line, Err *err)
     if (comment)
         *comment = '\0';
     TRY(fields_check_commas(line, err));
-    size_t count = fields_cut(line, field, MAX_FIELDS);
+    size_t count = cut_fields(line, field);
     if (count == 0)
         return STATUS_OK;
     bool fits = reader->n_fields == 0 ? count >= N_FIELDS : count == reader->n_fields;
@@ -419,7 +429,7 @@ static void fill_page(size_t index, int worker, void *context)
     pages->length[index] = (size_t)(to - text);
 }
 
-static Status write_rows(const Tree *tree, FILE *stream, Err *err)
+static Status write_rows(const Tree *tree, Text *text, Err *err)
 {
     size_t n = (tree->n + ROWS - 1) / ROWS, most = (size_t)threads_available() * BLOCKS_PER_THREAD;
     Pages pages = {.tree = tree};
@@ -431,7 +441,7 @@ static Status write_rows(const Tree *tree, FILE *stream, Err *err)
         most = n < most ? n : most;
         threads_for(most, 0, fill_page, &pages);
         for (size_t i = 0; i < most; i++)
-            fwrite(pages.text + i * ROWS * LONGEST_ROW, 1, pages.length[i], stream);
+            text_append(text, pages.text + i * ROWS * LONGEST_ROW, pages.length[i]);
     }
 done:
     free(pages.length);
@@ -444,22 +454,23 @@ bool swc_keeps(const TreeColumn *column)
     return strcmp(column->name, tree_pairs_name) == 0;
 }
 
-Status swc_write(const Tree *tree, FILE *stream, Err *err)
+Status swc_write(const Tree *tree, Text *text, Err *err)
 {
-    char share[NUMBER_TEXT_SIZE];
     TreePair *pair;
     size_t pairs;
     /* Remarks of other formats that a reader of SWC would take for shares or pairs. */
     static const char *const meaningful[] = {share_key, tree_pairs_name, NULL};
-    TRY(comments_write(&tree->meta, meaningful, stream, err));
+    comments_put(&tree->meta, meaningful, text);
     TRY(tree_pairs(tree, &pair, &pairs, err));
     for (size_t k = 0; k < pairs; k++)
-        fprintf(stream, "# %s: %d %d\n", tree_pairs_name, tree->id[pair[k].node[0]],
-                tree->id[pair[k].node[1]]);
+        text_printf(text, "# %s: %d %d\n", tree_pairs_name, tree->id[pair[k].node[0]],
+                    tree->id[pair[k].node[1]]);
     free(pair);
     for (size_t i = 0; tree->flow_share && i < tree->n; i++)
-        if (tree->flow_share[i] > 0)
-            fprintf(stream, "# %s: %d %s\n", share_key, tree->id[i],
-                    number_text(tree->flow_share[i], share));
-    return write_rows(tree, stream, err);
+        if (tree->flow_share[i] > 0) {
+            text_printf(text, "# %s: %d ", share_key, tree->id[i]);
+            text_number(text, tree->flow_share[i]);
+            text_puts(text, "\n");
+        }
+    return write_rows(tree, text, err);
 }

@@ -9,6 +9,7 @@
  * their numbers. Fields are parted by what the first line has most of: semicolons, tabs, commas, or
  * else blanks. What a row names may come later, so parents are looked up at the end. */
 #include "treeio/comments.h"
+#include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include "treeio/names.h"
 
@@ -631,9 +632,9 @@ static Status note_texts(const Table *table, Err *err)
     return STATUS_OK;
 }
 
-static Status read_table(Table *table, char *bytes, Err *err)
+static Status read_table(Table *table, char *bytes, size_t size, Err *err)
 {
-    TRY(lines_read(table->name, bytes, read_line, table, err));
+    TRY(lines_read(table->name, bytes, size, read_line, table, err));
     return note_texts(table, err);
 }
 
@@ -682,7 +683,7 @@ static Status read_beside(const Table *nodes, const char *path, Err *err)
     size_t size;
     nodes->graph->line_record = "line of the edges";
     TRY(file_read(path, &form, &bytes, &size, err));
-    Status status = read_table(&edges, bytes, err);
+    Status status = read_table(&edges, bytes, size, err);
     if (status == STATUS_OK && edges.n == 0)
         status = err_set(err, STATUS_INPUT, "%s: the table of lines is empty", path);
     release_table(&edges);
@@ -690,13 +691,13 @@ static Status read_beside(const Table *nodes, const char *path, Err *err)
     return status;
 }
 
-static Status read_tables(Table *table, char *bytes, Err *err)
+static Status read_tables(Table *table, char *bytes, size_t size, Err *err)
 {
     Graph *graph = table->graph;
     const ReadOptions *options = graph->options;
     const char *edges = options ? options->edges : NULL;
     TRY(parse_sayings(table->sayings, options ? options->columns : NULL, err));
-    TRY(read_table(table, bytes, err));
+    TRY(read_table(table, bytes, size, err));
     if (table->kind == NODES && edges)
         TRY(read_beside(table, edges, err));
     if (table->kind == NODES && edges && !table->at[ROLE_ID])
@@ -718,11 +719,10 @@ static Status read_tables(Table *table, char *bytes, Err *err)
 
 Status table_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
-    (void)size;
     Sayings sayings = {0};
     Names nodes = {.what = "node"};
     Table table = {.name = graph->name, .graph = graph, .sayings = &sayings, .nodes = &nodes};
-    Status status = read_tables(&table, bytes, err);
+    Status status = read_tables(&table, bytes, size, err);
     release_table(&table);
     names_release(&nodes);
     free(sayings.text);

@@ -1,241 +1,198 @@
-/* VMV, the files of VessMorphoVis: sections between "$NAME_BEGIN" and "$NAME_END". $PARAM says how
- * many there are of each thing, $VERT_LIST has a vertex a line, its number, position, radius and
- * sometimes one more value, $STRANDS_LIST a polyline of vertices a line, behind its number, and
- * $RADIUS_SIMULATION and the like one row of values a vertex, a value a time step. VessMorphoVis
- * announces steps also of sections that it does not write, and Ultraliser puts a '$' before the
- * names of parameters, too.
+/* VMV, the files of VessMorphoVis: sections between "$NAME_BEGIN" and "$NAME_END". $PARAM states counts.
+ * $VERT_LIST has one vertex per line: its number, position, radius, and sometimes one more value.
+ * $STRANDS_LIST has one polyline of vertices per line, after the polyline's number.
+ * $RADIUS_SIMULATION and similar sections have one row per vertex, with one value per time step.
+ * VessMorphoVis states time steps also of sections that it does not write. Ultraliser puts a '$'
+ * before the names of parameters, too.
  *
- * VessMorphoVis writes strands away from the root. A file in which every vertex is entered by one
- * line at most is taken to be written so; in any other, the order of a strand means nothing. */
+ * VessMorphoVis writes strands away from the root. If at most one line enters every vertex, strands
+ * are assumed to be written so. In other files their direction means nothing. */
 #include "treeio/branches.h"
 #include "treeio/comments.h"
 #include "treeio/formats.h"
-#include "treeio/names.h"
+#include "treeio/text/dialect.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-typedef enum Section {
-    NONE,
-    PARAMETERS,
-    VERTICES,
-    STRANDS,
-    RADIUS,
-    FLOW,
-    PRESSURE,
-    SECTIONS
-} Section;
+/* Sections. Those from RADIUS on are time series. */
+enum { PARAMETERS, VERTICES, STRANDS, RADIUS, FLOW, PRESSURE, SECTIONS };
 
+/* The names of time series: of columns, before the number of a time step; of their steps. */
 static const struct {
-    const char *name;
-    const char *series; /* what the column of a time step is called, before its number */
-    const char *steps;
-} sections[SECTIONS] = {
-    [PARAMETERS] = {.name = "PARAM"},
-    [VERTICES] = {.name = "VERT_LIST"},
-    [STRANDS] = {.name = "STRANDS_LIST"},
-    [RADIUS] = {"RADIUS_SIMULATION", "radius", "time steps of radii"},
-    [FLOW] = {"FLOW_SIMULATION", "flow", "time steps of flows"},
-    [PRESSURE] = {"PRESSURE_SIMULATION", "pressure", "time steps of pressures"},
+    const char *column, *steps;
+} series_names[SECTIONS] = {
+    [RADIUS] = {"radius", "time steps of radii"},
+    [FLOW] = {"flow", "time steps of flows"},
+    [PRESSURE] = {"pressure", "time steps of pressures"},
 };
-
-enum { VERTEX_FIELDS = 5, MAX_VERTEX_FIELDS = 6 };
 
 /* The values of all vertices at all time steps. */
 typedef struct TimeSteps {
-    size_t column; /* of the first step; those of the others follow */
+    size_t column; /* index of the first step's column; those of the others follow */
     size_t steps, rows;
-    int32_t said; /* as the parameters say how many steps there are; -1: they do not */
+    int32_t stated; /* number of steps that the parameters state; -1: none */
 } TimeSteps;
 
-typedef struct Reader {
-    Graph *graph;
-    Section section;
-    int32_t vertices, strands; /* as the parameters say; -1: they do not */
+typedef struct VmvState {
+    int32_t vertices, strands; /* numbers that the parameters state; -1: none */
     size_t n_strands;
-    Names names; /* of the vertices */
-    bool has_value;
-    size_t value; /* the column of what stands behind the radius */
     TimeSteps series[SECTIONS];
-} Reader;
+} VmvState;
 
-static Status read_parameter(Reader *reader, char *line, Err *err)
+static Status read_parameter(DialectReader *reader, DialectRow *row, Err *err)
 {
-    const char *name = text_field(&line), *value = text_field(&line);
-    if (!name || !value)
+    VmvState *state = reader->own;
+    const char *name = row->field[0], *value = row->count > 1 ? row->field[1] : NULL;
+    if (!value)
         return STATUS_OK;
     if (strcasecmp(name, "NUM_VERTS") == 0)
-        return field_whole(name, value, 0, INT32_MAX, &reader->vertices, err);
+        return field_whole(name, value, 0, INT32_MAX, &state->vertices, err);
     if (strcasecmp(name, "NUM_STRANDS") == 0)
-        return field_whole(name, value, 0, INT32_MAX, &reader->strands, err);
-    for (int section = RADIUS; section < SECTIONS; section++) {
-        size_t length = strlen(sections[section].name);
-        if (strncasecmp(name, sections[section].name, length) == 0 &&
-            strcasecmp(name + length, "_TIME_STEPS") == 0)
-            return field_whole(name, value, 0, INT32_MAX, &reader->series[section].said, err);
+        return field_whole(name, value, 0, INT32_MAX, &state->strands, err);
+    for (size_t section = RADIUS; section < SECTIONS; section++) {
+        const char *title = reader->dialect->section[section].title;
+        if (strncasecmp(name, title, strlen(title)) == 0 &&
+            strcasecmp(name + strlen(title), "_TIME_STEPS") == 0)
+            return field_whole(name, value, 0, INT32_MAX, &state->series[section].stated, err);
     }
     return STATUS_OK;
 }
 
-static Status read_vertex(Reader *reader, char *line, size_t number, Err *err)
+static Status read_strand(DialectReader *reader, DialectRow *row, Err *err)
 {
-    Graph *graph = reader->graph;
-    char *field[MAX_VERTEX_FIELDS];
-    size_t count = fields_cut(line, field, MAX_VERTEX_FIELDS);
-    GraphPoint point = {.record = number};
-    double *const coordinate[] = {&point.position.x, &point.position.y, &point.position.z};
-    if (count < VERTEX_FIELDS || count > MAX_VERTEX_FIELDS)
-        return err_set(err, STATUS_INPUT,
-                       "the vertex has %zu fields; it has its number, three coordinates, a radius "
-                       "and at most one value",
-                       count);
-    TRY(names_add(&reader->names, field[0], graph->n_points, number, err));
-    for (size_t i = 0; i < 3; i++)
-        TRY(field_number("coordinate", field[1 + i], -HUGE_VAL, coordinate[i], err));
-    TRY(field_radius(graph->options, "radius", field[4], &point.radius, err));
-    TRY(graph_point(graph, &point, err));
-    if (count == VERTEX_FIELDS)
-        return STATUS_OK;
-    double value;
-    if (!reader->has_value)
-        TRY(graph_column(graph, GRAPH_POINTS, "value", "", &reader->value, err));
-    reader->has_value = true;
-    TRY(field_value("value", field[VERTEX_FIELDS], &value, err));
-    return graph_value(graph, reader->value, graph->n_points - 1, value, err);
-}
-
-static Status read_strand(Reader *reader, char *line, size_t number, Err *err)
-{
-    size_t before = 0, count = 0;
-    text_field(&line);
-    for (char *field; (field = text_field(&line)); count++) {
-        size_t vertex;
-        TRY(names_find(&reader->names, field, &vertex, err));
-        if (count > 0)
-            TRY(graph_line(reader->graph,
-                           &(GraphLine){.a = before,
-                                        .b = vertex,
-                                        .radius = (double)NAN,
-                                        .is_directed = true,
-                                        .record = number},
-                           err));
-        before = vertex;
+    VmvState *state = reader->own;
+    GraphLine line = row->segment;
+    for (size_t k = 1; k < row->count; k++) {
+        TRY(names_find(&reader->points, row->field[k], &line.b, err));
+        if (k > 1)
+            TRY(graph_line(reader->graph, &line, err));
+        line.a = line.b;
     }
-    if (count < 2)
-        return err_set(err, STATUS_INPUT, "a strand has two vertices or more; this has %zu", count);
-    reader->n_strands++;
+    if (row->count < 3)
+        return err_set(err, STATUS_INPUT, "a strand has two vertices or more; this has %zu",
+                       row->count - 1);
+    state->n_strands++;
     return STATUS_OK;
 }
 
-/* As many columns as the row has values. */
-static Status add_steps(Reader *reader, const char *row, Err *err)
+/* Adds one column per time step. */
+static Status add_steps(DialectReader *reader, TimeSteps *series, size_t n, Err *err)
 {
-    TimeSteps *series = &reader->series[reader->section];
-    for (;; series->steps++) {
+    for (; series->steps < n; series->steps++) {
         char name[64];
         size_t column;
-        row += strspn(row, TEXT_BLANKS);
-        if (!*row)
-            return STATUS_OK;
-        row += strcspn(row, TEXT_BLANKS);
-        snprintf(name, sizeof name, "%s_%zu", sections[reader->section].series, series->steps);
+        snprintf(name, sizeof name, "%s_%zu", series_names[reader->section].column, series->steps);
         TRY(graph_column(reader->graph, GRAPH_POINTS, name, "", &column, err));
-        if (series->steps == 0)
-            series->column = column;
+        series->column = column - series->steps;
     }
+    return STATUS_OK;
 }
 
-/* The values of one vertex; the first row says how many steps there are. */
-static Status read_values(Reader *reader, char *line, Err *err)
+/* Reads the values of one vertex. The first row shows how many time steps there are. */
+static Status read_values(DialectReader *reader, DialectRow *row, Err *err)
 {
-    TimeSteps *series = &reader->series[reader->section];
-    size_t count = 0;
+    VmvState *state = reader->own;
+    TimeSteps *series = &state->series[reader->section];
     if (series->rows == reader->graph->n_points)
         return err_set(err, STATUS_INPUT,
                        "there are more rows than vertices, of which there are %zu", series->rows);
     if (series->rows == 0)
-        TRY(add_steps(reader, line, err));
-    for (char *field; (field = text_field(&line)); count++) {
+        TRY(add_steps(reader, series, row->count, err));
+    if (row->count != series->steps)
+        return err_set(err, STATUS_INPUT, "the row has %zu value%s; the first has %zu", row->count,
+                       row->count == 1 ? "" : "s", series->steps);
+    for (size_t k = 0; k < row->count; k++) {
         double value;
-        TRY(field_value("value", field, &value, err));
-        if (count < series->steps)
-            TRY(graph_value(reader->graph, series->column + count, series->rows, value, err));
+        TRY(field_value("value", row->field[k], &value, err));
+        TRY(graph_value(reader->graph, series->column + k, series->rows, value, err));
     }
     series->rows++;
-    if (count == series->steps)
-        return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "the row has %zu value%s; the first has %zu", count,
-                   count == 1 ? "" : "s", series->steps);
+    return STATUS_OK;
 }
 
-/* "$NAME_BEGIN" or "$NAME_END". */
-static Status change_section(Reader *reader, const char *line, Err *err)
+static const DialectSection sections[SECTIONS] = {
+    [PARAMETERS] = {"PARAM", "a parameter", 0, 0, GRAPH_LINES, read_parameter},
+    [VERTICES] = {"VERT_LIST", "a vertex (number, three coordinates, radius, at most one value)", 5,
+                  6, GRAPH_POINTS, NULL},
+    [STRANDS] = {"STRANDS_LIST", "a strand", 0, 0, GRAPH_LINES, read_strand},
+    [RADIUS] = {"RADIUS_SIMULATION", "a row", 0, 0, GRAPH_LINES, read_values},
+    [FLOW] = {"FLOW_SIMULATION", "a row", 0, 0, GRAPH_LINES, read_values},
+    [PRESSURE] = {"PRESSURE_SIMULATION", "a row", 0, 0, GRAPH_LINES, read_values},
+};
+
+static const DialectField fields[] = {
+    {VERTICES, 0, FIELD_POINT, "vertex", "", false},
+    {VERTICES, 1, FIELD_POSITION, "coordinate", "", false},
+    {VERTICES, 4, FIELD_RADIUS, "radius", "", false},
+    {VERTICES, 5, FIELD_VALUE, "value", "", false},
+};
+
+static Status read_comment(Graph *graph, const char *comment, Err *err)
 {
-    const char *name = line + 1 + strspn(line + 1, TEXT_BLANKS);
-    for (int section = PARAMETERS; section < SECTIONS; section++) {
-        size_t length = strlen(sections[section].name);
-        if (strncasecmp(name, sections[section].name, length) != 0)
+    return comment_read(&graph->meta, comment, err);
+}
+
+/* Reads "$NAME_BEGIN" or "$NAME_END". */
+static Status change_section(DialectReader *reader, const char *title, Err *err)
+{
+    for (size_t section = 0; section < SECTIONS; section++) {
+        size_t length = strlen(sections[section].title);
+        if (strncasecmp(title + 1, sections[section].title, length) != 0)
             continue;
-        const char *edge = name + length;
-        reader->section = strcasecmp(edge, "_BEGIN") == 0 ? (Section)section : NONE;
-        if (reader->section != NONE || strcasecmp(edge, "_END") == 0)
+        bool begins = strcasecmp(title + 1 + length, "_BEGIN") == 0;
+        reader->section = begins ? section : SECTIONS;
+        if (begins || strcasecmp(title + 1 + length, "_END") == 0)
             return STATUS_OK;
     }
-    return err_set(err, STATUS_INPUT, "'%.40s' begins or ends no section of VMV", line);
+    return err_set(err, STATUS_INPUT, "'%.40s' begins or ends no section of VMV", title);
 }
 
-static Status read_line(void *context, size_t number, char *line, Err *err)
+/* Lines after the strands may stand in no section. */
+static Status choose_section(DialectReader *reader, DialectRow *row, bool *is_row, Err *err)
 {
-    Reader *reader = context;
-    line = text_trim(line);
-    if (*line == '#')
-        return comment_read(&reader->graph->meta, line + 1, err);
-    TRY(fields_check_commas(line, err));
-    if (reader->section == PARAMETERS && strncasecmp(line, "$NUM_", 5) == 0)
-        line++;
-    if (*line == '$')
-        return change_section(reader, line, err);
-    if (!*line)
+    const VmvState *state = reader->own;
+    if (reader->section == PARAMETERS && strncasecmp(row->field[0], "$NUM_", 5) == 0)
+        row->field[0]++;
+    *is_row = *row->field[0] != '$' && reader->section < SECTIONS;
+    if (*row->field[0] == '$')
+        return change_section(reader, row->field[0], err);
+    if (*is_row || state->n_strands > 0)
         return STATUS_OK;
-    switch (reader->section) {
-    case NONE:
-        if (reader->n_strands > 0) /* behind the end */
-            return STATUS_OK;
-        return err_set(err, STATUS_INPUT, "'%.40s' stands in no section of VMV", line);
-    case PARAMETERS:
-        return read_parameter(reader, line, err);
-    case VERTICES:
-        return read_vertex(reader, line, number, err);
-    case STRANDS:
-        return read_strand(reader, line, number, err);
-    default:
-        return read_values(reader, line, err);
-    }
+    return err_set(err, STATUS_INPUT, "'%.40s' stands in no section of VMV", row->field[0]);
 }
 
-static Status check_count(const Reader *reader, const char *what, int32_t said, size_t found,
+static const Dialect dialect = {.section = sections,
+                                .n_sections = SECTIONS,
+                                .field = fields,
+                                .n_fields = sizeof fields / sizeof *fields,
+                                .comment = read_comment,
+                                .choose = choose_section};
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static Status check_count(const Graph *graph, const char *what, int32_t stated, size_t found,
                           Err *err)
 {
-    if (said < 0 || (size_t)said == found)
+    if (stated < 0 || (size_t)stated == found)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "%s: the file says %d %s and has %zu", reader->graph->name,
-                   said, what, found);
+    return err_set(err, STATUS_INPUT, "%s: the file says %d %s and has %zu", graph->name, stated,
+                   what, found);
 }
 
-static Status check_counts(const Reader *reader, Err *err)
+static Status check_counts(const Graph *graph, const VmvState *state, Err *err)
 {
-    TRY(check_count(reader, "vertices", reader->vertices, reader->graph->n_points, err));
-    TRY(check_count(reader, "strands", reader->strands, reader->n_strands, err));
-    for (int section = RADIUS; section < SECTIONS; section++) {
-        const TimeSteps *series = &reader->series[section];
+    TRY(check_count(graph, "vertices", state->vertices, graph->n_points, err));
+    TRY(check_count(graph, "strands", state->strands, state->n_strands, err));
+    for (size_t section = RADIUS; section < SECTIONS; section++) {
+        const TimeSteps *series = &state->series[section];
         if (series->rows > 0)
-            TRY(check_count(reader, sections[section].steps, series->said, series->steps, err));
-        if (series->rows > 0 && series->rows != reader->graph->n_points)
-            return err_set(err, STATUS_INPUT, "%s: %s has %zu rows for %zu vertices",
-                           reader->graph->name, sections[section].name, series->rows,
-                           reader->graph->n_points);
+            TRY(check_count(graph, series_names[section].steps, series->stated, series->steps, err));
+        if (series->rows > 0 && series->rows != graph->n_points)
+            return err_set(err, STATUS_INPUT, "%s: %s has %zu rows for %zu vertices", graph->name,
+                           sections[section].title, series->rows, graph->n_points);
     }
     return STATUS_OK;
 }
@@ -257,64 +214,66 @@ static Status judge_directions(Graph *graph, Err *err)
 
 Status vmv_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
-    (void)size;
-    Reader reader = {.graph = graph, .vertices = -1, .strands = -1, .names = {.what = "vertex"}};
+    VmvState state = {.vertices = -1, .strands = -1};
+    DialectReader reader = {
+        .dialect = &dialect, .graph = graph, .own = &state, .points = {.what = "vertex"}};
+    Status status = STATUS_OK;
     graph->unit = LENGTH_UM;
     graph->is_named = true;
-    for (int section = RADIUS; section < SECTIONS; section++)
-        reader.series[section].said = -1;
-    Status status = lines_read(graph->name, bytes, read_line, &reader, err);
-    if (status == STATUS_OK)
-        status = check_counts(&reader, err);
-    names_release(&reader.names);
-    return status == STATUS_OK ? judge_directions(graph, err) : status;
+    for (size_t section = RADIUS; section < SECTIONS; section++)
+        state.series[section].stated = -1;
+    TRY_GOTO(dialect_read(&reader, bytes, size, err));
+    TRY_GOTO(check_counts(graph, &state, err));
+    TRY_GOTO(judge_directions(graph, err));
+done:
+    dialect_release(&reader);
+    return status;
 }
 
-static void write_number(double mm, FILE *stream)
+/* ---- writing --------------------------------------------------------------------------------- */
+
+static void put_um(double mm, Text *text)
 {
-    char number[NUMBER_TEXT_SIZE];
-    fprintf(stream, " %s", number_text(length_from_mm(mm, LENGTH_UM), number));
+    text_puts(text, " ");
+    text_number(text, length_from_mm(mm, LENGTH_UM));
 }
 
-static void write_strands(const Tree *tree, const Branches *branches, FILE *stream)
+static void put_vertex(const Tree *tree, size_t i, Text *text)
+{
+    text_printf(text, "%zu", i + 1);
+    put_um(tree->position[i].x, text);
+    put_um(tree->position[i].y, text);
+    put_um(tree->position[i].z, text);
+    put_um(tree->radius_mm[i], text);
+    text_puts(text, "\n");
+}
+
+static void put_strands(const Tree *tree, const Branches *branches, Text *text)
 {
     for (size_t k = 0, at = 0; k < branches->n; k++) {
-        fprintf(stream, "%zu %d", k + 1, tree->parent[branches->node[at]] + 1);
+        text_printf(text, "%zu %d", k + 1, tree->parent[branches->node[at]] + 1);
         for (; at < branches->end[k]; at++)
-            fprintf(stream, " %d", branches->node[at] + 1);
-        putc('\n', stream);
+            text_printf(text, " %d", branches->node[at] + 1);
+        text_puts(text, "\n");
     }
 }
 
-static void write_vertices(const Tree *tree, FILE *stream)
-{
-    fprintf(stream, "$VERT_LIST_BEGIN\n");
-    for (size_t i = 0; i < tree->n; i++) {
-        fprintf(stream, "%zu", i + 1);
-        write_number(tree->position[i].x, stream);
-        write_number(tree->position[i].y, stream);
-        write_number(tree->position[i].z, stream);
-        write_number(tree->radius_mm[i], stream);
-        putc('\n', stream);
-    }
-    fprintf(stream, "$VERT_LIST_END\n\n");
-}
-
-Status vmv_write(const Tree *tree, FILE *stream, Err *err)
+Status vmv_write(const Tree *tree, Text *text, Err *err)
 {
     Branches branches;
     TRY(branches_find(tree, &branches, err));
-    Status status = comments_write(&tree->meta, NULL, stream, err);
-    fprintf(stream,
-            "$PARAM_BEGIN\nNUM_VERTS %zu\nNUM_STRANDS %zu\nNUM_ATTRIB_PER_VERT 4\n"
-            "$PARAM_END\n\n",
-            tree->n, branches.n);
-    write_vertices(tree, stream);
-    fprintf(stream, "$STRANDS_LIST_BEGIN\n");
-    write_strands(tree, &branches, stream);
-    fprintf(stream, "$STRANDS_LIST_END\n");
+    comments_put(&tree->meta, NULL, text);
+    text_printf(text,
+                "$PARAM_BEGIN\nNUM_VERTS %zu\nNUM_STRANDS %zu\nNUM_ATTRIB_PER_VERT 4\n"
+                "$PARAM_END\n\n$VERT_LIST_BEGIN\n",
+                tree->n, branches.n);
+    for (size_t i = 0; i < tree->n; i++)
+        put_vertex(tree, i, text);
+    text_puts(text, "$VERT_LIST_END\n\n$STRANDS_LIST_BEGIN\n");
+    put_strands(tree, &branches, text);
+    text_puts(text, "$STRANDS_LIST_END\n");
     branches_release(&branches);
-    return status;
+    return STATUS_OK;
 }
 
 bool vmv_detect(const char *start)

@@ -1,144 +1,173 @@
-/* Numbers are kept as doubles, which hold every index that a file of this size can have; their
- * bytes are put together by shifts, whatever the order, but for the two common types. */
+/* All numbers are kept as doubles, which hold every index that a file of this size can have. Values
+ * are put together from bytes by shifts, in any byte order. The two most common types are copied
+ * instead. */
 #include "treeio/vtk/vtkdata.h"
 
-#include <ctype.h>
+#include "treeio/formats.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-/* ---- numbers ---- */
+/* ---- types ----------------------------------------------------------------------------------- */
 
-static const VtkType types[] = {
-    {"char", "Int8", 1, false, true},
-    {"signed_char", NULL, 1, false, true},
-    {"unsigned_char", "UInt8", 1, false, false},
-    {"short", "Int16", 2, false, true},
-    {"unsigned_short", "UInt16", 2, false, false},
-    {"int", "Int32", 4, false, true},
-    {"unsigned_int", "UInt32", 4, false, false},
-    {"long", "Int64", 8, false, true},
-    {"unsigned_long", "UInt64", 8, false, false},
-    {"vtktypeint64", NULL, 8, false, true},
-    {"vtktypeuint64", NULL, 8, false, false},
-    {"vtkidtype", NULL, 4, false, true}, /* whatever the program that wrote it had */
-    {"float", "Float32", 4, true, true},
-    {"double", "Float64", 8, true, true},
+static const struct {
+    size_t size;
+    bool is_float, is_signed;
+} types[VTK_TYPES] = {
+    [VTK_TEXT] = {1, false, false},  [VTK_INT8] = {1, false, true},
+    [VTK_UINT8] = {1, false, false}, [VTK_INT16] = {2, false, true},
+    [VTK_UINT16] = {2, false, false}, [VTK_INT32] = {4, false, true},
+    [VTK_UINT32] = {4, false, false}, [VTK_INT64] = {8, false, true},
+    [VTK_UINT64] = {8, false, false}, [VTK_FLOAT] = {4, true, true},
+    [VTK_DOUBLE] = {8, true, true},
 };
 
-enum { N_TYPES = sizeof types / sizeof *types };
+/* The names of types in each format. A type may have several names; the first is written. */
+static const struct {
+    VtkType type;
+    const char *name[NAMINGS]; /* NULL: the format has no such name */
+} type_names[] = {
+    {VTK_TEXT, {"string", "String"}},
+    {VTK_INT8, {"char", "Int8"}},
+    {VTK_INT8, {"signed_char"}},
+    {VTK_UINT8, {"unsigned_char", "UInt8", "byte"}},
+    {VTK_INT16, {"short", "Int16", "short"}},
+    {VTK_UINT16, {"unsigned_short", "UInt16", "ushort"}},
+    {VTK_INT32, {"int", "Int32", "int"}},
+    {VTK_INT32, {"vtkidtype"}}, /* in legacy files, whatever size the writing program's ids had */
+    {VTK_UINT32, {"unsigned_int", "UInt32"}},
+    {VTK_INT64, {"long", "Int64", "long"}},
+    {VTK_INT64, {"vtktypeint64"}},
+    {VTK_UINT64, {"unsigned_long", "UInt64"}},
+    {VTK_UINT64, {"vtktypeuint64"}},
+    {VTK_FLOAT, {"float", "Float32", "float", "MET_FLOAT"}},
+    {VTK_DOUBLE, {"double", "Float64", "double", "MET_DOUBLE"}},
+};
 
-const VtkType *vtk_type_of_legacy(const char *name, size_t length)
+enum { N_TYPE_NAMES = sizeof type_names / sizeof *type_names };
+
+VtkType vtk_type_called(VtkNaming naming, const char *name, size_t length)
 {
-    for (size_t i = 0; i < N_TYPES; i++)
-        if (strlen(types[i].legacy) == length && strncasecmp(types[i].legacy, name, length) == 0)
-            return &types[i];
-    return NULL;
+    for (size_t i = 0; i < N_TYPE_NAMES; i++) {
+        const char *known = type_names[i].name[naming];
+        if (known && strlen(known) == length && strncasecmp(known, name, length) == 0)
+            return type_names[i].type;
+    }
+    return VTK_TYPES;
 }
 
-const VtkType *vtk_type_of_xml(const char *name)
+Status vtk_find_type(VtkNaming naming, const char *name, const char *numbers_only, VtkType *type,
+                     Err *err)
 {
-    for (size_t i = 0; i < N_TYPES; i++)
-        if (types[i].xml && strcasecmp(types[i].xml, name) == 0)
-            return &types[i];
-    return NULL;
+    VtkType found = vtk_type_called(naming, name, strlen(name));
+    if (found == VTK_TYPES)
+        return err_set(err, STATUS_INPUT, "'%.40s' is no type of numbers", name);
+    if (found == VTK_TEXT && numbers_only)
+        return err_set(err, STATUS_INPUT, "%s cannot be strings", numbers_only);
+    *type = found;
+    return STATUS_OK;
 }
 
-static double number_of_bits(const VtkType *type, uint64_t bits)
+const char *vtk_type_name(VtkNaming naming, VtkType type)
+{
+    size_t i = 0;
+    while (type_names[i].type != type)
+        i++;
+    return type_names[i].name[naming];
+}
+
+size_t vtk_type_size(VtkType type)
+{
+    return types[type].size;
+}
+
+static double number_of_bits(VtkType type, uint64_t bits)
 {
     uint32_t low = (uint32_t)bits;
     float single;
     double wide;
     memcpy(&single, &low, sizeof single);
     memcpy(&wide, &bits, sizeof wide);
-    if (type->is_float)
-        return type->size == 4 ? (double)single : wide;
-    if (!type->is_signed)
+    if (types[type].is_float)
+        return type == VTK_FLOAT ? (double)single : wide;
+    if (!types[type].is_signed)
         return (double)bits;
-    int unused = (int)(64 - 8 * type->size);
+    int unused = (int)(64 - 8 * types[type].size);
     return (double)((int64_t)(bits << unused) >> unused);
 }
 
-/* The common cases at a fraction of the time: the machine's own order. */
-static bool take_plain(const VtkType *type, bool is_big_endian, const char *bytes, size_t n,
-                       double *out)
+/* Converts the common types in the byte order of the machine, in a fraction of the time. Returns
+ * false for others. */
+static bool take_plain(VtkType type, bool is_big_endian, const char *bytes, size_t n, double *out)
 {
     if (is_big_endian != (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__))
         return false;
-    if (type->is_float && type->size == sizeof(double)) {
+    if (type == VTK_DOUBLE) {
         if (n > 0)
             memcpy(out, bytes, n * sizeof *out);
         return true;
     }
-    if (type->is_float || !type->is_signed || type->size != sizeof(int32_t))
-        return false;
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; type == VTK_INT32 && i < n; i++) {
         int32_t number;
         memcpy(&number, bytes + i * sizeof number, sizeof number);
         out[i] = number;
     }
-    return true;
+    return type == VTK_INT32;
 }
 
-static void take_numbers(const VtkType *type, bool is_big_endian, const char *bytes, size_t n,
-                         double *out)
-{
-    size_t size = type->size;
-    if (take_plain(type, is_big_endian, bytes, n, out))
-        return;
-    for (size_t i = 0; i < n; i++, bytes += size) {
-        uint64_t bits = 0;
-        for (size_t k = 0; k < size; k++)
-            bits = bits << 8 | (unsigned char)bytes[is_big_endian ? k : size - 1 - k];
-        out[i] = number_of_bits(type, bits);
-    }
-}
-
-typedef struct Numbers {
-    const VtkType *type;
+typedef struct VtkValues {
+    VtkType type;
     bool is_big_endian;
     const char *bytes;
     size_t n;
     double *out;
-} Numbers;
+} VtkValues;
 
 enum { BLOCK = 1 << 19 /* numbers: two huge pages */ };
 
 static void take_block(size_t index, int worker, void *context)
 {
-    const Numbers *all = context;
-    size_t first = index * BLOCK, left = all->n - first;
+    const VtkValues *all = context;
+    size_t size = types[all->type].size, first = index * BLOCK, left = all->n - first;
+    size_t n = left < BLOCK ? left : BLOCK;
+    const char *bytes = all->bytes + first * size;
+    double *out = all->out + first;
     (void)worker;
-    take_numbers(all->type, all->is_big_endian, all->bytes + first * all->type->size,
-                 left < BLOCK ? left : BLOCK, all->out + first);
+    if (take_plain(all->type, all->is_big_endian, bytes, n, out))
+        return;
+    for (size_t i = 0; i < n; i++, bytes += size) {
+        uint64_t bits = 0;
+        for (size_t k = 0; k < size; k++)
+            bits = bits << 8 | (unsigned char)bytes[all->is_big_endian ? k : size - 1 - k];
+        out[i] = number_of_bits(all->type, bits);
+    }
 }
 
-/* By all processors: the system clears the memory that numbers come to as they do, which takes
- * longer than they. */
-void vtk_numbers(const VtkType *type, bool is_big_endian, const char *bytes, size_t n, double *out)
+/* Uses all processors: the system clears the memory of `out` while it is written, which takes longer
+ * than the conversion. */
+void vtk_numbers(VtkType type, bool is_big_endian, const char *bytes, size_t n, double *out)
 {
-    Numbers all = {type, is_big_endian, bytes, n, out};
+    VtkValues all = {type, is_big_endian, bytes, n, out};
     threads_for((n + BLOCK - 1) / BLOCK, 0, take_block, &all);
 }
 
-static uint64_t bits_of_number(const VtkType *type, double number)
+static uint64_t bits_of_number(VtkType type, double number)
 {
     float single = (float)number;
     uint32_t low;
     uint64_t bits;
     memcpy(&low, &single, sizeof low);
     memcpy(&bits, &number, sizeof bits);
-    if (type->is_float)
-        return type->size == 4 ? low : bits;
-    return type->is_signed ? (uint64_t)(int64_t)number : (uint64_t)number;
+    if (types[type].is_float)
+        return type == VTK_FLOAT ? low : bits;
+    return types[type].is_signed ? (uint64_t)(int64_t)number : (uint64_t)number;
 }
 
-void vtk_bytes(const VtkType *type, bool is_big_endian, const double *numbers, size_t n,
-               char *bytes)
+void vtk_bytes(VtkType type, bool is_big_endian, const double *numbers, size_t n, char *bytes)
 {
-    size_t size = type->size;
+    size_t size = types[type].size;
     for (size_t i = 0; i < n; i++, bytes += size) {
         uint64_t bits = bits_of_number(type, numbers[i]);
         for (size_t k = 0; k < size; k++, bits >>= 8)
@@ -146,7 +175,7 @@ void vtk_bytes(const VtkType *type, bool is_big_endian, const double *numbers, s
     }
 }
 
-/* ---- data ---- */
+/* ---- arrays ---------------------------------------------------------------------------------- */
 
 void vtk_release_array(VtkArray *array)
 {
@@ -154,25 +183,6 @@ void vtk_release_array(VtkArray *array)
     free(array->value);
     free(array->text);
     *array = (VtkArray){0};
-}
-
-static void release_arrays(VtkArrays *arrays)
-{
-    for (size_t i = 0; i < arrays->n; i++)
-        vtk_release_array(&arrays->array[i]);
-    free(arrays->array);
-}
-
-void vtk_release(VtkData *data)
-{
-    free(data->point);
-    free(data->corner);
-    free(data->end);
-    free(data->cell);
-    release_arrays(&data->of_points);
-    release_arrays(&data->of_cells);
-    release_arrays(&data->of_file);
-    *data = (VtkData){0};
 }
 
 Status vtk_add_array(VtkArrays *arrays, VtkArray *array, Err *err)
@@ -186,12 +196,86 @@ Status vtk_add_array(VtkArrays *arrays, VtkArray *array, Err *err)
     return status;
 }
 
-void vtk_release_cells(VtkCells *cells)
+VtkArray *vtk_find_array(const VtkArrays *arrays, const char *name)
 {
-    free(cells->corner);
-    free(cells->end);
-    free(cells->type);
-    *cells = (VtkCells){0};
+    for (size_t i = 0; i < arrays->n; i++)
+        if (strcmp(arrays->array[i].name, name) == 0)
+            return &arrays->array[i];
+    return NULL;
+}
+
+double *vtk_take_values(VtkArrays *arrays, const char *name)
+{
+    VtkArray *array = name ? vtk_find_array(arrays, name) : NULL;
+    if (!array)
+        return NULL;
+    double *value = array->value;
+    array->value = NULL;
+    vtk_release_array(array);
+    memmove(array, array + 1, (size_t)(arrays->array + --arrays->n - array) * sizeof *array);
+    return value;
+}
+
+/* Fills an array up to `n` values, of which the last is `value` and the new ones before are NAN. */
+static Status fill(VtkArrays *arrays, VtkArray *array, size_t n, double value, size_t file_size,
+                   Err *err)
+{
+    arrays->numbers += n > array->n ? (double)(n - array->n) : 0;
+    TRY(check_unpacked(arrays->numbers * sizeof *array->value, file_size, err));
+    TRY(mem_reserve(&array->value, &array->capacity, n, sizeof *array->value, "values of an array",
+                    err));
+    while (array->n < n)
+        array->value[array->n++] = (double)NAN;
+    if (n > 0)
+        array->value[n - 1] = value;
+    return STATUS_OK;
+}
+
+static Status find_or_add(VtkArrays *arrays, const char *name, Err *err)
+{
+    VtkArray made = {.components = 1};
+    for (size_t i = 0; i < arrays->n; i++, arrays->next++) {
+        arrays->next = arrays->next < arrays->n ? arrays->next : 0;
+        if (strcmp(arrays->array[arrays->next].name, name) == 0)
+            return STATUS_OK;
+    }
+    if (arrays->n == BUILDER_MAX_COLUMNS)
+        return err_set(err, STATUS_INPUT, "there are more than %d names of numbers",
+                       BUILDER_MAX_COLUMNS);
+    arrays->next = arrays->n;
+    TRY(mem_strdup(&made.name, name, err));
+    return vtk_add_array(arrays, &made, err);
+}
+
+Status vtk_set_number(VtkArrays *arrays, const char *name, size_t element, double value,
+                      size_t file_size, Err *err)
+{
+    TRY(find_or_add(arrays, name, err));
+    return fill(arrays, &arrays->array[arrays->next++], element + 1, value, file_size, err);
+}
+
+Status vtk_fill_up(VtkArrays *arrays, size_t n, size_t file_size, Err *err)
+{
+    for (size_t i = 0; i < arrays->n; i++)
+        if (arrays->array[i].n < n)
+            TRY(fill(arrays, &arrays->array[i], n, (double)NAN, file_size, err));
+    return STATUS_OK;
+}
+
+/* ---- data ------------------------------------------------------------------------------------ */
+
+void vtk_release(VtkData *data)
+{
+    free(data->point);
+    free(data->corner);
+    free(data->end);
+    free(data->cell);
+    for (int of = 0; of < VTK_ELEMENTS; of++) {
+        for (size_t i = 0; i < data->arrays[of].n; i++)
+            vtk_release_array(&data->arrays[of].array[i]);
+        free(data->arrays[of].array);
+    }
+    *data = (VtkData){0};
 }
 
 Status vtk_add_line(VtkData *data, size_t cell, const double *corner, size_t n, size_t first_point,
@@ -210,22 +294,67 @@ Status vtk_add_line(VtkData *data, size_t cell, const double *corner, size_t n, 
     return STATUS_OK;
 }
 
-/* A line that is curved in VTK has its middle last. */
+/* Copies the coordinates of all points; `axis` has NULL where there is none. */
+static Status set_positions(VtkData *data, double *const axis[3], const char *name, Err *err)
+{
+    TRY(mem_calloc(&data->point, 3 * data->n_points, sizeof *data->point, "points", err));
+    for (size_t i = 0; i < 3 * data->n_points; i++) {
+        const double *of = axis[i % 3];
+        data->point[i] = of ? of[i / 3] : i % 3 == 2 ? 0 : (double)NAN;
+        if (isnan(data->point[i]))
+            return err_set(err, STATUS_INPUT, "%s: point %zu of %zu has no place", name, i / 3 + 1,
+                           data->n_points);
+    }
+    return STATUS_OK;
+}
+
+Status vtk_take_positions(VtkData *data, const char *const axes[3], const char *name, Err *err)
+{
+    double *axis[3];
+    for (int k = 0; k < 3; k++)
+        axis[k] = vtk_take_values(&data->arrays[GRAPH_POINTS], axes[k]);
+    Status status = set_positions(data, axis, name, err);
+    for (int k = 0; k < 3; k++)
+        free(axis[k]);
+    return status;
+}
+
+/* ---- cells ----------------------------------------------------------------------------------- */
+
+/* VTK's types of cells that are read, or passed over without a note. */
+enum { VERTEX = 1, POLY_VERTEX = 2, LINE = 3, POLY_LINE = 4, QUADRATIC_EDGE = 21 };
+
+const VtkCellKind vtk_cell_kinds[VTK_CELL_KINDS] = {
+    {"VERTICES", "Verts", POLY_VERTEX, false}, {"LINES", "Lines", POLY_LINE, false},
+    {"POLYGONS", "Polys", 0, false},           {"TRIANGLE_STRIPS", "Strips", 0, false},
+    {"CELLS", "Cells", 0, true},
+};
+
+void vtk_release_cells(VtkCells *cells)
+{
+    free(cells->corner);
+    free(cells->end);
+    free(cells->type);
+    *cells = (VtkCells){0};
+}
+
+/* The middle of a curved line is its last point in VTK. */
 static Status add_cell(VtkData *data, double type, const double *corner, size_t n,
                        size_t first_point, Err *err)
 {
     size_t cell = data->n_cells++;
-    if (type == VTK_QUADRATIC_EDGE && n == 3) {
+    if (type == QUADRATIC_EDGE && n == 3) {
         const double in_order[] = {corner[0], corner[2], corner[1]};
         return vtk_add_line(data, cell, in_order, n, first_point, err);
     }
-    if (type == VTK_LINE || type == VTK_POLY_LINE)
+    if (type == LINE || type == POLY_LINE)
         return vtk_add_line(data, cell, corner, n, first_point, err);
-    data->not_lines += type != VTK_VERTEX && type != VTK_POLY_VERTEX;
+    data->not_lines += type != VERTEX && type != POLY_VERTEX;
     return STATUS_OK;
 }
 
-Status vtk_add_cells(VtkData *data, const VtkCells *cells, size_t first_point, Err *err)
+Status vtk_add_cells(VtkData *data, const VtkCells *cells, const VtkCellKind *kind,
+                     size_t first_point, Err *err)
 {
     double at = 0;
     for (size_t i = 0; i < cells->n; i++) {
@@ -236,44 +365,9 @@ Status vtk_add_cells(VtkData *data, const VtkCells *cells, size_t first_point, E
                            "most %zu",
                            i, end, cells->n_corners);
         const double *corner = end > at ? cells->corner + (size_t)at : NULL;
-        TRY(add_cell(data, cells->type ? cells->type[i] : cells->of, corner, (size_t)(end - at),
+        TRY(add_cell(data, cells->type ? cells->type[i] : kind->type, corner, (size_t)(end - at),
                      first_point, err));
         at = end;
     }
     return STATUS_OK;
-}
-
-/* ---- names ---- */
-
-void vtk_plain_name(const char *name, char *out, size_t size)
-{
-    size_t n = 0, length = strcspn(name, "[(");
-    for (size_t i = 0; i < length && n + 1 < size; i++)
-        if (isalnum((unsigned char)name[i]))
-            out[n++] = (char)tolower((unsigned char)name[i]);
-    out[n] = '\0';
-}
-
-bool vtk_is_own(const char *name)
-{
-    static const char *const own[] = {"radius", "id", "type", "flow_share"};
-    size_t length = strlen(name);
-    while (length > 0 && name[length - 1] == '_')
-        length--;
-    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
-        if (strlen(own[i]) == length && strncmp(own[i], name, length) == 0)
-            return true;
-    return false;
-}
-
-void vtk_put_column_name(const TreeColumn *column, Text *text)
-{
-    text_put_line(text, column->name);
-    if (vtk_is_own(column->name))
-        text_puts(text, "_");
-    if (!*column->unit)
-        return;
-    text_puts(text, " [");
-    text_put_line(text, column->unit);
-    text_puts(text, "]");
 }

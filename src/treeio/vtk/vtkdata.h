@@ -1,103 +1,174 @@
-/* What VTK's files hold of lines, whether legacy or XML, and the network that it is. */
+/* The contents of a VTK file of lines, legacy or XML: points, polylines, and arrays of numbers.
+ * Readers of other formats with named arrays fill it, too. vtk_to_graph makes a network of it. */
 #ifndef CORCAST_TREEIO_VTKDATA_H
 #define CORCAST_TREEIO_VTKDATA_H
 
 #include "tree/tree.h"
 
-/* The text that holds what is known of a tree that the program wrote, a comment a line. */
+/* Name of the array of text that holds the metadata of a tree that corcast wrote, one comment per
+ * line. */
 #define VTK_KNOWN "corcast"
 
-/* A type of numbers, as both kinds of files call it. */
-typedef struct VtkType {
-    const char *legacy, *xml; /* NULL: that kind does not know it */
-    size_t size;              /* of a value, bytes */
-    bool is_float, is_signed;
+/* ---- types of arrays ---- */
+
+typedef enum VtkType {
+    VTK_TEXT, /* lines of text; all others are numbers */
+    VTK_INT8,
+    VTK_UINT8,
+    VTK_INT16,
+    VTK_UINT16,
+    VTK_INT32,
+    VTK_UINT32,
+    VTK_INT64,
+    VTK_UINT64,
+    VTK_FLOAT,
+    VTK_DOUBLE,
+    VTK_TYPES
 } VtkType;
 
-/* NULL when there is none of the name, capitals or not. */
-const VtkType *vtk_type_of_legacy(const char *name, size_t length);
-const VtkType *vtk_type_of_xml(const char *name);
-/* Converts n values from bytes that lie anywhere. */
-void vtk_numbers(const VtkType *type, bool is_big_endian, const char *bytes, size_t n, double *out);
+/* The formats that name types of numbers. */
+typedef enum VtkNaming { NAMING_LEGACY, NAMING_XML, NAMING_AMIRA, NAMING_METAIO, NAMINGS } VtkNaming;
 
-/* The other way round. */
-void vtk_bytes(const VtkType *type, bool is_big_endian, const double *numbers, size_t n,
-               char *bytes);
+/* Finds a type by its name in a format. Case does not matter.
+ *
+ * name     need not end at `length`.
+ * Returns  VTK_TYPES if the format has no such type. */
+VtkType vtk_type_called(VtkNaming naming, const char *name, size_t length);
+/* As vtk_type_called, for a whole name. Errors: STATUS_INPUT, without the file's name, for an
+ * unknown type, and for text if `numbers_only`, which then names the array. */
+MUST_CHECK Status vtk_find_type(VtkNaming naming, const char *name, const char *numbers_only,
+                                VtkType *type, Err *err);
+/* Returns the first name of a type in a format. */
+const char *vtk_type_name(VtkNaming naming, VtkType type);
+/* Returns the number of bytes of one value. Text has bytes of 1. */
+size_t vtk_type_size(VtkType type);
 
-/* An array of `n` tuples of `components` numbers, or of lines of text. */
+/* Converts n values to numbers. `bytes` needs no alignment. */
+void vtk_numbers(VtkType type, bool is_big_endian, const char *bytes, size_t n, double *out);
+/* Converts n numbers to values of a type. */
+void vtk_bytes(VtkType type, bool is_big_endian, const double *numbers, size_t n, char *bytes);
+
+/* ---- arrays ---- */
+
+/* An array of `n` tuples of `components` numbers, or of lines of text. All owned. */
 typedef struct VtkArray {
-    char *name; /* owned */
+    char *name;
     size_t n, components;
-    double *value; /* owned; NULL: it is of text */
-    char *text;    /* owned; of text, each line zero-terminated; NULL: none */
+    double *value; /* NULL: the array is text */
+    size_t capacity;
+    char *text; /* lines, each zero-terminated; NULL: none */
     size_t text_size;
 } VtkArray;
 
+/* Arrays of the same elements. Zeroed, there are none. */
 typedef struct VtkArrays {
     VtkArray *array; /* owned */
     size_t n, capacity;
+    size_t next;    /* array that vtk_set_number tries first */
+    double numbers; /* number of numbers that vtk_set_number and vtk_fill_up made */
 } VtkArrays;
 
-/* Begin with {0}; release with vtk_release. */
+void vtk_release_array(VtkArray *array);
+
+/* Adds an array to *arrays, which owns it then, also after an error. */
+MUST_CHECK Status vtk_add_array(VtkArrays *arrays, VtkArray *array, Err *err);
+/* Returns the first array of this name, or NULL. */
+VtkArray *vtk_find_array(const VtkArrays *arrays, const char *name);
+/* Removes the array of this name and releases it. Returns its values (owned), or NULL if there is
+ * no such array. `name` may be NULL. */
+double *vtk_take_values(VtkArrays *arrays, const char *name);
+
+/* Sets the value of one element in the array of this name, which is made if there is none. Earlier
+ * elements without a value get NAN.
+ *
+ * file_size  size of the file in bytes, which limits how many numbers the arrays may hold.
+ * Errors     STATUS_INPUT, without file and line, for more than BUILDER_MAX_COLUMNS names, and as
+ *            check_unpacked; STATUS_MEMORY.
+ * Cost       O(arrays); O(1) if all elements have their numbers in the same order. */
+MUST_CHECK Status vtk_set_number(VtkArrays *arrays, const char *name, size_t element, double value,
+                                 size_t file_size, Err *err);
+/* Gives NAN to the last elements of all arrays, so that each array has `n`. Errors: as
+ * vtk_set_number. */
+MUST_CHECK Status vtk_fill_up(VtkArrays *arrays, size_t n, size_t file_size, Err *err);
+
+/* ---- data ---- */
+
+/* Index of the arrays of the file, after GRAPH_POINTS and GRAPH_LINES. */
+enum { VTK_OF_FILE = 2, VTK_ELEMENTS };
+
+/* Begin with {0}; release with vtk_release. All arrays are owned. */
 typedef struct VtkData {
-    double *point; /* x, y, z of each; owned */
+    double *point; /* per point: x, y, z */
     size_t n_points, points_capacity;
-    double *corner; /* points of all polylines, one behind the other; owned */
+    double *corner; /* indices of the points of all polylines, one polyline after the other */
     size_t n_corners, corners_capacity;
-    size_t *end;  /* of each polyline in `corner`; owned */
-    size_t *cell; /* number of each polyline among all cells; owned */
+    size_t *end;  /* per polyline: its end in `corner` */
+    size_t *cell; /* per polyline: its index among all cells */
     size_t n_lines, ends_capacity, cells_capacity;
-    size_t n_cells;   /* of any kind */
-    size_t not_lines; /* cells that are neither lines nor points */
+    size_t n_cells;   /* number of cells of any kind */
+    size_t not_lines; /* number of cells that are neither lines nor points */
     bool is_directed; /* blood flows along the lines */
-    VtkArrays of_points, of_cells, of_file;
+    VtkArrays arrays[VTK_ELEMENTS]; /* of points, of cells, of the file */
 } VtkData;
 
 void vtk_release(VtkData *data);
-void vtk_release_array(VtkArray *array);
 
-/* Adds an array to those of *arrays, which owns it then, also on failure. */
-MUST_CHECK Status vtk_add_array(VtkArrays *arrays, VtkArray *array, Err *err);
-/* Adds a polyline, cell number `cell`, through `n` points, counted from number `first_point` on. */
+/* Adds a polyline, which is cell `cell`, through `n` points. Point indices in `corner` count from
+ * `first_point`. Errors: STATUS_MEMORY. */
 MUST_CHECK Status vtk_add_line(VtkData *data, size_t cell, const double *corner, size_t n,
                                size_t first_point, Err *err);
 
-/* Types of cells that are read, or passed over in silence. */
-enum {
-    VTK_VERTEX = 1,
-    VTK_POLY_VERTEX = 2,
-    VTK_LINE = 3,
-    VTK_POLY_LINE = 4,
-    VTK_QUADRATIC_EDGE = 21
-};
+/* Moves the arrays of points that have these names to data->point, as x, y and z. Without the third
+ * one, z is 0.
+ *
+ * axes     names; an axis of NULL has no array.
+ * name     the file's name, for errors.
+ * Errors   STATUS_INPUT, with the file's name, for a point without a position; STATUS_MEMORY. */
+MUST_CHECK Status vtk_take_positions(VtkData *data, const char *const axes[3], const char *name,
+                                     Err *err);
 
-/* Cells as files have them. */
+/* ---- cells ---- */
+
+enum { VTK_CELL_KINDS = 5 };
+
+/* A kind of cells, as legacy files and XML call it. */
+typedef struct VtkCellKind {
+    const char *legacy, *xml;
+    int type;       /* VTK's type of the cells; 0: no lines */
+    bool has_types; /* each cell has its own type */
+} VtkCellKind;
+
+/* In the order in which the arrays of cells have their values. */
+extern const VtkCellKind vtk_cell_kinds[VTK_CELL_KINDS];
+
+/* Cells of one kind, as files have them. All arrays are owned. */
 typedef struct VtkCells {
-    double *corner; /* the points of all, one behind the other; owned */
-    double *end;    /* of each cell in `corner`; owned */
-    double *type;   /* of each cell; owned; NULL: all are of `of` */
+    double *corner; /* point indices of all cells, one cell after the other */
+    double *end;    /* per cell: its end in `corner` */
+    double *type;   /* per cell: VTK's type; NULL: the type of the kind */
     size_t n, n_corners;
-    int of;
 } VtkCells;
 
 void vtk_release_cells(VtkCells *cells);
-/* Adds the lines among the cells, whose points are counted from number `first_point` on.
- * STATUS_INPUT, without the file, when ends do not rise to at most n_corners. */
-MUST_CHECK Status vtk_add_cells(VtkData *data, const VtkCells *cells, size_t first_point, Err *err);
+/* Adds the lines among cells of a kind. Point indices count from `first_point`. Errors:
+ * STATUS_INPUT, without the file's name, unless the ends rise to at most n_corners;
+ * STATUS_MEMORY. */
+MUST_CHECK Status vtk_add_cells(VtkData *data, const VtkCells *cells, const VtkCellKind *kind,
+                                size_t first_point, Err *err);
 
-/* The name without what tells writings of one name apart: capitals, blanks, signs and a unit in
- * brackets; in `out`, cut to its size. */
-void vtk_plain_name(const char *name, char *out, size_t size);
+/* ---- meaning ---- */
 
-/* Whether the program has an array of its own of this name, underscores at its end left out: in its
- * files a column so called has an underscore more. */
-bool vtk_is_own(const char *name);
-/* Appends what a column of the tree is called in its files, "NAME [UNIT]". */
+/* Appends the name of a tree's column in VTK files, "NAME [UNIT]". A name that corcast uses for an
+ * array of its own gets an underscore. */
 void vtk_put_column_name(const TreeColumn *column, Text *text);
+/* Returns true if corcast has an array of its own of this name. Ignores underscores at the end. */
+bool vtk_is_own(const char *name);
 
-/* Hands all over to the graph: radius, inlets and direction by the names of arrays, other arrays as
- * columns. `graph->reading` is told what was assumed. STATUS_INPUT, with the file's name, when a
- * line names a point that there is not, or there is no array of radii. */
+/* Hands the data over to a graph. Arrays become radius, inlets and direction by their names; other
+ * arrays become columns. graph->reading records what was assumed.
+ *
+ * Errors   STATUS_INPUT, with the file's name, if a line refers to a point that does not exist, an
+ *          array has not one value per element, or there is no array of radii; STATUS_MEMORY. */
 MUST_CHECK Status vtk_to_graph(const VtkData *data, Graph *graph, Err *err);
 
 #endif

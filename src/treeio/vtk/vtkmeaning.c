@@ -1,41 +1,52 @@
-/* An array is what it is by its plain name [vtk_plain_name]: the names of the table of radii are
- * those that programs of vessels use, best first; of equal ones the array of cells is taken, as a
- * segment is a cell. A file that the program wrote is read by its own names alone. */
+/* Finds the meaning of an array by its plain name: without capitals, blanks, signs and a unit in
+ * brackets. The tables of radii and diameters have the names that programs for vessels use, best
+ * first. If cells and points both have a name, the array of cells is used, because a segment is a
+ * cell. A file that corcast wrote is read by the exact names alone. */
 #include "treeio/vtk/vtkmeaning.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { PLAIN_SIZE = 64 };
 
+static void to_plain(const char *name, char out[PLAIN_SIZE])
+{
+    size_t n = 0, length = strcspn(name, "[(");
+    for (size_t i = 0; i < length && n + 1 < PLAIN_SIZE; i++)
+        if (isalnum((unsigned char)name[i]))
+            out[n++] = (char)tolower((unsigned char)name[i]);
+    out[n] = '\0';
+}
+
 static bool has_plain_name(const VtkArray *array, const char *plain)
 {
     char name[PLAIN_SIZE];
-    vtk_plain_name(array->name, name, sizeof name);
+    to_plain(array->name, name);
     return strcmp(name, plain) == 0;
 }
 
-/* The array of one number a tuple that has this plain name; NULL when there is none. */
-static const VtkArray *find_plain(const VtkArrays *arrays, const char *plain)
+static bool is_scalar(const VtkArray *array)
 {
-    for (size_t i = 0; i < arrays->n; i++)
-        if (arrays->array[i].value && arrays->array[i].components == 1 &&
-            has_plain_name(&arrays->array[i], plain))
-            return &arrays->array[i];
+    return array->value && array->components == 1;
+}
+
+/* Returns the array of scalars of this plain name (or exact name), or NULL. */
+static const VtkArray *find_scalars(const VtkArrays *arrays, const char *name, bool exact)
+{
+    for (size_t i = 0; i < arrays->n; i++) {
+        const VtkArray *array = &arrays->array[i];
+        if (is_scalar(array) &&
+            (exact ? strcmp(array->name, name) == 0 : has_plain_name(array, name)))
+            return array;
+    }
     return NULL;
 }
 
-static const VtkArray *find_exact(const VtkArrays *arrays, const char *name)
-{
-    for (size_t i = 0; i < arrays->n; i++)
-        if (arrays->array[i].value && arrays->array[i].components == 1 &&
-            strcmp(arrays->array[i].name, name) == 0)
-            return &arrays->array[i];
-    return NULL;
-}
+/* ---- radii ----------------------------------------------------------------------------------- */
 
-/* Plain names of radii, and of diameters, best first. */
+/* Plain names of radii, and then of diameters, best first. */
 static const char *const radius_names[] = {
     "radius",       "maximuminscribedsphereradius",
     "vesselradius", "segmentradius",
@@ -44,18 +55,22 @@ static const char *const radius_names[] = {
     "meanradius",   "noderadius",
     "radiusmm",     "radiusum",
     "rad",          "r",
-    "thickness",
+    "thickness",    "diameter",
+    "vesseldiameter", "diameters",
+    "diametermm",   "diam",
 };
-static const char *const diameter_names[] = {"diameter", "vesseldiameter", "diameters",
-                                             "diametermm", "diam"};
+enum { N_RADIUS_NAMES = sizeof radius_names / sizeof *radius_names };
 
-static bool take_radius(VtkMeaning *meaning, const VtkData *data, const char *plain, double factor)
+/* Uses the array of cells or else of points that has this name. */
+static bool take_radius(VtkMeaning *meaning, const VtkData *data, const char *name, bool exact)
 {
-    const VtkArray *of_cells = find_plain(&data->of_cells, plain);
-    const VtkArray *of_points = find_plain(&data->of_points, plain);
-    meaning->radius = of_cells ? of_cells : of_points;
+    char plain[PLAIN_SIZE];
+    to_plain(name, plain);
+    const VtkArray *of_cells = find_scalars(&data->arrays[GRAPH_LINES], name, exact);
+    meaning->radius =
+        of_cells ? of_cells : find_scalars(&data->arrays[GRAPH_POINTS], name, exact);
     meaning->of = of_cells ? GRAPH_LINES : GRAPH_POINTS;
-    meaning->factor = factor;
+    meaning->factor = strstr(plain, "diam") ? 0.5 : 1;
     return meaning->radius != NULL;
 }
 
@@ -63,7 +78,7 @@ static void put_names(const VtkArrays *arrays, const char *of, Text *text, size_
 {
     enum { SHOWN = 12 };
     for (size_t i = 0; i < arrays->n; i++)
-        if (arrays->array[i].value && arrays->array[i].components == 1 && (*n)++ < SHOWN) {
+        if (is_scalar(&arrays->array[i]) && (*n)++ < SHOWN) {
             text_puts(text, *n > 1 ? ", '" : "'");
             text_put_line(text, arrays->array[i].name);
             text_printf(text, "' of %ss", of);
@@ -75,8 +90,8 @@ static Status refuse_radius(const VtkData *data, const Graph *graph, const char 
 {
     Text names = TEXT_INIT;
     size_t n = 0;
-    put_names(&data->of_points, graph->point_record, &names, &n);
-    put_names(&data->of_cells, graph->line_record, &names, &n);
+    put_names(&data->arrays[GRAPH_POINTS], graph->point_record, &names, &n);
+    put_names(&data->arrays[GRAPH_LINES], graph->line_record, &names, &n);
     Status status = text_check(&names, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_INPUT, "%s: %s; %s%.600s", graph->name, what,
@@ -88,37 +103,32 @@ static Status refuse_radius(const VtkData *data, const Graph *graph, const char 
 
 static Status find_radius(VtkMeaning *meaning, const VtkData *data, const Graph *graph, Err *err)
 {
-    const char *said = graph->options ? graph->options->radius_array : NULL;
-    for (size_t i = 0; !said && i < sizeof radius_names / sizeof *radius_names; i++)
-        if (take_radius(meaning, data, radius_names[i], 1))
+    const char *wanted = graph->options ? graph->options->radius_array : NULL;
+    for (size_t i = 0; !wanted && i < N_RADIUS_NAMES; i++)
+        if (take_radius(meaning, data, radius_names[i], false))
             return STATUS_OK;
-    for (size_t i = 0; !said && i < sizeof diameter_names / sizeof *diameter_names; i++)
-        if (take_radius(meaning, data, diameter_names[i], 0.5))
-            return STATUS_OK;
-    if (!said && graph->options && graph->options->radius_mm > 0)
+    if (!wanted && graph->options && graph->options->radius_mm > 0)
         return STATUS_OK;
-    if (!said)
+    if (!wanted)
         return refuse_radius(data, graph,
                              "no array is called a radius, `radius_array` names none, and `radius` "
                              "gives none",
                              err);
-    char plain[PLAIN_SIZE], what[160];
-    vtk_plain_name(said, plain, sizeof plain);
-    const VtkArray *of_cells = find_exact(&data->of_cells, said);
-    meaning->radius = of_cells ? of_cells : find_exact(&data->of_points, said);
-    meaning->of = of_cells ? GRAPH_LINES : GRAPH_POINTS;
-    meaning->factor = strstr(plain, "diam") ? 0.5 : 1;
+    char what[160];
     snprintf(what, sizeof what, "there is no array '%.60s' of one number for each point or cell",
-             said);
-    return meaning->radius ? STATUS_OK : refuse_radius(data, graph, what, err);
+             wanted);
+    return take_radius(meaning, data, wanted, true) ? STATUS_OK
+                                                    : refuse_radius(data, graph, what, err);
 }
 
-/* Inlets have the largest value of an array of this name, if it has others. */
+/* ---- inlets, and trees of corcast ------------------------------------------------------------ */
+
+/* Inlets have the largest value of an array of one of these names, if it has other values, too. */
 static void find_inlets(VtkMeaning *meaning, const VtkData *data)
 {
     static const char *const names[] = {"root", "inlet", "isinlet", "nodeisinput"};
     for (size_t i = 0; i < sizeof names / sizeof *names && !meaning->inlet; i++) {
-        const VtkArray *array = find_plain(&data->of_points, names[i]);
+        const VtkArray *array = find_scalars(&data->arrays[GRAPH_POINTS], names[i], false);
         double low = HUGE_VAL, high = 0;
         for (size_t k = 0; array && k < array->n; k++) {
             low = fmin(low, array->value[k]);
@@ -133,9 +143,10 @@ static void find_inlets(VtkMeaning *meaning, const VtkData *data)
 
 const VtkArray *vtk_find_known(const VtkData *data)
 {
-    for (size_t i = 0; i < data->of_file.n; i++)
-        if (!data->of_file.array[i].value && strcmp(data->of_file.array[i].name, VTK_KNOWN) == 0)
-            return &data->of_file.array[i];
+    const VtkArrays *arrays = &data->arrays[VTK_OF_FILE];
+    for (size_t i = 0; i < arrays->n; i++)
+        if (!arrays->array[i].value && strcmp(arrays->array[i].name, VTK_KNOWN) == 0)
+            return &arrays->array[i];
     return NULL;
 }
 
@@ -156,20 +167,21 @@ static bool are_columns(const VtkArrays *arrays)
     return true;
 }
 
-/* A file of the program's own has ids, radii, what is known as text, and one number an array. */
+/* A file that corcast wrote has ids, radii, metadata as text, and one number per array. */
 static void find_tree(VtkMeaning *meaning, const VtkData *data)
 {
-    const VtkArray *id = find_exact(&data->of_points, "id");
-    const VtkArray *radius = find_exact(&data->of_points, "radius");
-    if (!vtk_find_known(data) || !radius || !id || !are_ids(id) || !are_columns(&data->of_points) ||
-        !are_columns(&data->of_cells))
+    const VtkArrays *points = &data->arrays[GRAPH_POINTS];
+    const VtkArray *id = find_scalars(points, "id", true);
+    const VtkArray *radius = find_scalars(points, "radius", true);
+    if (!vtk_find_known(data) || !radius || !id || !are_ids(id) || !are_columns(points) ||
+        !are_columns(&data->arrays[GRAPH_LINES]))
         return;
     *meaning = (VtkMeaning){.radius = radius,
                             .of = GRAPH_POINTS,
                             .factor = 1,
                             .id = id,
-                            .type = find_exact(&data->of_points, "type"),
-                            .share = find_exact(&data->of_points, "flow_share")};
+                            .type = find_scalars(points, "type", true),
+                            .share = find_scalars(points, "flow_share", true)};
 }
 
 Status vtk_find_meaning(VtkMeaning *meaning, const VtkData *data, const Graph *graph, Err *err)
@@ -183,10 +195,11 @@ Status vtk_find_meaning(VtkMeaning *meaning, const VtkData *data, const Graph *g
     return STATUS_OK;
 }
 
-Status vtk_tell_meaning(const VtkMeaning *meaning, const VtkData *data, const Graph *graph,
+Status vtk_note_meaning(const VtkMeaning *meaning, const VtkData *data, const Graph *graph,
                         Err *err)
 {
     TreeReading *reading = graph->reading;
+    bool one = data->not_lines == 1;
     if (meaning->radius)
         TRY(reading_note(reading, err, "radius is %sthe %s array '%.60s'",
                          meaning->factor == 1 ? "" : "half of ",
@@ -197,8 +210,7 @@ Status vtk_tell_meaning(const VtkMeaning *meaning, const VtkData *data, const Gr
                          meaning->inlet->name, meaning->inlet_value));
     if (data->not_lines > 0)
         TRY(reading_note(reading, err, "%zu cell%s no line%s left out", data->not_lines,
-                         data->not_lines == 1 ? " is" : "s are",
-                         data->not_lines == 1 ? " and is" : "s and are"));
+                         one ? " is" : "s are", one ? " and is" : "s and are"));
     return STATUS_OK;
 }
 
@@ -206,10 +218,35 @@ bool vtk_is_used(const VtkMeaning *meaning, const VtkArray *array)
 {
     char plain[PLAIN_SIZE] = "";
     if (meaning->radius)
-        vtk_plain_name(meaning->radius->name, plain, sizeof plain);
-    const VtkArray *const used[] = {meaning->radius, meaning->id, meaning->type, meaning->share};
-    for (size_t i = 0; i < sizeof used / sizeof *used; i++)
-        if (array == used[i])
-            return true;
+        to_plain(meaning->radius->name, plain);
+    if (array == meaning->radius || array == meaning->id || array == meaning->type ||
+        array == meaning->share)
+        return true;
     return *plain && !meaning->id && array->components == 1 && has_plain_name(array, plain);
+}
+
+/* ---- names ----------------------------------------------------------------------------------- */
+
+bool vtk_is_own(const char *name)
+{
+    static const char *const own[] = {"radius", "id", "type", "flow_share"};
+    size_t length = strlen(name);
+    while (length > 0 && name[length - 1] == '_')
+        length--;
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        if (strlen(own[i]) == length && strncmp(own[i], name, length) == 0)
+            return true;
+    return false;
+}
+
+void vtk_put_column_name(const TreeColumn *column, Text *text)
+{
+    text_put_line(text, column->name);
+    if (vtk_is_own(column->name))
+        text_puts(text, "_");
+    if (!*column->unit)
+        return;
+    text_puts(text, " [");
+    text_put_line(text, column->unit);
+    text_puts(text, "]");
 }

@@ -1,41 +1,43 @@
-/* What the arrays of a file are for. */
+/* What the arrays of a file mean. */
 #ifndef CORCAST_TREEIO_VTKMEANING_H
 #define CORCAST_TREEIO_VTKMEANING_H
 
 #include "treeio/vtk/vtkdata.h"
 
-/* All borrowed from the data; of one number for each point or cell. */
+/* The arrays with a meaning. All are borrowed from the data and have one number per element. */
 typedef struct VtkMeaning {
     const VtkArray *radius; /* NULL: the file has none, and options->radius_mm is set */
-    GraphElement of;        /* that have the radius */
-    double factor;          /* 0.5 of diameters */
-    const VtkArray *inlet;  /* of points; NULL: there is none */
-    double inlet_value;     /* where the inlets are */
-    const VtkArray *id; /* of points, in files of the program's own, which are trees; else NULL */
-    const VtkArray *type, *share; /* likewise; NULL: the file has none */
+    GraphElement of;        /* the elements that have the radius */
+    double factor;          /* from the array to the radius: 0.5 for diameters */
+    const VtkArray *inlet;  /* of points; NULL: none */
+    double inlet_value;     /* value of the array at inlets */
+    /* Of files that corcast wrote, which are trees: */
+    const VtkArray *id;           /* of points; NULL: another program wrote the file */
+    const VtkArray *type, *share; /* of points; NULL: the file has none */
 } VtkMeaning;
 
-/* STATUS_INPUT, with the file's name, when there is no array of radii and options give none. */
+/* Finds the meaning of the arrays. Errors: STATUS_INPUT, with the file's name, if there is no array
+ * of radii and the options give no radius. */
 MUST_CHECK Status vtk_find_meaning(VtkMeaning *meaning, const VtkData *data, const Graph *graph,
                                    Err *err);
-/* Tells graph->reading what was assumed. */
-MUST_CHECK Status vtk_tell_meaning(const VtkMeaning *meaning, const VtkData *data,
+/* Records in graph->reading what was assumed. Errors: STATUS_MEMORY. */
+MUST_CHECK Status vtk_note_meaning(const VtkMeaning *meaning, const VtkData *data,
                                    const Graph *graph, Err *err);
-/* Whether an array is something else than a column; of other programs' files also another of the
- * radius's name, as that of points beside that of cells. */
+/* Returns true if an array is not a column. In files of other programs, an array whose name differs
+ * from that of the radius only in spelling is no column, either. */
 bool vtk_is_used(const VtkMeaning *meaning, const VtkArray *array);
 
-/* What the program itself has written of a tree [vtkwrite.c]: lines of text; NULL: nothing. */
+/* Returns the array of the metadata that corcast wrote [vtkwrite.c], or NULL. */
 const VtkArray *vtk_find_known(const VtkData *data);
 
-/* Point number `i`. */
+/* Returns the position of point `i`. */
 static inline Vec3 vtk_position(const VtkData *data, size_t i)
 {
     return (Vec3){data->point[3 * i], data->point[3 * i + 1], data->point[3 * i + 2]};
 }
 
-/* Hands a file that is a tree, as meaning->id says, to graph->tree. STATUS_INPUT, with file and
- * record, when two lines lead to one node, and as builder_node, builder_column and meta_parse. */
+/* Hands a tree that corcast wrote over to graph->tree. Errors: STATUS_INPUT, with file and record, if
+ * two lines lead to one node, and as builder_node, builder_column and meta_parse; STATUS_MEMORY. */
 MUST_CHECK Status vtk_to_tree(const VtkMeaning *meaning, const VtkData *data, Graph *graph,
                               Err *err);
 

@@ -1,10 +1,10 @@
-/* A tree as VTK has it, legacy or XML: first a vertex for each root, then a polyline for each
- * branch. A polyline has points of its own, all with the values of its segments, its first point
- * with those of its first segment, so that a tube about it is as thick as the vessel from end to
- * end, where points shared with the parent would make it a cone. Points that are one node have one
- * `id`, by which the tree is found again [vtktree.c]; what is known of it are lines of text in the
- * field data. Which arrays there are is one table for both kinds of files; numbers go through one
- * buffer, whatever the tree's size. */
+/* Writes a tree as VTK, legacy or XML: first a vertex for each root, then a polyline for each branch.
+ *
+ * A polyline has points of its own, all with the values of its segments. Its first point has the
+ * values of its first segment, so that a tube around it is as thick as the vessel from end to end.
+ * Points shared with the parent would make it a cone. Points of one node have the same `id`, by which
+ * vtktree.c finds the tree again. The tree's metadata are lines of text in the field data. Both kinds
+ * of files have the arrays of one table. Numbers pass through one buffer, for trees of any size. */
 #include "treeio/branches.h"
 #include "treeio/comments.h"
 #include "treeio/formats.h"
@@ -14,69 +14,72 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Points are numbered so that those of a polyline follow each other. */
-typedef struct Lines {
-    const Tree *tree;
-    Branches branches;
-    int32_t *node;   /* of each point; owned */
-    int32_t *values; /* the node whose values the point has; owned */
-    size_t n_points, n_roots;
-} Lines;
-
-typedef enum Kind {
+/* Kinds of arrays, in the order of the XML file. */
+typedef enum SheetKind {
     RADIUS,
+    COLUMN,
     ID,
     TYPE,
     SHARE,
-    COLUMN,
     POSITION,
     VERTS,
     VERT_ENDS,
     LINES,
     LINE_ENDS,
     KINDS
-} Kind;
+} SheetKind;
+
+static const struct {
+    const char *section, *name; /* in XML */
+    VtkType type;
+    size_t components;
+} kinds[KINDS] = {
+    [RADIUS] = {"PointData", "radius", VTK_DOUBLE, 1},
+    [COLUMN] = {"PointData", NULL, VTK_DOUBLE, 1},
+    [ID] = {"PointData", "id", VTK_INT32, 1},
+    [TYPE] = {"PointData", "type", VTK_INT32, 1},
+    [SHARE] = {"PointData", "flow_share", VTK_DOUBLE, 1},
+    [POSITION] = {"Points", "Points", VTK_DOUBLE, 3},
+    [VERTS] = {"Verts", "connectivity", VTK_INT32, 1},
+    [VERT_ENDS] = {"Verts", "offsets", VTK_INT32, 1},
+    [LINES] = {"Lines", "connectivity", VTK_INT32, 1},
+    [LINE_ENDS] = {"Lines", "offsets", VTK_INT32, 1},
+};
 
 /* An array of numbers that a file has. */
 typedef struct Sheet {
-    Kind kind;
-    size_t column; /* of the tree, of COLUMN */
-    size_t n;      /* numbers */
+    SheetKind kind;
+    size_t column; /* of the tree, for COLUMN */
+    size_t n;      /* number of numbers */
 } Sheet;
 
-/* Of each kind: section and name in XML, type, components. */
-static const struct {
-    const char *section, *name, *type;
-    size_t components;
-} kinds[KINDS] = {
-    [RADIUS] = {"PointData", "radius", "Float64", 1},
-    [ID] = {"PointData", "id", "Int32", 1},
-    [TYPE] = {"PointData", "type", "Int32", 1},
-    [SHARE] = {"PointData", "flow_share", "Float64", 1},
-    [COLUMN] = {"PointData", NULL, "Float64", 1},
-    [POSITION] = {"Points", "Points", "Float64", 3},
-    [VERTS] = {"Verts", "connectivity", "Int32", 1},
-    [VERT_ENDS] = {"Verts", "offsets", "Int32", 1},
-    [LINES] = {"Lines", "connectivity", "Int32", 1},
-    [LINE_ENDS] = {"Lines", "offsets", "Int32", 1},
-};
+/* The points of a polyline have consecutive indices. */
+typedef struct VtkLines {
+    const Tree *tree;
+    Branches branches;
+    int32_t *node;   /* per point: its node; owned */
+    int32_t *values; /* per point: the node whose values it has; owned */
+    size_t n_points, n_roots;
+    ARRAY(Sheet) sheets;
+} VtkLines;
 
-static void release(Lines *lines)
+static void release(VtkLines *lines)
 {
     branches_release(&lines->branches);
     free(lines->node);
     free(lines->values);
+    ARRAY_RELEASE(&lines->sheets);
 }
 
-static void add_point(Lines *lines, size_t node, size_t values)
+static void add_point(VtkLines *lines, int32_t node, int32_t values)
 {
-    lines->node[lines->n_points] = (int32_t)node;
-    lines->values[lines->n_points++] = (int32_t)values;
+    lines->node[lines->n_points] = node;
+    lines->values[lines->n_points++] = values;
 }
 
-static Status make_lines(const Tree *tree, Lines *lines, Err *err)
+static Status list_points(VtkLines *lines, Err *err)
 {
-    *lines = (Lines){.tree = tree};
+    const Tree *tree = lines->tree;
     TRY(branches_find(tree, &lines->branches, err));
     const Branches *branches = &lines->branches;
     size_t most = tree->n + branches->n;
@@ -84,13 +87,13 @@ static Status make_lines(const Tree *tree, Lines *lines, Err *err)
     TRY(mem_calloc(&lines->values, most, sizeof *lines->values, "points", err));
     for (size_t i = 0; i < tree->n; i++)
         if (!tree_is_segment(tree, i))
-            add_point(lines, i, i);
+            add_point(lines, (int32_t)i, (int32_t)i);
     lines->n_roots = lines->n_points;
     for (size_t k = 0, at = 0; k < branches->n; k++) {
-        size_t first = (size_t)branches->node[at];
-        add_point(lines, (size_t)tree->parent[first], first);
+        int32_t first = branches->node[at];
+        add_point(lines, tree->parent[first], first);
         for (; at < branches->end[k]; at++)
-            add_point(lines, (size_t)branches->node[at], (size_t)branches->node[at]);
+            add_point(lines, branches->node[at], branches->node[at]);
     }
     return STATUS_OK;
 }
@@ -103,8 +106,31 @@ static bool has_types(const Tree *tree)
     return false;
 }
 
-/* Number `i` of an array. */
-static double number_at(const Lines *lines, const Sheet *sheet, size_t i)
+/* Lists the arrays in the order of the file. */
+static Status list_sheets(VtkLines *lines, Err *err)
+{
+    const Tree *tree = lines->tree;
+    size_t points = lines->n_points, roots = lines->n_roots;
+    const size_t n[KINDS] = {[RADIUS] = points,
+                             [ID] = points,
+                             [TYPE] = has_types(tree) ? points : 0,
+                             [SHARE] = tree->flow_share ? points : 0,
+                             [POSITION] = 3 * points,
+                             [VERTS] = roots,
+                             [VERT_ENDS] = roots,
+                             [LINES] = points - roots,
+                             [LINE_ENDS] = lines->branches.n};
+    for (int kind = 0; kind < KINDS; kind++) {
+        for (size_t k = 0; kind == COLUMN && k < tree->n_columns; k++)
+            TRY(ARRAY_PUSH(&lines->sheets, "arrays", err, (Sheet){COLUMN, k, points}));
+        if (n[kind] > 0 || kind >= POSITION)
+            TRY(ARRAY_PUSH(&lines->sheets, "arrays", err, (Sheet){(SheetKind)kind, 0, n[kind]}));
+    }
+    return STATUS_OK;
+}
+
+/* Returns number `i` of an array. */
+static double number_at(const VtkLines *lines, const Sheet *sheet, size_t i)
 {
     const Tree *tree = lines->tree;
     switch (sheet->kind) {
@@ -131,20 +157,10 @@ static double number_at(const Lines *lines, const Sheet *sheet, size_t i)
     }
 }
 
-/* The array's name, for a column "NAME [UNIT]". */
-static void put_name(const Lines *lines, const Sheet *sheet, Text *text)
-{
-    text_clear(text);
-    if (sheet->kind != COLUMN)
-        text_puts(text, kinds[sheet->kind].name);
-    else
-        vtk_put_column_name(&lines->tree->column[sheet->column], text);
-}
-
-static void write_numbers(const Lines *lines, const Sheet *sheet, bool is_big_endian, FILE *stream)
+static void put_numbers(const VtkLines *lines, const Sheet *sheet, bool is_big_endian, Text *text)
 {
     enum { PIECE = 2048 };
-    const VtkType *type = vtk_type_of_xml(kinds[sheet->kind].type);
+    VtkType type = kinds[sheet->kind].type;
     double numbers[PIECE];
     char bytes[PIECE * sizeof *numbers];
     for (size_t done = 0, n; done < sheet->n; done += n) {
@@ -152,63 +168,40 @@ static void write_numbers(const Lines *lines, const Sheet *sheet, bool is_big_en
         for (size_t i = 0; i < n; i++)
             numbers[i] = number_at(lines, sheet, done + i);
         vtk_bytes(type, is_big_endian, numbers, n, bytes);
-        fwrite(bytes, type->size, n, stream);
+        text_append(text, bytes, n * vtk_type_size(type));
     }
 }
 
-/* ---- sheets ---------------------------------------------------------------------------------- */
-
-typedef struct Sheets {
-    Sheet *sheet; /* owned */
-    size_t n, capacity;
-} Sheets;
-
-static Status add_sheet(Sheets *sheets, Kind kind, size_t column, size_t n, Err *err)
+/* Writes the array's name, for a column "NAME [UNIT]", into `text`. Returns its characters. */
+static const char *name_of(const VtkLines *lines, const Sheet *sheet, Text *text)
 {
-    TRY(mem_reserve(&sheets->sheet, &sheets->capacity, sheets->n + 1, sizeof *sheets->sheet,
-                    "arrays", err));
-    sheets->sheet[sheets->n++] = (Sheet){kind, column, n};
-    return STATUS_OK;
+    if (sheet->kind != COLUMN)
+        return kinds[sheet->kind].name;
+    text_clear(text);
+    vtk_put_column_name(&lines->tree->column[sheet->column], text);
+    return text_chars(text);
 }
 
-/* The arrays of points, in the order of the file. */
-static Status list_values(const Lines *lines, Sheets *sheets, Err *err)
-{
-    const Tree *tree = lines->tree;
-    TRY(add_sheet(sheets, RADIUS, 0, lines->n_points, err));
-    for (size_t k = 0; k < tree->n_columns; k++)
-        TRY(add_sheet(sheets, COLUMN, k, lines->n_points, err));
-    TRY(add_sheet(sheets, ID, 0, lines->n_points, err));
-    if (has_types(tree))
-        TRY(add_sheet(sheets, TYPE, 0, lines->n_points, err));
-    if (tree->flow_share)
-        TRY(add_sheet(sheets, SHARE, 0, lines->n_points, err));
-    return STATUS_OK;
-}
-
-/* ---- XML ------------------------------------------------------------------------------------- */
-
-static Status list_all(const Lines *lines, Sheets *sheets, Err *err)
-{
-    TRY(list_values(lines, sheets, err));
-    TRY(add_sheet(sheets, POSITION, 0, 3 * lines->n_points, err));
-    TRY(add_sheet(sheets, VERTS, 0, lines->n_roots, err));
-    TRY(add_sheet(sheets, VERT_ENDS, 0, lines->n_roots, err));
-    TRY(add_sheet(sheets, LINES, 0, lines->n_points - lines->n_roots, err));
-    return add_sheet(sheets, LINE_ENDS, 0, lines->branches.n, err);
-}
-
-/* What is known of the tree, as the numbers of its letters, a 0 behind each line. */
-static void put_remarks(const TreeMeta *meta, Text *text)
+static size_t count_remarks(const TreeMeta *meta)
 {
     Text line = TEXT_INIT;
     size_t n = 0;
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);)
         n++;
+    text_release(&line);
+    return n;
+}
+
+/* ---- XML ------------------------------------------------------------------------------------- */
+
+/* Appends the metadata as the numbers of their characters, with a 0 after each line. */
+static void put_remarks(const TreeMeta *meta, Text *text)
+{
+    Text line = TEXT_INIT;
     text_printf(text,
                 "    <FieldData>\n      <DataArray type=\"String\" Name=\"" VTK_KNOWN "\" "
                 "NumberOfTuples=\"%zu\" format=\"ascii\">\n",
-                n);
+                count_remarks(meta));
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);) {
         const char *chars = text_chars(&line);
         for (const char *at = chars ? chars : ""; *at; at++)
@@ -221,25 +214,26 @@ static void put_remarks(const TreeMeta *meta, Text *text)
 
 static size_t bytes_of(const Sheet *sheet)
 {
-    return sheet->n * vtk_type_of_xml(kinds[sheet->kind].type)->size;
+    return sheet->n * vtk_type_size(kinds[sheet->kind].type);
 }
 
-static void put_sheets(const Lines *lines, const Sheets *sheets, Text *text)
+/* Appends the declarations of all arrays, by sections. */
+static void put_sheets(const VtkLines *lines, Text *text)
 {
     Text name = TEXT_INIT;
     const char *section = NULL;
     size_t offset = 0;
-    for (size_t i = 0; i < sheets->n; i++) {
-        const Sheet *sheet = &sheets->sheet[i];
+    for (size_t i = 0; i < lines->sheets.n; i++) {
+        const Sheet *sheet = &lines->sheets.items[i];
         const char *own = kinds[sheet->kind].section;
         if (section && section != own)
             text_printf(text, "      </%s>\n", section);
         if (section != own)
             text_printf(text, i == 0 ? "      <%s Scalars=\"radius\">\n" : "      <%s>\n", own);
         section = own;
-        put_name(lines, sheet, &name);
-        text_printf(text, "        <DataArray type=\"%s\" Name=\"", kinds[sheet->kind].type);
-        text_escaped(text, text_chars(&name));
+        text_printf(text, "        <DataArray type=\"%s\" Name=\"",
+                    vtk_type_name(NAMING_XML, kinds[sheet->kind].type));
+        text_escaped(text, name_of(lines, sheet, &name));
         text_printf(text, "\" NumberOfComponents=\"%zu\" format=\"appended\" offset=\"%zu\"/>\n",
                     kinds[sheet->kind].components, offset);
         offset += sizeof(uint64_t) + bytes_of(sheet);
@@ -248,57 +242,41 @@ static void put_sheets(const Lines *lines, const Sheets *sheets, Text *text)
     text_release(&name);
 }
 
-/* All that stands before the bytes. */
-static Status write_document(const Lines *lines, const Sheets *sheets, FILE *stream, Err *err)
+Status vtp_write(const Tree *tree, Text *text, Err *err)
 {
-    Text text = TEXT_TO(stream);
-    text_puts(&text, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
-                     "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <PolyData>\n");
-    put_remarks(&lines->tree->meta, &text);
-    text_printf(&text,
+    VtkLines lines = {.tree = tree};
+    Status status = STATUS_OK;
+    TRY_GOTO(list_points(&lines, err));
+    TRY_GOTO(list_sheets(&lines, err));
+    text_puts(text, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+                    "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <PolyData>\n");
+    put_remarks(&tree->meta, text);
+    text_printf(text,
                 "    <Piece NumberOfPoints=\"%zu\" NumberOfVerts=\"%zu\" NumberOfLines=\"%zu\" "
                 "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n",
-                lines->n_points, lines->n_roots, lines->branches.n);
-    put_sheets(lines, sheets, &text);
-    text_puts(&text, "    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_");
-    Status status = text_flush(&text, err);
-    text_release(&text);
-    return status;
-}
-
-static Status write_xml(const Lines *lines, const Sheets *sheets, FILE *stream, Err *err)
-{
-    TRY(write_document(lines, sheets, stream, err));
-    for (size_t i = 0; i < sheets->n; i++) {
-        const double size = (double)bytes_of(&sheets->sheet[i]);
+                lines.n_points, lines.n_roots, lines.branches.n);
+    put_sheets(&lines, text);
+    text_puts(text, "    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_");
+    for (size_t i = 0; i < lines.sheets.n; i++) {
+        const double size = (double)bytes_of(&lines.sheets.items[i]);
         char header[sizeof(uint64_t)];
-        vtk_bytes(vtk_type_of_xml("UInt64"), false, &size, 1, header);
-        fwrite(header, 1, sizeof header, stream);
-        write_numbers(lines, &sheets->sheet[i], false, stream);
+        vtk_bytes(VTK_UINT64, false, &size, 1, header);
+        text_append(text, header, sizeof header);
+        put_numbers(&lines, &lines.sheets.items[i], false, text);
     }
-    fputs("\n  </AppendedData>\n</VTKFile>\n", stream);
-    return STATUS_OK;
-}
-
-Status vtp_write(const Tree *tree, FILE *stream, Err *err)
-{
-    Lines lines;
-    Sheets sheets = {0};
-    Status status = make_lines(tree, &lines, err);
-    if (status == STATUS_OK)
-        status = list_all(&lines, &sheets, err);
-    if (status == STATUS_OK)
-        status = write_xml(&lines, &sheets, stream, err);
-    free(sheets.sheet);
+    text_puts(text, "\n  </AppendedData>\n</VTKFile>\n");
+done:
     release(&lines);
     return status;
 }
 
 /* ---- legacy ---------------------------------------------------------------------------------- */
 
-/* A name without blanks, as legacy files have it. */
+/* Appends a name without blanks. NULL makes the text fail. */
 static void put_encoded(const char *name, Text *text)
 {
+    if (!name)
+        text_puts(text, NULL);
     for (; name && *name; name++) {
         unsigned char letter = (unsigned char)*name;
         if (letter <= ' ' || letter == '%' || letter == '"' || letter >= 0x7f)
@@ -308,7 +286,7 @@ static void put_encoded(const char *name, Text *text)
     }
 }
 
-/* A binary string: two bits say in how many bytes its length stands. */
+/* Appends a binary string. Its first two bits say how many bytes its length takes. */
 static void put_string(const char *chars, Text *text)
 {
     size_t length = strlen(chars), bytes = length < 0x40 ? 1 : length < 0x4000 ? 2 : 4;
@@ -323,10 +301,7 @@ static void put_string(const char *chars, Text *text)
 static void put_legacy_remarks(const TreeMeta *meta, Text *text)
 {
     Text line = TEXT_INIT;
-    size_t n = 0;
-    for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);)
-        n++;
-    text_printf(text, "FIELD FieldData 1\n" VTK_KNOWN " 1 %zu string\n", n);
+    text_printf(text, "FIELD FieldData 1\n" VTK_KNOWN " 1 %zu string\n", count_remarks(meta));
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);) {
         const char *chars = text_chars(&line);
         if (chars)
@@ -338,82 +313,60 @@ static void put_legacy_remarks(const TreeMeta *meta, Text *text)
     text_release(&line);
 }
 
-/* A cell a row: how many points, and their numbers. */
-static void write_cells(const Lines *lines, FILE *stream)
+static void put_int(double number, Text *text)
+{
+    char bytes[4];
+    vtk_bytes(VTK_INT32, true, &number, 1, bytes);
+    text_append(text, bytes, sizeof bytes);
+}
+
+/* Appends one row per cell: the number of its points, and their indices. */
+static void put_cells(const VtkLines *lines, Text *text)
 {
     const Branches *branches = &lines->branches;
-    const VtkType *type = vtk_type_of_xml("Int32");
     size_t point = 0, n_segments = lines->n_points - lines->n_roots;
-    char bytes[8];
-    fprintf(stream, "VERTICES %zu %zu\n", lines->n_roots, 2 * lines->n_roots);
+    text_printf(text, "VERTICES %zu %zu\n", lines->n_roots, 2 * lines->n_roots);
     for (; point < lines->n_roots; point++) {
-        vtk_bytes(type, true, (const double[]){1, (double)point}, 2, bytes);
-        fwrite(bytes, 1, sizeof bytes, stream);
+        put_int(1, text);
+        put_int((double)point, text);
     }
     if (branches->n > 0)
-        fprintf(stream, "\nLINES %zu %zu\n", branches->n, branches->n + n_segments);
+        text_printf(text, "\nLINES %zu %zu\n", branches->n, branches->n + n_segments);
     for (size_t k = 0, at = 0; k < branches->n; at = branches->end[k++]) {
         size_t n = branches->end[k] - at + 1;
-        vtk_bytes(type, true, &(const double){(double)n}, 1, bytes);
-        fwrite(bytes, 1, 4, stream);
-        for (size_t i = 0; i < n; i++, point++) {
-            vtk_bytes(type, true, &(const double){(double)point}, 1, bytes);
-            fwrite(bytes, 1, 4, stream);
-        }
+        put_int((double)n, text);
+        for (size_t i = 0; i < n; i++)
+            put_int((double)point++, text);
     }
 }
 
-static Status write_head(const Lines *lines, FILE *stream, Err *err)
+Status vtk_write(const Tree *tree, Text *text, Err *err)
 {
-    Text text = TEXT_TO(stream);
-    text_puts(&text, "# vtk DataFile Version 3.0\narterial tree, mm\nBINARY\nDATASET POLYDATA\n");
-    put_legacy_remarks(&lines->tree->meta, &text);
-    text_printf(&text, "POINTS %zu double\n", lines->n_points);
-    Status status = text_flush(&text, err);
-    text_release(&text);
-    return status;
-}
-
-static Status write_sheet(const Lines *lines, const Sheet *sheet, FILE *stream, Err *err)
-{
-    Text text = TEXT_TO(stream), name = TEXT_INIT;
-    bool is_float = vtk_type_of_xml(kinds[sheet->kind].type)->is_float;
-    put_name(lines, sheet, &name);
-    put_encoded(text_chars(&name), &text);
-    text_printf(&text, " 1 %zu %s\n", sheet->n, is_float ? "double" : "int");
-    Status status = text_flush(&text, err);
-    if (status == STATUS_OK)
-        status = text_check(&name, err);
-    text_release(&text);
+    VtkLines lines = {.tree = tree};
+    Text name = TEXT_INIT;
+    Status status = STATUS_OK;
+    TRY_GOTO(list_points(&lines, err));
+    TRY_GOTO(list_sheets(&lines, err));
+    const Sheet *positions = lines.sheets.items;
+    while (positions->kind != POSITION)
+        positions++;
+    text_puts(text, "# vtk DataFile Version 3.0\narterial tree, mm\nBINARY\nDATASET POLYDATA\n");
+    put_legacy_remarks(&tree->meta, text);
+    text_printf(text, "POINTS %zu double\n", lines.n_points);
+    put_numbers(&lines, positions, true, text);
+    text_puts(text, "\n");
+    put_cells(&lines, text);
+    text_printf(text, "\nPOINT_DATA %zu\nFIELD FieldData %zu\n", lines.n_points,
+                (size_t)(positions - lines.sheets.items));
+    for (const Sheet *sheet = lines.sheets.items; sheet < positions; sheet++) {
+        put_encoded(name_of(&lines, sheet, &name), text);
+        text_printf(text, " 1 %zu %s\n", sheet->n,
+                    vtk_type_name(NAMING_LEGACY, kinds[sheet->kind].type));
+        put_numbers(&lines, sheet, true, text);
+        text_puts(text, "\n");
+    }
+done:
     text_release(&name);
-    write_numbers(lines, sheet, true, stream);
-    putc('\n', stream);
-    return status;
-}
-
-static Status write_legacy(const Lines *lines, const Sheets *sheets, FILE *stream, Err *err)
-{
-    const Sheet points = {.kind = POSITION, .n = 3 * lines->n_points};
-    TRY(write_head(lines, stream, err));
-    write_numbers(lines, &points, true, stream);
-    putc('\n', stream);
-    write_cells(lines, stream);
-    fprintf(stream, "\nPOINT_DATA %zu\nFIELD FieldData %zu\n", lines->n_points, sheets->n);
-    for (size_t i = 0; i < sheets->n; i++)
-        TRY(write_sheet(lines, &sheets->sheet[i], stream, err));
-    return STATUS_OK;
-}
-
-Status vtk_write(const Tree *tree, FILE *stream, Err *err)
-{
-    Lines lines;
-    Sheets sheets = {0};
-    Status status = make_lines(tree, &lines, err);
-    if (status == STATUS_OK)
-        status = list_values(&lines, &sheets, err);
-    if (status == STATUS_OK)
-        status = write_legacy(&lines, &sheets, stream, err);
-    free(sheets.sheet);
     release(&lines);
     return status;
 }

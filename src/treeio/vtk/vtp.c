@@ -1,6 +1,8 @@
-/* VTK's XML: its arrays are gathered as the elements come, those with numbers in the document at
- * once, and those in the AppendedData behind it, which need not be XML, when that has been found.
- * Then the pieces are put together. The element around an array says what it is for. */
+/* Reads VTK's XML. Arrays are gathered in the order of their elements. Numbers that stand in the
+ * document are read at once. Numbers in the element AppendedData are read after the document, because
+ * they need not be XML. Then the pieces are put together. The element around an array says what the
+ * array is for. */
+#include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
 #include "treeio/vtk/vtpbytes.h"
@@ -12,81 +14,76 @@
 #include <string.h>
 #include <strings.h>
 
-typedef enum Section {
-    POINT_DATA,
-    CELL_DATA,
-    FIELD_DATA,
-    POINTS,
-    VERTS,
-    LINES,
-    STRIPS,
-    POLYS,
-    CELLS,
-    SECTIONS
-} Section;
+/* The elements that hold arrays: those of VtkData.arrays, points, and cells of each kind. */
+enum { SECTION_POINTS = VTK_ELEMENTS, SECTION_CELLS, SECTIONS = SECTION_CELLS + VTK_CELL_KINDS };
 
-static const char *const section_names[SECTIONS] = {
-    "PointData", "CellData", "FieldData", "Points", "Verts", "Lines", "Strips", "Polys", "Cells"};
+static const char *section_name(size_t section)
+{
+    static const char *const names[SECTION_CELLS] = {[GRAPH_POINTS] = "PointData",
+                                                     [GRAPH_LINES] = "CellData",
+                                                     [VTK_OF_FILE] = "FieldData",
+                                                     [SECTION_POINTS] = "Points"};
+    return section < SECTION_CELLS ? names[section] : vtk_cell_kinds[section - SECTION_CELLS].xml;
+}
 
 /* An array of the file. */
-typedef struct Array {
-    VtkArray array; /* values are there unless it is appended */
-    const VtkType *type;
-    bool is_text, is_appended;
+typedef struct XmlArray {
+    VtkArray array; /* its values are there unless it is appended */
+    VtkType type;
+    bool is_appended;
     size_t offset; /* in the appended data */
-    Section section;
-    size_t piece;
-    double most; /* numbers that it can have, as its piece says */
-} Array;
+    size_t section, piece;
+    double max_numbers; /* largest number of numbers that it can have, as its piece says */
+} XmlArray;
 
-typedef struct Reader {
+typedef struct VtpReader {
     const char *name, *bytes;
     size_t size;
     VtpCoding coding;
-    Array *array;
-    size_t n, capacity;
+    ARRAY(XmlArray) arrays;
     size_t pieces;
-    double points, cells;         /* as the piece that is being read says; 0 before the first */
+    double points, cells;         /* of the current piece; 0 before the first piece */
     double all_points, all_cells; /* of the pieces so far */
     double taken;                 /* bytes that the numbers of all arrays take so far */
-    bool in_array, is_base64;     /* of the array, or the appended data */
-    size_t appended;              /* where its first byte is; 0: there is none */
-} Reader;
+    bool in_array, is_base64;     /* of the array, or of the appended data */
+    size_t appended;              /* position of the appended data; 0: there are none */
+} VtpReader;
 
-/* What the attribute `compressor` says. */
-static const char *const packings[] = {
+/* ---- elements -------------------------------------------------------------------------------- */
+
+/* Values of the attribute `compressor`. */
+static const char *const packings[VTP_PACKINGS] = {
     [VTP_PLAIN] = "", [VTP_ZLIB] = "vtkZLibDataCompressor", [VTP_LZ4] = "vtkLZ4DataCompressor"};
 
-static Status read_file_element(Reader *reader, const XmlElement *element, Err *err)
+/* Returns the value of an attribute, or "" if the element has none of this name. */
+static const char *attribute_or_empty(const XmlElement *element, const char *name)
 {
-    const char *type = xml_attribute(element, "type"),
-               *order = xml_attribute(element, "byte_order");
-    const char *header = xml_attribute(element, "header_type");
-    const char *compressor = xml_attribute(element, "compressor");
-    if (!type || (strcmp(type, "PolyData") != 0 && strcmp(type, "UnstructuredGrid") != 0))
+    const char *value = xml_attribute(element, name);
+    return value ? value : "";
+}
+
+static Status read_file_element(VtpReader *reader, const XmlElement *element, Err *err)
+{
+    const char *type = attribute_or_empty(element, "type");
+    const char *compressor = attribute_or_empty(element, "compressor");
+    if (strcmp(type, "PolyData") != 0 && strcmp(type, "UnstructuredGrid") != 0)
         return err_set(err, STATUS_INPUT,
                        "the file is of type '%.40s'; lines are in PolyData and UnstructuredGrid",
-                       type ? type : "");
+                       type);
     int packing = VTP_PLAIN;
-    while (packing <= VTP_LZ4 && strcmp(packings[packing], compressor ? compressor : "") != 0)
+    while (packing < VTP_PACKINGS && strcmp(packings[packing], compressor) != 0)
         packing++;
-    if (packing > VTP_LZ4)
+    if (packing == VTP_PACKINGS)
         return err_set(err, STATUS_INPUT, "it is compressed by %.60s; %s and %s are read",
                        compressor, packings[VTP_ZLIB], packings[VTP_LZ4]);
-    reader->coding = (VtpCoding){.is_big_endian = order && strcmp(order, "BigEndian") == 0,
-                                 .packing = (VtpPacking)packing,
-                                 .header_size = header && strcmp(header, "UInt64") == 0 ? 8 : 4};
+    reader->coding = (VtpCoding){
+        .is_big_endian = strcmp(attribute_or_empty(element, "byte_order"), "BigEndian") == 0,
+        .packing = (VtpPacking)packing,
+        .header_size = strcmp(attribute_or_empty(element, "header_type"), "UInt64") == 0 ? 8 : 4};
     return STATUS_OK;
 }
 
-static Section section_of(const char *name)
-{
-    int section = 0;
-    while (section < SECTIONS && strcmp(section_names[section], name) != 0)
-        section++;
-    return (Section)section;
-}
-
+/* Reads a count from 0 to `most`; *out is `otherwise` if the element has no such attribute. */
 static Status read_whole(const XmlElement *element, const char *name, long long most,
                          size_t otherwise, size_t *out, Err *err)
 {
@@ -99,7 +96,7 @@ static Status read_whole(const XmlElement *element, const char *name, long long 
     return STATUS_OK;
 }
 
-static Status begin_piece(Reader *reader, const XmlElement *element, Err *err)
+static Status begin_piece(VtpReader *reader, const XmlElement *element, Err *err)
 {
     static const char *const of_cells[] = {"NumberOfCells", "NumberOfVerts", "NumberOfLines",
                                            "NumberOfStrips", "NumberOfPolys"};
@@ -118,46 +115,48 @@ static Status begin_piece(Reader *reader, const XmlElement *element, Err *err)
     return check_elements("cells", reader->all_cells, reader->size, err);
 }
 
-/* How many numbers, or bytes of text, an array can have. Nothing says how long lines, texts and the
- * file's own data are: a hundred for each point and cell and a million besides are more than any of
- * ours takes. */
-static double most_numbers(const Reader *reader, const Array *of)
+/* Returns the largest number of numbers, or bytes of text, that an array can have. Nothing states
+ * the length of lines, of texts and of the file's own data. The limit of a hundred for each point and
+ * cell, and a million more, exceeds what any known file takes. */
+static double max_numbers_of(const VtpReader *reader, const XmlArray *of)
 {
-    if (!of->is_text && (of->section == POINTS || of->section == POINT_DATA))
-        return reader->points * (double)of->array.components;
-    if (!of->is_text && of->section == CELL_DATA)
-        return reader->cells * (double)of->array.components;
+    double components = (double)of->array.components;
+    if (of->type != VTK_TEXT && (of->section == SECTION_POINTS || of->section == GRAPH_POINTS))
+        return reader->points * components;
+    if (of->type != VTK_TEXT && of->section == GRAPH_LINES)
+        return reader->cells * components;
     return fmin(100 * (reader->points + reader->cells) + 1e6, 2 * most_elements(reader->size));
 }
 
-static Status begin_array(Reader *reader, Section section, const XmlElement *element, Err *err)
+static Status begin_array(VtpReader *reader, size_t section, const XmlElement *element, Err *err)
 {
-    enum { MOST_COMPONENTS = 1000 };
-    const char *type = NULL, *name = xml_attribute(element, "Name");
-    const char *format = xml_attribute(element, "format");
-    Array made = {.section = section, .piece = reader->pieces};
+    enum { MAX_COMPONENTS = 1000 };
+    const char *type = NULL, *format = attribute_or_empty(element, "format");
+    XmlArray made = {.section = section, .piece = reader->pieces};
     TRY(xml_needed(element, "type", &type, err));
-    made.is_text = strcmp(type, "String") == 0;
-    made.type = vtk_type_of_xml(made.is_text ? "UInt8" : type);
-    if (!made.type)
-        return err_set(err, STATUS_INPUT, "'%.40s' is no type of an array", type);
-    made.is_appended = format && strcmp(format, "appended") == 0;
-    reader->is_base64 = format && strcmp(format, "binary") == 0;
-    TRY(read_whole(element, "NumberOfComponents", MOST_COMPONENTS, 1, &made.array.components, err));
+    TRY(vtk_find_type(NAMING_XML, type, NULL, &made.type, err));
+    made.is_appended = strcmp(format, "appended") == 0;
+    reader->is_base64 = strcmp(format, "binary") == 0;
+    TRY(read_whole(element, "NumberOfComponents", MAX_COMPONENTS, 1, &made.array.components, err));
     TRY(read_whole(element, "offset", INT64_MAX, 0, &made.offset, err));
     if (made.array.components == 0)
         made.array.components = 1;
-    made.most = most_numbers(reader, &made);
-    TRY(mem_reserve(&reader->array, &reader->capacity, reader->n + 1, sizeof made, "arrays", err));
-    TRY(mem_strdup(&made.array.name, name ? name : "", err));
-    reader->array[reader->n++] = made;
+    made.max_numbers = max_numbers_of(reader, &made);
+    TRY(ARRAY_RESERVE(&reader->arrays, 1, "arrays", err));
+    TRY(mem_strdup(&made.array.name, attribute_or_empty(element, "Name"), err));
+    reader->arrays.items[reader->arrays.n++] = made;
     reader->in_array = !made.is_appended;
     return STATUS_OK;
 }
 
+static bool is_array_element(const char *name)
+{
+    return strcmp(name, "DataArray") == 0 || strcmp(name, "Array") == 0;
+}
+
 static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err)
 {
-    Reader *reader = context;
+    VtpReader *reader = context;
     if (xml_depth(xml) == 0) {
         if (strcmp(element->name, "VTKFile") != 0)
             return err_set(err, STATUS_INPUT, "the document is <%.40s>; VTK's are <VTKFile>",
@@ -167,43 +166,37 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
     if (strcmp(element->name, "Piece") == 0)
         return begin_piece(reader, element, err);
     if (strcmp(element->name, "AppendedData") == 0) {
-        const char *encoding = xml_attribute(element, "encoding");
-        reader->is_base64 = !encoding || strcmp(encoding, "raw") != 0;
+        reader->is_base64 = strcmp(attribute_or_empty(element, "encoding"), "raw") != 0;
         reader->appended = xml_byte(xml);
         xml_stop(xml);
         return STATUS_OK;
     }
-    Section section = section_of(xml_around(xml, 1));
-    bool is_array = strcmp(element->name, "DataArray") == 0 || strcmp(element->name, "Array") == 0;
-    return is_array && section < SECTIONS ? begin_array(reader, section, element, err) : STATUS_OK;
-}
-
-/* Numbers of a text, parted by blanks. */
-static Status parse_numbers(char *text, double **out, size_t *n, Err *err)
-{
-    double *made = NULL;
-    size_t capacity = 0, count = 0;
-    for (char *at = text + strspn(text, " \t\r\n"); *at;) {
-        char *end = at + strcspn(at, " \t\r\n"), *next = end + strspn(end, " \t\r\n");
-        *end = '\0';
-        Status status =
-            mem_reserve(&made, &capacity, count + 1, sizeof *made, "numbers of an array", err);
-        if (status == STATUS_OK && !number_parse(at, &made[count]))
-            status =
-                err_set(err, STATUS_INPUT, "'%.40s' is no number%s", at, decimal_comma_hint(at));
-        if (status != STATUS_OK) {
-            free(made);
-            return status;
-        }
-        count++;
-        at = next;
-    }
-    *out = made;
-    *n = count;
+    for (size_t section = 0; is_array_element(element->name) && section < SECTIONS; section++)
+        if (strcmp(section_name(section), xml_around(xml, 1)) == 0)
+            return begin_array(reader, section, element, err);
     return STATUS_OK;
 }
 
-/* Makes text of numbers that are its bytes. */
+/* ---- values ---------------------------------------------------------------------------------- */
+
+/* Reads the numbers of a text that stand between blanks. */
+static Status parse_numbers(VtkArray *array, char *text, size_t *n, Err *err)
+{
+    static const char blanks[] = " \t\r\n";
+    for (char *at = text + strspn(text, blanks), *next; *at; at = next) {
+        char *end = at + strcspn(at, blanks);
+        next = end + strspn(end, blanks);
+        *end = '\0';
+        TRY(mem_reserve(&array->value, &array->capacity, *n + 1, sizeof *array->value,
+                        "numbers of an array", err));
+        if (!number_parse(at, &array->value[*n]))
+            return err_set(err, STATUS_INPUT, "'%.40s' is no number%s", at, decimal_comma_hint(at));
+        ++*n;
+    }
+    return STATUS_OK;
+}
+
+/* Makes text of `n` numbers that are its bytes. */
 static Status to_text(VtkArray *array, size_t n, Err *err)
 {
     TRY(mem_calloc(&array->text, n + 1, 1, "bytes of text", err));
@@ -217,10 +210,10 @@ static Status to_text(VtkArray *array, size_t n, Err *err)
     return STATUS_OK;
 }
 
-/* The array has these `n` numbers. */
-static Status finish_array(Array *of, size_t n, Err *err)
+/* Finishes an array that has `n` numbers. */
+static Status finish_array(XmlArray *of, size_t n, Err *err)
 {
-    if (of->is_text)
+    if (of->type == VTK_TEXT)
         return to_text(&of->array, n, err);
     of->array.n = n / of->array.components;
     if (n % of->array.components != 0)
@@ -229,66 +222,77 @@ static Status finish_array(Array *of, size_t n, Err *err)
     return STATUS_OK;
 }
 
-static Status decode(Reader *reader, Array *of, const char *from, size_t left, Err *err)
+/* Decodes an array that begins at `from`; the text or the file ends at `end`. */
+static Status decode(VtpReader *reader, XmlArray *of, const char *from, const char *end, Err *err)
 {
-    const char *bytes = NULL;
-    char *decoded = NULL;
-    size_t size = 0;
-    const VtpRoom room = {reader->name, reader->size, of->most, of->type->size, reader->taken};
-    TRY(vtp_decode(&reader->coding, reader->is_base64, from, left, &room, &bytes, &size, &decoded,
-                   err));
-    size_t n = size / of->type->size;
+    VtpBytes got;
+    const VtpSource source = {.name = reader->name,
+                              .file_size = reader->size,
+                              .coding = reader->coding,
+                              .is_base64 = reader->is_base64,
+                              .from = from,
+                              .end = end,
+                              .max_numbers = of->max_numbers,
+                              .number_size = vtk_type_size(of->type),
+                              .taken = reader->taken};
+    TRY(vtp_decode(&source, &got, err));
+    size_t n = got.size / source.number_size;
     reader->taken += (double)n * sizeof *of->array.value;
     Status status = mem_calloc(&of->array.value, n, sizeof *of->array.value, "numbers", err);
     if (status == STATUS_OK) {
-        vtk_numbers(of->type, reader->coding.is_big_endian, bytes, n, of->array.value);
+        vtk_numbers(of->type, reader->coding.is_big_endian, got.bytes, n, of->array.value);
         status = finish_array(of, n, err);
     }
-    free(decoded);
+    free(got.decoded);
     return status;
 }
 
-static Status blame_array(const Array *of, Status status, Err *err)
+static Status blame_array(const XmlArray *of, Status status, Err *err)
 {
     if (status == STATUS_INPUT)
-        err_prefix(err, "the array '%.60s' of %s: ", of->array.name, section_names[of->section]);
+        err_prefix(err, "the array '%.60s' of %s: ", of->array.name, section_name(of->section));
     return status;
+}
+
+static Status read_values(VtpReader *reader, XmlArray *of, char *text, Err *err)
+{
+    size_t n = 0;
+    if (reader->is_base64)
+        return decode(reader, of, text, text + strlen(text), err);
+    TRY(parse_numbers(&of->array, text, &n, err));
+    return finish_array(of, n, err);
 }
 
 static Status end(void *context, Xml *xml, const char *name, char *text, Err *err)
 {
     (void)xml;
-    Reader *reader = context;
-    if (!reader->in_array || (strcmp(name, "DataArray") != 0 && strcmp(name, "Array") != 0))
+    VtpReader *reader = context;
+    if (!reader->in_array || !is_array_element(name))
         return STATUS_OK;
     reader->in_array = false;
-    Array *of = &reader->array[reader->n - 1];
-    size_t n = 0;
-    if (reader->is_base64)
-        return blame_array(of, decode(reader, of, text, strlen(text), err), err);
-    TRY(blame_array(of, parse_numbers(text, &of->array.value, &n, err), err));
-    return blame_array(of, finish_array(of, n, err), err);
+    XmlArray *of = &reader->arrays.items[reader->arrays.n - 1];
+    return blame_array(of, read_values(reader, of, text, err), err);
 }
 
-/* Decodes what is appended: behind the first '_' after the element's end. */
-static Status decode_appended(Reader *reader, Err *err)
+/* Decodes the appended arrays. Their data begin behind the first '_' after the element's end. */
+static Status decode_appended(VtpReader *reader, Err *err)
 {
     const char *from = NULL, *end_of_file = reader->bytes + reader->size;
     if (reader->appended) {
         from = memchr(reader->bytes + reader->appended, '>', reader->size - reader->appended);
         from = from ? memchr(from, '_', (size_t)(end_of_file - from)) : NULL;
     }
-    for (size_t i = 0; i < reader->n; i++) {
-        Array *of = &reader->array[i];
+    size_t size = from ? (size_t)(end_of_file - from) - 1 : 0;
+    for (size_t i = 0; i < reader->arrays.n; i++) {
+        XmlArray *of = &reader->arrays.items[i];
         if (!of->is_appended)
             continue;
-        size_t left = from ? (size_t)(end_of_file - from) - 1 : 0;
-        Status status = of->offset < left
-                            ? decode(reader, of, from + 1 + of->offset, left - of->offset, err)
+        Status status = of->offset < size
+                            ? decode(reader, of, from + 1 + of->offset, end_of_file, err)
                             : err_set(err, STATUS_INPUT,
                                       "it is said to be at byte %zu of the appended data, which "
                                       "has %zu",
-                                      of->offset, left);
+                                      of->offset, size);
         if (blame_array(of, status, err) == STATUS_INPUT)
             err_prefix(err, "%s: ", reader->name);
         TRY(status);
@@ -296,12 +300,14 @@ static Status decode_appended(Reader *reader, Err *err)
     return STATUS_OK;
 }
 
-/* ---- the pieces ------------------------------------------------------------------------------ */
+/* ---- pieces ---------------------------------------------------------------------------------- */
 
-static Array *find_array(const Reader *reader, size_t piece, Section section, const char *name)
+/* Returns the array of a section of a piece that has this name (NULL: any), or NULL. Case does not
+ * matter. */
+static XmlArray *find_array(const VtpReader *reader, size_t piece, size_t section, const char *name)
 {
-    for (size_t i = 0; i < reader->n; i++) {
-        Array *of = &reader->array[i];
+    for (size_t i = 0; i < reader->arrays.n; i++) {
+        XmlArray *of = &reader->arrays.items[i];
         if (of->piece == piece && of->section == section &&
             (!name || strcasecmp(of->array.name, name) == 0))
             return of;
@@ -309,10 +315,10 @@ static Array *find_array(const Reader *reader, size_t piece, Section section, co
     return NULL;
 }
 
-/* The points of the first piece are moved, those of others appended. */
-static Status add_points(const Reader *reader, size_t piece, VtkData *data, Err *err)
+/* The points of the first piece are moved, those of others are appended. */
+static Status add_points(const VtpReader *reader, size_t piece, VtkData *data, Err *err)
 {
-    Array *of = find_array(reader, piece, POINTS, NULL);
+    XmlArray *of = find_array(reader, piece, SECTION_POINTS, NULL);
     if (!of || !of->array.value)
         return STATUS_OK;
     if (of->array.components != 3)
@@ -333,48 +339,36 @@ static Status add_points(const Reader *reader, size_t piece, VtkData *data, Err 
     return STATUS_OK;
 }
 
-/* Of an array that has been used. */
-static void release_values(Array *of)
-{
-    free(of->array.value);
-    of->array.value = NULL;
-}
-
-static Status add_cells(const Reader *reader, size_t piece, VtkData *data, size_t first_point,
+static Status add_cells(const VtpReader *reader, size_t piece, VtkData *data, size_t first_point,
                         Err *err)
 {
-    static const struct {
-        Section section;
-        int type;
-    } kinds[] = {
-        {VERTS, VTK_POLY_VERTEX}, {LINES, VTK_POLY_LINE}, {POLYS, 0}, {STRIPS, 0}, {CELLS, 0}};
-    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
-        Array *corners = find_array(reader, piece, kinds[k].section, "connectivity");
-        Array *ends = find_array(reader, piece, kinds[k].section, "offsets");
-        const Array *types = find_array(reader, piece, CELLS, "types");
+    for (size_t k = 0; k < VTK_CELL_KINDS; k++) {
+        const VtkCellKind *kind = &vtk_cell_kinds[k];
+        XmlArray *corners = find_array(reader, piece, SECTION_CELLS + k, "connectivity");
+        XmlArray *ends = find_array(reader, piece, SECTION_CELLS + k, "offsets");
+        const XmlArray *types =
+            kind->has_types ? find_array(reader, piece, SECTION_CELLS + k, "types") : NULL;
         if (!corners || !ends)
             continue;
-        bool has_types = kinds[k].section == CELLS;
-        if (has_types && (!types || types->array.n != ends->array.n))
+        if (kind->has_types && (!types || types->array.n != ends->array.n))
             return err_set(err, STATUS_INPUT, "cells have no types, or not as many");
         const VtkCells cells = {.corner = corners->array.value,
                                 .end = ends->array.value,
-                                .type = has_types ? types->array.value : NULL,
+                                .type = types ? types->array.value : NULL,
                                 .n = ends->array.n,
-                                .n_corners = corners->array.n,
-                                .of = kinds[k].type};
-        TRY(vtk_add_cells(data, &cells, first_point, err));
-        release_values(corners);
-        release_values(ends);
+                                .n_corners = corners->array.n};
+        TRY(vtk_add_cells(data, &cells, kind, first_point, err));
+        vtk_release_array(&corners->array);
+        vtk_release_array(&ends->array);
     }
     return STATUS_OK;
 }
 
-/* Appends the values of an array of a later piece to those of the first. */
+/* Appends the values of an array of a later piece to those of the first. Text is left out. */
 static Status append_values(VtkArray *to, const VtkArray *more, Err *err)
 {
     size_t n = to->n * to->components, added = more->n * more->components, capacity = n;
-    if (!to->value && !more->value) /* text, which is left out */
+    if (!to->value && !more->value)
         return STATUS_OK;
     if (to->components != more->components || !to->value || !more->value)
         return err_set(err, STATUS_INPUT, "the array '%.60s' differs from piece to piece",
@@ -385,39 +379,37 @@ static Status append_values(VtkArray *to, const VtkArray *more, Err *err)
     return STATUS_OK;
 }
 
-/* Moves the arrays of a section to `arrays`. */
-static Status move_arrays(Reader *reader, size_t piece, Section section, VtkArrays *arrays,
-                          Err *err)
+/* Moves the arrays of elements of a kind to data->arrays. */
+static Status move_arrays(VtpReader *reader, size_t piece, size_t section, VtkData *data, Err *err)
 {
-    for (size_t i = 0; i < reader->n; i++) {
-        Array *of = &reader->array[i];
+    VtkArrays *arrays = &data->arrays[section];
+    for (size_t i = 0; i < reader->arrays.n; i++) {
+        XmlArray *of = &reader->arrays.items[i];
         if (of->piece != piece || of->section != section)
             continue;
-        VtkArray *before = NULL;
-        for (size_t k = 0; piece > 1 && section != FIELD_DATA && k < arrays->n; k++)
-            if (strcmp(arrays->array[k].name, of->array.name) == 0)
-                before = &arrays->array[k];
+        VtkArray *before = piece > 1 && section != VTK_OF_FILE
+                               ? vtk_find_array(arrays, of->array.name)
+                               : NULL;
         if (before) {
             TRY(append_values(before, &of->array, err));
-        } else {
-            VtkArray moved = of->array;
-            of->array = (VtkArray){0};
-            TRY(vtk_add_array(arrays, &moved, err));
+            continue;
         }
+        VtkArray moved = of->array;
+        of->array = (VtkArray){0};
+        TRY(vtk_add_array(arrays, &moved, err));
     }
     return STATUS_OK;
 }
 
-/* Arrays before the first piece are the file's. */
-static Status join_pieces(Reader *reader, VtkData *data, Err *err)
+/* Piece 0 has the arrays before the first piece, which are the file's. */
+static Status join_pieces(VtpReader *reader, VtkData *data, Err *err)
 {
     for (size_t piece = 0; piece <= reader->pieces; piece++) {
         size_t first_point = data->n_points;
         TRY(add_points(reader, piece, data, err));
         TRY(add_cells(reader, piece, data, first_point, err));
-        TRY(move_arrays(reader, piece, POINT_DATA, &data->of_points, err));
-        TRY(move_arrays(reader, piece, CELL_DATA, &data->of_cells, err));
-        TRY(move_arrays(reader, piece, FIELD_DATA, &data->of_file, err));
+        for (size_t section = 0; section < VTK_ELEMENTS; section++)
+            TRY(move_arrays(reader, piece, section, data, err));
     }
     return STATUS_OK;
 }
@@ -430,7 +422,7 @@ bool vtp_detect(const char *start)
 Status vtp_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
     static const XmlHandlers handlers = {begin, end};
-    Reader reader = {.name = graph->name, .bytes = bytes, .size = size};
+    VtpReader reader = {.name = graph->name, .bytes = bytes, .size = size};
     VtkData data = {0};
     Status status = STATUS_OK;
     TRY_GOTO(xml_read(graph->name, bytes, size, &handlers, &reader, err));
@@ -438,12 +430,12 @@ Status vtp_read(Graph *graph, char *bytes, size_t size, Err *err)
     status = join_pieces(&reader, &data, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", graph->name);
-    if (status == STATUS_OK)
-        status = vtk_to_graph(&data, graph, err);
+    TRY_GOTO(status);
+    TRY_GOTO(vtk_to_graph(&data, graph, err));
 done:
-    for (size_t i = 0; i < reader.n; i++)
-        vtk_release_array(&reader.array[i].array);
-    free(reader.array);
+    for (size_t i = 0; i < reader.arrays.n; i++)
+        vtk_release_array(&reader.arrays.items[i].array);
+    ARRAY_RELEASE(&reader.arrays);
     vtk_release(&data);
     return status;
 }

@@ -1,10 +1,11 @@
-/* An array is a number of bytes and these bytes; compressed, it is how many blocks there are, how
- * large each is and the last, how many bytes each has compressed, and these. In base64 the bytes go
- * on without padding behind the number, but behind those of blocks there may be some; a group that
- * is padded gives fewer bytes and the next begins anew, so that either is read. zlib makes nothing
- * 1032 times smaller and LZ4 nothing 255 times, so a file that announces more is refused before
- * room is made for it, and so is one that announces more than its array can have or than a file of
- * its size may [check_unpacked]: a megabyte could become a gigabyte of zeros. */
+/* An array is its number of bytes, and these bytes. If it is compressed, it is the number of blocks,
+ * the size of a block and of the last one, the compressed size of each block, and the blocks. In
+ * base64, the bytes follow the number without padding, but the blocks may begin after padding. A
+ * padded group gives fewer bytes and the next group begins anew, so both are read.
+ *
+ * A file must not make the program allocate much more than its own size. zlib compresses by at most
+ * 1032 and LZ4 by at most 255. A file that announces more is refused before memory is allocated, and
+ * so is one that announces more than its array can have, or than check_unpacked allows. */
 #include "treeio/vtk/vtpbytes.h"
 
 #include "treeio/formats.h"
@@ -16,16 +17,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double most_ratio[] = {[VTP_PLAIN] = 1, [VTP_ZLIB] = 1032, [VTP_LZ4] = 255};
+static const double max_ratio[VTP_PACKINGS] = {
+    [VTP_PLAIN] = 1, [VTP_ZLIB] = 1032, [VTP_LZ4] = 255};
 
-typedef struct Stream {
-    const char *at, *end;
-    bool is_base64;
-    unsigned char group[3];
-    size_t n, used; /* bytes of the group */
-} Stream;
+/* The decoder of one array. */
+typedef struct ByteStream {
+    const VtpSource *source;
+    const char *at;
+    unsigned char group[3]; /* of base64 */
+    size_t n, used;         /* bytes of the group; bytes of it that were taken */
+} ByteStream;
 
-/* The six bits of a letter of base64; -1 for none. */
+/* Returns the six bits of a letter of base64, or -1. */
 static int bits_of(char letter)
 {
     if (letter >= 'A' && letter <= 'Z')
@@ -37,21 +40,21 @@ static int bits_of(char letter)
     return letter == '+' ? 62 : letter == '/' ? 63 : -1;
 }
 
-static Status no_more(Err *err)
+static Status refuse_end(Err *err)
 {
     return err_set(err, STATUS_INPUT, "there are fewer bytes than it announces");
 }
 
-/* Reads the next four letters, blanks between them left out. */
-static Status next_group(Stream *stream, Err *err)
+/* Reads the next four letters. Blanks between them do not count. */
+static Status next_group(ByteStream *stream, Err *err)
 {
     uint32_t bits = 0;
     int letters = 0, padding = 0;
     while (letters < 4) {
-        if (stream->at == stream->end || *stream->at == '<')
-            return no_more(err);
+        if (stream->at == stream->source->end || *stream->at == '<')
+            return refuse_end(err);
         char letter = *stream->at++;
-        if (strchr(" \t\r\n", letter) && letter)
+        if (letter && strchr(" \t\r\n", letter))
             continue;
         int six = letter == '=' && letters >= 2 ? 0 : bits_of(letter);
         if (six < 0)
@@ -68,11 +71,11 @@ static Status next_group(Stream *stream, Err *err)
     return STATUS_OK;
 }
 
-static Status take(Stream *stream, char *out, size_t n, Err *err)
+static Status take(ByteStream *stream, char *out, size_t n, Err *err)
 {
-    if (!stream->is_base64) {
-        if (n > (size_t)(stream->end - stream->at))
-            return no_more(err);
+    if (!stream->source->is_base64) {
+        if (n > (size_t)(stream->source->end - stream->at))
+            return refuse_end(err);
         memcpy(out, stream->at, n);
         stream->at += n;
         return STATUS_OK;
@@ -85,26 +88,27 @@ static Status take(Stream *stream, char *out, size_t n, Err *err)
     return STATUS_OK;
 }
 
-static Status take_number(Stream *stream, const VtpCoding *coding, size_t *number, Err *err)
+static Status take_number(ByteStream *stream, size_t *number, Err *err)
 {
     char bytes[8];
     uint64_t made = 0;
-    size_t size = coding->header_size;
+    size_t size = stream->source->coding.header_size;
     TRY(take(stream, bytes, size, err));
     for (size_t k = 0; k < size; k++)
-        made = made << 8 | (unsigned char)bytes[coding->is_big_endian ? k : size - 1 - k];
+        made = made << 8 |
+               (unsigned char)bytes[stream->source->coding.is_big_endian ? k : size - 1 - k];
     *number = (size_t)made;
     return STATUS_OK;
 }
 
-/* How many bytes the stream can still give. */
-static double bytes_left(const Stream *stream)
+/* Returns the number of bytes that the stream can still give. */
+static double bytes_left(const ByteStream *stream)
 {
-    double left = (double)(stream->end - stream->at);
-    return (stream->is_base64 ? left * 0.75 : left) + 3;
+    double left = (double)(stream->source->end - stream->at);
+    return (stream->source->is_base64 ? left * 0.75 : left) + 3;
 }
 
-static Status check_claim(const Stream *stream, double claimed, double most, Err *err)
+static Status check_claim(const ByteStream *stream, double claimed, double most, Err *err)
 {
     char claim[BYTES_TEXT_SIZE], left[BYTES_TEXT_SIZE];
     if (claimed <= most)
@@ -113,137 +117,132 @@ static Status check_claim(const Stream *stream, double claimed, double most, Err
                    bytes_text(claimed, claim), bytes_text(bytes_left(stream), left));
 }
 
-/* Raw bytes stay where they are. */
-static Status decode_plain(Stream *stream, const VtpCoding *coding, const char **bytes,
-                           size_t *size, char **decoded, Err *err)
+/* Raw bytes are not copied. */
+static Status decode_plain(ByteStream *stream, VtpBytes *out, Err *err)
 {
     size_t n = 0;
-    char *made = NULL;
-    TRY(take_number(stream, coding, &n, err));
+    TRY(take_number(stream, &n, err));
     TRY(check_claim(stream, (double)n, bytes_left(stream), err));
-    if (!stream->is_base64 && n <= (size_t)(stream->end - stream->at)) {
-        *bytes = stream->at;
-        *size = n;
+    *out = (VtpBytes){.bytes = stream->at, .size = n};
+    if (!stream->source->is_base64 && n <= (size_t)(stream->source->end - stream->at))
         return STATUS_OK;
-    }
-    TRY(mem_calloc(&made, n, 1, "bytes of an array", err));
-    Status status = take(stream, made, n, err);
-    if (status != STATUS_OK) {
-        free(made);
-        return status;
-    }
-    *bytes = *decoded = made;
-    *size = n;
-    return STATUS_OK;
+    TRY(mem_calloc(&out->decoded, n, 1, "bytes of an array", err));
+    out->bytes = out->decoded;
+    return take(stream, out->decoded, n, err);
 }
 
-/* Numbers before blocks. */
-typedef struct Blocks {
-    size_t n, size, last; /* last: of the last, where that is partial; 0: it is not */
-    size_t *packed;       /* bytes of each; owned */
-} Blocks;
+/* ---- compressed arrays ----------------------------------------------------------------------- */
 
-static Status read_blocks(Stream *stream, const VtpCoding *coding, Blocks *blocks, double *total,
-                          Err *err)
+typedef struct PackedBlocks {
+    size_t n, size; /* number of blocks; bytes of each unpacked block but the last */
+    size_t last;    /* bytes of the last unpacked block */
+    size_t *packed; /* bytes of each packed block; owned */
+    size_t largest; /* bytes of the largest packed block */
+    double total;   /* bytes of all unpacked blocks */
+} PackedBlocks;
+
+static Status read_blocks(ByteStream *stream, PackedBlocks *blocks, Err *err)
 {
-    TRY(take_number(stream, coding, &blocks->n, err));
-    if (blocks->n == 0) {
-        *total = 0;
+    const VtpCoding *coding = &stream->source->coding;
+    double packed = 0;
+    TRY(take_number(stream, &blocks->n, err));
+    if (blocks->n == 0)
         return STATUS_OK;
-    }
-    TRY(take_number(stream, coding, &blocks->size, err));
-    TRY(take_number(stream, coding, &blocks->last, err));
+    TRY(take_number(stream, &blocks->size, err));
+    TRY(take_number(stream, &blocks->last, err));
+    blocks->last = blocks->last ? blocks->last : blocks->size;
     TRY(check_claim(stream, (double)blocks->n * (double)coding->header_size, bytes_left(stream),
                     err));
     TRY(mem_calloc(&blocks->packed, blocks->n, sizeof *blocks->packed, "blocks", err));
-    double packed = 0;
     for (size_t i = 0; i < blocks->n; i++) {
-        TRY(take_number(stream, coding, &blocks->packed[i], err));
+        TRY(take_number(stream, &blocks->packed[i], err));
         packed += (double)blocks->packed[i];
+        if (blocks->packed[i] > blocks->largest)
+            blocks->largest = blocks->packed[i];
     }
     TRY(check_claim(stream, packed, bytes_left(stream), err));
-    *total = (double)(blocks->n - 1) * (double)blocks->size +
-             (double)(blocks->last ? blocks->last : blocks->size);
-    return check_claim(stream, *total, packed * most_ratio[coding->packing] + 64, err);
+    blocks->total = (double)(blocks->n - 1) * (double)blocks->size + (double)blocks->last;
+    return check_claim(stream, blocks->total, packed * max_ratio[coding->packing] + 64, err);
 }
 
-/* Unpacks to exactly `size` bytes; false for data that are not so packed. */
-static bool unpack(const VtpCoding *coding, struct libdeflate_decompressor *inflater,
-                   const char *packed, size_t n, char *out, size_t size)
-{
-    if (coding->packing == VTP_LZ4)
-        return n <= INT_MAX && size <= INT_MAX &&
-               LZ4_decompress_safe(packed, out, (int)n, (int)size) == (int)size;
-    return libdeflate_zlib_decompress(inflater, packed, n, out, size, NULL) == LIBDEFLATE_SUCCESS;
-}
-
-static Status inflate_blocks(Stream *stream, const VtpCoding *coding, const Blocks *blocks,
-                             char *out, char *packed, struct libdeflate_decompressor *inflater,
-                             Err *err)
-{
-    for (size_t i = 0; i < blocks->n; i++) {
-        size_t size = i + 1 == blocks->n && blocks->last ? blocks->last : blocks->size;
-        TRY(take(stream, packed, blocks->packed[i], err));
-        if (!unpack(coding, inflater, packed, blocks->packed[i], out, size))
-            return err_set(err, STATUS_INPUT, "block %zu is no %s data of %zu bytes", i,
-                           coding->packing == VTP_LZ4 ? "LZ4" : "zlib", size);
-        out += size;
-    }
-    return STATUS_OK;
-}
-
-static Status check_room(double total, const VtpRoom *room, Err *err)
+static Status check_room(const VtpSource *source, double total, Err *err)
 {
     char claim[BYTES_TEXT_SIZE], allowed[BYTES_TEXT_SIZE];
-    double size = (double)room->size, most = room->numbers * size;
+    double size = (double)source->number_size, most = source->max_numbers * size;
     if (total > most)
         return err_set(err, STATUS_INPUT,
                        "it announces %s; by the numbers of points and cells of its piece it has at "
                        "most %s",
                        bytes_text(total, claim), bytes_text(most, allowed));
-    TRY(check_unpacked(room->taken + total / size * sizeof(double), room->file_size, err));
-    return mem_check(room->taken + total + total / size * sizeof(double), room->name, err);
+    TRY(check_unpacked(source->taken + total / size * sizeof(double), source->file_size, err));
+    return mem_check(source->taken + total + total / size * sizeof(double), source->name, err);
 }
 
-static Status decode_blocks(Stream *stream, const VtpCoding *coding, const VtpRoom *room,
-                            Blocks *blocks, char **decoded, size_t *size, Err *err)
+Status bytes_inflate(const char *packed, size_t n, char *out, size_t size, Err *err)
 {
-    double total = 0;
-    char *made = NULL, *packed = NULL;
-    size_t largest = 0;
-    struct libdeflate_decompressor *inflater = NULL;
-    TRY(read_blocks(stream, coding, blocks, &total, err));
-    TRY(check_room(total, room, err));
-    for (size_t i = 0; i < blocks->n; i++)
-        largest = blocks->packed[i] > largest ? blocks->packed[i] : largest;
-    Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&made, (size_t)total, 1, "bytes of an array", err));
-    TRY_GOTO(mem_calloc(&packed, largest, 1, "bytes of a block", err));
-    inflater = libdeflate_alloc_decompressor();
+    struct libdeflate_decompressor *inflater = libdeflate_alloc_decompressor();
     if (!inflater)
-        TRY_GOTO(mem_out_of("to inflate", "an array", err));
-    TRY_GOTO(inflate_blocks(stream, coding, blocks, made, packed, inflater, err));
-    *decoded = made;
-    *size = (size_t)total;
-    made = NULL;
+        return mem_out_of("to inflate", "an array", err);
+    enum libdeflate_result result =
+        libdeflate_zlib_decompress(inflater, packed, n, out, size, NULL);
+    libdeflate_free_decompressor(inflater);
+    return result == LIBDEFLATE_SUCCESS
+               ? STATUS_OK
+               : err_set(err, STATUS_INPUT, "no zlib data of %zu bytes", size);
+}
+
+static Status unpack_lz4(const char *packed, size_t n, char *out, size_t size, Err *err)
+{
+    if (n <= INT_MAX && size <= INT_MAX &&
+        LZ4_decompress_safe(packed, out, (int)n, (int)size) == (int)size)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT, "no LZ4 data of %zu bytes", size);
+}
+
+static Status unpack_blocks(ByteStream *stream, const PackedBlocks *blocks, char *packed, char *out,
+                            Err *err)
+{
+    const bool is_lz4 = stream->source->coding.packing == VTP_LZ4;
+    for (size_t i = 0; i < blocks->n; i++) {
+        size_t size = i + 1 == blocks->n ? blocks->last : blocks->size;
+        TRY(take(stream, packed, blocks->packed[i], err));
+        Status status = is_lz4 ? unpack_lz4(packed, blocks->packed[i], out, size, err)
+                               : bytes_inflate(packed, blocks->packed[i], out, size, err);
+        if (status == STATUS_INPUT)
+            err_prefix(err, "block %zu is ", i);
+        TRY(status);
+        out += size;
+    }
+    return STATUS_OK;
+}
+
+static Status decode_blocks(ByteStream *stream, VtpBytes *out, Err *err)
+{
+    PackedBlocks blocks = {0};
+    char *packed = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(read_blocks(stream, &blocks, err));
+    TRY_GOTO(check_room(stream->source, blocks.total, err));
+    TRY_GOTO(mem_calloc(&out->decoded, (size_t)blocks.total, 1, "bytes of an array", err));
+    TRY_GOTO(mem_calloc(&packed, blocks.largest, 1, "bytes of a block", err));
+    status = unpack_blocks(stream, &blocks, packed, out->decoded, err);
+    out->bytes = out->decoded;
+    out->size = (size_t)blocks.total;
 done:
-    if (inflater)
-        libdeflate_free_decompressor(inflater);
     free(packed);
-    free(made);
+    free(blocks.packed);
     return status;
 }
 
-Status vtp_decode(const VtpCoding *coding, bool is_base64, const char *from, size_t left,
-                  const VtpRoom *room, const char **bytes, size_t *size, char **decoded, Err *err)
+Status vtp_decode(const VtpSource *source, VtpBytes *out, Err *err)
 {
-    Stream stream = {.at = from, .end = from + left, .is_base64 = is_base64};
-    *decoded = NULL;
-    if (coding->packing == VTP_PLAIN)
-        return decode_plain(&stream, coding, bytes, size, decoded, err);
-    Blocks blocks = {0};
-    Status status = decode_blocks(&stream, coding, room, &blocks, decoded, size, err);
-    *bytes = *decoded;
-    free(blocks.packed);
+    ByteStream stream = {.source = source, .at = source->from};
+    VtpBytes made = {0};
+    Status status = source->coding.packing == VTP_PLAIN ? decode_plain(&stream, &made, err)
+                                                        : decode_blocks(&stream, &made, err);
+    if (status == STATUS_OK)
+        *out = made;
+    else
+        free(made.decoded);
     return status;
 }

@@ -1,4 +1,4 @@
-/* Arrays of VTK's XML files as bytes: base64 or raw, compressed or not. */
+/* Decodes arrays of VTK's XML files: base64 or raw bytes, compressed or not. */
 #ifndef CORCAST_TREEIO_VTPBYTES_H
 #define CORCAST_TREEIO_VTPBYTES_H
 
@@ -6,31 +6,45 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-typedef enum VtpPacking { VTP_PLAIN, VTP_ZLIB, VTP_LZ4 } VtpPacking;
+typedef enum VtpPacking { VTP_PLAIN, VTP_ZLIB, VTP_LZ4, VTP_PACKINGS } VtpPacking;
 
+/* How all arrays of a file are coded. */
 typedef struct VtpCoding {
     bool is_big_endian;
     VtpPacking packing;
-    size_t header_size; /* 4 or 8: of the numbers that say how many bytes follow */
+    size_t header_size; /* bytes of the numbers that state sizes: 4 or 8 */
 } VtpCoding;
 
-/* What a compressed array may become. */
-typedef struct VtpRoom {
+/* An array in a file. All is borrowed. */
+typedef struct VtpSource {
     const char *name; /* of the file */
     size_t file_size; /* in bytes */
-    double numbers;   /* that it has at most */
-    size_t size;      /* bytes of each */
-    double taken;     /* bytes that the numbers before it take, which are doubles */
-} VtpRoom;
+    VtpCoding coding;
+    bool is_base64;
+    const char *from, *end; /* from the array's first byte to the end of the file */
+    double max_numbers;     /* largest number of numbers that the array can have */
+    size_t number_size;     /* bytes of each number */
+    double taken;           /* bytes of the numbers of all earlier arrays, as doubles */
+} VtpSource;
 
-/* Decodes the array that begins at `from`, of which the file has `left` more bytes. Its `*size`
- * bytes are *bytes, borrowed from *decoded (owned) or, where this becomes NULL, from the file.
- * STATUS_INPUT, without the file, when there are fewer than announced, they are not base64 or
- * zlib's or LZ4's, or compressed ones would become more numbers than there is room for or than
- * check_unpacked allows; STATUS_MEMORY, naming the file, when the machine has not the memory for
- * these. */
-MUST_CHECK Status vtp_decode(const VtpCoding *coding, bool is_base64, const char *from, size_t left,
-                             const VtpRoom *room, const char **bytes, size_t *size, char **decoded,
-                             Err *err);
+/* A decoded array. */
+typedef struct VtpBytes {
+    const char *bytes; /* borrowed from `decoded`, or from the file if `decoded` is NULL */
+    size_t size;
+    char *decoded; /* owned */
+} VtpBytes;
+
+/* Decodes an array.
+ *
+ * out      receives the bytes; free out->decoded.
+ * Errors   STATUS_INPUT, without the file's name, if there are fewer bytes than announced, they are
+ *          not base64, zlib's or LZ4's, or they would become more numbers than max_numbers or than
+ *          check_unpacked allows. STATUS_MEMORY, with the file's name, if the machine has not
+ *          enough memory. */
+MUST_CHECK Status vtp_decode(const VtpSource *source, VtpBytes *out, Err *err);
+
+/* Inflates zlib data. Errors: STATUS_INPUT, with the sentence "no zlib data of N bytes", unless they
+ * unpack to exactly `size` bytes; STATUS_MEMORY. */
+MUST_CHECK Status bytes_inflate(const char *packed, size_t n, char *out, size_t size, Err *err);
 
 #endif

@@ -1,7 +1,7 @@
-/* GXL of VascuSynth and OpenCCO: nodes with a position of two or three numbers, edges from the
- * parent to the child with a radius. Their names have blanks around them, and their node types are
- * not always true (OpenCCO calls the first child of the root so): roots are found by the edges.
- * What is known of the tree stands in attributes of <info_graph>, as OpenCCO has its pressures. */
+/* GXL of VascuSynth and OpenCCO: nodes with a position of two or three numbers, and edges with a
+ * radius from the parent to the child. Names have blanks around them. Node types are not always right
+ * (OpenCCO calls the first child of the root so), so roots are found by the edges. The tree's metadata
+ * are attributes of <info_graph>, as OpenCCO's pressures are. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/xml.h"
@@ -12,14 +12,14 @@
 
 static const char *const axes[] = {"x", "y", "z"};
 
-typedef struct Reader {
+typedef struct GxlReader {
     NamedNetwork network;
     Graph *graph;
-    char *attribute; /* whose values are read; owned */
+    Text attribute; /* name of the attribute whose values are read */
     size_t component;
-} Reader;
+} GxlReader;
 
-/* The element that an attribute describes: "node", "edge", "info_graph" or another. */
+/* Returns the element that an attribute describes: "node", "edge", "info_graph" or another. */
 static const char *described(const Xml *xml)
 {
     size_t up = 1;
@@ -28,52 +28,47 @@ static const char *described(const Xml *xml)
     return xml_around(xml, up + 1);
 }
 
-static Status begin_attribute(Reader *reader, const XmlElement *element, Err *err)
+static Status begin_attribute(GxlReader *reader, const XmlElement *element, Err *err)
 {
     const char *name;
     TRY(xml_needed(element, "name", &name, err));
-    free(reader->attribute);
-    reader->attribute = NULL;
-    TRY(mem_strdup(&reader->attribute, name, err));
-    char *trimmed = text_trim(reader->attribute);
-    memmove(reader->attribute, trimmed, strlen(trimmed) + 1);
+    name += strspn(name, TEXT_BLANKS);
+    size_t length = strlen(name);
+    while (length > 0 && strchr(TEXT_BLANKS, name[length - 1]))
+        length--;
+    text_clear(&reader->attribute);
+    text_append(&reader->attribute, name, length);
     reader->component = 0;
-    return STATUS_OK;
+    return text_check(&reader->attribute, err);
 }
 
 static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err)
 {
-    Reader *reader = context;
+    GxlReader *reader = context;
+    NamedNetwork *network = &reader->network;
     const char *name, *from, *to;
     if (strcmp(element->name, "attr") == 0)
         return begin_attribute(reader, element, err);
     if (strcmp(element->name, "node") == 0) {
         TRY(xml_needed(element, "id", &name, err));
-        return namednetwork_point(&reader->network, name, xml_line(xml), err);
+        TRY(namednetwork_begin(network, GRAPH_POINTS, xml_line(xml), err));
+        return namednetwork_name(network, name, xml_line(xml), err);
     }
     if (strcmp(element->name, "edge") != 0)
         return STATUS_OK;
     TRY(xml_needed(element, "from", &from, err));
     TRY(xml_needed(element, "to", &to, err));
-    return namednetwork_line(&reader->network, from, to, xml_line(xml), err);
+    return namednetwork_edge(network, from, to, xml_line(xml), err);
 }
 
-/* A number of the attribute: a coordinate, or one under the attribute's name. */
-static Status take_number(Reader *reader, Attributes *of, bool of_point, double value, Err *err)
+/* Keeps a text of the graph: the metadata that corcast wrote, or a remark "NAME: TEXT". */
+static Status take_remark(GxlReader *reader, const char *text, Err *err)
 {
-    size_t component = reader->component++;
-    if (of_point && strcmp(reader->attribute, "position") == 0)
-        return component < 3 ? attributes_set(of, axes[component], value, err)
-                             : err_set(err, STATUS_INPUT, "a position has more than 3 numbers");
-    return component == 0 ? attributes_set(of, reader->attribute, value, err) : STATUS_OK;
-}
-
-static Status take_remark(Reader *reader, const char *text, Err *err)
-{
-    if (strcmp(reader->attribute, VTK_KNOWN) == 0)
+    const char *name = text_chars(&reader->attribute);
+    if (strcmp(name, VTK_KNOWN) == 0)
         return namednetwork_known(&reader->network, text, err);
     Text comment = TEXT_INIT;
-    text_printf(&comment, "%s: ", reader->attribute);
+    text_printf(&comment, "%s: ", name);
     text_put_line(&comment, text);
     Status status = text_check(&comment, err);
     if (status == STATUS_OK)
@@ -84,34 +79,42 @@ static Status take_remark(Reader *reader, const char *text, Err *err)
 
 static Status end(void *context, Xml *xml, const char *name, char *text, Err *err)
 {
-    Reader *reader = context;
-    const char *of = described(xml);
+    GxlReader *reader = context;
+    const char *around = described(xml), *attribute = text_chars(&reader->attribute);
+    bool of_point = strcmp(around, "node") == 0, of_line = strcmp(around, "edge") == 0;
     double value;
-    bool of_point = strcmp(of, "node") == 0, of_line = strcmp(of, "edge") == 0;
-    if (!reader->attribute || strcmp(name, "attr") == 0 || strcmp(name, "tup") == 0)
+    if (strcmp(name, "attr") == 0 || strcmp(name, "tup") == 0)
         return STATUS_OK;
-    if (strcmp(of, "info_graph") == 0)
+    if (strcmp(around, "info_graph") == 0)
         return take_remark(reader, text, err);
     if (strcmp(name, "string") == 0 || (!of_point && !of_line))
         return STATUS_OK;
-    TRY(field_value(reader->attribute, text, &value, err));
-    return take_number(reader, of_point ? &reader->network.of_points : &reader->network.of_lines,
-                       of_point, value, err);
+    TRY(field_value(attribute, text, &value, err));
+    size_t component = reader->component++;
+    if (of_point && strcmp(attribute, "position") == 0) {
+        if (component > 2)
+            return err_set(err, STATUS_INPUT, "a position has more than 3 numbers");
+        attribute = axes[component];
+    } else if (component > 0) {
+        return STATUS_OK;
+    }
+    return namednetwork_set(&reader->network, of_point ? GRAPH_POINTS : GRAPH_LINES, attribute,
+                            value, err);
 }
 
 Status gxl_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
     static const XmlHandlers handlers = {begin, end};
-    Reader reader = {.network = {.names = {.what = "node"},
-                                 .of_points = {.file_size = size},
-                                 .of_lines = {.file_size = size}},
-                     .graph = graph};
-    Status status = xml_read(graph->name, bytes, size, &handlers, &reader, err);
+    GxlReader reader = {.network = namednetwork_of("node", size), .graph = graph};
+    Status status = STATUS_OK;
     reader.network.data.is_directed = true;
-    if (status == STATUS_OK)
-        status = namednetwork_to_graph(&reader.network, axes, graph, err);
+    TRY_GOTO(xml_read(graph->name, bytes, size, &handlers, &reader, err));
+    graph->point_record = "node";
+    graph->line_record = "edge";
+    TRY_GOTO(namednetwork_to_graph(&reader.network, axes, graph, err));
+done:
     namednetwork_release(&reader.network);
-    free(reader.attribute);
+    text_release(&reader.attribute);
     return status;
 }
 
@@ -174,7 +177,7 @@ static void put_edge(const Tree *tree, size_t i, Text *text, Text *name)
     text_puts(text, "  </edge>\n");
 }
 
-static Status put_graph(const Tree *tree, const int32_t *children, Text *text, Err *err)
+static void put_graph(const Tree *tree, const int32_t *children, Text *text)
 {
     Text name = TEXT_INIT;
     text_puts(text, "<gxl><graph id=\"tree\" edgeids=\" true\" edgemode=\" directed\" "
@@ -188,20 +191,14 @@ static Status put_graph(const Tree *tree, const int32_t *children, Text *text, E
         if (tree_is_segment(tree, i))
             put_edge(tree, i, text, &name);
     text_puts(text, "</graph></gxl>\n");
-    Status status = text_check(&name, err);
     text_release(&name);
-    return status;
 }
 
-Status gxl_write(const Tree *tree, FILE *stream, Err *err)
+Status gxl_write(const Tree *tree, Text *text, Err *err)
 {
     int32_t *children;
     TRY(tree_child_counts(tree, &children, err));
-    Text text = TEXT_TO(stream);
-    Status status = put_graph(tree, children, &text, err);
-    if (status == STATUS_OK)
-        status = text_flush(&text, err);
-    text_release(&text);
+    put_graph(tree, children, text);
     free(children);
-    return status;
+    return STATUS_OK;
 }

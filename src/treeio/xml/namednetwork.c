@@ -1,72 +1,73 @@
-/* Lines are kept by the names of their ends until all points are there. */
+/* Lines keep the names of their points until all points are there. */
 #include "treeio/xml/namednetwork.h"
 
 #include "treeio/comments.h"
-
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct NamedLine {
-    char *end[2]; /* names */
-    size_t record;
-} NamedLine;
+NamedNetwork namednetwork_of(const char *what, size_t file_size)
+{
+    return (NamedNetwork){.file_size = file_size, .names = {.what = what}};
+}
 
 void namednetwork_release(NamedNetwork *network)
 {
     names_release(&network->names);
     slabs_release(&network->texts);
-    attributes_release(&network->of_points);
-    attributes_release(&network->of_lines);
-    free(network->line);
+    ARRAY_RELEASE(&network->lines);
+    ARRAY_RELEASE(&network->ends);
     vtk_release(&network->data);
-    *network = (NamedNetwork){0};
 }
 
-static Status keep(NamedNetwork *network, const char *text, char **out, Err *err)
+Status namednetwork_begin(NamedNetwork *network, GraphElement of, size_t record, Err *err)
+{
+    if (of == GRAPH_LINES)
+        TRY(ARRAY_PUSH(&network->lines, "lines", err, (NamedLine){network->ends.n, record}));
+    network->data.n_points += of == GRAPH_POINTS;
+    network->data.n_cells += of == GRAPH_LINES;
+    return STATUS_OK;
+}
+
+static Status copy(NamedNetwork *network, const char *text, char **out, Err *err)
 {
     *out = slabs_text(&network->texts, text);
-    return *out ? STATUS_OK : mem_out_of("for", "names of nodes", err);
+    return *out ? STATUS_OK : mem_out_of("for", "names", err);
 }
 
-Status namednetwork_point(NamedNetwork *network, const char *name, size_t record, Err *err)
+Status namednetwork_name(NamedNetwork *network, const char *name, size_t record, Err *err)
 {
     char *kept;
-    TRY(keep(network, name, &kept, err));
-    TRY(names_add(&network->names, kept, network->of_points.n, record, err));
-    attributes_add(&network->of_points);
+    TRY(copy(network, name, &kept, err));
+    network->last = kept;
+    return names_add(&network->names, kept, network->data.n_points - 1, record, err);
+}
+
+Status namednetwork_go_to(NamedNetwork *network, const char *name, Err *err)
+{
+    char *kept;
+    TRY(copy(network, name, &kept, err));
+    TRY(ARRAY_PUSH(&network->ends, "points of lines", err, kept));
+    network->lines.items[network->lines.n - 1].end = network->ends.n;
     return STATUS_OK;
 }
 
-Status namednetwork_line(NamedNetwork *network, const char *from, const char *to, size_t record,
+Status namednetwork_edge(NamedNetwork *network, const char *from, const char *to, size_t record,
                          Err *err)
 {
-    NamedLine line = {.record = record};
-    TRY(keep(network, from, &line.end[0], err));
-    TRY(keep(network, to, &line.end[1], err));
-    TRY(mem_reserve(&network->line, &network->lines_capacity, network->n_lines + 1, sizeof line,
-                    "lines", err));
-    network->line[network->n_lines++] = line;
-    attributes_add(&network->of_lines);
-    return STATUS_OK;
+    TRY(namednetwork_begin(network, GRAPH_LINES, record, err));
+    TRY(namednetwork_go_to(network, from, err));
+    return namednetwork_go_to(network, to, err);
 }
 
-static Status find_ends(NamedNetwork *network, const Graph *graph, Err *err)
+Status namednetwork_set(NamedNetwork *network, GraphElement of, const char *name, double value,
+                        Err *err)
 {
-    for (size_t i = 0; i < network->n_lines; i++) {
-        double corner[2];
-        for (int k = 0; k < 2; k++) {
-            size_t number;
-            Status status = names_find(&network->names, network->line[i].end[k], &number, err);
-            if (status == STATUS_INPUT)
-                err_prefix(err, "%s:%zu: ", graph->name, network->line[i].record);
-            TRY(status);
-            corner[k] = (double)number;
-        }
-        TRY(vtk_add_line(&network->data, i, corner, 2, 0, err));
-    }
-    network->data.n_cells = network->n_lines;
-    return STATUS_OK;
+    VtkData *data = &network->data;
+    size_t n = of == GRAPH_POINTS ? data->n_points : data->n_cells;
+    return vtk_set_number(&data->arrays[of], name, n - 1, value, network->file_size, err);
 }
+
+/* ---- metadata -------------------------------------------------------------------------------- */
 
 Status namednetwork_known(NamedNetwork *network, const char *comments, Err *err)
 {
@@ -76,7 +77,7 @@ Status namednetwork_known(NamedNetwork *network, const char *comments, Err *err)
     TRY_GOTO(mem_strdup(&array.text, comments, err));
     for (char *rest = array.text; text_line(&rest);)
         ;
-    return vtk_add_array(&network->data.of_file, &array, err);
+    return vtk_add_array(&network->data.arrays[VTK_OF_FILE], &array, err);
 done:
     vtk_release_array(&array);
     return status;
@@ -92,29 +93,46 @@ void namednetwork_put_known(const TreeMeta *meta, Text *text)
     text_release(&line);
 }
 
-static void drop_array(VtkArrays *arrays, const char *name)
+/* ---- the graph ------------------------------------------------------------------------------- */
+
+/* Adds line `i`, whose names begin at `from`. `corner` has space for its points. */
+static Status add_line(NamedNetwork *network, size_t i, size_t from, double *corner, Err *err)
 {
-    for (size_t i = 0; i < arrays->n; i++)
-        if (strcmp(arrays->array[i].name, name) == 0) {
-            vtk_release_array(&arrays->array[i]);
-            memmove(&arrays->array[i], &arrays->array[i + 1],
-                    (--arrays->n - i) * sizeof *arrays->array);
-            return;
-        }
+    size_t n = network->lines.items[i].end - from;
+    for (size_t k = 0; k < n; k++) {
+        size_t point;
+        TRY(names_find(&network->names, network->ends.items[from + k], &point, err));
+        corner[k] = (double)point;
+    }
+    if (n < 2)
+        return err_set(err, STATUS_INPUT, "the segment has %zu of its points; it must have two", n);
+    return vtk_add_line(&network->data, i, corner, n, 0, err);
+}
+
+static Status add_lines(NamedNetwork *network, const Graph *graph, Err *err)
+{
+    double *corner = NULL;
+    TRY(mem_calloc(&corner, network->ends.n, sizeof *corner, "points of lines", err));
+    Status status = STATUS_OK;
+    for (size_t i = 0, from = 0; i < network->lines.n && status == STATUS_OK; i++) {
+        status = add_line(network, i, from, corner, err);
+        if (status == STATUS_INPUT)
+            err_prefix(err, "%s:%zu: ", graph->name, network->lines.items[i].record);
+        from = network->lines.items[i].end;
+    }
+    free(corner);
+    return status;
 }
 
 Status namednetwork_to_graph(NamedNetwork *network, const char *const axes[3], Graph *graph,
                              Err *err)
 {
     VtkData *data = &network->data;
-    data->n_points = network->of_points.n;
-    TRY(attributes_take(&network->of_points, &data->of_points, err));
-    TRY(attributes_take(&network->of_lines, &data->of_cells, err));
-    if (data->of_file.n > 0)
-        drop_array(&data->of_cells, "radius");
-    TRY(find_ends(network, graph, err));
-    TRY(attributes_to_places(data, axes, graph->name, err));
-    graph->point_record = "node";
-    graph->line_record = "edge";
+    TRY(vtk_fill_up(&data->arrays[GRAPH_POINTS], data->n_points, network->file_size, err));
+    TRY(vtk_fill_up(&data->arrays[GRAPH_LINES], data->n_cells, network->file_size, err));
+    if (data->arrays[VTK_OF_FILE].n > 0)
+        free(vtk_take_values(&data->arrays[GRAPH_LINES], "radius"));
+    TRY(add_lines(network, graph, err));
+    TRY(vtk_take_positions(data, axes, graph->name, err));
     return vtk_to_graph(data, graph, err);
 }

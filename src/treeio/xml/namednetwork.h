@@ -1,43 +1,59 @@
-/* A network whose points have names and whose lines name their ends, both with any numbers under
- * names: what GXL and GraphML hold. */
+/* A network whose points have names and whose lines list the names of their points. Both have any
+ * numbers, by name. GXL, GraphML and Amira's workbooks hold such networks. */
 #ifndef CORCAST_TREEIO_NAMEDNETWORK_H
 #define CORCAST_TREEIO_NAMEDNETWORK_H
 
 #include "treeio/names.h"
-#include "treeio/vtk/attributes.h"
 #include "treeio/vtk/vtkdata.h"
 
-/* Begin with {.names = {.what = "node"}} and the size of the file in both Attributes; release with
- * namednetwork_release. */
+typedef struct NamedLine {
+    size_t end, record; /* end of its names in `ends`; line of the file */
+} NamedLine;
+
+/* Begin with namednetwork_of; release with namednetwork_release. */
 typedef struct NamedNetwork {
-    Names names;
-    Slabs texts;
-    Attributes of_points, of_lines; /* of the point and the line begun last */
-    struct NamedLine *line;
-    size_t n_lines, lines_capacity;
+    size_t file_size; /* in bytes */
+    Names names;      /* of points */
+    const char *last; /* name of the last point; borrowed from `texts` */
+    Slabs texts;      /* hold all names */
+    ARRAY(NamedLine) lines;
+    ARRAY(char *) ends; /* names of the points of all lines */
     VtkData data;
 } NamedNetwork;
 
+/* Returns an empty network. `what` is what points are called in errors. */
+NamedNetwork namednetwork_of(const char *what, size_t file_size);
 void namednetwork_release(NamedNetwork *network);
 
-/* Begins a point, or a line between two points that are given before or after. Names are copied.
- * STATUS_INPUT, without file and line, when another point has the name. */
-MUST_CHECK Status namednetwork_point(NamedNetwork *network, const char *name, size_t record,
+/* Begins a point or a line. `record` is its line in the file. Errors: STATUS_MEMORY. */
+MUST_CHECK Status namednetwork_begin(NamedNetwork *network, GraphElement of, size_t record,
                                      Err *err);
-MUST_CHECK Status namednetwork_line(NamedNetwork *network, const char *from, const char *to,
+/* Names the point that was begun last. The name is copied. Errors: STATUS_INPUT, without file and
+ * line, if another point has the name; STATUS_MEMORY. */
+MUST_CHECK Status namednetwork_name(NamedNetwork *network, const char *name, size_t record,
+                                    Err *err);
+/* Continues the line that was begun last to the point of this name, which may come later. The name is
+ * copied. Errors: STATUS_MEMORY. */
+MUST_CHECK Status namednetwork_go_to(NamedNetwork *network, const char *name, Err *err);
+/* Begins a line from one point to another. Errors: STATUS_MEMORY. */
+MUST_CHECK Status namednetwork_edge(NamedNetwork *network, const char *from, const char *to,
                                     size_t record, Err *err);
+/* Sets a number of the point or the line that was begun last. Errors: as vtk_set_number. */
+MUST_CHECK Status namednetwork_set(NamedNetwork *network, GraphElement of, const char *name,
+                                   double value, Err *err);
 
-/* What is known of a tree that the program wrote, a comment a line [treeio/comments.h]: the nodes
- * have its ids, and the edges' radii are the nodes'. */
+/* Sets the metadata of a tree that corcast wrote, one comment per line [treeio/comments.h]. Nodes then
+ * have its ids, and nodes have the radii of edges. Errors: STATUS_MEMORY. */
 MUST_CHECK Status namednetwork_known(NamedNetwork *network, const char *comments, Err *err);
-
-/* Appends what is known so, with the signs that XML does not take as entities. */
+/* Appends the metadata for namednetwork_known, with entities where XML needs them. */
 void namednetwork_put_known(const TreeMeta *meta, Text *text);
 
-/* Hands all over to the graph [vtk_to_graph], of which nothing is left here. `axes` names the
- * numbers of points that are x, y and z; without the third, z is 0. STATUS_INPUT, with the file's
- * name and the line where there is one, when a line names no point, a point has no position, or
- * there is no radius. */
+/* Hands the network over to the graph [vtk_to_graph].
+ *
+ * axes     names of the numbers of points that are x, y and z; NULL as the third: z is 0.
+ * Errors   STATUS_INPUT, with the file's name, and the line if there is one, if a line refers to no
+ *          point or has fewer than two, a point has no position, or there is no radius;
+ *          STATUS_MEMORY. */
 MUST_CHECK Status namednetwork_to_graph(NamedNetwork *network, const char *const axes[3],
                                         Graph *graph, Err *err);
 

@@ -6,13 +6,14 @@
 #include "image/tiff_stream.h"
 
 #include <Imath/half.h>
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tiffio.h>
 
-typedef struct Tiff {
-    ImageBytes file;
+enum { MAX_NOTES = 3 };
+
+typedef struct TiffReader {
+    ImageInput input;
     TiffStream tiff;
     uint32_t width, height; /* in the file */
     int samples, bits;      /* per pixel, per sample, in the file */
@@ -25,9 +26,11 @@ typedef struct Tiff {
     int64_t origin, across, down;     /* the pixel of column 0, row 0; how far the next ones are */
     uint32_t part_width, part_height; /* of a tile, or of a row */
     size_t part_bytes;
-    void *part;  /* owned */
-    Image image; /* made; owned */
-} Tiff;
+    void *part; /* owned */
+    ImageNotes notes;
+    ImageNote note[MAX_NOTES]; /* texts are libtiff's */
+    uint32_t next;             /* index of the next row */
+} TiffReader;
 
 static bool tiff_is(const ImageBytes *file)
 {
@@ -36,18 +39,8 @@ static bool tiff_is(const ImageBytes *file)
             memcmp(file->bytes, "II+\0", 4) == 0 || memcmp(file->bytes, "MM\0+", 4) == 0);
 }
 
-static Status unsound(Tiff *self, Err *err)
-{
-    if (errno == ENOMEM)
-        return mem_out_of("to read", self->file.name, err);
-    image_plain_text(self->tiff.complaint);
-    return err_set(err, STATUS_INPUT, "%s: is not a sound TIFF file: %s", self->file.name,
-                   *self->tiff.complaint ? self->tiff.complaint
-                                         : "its directory does not fit its data");
-}
-
 /* Where pixels go. The orientations are counted as TIFF does: from 5 on rows are columns. */
-static void set_places(Tiff *self, int orientation)
+static void set_places(TiffReader *self, int orientation)
 {
     bool mirrored = orientation == ORIENTATION_TOPRIGHT || orientation == ORIENTATION_BOTRIGHT ||
                     orientation == ORIENTATION_RIGHTBOT || orientation == ORIENTATION_LEFTBOT;
@@ -68,12 +61,12 @@ static void set_places(Tiff *self, int orientation)
 }
 
 /* What a file has that cannot be read is named. */
-static Status refuse(const Tiff *self, const char *what, Err *err)
+static Status refuse(const TiffReader *self, const char *what, Err *err)
 {
     return err_set(err, STATUS_INPUT,
                    "%s: has %s, which cannot be read; grey, RGB and palettes of 1, 2, 4, 8 or 16 "
                    "bits can, and grey and RGB floats of 16, 32 or 64 bits",
-                   self->file.name, what);
+                   self->input.file.name, what);
 }
 
 static const char *photometric_name(uint16_t photometric)
@@ -96,7 +89,7 @@ static const char *photometric_name(uint16_t photometric)
     return "colours of an unknown kind (PhotometricInterpretation)";
 }
 
-static Status check_samples(Tiff *self, uint16_t format, Err *err)
+static Status check_samples(TiffReader *self, uint16_t format, Err *err)
 {
     static const char *const types[] = {[SAMPLEFORMAT_INT] = "signed integers",
                                         [SAMPLEFORMAT_VOID] = "samples of no known type",
@@ -117,7 +110,7 @@ static Status check_samples(Tiff *self, uint16_t format, Err *err)
 }
 
 /* Palettes hold numbers of 16 bits; those of some old programs hold numbers of 8 bits. */
-static Status take_palette(Tiff *self, Err *err)
+static Status take_palette(TiffReader *self, Err *err)
 {
     uint16_t *red, *green, *blue;
     if (!TIFFGetField(self->tiff.handle, TIFFTAG_COLORMAP, &red, &green, &blue) || self->bits > 8)
@@ -133,7 +126,7 @@ static Status take_palette(Tiff *self, Err *err)
 }
 
 /* Only grey and RGB have alpha; libtiff makes JPEG's YCbCr colours RGB. */
-static Status check_colors_of_samples(Tiff *self, uint16_t photometric, Err *err)
+static Status check_colors_of_samples(TiffReader *self, uint16_t photometric, Err *err)
 {
     const int samples = self->samples;
     uint16_t compression;
@@ -142,7 +135,7 @@ static Status check_colors_of_samples(Tiff *self, uint16_t photometric, Err *err
         TIFFSetField(self->tiff.handle, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB))
         photometric = PHOTOMETRIC_RGB;
     if (compression == COMPRESSION_JPEG)
-        self->image.lossy = "JPEG";
+        self->input.image.lossy = "JPEG";
     bool grey = photometric == PHOTOMETRIC_MINISBLACK || photometric == PHOTOMETRIC_MINISWHITE;
     bool is_palette = photometric == PHOTOMETRIC_PALETTE;
     self->min_is_white = photometric == PHOTOMETRIC_MINISWHITE;
@@ -161,7 +154,7 @@ static Status check_colors_of_samples(Tiff *self, uint16_t photometric, Err *err
     return refuse(self, what, err);
 }
 
-static Status check_form(Tiff *self, Err *err)
+static Status check_form(TiffReader *self, Err *err)
 {
     uint16_t samples, bits, format, planar, photometric = PHOTOMETRIC_MINISBLACK;
     TIFFGetField(self->tiff.handle, TIFFTAG_PHOTOMETRIC, &photometric);
@@ -177,7 +170,7 @@ static Status check_form(Tiff *self, Err *err)
 }
 
 /* Bits of a sample of the image that is made. */
-static int image_bits(const Tiff *self)
+static int image_bits(const TiffReader *self)
 {
     return self->floats ? 32 : self->bits <= 8 ? 8 : 16;
 }
@@ -185,7 +178,7 @@ static int image_bits(const Tiff *self)
 /* The bytes that a file of this size can hold, with much to spare. Blank pictures shrink 1400-fold
  * by LZW, 1032-fold by deflate and 64-fold by PackBits; of the others ZSTD reaches 32768-fold, and
  * WebP and LERC take a few bytes for a blank strip of any size. */
-static size_t most_bytes(const Tiff *self)
+static size_t most_bytes(const TiffReader *self)
 {
     enum { COMMON_RATIO = 10000, RATIO = 100000, BLANK_STRIP = 64 << 20 };
     uint16_t compression;
@@ -194,21 +187,21 @@ static size_t most_bytes(const Tiff *self)
                   compression == COMPRESSION_PACKBITS || compression == COMPRESSION_DEFLATE ||
                   compression == COMPRESSION_ADOBE_DEFLATE;
     size_t unpacked = self->bits < 8 ? 8 / (size_t)self->bits : 1;
-    return common ? self->file.size * COMMON_RATIO * unpacked
-                  : self->file.size * RATIO * unpacked + BLANK_STRIP;
+    return common ? self->input.file.size * COMMON_RATIO * unpacked
+                  : self->input.file.size * RATIO * unpacked + BLANK_STRIP;
 }
 
 /* `width` x `height` pixels, of the whole or of a tile. */
-static Status check_claim(const Tiff *self, uint32_t width, uint32_t height, Err *err)
+static Status check_claim(const TiffReader *self, uint32_t width, uint32_t height, Err *err)
 {
-    TRY(image_check_sides(self->file.name, width, height, err));
+    TRY(image_check_sides(self->input.file.name, width, height, err));
     size_t pixel = (size_t)self->channels * (size_t)(image_bits(self) / 8);
-    return image_check_claim(&self->file, width, height, pixel * width * height, most_bytes(self),
-                             err);
+    return image_check_claim(&self->input.file, width, height, pixel * width * height,
+                             most_bytes(self), err);
 }
 
 /* Strips are read row by row, tiles whole. */
-static Status set_parts(Tiff *self, Err *err)
+static Status set_parts(TiffReader *self, Err *err)
 {
     self->part_width = self->width;
     self->part_height = 1;
@@ -223,12 +216,12 @@ static Status set_parts(Tiff *self, Err *err)
     TRY(image_check_memory((int)self->part_width, (int)self->part_height, self->part_bytes, err));
     if ((size_t)(tiled ? TIFFTileSize(self->tiff.handle) : TIFFScanlineSize(self->tiff.handle)) !=
         self->part_bytes)
-        return unsound(self, err);
+        return guard_failure(err);
     return mem_calloc(&self->part, self->part_bytes, 1, "bytes of a part of a TIFF", err);
 }
 
 /* What is not said is sRGB's. */
-static Status check_colors(Tiff *self, Err *err)
+static Status check_colors(TiffReader *self, Err *err)
 {
     double xy[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
     const float *primaries, *white;
@@ -241,18 +234,24 @@ static Status check_colors(Tiff *self, Err *err)
         for (int i = 0; i < 2; i++)
             xy[6 + i] = (double)white[i];
     if (self->channels >= 3 && !image_is_srgb(xy))
-        return image_other_colors(self->file.name, "PrimaryChromaticities or WhitePoint", err);
+        return image_other_colors(self->input.file.name, "PrimaryChromaticities or WhitePoint",
+                                  err);
     if (!self->floats && TIFFGetField(self->tiff.handle, TIFFTAG_ICCPROFILE, &size, &profile))
-        return image_check_profile(self->file.name, profile, size, err);
+        return image_check_profile(self->input.file.name, profile, size, err);
     return STATUS_OK;
 }
 
-static Status read_header(Tiff *self, Err *err)
+static void read_sides(TiffReader *self)
+{
+    TIFFGetField(self->tiff.handle, TIFFTAG_IMAGEWIDTH, &self->width);
+    TIFFGetField(self->tiff.handle, TIFFTAG_IMAGELENGTH, &self->height);
+}
+
+static Status read_header(TiffReader *self, Err *err)
 {
     uint16_t orientation;
     TRY(check_form(self, err));
-    TIFFGetField(self->tiff.handle, TIFFTAG_IMAGEWIDTH, &self->width);
-    TIFFGetField(self->tiff.handle, TIFFTAG_IMAGELENGTH, &self->height);
+    read_sides(self);
     TRY(check_claim(self, self->width, self->height, err));
     TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_ORIENTATION, &orientation);
     set_places(self, orientation);
@@ -282,7 +281,7 @@ static float float_at(const uint8_t *row, size_t i, int bits)
 }
 
 /* Sets the codes of the pixel of index `pixel`: those of a palette, or one from channel `c` on. */
-static void set_code(const Tiff *self, unsigned value, size_t pixel, int c, Picture *picture)
+static void set_code(const TiffReader *self, unsigned value, size_t pixel, int c, Picture *picture)
 {
     const size_t first = pixel * (size_t)self->channels;
     const unsigned most = (1u << self->bits) - 1;
@@ -300,7 +299,7 @@ static void set_code(const Tiff *self, unsigned value, size_t pixel, int c, Pict
 
 /* Takes `n` pixels of row `y` of the file, from column `x` on, whose samples are at `row`: all
  * samples, or those of one plane. */
-static void take_row(const Tiff *self, const uint8_t *row, uint32_t x, uint32_t y, uint32_t n,
+static void take_row(const TiffReader *self, const uint8_t *row, uint32_t x, uint32_t y, uint32_t n,
                      int plane, Image *image)
 {
     const int samples = self->samples / self->planes;
@@ -317,14 +316,14 @@ static void take_row(const Tiff *self, const uint8_t *row, uint32_t x, uint32_t 
 }
 
 /* Reads the part of the file, or of one plane, that begins at column `x`, row `y`. */
-static Status read_part(Tiff *self, uint32_t x, uint32_t y, int plane, Image *image, Err *err)
+static Status read_part(TiffReader *self, uint32_t x, uint32_t y, int plane, Image *image, Err *err)
 {
     TIFF *handle = self->tiff.handle;
     bool read = TIFFIsTiled(handle)
                     ? TIFFReadTile(handle, self->part, x, y, 0, (uint16_t)plane) >= 0
                     : TIFFReadScanline(handle, self->part, y, (uint16_t)plane) == 1;
     if (!read)
-        return unsound(self, err);
+        return guard_failure(err);
     uint32_t n = self->part_width < self->width - x ? self->part_width : self->width - x;
     size_t row_bytes = self->part_bytes / self->part_height;
     for (uint32_t row = 0; row < self->part_height && y + row < self->height; row++)
@@ -344,7 +343,7 @@ static void divide_codes(Picture *picture, size_t first, int colors)
 }
 
 /* Codes are to be without alpha, floats multiplied by it. */
-static void settle_colors(const Tiff *self, Image *image)
+static void settle_colors(const TiffReader *self, Image *image)
 {
     uint16_t extra, *kinds;
     TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_EXTRASAMPLES, &extra, &kinds);
@@ -358,7 +357,7 @@ static void settle_colors(const Tiff *self, Image *image)
             image->plane.values[i] *= image->plane.values[i - i % samples + samples - 1];
 }
 
-static Status read_parts(Tiff *self, Image *image, Err *err)
+static Status read_parts(TiffReader *self, Image *image, Err *err)
 {
     for (int plane = 0; plane < self->planes; plane++)
         for (uint32_t y = 0; y < self->height; y += self->part_height)
@@ -370,27 +369,43 @@ static Status read_parts(Tiff *self, Image *image, Err *err)
 }
 
 /* Smaller versions of the page and masks are no pages. */
-static Status check_single(Tiff *self, Err *err)
+static Status check_single(TiffReader *self, Err *err)
 {
     while (!TIFFLastDirectory(self->tiff.handle)) {
         uint32_t kind = 0;
         if (!TIFFReadDirectory(self->tiff.handle))
-            return unsound(self, err);
+            return guard_failure(err);
         TIFFGetField(self->tiff.handle, TIFFTAG_SUBFILETYPE, &kind);
         if (!(kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)))
             return err_set(err, STATUS_INPUT,
                            "%s: has several pages; only a single picture can be read",
-                           self->file.name);
+                           self->input.file.name);
     }
     return STATUS_OK;
 }
 
+static Status open_tiff(TiffReader *self, Err *err)
+{
+    self->tiff.stream = self->input.stream;
+    self->tiff.bytes = self->input.file.bytes;
+    self->tiff.size = self->input.file.size;
+    return tiff_open(&self->tiff, self->input.file.name, "r") ? STATUS_OK : guard_failure(err);
+}
+
+/* A handle whose guard was left cannot be closed, and what it holds is lost. */
+static void release(void *work)
+{
+    TiffReader *self = work;
+    if (self->tiff.handle && !self->input.guard.left)
+        TIFFClose(self->tiff.handle);
+    free(self->part);
+}
+
 static Status decode(void *work, Err *err)
 {
-    Tiff *self = work;
-    Image *image = &self->image;
-    if (!tiff_open(&self->tiff, self->file.name, "r"))
-        return unsound(self, err);
+    TiffReader *self = work;
+    Image *image = &self->input.image;
+    TRY(open_tiff(self, err));
     TRY(read_header(self, err));
     int width = (int)(self->swapped ? self->height : self->width);
     int height = (int)(self->swapped ? self->width : self->height);
@@ -402,16 +417,158 @@ static Status decode(void *work, Err *err)
     return check_single(self, err);
 }
 
-static Status tiff_decode(const ImageBytes *file, Image *image, Err *err)
+/* ---- rows ------------------------------------------------------------------------------------ */
+
+static void take_notes(TiffReader *self)
 {
-    Tiff self = {.file = *file};
-    Status status = tiff_guard_bytes(decode, &self, &self.tiff, file, err);
-    free(self.part);
-    if (status == STATUS_OK)
-        *image = self.image;
-    else
-        image_release(&self.image);
-    return status;
+    static const struct {
+        uint32_t field;
+        const char *key;
+    } fields[MAX_NOTES] = {{TIFFTAG_SOFTWARE, "Software"},
+                           {TIFFTAG_IMAGEDESCRIPTION, "Comment"},
+                           {TIFFTAG_PAGENAME, "Shard"}};
+    float dpi = 0;
+    self->notes = (ImageNotes){.notes = self->note};
+    for (int i = 0; i < MAX_NOTES; i++) {
+        const char *text;
+        if (TIFFGetField(self->tiff.handle, fields[i].field, &text))
+            self->note[self->notes.count++] = (ImageNote){fields[i].key, text};
+    }
+    if (TIFFGetField(self->tiff.handle, TIFFTAG_XRESOLUTION, &dpi))
+        self->notes.dpi = (double)dpi;
 }
 
-const ImageDecoder tiff_decoder = {.is = tiff_is, .decode = tiff_decode};
+static ImageCompression compression_of(TIFF *handle)
+{
+    uint16_t compression;
+    TIFFGetFieldDefaulted(handle, TIFFTAG_COMPRESSION, &compression);
+    return compression == COMPRESSION_NONE            ? IMAGE_UNCOMPRESSED
+           : compression == COMPRESSION_ADOBE_DEFLATE ? IMAGE_DEFLATE
+                                                      : IMAGE_LZW;
+}
+
+/* Returns true if the rows of the file are those of the image: integers, interleaved, upright, in
+ * strips; grey, RGB, or RGB with an alpha that the colours are not multiplied by. */
+static bool has_plain_rows(const TiffReader *self)
+{
+    TIFF *handle = self->tiff.handle;
+    uint16_t orientation, extra = 0;
+    const uint16_t *kinds = NULL;
+    TIFFGetFieldDefaulted(handle, TIFFTAG_ORIENTATION, &orientation);
+    TIFFGetFieldDefaulted(handle, TIFFTAG_EXTRASAMPLES, &extra, &kinds);
+    bool straight = extra == 1 && kinds[0] == EXTRASAMPLE_UNASSALPHA;
+    size_t row_bytes = (size_t)self->width * (size_t)self->samples * (size_t)(self->bits / 8);
+    return !self->floats && self->bits >= 8 && self->planes == 1 && !self->palette[0] &&
+           !self->min_is_white && orientation == ORIENTATION_TOPLEFT && !TIFFIsTiled(handle) &&
+           (self->samples % 2 == 1 || (self->samples == 4 && straight)) &&
+           (size_t)TIFFScanlineSize(handle) == row_bytes;
+}
+
+static Status begin(void *work, Err *err)
+{
+    TiffReader *self = work;
+    const char *name = self->input.file.name;
+    TRY(open_tiff(self, err));
+    read_sides(self);
+    TRY(image_check_sides(name, self->width, self->height, err));
+    if (check_form(self, err) != STATUS_OK || !has_plain_rows(self))
+        return image_no_rows(name, err);
+    take_notes(self);
+    self->input.form = (ImageForm){.width = (int)self->width,
+                                   .height = (int)self->height,
+                                   .channels = self->samples,
+                                   .bits = self->bits,
+                                   .encoding = ENCODING_SRGB,
+                                   .notes = &self->notes,
+                                   .packing = {.compression = compression_of(self->tiff.handle)}};
+    return STATUS_OK;
+}
+
+static Status rows(void *work, Err *err)
+{
+    TiffReader *self = work;
+    const ImageForm *form = &self->input.form;
+    size_t row_bytes = (size_t)form->width * (size_t)form->channels * (size_t)(form->bits / 8);
+    uint8_t *values = self->input.rows;
+    for (size_t y = 0; y < (size_t)self->input.n_rows; y++)
+        if (TIFFReadScanline(self->tiff.handle, values + y * row_bytes, self->next++, 0) != 1)
+            return guard_failure(err);
+    return STATUS_OK;
+}
+
+static Status end(void *work, Err *err)
+{
+    const TiffReader *self = work;
+    return TIFFLastDirectory(self->tiff.handle) ? STATUS_OK
+                                                : image_no_rows(self->input.file.name, err);
+}
+
+/* ---- facts ----------------------------------------------------------------------------------- */
+
+static const char *compression_name(uint16_t compression)
+{
+    return compression == COMPRESSION_NONE  ? "none"
+           : compression == COMPRESSION_LZW ? "lzw"
+           : compression == COMPRESSION_ADOBE_DEFLATE || compression == COMPRESSION_DEFLATE
+               ? "deflate"
+           : compression == COMPRESSION_JPEG     ? "jpeg"
+           : compression == COMPRESSION_PACKBITS ? "packbits"
+                                                 : "another";
+}
+
+static const char *colors_name(uint16_t photometric)
+{
+    return photometric == PHOTOMETRIC_RGB || photometric == PHOTOMETRIC_PALETTE ? "rgb"
+           : photometric == PHOTOMETRIC_SEPARATED                               ? "cmyk"
+           : photometric == PHOTOMETRIC_MINISBLACK || photometric == PHOTOMETRIC_MINISWHITE
+               ? "grey"
+               : "another";
+}
+
+static double resolution(TIFF *handle)
+{
+    float per_unit = 0;
+    uint16_t unit;
+    TIFFGetFieldDefaulted(handle, TIFFTAG_RESOLUTIONUNIT, &unit);
+    if (!TIFFGetField(handle, TIFFTAG_XRESOLUTION, &per_unit) || unit == RESUNIT_NONE)
+        return 0;
+    return (double)per_unit * (unit == RESUNIT_CENTIMETER ? MM_PER_INCH / 10 : 1);
+}
+
+static Status get_facts(void *work, Err *err)
+{
+    TiffReader *self = work;
+    TRY(open_tiff(self, err));
+    TIFF *handle = self->tiff.handle;
+    uint32_t size;
+    uint16_t bits, compression, photometric = PHOTOMETRIC_YCBCR, extra, *kinds;
+    const void *profile;
+    ImageFacts *facts = &self->input.facts;
+    read_sides(self);
+    TIFFGetField(handle, TIFFTAG_PHOTOMETRIC, &photometric);
+    TIFFGetFieldDefaulted(handle, TIFFTAG_BITSPERSAMPLE, &bits);
+    TIFFGetFieldDefaulted(handle, TIFFTAG_COMPRESSION, &compression);
+    TIFFGetFieldDefaulted(handle, TIFFTAG_EXTRASAMPLES, &extra, &kinds);
+    *facts = (ImageFacts){.format = "tif",
+                          .compression = compression_name(compression),
+                          .width = (int)self->width,
+                          .height = (int)self->height,
+                          .bits = bits,
+                          .dpi = resolution(handle),
+                          .has_alpha = extra > 0,
+                          .colors = colors_name(photometric)};
+    if (TIFFGetField(handle, TIFFTAG_ICCPROFILE, &size, &profile))
+        image_profile_name(profile, size, facts->profile);
+    facts->pages = TIFFNumberOfDirectories(handle);
+    return STATUS_OK;
+}
+
+const ImageDecoder tiff_decoder = {.format = "TIFF",
+                                   .state_size = sizeof(TiffReader),
+                                   .is = tiff_is,
+                                   .decode = decode,
+                                   .get_facts = get_facts,
+                                   .begin = begin,
+                                   .rows = rows,
+                                   .end = end,
+                                   .release = release};

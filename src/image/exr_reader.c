@@ -8,15 +8,14 @@
 
 #define IMATH_HALF_NO_LOOKUP_TABLE /* whose table is in a library of its own */
 #include <Imath/half.h>
-#include <errno.h>
 #include <openexr.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { MAX_CHANNELS = 4 };
 
-typedef struct Exr {
-    ImageBytes file;
+typedef struct ExrReader {
+    ImageInput input;
     exr_context_t context;
     int part;
     const char *prefix; /* of the channels' names: "", or the layer's name */
@@ -25,39 +24,30 @@ typedef struct Exr {
     const char *names[MAX_CHANNELS];  /* of the channels of the plane, the last one perhaps "A" */
     int channels;                     /* alpha not counted */
     bool has_alpha, is_colored;       /* its channels are R G B */
-    Plane plane; /* owned; of the data window, then of the display; alpha last */
+    Plane plane;                      /* owned; of the data window; alpha last */
     exr_result_t (*decompress)(exr_decode_pipeline_t *decoder); /* the library's */
-    int x, y;            /* pixel of the plane at which the chunk being decoded begins */
-    char complaint[200]; /* the library's, "" when there is none */
-} Exr;
+    int x, y; /* pixel of the plane at which the chunk being decoded begins */
+} ExrReader;
 
 static bool exr_is(const ImageBytes *file)
 {
     return file->size >= 4 && memcmp(file->bytes, "\x76\x2f\x31\x01", 4) == 0;
 }
 
-static Exr *self_of(exr_const_context_t context)
-{
-    void *self = NULL;
-    return exr_get_user_data(context, &self) == EXR_ERR_SUCCESS ? self : NULL;
-}
-
+/* The message names the file first, which the sentence does already. */
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message)
 {
+    (void)context;
     (void)code;
-    Exr *self = self_of(context);
-    if (!self || *self->complaint)
-        return;
-    /* It names the file first, which the sentence does already. */
     const char *text = strstr(message, "): ");
-    snprintf(self->complaint, sizeof self->complaint, "%s", text ? text + 3 : message);
+    guard_complain(text ? text + 3 : message);
 }
 
 static int64_t on_size(exr_const_context_t context, void *user)
 {
     (void)context;
-    const Exr *self = user;
-    return (int64_t)self->file.size;
+    const ExrReader *self = user;
+    return (int64_t)self->input.file.size;
 }
 
 /* As pread: at the end fewer bytes than asked for. */
@@ -66,20 +56,11 @@ static int64_t on_read(exr_const_context_t context, void *user, void *out, uint6
 {
     (void)context;
     (void)complain;
-    const Exr *self = user;
-    uint64_t left = offset < self->file.size ? self->file.size - offset : 0;
+    const ExrReader *self = user;
+    uint64_t left = offset < self->input.file.size ? self->input.file.size - offset : 0;
     uint64_t count = size < left ? size : left;
-    memcpy(out, self->file.bytes + (count ? offset : 0), count);
+    memcpy(out, self->input.file.bytes + (count ? offset : 0), count);
     return (int64_t)count;
-}
-
-static Status unsound(Exr *self, Err *err)
-{
-    if (errno == ENOMEM)
-        return mem_out_of("to read", self->file.name, err);
-    image_plain_text(self->complaint);
-    return err_set(err, STATUS_INPUT, "%s: is not a sound OpenEXR file: %s", self->file.name,
-                   *self->complaint ? self->complaint : "its header and its data do not agree");
 }
 
 /* The name of a channel behind the prefix and its dot; NULL when the channel is of no such layer.
@@ -118,7 +99,7 @@ static int count_channels(const exr_attr_chlist_t *list, const char *prefix, con
     return n;
 }
 
-static Status no_channels(const Exr *self, const exr_attr_chlist_t *list, Err *err)
+static Status no_channels(const ExrReader *self, const exr_attr_chlist_t *list, Err *err)
 {
     enum { SHOWN = 8 };
     char names[200] = "";
@@ -131,18 +112,18 @@ static Status no_channels(const Exr *self, const exr_attr_chlist_t *list, Err *e
     return err_set(err, STATUS_INPUT,
                    "%s: has the channels %s%s; only R G B, X Y Z or a single one, with an A or "
                    "without, can be read%s",
-                   self->file.name, names, list->num_channels > SHOWN ? ", ..." : "",
+                   self->input.file.name, names, list->num_channels > SHOWN ? ", ..." : "",
                    strchr(names, '.') ? ", or those of one layer" : "");
 }
 
 /* Which channels make the plane. */
-static Status choose_channels(Exr *self, Err *err)
+static Status choose_channels(ExrReader *self, Err *err)
 {
     static const char *const triples[2][3] = {{"R", "G", "B"}, {"X", "Y", "Z"}};
     const exr_attr_chlist_t *list;
     const char *alpha, *last = NULL;
     if (exr_get_channels(self->context, self->part, &list) != EXR_ERR_SUCCESS)
-        return unsound(self, err);
+        return guard_failure(err);
     alpha = find_channel(list, self->prefix, "A");
     self->has_alpha = alpha != NULL;
     int others = count_channels(list, self->prefix, &last);
@@ -162,14 +143,14 @@ static Status choose_channels(Exr *self, Err *err)
     for (int i = 0; i < list->num_channels; i++)
         if (list->entries[i].x_sampling != 1 || list->entries[i].y_sampling != 1)
             return err_set(err, STATUS_INPUT, "%s: has subsampled channels, which cannot be read",
-                           self->file.name);
+                           self->input.file.name);
     if (self->has_alpha)
         self->names[self->channels] = alpha;
     return STATUS_OK;
 }
 
 /* Colours have the primaries of Rec. 709, which are sRGB's, where no chromaticities are given. */
-static Status check_colors(Exr *self, Err *err)
+static Status check_colors(ExrReader *self, Err *err)
 {
     exr_attr_chromaticities_t given;
     float values[8];
@@ -178,17 +159,17 @@ static Status check_colors(Exr *self, Err *err)
         return STATUS_OK;
     exr_result_t found =
         exr_attr_get_chromaticities(self->context, self->part, "chromaticities", &given);
-    *self->complaint = '\0'; /* that there are none */
+    guard_forget(); /* that there are none */
     if (found != EXR_ERR_SUCCESS)
         return STATUS_OK;
     memcpy(values, &given, sizeof values);
     for (int i = 0; i < 8; i++)
         xy[i] = (double)values[i];
     return image_is_srgb(xy) ? STATUS_OK
-                             : image_other_colors(self->file.name, "chromaticities", err);
+                             : image_other_colors(self->input.file.name, "chromaticities", err);
 }
 
-static const char *part_name(const Exr *self, int part)
+static const char *part_name(const ExrReader *self, int part)
 {
     const char *name = NULL;
     bool named = exr_get_name(self->context, part, &name) == EXR_ERR_SUCCESS;
@@ -196,7 +177,7 @@ static const char *part_name(const Exr *self, int part)
 }
 
 /* Whether the part has channels of the layer. */
-static bool has_layer(const Exr *self, int part, const char *layer)
+static bool has_layer(const ExrReader *self, int part, const char *layer)
 {
     const exr_attr_chlist_t *list;
     const char *last;
@@ -204,29 +185,30 @@ static bool has_layer(const Exr *self, int part, const char *layer)
            count_channels(list, layer, &last) > 0;
 }
 
-static Status no_layer(const Exr *self, int parts, Err *err)
+static Status no_layer(const ExrReader *self, int parts, Err *err)
 {
     Text names = TEXT_INIT;
     for (int i = 0; i < parts; i++)
         text_printf(&names, "%s'%s'", i ? ", " : "", part_name(self, i));
-    const char *layer = self->file.layer;
+    const char *layer = self->input.file.layer;
     Status status = text_check(&names, err);
     if (status == STATUS_OK)
-        status = !layer || parts > 1
-                     ? err_set(err, STATUS_INPUT, "%s: has %d parts, %s; %s%s%s", self->file.name,
-                               parts, text_chars(&names),
-                               layer ? "none has the name or the layer '" : "name one",
-                               layer ? layer : "", layer ? "'" : "")
-                     : err_set(err, STATUS_INPUT, "%s: has no layer '%s'", self->file.name, layer);
+        status =
+            !layer || parts > 1
+                ? err_set(err, STATUS_INPUT, "%s: has %d parts, %s; %s%s%s", self->input.file.name,
+                          parts, text_chars(&names),
+                          layer ? "none has the name or the layer '" : "name one",
+                          layer ? layer : "", layer ? "'" : "")
+                : err_set(err, STATUS_INPUT, "%s: has no layer '%s'", self->input.file.name, layer);
     text_release(&names);
     return status;
 }
 
 /* The part of the layer's name, whose channels may have that name before them or not, or else the
  * first part with channels of the layer. */
-static Status choose_part(Exr *self, int parts, Err *err)
+static Status choose_part(ExrReader *self, int parts, Err *err)
 {
-    const char *layer = self->file.layer;
+    const char *layer = self->input.file.layer;
     self->prefix = "";
     if (!layer)
         return parts == 1 ? STATUS_OK : no_layer(self, parts, err);
@@ -236,13 +218,13 @@ static Status choose_part(Exr *self, int parts, Err *err)
             if (pass == 0 ? strcmp(part_name(self, self->part), layer) != 0 : !inside)
                 continue;
             self->prefix = inside ? layer : "";
-            *self->complaint = '\0'; /* that a part has no name */
+            guard_forget(); /* that a part has no name */
             return STATUS_OK;
         }
     return no_layer(self, parts, err);
 }
 
-static Status open_file(Exr *self, Err *err)
+static Status open_file(ExrReader *self, Err *err)
 {
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = on_error;
@@ -252,25 +234,24 @@ static Status open_file(Exr *self, Err *err)
     exr_storage_t storage;
     exr_compression_t compression;
     int parts;
-    if (exr_start_read(&self->context, self->file.name, &setup) != EXR_ERR_SUCCESS ||
+    if (exr_start_read(&self->context, self->input.file.name, &setup) != EXR_ERR_SUCCESS ||
         exr_get_count(self->context, &parts) != EXR_ERR_SUCCESS)
-        return unsound(self, err);
+        return guard_failure(err);
     TRY(choose_part(self, parts, err));
     if (exr_get_storage(self->context, self->part, &storage) != EXR_ERR_SUCCESS ||
         exr_get_compression(self->context, self->part, &compression) != EXR_ERR_SUCCESS ||
         exr_get_data_window(self->context, self->part, &self->window) != EXR_ERR_SUCCESS ||
-        exr_get_display_window(self->context, self->part, &self->display) != EXR_ERR_SUCCESS ||
-        errno == ENOMEM) /* it goes on without an attribute that it had no room for */
-        return unsound(self, err);
+        exr_get_display_window(self->context, self->part, &self->display) != EXR_ERR_SUCCESS)
+        return guard_failure(err);
     self->is_tiled = storage == EXR_STORAGE_TILED;
     if (storage != EXR_STORAGE_SCANLINE && !self->is_tiled)
         return err_set(err, STATUS_INPUT, "%s: has deep pixels; only flat images can be read",
-                       self->file.name);
+                       self->input.file.name);
     if (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB)
         return err_set(err, STATUS_INPUT,
                        "%s: is compressed by DWAA or DWAB, which the library OpenEXRCore cannot "
                        "read; any other compression can be read",
-                       self->file.name);
+                       self->input.file.name);
     return STATUS_OK;
 }
 
@@ -288,7 +269,7 @@ static float number_at(const uint8_t *at, int type)
 }
 
 /* Returns the index in the plane of a channel of the file; -1 if the plane does not have it. */
-static int plane_channel(const Exr *self, const exr_coding_channel_info_t *channel)
+static int plane_channel(const ExrReader *self, const exr_coding_channel_info_t *channel)
 {
     for (int i = 0; i < self->plane.channels; i++)
         if (strcmp(channel->channel_name, self->names[i]) == 0)
@@ -301,7 +282,7 @@ static int plane_channel(const Exr *self, const exr_coding_channel_info_t *chann
  * up the channels of half RGBA. */
 static exr_result_t unpack(exr_decode_pipeline_t *decoder)
 {
-    Exr *self = decoder->decoding_user_data;
+    ExrReader *self = decoder->decoding_user_data;
     const uint8_t *at = decoder->unpacked_buffer;
     const size_t samples = (size_t)self->plane.channels;
     for (int y = 0; y < decoder->chunk.height; y++)
@@ -322,7 +303,7 @@ static exr_result_t unpack(exr_decode_pipeline_t *decoder)
 }
 
 /* How wide and high the chunks are, but for the last ones: tiles, or rows side by side. */
-static bool measure_chunks(Exr *self, uint32_t *width, uint32_t *height)
+static bool measure_chunks(ExrReader *self, uint32_t *width, uint32_t *height)
 {
     exr_tile_level_mode_t levels;
     exr_tile_round_mode_t rounding;
@@ -339,7 +320,7 @@ static bool measure_chunks(Exr *self, uint32_t *width, uint32_t *height)
     return true;
 }
 
-static bool find_chunk(Exr *self, int column, int row, int y, exr_chunk_info_t *chunk)
+static bool find_chunk(ExrReader *self, int column, int row, int y, exr_chunk_info_t *chunk)
 {
     return (self->is_tiled
                 ? exr_read_tile_chunk_info(self->context, self->part, column, row, 0, 0, chunk)
@@ -347,8 +328,8 @@ static bool find_chunk(Exr *self, int column, int row, int y, exr_chunk_info_t *
                                                chunk)) == EXR_ERR_SUCCESS;
 }
 
-static bool decode_chunk(Exr *self, exr_decode_pipeline_t *decoder, const exr_chunk_info_t *chunk,
-                         int x, int y)
+static bool decode_chunk(ExrReader *self, exr_decode_pipeline_t *decoder,
+                         const exr_chunk_info_t *chunk, int x, int y)
 {
     bool first = x == 0 && y == 0;
     exr_result_t result = first ? exr_decoding_initialize(self->context, self->part, chunk, decoder)
@@ -368,7 +349,7 @@ static bool decode_chunk(Exr *self, exr_decode_pipeline_t *decoder, const exr_ch
            exr_decoding_run(self->context, self->part, decoder) == EXR_ERR_SUCCESS;
 }
 
-static bool decode_chunks(Exr *self)
+static bool decode_chunks(ExrReader *self)
 {
     exr_decode_pipeline_t decoder = EXR_DECODE_PIPELINE_INITIALIZER;
     uint32_t width = 0, height = 0;
@@ -399,73 +380,72 @@ static long long height_of(const exr_attr_box2i_t *window)
 /* The bytes of floats that a file of this size can hold, with much to spare. Blank pictures shrink
  * 1032-fold by ZIP and ZIPS, 1376-fold by PXR24, 410-fold by PIZ, 64-fold by RLE and 11-fold by
  * B44A; halves become floats of twice their size. */
-static size_t most_bytes(const Exr *self)
+static size_t max_bytes(const ExrReader *self)
 {
     enum { RATIO = 10000 };
-    return self->file.size * RATIO;
+    return self->input.file.size * RATIO;
 }
 
 /* Planes of more than `most` bytes are refused. */
-static Status make_plane(const Exr *self, Plane *plane, const exr_attr_box2i_t *window, size_t most,
-                         Err *err)
+static Status make_plane(const ExrReader *self, Plane *plane, const exr_attr_box2i_t *window,
+                         size_t most, Err *err)
 {
     long long width = width_of(window), height = height_of(window);
     int channels = self->channels + self->has_alpha;
-    TRY(image_check_sides(self->file.name, width, height, err));
+    TRY(image_check_sides(self->input.file.name, width, height, err));
     size_t bytes = (size_t)width * (size_t)height * (size_t)channels * sizeof *plane->values;
-    TRY(image_check_claim(&self->file, width, height, bytes, most, err));
+    TRY(image_check_claim(&self->input.file, width, height, bytes, most, err));
     return plane_init(plane, (int)width, (int)height, channels, err);
 }
 
-/* Makes the plane that of the display window, of which the file need hold no pixel: the room it may
- * have besides is that of 8192 x 8192 pixels. */
-static Status show_window(Exr *self, Err *err)
+/* Copies what the display window shows of the plane into *shown, which it need not cover. The rest
+ * may take as much memory as 8192 x 8192 pixels. */
+static Status show_window(const ExrReader *self, Plane *shown, Err *err)
 {
-    const exr_attr_box2i_t *data = &self->window, *display = &self->display;
-    if (memcmp(data, display, sizeof *data) == 0)
-        return STATUS_OK;
     enum { BLANK = 1 << 30 };
-    Plane shown;
-    int channels = self->plane.channels;
-    TRY(make_plane(self, &shown, display, most_bytes(self) + BLANK, err));
+    const exr_attr_box2i_t *data = &self->window, *display = &self->display;
+    const size_t channels = (size_t)self->plane.channels;
+    TRY(make_plane(self, shown, display, max_bytes(self) + BLANK, err));
     long long left = data->min.x > display->min.x ? data->min.x : display->min.x;
     long long right = data->max.x < display->max.x ? data->max.x : display->max.x;
     for (long long y = display->min.y; y <= display->max.y && left <= right; y++) {
         if (y < data->min.y || y > data->max.y)
             continue;
         size_t from = (size_t)((y - data->min.y) * self->plane.width + left - data->min.x);
-        size_t to = (size_t)((y - display->min.y) * shown.width + left - display->min.x);
-        memcpy(shown.values + to * (size_t)channels, self->plane.values + from * (size_t)channels,
-               (size_t)(right - left + 1) * (size_t)channels * sizeof *shown.values);
+        size_t to = (size_t)((y - display->min.y) * shown->width + left - display->min.x);
+        memcpy(shown->values + to * channels, self->plane.values + from * channels,
+               (size_t)(right - left + 1) * channels * sizeof *shown->values);
     }
-    plane_release(&self->plane);
-    self->plane = shown;
     return STATUS_OK;
 }
 
-static Status decode(Exr *self, Err *err)
+static Status decode(void *work, Err *err)
 {
+    ExrReader *self = work;
+    Plane *shown = &self->input.image.plane;
     TRY(open_file(self, err));
     TRY(choose_channels(self, err));
     TRY(check_colors(self, err));
-    TRY(make_plane(self, &self->plane, &self->window, most_bytes(self), err));
-    errno = 0;
-    if (!decode_chunks(self) || errno == ENOMEM)
-        return unsound(self, err);
-    return show_window(self, err);
+    TRY(make_plane(self, &self->plane, &self->window, max_bytes(self), err));
+    if (!decode_chunks(self))
+        return guard_failure(err);
+    if (memcmp(&self->window, &self->display, sizeof self->window) != 0)
+        return show_window(self, shown, err);
+    *shown = self->plane;
+    self->plane = (Plane){0};
+    return STATUS_OK;
 }
 
-static Status exr_decode(const ImageBytes *file, Image *image, Err *err)
+static void release(void *work)
 {
-    Exr self = {.file = *file};
-    errno = 0;
-    Status status = decode(&self, err);
-    exr_finish(&self.context);
-    if (status == STATUS_OK)
-        image->plane = self.plane;
-    else
-        plane_release(&self.plane);
-    return status;
+    ExrReader *self = work;
+    exr_finish(&self->context);
+    plane_release(&self->plane);
 }
 
-const ImageDecoder exr_decoder = {.is = exr_is, .decode = exr_decode, .has_layers = true};
+const ImageDecoder exr_decoder = {.format = "OpenEXR",
+                                  .state_size = sizeof(ExrReader),
+                                  .is = exr_is,
+                                  .decode = decode,
+                                  .release = release,
+                                  .has_layers = true};

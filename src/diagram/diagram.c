@@ -1,0 +1,61 @@
+/* A diagram is one item of a page; the module figure writes and draws it. */
+#include "diagram/diagram.h"
+
+#include <math.h>
+
+/* A FigureBars.put_label. */
+static void put_label(const void *context, size_t bar, Text *id, Text *title)
+{
+    const DiagramStyle *style = context;
+    const int32_t node = style->diagram->bar[bar].index, segment = style->tree->id[node];
+    text_printf(id, "%c%d", bar < style->diagram->n_links ? 'l' : 's', segment);
+    text_printf(title, "segment %d", segment);
+    if (!style->name)
+        return;
+    text_puts(title, ", ");
+    text_escaped(title, style->name);
+    if (isnan(style->values[node])) {
+        text_puts(title, " not known");
+        return;
+    }
+    text_printf(title, " %.4g ", style->values[node]);
+    text_escaped(title, style->unit);
+}
+
+FigureBars diagram_bars(const DiagramStyle *style)
+{
+    return (FigureBars){.bars = style->diagram->bar,
+                        .n = style->diagram->n,
+                        .color = style->color,
+                        .put_label = put_label,
+                        .context = style};
+}
+
+void diagram_make_page(const DiagramStyle *style, const FigureBars *bars, FigurePage *page)
+{
+    const Diagram *diagram = style->diagram;
+    const double margin =
+        style->margin / (1 - 2 * style->margin) * fmax(diagram->width_mm, diagram->height_mm);
+    figure_init(page, diagram->width_mm + 2 * margin, diagram->height_mm + 2 * margin, 72, NULL);
+    page->exact = true;
+    page->background = figure_color(style->background);
+    figure_add_bars(page, bars, (FigurePoint){margin, margin}, diagram->width_mm,
+                    diagram->height_mm);
+}
+
+Status diagram_draw(const DiagramStyle *style, const FigureBars *bars, int width, int height,
+                    Plane *color, Err *err)
+{
+    const double share = 1 - 2 * style->margin;
+    const double width_mm = style->diagram->width_mm, height_mm = style->diagram->height_mm;
+    const double scale = fmin(share * width / width_mm, share * height / height_mm);
+    const double offset[2] = {(width - scale * width_mm) / 2, (height - scale * height_mm) / 2};
+    Plane made;
+    TRY(plane_init(&made, width, height, 3, err));
+    Status status = figure_draw_bars(bars, scale, offset, style->background, &made, err);
+    if (status == STATUS_OK)
+        *color = made;
+    else
+        plane_release(&made);
+    return status;
+}

@@ -1,0 +1,18 @@
+/* The items of a page, for its writers; private to the module figure. */
+#ifndef CORCAST_FIGURE_ITEMS_H
+#define CORCAST_FIGURE_ITEMS_H
+
+#include "figure/figure.h"
+
+/* Draws or writes one item. */
+typedef Status FigurePut(void *context, const FigureItem *item, Err *err);
+
+/* Calls put[kind] for every item: first for the pictures, then for the others, in their order.
+ * Stops at the first error and returns it. */
+MUST_CHECK Status figure_put_items(const FigurePage *page, FigurePut *const put[FIGURE_KINDS],
+                                   void *context, Err *err);
+
+/* Returns bar `i` of an item of the kind FIGURE_BARS as a shape, in the colours of sRGB. */
+FigureItem figure_bar(const FigureItem *item, size_t i);
+
+#endif

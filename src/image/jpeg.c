@@ -1,0 +1,307 @@
+/* JPEG through libjpeg.
+ *
+ * Reading, from the file in memory: grey or colours of 8 bits, decoded by the integer transform,
+ * chroma interpolated, as every viewer shows it. A picture that Exif declares turned is refused,
+ * since programs disagree about whether to turn it.
+ *
+ * Writing, row by row: baseline, each pixel with colours of its own (4:4:4), since red vessels on
+ * white would bleed. The integer transform gives the same bytes on every machine. JFIF has no CMYK.
+ * Its header is written all the same, as it holds the resolution. Inks are stored inverted after an
+ * Adobe marker, as every reader expects. */
+#include "image/formats.h"
+
+#include <jpeglib.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- errors ---------------------------------------------------------------------------------- */
+
+static void on_error(j_common_ptr jpeg)
+{
+    char text[JMSG_LENGTH_MAX];
+    jpeg->err->format_message(jpeg, text);
+    guard_leave(text);
+}
+
+/* A warning reports that data are missing or broken. */
+static void on_message(j_common_ptr jpeg, int level)
+{
+    char text[JMSG_LENGTH_MAX];
+    if (level >= 0)
+        return;
+    jpeg->err->num_warnings++;
+    jpeg->err->format_message(jpeg, text);
+    guard_complain(text);
+}
+
+static struct jpeg_error_mgr *set_errors(struct jpeg_error_mgr *errors)
+{
+    jpeg_std_error(errors);
+    errors->error_exit = on_error;
+    errors->emit_message = on_message;
+    return errors;
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+typedef struct JpegReader {
+    ImageInput input;
+    struct jpeg_decompress_struct jpeg;
+    struct jpeg_error_mgr errors;
+    JOCTET *profile; /* owned */
+} JpegReader;
+
+static bool jpeg_is(const ImageBytes *file)
+{
+    return file->size >= 3 && memcmp(file->bytes, "\xff\xd8\xff", 3) == 0;
+}
+
+/* Reads the header. */
+static void open_jpeg(JpegReader *self)
+{
+    self->jpeg.err = set_errors(&self->errors);
+    jpeg_create_decompress(&self->jpeg);
+    jpeg_save_markers(&self->jpeg, JPEG_APP0 + 1, 0xffff);
+    jpeg_save_markers(&self->jpeg, JPEG_APP0 + 2, 0xffff);
+    jpeg_mem_src(&self->jpeg, self->input.file.bytes, self->input.file.size);
+    jpeg_read_header(&self->jpeg, TRUE);
+}
+
+static void release_reader(void *work)
+{
+    JpegReader *self = work;
+    jpeg_destroy_decompress(&self->jpeg);
+    free(self->profile);
+}
+
+static unsigned number_at(const uint8_t *at, int n, bool little)
+{
+    unsigned value = 0;
+    for (int i = 0; i < n; i++)
+        value = value << 8 | at[little ? n - 1 - i : i];
+    return value;
+}
+
+/* Returns the Orientation in the first directory of Exif's TIFF [CIPA DC-008]; 1, upright, if there
+ * is none. */
+static unsigned orientation_of(const jpeg_saved_marker_ptr marker)
+{
+    enum { NAME = 6, ENTRY = 12, TAG = 0x0112 };
+    if (marker->data_length < NAME + 8 || memcmp(marker->data, "Exif\0\0", NAME) != 0)
+        return 1;
+    const uint8_t *tiff = marker->data + NAME;
+    size_t size = marker->data_length - NAME;
+    bool little = tiff[0] == 'I';
+    size_t at = number_at(tiff + 4, 4, little);
+    if (at + 2 > size)
+        return 1;
+    unsigned n = number_at(tiff + at, 2, little);
+    for (at += 2; n > 0 && at + ENTRY <= size; n--, at += ENTRY)
+        if (number_at(tiff + at, 2, little) == TAG)
+            return number_at(tiff + at + 8, 2, little);
+    return 1;
+}
+
+static Status check_upright(const JpegReader *self, Err *err)
+{
+    for (jpeg_saved_marker_ptr marker = self->jpeg.marker_list; marker; marker = marker->next)
+        if (marker->marker == JPEG_APP0 + 1 && orientation_of(marker) != 1)
+            return err_set(err, STATUS_INPUT,
+                           "%s: is turned by its Exif orientation, %u; only upright ones can be "
+                           "read",
+                           self->input.file.name, orientation_of(marker));
+    return STATUS_OK;
+}
+
+static Status check_colors(JpegReader *self, Err *err)
+{
+    const J_COLOR_SPACE space = self->jpeg.jpeg_color_space;
+    const char *name = self->input.file.name;
+    unsigned size;
+    if (space != JCS_GRAYSCALE && space != JCS_YCbCr && space != JCS_RGB)
+        return err_set(err, STATUS_INPUT, "%s: has %s; only grey and RGB can be read", name,
+                       space == JCS_CMYK || space == JCS_YCCK ? "the colours of inks (CMYK)"
+                                                              : "colours of an unknown kind");
+    if (jpeg_read_icc_profile(&self->jpeg, &self->profile, &size))
+        return image_check_profile(name, self->profile, size, err);
+    return STATUS_OK;
+}
+
+/* Checks the size of the picture and allocates it. */
+static Status make_picture(JpegReader *self, Err *err)
+{
+    /* A block of 64 pixels takes two bits or more, except in runs of blank blocks. */
+    enum { MAX_RATIO = 4000 };
+    const ImageBytes *file = &self->input.file;
+    const struct jpeg_decompress_struct *jpeg = &self->jpeg;
+    TRY(image_check_sides(file->name, jpeg->image_width, jpeg->image_height, err));
+    size_t pixels = (size_t)jpeg->image_width * jpeg->image_height;
+    TRY(image_check_claim(file, jpeg->image_width, jpeg->image_height, 3 * pixels,
+                          file->size * MAX_RATIO, err));
+    return picture_init(&self->input.image.picture, (int)jpeg->image_width, (int)jpeg->image_height,
+                        jpeg->out_color_space == JCS_RGB ? 3 : 1, 8, err);
+}
+
+static Status decode(void *work, Err *err)
+{
+    JpegReader *self = work;
+    struct jpeg_decompress_struct *jpeg = &self->jpeg;
+    Picture *picture = &self->input.image.picture;
+    open_jpeg(self);
+    TRY(check_upright(self, err));
+    TRY(check_colors(self, err));
+    jpeg->out_color_space = jpeg->jpeg_color_space == JCS_GRAYSCALE ? JCS_GRAYSCALE : JCS_RGB;
+    jpeg->dct_method = JDCT_ISLOW;
+    TRY(make_picture(self, err));
+    jpeg_start_decompress(jpeg);
+    while (jpeg->output_scanline < jpeg->output_height) {
+        JSAMPROW row = picture->codes8 + jpeg->output_scanline * picture_stride(picture);
+        jpeg_read_scanlines(jpeg, &row, 1);
+    }
+    jpeg_finish_decompress(jpeg);
+    self->input.image.lossy = "JPEG";
+    return self->errors.num_warnings > 0 ? guard_failure(err) : STATUS_OK;
+}
+
+static Status get_facts(void *work, Err *err)
+{
+    (void)err;
+    static const double per_unit[] = {0, 1, MM_PER_INCH / 10};
+    JpegReader *self = work;
+    struct jpeg_decompress_struct *jpeg = &self->jpeg;
+    ImageFacts *facts = &self->input.facts;
+    unsigned size;
+    open_jpeg(self);
+    *facts = (ImageFacts){.format = "jpg",
+                          .compression = "jpeg",
+                          .width = (int)jpeg->image_width,
+                          .height = (int)jpeg->image_height,
+                          .bits = jpeg->data_precision,
+                          .pages = 1,
+                          .colors = jpeg->num_components == 1   ? "grey"
+                                    : jpeg->num_components == 3 ? "rgb"
+                                                                : "cmyk"};
+    if (jpeg->saw_JFIF_marker && jpeg->density_unit <= 2)
+        facts->dpi = jpeg->X_density * per_unit[jpeg->density_unit];
+    if (jpeg_read_icc_profile(jpeg, &self->profile, &size))
+        image_profile_name(self->profile, size, facts->profile);
+    return STATUS_OK;
+}
+
+const ImageDecoder jpeg_decoder = {.format = "JPEG",
+                                   .state_size = sizeof(JpegReader),
+                                   .is = jpeg_is,
+                                   .decode = decode,
+                                   .get_facts = get_facts,
+                                   .release = release_reader};
+
+/* ---- writing --------------------------------------------------------------------------------- */
+
+enum { DEFAULT_QUALITY = 95 };
+
+typedef struct JpegWriter {
+    ImageOutput output;
+    struct jpeg_compress_struct jpeg;
+    struct jpeg_error_mgr errors;
+    uint8_t *row; /* owned; inverted inks; NULL: there are no inks */
+} JpegWriter;
+
+static void set_colors(JpegWriter *self)
+{
+    static const J_COLOR_SPACE spaces[] = {[1] = JCS_GRAYSCALE, [3] = JCS_RGB, [4] = JCS_CMYK};
+    const ImageForm *form = &self->output.form;
+    struct jpeg_compress_struct *jpeg = &self->jpeg;
+    jpeg->image_width = (JDIMENSION)form->width;
+    jpeg->image_height = (JDIMENSION)form->height;
+    jpeg->input_components = form->channels;
+    jpeg->in_color_space = spaces[form->channels];
+    jpeg_set_defaults(jpeg);
+    jpeg_set_quality(jpeg, form->packing.quality ? form->packing.quality : DEFAULT_QUALITY, TRUE);
+    jpeg->dct_method = JDCT_ISLOW;
+    for (int c = 0; c < jpeg->num_components; c++)
+        jpeg->comp_info[c].h_samp_factor = jpeg->comp_info[c].v_samp_factor = 1;
+}
+
+static void put_comment(JpegWriter *self, const char *text)
+{
+    enum { MAX_BYTES = 65533 };
+    if (text && *text)
+        jpeg_write_marker(&self->jpeg, JPEG_COM, (const JOCTET *)text,
+                          (unsigned)strnlen(text, MAX_BYTES));
+}
+
+static void write_header(JpegWriter *self)
+{
+    const ImageOutput *output = &self->output;
+    const ImageNotes *notes = output->form.notes;
+    self->jpeg.err = set_errors(&self->errors);
+    jpeg_create_compress(&self->jpeg);
+    jpeg_stdio_dest(&self->jpeg, output->stream);
+    set_colors(self);
+    self->jpeg.write_JFIF_header = TRUE;
+    if (notes && notes->dpi > 0) {
+        self->jpeg.density_unit = 1; /* dots per inch */
+        self->jpeg.X_density = self->jpeg.Y_density =
+            (UINT16)(notes->dpi < UINT16_MAX ? notes->dpi + 0.5 : UINT16_MAX);
+    }
+    jpeg_start_compress(&self->jpeg, TRUE);
+    put_comment(self, output->description);
+    put_comment(self, image_note(notes, "Software"));
+    if (output->profile.size > 0)
+        jpeg_write_icc_profile(&self->jpeg, output->profile.bytes, (unsigned)output->profile.size);
+}
+
+static Status begin(void *work, Err *err)
+{
+    JpegWriter *self = work;
+    const ImageForm *form = &self->output.form;
+    if (form->bits != 8)
+        return err_set(err, STATUS_USAGE, "a JPEG has `bits` 8, not %d", form->bits);
+    if (form->width > JPEG_MAX_DIMENSION || form->height > JPEG_MAX_DIMENSION)
+        return err_set(err, STATUS_USAGE, "a JPEG has at most %ld x %ld pixels, not %d x %d",
+                       JPEG_MAX_DIMENSION, JPEG_MAX_DIMENSION, form->width, form->height);
+    if (form->channels == 4)
+        TRY(mem_calloc(&self->row, self->output.row_bytes, 1, "bytes of a row", err));
+    write_header(self);
+    return STATUS_OK;
+}
+
+static Status write_rows(void *work, Err *err)
+{
+    (void)err;
+    JpegWriter *self = work;
+    const size_t samples = self->output.row_bytes;
+    const uint8_t *codes = self->output.values;
+    for (int y = 0; y < self->output.n; y++, codes += samples) {
+        /* The row is only read, whatever the declaration of libjpeg states. */
+        JSAMPROW row = self->row ? self->row : (void *)(uintptr_t)codes;
+        for (size_t i = 0; self->row && i < samples; i++)
+            row[i] = (uint8_t)(255 - codes[i]);
+        jpeg_write_scanlines(&self->jpeg, &row, 1);
+    }
+    return STATUS_OK;
+}
+
+static Status end(void *work, Err *err)
+{
+    (void)err;
+    JpegWriter *self = work;
+    jpeg_finish_compress(&self->jpeg);
+    return STATUS_OK;
+}
+
+static void release_writer(void *work)
+{
+    JpegWriter *self = work;
+    jpeg_destroy_compress(&self->jpeg);
+    free(self->row);
+}
+
+const RowEncoder jpeg_encoder = {.format = "JPEG",
+                                 .state_size = sizeof(JpegWriter),
+                                 .begin = begin,
+                                 .rows = write_rows,
+                                 .end = end,
+                                 .release = release_writer,
+                                 .keeps_dpi = true,
+                                 .has_profile = true};

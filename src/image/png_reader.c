@@ -1,0 +1,275 @@
+/* PNG through libpng: whole files that png_fast.c leaves to it, rows, and facts. */
+#include "image/png_fast.h"
+
+#include <errno.h>
+#include <png.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct PngReader {
+    ImageInput input;
+    png_structp png;
+    png_infop info;
+    bool has_pixels; /* all pixels have been read */
+    ImageNotes notes;
+    ImageNote *note; /* owned; its texts are libpng's */
+} PngReader;
+
+static bool png_is(const ImageBytes *file)
+{
+    return file->size >= 8 && png_sig_cmp(file->bytes, 0, 8) == 0;
+}
+
+static void on_error(png_structp png, png_const_charp message)
+{
+    (void)png;
+    guard_leave(message);
+}
+
+static void on_warning(png_structp png, png_const_charp message)
+{
+    (void)png;
+    (void)message;
+}
+
+static void read_bytes(png_structp png, png_bytep out, size_t size)
+{
+    const PngReader *self = png_get_io_ptr(png);
+    if (fread(out, 1, size, self->input.stream) != size)
+        png_error(png, self->has_pixels ? "it ends before its IEND chunk; its pixels are whole"
+                                        : "the file ends too early");
+}
+
+static void open_png(PngReader *self)
+{
+    self->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, on_error, on_warning);
+    self->info = self->png ? png_create_info_struct(self->png) : NULL;
+    if (!self->info)
+        guard_leave_without_memory();
+    png_set_read_fn(self->png, self, read_bytes);
+    png_set_user_limits(self->png, IMAGE_MAX_SIDE, IMAGE_MAX_SIDE);
+}
+
+static void read_rows(const PngReader *self, void *values, size_t samples, int bits, int n)
+{
+    uint8_t *codes8 = values;
+    uint16_t *codes16 = values;
+    for (size_t y = 0; y < (size_t)n; y++)
+        png_read_row(self->png,
+                     bits == 8 ? codes8 + y * samples : (uint8_t *)(codes16 + y * samples), NULL);
+}
+
+static void release(void *work)
+{
+    PngReader *self = work;
+    png_destroy_read_struct(&self->png, &self->info, NULL);
+    free(self->note);
+}
+
+/* ---- whole files ----------------------------------------------------------------------------- */
+
+static const uint8_t *find_unknown(PngReader *self, const char *type, size_t size)
+{
+    png_unknown_chunkp chunks;
+    int n = png_get_unknown_chunks(self->png, self->info, &chunks);
+    for (int i = 0; i < n; i++)
+        if (memcmp(chunks[i].name, type, 4) == 0 && chunks[i].size == size)
+            return chunks[i].data;
+    return NULL;
+}
+
+static Status check_single(PngReader *self, Err *err)
+{
+    const uint8_t *animation = find_unknown(self, "acTL", 8);
+    png_uint_32 frames = animation ? png_get_uint_32(animation) : 1;
+    if (frames > 1)
+        return err_set(err, STATUS_INPUT,
+                       "%s: is an animation of %u pictures; only a single one can be read",
+                       self->input.file.name, (unsigned)frames);
+    return STATUS_OK;
+}
+
+static bool has_srgb_primaries(PngReader *self)
+{
+    double white[2], xy[8];
+    png_get_cHRM(self->png, self->info, &white[0], &white[1], &xy[0], &xy[1], &xy[2], &xy[3],
+                 &xy[4], &xy[5]);
+    memcpy(xy + 6, white, sizeof white);
+    return image_is_srgb(xy);
+}
+
+/* Checks the colour space and sets *gamma, 0 for sRGB. The chunks are read in the order of their
+ * precedence [PNG 3, section 13.13]. libpng turns a profile that it knows into an sRGB chunk. */
+static Status read_colors(PngReader *self, double *gamma, Err *err)
+{
+    static const uint8_t srgb[4] = {1, 13, 0, 1};
+    static const png_fixed_point srgb_gamma = 45455;
+    png_structp png = self->png;
+    png_infop info = self->info;
+    const char *file = self->input.file.name;
+    const uint8_t *code_points = find_unknown(self, "cICP", 4);
+    if (code_points)
+        return memcmp(code_points, srgb, 4) == 0 ? STATUS_OK
+                                                 : image_other_colors(file, "cICP chunk", err);
+    if (png_get_valid(png, info, PNG_INFO_sRGB))
+        return STATUS_OK;
+    png_charp name;
+    png_bytep profile;
+    png_uint_32 size;
+    int method;
+    if (png_get_iCCP(png, info, &name, &method, &profile, &size))
+        return image_check_profile(file, profile, size, err);
+    if (png_get_valid(png, info, PNG_INFO_cHRM) && !has_srgb_primaries(self))
+        return image_other_colors(file, "cHRM chunk", err);
+    png_fixed_point fixed;
+    if (png_get_gAMA_fixed(png, info, &fixed) && abs(fixed - srgb_gamma) > 50)
+        *gamma = fixed / 1e5;
+    return STATUS_OK;
+}
+
+static Status decode_with_libpng(PngReader *self, Err *err)
+{
+    static const png_byte kept[] = "acTL\0cICP";
+    Picture *picture = &self->input.image.picture;
+    double gamma = 0;
+    open_png(self);
+    png_structp png = self->png;
+    png_infop info = self->info;
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_ALWAYS, kept, 2);
+    png_read_info(png, info);
+    TRY(check_single(self, err));
+    TRY(read_colors(self, &gamma, err));
+    int width = (int)png_get_image_width(png, info), height = (int)png_get_image_height(png, info);
+    TRY(image_check_claim(&self->input.file, width, height,
+                          png_get_rowbytes(png, info) * (size_t)height,
+                          self->input.file.size * DEFLATE_MAX_RATIO, err));
+    png_set_expand(png);
+    int passes = png_set_interlace_handling(png);
+    png_read_update_info(png, info);
+    TRY(picture_init(picture, width, height, png_get_channels(png, info),
+                     png_get_bit_depth(png, info), err));
+    picture->gamma = gamma;
+    void *codes = picture->bits == 8 ? (void *)picture->codes8 : (void *)picture->codes16;
+    for (int pass = 0; pass < passes; pass++)
+        read_rows(self, codes, picture_stride(picture), picture->bits, height);
+    if (picture->bits == 16)
+        png_swap_codes(picture->codes16, picture_stride(picture) * (size_t)height);
+    self->has_pixels = true;
+    png_read_end(png, NULL);
+    return STATUS_OK;
+}
+
+static Status decode(void *work, Err *err)
+{
+    PngReader *self = work;
+    if (png_decode_plain(&self->input.file, &self->input.image.picture))
+        return STATUS_OK;
+    errno = 0;
+    return decode_with_libpng(self, err);
+}
+
+/* ---- rows ------------------------------------------------------------------------------------ */
+
+static Status take_notes(PngReader *self, Err *err)
+{
+    png_textp text = NULL;
+    int n = png_get_text(self->png, self->info, &text, NULL);
+    TRY(mem_calloc(&self->note, (size_t)n, sizeof *self->note, "PNG texts", err));
+    for (int i = 0; i < n; i++)
+        self->note[i] = (ImageNote){text[i].key, text[i].text};
+    png_uint_32 per_metre = png_get_pixels_per_meter(self->png, self->info);
+    self->notes = (ImageNotes){self->note, n, per_metre * MM_PER_INCH / 1000};
+    return STATUS_OK;
+}
+
+/* libpng refuses a header whose sides are not positive. */
+static Status begin(void *work, Err *err)
+{
+    PngReader *self = work;
+    open_png(self);
+    png_structp png = self->png;
+    png_infop info = self->info;
+    png_read_info(png, info);
+    int type = png_get_color_type(png, info), bits = png_get_bit_depth(png, info);
+    bool plain = (type == PNG_COLOR_TYPE_GRAY || type == PNG_COLOR_TYPE_RGB ||
+                  type == PNG_COLOR_TYPE_RGB_ALPHA) &&
+                 bits >= 8 && png_get_interlace_type(png, info) == PNG_INTERLACE_NONE;
+    double gamma = 0;
+    bool linear = png_get_gAMA(png, info, &gamma) && gamma == 1;
+    if (!plain || png_get_valid(png, info, PNG_INFO_tRNS))
+        return image_no_rows(self->input.file.name, err);
+    TRY(take_notes(self, err));
+    self->input.form = (ImageForm){.width = (int)png_get_image_width(png, info),
+                                   .height = (int)png_get_image_height(png, info),
+                                   .channels = png_get_channels(png, info),
+                                   .bits = bits,
+                                   .encoding = linear ? ENCODING_LINEAR : ENCODING_SRGB,
+                                   .notes = &self->notes};
+    return STATUS_OK;
+}
+
+static Status rows(void *work, Err *err)
+{
+    (void)err;
+    PngReader *self = work;
+    const ImageInput *input = &self->input;
+    size_t samples = (size_t)input->form.width * (size_t)input->form.channels;
+    read_rows(self, input->rows, samples, input->form.bits, input->n_rows);
+    if (input->form.bits == 16)
+        png_swap_codes(input->rows, samples * (size_t)input->n_rows);
+    return STATUS_OK;
+}
+
+static Status end(void *work, Err *err)
+{
+    (void)err;
+    PngReader *self = work;
+    self->has_pixels = true;
+    png_read_end(self->png, NULL);
+    return STATUS_OK;
+}
+
+/* ---- facts ----------------------------------------------------------------------------------- */
+
+enum { MAX_CHUNK_BYTES = 1 << 26 }; /* enough for any profile */
+
+static Status get_facts(void *work, Err *err)
+{
+    (void)err;
+    PngReader *self = work;
+    ImageFacts *facts = &self->input.facts;
+    png_charp name;
+    png_bytep profile;
+    png_uint_32 size;
+    int method;
+    open_png(self);
+    png_structp png = self->png;
+    png_infop info = self->info;
+    png_set_chunk_malloc_max(png, MAX_CHUNK_BYTES);
+    png_read_info(png, info);
+    int type = png_get_color_type(png, info);
+    *facts = (ImageFacts){.format = "png",
+                          .compression = "deflate",
+                          .width = (int)png_get_image_width(png, info),
+                          .height = (int)png_get_image_height(png, info),
+                          .bits = png_get_bit_depth(png, info),
+                          .pages = 1,
+                          .colors = type & PNG_COLOR_MASK_COLOR ? "rgb" : "grey"};
+    facts->has_alpha = (type & PNG_COLOR_MASK_ALPHA) || png_get_valid(png, info, PNG_INFO_tRNS);
+    facts->dpi = png_get_pixels_per_meter(png, info) * MM_PER_INCH / 1000;
+    if (png_get_valid(png, info, PNG_INFO_sRGB))
+        snprintf(facts->profile, sizeof facts->profile, "sRGB");
+    else if (png_get_iCCP(png, info, &name, &method, &profile, &size))
+        image_profile_name(profile, size, facts->profile);
+    return STATUS_OK;
+}
+
+const ImageDecoder png_decoder = {.format = "PNG",
+                                  .state_size = sizeof(PngReader),
+                                  .is = png_is,
+                                  .decode = decode,
+                                  .get_facts = get_facts,
+                                  .begin = begin,
+                                  .rows = rows,
+                                  .end = end,
+                                  .release = release};

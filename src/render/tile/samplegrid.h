@@ -1,0 +1,19 @@
+/* The sample positions of one pass over an image: a grid of side x side samples per pixel. */
+#ifndef CORCAST_RENDER_SAMPLEGRID_H
+#define CORCAST_RENDER_SAMPLEGRID_H
+
+#include "render/job.h"
+
+typedef struct SampleGrid {
+    int side;                              /* samples per pixel in each direction, 1 or more */
+    double offsets[RENDER_MOST_ANTIALIAS]; /* of a pixel's samples from its centre, pixels */
+    int n_columns, n_rows;                 /* samples of the image */
+} SampleGrid;
+
+/* Returns the position of a column or row of samples, in pixels as camera_ray() takes it. */
+static inline double samplegrid_at(const SampleGrid *grid, int index)
+{
+    return index / grid->side + grid->offsets[index % grid->side];
+}
+
+#endif

@@ -1,0 +1,54 @@
+/* What an engine does for the pipeline of tilerender.h: it finds what the samples of a tile show.
+ * The pipeline does the rest: batches, shadows, shading, antialiasing, threads and their errors. */
+#ifndef CORCAST_RENDER_TILEENGINE_H
+#define CORCAST_RENDER_TILEENGINE_H
+
+#include "render/light/lightview.h"
+#include "render/tile/samplegrid.h"
+#include "render/tile/thincells.h"
+
+/* A tile of a batch and what its samples show. */
+typedef struct BatchTile {
+    SeenTile seen; /* seen.hits is `hits`, or NULL if the tile shows nothing */
+    TileHits hits;
+    double depth_base;                 /* mm; TileEngine.single_depths */
+    void *own;                         /* TileEngine.tile_bytes for the engine, zeroed at first */
+    uint8_t (*shadowed)[TILE_SAMPLES]; /* per light; 1: the light is hidden from the sample */
+    float (*sum)[TILE_SAMPLES];        /* per channel: sum of a pixel's samples; shifted passes */
+    ThinCells cells, further;          /* thin vessels over the samples, and over shifted samples */
+} BatchTile;
+
+/* One pass of one sample per grid point, and its workspaces, one for each worker. */
+typedef struct TileEngine {
+    /* Further samples of antialiasing lie on a grid that is N times as fine, with bins of its own.
+     * Otherwise they are N x N shifted passes over the tiles of the pixels. */
+    bool fine_grid;
+    bool either_side;   /* hits have normals that may point away from the viewer */
+    bool single_depths; /* depths are single precision about BatchTile.depth_base */
+    int batch_tiles;    /* tiles that are shaded together if there are shadows, else 1 */
+    int rows_at_once;   /* rows of tiles that share batches if there are shadows, else 1 */
+    size_t tile_bytes;  /* size of BatchTile.own */
+    const LightViews *lights;
+
+    /* Sorts the drawing's geometry into the tiles of `grid` in *bins, which the caller releases.
+     * Sets *bins on success only. Errors: STATUS_MEMORY; STATUS_USAGE for a view that the engine
+     * cannot draw. */
+    Status (*bin)(const Drawing *drawing, const SampleGrid *grid, void **bins, Err *err);
+    void (*release)(void *bins);
+    /* Makes the lists of one row of tiles in the worker's workspace. They are valid until its next
+     * call. Errors: STATUS_MEMORY. */
+    Status (*list)(void *bins, int row, int worker, Err *err);
+    /* Returns true if the list of a tile of that row is not empty. */
+    bool (*is_listed)(const void *bins, int column, int worker);
+    /* Sets the sample positions of `tile`, a tile of that row, and its hits. `shift` is the index
+     * of a shifted pass, row by row, or -1 for the positions of the grid. Errors: STATUS_MEMORY. */
+    Status (*trace)(void *bins, int worker, int shift, BatchTile *tile, Err *err);
+    /* Makes shadows[i], which the caller releases, for each light i that light views serve
+     * [tilerender_uses_view]. Errors: STATUS_MEMORY. */
+    Status (*look)(const Drawing *drawing, const Viewpoint *eye, void **shadows, Err *err);
+    /* Queues a shadow query for each sample whose bit is set in `wanted`; see LightViews.ask. */
+    void (*shadow)(void *queue, const TileKernels *kernels, const BatchTile *tile,
+                   const SeenPlaces *places, uint64_t wanted, uint32_t answer);
+} TileEngine;
+
+#endif

@@ -1,0 +1,673 @@
+/* Each worker collects tiles in a batch, has the engine trace them, and shades the whole batch:
+ * shadow queries of many tiles that fall into one tile of a light view are answered together.
+ *
+ * The first pass draws the centres of all pixels. The further samples of antialiasing come in one
+ * of two ways, whichever suits the engine. On a fine grid, N times as fine in each direction, tiles
+ * have shorter lists. The colours of a row of pixel tiles go to a buffer, from which each pixel
+ * adds up its own. Shifted passes draw the tiles of the pixels again, N x N times, and add to one
+ * sum per pixel while the list of the tile is in the cache. Both sum in float in POV-Ray's order.
+ * If a threshold chooses the pixels, the centres of all must be known first, so shifted passes need
+ * a second pass over the rows then. */
+#include "render/tile/tilerender.h"
+
+#include "render/cast/caster.h"
+#include "render/light/raycolor.h"
+#include "render/light/shade.h"
+#include "render/tile/canvas.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* The samples of a pass over the image, and the geometry in its tiles. */
+typedef struct TilePass {
+    SampleGrid grid;
+    void *bins; /* of the engine; NULL: there is no such pass */
+} TilePass;
+
+/* What all bands of a view share. */
+typedef struct TilePrepared {
+    const TileEngine *engine;
+    TilePass center, further;
+    void *shadows[VIEW_MAX_LIGHTS]; /* NULL: the light casts none, or rays find them */
+} TilePrepared;
+
+/* The tiles that one worker draws together, and its workspaces. All arrays are owned. */
+typedef struct TileBatch {
+    BatchTile *tiles;
+    int n_tiles;
+    uint8_t *own;                      /* per tile: BatchTile.own */
+    uint8_t (*shadowed)[TILE_SAMPLES]; /* per tile and light */
+    float (*sums)[TILE_SAMPLES];       /* per tile and channel; shifted passes */
+    void *queues[VIEW_MAX_LIGHTS];     /* of prepared shadows */
+    uint8_t *wanted;                   /* per tile of a row: has pixels that want further samples */
+    float *fine_colors;                /* of the samples of a row of pixel tiles; fine grid */
+    int fine_row;                      /* first row of samples in fine_colors */
+} TileBatch;
+
+/* A band while it is drawn. */
+typedef struct TilePicture {
+    Canvas canvas;
+    const TilePrepared *prepared; /* borrowed, like `engine` and `pass` */
+    const TileEngine *engine;
+    const TilePass *pass;
+    bool has_shadows; /* hard shadows are wanted */
+    bool further;     /* the centres of the pixels are drawn */
+    bool shifts;      /* there are shifted passes */
+    bool chooses;     /* a threshold chooses the pixels that get further samples */
+    int batch_tiles;
+    TileBatch *batches; /* per worker */
+} TilePicture;
+
+static int tiles_of(int samples)
+{
+    return (samples + TILE_SIDE - 1) / TILE_SIDE;
+}
+
+static bool is_inside(const SeenTile *seen, int sample)
+{
+    return tile_sample_x(sample) < seen->n_columns && tile_sample_y(sample) < seen->n_rows;
+}
+
+/* ---- shadows --------------------------------------------------------------------------------- */
+
+/* Returns the samples inside the image that hit something, as bits. */
+static uint64_t find_hits(const SeenTile *seen)
+{
+    const bool whole = seen->n_columns == TILE_SIDE && seen->n_rows == TILE_SIDE;
+    uint64_t hits = 0;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++)
+        hits |= (uint64_t)(seen->hits->state[sample] == TILE_HIT) << sample;
+    for (int sample = 0; !whole && sample < TILE_SAMPLES; sample++)
+        if (!is_inside(seen, sample))
+            hits &= ~((uint64_t)1 << sample);
+    return hits;
+}
+
+/* Sets the positions of a tile's hits in the frame of the view. Those of the ground are rounded as
+ * the engine rounds its own. */
+static void locate(const TileEngine *engine, const BatchTile *tile, SeenPlaces *restrict places)
+{
+    const SeenTile *seen = &tile->seen;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        places->x[sample] = seen->middle_x + (double)seen->x[sample];
+        places->y[sample] = seen->middle_y + (double)seen->y[sample];
+        places->z[sample] = tile->hits.z[sample];
+    }
+    for (uint64_t left = engine->single_depths ? seen->ground : 0; left; left &= left - 1) {
+        double *z = &places->z[__builtin_ctzll(left)];
+        *z = tile->depth_base + (double)(float)(*z - tile->depth_base);
+    }
+    for (int sample = 0; seen->perspective && sample < TILE_SAMPLES; sample++) {
+        places->x[sample] *= places->z[sample];
+        places->y[sample] *= places->z[sample];
+    }
+}
+
+/* Finds the shadows of one light by rays. */
+static void cast_shadows(const TilePicture *picture, int worker, const Light *light,
+                         const SeenPlaces *places, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
+{
+    const Drawing *drawing = picture->canvas.drawing;
+    for (; wanted; wanted &= wanted - 1) {
+        int sample = __builtin_ctzll(wanted);
+        Vec3 at = {places->x[sample], places->y[sample], places->z[sample]};
+        Vec3 point = viewpoint_point(&picture->canvas.eye, at);
+        LightWay way = light_way(light, point);
+        shadowed[sample] = caster_shadow(drawing->caster, worker, &drawing->view->ground, point,
+                                         way.towards, way.distance);
+    }
+}
+
+static void query_lights(const TilePicture *picture, int worker, const BatchTile *tile)
+{
+    const View *view = picture->canvas.drawing->view;
+    const TileKernels *kernels = picture->canvas.kernels;
+    const TileBatch *batch = &picture->batches[worker];
+    const uint64_t hits = find_hits(&tile->seen);
+    SeenPlaces places;
+    locate(picture->engine, tile, &places);
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
+        if (!light->casts_shadows || light->samples > 1)
+            continue;
+        uint64_t wanted = hits & kernels->face(&tile->seen, &places, tile->hits.normal,
+                                               &picture->canvas.look.lights[i]);
+        size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
+        if (batch->queues[i])
+            picture->engine->shadow(batch->queues[i], kernels, tile, &places, wanted,
+                                    (uint32_t)answer);
+        else
+            cast_shadows(picture, worker, light, &places, wanted, tile->shadowed[i]);
+    }
+}
+
+/* Sets `shadowed` of all tiles of the batch. */
+static Status find_shadows(const TilePicture *picture, int worker, Err *err)
+{
+    TileBatch *batch = &picture->batches[worker];
+    const Drawing *drawing = picture->canvas.drawing;
+    size_t n_lights = drawing->view->n_lights;
+    if (!picture->has_shadows)
+        return STATUS_OK;
+    memset(batch->shadowed, 0, (size_t)batch->n_tiles * n_lights * sizeof *batch->shadowed);
+    for (int i = 0; i < batch->n_tiles; i++)
+        if (batch->tiles[i].seen.hits)
+            query_lights(picture, worker, &batch->tiles[i]);
+    for (size_t i = 0; i < n_lights; i++)
+        if (batch->queues[i])
+            TRY(picture->engine->lights->answer(batch->queues[i], drawing->params->kernels,
+                                                batch->shadowed[0], err));
+    return STATUS_OK;
+}
+
+/* ---- colours --------------------------------------------------------------------------------- */
+
+/* Returns the ray of a sample. */
+static Ray sample_ray(const TilePicture *picture, const SeenTile *seen, int sample)
+{
+    const SampleGrid *grid = &picture->pass->grid;
+    return camera_ray(&picture->canvas.drawing->view->camera,
+                      samplegrid_at(grid, seen->column + tile_sample_x(sample)),
+                      samplegrid_at(grid, seen->row + tile_sample_y(sample)));
+}
+
+/* Returns the surface that a sample hits. */
+static Surfel surfel_of(const TilePicture *picture, const SeenTile *seen, int sample)
+{
+    const float(*n)[TILE_SAMPLES] = seen->hits->normal;
+    const Vec3 normal = {(double)n[0][sample], (double)n[1][sample], (double)n[2][sample]};
+    const Geometry *geometry = picture->canvas.drawing->geometry;
+    return (Surfel){.t = seen_depth(seen, sample),
+                    .normal = vec3_normalized(viewpoint_to_world(&picture->canvas.eye, normal)),
+                    .segment = geometry->segments[seen->hits->segment[sample]].segment};
+}
+
+/* Colours each sample on its own, with the effects that the kernel does not know. */
+static void color_samples(const TilePicture *picture, int worker, const SeenTile *seen,
+                          float color[3][TILE_SAMPLES])
+{
+    const SampleGrid *grid = &picture->pass->grid;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        if (!is_inside(seen, sample))
+            continue;
+        const bool hit = seen->hits && seen->hits->state[sample] == TILE_HIT;
+        const Surfel surfel = hit ? surfel_of(picture, seen, sample) : (Surfel){0};
+        Rgb rgb =
+            ray_color(picture->canvas.drawing, worker, sample_ray(picture, seen, sample),
+                      samplegrid_at(grid, seen->column + tile_sample_x(sample)),
+                      samplegrid_at(grid, seen->row + tile_sample_y(sample)), hit ? &surfel : NULL);
+        color[0][sample] = rgb.r;
+        color[1][sample] = rgb.g;
+        color[2][sample] = rgb.b;
+    }
+}
+
+/* Returns the colours of a tile with its thin vessels, cells (x, y) of each sample's block of
+ * `cells`; NULL: those of the background. */
+static float (*color_tile(const TilePicture *picture, int worker, const BatchTile *tile,
+                          ThinCells *cells, int x, int y))[TILE_SAMPLES]
+{
+    const Canvas *canvas = &picture->canvas;
+    const uint8_t(*shadowed)[TILE_SAMPLES] = (const uint8_t(*)[TILE_SAMPLES])tile->shadowed;
+    float(*color)[TILE_SAMPLES] = NULL;
+    if (canvas->wholly_colored) {
+        color = canvas->each[worker].color;
+        color_samples(picture, worker, &tile->seen, color);
+    } else if (tile->seen.hits) {
+        color = canvas_shade(canvas, worker, &tile->seen, picture->has_shadows ? shadowed : NULL);
+    }
+    return canvas_cover(canvas, worker, &tile->seen, cells, x, y, color);
+}
+
+/* ---- shifted passes -------------------------------------------------------------------------- */
+
+static bool wants_more(const Canvas *canvas, int column, int row)
+{
+    return resampling_wants(&canvas->more, canvas_pixel(canvas, column, row));
+}
+
+/* Starts the sums of a tile with its pixels' centres, which the frame holds. */
+static void begin_sums(const Canvas *canvas, BatchTile *tile)
+{
+    const SeenTile *seen = &tile->seen;
+    for (int j = 0; j < seen->n_rows; j++)
+        for (int i = 0; i < seen->n_columns; i++) {
+            size_t pixel = canvas_pixel(canvas, seen->column + i, seen->row + j);
+            for (size_t c = 0; c < 3; c++)
+                tile->sum[c][tile_sample_at(i, j)] = canvas->frame->color.values[3 * pixel + c];
+        }
+}
+
+/* Adds the samples of a shifted pass to the sums of a tile. */
+static void add_to_sums(const TilePicture *picture, int worker, int shift, BatchTile *tile)
+{
+    const int side = picture->canvas.more.side;
+    float(*color)[TILE_SAMPLES] =
+        color_tile(picture, worker, tile, &tile->further, shift % side, shift / side);
+    for (int c = 0; c < 3; c++)
+        for (int sample = 0; sample < TILE_SAMPLES; sample++)
+            tile->sum[c][sample] += color ? color[c][sample] : picture->canvas.background[c];
+}
+
+static void write_means(const Canvas *canvas, const BatchTile *tile)
+{
+    const SeenTile *seen = &tile->seen;
+    for (int j = 0; j < seen->n_rows; j++)
+        for (int i = 0; i < seen->n_columns; i++) {
+            size_t pixel = canvas_pixel(canvas, seen->column + i, seen->row + j);
+            for (size_t c = 0; c < 3 && wants_more(canvas, seen->column + i, seen->row + j); c++)
+                canvas->frame->color.values[3 * pixel + c] =
+                    resampling_mean(&canvas->more, tile->sum[c][tile_sample_at(i, j)]);
+        }
+}
+
+/* Traces a tile, or a shifted pass over it, and adds the ground where the canvas shades that. */
+static Status trace_tile(const TilePicture *picture, int worker, int shift, BatchTile *tile,
+                         Err *err)
+{
+    const Canvas *canvas = &picture->canvas;
+    TRY(picture->engine->trace(picture->pass->bins, worker, shift, tile, err));
+    if (!canvas->wholly_colored && canvas->drawing->view->ground.present)
+        canvas_see_ground(canvas, &tile->seen, &tile->hits);
+    return STATUS_OK;
+}
+
+/* Draws all shifted passes over the batch. */
+static Status draw_shifted(const TilePicture *picture, int worker, Err *err)
+{
+    const Canvas *canvas = &picture->canvas;
+    TileBatch *batch = &picture->batches[worker];
+    for (int i = 0; i < batch->n_tiles; i++)
+        begin_sums(canvas, &batch->tiles[i]);
+    for (int shift = 0; shift < canvas->more.side * canvas->more.side; shift++) {
+        for (int i = 0; i < batch->n_tiles; i++)
+            TRY(trace_tile(picture, worker, shift, &batch->tiles[i], err));
+        TRY(find_shadows(picture, worker, err));
+        for (int i = 0; i < batch->n_tiles; i++)
+            add_to_sums(picture, worker, shift, &batch->tiles[i]);
+    }
+    for (int i = 0; i < batch->n_tiles; i++)
+        write_means(canvas, &batch->tiles[i]);
+    return STATUS_OK;
+}
+
+/* ---- the fine grid --------------------------------------------------------------------------- */
+
+/* Keeps the colours of a tile of the fine grid until those of a row of pixel tiles are complete. */
+static void keep_fine(const TilePicture *picture, const TileBatch *batch, const SeenTile *seen,
+                      float (*color)[TILE_SAMPLES])
+{
+    size_t width = (size_t)picture->pass->grid.n_columns;
+    canvas_store(&picture->canvas, seen->n_columns, seen->n_rows, color,
+                 batch->fine_colors +
+                     3 * ((size_t)(seen->row - batch->fine_row) * width + (size_t)seen->column),
+                 3 * width);
+}
+
+/* Adds the further samples of a pixel to its centre, row by row in float, and stores the mean.
+ * `samples` are those of its row of pixels. */
+static void add_up(const TilePicture *picture, const float *samples, int i, int j)
+{
+    const Resampling *more = &picture->canvas.more;
+    size_t n = (size_t)more->side, width = (size_t)picture->pass->grid.n_columns;
+    float *value = &picture->canvas.frame->color.values[3 * canvas_pixel(&picture->canvas, i, j)];
+    for (size_t c = 0; c < 3; c++) {
+        float sum = value[c];
+        for (size_t y = 0; y < n; y++)
+            for (size_t x = 0; x < n; x++)
+                sum += samples[3 * (y * width + (size_t)i * n + x) + c];
+        value[c] = resampling_mean(more, sum);
+    }
+}
+
+static void add_up_rows(const TilePicture *picture, const TileBatch *batch, int first, int end)
+{
+    const SampleGrid *grid = &picture->pass->grid;
+    const size_t row = 3 * (size_t)grid->n_columns * (size_t)grid->side;
+    for (int j = first; j < end; j++)
+        for (int i = 0; i < grid->n_columns / grid->side; i++)
+            if (wants_more(&picture->canvas, i, j))
+                add_up(picture, batch->fine_colors + (size_t)(j - first) * row, i, j);
+}
+
+/* ---- tiles ----------------------------------------------------------------------------------- */
+
+/* Turns the normals of hits towards the viewer. */
+static void face_viewer(const SeenTile *seen, TileHits *hits)
+{
+    float(*normal)[TILE_SAMPLES] = hits->normal;
+    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
+        if (hits->state[sample] != TILE_HIT)
+            continue;
+        Vec3 v = {(double)normal[0][sample], (double)normal[1][sample], (double)normal[2][sample]};
+        Vec3 line = seen->perspective ? seen_line(seen, sample) : vec3(0, 0, 1);
+        for (int c = 0; c < 3 && vec3_dot(v, line) > 0; c++)
+            normal[c][sample] = -normal[c][sample];
+    }
+}
+
+/* Stores the samples of a tile of the present pass. */
+static void keep_tile(const TilePicture *picture, int worker, BatchTile *tile)
+{
+    const Canvas *canvas = &picture->canvas;
+    float(*color)[TILE_SAMPLES] = NULL;
+    if (canvas->wants_color)
+        color = color_tile(picture, worker, tile, &tile->cells, 0, 0);
+    if (picture->further) {
+        keep_fine(picture, &picture->batches[worker], &tile->seen, color);
+        return;
+    }
+    if (picture->engine->either_side && canvas->wants_geometry && tile->seen.hits)
+        face_viewer(&tile->seen, &tile->hits);
+    canvas_draw(canvas, worker, &tile->seen, color);
+}
+
+/* Draws the tiles of the batch and empties it. */
+static Status draw_batch(const TilePicture *picture, int worker, Err *err)
+{
+    TileBatch *batch = &picture->batches[worker];
+    if (!picture->further || !picture->shifts) {
+        TRY(find_shadows(picture, worker, err));
+        for (int i = 0; i < batch->n_tiles; i++)
+            keep_tile(picture, worker, &batch->tiles[i]);
+    }
+    if (picture->shifts && picture->further == picture->chooses)
+        TRY(draw_shifted(picture, worker, err));
+    batch->n_tiles = 0;
+    return STATUS_OK;
+}
+
+/* Finds the thin vessels over a tile. */
+static Status find_thin(const TilePicture *picture, BatchTile *tile, Err *err)
+{
+    const ThinLayer *thin = picture->canvas.wants_color ? picture->canvas.drawing->thin : NULL;
+    const SeenTile *seen = &tile->seen;
+    const int per_pixel = picture->pass->grid.side, side = picture->canvas.more.side;
+    const int fine = side * TILE_SIDE;
+    if (per_pixel == 1 && thinlayer_misses(thin, seen->column / TILE_SIDE, seen->row / TILE_SIDE))
+        thin = NULL;
+    TRY(thincells_fill(thin, per_pixel, seen->column, seen->row, TILE_SIDE, TILE_SIDE, &tile->cells,
+                       err));
+    if (!picture->shifts || tile->cells.n == 0)
+        thin = NULL;
+    return thincells_fill(thin, side, seen->column * side, seen->row * side, fine, fine,
+                          &tile->further, err);
+}
+
+/* Traces the next tile of the batch. Sets *shown to false if it shows nothing but background. */
+static Status begin_tile(const TilePicture *picture, int column, int row, int worker, bool *shown,
+                         Err *err)
+{
+    const SampleGrid *grid = &picture->pass->grid;
+    const Camera *camera = &picture->canvas.drawing->view->camera;
+    TileBatch *batch = &picture->batches[worker];
+    BatchTile *tile = &batch->tiles[batch->n_tiles];
+    const bool listed = picture->engine->is_listed(picture->pass->bins, column, worker);
+    tile->seen = (SeenTile){.column = column * TILE_SIDE,
+                            .row = row * TILE_SIDE,
+                            .n_columns = tile_extent(grid->n_columns - column * TILE_SIDE),
+                            .n_rows = tile_extent(grid->n_rows - row * TILE_SIDE),
+                            .perspective = camera->projection == PROJECTION_PERSPECTIVE};
+    TRY(find_thin(picture, tile, err));
+    *shown = tile->cells.n > 0 || picture->canvas.wholly_colored ||
+             picture->canvas.drawing->view->ground.present;
+    if (!listed && !*shown)
+        return STATUS_OK;
+    *shown |= picture->shifts;
+    if (!picture->shifts || !picture->further)
+        TRY(trace_tile(picture, worker, -1, tile, err));
+    *shown |= tile->seen.hits != NULL;
+    return STATUS_OK;
+}
+
+/* Draws a row of tiles of the present pass: all of them, or those that are `wanted`. The last ones
+ * may stay in the batch. */
+static Status draw_tiles(const TilePicture *picture, int row, const uint8_t *wanted, int worker,
+                         Err *err)
+{
+    TileBatch *batch = &picture->batches[worker];
+    const int columns = tiles_of(picture->pass->grid.n_columns);
+    bool shown;
+    TRY(picture->engine->list(picture->pass->bins, row, worker, err));
+    for (int column = 0; column < columns; column++) {
+        if (wanted && !wanted[column])
+            continue;
+        TRY(begin_tile(picture, column, row, worker, &shown, err));
+        if (!shown && picture->further && !picture->shifts)
+            keep_fine(picture, batch, &batch->tiles[batch->n_tiles].seen, NULL);
+        batch->n_tiles += shown;
+        if (batch->n_tiles == picture->batch_tiles)
+            TRY(draw_batch(picture, worker, err));
+    }
+    return STATUS_OK;
+}
+
+/* ---- passes ---------------------------------------------------------------------------------- */
+
+static Status draw_centers(void *context, int first, int rows, int worker, Err *err)
+{
+    const TilePicture *picture = context;
+    for (int row = first; row < first + rows; row++)
+        TRY(draw_tiles(picture, row, NULL, worker, err));
+    return draw_batch(picture, worker, err);
+}
+
+/* Marks the tiles of one row of the grid that hold samples of pixels that want more, of the rows of
+ * pixels before `end`. Returns false if there are none. */
+static bool mark_wanted(const TilePicture *picture, int tile_row, int end, uint8_t *wanted)
+{
+    const SampleGrid *grid = &picture->pass->grid;
+    int n = grid->side, width = grid->n_columns / n;
+    int first = tile_row * TILE_SIDE / n, last = (tile_row * TILE_SIDE + TILE_SIDE - 1) / n;
+    bool any = false;
+    memset(wanted, 0, (size_t)tiles_of(grid->n_columns));
+    for (int j = first; j <= last && j < end; j++)
+        for (int i = 0; i < width; i++)
+            if (wants_more(&picture->canvas, i, j)) {
+                any = true;
+                for (int tile = i * n / TILE_SIDE; tile <= (i * n + n - 1) / TILE_SIDE; tile++)
+                    wanted[tile] = 1;
+            }
+    return any;
+}
+
+/* Draws the further samples of one row of pixel tiles. */
+static Status draw_further(void *context, int row, int rows, int worker, Err *err)
+{
+    (void)rows; /* one */
+    const TilePicture *picture = context;
+    const Band *band = &picture->canvas.drawing->band;
+    const SampleGrid *grid = &picture->pass->grid;
+    TileBatch *batch = &picture->batches[worker];
+    int first = row * TILE_SIDE, end = first + tile_extent(band->first + band->rows - first);
+    batch->fine_row = first * grid->side;
+    for (int i = row * grid->side; i < (row + 1) * grid->side && i < tiles_of(grid->n_rows); i++)
+        if (mark_wanted(picture, i, end, batch->wanted))
+            TRY(draw_tiles(picture, i, batch->wanted, worker, err));
+    TRY(draw_batch(picture, worker, err));
+    if (!picture->shifts)
+        add_up_rows(picture, batch, first, end);
+    return STATUS_OK;
+}
+
+/* ---- what all bands share -------------------------------------------------------------------- */
+
+bool tilerender_uses_view(const Drawing *drawing, const LightViews *lights, const Light *light)
+{
+    return light->casts_shadows && light->samples <= 1 && drawing->params->method != RENDER_TRACE &&
+           lights->can(drawing->geometry, drawing->view, light);
+}
+
+bool tilerender_needs_rays(const Drawing *drawing, const LightViews *lights)
+{
+    const RenderParams *params = drawing->params;
+    bool rays = params->occlusion > 0 && params->method == RENDER_TRACE;
+    for (size_t i = 0; i < drawing->view->n_lights && params->shadows; i++) {
+        const Light *light = &drawing->view->lights[i];
+        rays |= light->casts_shadows &&
+                (params->method == RENDER_TRACE ||
+                 !lightviews_can(lights, drawing->geometry, drawing->view, light));
+    }
+    return rays;
+}
+
+void tilerender_free(void *prepared)
+{
+    TilePrepared *tiles = prepared;
+    tiles->engine->release(tiles->center.bins);
+    tiles->engine->release(tiles->further.bins);
+    for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
+        tiles->engine->lights->free(tiles->shadows[i]);
+    free(tiles);
+}
+
+const void *tilerender_shadow(const void *prepared, size_t light)
+{
+    const TilePrepared *tiles = prepared;
+    return tiles->shadows[light];
+}
+
+static Status prepare_pass(const TileEngine *engine, const Drawing *drawing, int side,
+                           const double *offsets, TilePass *pass, Err *err)
+{
+    const Camera *camera = &drawing->view->camera;
+    pass->grid = (SampleGrid){
+        .side = side, .n_columns = camera->width * side, .n_rows = camera->height * side};
+    for (int i = 0; i < side; i++)
+        pass->grid.offsets[i] = offsets[i];
+    return engine->bin(drawing, &pass->grid, &pass->bins, err);
+}
+
+Status tilerender_prepare(const TileEngine *engine, const Drawing *drawing, void **prepared,
+                          Err *err)
+{
+    Status status;
+    const RenderParams *params = drawing->params;
+    const double center = 0;
+    const Resampling more = resampling_for(params->want_color ? params->antialias : 1);
+    const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
+    TilePrepared *tiles;
+    TRY(mem_calloc(&tiles, 1, sizeof *tiles, "tiles", err));
+    tiles->engine = engine;
+    TRY_GOTO(prepare_pass(engine, drawing, 1, &center, &tiles->center, err));
+    if (more.side > 0 && engine->fine_grid)
+        TRY_GOTO(prepare_pass(engine, drawing, more.side, more.offsets, &tiles->further, err));
+    if (params->shadows && params->want_color)
+        TRY_GOTO(engine->look(drawing, &eye, tiles->shadows, err));
+    *prepared = tiles;
+done:
+    if (status != STATUS_OK)
+        tilerender_free(tiles);
+    return status;
+}
+
+/* ---- a band ---------------------------------------------------------------------------------- */
+
+static Status make_batch(const TilePicture *picture, TileBatch *batch, Err *err)
+{
+    const TileEngine *engine = picture->engine;
+    const Drawing *drawing = picture->canvas.drawing;
+    size_t n = (size_t)picture->batch_tiles, n_lights = drawing->view->n_lights;
+    TRY(mem_calloc(&batch->tiles, n, sizeof *batch->tiles, "tiles", err));
+    TRY(mem_calloc(&batch->own, n, engine->tile_bytes, "tiles", err));
+    TRY(mem_calloc(&batch->shadowed, n * n_lights, sizeof *batch->shadowed, "lights", err));
+    if (picture->shifts)
+        TRY(mem_calloc(&batch->sums, n * 3, sizeof *batch->sums, "tiles", err));
+    for (size_t i = 0; i < n; i++) {
+        batch->tiles[i].own = batch->own + i * engine->tile_bytes;
+        batch->tiles[i].shadowed = batch->shadowed + i * n_lights;
+        batch->tiles[i].sum = batch->sums ? batch->sums + 3 * i : NULL;
+    }
+    for (size_t i = 0; i < n_lights; i++)
+        if (picture->has_shadows && picture->prepared->shadows[i])
+            TRY(engine->lights->queue_new(picture->prepared->shadows[i], drawing->hidden,
+                                          &batch->queues[i], err));
+    return STATUS_OK;
+}
+
+static Status make_batches(TilePicture *picture, Err *err)
+{
+    int workers = picture->canvas.workers;
+    TRY(mem_calloc(&picture->batches, (size_t)workers, sizeof *picture->batches, "canvases", err));
+    for (int i = 0; i < workers; i++)
+        TRY(make_batch(picture, &picture->batches[i], err));
+    return STATUS_OK;
+}
+
+static void release_batch(const TilePicture *picture, TileBatch *batch)
+{
+    for (int i = 0; batch->tiles && i < picture->batch_tiles; i++) {
+        thincells_release(&batch->tiles[i].cells);
+        thincells_release(&batch->tiles[i].further);
+    }
+    for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
+        picture->engine->lights->queue_free(batch->queues[i]);
+    free(batch->tiles);
+    free(batch->own);
+    free(batch->shadowed);
+    free(batch->sums);
+    free(batch->wanted);
+    free(batch->fine_colors);
+}
+
+static void release_picture(TilePicture *picture)
+{
+    for (int i = 0; picture->batches && i < picture->canvas.workers; i++)
+        release_batch(picture, &picture->batches[i]);
+    free(picture->batches);
+    canvas_release(&picture->canvas);
+}
+
+/* Allocates what batches need for the further samples. */
+static Status make_further(TilePicture *picture, Err *err)
+{
+    const SampleGrid *grid = &picture->pass->grid;
+    const size_t tiles = (size_t)tiles_of(grid->n_columns), side = (size_t)grid->side;
+    for (int i = 0; i < picture->canvas.workers; i++) {
+        TileBatch *batch = &picture->batches[i];
+        TRY(mem_calloc(&batch->wanted, tiles, 1, "bands", err));
+        if (!picture->shifts)
+            TRY(mem_calloc(&batch->fine_colors, (size_t)grid->n_columns * TILE_SIDE * side,
+                           3 * sizeof *batch->fine_colors, "bands", err));
+    }
+    return STATUS_OK;
+}
+
+static Status draw_band(TilePicture *picture, Err *err)
+{
+    Canvas *canvas = &picture->canvas;
+    const int rows_at_once = picture->has_shadows ? picture->engine->rows_at_once : 1;
+    if (picture->shifts && !picture->chooses)
+        canvas_blank_is_mean(canvas);
+    TRY(make_batches(picture, err));
+    TRY(canvas_pass(canvas, false, rows_at_once, draw_centers, picture, err));
+    if (canvas->more.side == 0 || (picture->shifts && !picture->chooses))
+        return STATUS_OK;
+    picture->further = true;
+    if (!picture->shifts)
+        picture->pass = &picture->prepared->further;
+    TRY(canvas_choose(canvas, err));
+    TRY(make_further(picture, err));
+    return canvas_pass(canvas, true, 1, draw_further, picture, err);
+}
+
+Status tilerender_rows(const Drawing *drawing, void *prepared, Frame *frame, Err *err)
+{
+    const RenderParams *params = drawing->params;
+    const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
+    const TilePrepared *tiles = prepared;
+    TilePicture picture = {.prepared = tiles,
+                           .engine = tiles->engine,
+                           .pass = &tiles->center,
+                           .chooses = params->antialias_threshold > 0};
+    Canvas *canvas = &picture.canvas;
+    Status status = canvas_init(drawing, frame, &eye, canvas, err);
+    canvas->wholly_colored =
+        params->method == RENDER_TRACE && raycolor_is_needed(drawing->view, params);
+    picture.shifts = canvas->more.side > 0 && !tiles->engine->fine_grid;
+    picture.has_shadows = params->shadows && canvas->wants_color && !canvas->wholly_colored;
+    picture.batch_tiles = picture.has_shadows ? tiles->engine->batch_tiles : 1;
+    if (status == STATUS_OK)
+        status = draw_band(&picture, err);
+    release_picture(&picture);
+    return status;
+}
