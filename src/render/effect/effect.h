@@ -30,7 +30,7 @@ int effects_reach(const Effects *effects, int side);
 
 /* What effects are drawn on: a band of samples, `side` x `side` to a pixel, the camera being that
  * of the samples. The frame has colour, depth, ids, and normals where there are creases. */
-typedef struct Samples {
+typedef struct EffectSamples {
     const Effects *effects;
     const Camera *camera;
     const RadiusTable *radii;
@@ -38,15 +38,15 @@ typedef struct Samples {
     int side, threads;
     Band band;
     Frame *frame;
-} Samples;
+} EffectSamples;
 
 /* Draws the effects into the colours of the band's rows, but for those above and below, which have
  * to be effects_reach() or reach the edge of the picture: the same bytes whatever the band and the
  * number of threads. STATUS_MEMORY. */
-MUST_CHECK Status effects_draw(const Samples *samples, Err *err);
+MUST_CHECK Status effects_draw(const EffectSamples *samples, Err *err);
 
 /* The colours of `side` x `side` samples become their mean, that of one pixel: rows of the frame,
  * those above and below left out, into the rows of `color` from `row` on. */
-void effects_reduce(const Samples *samples, Plane *color, int row);
+void effects_reduce(const EffectSamples *samples, Plane *color, int row);
 
 #endif
