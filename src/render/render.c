@@ -450,14 +450,14 @@ static Status draw_samples(Renderer *renderer, const Drawing *fine, int first, i
     Status status;
     drawing.band = band_of_samples(view, renderer->params.antialias, first, rows);
     TRY_GOTO(draw(renderer, &drawing, &frame, err));
-    const Samples samples = {.effects = &view->effects,
-                             .camera = &view->camera,
-                             .radii = &renderer->radii,
-                             .paper = view->background,
-                             .side = renderer->params.antialias,
-                             .threads = fine->params->threads,
-                             .band = drawing.band,
-                             .frame = &frame};
+    const EffectSamples samples = {.effects = &view->effects,
+                                   .camera = &view->camera,
+                                   .radii = &renderer->radii,
+                                   .paper = view->background,
+                                   .side = renderer->params.antialias,
+                                   .threads = fine->params->threads,
+                                   .band = drawing.band,
+                                   .frame = &frame};
     if (frame.id.ids)
         TRY_GOTO(effects_draw(&samples, err));
     if (drawing.hidden)
