@@ -439,15 +439,16 @@ static Band band_of_samples(const View *fine, int side, int first, int rows)
     return band_between(first * side, rows * side, reach, fine->camera.height);
 }
 
-/* Draws rows of pixels, counted in the picture, into the rows of `color` from `row` on. */
-static Status draw_samples(Renderer *renderer, const Drawing *fine, int first, int rows,
-                           Plane *color, int row, Err *err)
+/* Draws `rows` rows of pixels, from row `row` of the drawing's band on, into the same rows of
+ * `color`. */
+static Status draw_samples(Renderer *renderer, const Drawing *fine, int row, int rows, Plane *color,
+                           Err *err)
 {
     const View *view = fine->view;
     Frame frame = {0};
     Drawing drawing = *fine;
     Status status;
-    drawing.band = band_of_samples(view, renderer->params.antialias, first, rows);
+    drawing.band = band_of_samples(view, renderer->params.antialias, fine->band.first + row, rows);
     TRY_GOTO(draw(renderer, &drawing, &frame, err));
     const EffectSamples samples = {.effects = &view->effects,
                                    .camera = &view->camera,
@@ -516,8 +517,8 @@ static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *fr
     of_samples.visibility = visibility;
     const int step = rows_at_once(&fine.camera, params->antialias);
     for (int row = 0; row < band->rows; row += step)
-        TRY_GOTO(draw_samples(renderer, &of_samples, band->first + row,
-                              step < band->rows - row ? step : band->rows - row, &frame->color, row,
+        TRY_GOTO(draw_samples(renderer, &of_samples, row,
+                              step < band->rows - row ? step : band->rows - row, &frame->color,
                               err));
 done:
     pixelvisibility_free(visibility);
@@ -594,6 +595,8 @@ static Status find_thin(Renderer *covering, const View *view, Err *err)
     ThinVessels *thin = &covering->thin;
     const int pixel = effects_present(&view->effects) ? params->antialias : 1;
     const Camera camera = camera_of_samples(view, params);
+    const ThinWidths widths = {pixel * fmin(1, most_samples / params->antialias),
+                               pixel * params->least_px};
     const double start_s = clock_seconds();
     ViewKey key;
     key_make(&key, NULL, &camera, view, params);
@@ -602,9 +605,7 @@ static Status find_thin(Renderer *covering, const View *view, Err *err)
     forget_view(covering);
     thinvessels_release(thin);
     memset(&covering->thin_key, 0, sizeof covering->thin_key);
-    TRY(thinvessels_find(covering->geometry, &camera,
-                         pixel * fmin(1, most_samples / params->antialias),
-                         pixel * params->least_px, params->threads, thin, err));
+    TRY(thinvessels_find(covering->geometry, &camera, widths, params->threads, thin, err));
     thinvessels_place(thin);
     covering->unlit = &thin->lights;
     if (params->shadows)
