@@ -431,9 +431,9 @@ static void find_parts(const ThinVessels *thin, const View *view, size_t piece,
                        float parts[VIEW_MAX_LIGHTS])
 {
     for (size_t i = 0; i < view->n_lights; i++)
-        parts[i] = thin->lights.reach[i]
-                       ? (float)thin->lights.reach[i][piece] / (float)light_points(&view->lights[i])
-                       : -1;
+        parts[i] = thin->lights.n_visible[i] ? (float)thin->lights.n_visible[i][piece] /
+                                                   (float)light_points(&view->lights[i])
+                                             : -1;
 }
 
 /* The mean colour of the visible half of a piece's wall. */
