@@ -1,7 +1,8 @@
-/* The two sides of a wall are surfaces of one machinery: of the vessels, and of the vessels with
- * radii larger by the wall. Their flat ends lie in the same planes with rims of as many points, and
- * a flat ring joins them. No boolean is needed, and what is proved of both is true of the wall but
- * for crossings, for which it is searched as a whole. */
+/* The two sides of a wall are surfaces that the same mesher makes: of the vessels, and of the
+ * vessels with radii that are larger by the wall. Their flat ends are in the same planes and have
+ * rims of equally many points, and a flat ring joins them. No boolean operation is needed. What is
+ * proved of both surfaces is true of the wall, except that the two may cross. The wall is searched
+ * for crossings as a whole. */
 #include "print/print.h"
 
 #include "mesh/mesh.h"
@@ -81,7 +82,7 @@ static Status take_outer(PrintMaking *making, Err *err)
     return STATUS_OK;
 }
 
-/* What was changed on the outer side is changed in the tree, which keeps its wall. */
+/* Applies the changes of the outer side to the tree. */
 static Status take_changes(PrintMaking *making, Err *err)
 {
     const PrintParams *params = &making->params;
