@@ -185,11 +185,6 @@ static Status build_sides(PrintMaking *making, Err *err)
     return status;
 }
 
-static bool is_pin(const SupportPins *pins, const CutEnd *end)
-{
-    return end->segment >= pins->n_original && pins->is_pin[end->segment - pins->n_original];
-}
-
 /* Opens the ends of pins, and those that both sides are cut off flat at. */
 static void open_ends(PrintMaking *making)
 {
@@ -197,7 +192,7 @@ static void open_ends(PrintMaking *making)
     for (size_t i = 0; i < ends->n; i++) {
         CutEnd *end = &ends->items[i];
         if (making->pins.n_pins)
-            end->opened = is_pin(&making->pins, end);
+            end->opened = supportpins_is_pin(&making->pins, end->segment);
         CutEnd *other = cutends_at(&making->sides[1].ends, end->segment, end->end);
         if (other)
             end->opened = other->opened = true;
@@ -286,9 +281,9 @@ static void name_owners(PrintMaking *making, MeshReport *report)
         return;
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         uint32_t segment = mesh_segment(mesh, i);
-        bool is_own = segment < pins->n_original || !pins->is_pin[segment - pins->n_original];
         mesh->labels[i] = (mesh->labels[i] & MESH_FLAGS) |
-                          supportpins_original_segment(pins, segment) | (is_own ? 0 : MESH_FRAME);
+                          supportpins_original_segment(pins, segment) |
+                          (supportpins_is_pin(pins, segment) ? MESH_FRAME : 0);
     }
     for (int k = 0; k < LISTS; k++)
         for (size_t i = 0; i < counts[k]; i++)

@@ -333,7 +333,7 @@ Status supportpins_join(Solid *solid, const Casing *plate, const CutEnds *ends,
     seams_add(seams, MESH_FRAME);
     for (size_t i = 0; i < ends->n; i++) {
         const CutEnd *end = &ends->items[i];
-        if (end->segment < pins->n_original || !pins->is_pin[end->segment - pins->n_original])
+        if (!supportpins_is_pin(pins, end->segment))
             continue;
         holes[n++] = (CasingHole){5, false, end->rim, end->n};
         seams_ring(seams, end->segment, MESH_FRAME);

@@ -177,7 +177,7 @@ MUST_CHECK Status stage_appearance(const Look *look, const Field *field, const C
                                    Appearance *appearance, Err *err);
 
 /* Has an appearance of a scale blend its colours where segments do: a point has the colour of the
- * mean of their places on the scale, weighted by their terms [surface/termmean.h], and a segment
+ * mean of their places on the scale, weighted by their terms [field/termmean.h], and a segment
  * alone that of its own place, likewise on the ramp. STATUS_MEMORY. */
 MUST_CHECK Status stage_blend(Appearance *appearance, Err *err);
 
