@@ -1,7 +1,7 @@
-/* ICC profiles through lcms2: the one of sRGB that files carry, and the way from sRGB to the inks
- * of a press. lcms writes the time into a profile that it makes; a fixed one takes its place, so
- * that equal pictures are equal files. With the relative intent, the black of the screen becomes
- * the black of the press (black point compensation), as layout programs do. */
+/* ICC profiles through lcms2: the one of sRGB that files carry, and the conversion from sRGB to the
+ * inks of an output profile. lcms writes the time into a profile that it makes. A fixed time
+ * replaces it, so that equal pictures are equal files. With the relative intent, the black of the
+ * screen becomes the black of the inks (black point compensation), as in layout programs. */
 #include "image/formats.h"
 
 #include <lcms2_plugin.h>
@@ -96,11 +96,12 @@ static Status srgb_profile(ImageProfile *profile, Err *err)
 {
     Guard guard = {.format = "ICC", .name = "the colour profile"};
     ImageProfile made = {0};
-    Status status = guard_run(&guard, make_srgb, &made, err);
-    if (status == STATUS_OK)
-        *profile = made;
-    else
-        free(made.bytes);
+    Status status;
+    TRY_GOTO(guard_run(&guard, make_srgb, &made, err));
+    *profile = made;
+    return STATUS_OK;
+done:
+    free(made.bytes);
     return status;
 }
 

@@ -26,10 +26,10 @@ enum { CHUNK_FRAME = 12, IHDR_SIZE = 13, SIGNATURE_SIZE = 8 };
 
 typedef struct PlainPng {
     uint32_t width, height;
-    int bits, samples;   /* of the file; samples 1 to 4 */
-    size_t pixel, row;   /* bytes, the row without its filter byte */
+    int bits, samples;   /* bits per sample; samples per pixel, 1 to 4 */
+    size_t pixel, row;   /* bytes of a pixel; of a row without its filter byte */
     uint8_t *compressed; /* owned */
-    size_t size;         /* of compressed */
+    size_t size;         /* bytes in `compressed` */
 } PlainPng;
 
 static bool read_header(PlainPng *plain, const uint8_t *data, size_t file_size)
@@ -61,11 +61,13 @@ static bool is_one_of(const uint8_t *type, const char *types)
     return false;
 }
 
-/* Walks the chunks; `compressed` has room for the whole file. False on what is not plain. */
+/* Reads the header and collects the compressed data. `compressed` must have space for the whole
+ * file. Returns false for a file that is not plain. */
 static bool read_chunks(PlainPng *plain, const ImageBytes *file)
 {
     size_t at = SIGNATURE_SIZE;
-    bool is_srgb = false, may_differ = false; /* the colours */
+    bool is_srgb = false,
+         may_differ = false; /* there is an sRGB chunk; a chunk may state other colours */
     for (bool first = true;; first = false) {
         if (file->size - at < CHUNK_FRAME)
             return false;
@@ -103,9 +105,9 @@ static inline uint8_t paeth(int left, int up, int corner)
     return (uint8_t)(to_left <= to_up && to_left <= to_corner ? left : nearest);
 }
 
-/* `in` lies above `out` in one buffer or in another one; `up` is the row before, all 0 for the
- * first. `pixel` is a constant where this is inlined, so that the samples of a pixel are undone
- * side by side. */
+/* Undoes a filter. `in` is at or above `out` in one buffer, or in another buffer. `up` is the row
+ * before, all 0 for the first. `pixel` is a constant where this is inlined, so that the samples of
+ * a pixel are computed in parallel. */
 static inline void unfilter(int filter, const uint8_t *in, const uint8_t *up, uint8_t *out,
                             size_t n, size_t pixel)
 {
@@ -138,36 +140,28 @@ static inline void unfilter(int filter, const uint8_t *in, const uint8_t *up, ui
     }
 }
 
+/* Undoes the filter of a row. Returns false if the filter is unknown. */
 static bool unfilter_row(const PlainPng *plain, const uint8_t *in, const uint8_t *up, uint8_t *out)
 {
-    int filter = in[0];
-    in++;
-    switch (filter > 4 ? 0 : plain->pixel) {
-    case 1:
-        unfilter(filter, in, up, out, plain->row, 1);
-        return true;
-    case 2:
-        unfilter(filter, in, up, out, plain->row, 2);
-        return true;
-    case 3:
-        unfilter(filter, in, up, out, plain->row, 3);
-        return true;
-    case 4:
-        unfilter(filter, in, up, out, plain->row, 4);
-        return true;
-    case 6:
-        unfilter(filter, in, up, out, plain->row, 6);
-        return true;
-    case 8:
-        unfilter(filter, in, up, out, plain->row, 8);
-        return true;
+#define UNFILTER(pixel_bytes)                                                                      \
+    case pixel_bytes:                                                                              \
+        unfilter(in[0], in + 1, up, out, plain->row, pixel_bytes);                                 \
+        return true
+    switch (in[0] > 4 ? 0 : plain->pixel) {
+        UNFILTER(1);
+        UNFILTER(2);
+        UNFILTER(3);
+        UNFILTER(4);
+        UNFILTER(6);
+        UNFILTER(8);
     default:
         return false;
     }
+#undef UNFILTER
 }
 
-/* Inflates into `rows`, which has room for the rows with their filter bytes, and undoes the
- * filters; what remains begins at `rows`, without them. */
+/* Inflates into `rows`, which must have space for the rows with their filter bytes, and undoes the
+ * filters. The rows without filter bytes then begin at `rows`. */
 static bool inflate_rows(const PlainPng *plain, uint8_t *rows, const uint8_t *zeros)
 {
     struct libdeflate_decompressor *inflater = libdeflate_alloc_decompressor();
@@ -246,11 +240,11 @@ static const uint8_t deflate_end[] = {3, 0};
 enum { HEADER_SIZE = sizeof zlib_header, END_SIZE = sizeof deflate_end + 4 };
 
 /* A compressed stripe. */
-typedef struct Stripe {
+typedef struct PngStripe {
     uint8_t *bytes; /* borrowed; there is space for the header before and the end behind them */
     size_t n;
     uint32_t adler; /* checksum of the uncompressed bytes */
-} Stripe;
+} PngStripe;
 
 typedef struct StripeWorker {
     uint8_t *filtered; /* owned; the rows of a stripe, each after its filter byte */
@@ -268,7 +262,7 @@ struct PngDeflater {
     int n_rows, left;      /* rows of the current call; rows of the image after them */
     size_t capacity;       /* bytes per stripe in `packed` */
     uint8_t *packed;       /* owned */
-    Stripe *stripes;       /* owned; of the current call */
+    PngStripe *stripes;    /* owned; of the current call */
     StripeWorker *workers; /* owned */
     bool has_begun;        /* bytes have been passed on */
     uint32_t adler;        /* checksum of the rows that have been passed on */
@@ -423,14 +417,14 @@ static void deflate_stripe(size_t i, int worker, void *context)
     for (int row = 0; row < n; row++)
         filter_row(self, (int)i * self->stripe_rows + row,
                    work->filtered + (size_t)row * self->line);
-    Stripe *stripe = &self->stripes[i];
+    PngStripe *stripe = &self->stripes[i];
     size_t size = (size_t)n * self->line;
     stripe->bytes = self->packed + i * self->capacity + HEADER_SIZE;
     stripe->n = deflate_rows(self, work, size, stripe->bytes);
     stripe->adler = libdeflate_adler32(libdeflate_adler32(0, NULL, 0), work->filtered, size);
 }
 
-static void put_header(PngDeflater *self, Stripe *stripe)
+static void put_header(PngDeflater *self, PngStripe *stripe)
 {
     stripe->bytes -= HEADER_SIZE;
     stripe->n += HEADER_SIZE;
@@ -438,7 +432,7 @@ static void put_header(PngDeflater *self, Stripe *stripe)
     self->has_begun = true;
 }
 
-static void put_end(const PngDeflater *self, Stripe *stripe)
+static void put_end(const PngDeflater *self, PngStripe *stripe)
 {
     memcpy(stripe->bytes + stripe->n, deflate_end, sizeof deflate_end);
     stripe->n += sizeof deflate_end;
@@ -455,7 +449,7 @@ void pngdeflater_rows(PngDeflater *self, const uint8_t *rows, int n_rows, PngTak
     size_t n = (size_t)count_stripes(self, n_rows);
     threads_for(n, self->threads, deflate_stripe, self);
     for (size_t i = 0; i < n; i++) {
-        Stripe *stripe = &self->stripes[i];
+        PngStripe *stripe = &self->stripes[i];
         self->adler = (uint32_t)adler32_combine(self->adler, stripe->adler,
                                                 (z_off_t)((size_t)rows_of(self, i) * self->line));
         if (!self->has_begun)
