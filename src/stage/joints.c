@@ -139,7 +139,8 @@ static int by_demand(const void *a, const void *b)
     return first->place < second->place ? -1 : 1;
 }
 
-/* Whether the cuts of a place fit beside those already made at the other ends of its vessels. */
+/* Returns true if the cuts of a place fit beside those already made at the other ends of its
+ * vessels. */
 static bool cuts_fit(const JointBuilder *builder, size_t place, const bool *made)
 {
     for (size_t k = builder->ends.first[place]; k < builder->ends.first[place + 1]; k++) {
@@ -219,7 +220,7 @@ static void trim_cuts(JointBuilder *builder, JointForm form)
     }
 }
 
-/* Whether no other vessel ends where this one does. */
+/* Returns true if no other vessel ends where this one does. */
 static bool end_is_free(const JointBuilder *builder, size_t end)
 {
     size_t place = place_of(builder, end);

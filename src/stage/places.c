@@ -127,7 +127,8 @@ static void find_covers(const Tree *tree, Bins *bins, int32_t *cover)
     }
 }
 
-/* Whether segment i leads from the end of its parent's segment back to where that one begins. */
+/* Returns true if segment i leads from the end of its parent's segment back to where that one
+ * begins. */
 static bool returns(const Tree *tree, const int32_t *cover, size_t i)
 {
     const int32_t parent = tree->parent[i];

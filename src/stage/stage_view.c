@@ -151,7 +151,6 @@ static double framing_distance(const Framed *framed, const Camera *camera, doubl
     return distance;
 }
 
-/* Where an aimed orthographic camera stands and how much it shows. */
 /* An orthographic camera may stand anywhere before the vessels. It stands at least this far from
  * their middle, as POV-Ray does not see what is nearer to a camera than 0.01 mm [docs/POVRAY.md,
  * sections 4 and 6]. */
