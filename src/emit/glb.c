@@ -117,12 +117,12 @@ static json_t *position_accessor(const Glb *glb, size_t first, size_t n)
 }
 
 /* The four accessors of each order that there is, and its mesh and node. */
-typedef struct Lists {
+typedef struct GlbLists {
     json_t *accessors, *meshes, *nodes;
     size_t n;
-} Lists;
+} GlbLists;
 
-static void add_order(const Glb *glb, size_t order, Lists *lists)
+static void add_order(const Glb *glb, size_t order, GlbLists *lists)
 {
     size_t first = glb->first[order], n = glb->first[order + 1] - first;
     size_t triangle = glb->parts.first[order], triangles = glb->parts.first[order + 1] - triangle;
@@ -192,7 +192,7 @@ static json_t *document(const Glb *glb, size_t buffer_bytes)
     size_t orders = 0;
     for (size_t order = 0; order <= MOST_ORDERS; order++)
         orders += glb->first[order] < glb->first[order + 1];
-    Lists lists = {json_array(), json_array(), json_pack("[o]", root_node(glb, orders)), 0};
+    GlbLists lists = {json_array(), json_array(), json_pack("[o]", root_node(glb, orders)), 0};
     for (size_t order = 0; order <= MOST_ORDERS; order++)
         if (glb->first[order] < glb->first[order + 1])
             add_order(glb, order, &lists);
