@@ -344,11 +344,11 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Pixe
         return STATUS_OK;
     if (params->occlusion > 0 && !renderer->occluders.capsules)
         TRY(occluderset_new(renderer->geometry, &renderer->occluders, err));
-    const bool soft = params->shadows && view_has_soft_shadows(drawing->view);
+    const bool soft = softshadows_are_on(drawing->view, params);
     const Drawing wide = widened(drawing, margin, soft ? VISIBILITY_BLOCK : 1);
     const VisibilitySources from = {.draw_planes = see_vessels,
                                     .context = renderer,
-                                    .light_views = renderer->key.engine->lights,
+                                    .engine = renderer->key.engine->shadows,
                                     .occluders = &renderer->occluders,
                                     .off_pixel = renderer->unlit};
     return pixelvisibility_compute(&wide, &from, out, err);
@@ -362,9 +362,10 @@ static Status ask_light(Renderer *renderer, const Drawing *drawing, size_t light
 {
     const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
     const Engine *engine = renderer->key.engine;
-    const void *shadow = engine->shadow ? engine->shadow(renderer->prepared, light) : NULL;
-    if (shadow)
-        return offpixel_query(drawing, engine->lights, shadow, &eye, light, renderer->unlit, err);
+    LightBins *bins = engine->light_bins ? engine->light_bins(renderer->prepared, light) : NULL;
+    if (bins)
+        return offpixel_query(drawing, &(OffPixelViews){&bins, 1, &eye}, light, renderer->unlit,
+                              err);
     Drawing casting = *drawing;
     TRY(make_caster(renderer, err));
     casting.caster = renderer->caster;
@@ -449,14 +450,14 @@ static Status draw_samples(Renderer *renderer, const Drawing *fine, int first, i
     Status status;
     drawing.band = band_of_samples(view, renderer->params.antialias, first, rows);
     TRY_GOTO(draw(renderer, &drawing, &frame, err));
-    const Samples samples = {.effects = &view->effects,
-                             .camera = &view->camera,
-                             .radii = &renderer->radii,
-                             .paper = view->background,
-                             .side = renderer->params.antialias,
-                             .threads = fine->params->threads,
-                             .band = drawing.band,
-                             .frame = &frame};
+    const EffectSamples samples = {.effects = &view->effects,
+                                   .camera = &view->camera,
+                                   .radii = &renderer->radii,
+                                   .paper = view->background,
+                                   .side = renderer->params.antialias,
+                                   .threads = fine->params->threads,
+                                   .band = drawing.band,
+                                   .frame = &frame};
     if (frame.id.ids)
         TRY_GOTO(effects_draw(&samples, err));
     if (drawing.hidden)

@@ -12,6 +12,7 @@
 #include "geom/geom.h"
 #include "tree/builder.h"   // IWYU pragma: export
 #include "tree/graph.h"     // IWYU pragma: export
+#include "tree/idindex.h"   // IWYU pragma: export
 #include "tree/meta.h"      // IWYU pragma: export
 #include "tree/outlets.h"   // IWYU pragma: export
 #include "tree/pairs.h"     // IWYU pragma: export

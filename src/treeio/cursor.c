@@ -9,8 +9,7 @@
 
 Cursor cursor_of(const char *name, const CursorSyntax *syntax, char *text, size_t size)
 {
-    return (Cursor){
-        .name = name, .syntax = syntax, .start = text, .at = text, .end = text + size};
+    return (Cursor){.name = name, .syntax = syntax, .start = text, .at = text, .end = text + size};
 }
 
 /* ---- lines ----------------------------------------------------------------------------------- */
@@ -57,7 +56,7 @@ static void skip_between(Cursor *cursor)
         if (syntax->comment && *cursor->at == syntax->comment)
             while (cursor->at + 1 < cursor->end && *cursor->at != '\n')
                 cursor->at++;
-        else if (!is_among(syntax->between, *cursor->at))
+        else if (*cursor->at ? !strchr(syntax->between, *cursor->at) : !syntax->skips_zeros)
             return;
     }
 }
@@ -169,4 +168,13 @@ size_t keyword_find(const char *word, const char *const *keywords, size_t n)
     while (i < n && !(keywords[i] && strcasecmp(word, keywords[i]) == 0))
         i++;
     return i;
+}
+
+void keywords_put(const char *const *first, size_t n, size_t stride, Text *text)
+{
+    for (size_t i = 0; i < n; i++) {
+        const char *word = *(const char *const *)((const char *)first + i * stride);
+        if (word)
+            text_printf(text, "%s\n", word);
+    }
 }

@@ -19,6 +19,7 @@ typedef struct CursorSyntax {
     const char *alone;   /* characters that are a word each */
     char comment;        /* begins a comment that ends with its line; 0: there are no comments */
     bool has_quotes;     /* a text in double quotes is one word */
+    bool skips_zeros;    /* zero bytes stand between words; otherwise they end the words */
 } CursorSyntax;
 
 /* Begin with cursor_of. All is borrowed. */
@@ -74,5 +75,11 @@ Status cursor_blame(const Cursor *cursor, Status status, Err *err);
 /* Returns the index of a keyword in a list of `n`, or `n` if it is not there. Case does not matter.
  * Entries may be NULL. */
 size_t keyword_find(const char *word, const char *const *keywords, size_t n);
+/* Appends `n` keywords, one per line, that stand `stride` bytes apart in a table. Entries may be
+ * NULL. */
+void keywords_put(const char *const *first, size_t n, size_t stride, Text *text);
+/* Appends one member of all rows of an array. */
+#define KEYWORDS_PUT(table, member, text)                                                          \
+    keywords_put(&(table)[0] member, sizeof(table) / sizeof *(table), sizeof *(table), text)
 
 #endif

@@ -25,10 +25,14 @@ typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
  * cannot hold; STATUS_MEMORY. */
 typedef Status TreeWrite(const Tree *tree, Text *text, Err *err);
 
-/* Whether a column of the tree is written, although columns as such are not. */
+/* Returns true if a column of the tree is written, although the format writes no others. */
 typedef bool TreeKeeps(const TreeColumn *column);
+/* Appends the keywords of a format, one per line, from the tables of its reader. */
+typedef void TreeKeywords(Text *text);
 
 TreeKeeps swc_keeps, oned_keeps;
+TreeKeywords csv_keywords, table_keywords, vtk_keywords, vtp_keywords, graphml_keywords,
+    oned_keywords, vmv_keywords, vita_keywords, metaio_keywords, amira_keywords;
 TreeDetect amira_detect, csv_detect, opencco_detect, metaio_detect, vtk_detect, vtp_detect,
     gxl_detect, graphml_detect, amiraxml_detect, pvd_detect, csv_segments_detect, oned_detect,
     vmv_detect, vita_detect;
@@ -86,6 +90,9 @@ MUST_CHECK Status steps_read(Tree *tree, const char *folder, const char *quantit
  * blanks around it go, and where `separator` is one, several are like one. A quoted one ends with a
  * quote that no other follows. STATUS_INPUT, without file and line, when none does. */
 MUST_CHECK Status csv_field(char **at, char separator, char **field, Err *err);
+/* Cuts a row of CSV into its `n` fields, in place. Errors: STATUS_INPUT, without file and line, for
+ * any other number of fields, and as csv_field. */
+MUST_CHECK Status csv_row(char *line, char separator, char **field, size_t n, Err *err);
 /* Parts "name [unit]" in place; the unit is "" where there is none. */
 const char *csv_unit(char *title);
 

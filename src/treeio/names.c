@@ -1,4 +1,4 @@
-/* Open addressing in a table that is at most half full; the hash is FNV-1a. */
+/* Names with the same hash form a chain. The hash is FNV-1a. */
 #include "treeio/names.h"
 
 #include <stdint.h>
@@ -6,45 +6,18 @@
 #include <string.h>
 
 typedef struct Name {
-    const char *text; /* NULL: free */
-    size_t number, record;
+    const char *text;
+    size_t index, record;
+    uint32_t next; /* the next name + 1 of its hash; 0: none */
 } Name;
 
 void names_release(Names *names)
 {
-    free(names->slot);
-    *names = (Names){0};
+    keymap_release(&names->first);
+    ARRAY_RELEASE(&names->name);
 }
 
-/* The slot of the name, or the free one where it would be. */
-static Name *slot_of(const Names *names, const char *text)
-{
-    uint64_t hash = 14695981039346656037u;
-    for (const char *at = text; *at; at++)
-        hash = (hash ^ (unsigned char)*at) * 1099511628211u;
-    size_t mask = names->slots - 1;
-    for (size_t i = (size_t)(hash ^ hash >> 32) & mask;; i = (i + 1) & mask) {
-        Name *slot = &names->slot[i];
-        if (!slot->text || strcmp(slot->text, text) == 0)
-            return slot;
-    }
-}
-
-static Status grow(Names *names, Err *err)
-{
-    enum { FEWEST = 64 };
-    Names larger = {.what = names->what, .slots = names->slots ? 2 * names->slots : FEWEST};
-    TRY(mem_calloc(&larger.slot, larger.slots, sizeof *larger.slot, "names", err));
-    for (size_t i = 0; i < names->slots; i++)
-        if (names->slot[i].text)
-            *slot_of(&larger, names->slot[i].text) = names->slot[i];
-    larger.n = names->n;
-    free(names->slot);
-    *names = larger;
-    return STATUS_OK;
-}
-
-/* Cuts ".000" off a whole number. */
+/* Cuts ".000" off an integer. */
 static char *without_fraction(char *text)
 {
     char *point = text + strspn(text, "0123456789");
@@ -53,24 +26,46 @@ static char *without_fraction(char *text)
     return text;
 }
 
-Status names_add(Names *names, char *text, size_t number, size_t record, Err *err)
+static uint64_t key_of(const char *text)
 {
-    if (2 * (names->n + 1) > names->slots)
-        TRY(grow(names, err));
-    Name *slot = slot_of(names, without_fraction(text));
-    if (slot->text)
+    uint64_t hash = 14695981039346656037u;
+    for (; *text; text++)
+        hash = (hash ^ (unsigned char)*text) * 1099511628211u;
+    return hash & (KEYMAP_NO_KEY >> 1);
+}
+
+/* Returns the name of this text in the chain that begins with `first`, or NULL. */
+static const Name *find(const Names *names, uint32_t first, const char *text)
+{
+    while (first && strcmp(names->name.items[first - 1].text, text) != 0)
+        first = names->name.items[first - 1].next;
+    return first ? &names->name.items[first - 1] : NULL;
+}
+
+Status names_add(Names *names, char *text, size_t index, size_t record, Err *err)
+{
+    enum { EXPECTED = 64 };
+    uint32_t *first;
+    bool is_new;
+    if (names->name.n == 0)
+        TRY(keymap_begin(&names->first, EXPECTED, "names", err));
+    TRY(keymap_put(&names->first, key_of(without_fraction(text)), &first, &is_new, err));
+    const Name *twin = find(names, *first, text);
+    if (twin)
         return err_set(err, STATUS_INPUT, "the %s '%.40s' has been given before, in line %zu",
-                       names->what, text, slot->record);
-    *slot = (Name){.text = text, .number = number, .record = record};
-    names->n++;
+                       names->what, text, twin->record);
+    TRY(ARRAY_PUSH(&names->name, "names", err, (Name){text, index, record, *first}));
+    *first = (uint32_t)names->name.n;
     return STATUS_OK;
 }
 
-Status names_find(const Names *names, char *text, size_t *number, Err *err)
+Status names_find(const Names *names, char *text, size_t *index, Err *err)
 {
-    const Name *slot = names->slots ? slot_of(names, without_fraction(text)) : NULL;
-    if (!slot || !slot->text)
+    uint64_t key = key_of(without_fraction(text));
+    const uint32_t *first = names->name.n > 0 ? keymap_find(&names->first, key) : NULL;
+    const Name *found = first ? find(names, *first, text) : NULL;
+    if (!found)
         return err_set(err, STATUS_INPUT, "there is no %s '%.40s'", names->what, text);
-    *number = slot->number;
+    *index = found->index;
     return STATUS_OK;
 }

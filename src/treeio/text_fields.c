@@ -170,6 +170,20 @@ Status csv_field(char **at, char separator, char **field, Err *err)
     return STATUS_OK;
 }
 
+Status csv_row(char *line, char separator, char **field, size_t n, Err *err)
+{
+    size_t count = 0;
+    for (char *at = line, *next; at; count++) {
+        TRY(csv_field(&at, separator, &next, err));
+        if (count < n)
+            field[count] = next;
+    }
+    if (count == n)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT, "the row has %zu field%s; there are %zu columns", count,
+                   count == 1 ? "" : "s", n);
+}
+
 const char *csv_unit(char *title)
 {
     size_t length = strlen(title);

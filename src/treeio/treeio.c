@@ -3,6 +3,7 @@
  * the table. Files are opened, built into trees, checked and committed here alone. */
 #include "treeio/treeio.h"
 
+#include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include <math.h>
 #include <stdlib.h>
@@ -53,10 +54,11 @@ typedef struct Format {
     TreeKeeps *keeps; /* of the columns that are lost, those that are not; NULL: none */
     unsigned takes;   /* bits of the options of reading */
     FileForm form;
-    TreeDetect *detect;    /* NULL: nothing tells */
-    TreeRead *read;        /* one of a tree ... */
-    GraphRead *read_graph; /* ... or this one of a network; with both, `detect` tells trees */
-    TreeWrite *write;      /* NULL: the format is only read */
+    TreeDetect *detect;     /* NULL: nothing tells */
+    TreeRead *read;         /* one of a tree ... */
+    GraphRead *read_graph;  /* ... or this one of a network; with both, `detect` tells trees */
+    TreeWrite *write;       /* NULL: the format is only read */
+    TreeKeywords *keywords; /* NULL: the format has none */
 } Format;
 
 /* As many rows of SWC as there are ids, of the longest numbers, have 18 GB. */
@@ -79,6 +81,7 @@ static const Format formats[] = {
      .takes = ANY_GRAPH | COLUMNS,
      .form = {.name = "a CSV file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = csv_segments_detect,
+     .keywords = table_keywords,
      .read_graph = table_read,
      .write = csv_segments_write},
     {.name = "CSV",
@@ -88,6 +91,7 @@ static const Format formats[] = {
      .form = {.name = "a CSV file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = csv_detect,
      .read = csv_read,
+     .keywords = csv_keywords,
      .read_graph = table_read,
      .write = csv_write},
     {.name = "VTK",
@@ -97,6 +101,7 @@ static const Format formats[] = {
      .form = {.name = "a VTK file", .most_bytes = MOST_BYTES},
      .detect = vtk_detect,
      .read_graph = vtk_read,
+     .keywords = vtk_keywords,
      .write = vtk_write},
     {.name = "VTP",
      .description = "VTK's XML: lines, arrays of points and of lines",
@@ -105,6 +110,7 @@ static const Format formats[] = {
      .form = {.name = "a VTP file", .most_bytes = MOST_BYTES},
      .detect = vtp_detect,
      .read_graph = vtp_read,
+     .keywords = vtp_keywords,
      .write = vtp_write},
     {.name = "VTU",
      .description = "VTK's XML of an unstructured grid, its lines alone",
@@ -135,6 +141,7 @@ static const Format formats[] = {
      .form = {.name = "a GraphML file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = graphml_detect,
      .read_graph = graphml_read,
+     .keywords = graphml_keywords,
      .loses = LOSES_ROOT_VALUES,
      .write = graphml_write},
     {.name = "Amira XML",
@@ -153,6 +160,7 @@ static const Format formats[] = {
      .form = {.name = "a deck of svOneDSolver", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = oned_detect,
      .read_graph = oned_read,
+     .keywords = oned_keywords,
      .write = oned_write},
     {.name = "VMV",
      .loses = IS_NETWORK | LOSES_COLUMNS,
@@ -162,6 +170,7 @@ static const Format formats[] = {
      .form = {.name = "a VMV file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = vmv_detect,
      .read_graph = vmv_read,
+     .keywords = vmv_keywords,
      .write = vmv_write},
     {.name = "VItA",
      .description = "a tree grown by VItA",
@@ -169,7 +178,8 @@ static const Format formats[] = {
      .takes = ANY_GRAPH,
      .form = {.name = "a tree of VItA", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = vita_detect,
-     .read_graph = vita_read},
+     .read_graph = vita_read,
+     .keywords = vita_keywords},
     {.name = "Secomb",
      .description = "a microvascular network (network.dat), diameters in um",
      .extensions = {"dat"},
@@ -189,14 +199,16 @@ static const Format formats[] = {
      .takes = ANY_GRAPH,
      .form = {.name = "a MetaIO scene", .most_bytes = MOST_BYTES},
      .detect = metaio_detect,
-     .read_graph = metaio_read},
+     .read_graph = metaio_read,
+     .keywords = metaio_keywords},
     {.name = "Amira",
      .description = "a spatial graph, line set or skeleton of Amira or Avizo, in um",
      .extensions = {"am"},
      .takes = ANY_GRAPH | RADIUS_ARRAY,
      .form = {.name = "an Amira file", .most_bytes = MOST_BYTES},
      .detect = amira_detect,
-     .read_graph = amira_read},
+     .read_graph = amira_read,
+     .keywords = amira_keywords},
 };
 
 enum { N_FORMATS = sizeof formats / sizeof *formats };
@@ -285,6 +297,13 @@ const char *tree_format_description(size_t i)
     return i < N_FORMATS ? formats[i].description : NULL;
 }
 
+void tree_format_keywords(const char *path, Text *text)
+{
+    for (size_t i = 0; i < N_FORMATS; i++)
+        if (may_be(&formats[i], path) && formats[i].keywords)
+            formats[i].keywords(text);
+}
+
 static bool has_types(const Tree *tree)
 {
     size_t i = 0;
@@ -361,17 +380,15 @@ bool tree_format_known(const char *path)
     return find_format(path, NULL) != NULL;
 }
 
-/* Each extension once: several formats may share one. */
+/* Appends each extension once: several formats may share one. */
 static void list_extensions(Text *text, bool written)
 {
     const char *listed[N_FORMATS];
     size_t n = 0;
     for (size_t i = 0; i < N_FORMATS; i++) {
-        bool is_new = !written || formats[i].write;
-        for (size_t k = 0; k < n && is_new; k++)
-            is_new = strcmp(listed[k], formats[i].extensions[0]) != 0;
-        if (is_new)
-            listed[n++] = formats[i].extensions[0];
+        const char *extension = formats[i].extensions[0];
+        if ((!written || formats[i].write) && keyword_find(extension, listed, n) == n)
+            listed[n++] = extension;
     }
     for (size_t k = 0; k < n; k++)
         text_printf(text, "%s.%s", k == 0 ? "" : k + 1 < n ? ", " : " or ", listed[k]);
@@ -395,20 +412,20 @@ static void suggest_extension(const char *path, Err *err)
 static Status refuse_extension(const char *path, bool written, Err *err)
 {
     Text known = TEXT_INIT;
+    bool is_read = written && tree_format_known(path);
     list_extensions(&known, written);
-    Status status = text_check(&known, err);
-    if (status == STATUS_OK)
-        status =
-            written && tree_format_known(path)
-                ? err_set(err, STATUS_USAGE, "%s: %s files are only read; a tree is written to %s",
-                          path, find_format(path, NULL)->name, text_chars(&known))
-                : err_set(err, STATUS_USAGE,
-                          "%s: not the name of a tree file, which ends in %s, or is - for "
-                          "standard input or output",
-                          path, text_chars(&known));
+    Status status = STATUS_OK;
+    TRY_GOTO(text_check(&known, err));
+    status = is_read
+                 ? err_set(err, STATUS_USAGE, "%s: %s files are only read; a tree is written to %s",
+                           path, find_format(path, NULL)->name, text_chars(&known))
+                 : err_set(err, STATUS_USAGE,
+                           "%s: not the name of a tree file, which ends in %s, or is - for "
+                           "standard input or output",
+                           path, text_chars(&known));
+    suggest_extension(path, err);
+done:
     text_release(&known);
-    if (status == STATUS_USAGE)
-        suggest_extension(path, err);
     return status;
 }
 
@@ -450,10 +467,11 @@ static Status refuse_option(const Format *format, const char *name, unsigned bit
         k++;
     Text takers = TEXT_INIT;
     put_takers(bit, &takers);
-    Status status = text_check(&takers, err);
-    if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE, "`%s` is for files of %s; %s is read as %s",
-                         option_fields[k].field, text_chars(&takers), name, format->name);
+    Status status = STATUS_OK;
+    TRY_GOTO(text_check(&takers, err));
+    TRY_GOTO(err_set(err, STATUS_USAGE, "`%s` is for files of %s; %s is read as %s",
+                     option_fields[k].field, text_chars(&takers), name, format->name));
+done:
     text_release(&takers);
     return status;
 }
@@ -469,12 +487,13 @@ static Status refuse_format(const char *called, Err *err)
 {
     Text known = TEXT_INIT;
     list_extensions(&known, false);
-    Status status = text_check(&known, err);
-    if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE,
-                         "`input_format` '%s': known are %s, without the dot, and the names that "
-                         "`corcast formats` lists",
-                         called, text_chars(&known));
+    Status status = STATUS_OK;
+    TRY_GOTO(text_check(&known, err));
+    TRY_GOTO(err_set(err, STATUS_USAGE,
+                     "`input_format` '%s': known are %s, without the dot, and the names that "
+                     "`corcast formats` lists",
+                     called, text_chars(&known)));
+done:
     text_release(&known);
     return status;
 }
@@ -496,14 +515,14 @@ static Status format_called(const char *called, const Format **format, char as[3
 }
 
 /* A file, read and told. */
-typedef struct Source {
+typedef struct TreeSource {
     const char *name; /* for sentences */
     const Format *format;
     char *bytes; /* owned */
     size_t size;
-} Source;
+} TreeSource;
 
-static Status open_source(Source *source, const char *path, const char *called, Err *err)
+static Status open_source(TreeSource *source, const char *path, const char *called, Err *err)
 {
     const Format *format = NULL;
     char as[32] = "";
@@ -513,7 +532,7 @@ static Status open_source(Source *source, const char *path, const char *called, 
         return refuse_extension(path, false, err);
     else if (count_formats(path) == 1)
         format = find_format(path, NULL);
-    *source = (Source){.name = is_standard(path) ? "standard input" : path, .format = format};
+    *source = (TreeSource){.name = is_standard(path) ? "standard input" : path, .format = format};
     TRY(file_read(path, format ? &format->form : &any_form, &source->bytes, &source->size, err));
     if (format)
         return STATUS_OK;
@@ -524,7 +543,7 @@ static Status open_source(Source *source, const char *path, const char *called, 
 }
 
 /* *is_tree: the file was a tree after all. */
-static Status read_graph(const Source *source, TreeBuilder *builder, const ReadOptions *options,
+static Status read_graph(const TreeSource *source, TreeBuilder *builder, const ReadOptions *options,
                          TreeReading *reading, bool *is_tree, Err *err)
 {
     Graph graph = {.name = source->name, .options = options, .reading = reading, .tree = builder};
@@ -553,7 +572,7 @@ static void scale_tree(Tree *tree, const Format *format, const ReadOptions *opti
 }
 
 /* Whether the file is a tree, and what options say of networks does not ask for more. */
-static bool reads_tree(const Source *source, const ReadOptions *options)
+static bool reads_tree(const TreeSource *source, const ReadOptions *options)
 {
     const Format *format = source->format;
     if (!format->read || !format->read_graph)
@@ -579,33 +598,42 @@ static bool is_own(const TreeMeta *meta)
            begins(command, "corcast bifurcation ");
 }
 
-static Status read_source(const Source *source, Tree *tree, const ReadOptions *options,
-                          TreeReading *reading, Err *err)
+/* Builds the tree that a file describes. The caller releases *made, also after an error. */
+static Status build_tree(const TreeSource *source, Tree *made, const ReadOptions *options,
+                         TreeReading *reading, Err *err)
 {
     TreeBuilder builder = {.name = source->name, .options = options, .reading = reading};
-    const Format *format = source->format;
     bool is_tree = reads_tree(source, options);
-    Tree made;
-    Status status = is_tree ? format->read(&builder, source->bytes, source->size, err)
-                            : read_graph(source, &builder, options, reading, &is_tree, err);
-    if (status == STATUS_OK)
-        status = builder_build(&builder, &made, err);
-    builder_release(&builder);
-    TRY(status);
+    Status status = STATUS_OK;
     if (is_tree)
-        scale_tree(&made, format, options, reading);
+        TRY_GOTO(source->format->read(&builder, source->bytes, source->size, err));
+    else
+        TRY_GOTO(read_graph(source, &builder, options, reading, &is_tree, err));
+    TRY_GOTO(builder_build(&builder, made, err));
+    if (is_tree)
+        scale_tree(made, source->format, options, reading);
+done:
+    builder_release(&builder);
+    return status;
+}
+
+static Status read_source(const TreeSource *source, Tree *tree, const ReadOptions *options,
+                          TreeReading *reading, Err *err)
+{
+    Tree made = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(build_tree(source, &made, options, reading, err));
     status = reading_fill_radii(reading, options, &made, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", source->name);
-    if (status == STATUS_OK)
-        status = tree_check(&made, err);
-    if (status == STATUS_OK)
-        status = reading_measure(reading, &made, err);
+    TRY_GOTO(status);
+    TRY_GOTO(tree_check(&made, err));
+    TRY_GOTO(reading_measure(reading, &made, err));
     reading->unit_said = reading->unit_said || is_own(&made.meta);
-    if (status == STATUS_OK)
-        *tree = made;
-    else
-        tree_release(&made);
+    *tree = made;
+    made = (Tree){0};
+done:
+    tree_release(&made);
     return status;
 }
 
@@ -615,7 +643,7 @@ Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options, Tr
     static const ReadOptions nothing = {0};
     const ReadOptions *said = options ? options : &nothing;
     TreeReading made = {0};
-    Source source = {0};
+    TreeSource source = {0};
     Status status = STATUS_OK;
     TRY_GOTO(open_source(&source, path, said->format, err));
     made.format = source.format->name;

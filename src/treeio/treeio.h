@@ -34,6 +34,9 @@ bool tree_format_keeps(const char *path, const TreeColumn *column);
 const char *tree_format_name(size_t i);
 const char *tree_format_extension(size_t i);
 const char *tree_format_description(size_t i);
+/* Appends the keywords of all formats that a file of this name may have, one per line. "-" may be of any
+ * format. */
+void tree_format_keywords(const char *path, Text *text);
 /* Appends all chief extensions as a reader says them: ".swc or .csv". */
 void tree_format_list(Text *text);
 

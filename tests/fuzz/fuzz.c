@@ -1,6 +1,7 @@
 #include "fuzz.h"
 
 #include "image/image.h"
+#include "treeio/treeio.h"
 #include <stdio.h>
 #include <unistd.h>
 
@@ -89,4 +90,43 @@ void fuzz_image(const uint8_t *bytes, size_t size)
     read_by_rows(path, status == STATUS_OK ? &image.picture : &none);
     if (status == STATUS_OK)
         image_release(&image);
+}
+
+/* ---- dictionaries ---------------------------------------------------------------------------- */
+
+/* Prints a word as an entry of libFuzzer's dictionaries. */
+static void print_word(const char *word, const char *end)
+{
+    printf("\"");
+    for (; *word; word++)
+        printf((*word < ' ' || *word > '~' || strchr("\"\\", *word)) ? "\\x%02x" : "%c",
+               (unsigned char)*word);
+    printf("%s\"\n", end);
+}
+
+/* Prints what the tables of formats hold that a file of this name may have: keywords, keys of
+ * metadata and, for "-", the first lines of the harness `networks`. */
+static void print_words(const char *path)
+{
+    Text words = TEXT_INIT;
+    tree_format_keywords(path, &words);
+    for (int key = 0; key < META_KEYS; key++)
+        text_printf(&words, "# %s: \n", meta_rows[key].name);
+    char *rest = words.chars;
+    for (char *word; (word = text_line(&rest));)
+        if (*word)
+            print_word(word, "");
+    for (size_t i = 0; strcmp(path, "-") == 0 && tree_format_extension(i); i++)
+        print_word(tree_format_extension(i), "\\x0a");
+    text_release(&words);
+}
+
+int LLVMFuzzerInitialize(int *argc, char ***argv)
+{
+    static const char option[] = "-words=";
+    if (*argc == 2 && strncmp((*argv)[1], option, strlen(option)) == 0) {
+        print_words((*argv)[1] + strlen(option));
+        exit(0);
+    }
+    return 0;
 }

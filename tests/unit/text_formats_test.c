@@ -121,12 +121,11 @@ static void rejects_decks_that_make_no_sense(void **state)
     static const struct {
         const char *text, *sentence;
     } bad[] = {
-        {"NODE 0 0 0\n", ":1: the NODE card has 3 fields behind its name; it has 4"},
+        {"NODE 0 0 0\n", ":1: a NODE card needs 5 fields, found 4"},
         {"NODE 0 0 0 z\n", ":1: the coordinate is 'z'; it must be a finite number"},
         {"NODE 0 0 0 0\n\nNODE 0 1 0 0\n", ":3: the NODE '0' has been given before, in line 1"},
         {"NDOE 0 0 0 0\n", ":1: 'NDOE' is no card of a deck of svOneDSolver"},
-        {"SEGMENT a 7 2.25 50 0 1 2\n",
-         ":1: the SEGMENT card has 7 fields behind its name; it has at least 8"},
+        {"SEGMENT a 7 2.25 50 0 1 2\n", ":1: a SEGMENT card needs 9 to 17 fields, found 8"},
         {"SEGMENT a 7 2.25 50 0 1 2 -1.5\n",
          ":1: the outlet area is '-1.5'; it must be a finite number that is not negative"},
         {"NODE 0 0 0 0\nSEGMENT a 7 2.25 50 0 1 2 1.5\n", ":2: there is no NODE '1'"},
@@ -220,11 +219,11 @@ static void rejects_vmv_that_makes_no_sense(void **state)
     static const struct {
         const char *text, *sentence;
     } bad[] = {
-        {"1 2 3\n", ":1: '1 2 3' stands in no section of VMV"},
+        {"1 2 3\n", ":1: '1' stands in no section of VMV"},
         {"$VERTS_BEGIN\n", ":1: '$VERTS_BEGIN' begins or ends no section of VMV"},
         {"$VERT_LIST_BEGIN\n1 0 0 0\n",
-         ":2: the vertex has 4 fields; it has its number, three coordinates, a radius and at most "
-         "one value"},
+         ":2: a vertex (number, three coordinates, radius, at most one value) needs 5 to 6 fields, "
+         "found 4"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 1\n1 0 0 2 1\n",
          ":3: the vertex '1' has been given before, in line 2"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 -2\n",
@@ -273,7 +272,7 @@ static void rejects_trees_of_vita_that_make_no_sense(void **state)
     assert_refused("cco", "3\n", ":1: a tree of VItA begins with *Tree");
     assert_refused("cco", "*Forest\n", ":1: '*Forest' is no section of VItA's trees");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2\n",
-                   ":3: a VItA vessel needs 21 numbers, found 12");
+                   ":3: a VItA vessel needs at least 13 fields, found 12");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 -1.3\n",
                    ":3: the radius is '-1.3'; it must be a finite number that is not negative "
                    "(`repair_radii` takes the parent's)");
@@ -333,7 +332,7 @@ static void rejects_networks_that_make_no_sense(void **state)
                    ":7: the number of segments is 'three'; it must be a whole number from 0 to "
                    "100000000");
     assert_refused("dat", TISSUE "1\nname\n1 5 1 2\n",
-                   ":9: the row of the segments has 4 fields; it has at least 5");
+                   ":9: a row of the segments needs at least 5 fields, found 4");
     assert_refused("dat", TISSUE "1\nname\n1 5 1 2 thick\n",
                    ":9: the diameter is 'thick'; it must be a finite number that is not negative");
     assert_refused("dat", TISSUE "1\nname\n1 5 1 2 9\n2\nname\n1 0 0 0\n",
@@ -590,14 +589,14 @@ static void rejects_graphs_of_amira_that_make_no_sense(void **state)
          ":6: it claims 2000000000 POINT; a file of 637 bytes holds at most 1000637"},
         {"define POINT 8", "define POINT -8",
          ":6: the POINT is '-8'; it must be a whole number from 0 to 2147483647"},
-        {"define POINT 8", "define POINT 9", ":47: '@5' is no number, and 3 are to come"},
+        {"define POINT 8", "define POINT 9", ":47: '@5' of EdgePointCoordinates is no number"},
         {"@5\n\n# Data", "@5(HxMagic,12)\n\n# Data",
          ":19: the block @5 is packed by 'HxMagic'; HxByteRLE and HxZip are read"},
         {"float thickness", "complex thickness",
          ":19: 'complex' is no type of numbers that is read"},
         {"} @6", "}", ":18: a declaration is 'EDGE { TYPE NAME } @BLOCK'"},
         {"@6\n3\n1\n2\n", "@8\n3\n1\n2\n", ":57: the block @8 is not declared"},
-        {"@7\n11\n12", "@7\n11\ntwelve", ":62: 'twelve' is no number, and 3 are to come"},
+        {"@7\n11\n12", "@7\n11\ntwelve", ":62: 'twelve' of Labels is no number"},
         {"@7\n11\n12", "@7\n11 12 7\n12", ":63: '13' stands where a block begins"},
         {"@3\n3\n2", "@3\n3\n3", ": the edges have 9 points together, POINT is 8"},
         {"@3\n3\n2", "@3\n3\n1", ": edge 1 has 1 points; it needs those of both its vertices"},

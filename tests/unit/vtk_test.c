@@ -271,7 +271,7 @@ static void refuses_legacy_files_that_say_no_network(void **state)
 static void refuses_xml_that_says_no_network(void **state)
 {
     (void)state;
-#define VTK_ARRAY(attributes, text)                                                                    \
+#define VTK_ARRAY(attributes, text)                                                                \
     VTP("")                                                                                        \
     "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" " attributes ">" text            \
     "</DataArray></Points>" VTP_END
@@ -288,8 +288,9 @@ static void refuses_xml_that_says_no_network(void **state)
         {"<?xml version=\"1.0\"?>\n<!DOCTYPE a [<!ENTITY b \"bb\">]>\n" VTP_END,
          ":2: it declares the entity 'b'; documents with entities of their own are not read"},
         {VTK_ARRAY("", "0 0 zero"), ":3: the array '' of Points: 'zero' is no number"},
-        {VTK_ARRAY("", "0 0 0 1"), ":3: the array '' of Points: it has 4 numbers, which are no tuples "
-                               "of 3"},
+        {VTK_ARRAY("", "0 0 0 1"),
+         ":3: the array '' of Points: it has 4 numbers, which are no tuples "
+         "of 3"},
         {VTK_ARRAY("format=\"binary\"", "AQAAA*=="),
          ":3: the array '' of Points: a byte of 42 is no letter of base64"},
         {VTK_ARRAY("format=\"binary\"", "AAAAgA=="),

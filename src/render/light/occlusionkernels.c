@@ -1,8 +1,10 @@
 /* The kernels for any processor, and the choice among all. */
-#define BEAM_KERNEL(name) name##_portable
+#define BEAM_KERNEL(name) LANES_NAME(name)
 #include "render/light/kernel_occlusion.h"
 
 #include <stdlib.h>
+
+#ifdef LANES_PORTABLE
 
 const BeamKernels *const beamkernels[] = {
     &beamkernels_portable,
@@ -48,3 +50,5 @@ void beamwork_release(BeamWork *work)
     free(work->listed);
     free(work->sorted);
 }
+
+#endif

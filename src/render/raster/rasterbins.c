@@ -80,9 +80,10 @@ static void make_chunk(size_t chunk, int worker, void *context)
     size_t to = chunk * build->chunk;
     for (size_t i = to; i < chunk_end(build, chunk); i++) {
         RasterItem *item = &bins->items[to];
-        rasteritem_make(bins->geometry, &bins->view, (uint32_t)i, joint, item,
+        rasteritem_make(bins->geometry, &bins->view, (uint32_t)i, item,
                         bins->joints ? &bins->joints[joint] : NULL,
                         bins->hulls ? &bins->hulls[joint] : NULL);
+        item->joint = joint & (MOST_ITEMS - 1);
         joint += is_joint(bins, i);
         if (!bins->view.light)
             item->primitive = (uint32_t)i;

@@ -110,6 +110,7 @@ static Status trace_raster(void *bins, int worker, int shift, BatchTile *tile, E
     tile->seen.x = own->tile.grid->x;
     tile->seen.y = own->tile.grid->y;
     tile->seen.hits = NULL;
+    tile->items = own->hits.item;
     if (!scene->kernels->trace(&own->tile, &own->hits, &tile->hits))
         return STATUS_OK;
     scene->kernels->resolve(&own->tile, &own->hits, &tile->hits);
@@ -117,39 +118,17 @@ static Status trace_raster(void *bins, int worker, int shift, BatchTile *tile, E
     return STATUS_OK;
 }
 
-static Status look_at_raster(const Drawing *drawing, const Viewpoint *eye, void **shadows, Err *err)
-{
-    RasterShadow *made[VIEW_MAX_LIGHTS] = {NULL};
-    Status status = rastershadows_new(drawing->geometry, drawing->view, eye,
-                                      drawing->params->threads, made, err);
-    for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
-        shadows[i] = made[i];
-    return status;
-}
-
-/* A sample on a primitive is not shadowed by that primitive. The ground has none. */
-static void shadow_raster(void *queue, const TileKernels *kernels, const BatchTile *tile,
-                          const SeenPlaces *places, uint64_t wanted, uint32_t answer)
-{
-    RasterOwn *own = tile->own;
-    for (uint64_t left = tile->seen.ground; left; left &= left - 1)
-        own->hits.item[__builtin_ctzll(left)] = RASTER_NOTHING;
-    rasterqueue_ask(queue, kernels, places, own->hits.item, wanted, answer);
-}
-
 static const TileEngine raster_tiles = {.either_side = true,
                                         .single_depths = true,
                                         .batch_tiles = 64,
                                         .rows_at_once = 1,
                                         .tile_bytes = sizeof(RasterOwn),
-                                        .lights = &raster_lights,
+                                        .shadows = &raster_shadows,
                                         .bin = bin_raster,
                                         .release = release_raster,
                                         .list = list_raster,
                                         .is_listed = is_raster_listed,
-                                        .trace = trace_raster,
-                                        .look = look_at_raster,
-                                        .shadow = shadow_raster};
+                                        .trace = trace_raster};
 
 static bool can_draw_raster(const Drawing *drawing)
 {
@@ -163,7 +142,7 @@ static bool can_draw_raster(const Drawing *drawing)
 
 static bool raster_needs_rays(const Drawing *drawing)
 {
-    return tilerender_needs_rays(drawing, &raster_lights);
+    return shadowengine_needs_rays(&raster_shadows, drawing);
 }
 
 static Status prepare_raster(const Drawing *drawing, void **prepared, Err *err)
@@ -179,5 +158,5 @@ const Engine raster_engine = {.name = "raster",
                               .prepare = prepare_raster,
                               .rows = tilerender_rows,
                               .free = tilerender_free,
-                              .lights = &raster_lights,
-                              .shadow = tilerender_shadow};
+                              .shadows = &raster_shadows,
+                              .light_bins = tilerender_light_bins};

@@ -69,9 +69,8 @@ static TileSpan tiles_in_row(const ThinLayer *layer, const ThinStrip *strip, int
     return tiles_between(least(a, b) - reach, greatest(a, b) + reach, layer->tile_columns);
 }
 
-/* Appends the numbers of the strips to the lists of their tiles; ends[i] is where the list of tile
- * i ends. Only counts them if there are no items yet. */
-static void list_strips(ThinLayer *layer, uint32_t *ends)
+/* Lists the strips of each tile. Only counts them unless `puts`. */
+static void list_strips(ThinLayer *layer, bool puts)
 {
     for (size_t i = 0; i < layer->n; i++) {
         const ThinStrip *strip = &layer->strips[i];
@@ -82,9 +81,10 @@ static void list_strips(ThinLayer *layer, uint32_t *ends)
             TileSpan columns = tiles_in_row(layer, strip, row);
             for (int column = columns.first; column <= columns.last; column++) {
                 size_t tile = (size_t)row * (size_t)layer->tile_columns + (size_t)column;
-                if (layer->tiles.items)
-                    layer->tiles.items[ends[tile]] = (uint32_t)i;
-                ends[tile]++;
+                if (puts)
+                    indexlists_put(&layer->tiles, tile, (uint32_t)i);
+                else
+                    indexlists_count(&layer->tiles, tile);
             }
         }
     }
@@ -92,16 +92,13 @@ static void list_strips(ThinLayer *layer, uint32_t *ends)
 
 Status thinlayer_sort(ThinLayer *layer, const Camera *camera, Err *err)
 {
-    IndexLists *lists = &layer->tiles;
     layer->tile_columns = (camera->width + TILE_SIDE - 1) / TILE_SIDE;
     layer->tile_rows = (camera->height + TILE_SIDE - 1) / TILE_SIDE;
-    size_t n = (size_t)layer->tile_columns * (size_t)layer->tile_rows;
-    TRY(mem_calloc(&lists->first, n + 2, sizeof *lists->first, "thin vessels", err));
-    list_strips(layer, lists->first + 2);
-    for (size_t tile = 2; tile < n + 2; tile++)
-        lists->first[tile] += lists->first[tile - 1];
-    TRY(mem_calloc(&lists->items, lists->first[n + 1], sizeof *lists->items, "thin vessels", err));
-    list_strips(layer, lists->first + 1);
+    const size_t n = (size_t)layer->tile_columns * (size_t)layer->tile_rows;
+    TRY(indexlists_begin(&layer->tiles, n, "thin vessels", err));
+    list_strips(layer, false);
+    TRY(indexlists_allot(&layer->tiles, "thin vessels", err));
+    list_strips(layer, true);
     return STATUS_OK;
 }
 

@@ -1,6 +1,6 @@
-/* ParaView's index of a time series: the names of files, each the tree at one moment. The first is
- * the tree; the arrays of all become columns NAME_TIME of it, one series each [tree/series.h], but
- * for those that are the same at all moments, which stay one column. */
+/* Reads ParaView's index of a time series: the names of files, each with the tree at one moment.
+ * The first is the tree. The arrays of all become columns NAME_TIME, one series for each array
+ * [tree/series.h]. An array that is the same at all moments stays one column. */
 #include "treeio/formats.h"
 #include "treeio/treeio.h"
 #include "treeio/xml.h"
@@ -19,18 +19,17 @@ typedef struct Moment {
 
 typedef struct Collection {
     const char *name; /* of the index */
-    Moment *moment;   /* owned */
-    size_t n, capacity;
-    size_t n_untimed; /* those whose time the index does not state */
+    ARRAY(Moment) moments;
+    size_t n_untimed; /* number of moments whose time the index does not state */
 } Collection;
 
 static void release(Collection *collection)
 {
-    for (size_t i = 0; i < collection->n; i++) {
-        free(collection->moment[i].path);
-        tree_release(&collection->moment[i].tree);
+    for (size_t i = 0; i < collection->moments.n; i++) {
+        free(collection->moments.items[i].path);
+        tree_release(&collection->moments.items[i].tree);
     }
-    free(collection->moment);
+    ARRAY_RELEASE(&collection->moments);
 }
 
 /* Finds the path of `file`, which the index names relative to its own folder. A file called "-" is
@@ -52,7 +51,7 @@ static Status beside(const char *index, const char *file, char **out, Err *err)
 static Status begin_element(void *context, Xml *xml, const XmlElement *element, Err *err)
 {
     Collection *collection = context;
-    Moment made = {.line = xml_line(xml), .time = (double)collection->n};
+    Moment made = {.line = xml_line(xml), .time = (double)collection->moments.n};
     const char *time = xml_attribute(element, "timestep"), *file,
                *part = xml_attribute(element, "part");
     if (strcmp(element->name, "DataSet") != 0)
@@ -66,10 +65,9 @@ static Status begin_element(void *context, Xml *xml, const XmlElement *element, 
                        part);
     if (strcasecmp(file_extension(file), "pvd") == 0)
         return err_set(err, STATUS_INPUT, "'%.60s' is an index itself", file);
-    TRY(mem_reserve(&collection->moment, &collection->capacity, collection->n + 1, sizeof made,
-                    "moments", err));
+    TRY(ARRAY_RESERVE(&collection->moments, 1, "moments", err));
     TRY(beside(collection->name, file, &made.path, err));
-    collection->moment[collection->n++] = made;
+    collection->moments.items[collection->moments.n++] = made;
     return STATUS_OK;
 }
 
@@ -80,23 +78,22 @@ static int by_time(const void *a, const void *b)
     return order ? order : (x->line > y->line) - (x->line < y->line);
 }
 
-/* Whether the tree has the nodes of the first one, and its columns by number. */
+/* Checks that the tree has the nodes and the columns of the first one. */
 static Status check_moment(const Collection *collection, const Moment *moment, Err *err)
 {
-    const Tree *first = &collection->moment[0].tree, *tree = &moment->tree;
-    bool same = tree->n == first->n &&
-                memcmp(tree->parent, first->parent, tree->n * sizeof *tree->parent) == 0 &&
-                memcmp(tree->id, first->id, tree->n * sizeof *tree->id) == 0;
-    if (!same)
+    const Moment *of_first = &collection->moments.items[0];
+    const Tree *first = &of_first->tree, *tree = &moment->tree;
+    if (tree->n != first->n ||
+        memcmp(tree->parent, first->parent, tree->n * sizeof *tree->parent) != 0 ||
+        memcmp(tree->id, first->id, tree->n * sizeof *tree->id) != 0)
         return err_set(err, STATUS_INPUT, "%s: the tree in %s is not that in %s", collection->name,
-                       moment->path, collection->moment[0].path);
-    bool columns = tree->n_columns == first->n_columns;
-    for (size_t k = 0; k < first->n_columns && columns; k++)
-        columns = strcmp(tree->column[k].name, first->column[k].name) == 0;
-    if (!columns)
-        return err_set(err, STATUS_INPUT, "%s: the arrays in %s are not those in %s",
-                       collection->name, moment->path, collection->moment[0].path);
-    return STATUS_OK;
+                       moment->path, of_first->path);
+    bool same = tree->n_columns == first->n_columns;
+    for (size_t k = 0; k < first->n_columns && same; k++)
+        same = strcmp(tree->column[k].name, first->column[k].name) == 0;
+    return same ? STATUS_OK
+                : err_set(err, STATUS_INPUT, "%s: the arrays in %s are not those in %s",
+                          collection->name, moment->path, of_first->path);
 }
 
 /* A pipe would wait for a writer, and a device may never end. What is not there is for the reader
@@ -110,35 +107,42 @@ static Status check_file(const char *path, Err *err)
                    path);
 }
 
+static Status read_moment(Collection *collection, Moment *moment, const ReadOptions *options,
+                          Err *err)
+{
+    Status status = check_file(moment->path, err);
+    if (status == STATUS_OK)
+        status = tree_read_as(&moment->tree, moment->path, options, NULL, err);
+    if (status != STATUS_OK)
+        err_prefix(err, "%s:%zu: ", collection->name, moment->line);
+    TRY(status);
+    TRY(check_moment(collection, moment, err));
+    return mem_check((double)collection->moments.n * (double)moment->tree.n_columns *
+                         (double)moment->tree.n * sizeof(double),
+                     collection->name, err);
+}
+
 static Status read_moments(Collection *collection, const ReadOptions *options, Err *err)
 {
     ReadOptions of_moments = {0}; /* units are applied to the tree that is made of all */
+    size_t n = collection->moments.n, untimed = collection->n_untimed;
     if (options) {
         of_moments.radius_mm = options->radius_mm;
         of_moments.repair_radii = options->repair_radii;
     }
-    if (collection->n == 0)
+    if (n == 0)
         return err_set(err, STATUS_INPUT, "%s: there is no DataSet in it", collection->name);
-    if (collection->n_untimed > 0 && collection->n_untimed < collection->n)
+    if (untimed > 0 && untimed < n)
         return err_set(err, STATUS_INPUT,
                        "%s: %zu of %zu DataSets have no timestep; either all have one or none",
-                       collection->name, collection->n_untimed, collection->n);
-    qsort(collection->moment, collection->n, sizeof *collection->moment, by_time);
-    for (size_t i = 0; i < collection->n; i++) {
-        Moment *moment = &collection->moment[i];
+                       collection->name, untimed, n);
+    qsort(collection->moments.items, n, sizeof *collection->moments.items, by_time);
+    for (size_t i = 0; i < n; i++) {
+        Moment *moment = &collection->moments.items[i];
         if (i > 0 && moment->time == moment[-1].time)
             return err_set(err, STATUS_INPUT, "%s:%zu: %s has this timestep already, %g",
                            collection->name, moment->line, moment[-1].path, moment->time);
-        Status status = check_file(moment->path, err);
-        if (status == STATUS_OK)
-            status = tree_read_as(&moment->tree, moment->path, &of_moments, NULL, err);
-        if (status != STATUS_OK)
-            err_prefix(err, "%s:%zu: ", collection->name, moment->line);
-        TRY(status);
-        TRY(check_moment(collection, moment, err));
-        TRY(mem_check((double)collection->n * (double)moment->tree.n_columns *
-                          (double)moment->tree.n * sizeof(double),
-                      collection->name, err));
+        TRY(read_moment(collection, moment, &of_moments, err));
     }
     return STATUS_OK;
 }
@@ -146,10 +150,10 @@ static Status read_moments(Collection *collection, const ReadOptions *options, E
 /* Whether a column is the same at all moments. */
 static bool is_constant(const Collection *collection, size_t column)
 {
-    const Tree *first = &collection->moment[0].tree;
-    for (size_t m = 1; m < collection->n; m++) {
+    const Tree *first = &collection->moments.items[0].tree;
+    for (size_t m = 1; m < collection->moments.n; m++) {
         const double *one = first->column[column].value;
-        const double *other = collection->moment[m].tree.column[column].value;
+        const double *other = collection->moments.items[m].tree.column[column].value;
         for (size_t i = 0; i < first->n; i++)
             if (one[i] != other[i] && !(isnan(one[i]) && isnan(other[i])))
                 return false;
@@ -180,10 +184,10 @@ static Status add_column(TreeBuilder *builder, const Moment *moment, size_t colu
 static Status add_columns(TreeBuilder *builder, const Collection *collection, const double **source,
                           Err *err)
 {
-    for (size_t k = 0; k < collection->moment[0].tree.n_columns; k++) {
+    for (size_t k = 0; k < collection->moments.items[0].tree.n_columns; k++) {
         bool constant = is_constant(collection, k);
-        for (size_t m = 0; m < (constant ? 1 : collection->n); m++)
-            TRY(add_column(builder, &collection->moment[m], k, constant, source, err));
+        for (size_t m = 0; m < (constant ? 1 : collection->moments.n); m++)
+            TRY(add_column(builder, &collection->moments.items[m], k, constant, source, err));
     }
     return STATUS_OK;
 }
@@ -209,14 +213,15 @@ static Status add_nodes(TreeBuilder *builder, const Tree *tree, const double **s
 
 static Status build(TreeBuilder *builder, Collection *collection, Err *err)
 {
-    const Tree *tree = &collection->moment[0].tree;
+    const Tree *tree = &collection->moments.items[0].tree;
     const double **source = NULL;
-    TRY(mem_calloc(&source, collection->n * tree->n_columns, sizeof *source, "columns", err));
-    Status status = add_columns(builder, collection, source, err);
-    if (status == STATUS_OK)
-        status = add_nodes(builder, tree, source, err);
-    if (status == STATUS_OK)
-        status = meta_copy(&builder->meta, &tree->meta, err);
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&source, collection->moments.n * tree->n_columns, sizeof *source, "columns",
+                        err));
+    TRY_GOTO(add_columns(builder, collection, source, err));
+    TRY_GOTO(add_nodes(builder, tree, source, err));
+    TRY_GOTO(meta_copy(&builder->meta, &tree->meta, err));
+done:
     free(source);
     return status;
 }
@@ -225,14 +230,14 @@ Status pvd_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
 {
     Collection collection = {.name = builder->name};
     static const XmlHandlers handlers = {.begin = begin_element};
-    Status status = xml_read(builder->name, bytes, size, &handlers, &collection, err);
-    if (status == STATUS_OK)
-        status = read_moments(&collection, builder->options, err);
-    if (status == STATUS_OK)
-        status = build(builder, &collection, err);
-    if (status == STATUS_OK && collection.n_untimed > 1)
-        status = reading_note(builder->reading, err,
-                              "the index states no times; moments are 0, 1, ... in its order");
+    Status status = STATUS_OK;
+    TRY_GOTO(xml_read(builder->name, bytes, size, &handlers, &collection, err));
+    TRY_GOTO(read_moments(&collection, builder->options, err));
+    TRY_GOTO(build(builder, &collection, err));
+    if (collection.n_untimed > 1)
+        TRY_GOTO(reading_note(builder->reading, err,
+                              "the index states no times; moments are 0, 1, ... in its order"));
+done:
     release(&collection);
     return status;
 }

@@ -6,70 +6,71 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* All series of a tree, which are of the same moments. */
+/* A series, and its name. Both are owned. */
+typedef struct NamedSeries {
+    Series series;
+    char *name;
+} NamedSeries;
+
+/* All series of a tree, which have the same moments. */
 typedef struct Moments {
     const Tree *tree;
-    Series *series; /* owned */
-    char **name;    /* owned */
-    size_t n, capacity, names_capacity;
-    bool *is_frame; /* of each column, whether it is of a series; owned */
+    ARRAY(NamedSeries) series;
+    bool *is_frame; /* per column: whether it is of a series; owned */
 } Moments;
+
+static void release_series(NamedSeries *named)
+{
+    series_release(&named->series);
+    free(named->name);
+}
 
 static void release(Moments *moments)
 {
-    for (size_t s = 0; s < moments->n; s++) {
-        series_release(&moments->series[s]);
-        free(moments->name[s]);
-    }
-    free(moments->series);
-    free(moments->name);
+    for (size_t s = 0; s < moments->series.n; s++)
+        release_series(&moments->series.items[s]);
+    ARRAY_RELEASE(&moments->series);
     free(moments->is_frame);
 }
 
-static Status check_times(const Moments *moments, const Series *series, const char *name, Err *err)
+static Status check_times(const Moments *moments, const NamedSeries *named, Err *err)
 {
-    const Series *first = &moments->series[0];
-    bool same = moments->n == 0 || series->n == first->n;
-    for (size_t k = 0; same && moments->n > 0 && k < series->n; k++)
-        same = series->frame[k].time == first->frame[k].time;
+    const NamedSeries *first = moments->series.items;
+    if (moments->series.n == 0)
+        return STATUS_OK;
+    bool same = named->series.n == first->series.n;
+    for (size_t k = 0; same && k < named->series.n; k++)
+        same = named->series.frame[k].time == first->series.frame[k].time;
     if (same)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
                    "the series %.60s and %.60s are of different times; a .pvd has the same for all",
-                   moments->name[0], name);
+                   first->name, named->name);
 }
 
-/* Adds the series that column `k` is of, unless it is of none or of one that is there. */
+/* Adds the series of column `k`, unless the column has none or the series is there. */
 static Status add_series(Moments *moments, size_t k, Err *err)
 {
     const char *column = moments->tree->column[k].name;
     size_t length;
     double time;
-    Series series = {0};
-    char *name = NULL;
+    NamedSeries named = {0};
+    Status status = STATUS_OK;
     if (moments->is_frame[k] || !series_parse(column, &length, &time))
         return STATUS_OK;
-    TRY(mem_strdup(&name, column, err));
-    name[length] = '\0';
-    Status status = tree_series(moments->tree, name, &series, err);
-    if (status == STATUS_OK && series.n > 0)
-        status = check_times(moments, &series, name, err);
-    if (status == STATUS_OK)
-        status = mem_reserve(&moments->series, &moments->capacity, moments->n + 1, sizeof series,
-                             "series", err);
-    if (status == STATUS_OK)
-        status = mem_reserve(&moments->name, &moments->names_capacity, moments->n + 1, sizeof name,
-                             "series", err);
-    if (status != STATUS_OK || series.n == 0) {
-        series_release(&series);
-        free(name);
-        return status;
-    }
-    for (size_t i = 0; i < series.n; i++)
-        moments->is_frame[series.frame[i].column] = true;
-    moments->series[moments->n] = series;
-    moments->name[moments->n++] = name;
+    TRY_GOTO(mem_strdup(&named.name, column, err));
+    named.name[length] = '\0';
+    TRY_GOTO(tree_series(moments->tree, named.name, &named.series, err));
+    if (named.series.n == 0)
+        goto done;
+    TRY_GOTO(check_times(moments, &named, err));
+    for (size_t i = 0; i < named.series.n; i++)
+        moments->is_frame[named.series.frame[i].column] = true;
+    TRY_GOTO(ARRAY_PUSH(&moments->series, "series", err, named));
     return STATUS_OK;
+done:
+    release_series(&named);
+    return status;
 }
 
 static Status find_moments(const Tree *tree, Moments *moments, Err *err)
@@ -78,15 +79,15 @@ static Status find_moments(const Tree *tree, Moments *moments, Err *err)
     TRY(mem_calloc(&moments->is_frame, tree->n_columns, sizeof *moments->is_frame, "columns", err));
     for (size_t k = 0; k < tree->n_columns; k++)
         TRY(add_series(moments, k, err));
-    if (moments->n > 0)
+    if (moments->series.n > 0)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
                    "the tree has no values that change with time, which a .pvd is for");
 }
 
-static size_t count(const Moments *moments)
+static const Series *first_series(const Moments *moments)
 {
-    return moments->series[0].n;
+    return &moments->series.items[0].series;
 }
 
 Status tree_moment_path(const char *path, size_t moment, char **out, Err *err)
@@ -99,8 +100,8 @@ Status tree_moment_path(const char *path, size_t moment, char **out, Err *err)
 /* Whether a column stays as it is: one of a series, or of the name of one, does not. */
 static bool is_constant(const Moments *moments, size_t column)
 {
-    for (size_t s = 0; s < moments->n; s++)
-        if (strcmp(moments->name[s], moments->tree->column[column].name) == 0)
+    for (size_t s = 0; s < moments->series.n; s++)
+        if (strcmp(moments->series.items[s].name, moments->tree->column[column].name) == 0)
             return false;
     return !moments->is_frame[column];
 }
@@ -110,19 +111,21 @@ static Status write_moment(const Moments *moments, size_t moment, const char *pa
 {
     Tree at = *moments->tree;
     char *file = NULL;
+    Status status = STATUS_OK;
     at.n_columns = 0;
     at.column = NULL;
     TRY(mem_calloc(&at.column, moments->tree->n_columns, sizeof *at.column, "columns", err));
     for (size_t k = 0; k < moments->tree->n_columns; k++)
         if (is_constant(moments, k))
             at.column[at.n_columns++] = moments->tree->column[k];
-    for (size_t s = 0; s < moments->n; s++) {
-        at.column[at.n_columns] = moments->tree->column[moments->series[s].frame[moment].column];
-        at.column[at.n_columns++].name = moments->name[s];
+    for (size_t s = 0; s < moments->series.n; s++) {
+        const NamedSeries *named = &moments->series.items[s];
+        at.column[at.n_columns] = moments->tree->column[named->series.frame[moment].column];
+        at.column[at.n_columns++].name = named->name;
     }
-    Status status = tree_moment_path(path, moment, &file, err);
-    if (status == STATUS_OK)
-        status = tree_write(&at, file, err);
+    TRY_GOTO(tree_moment_path(path, moment, &file, err));
+    TRY_GOTO(tree_write(&at, file, err));
+done:
     free(file);
     free(at.column);
     return status;
@@ -131,24 +134,22 @@ static Status write_moment(const Moments *moments, size_t moment, const char *pa
 static Status write_index(const Moments *moments, const char *path, Err *err)
 {
     Text text = TEXT_INIT;
+    Status status = STATUS_OK;
     text_puts(&text, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
                      "  <Collection>\n");
-    for (size_t k = 0; k < count(moments); k++) {
+    for (size_t k = 0; k < first_series(moments)->n; k++) {
         char *file = NULL;
-        Status status = tree_moment_path(path, k, &file, err);
-        if (status != STATUS_OK) {
-            text_release(&text);
-            return status;
-        }
+        TRY_GOTO(tree_moment_path(path, k, &file, err));
         text_puts(&text, "    <DataSet timestep=\"");
-        text_number(&text, moments->series[0].frame[k].time);
+        text_number(&text, first_series(moments)->frame[k].time);
         text_puts(&text, "\" part=\"0\" file=\"");
         text_escaped(&text, file_name(file));
         text_puts(&text, "\"/>\n");
         free(file);
     }
     text_puts(&text, "  </Collection>\n</VTKFile>\n");
-    Status status = file_write_text(path, &text, err);
+    TRY_GOTO(file_write_text(path, &text, err));
+done:
     text_release(&text);
     return status;
 }
@@ -156,9 +157,10 @@ static Status write_index(const Moments *moments, const char *path, Err *err)
 Status tree_count_moments(const Tree *tree, size_t *n, Err *err)
 {
     Moments moments;
-    Status status = find_moments(tree, &moments, err);
-    if (status == STATUS_OK)
-        *n = count(&moments);
+    Status status = STATUS_OK;
+    TRY_GOTO(find_moments(tree, &moments, err));
+    *n = first_series(&moments)->n;
+done:
     release(&moments);
     return status;
 }
@@ -166,11 +168,12 @@ Status tree_count_moments(const Tree *tree, size_t *n, Err *err)
 Status tree_write_moments(const Tree *tree, const char *path, Err *err)
 {
     Moments moments;
-    Status status = find_moments(tree, &moments, err);
-    for (size_t k = 0; status == STATUS_OK && k < count(&moments); k++)
-        status = write_moment(&moments, k, path, err);
-    if (status == STATUS_OK)
-        status = write_index(&moments, path, err);
+    Status status = STATUS_OK;
+    TRY_GOTO(find_moments(tree, &moments, err));
+    for (size_t k = 0; k < first_series(&moments)->n; k++)
+        TRY_GOTO(write_moment(&moments, k, path, err));
+    TRY_GOTO(write_index(&moments, path, err));
+done:
     release(&moments);
     return status;
 }

@@ -7,6 +7,7 @@
  * ends in its id, as in the decks that corcast writes ("segment12"). */
 #include "treeio/series/values.h"
 
+#include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include <dirent.h>
 #include <errno.h>
@@ -24,26 +25,24 @@ enum { QUANTITIES = sizeof quantities / sizeof *quantities };
 typedef struct StepsReader {
     Tree *tree;
     const char *folder, *quantity, *unit;
-    char **name; /* of the files; owned */
-    size_t n, capacity;
-    int32_t *node; /* of each id, -1: none; owned */
-    int32_t n_ids;
-    size_t *file_of; /* of each node, from 1 on; 0: none yet; owned */
-    double **column; /* the tree's, one for each step; owned */
-    size_t steps;    /* 0 before the first file */
+    ARRAY(char *) names; /* of the files; owned */
+    IdIndex ids;         /* of the tree's nodes */
+    size_t *file_of;     /* per node: index of its file + 1; 0: none yet; owned */
+    double **column;     /* per time step: the values of the tree's column; owned */
+    size_t steps;        /* 0 before the first file */
 } StepsReader;
 
 static void release(StepsReader *reader)
 {
-    for (size_t i = 0; i < reader->n; i++)
-        free(reader->name[i]);
-    free(reader->name);
-    free(reader->node);
+    for (size_t i = 0; i < reader->names.n; i++)
+        free(reader->names.items[i]);
+    ARRAY_RELEASE(&reader->names);
+    idindex_release(&reader->ids);
     free(reader->file_of);
     free(reader->column);
 }
 
-/* Where "_flow.dat" begins in the name of a file; 0: it is none. */
+/* Returns where "_flow.dat" begins in the name of a file, or 0 if it does not. */
 static size_t end_of_segment(const StepsReader *reader, const char *name)
 {
     char suffix[32];
@@ -62,66 +61,53 @@ static int by_name(const void *a, const void *b)
 static Status list_files(StepsReader *reader, Err *err)
 {
     DIR *folder = opendir(reader->folder);
+    Status status = STATUS_OK;
     if (!folder)
         return err_set(err, STATUS_IO, "%s: cannot be read: %s", reader->folder, strerror(errno));
-    Status status = STATUS_OK;
-    for (struct dirent *entry; status == STATUS_OK && (entry = readdir(folder));) {
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        char *name;
         if (!end_of_segment(reader, entry->d_name))
             continue;
-        status = mem_reserve(&reader->name, &reader->capacity, reader->n + 1, sizeof *reader->name,
-                             "names of files", err);
-        if (status == STATUS_OK)
-            status = mem_strdup(&reader->name[reader->n], entry->d_name, err);
-        reader->n += status == STATUS_OK;
+        TRY_GOTO(ARRAY_RESERVE(&reader->names, 1, "names of files", err));
+        TRY_GOTO(mem_strdup(&name, entry->d_name, err));
+        reader->names.items[reader->names.n++] = name;
     }
+    if (reader->names.n == 0)
+        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: there is no file ..._%s.dat in it", reader->folder,
+                         reader->quantity));
+    qsort(reader->names.items, reader->names.n, sizeof *reader->names.items, by_name);
+done:
     closedir(folder);
-    TRY(status);
-    if (reader->n == 0)
-        return err_set(err, STATUS_INPUT, "%s: there is no file ..._%s.dat in it", reader->folder,
-                       reader->quantity);
-    qsort(reader->name, reader->n, sizeof *reader->name, by_name);
-    return STATUS_OK;
+    return status;
 }
 
-static Status index_ids(StepsReader *reader, Err *err)
-{
-    const Tree *tree = reader->tree;
-    for (size_t i = 0; i < tree->n; i++)
-        if (tree->id[i] >= reader->n_ids)
-            reader->n_ids = tree->id[i] + 1;
-    TRY(mem_calloc(&reader->node, (size_t)reader->n_ids, sizeof *reader->node, "ids", err));
-    TRY(mem_calloc(&reader->file_of, tree->n, sizeof *reader->file_of, "ids", err));
-    for (int32_t id = 0; id < reader->n_ids; id++)
-        reader->node[id] = -1;
-    for (size_t i = 0; i < tree->n; i++)
-        reader->node[tree->id[i]] = (int32_t)i;
-    return STATUS_OK;
-}
-
-/* The node whose id the name of a file ends in, before the quantity. */
+/* Finds the node whose id ends the name of a file, before the quantity. */
 static Status find_node(StepsReader *reader, size_t file, size_t *node, Err *err)
 {
-    const char *name = reader->name[file];
-    size_t end = end_of_segment(reader, name), start = end;
+    const char *name = reader->names.items[file];
+    size_t end = end_of_segment(reader, name), start = end, found = 0;
     char digits[16] = "";
     long long id;
     while (start > 0 && name[start - 1] >= '0' && name[start - 1] <= '9')
         start--;
     if (end - start < sizeof digits)
         memcpy(digits, name + start, end - start);
-    if (!integer_parse(digits, 1, reader->n_ids - 1, &id) || reader->node[id] < 0)
+    if (integer_parse(digits, 1, TREE_MAX_ID, &id))
+        found = idindex_find(&reader->ids, (int32_t)id);
+    if (found == 0)
         return err_set(err, STATUS_INPUT,
                        "the name of the segment, '%.*s', does not end in the id of one of the tree",
                        (int)(end < 60 ? end : 60), name);
-    *node = (size_t)reader->node[id];
-    if (reader->file_of[*node])
+    *node = found - 1;
+    size_t *file_of = &reader->file_of[*node];
+    if (*file_of)
         return err_set(err, STATUS_INPUT, "segment %d has %s already", reader->tree->id[*node],
-                       reader->name[reader->file_of[*node] - 1]);
-    reader->file_of[*node] = file + 1;
+                       reader->names.items[*file_of - 1]);
+    *file_of = file + 1;
     return STATUS_OK;
 }
 
-/* Makes one column for each step; a single one has no time. */
+/* Makes one column per time step. A single one has no time in its name. */
 static Status open_columns(StepsReader *reader, size_t steps, Err *err)
 {
     Tree *tree = reader->tree;
@@ -139,47 +125,52 @@ static Status open_columns(StepsReader *reader, size_t steps, Err *err)
     return STATUS_OK;
 }
 
-/* Counts the numbers of a line. */
-static size_t count_words(const char *line)
+/* Cuts the next word off a line, in place. Returns NULL after the last. */
+static char *next_word(char **line)
 {
-    size_t count = 0;
-    for (line += strspn(line, TEXT_BLANKS); *line; count++) {
-        line += strcspn(line, TEXT_BLANKS);
-        line += strspn(line, TEXT_BLANKS);
-    }
-    return count;
+    char *word = *line + strspn(*line, TEXT_BLANKS), *end = word + strcspn(word, TEXT_BLANKS);
+    *line = *end ? end + 1 : end;
+    *end = '\0';
+    return *word ? word : NULL;
 }
 
 static Status take_line(StepsReader *reader, size_t node, char *line, Err *err)
 {
-    size_t steps = count_words(line), k = 0;
+    size_t steps = 0, k = 0;
+    for (const char *at = line + strspn(line, TEXT_BLANKS); *at; steps++) {
+        at += strcspn(at, TEXT_BLANKS);
+        at += strspn(at, TEXT_BLANKS);
+    }
     if (!reader->column)
         TRY(open_columns(reader, steps, err));
     if (steps != reader->steps)
         return err_set(err, STATUS_INPUT, "there are %zu time steps, and %zu in %s", steps,
-                       reader->steps, reader->name[0]);
-    for (char *word = line + strspn(line, TEXT_BLANKS); *word; k++) {
-        char *end = word + strcspn(word, TEXT_BLANKS), *next = end + strspn(end, TEXT_BLANKS);
-        *end = '\0';
+                       reader->steps, reader->names.items[0]);
+    for (char *word; (word = next_word(&line)); k++)
         TRY(field_value(reader->quantity, word, &reader->column[k][node], err));
-        word = next;
-    }
     return STATUS_OK;
 }
 
-/* The last line that holds anything, and its number. */
-static char *last_line(char *text, size_t *number)
+/* Returns the last line that is not blank, or NULL; *number is its number. */
+static char *last_line(char *text, size_t size, size_t *number)
 {
+    Cursor cursor = cursor_of("", NULL, text, size);
     char *last = NULL;
-    size_t count = 0;
-    for (char *line; (line = text_line(&text));) {
-        count++;
-        if (!line[strspn(line, TEXT_BLANKS)])
-            continue;
-        last = line;
-        *number = count;
-    }
+    *number = 1;
+    for (char *line; (line = cursor_line(&cursor));)
+        if (line[strspn(line, TEXT_BLANKS)]) {
+            last = line;
+            *number = cursor.line;
+        }
     return last;
+}
+
+static Status read_text(StepsReader *reader, size_t file, char *line, Err *err)
+{
+    size_t node = 0;
+    TRY(find_node(reader, file, &node, err));
+    return line ? take_line(reader, node, line, err)
+                : err_set(err, STATUS_INPUT, "there are no values in it");
 }
 
 static Status read_file(StepsReader *reader, size_t file, Err *err)
@@ -187,18 +178,15 @@ static Status read_file(StepsReader *reader, size_t file, Err *err)
     static const FileForm form = {
         .name = "a file of time steps", .most_bytes = 4e9, .is_text = true};
     char *path = NULL, *bytes = NULL;
-    size_t size, number = 1, node = 0;
-    TRY(file_join(reader->folder, reader->name[file], &path, err));
-    Status status = file_read(path, &form, &bytes, &size, err);
-    char *line = status == STATUS_OK ? last_line(bytes, &number) : NULL;
-    if (status == STATUS_OK) {
-        status = find_node(reader, file, &node, err);
-        if (status == STATUS_OK)
-            status = line ? take_line(reader, node, line, err)
-                          : err_set(err, STATUS_INPUT, "there are no values in it");
-        if (status == STATUS_INPUT)
-            err_prefix(err, "%s:%zu: ", path, number);
-    }
+    size_t size, number;
+    Status status = STATUS_OK;
+    TRY_GOTO(file_join(reader->folder, reader->names.items[file], &path, err));
+    TRY_GOTO(file_read(path, &form, &bytes, &size, err));
+    char *line = last_line(bytes, size, &number);
+    status = read_text(reader, file, line, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s:%zu: ", path, number);
+done:
     free(bytes);
     free(path);
     return status;
@@ -220,13 +208,14 @@ static Status find_quantity(StepsReader *reader, Err *err)
 Status steps_read(Tree *tree, const char *folder, const char *quantity, Err *err)
 {
     StepsReader reader = {.tree = tree, .folder = folder, .quantity = quantity};
-    Status status = find_quantity(&reader, err);
-    if (status == STATUS_OK)
-        status = list_files(&reader, err);
-    if (status == STATUS_OK)
-        status = index_ids(&reader, err);
-    for (size_t file = 0; file < reader.n && status == STATUS_OK; file++)
-        status = read_file(&reader, file, err);
+    Status status = STATUS_OK;
+    TRY_GOTO(find_quantity(&reader, err));
+    TRY_GOTO(list_files(&reader, err));
+    TRY_GOTO(idindex_make(&reader.ids, tree->id, tree->n, err));
+    TRY_GOTO(mem_calloc(&reader.file_of, tree->n, sizeof *reader.file_of, "ids", err));
+    for (size_t file = 0; file < reader.names.n; file++)
+        TRY_GOTO(read_file(&reader, file, err));
+done:
     release(&reader);
     return status;
 }

@@ -1,10 +1,11 @@
-/* A CSV whose first line names the columns. One of them, id or name, tells the segments; with a
- * column time, a row is of one segment at one time, else of one segment. Rows find their nodes by a
- * chain for each key: an id has one node, a branch of SimVascular's many.
+/* Reads a CSV whose first line names the columns. One of them, id or name, identifies the segments.
+ * With a column time, a row is about one segment at one time; otherwise about one segment. A row
+ * finds its nodes in the list of its key: an id has one node, a branch of SimVascular has many.
  *
- * The columns of values get their names in the tree before any row is read, and the wanted ones
- * alone take memory. Rows with a time wait until all are read, as only then the frames are known;
- * sorted by segment and time, what is missing or stands twice is beside its neighbours. */
+ * The columns of values get their names in the tree before any row is read, and only wanted columns
+ * take memory. Rows with a time are kept until all are read, because only then the frames are
+ * known. They are sorted by segment and time, so that what is missing or given twice stands beside
+ * its neighbours. */
 #include "treeio/series/values.h"
 
 #include "treeio/cursor.h"
@@ -17,50 +18,47 @@
 
 enum { NONE = -1 };
 
-/* A column of values of the file. */
+/* A column of the file. */
 typedef struct ValueColumn {
     char *name;       /* in the tree; owned */
     const char *unit; /* borrowed from the text */
     bool wanted;
-    double *value; /* the tree's; NULL before there is one */
+    double *value; /* of the tree's column; NULL before there is one */
 } ValueColumn;
 
-/* The values of a segment at a time stand in `held`, one for each wanted column. */
+/* The values of a segment at a time. */
 typedef struct TimedRow {
     int32_t key;
     double time;
-    size_t line, values;
+    size_t line, values; /* line of the file; index of the first value in `held` */
 } TimedRow;
 
 typedef struct ValuesReader {
     Tree *tree;
-    const char *path, *wanted; /* NULL: all columns */
-    bool one_thing;            /* all of them are one series or column */
-    char *what;                /* what that is called; owned */
-    int key, time;             /* numbers of these columns; NONE */
-    int n_fields;
-    ValueColumn *column; /* owned; of all fields, those of keys and times not wanted */
-    size_t capacity, n_wanted;
-    /* Nodes by key: the first of each, then from one to the next. Owned. */
-    int32_t *first, *next, n_keys;
+    const char *path, *wanted;  /* NULL: all columns are wanted */
+    bool one_thing;             /* all columns are one series or one column */
+    char *what;                 /* its name; owned */
+    int key, time;              /* indices of these columns, or NONE */
+    ARRAY(ValueColumn) columns; /* of all fields; keys and times are not wanted */
+    size_t n_wanted;
+    char **field;     /* of one row; owned */
+    IndexLists nodes; /* the nodes of each key */
+    size_t *line_of;  /* per key: its line; 0: none yet; NULL: there was no row; owned */
     bool of_branches; /* keys are numbers of branches */
-    size_t *line_of;  /* of each key; 0: none yet; owned */
-    TimedRow *row;    /* owned */
-    size_t n_rows, rows_capacity;
-    double *held; /* owned */
-    size_t n_held, held_capacity;
+    ARRAY(TimedRow) rows;
+    ARRAY(double) held; /* the wanted values of all rows with a time */
 } ValuesReader;
 
 static void reader_release(ValuesReader *reader)
 {
-    for (int i = 0; i < reader->n_fields; i++)
-        free(reader->column[i].name);
-    free(reader->column);
-    free(reader->first);
-    free(reader->next);
+    for (size_t i = 0; i < reader->columns.n; i++)
+        free(reader->columns.items[i].name);
+    ARRAY_RELEASE(&reader->columns);
+    free(reader->field);
+    indexlists_release(&reader->nodes);
     free(reader->line_of);
-    free(reader->row);
-    free(reader->held);
+    ARRAY_RELEASE(&reader->rows);
+    ARRAY_RELEASE(&reader->held);
     free(reader->what);
 }
 
@@ -68,9 +66,10 @@ static void reader_release(ValuesReader *reader)
 
 static Status add_field(ValuesReader *reader, char *title, Err *err)
 {
+    int index = (int)reader->columns.n;
     bool is_key = strcmp(title, "id") == 0 || strcmp(title, "name") == 0;
     bool is_time = strcmp(title, "time") == 0;
-    if (reader->n_fields > BUILDER_MAX_COLUMNS)
+    if (index > BUILDER_MAX_COLUMNS)
         return err_set(err, STATUS_INPUT, "there are more than %d columns of values",
                        BUILDER_MAX_COLUMNS);
     if ((is_key && reader->key != NONE) || (is_time && reader->time != NONE))
@@ -78,31 +77,22 @@ static Status add_field(ValuesReader *reader, char *title, Err *err)
                        is_key ? "segment" : "time of a row");
     ValueColumn made = {.wanted = !is_key && !is_time, .unit = csv_unit(title)};
     if (made.wanted && !*title)
-        return err_set(err, STATUS_INPUT, "column %d has no name", reader->n_fields + 1);
-    TRY(mem_reserve(&reader->column, &reader->capacity, (size_t)reader->n_fields + 1, sizeof made,
-                    "columns", err));
+        return err_set(err, STATUS_INPUT, "column %d has no name", index + 1);
+    TRY(ARRAY_RESERVE(&reader->columns, 1, "columns", err));
     TRY(mem_strdup(&made.name, title, err));
-    if (is_key)
-        reader->key = reader->n_fields;
-    if (is_time)
-        reader->time = reader->n_fields;
-    reader->column[reader->n_fields++] = made;
+    reader->key = is_key ? index : reader->key;
+    reader->time = is_time ? index : reader->time;
+    reader->columns.items[index] = made;
+    reader->columns.n++;
     return STATUS_OK;
 }
 
-/* The file's name without folders and extension. */
-static Status stem(const char *path, Text *out, Err *err)
-{
-    const char *name = file_name(path), *dot = strrchr(name, '.');
-    text_append(out, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
-    return text_check(out, err);
-}
-
+/* Calls the column "BASE_TIME". */
 static Status rename_column(ValueColumn *column, const char *base, const char *time, Err *err)
 {
     Text name = TEXT_INIT;
-    text_printf(&name, "%s_%s", base, time);
     char *taken;
+    text_printf(&name, "%s_%s", base, time);
     Status status = text_take(&name, &taken, err);
     text_release(&name);
     TRY(status);
@@ -117,13 +107,13 @@ static bool is_number(const char *text)
     return number_parse(text, &number) && isfinite(number);
 }
 
-/* Names that are times alone become those of a series named after the file; where each column is a
- * frame, so do names that tell no time, by their order from 0 on. */
+/* Names that are times become those of a series named after the file. If each column is a frame,
+ * all names become those of the series, by their order from 0 on. */
 static Status name_frames(ValuesReader *reader, const char *base, bool by_order, Err *err)
 {
     int frame = 0;
-    for (int i = 0; i < reader->n_fields; i++) {
-        ValueColumn *column = &reader->column[i];
+    for (size_t i = 0; i < reader->columns.n; i++) {
+        ValueColumn *column = &reader->columns.items[i];
         char number[16];
         if (!column->wanted)
             continue;
@@ -134,33 +124,38 @@ static Status name_frames(ValuesReader *reader, const char *base, bool by_order,
     return STATUS_OK;
 }
 
-/* Whether a column's name is `name`, or of the series of this name. */
-static bool is_of(const ValueColumn *column, const char *name, bool series)
+/* What columns are counted or chosen by. */
+typedef enum ColumnMatch { MATCH_ALL, MATCH_NAME, MATCH_SERIES } ColumnMatch;
+
+/* Returns true if a wanted column has the name, or is of the series of this name. */
+static bool matches(const ValueColumn *column, ColumnMatch match, const char *name)
 {
     size_t length;
     double time;
-    if (!series)
+    if (!column->wanted || match == MATCH_ALL)
+        return column->wanted;
+    if (match == MATCH_NAME)
         return strcmp(column->name, name) == 0;
     return series_parse(column->name, &length, &time) && length == strlen(name) &&
            strncmp(column->name, name, length) == 0;
 }
 
-static int count_of(const ValuesReader *reader, const char *name, bool series)
+static size_t count_columns(const ValuesReader *reader, ColumnMatch match, const char *name)
 {
-    int count = 0;
-    for (int i = 0; i < reader->n_fields; i++)
-        count += reader->column[i].wanted && is_of(&reader->column[i], name, series);
+    size_t count = 0;
+    for (size_t i = 0; i < reader->columns.n; i++)
+        count += matches(&reader->columns.items[i], match, name);
     return count;
 }
 
-static Status no_column(const ValuesReader *reader, Err *err)
+static Status refuse_column(const ValuesReader *reader, Err *err)
 {
     enum { SHOWN = 8 };
     Text known = TEXT_INIT;
     int shown = 0;
-    for (int i = 0; i < reader->n_fields && shown < SHOWN; i++)
-        if (reader->column[i].wanted)
-            text_printf(&known, "%s%.40s", shown++ ? ", " : "", reader->column[i].name);
+    for (size_t i = 0; i < reader->columns.n && shown < SHOWN; i++)
+        if (reader->columns.items[i].wanted)
+            text_printf(&known, "%s%.40s", shown++ ? ", " : "", reader->columns.items[i].name);
     Status status = text_check(&known, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_INPUT, "there is no column '%.40s'; there are %s%s",
@@ -169,70 +164,56 @@ static Status no_column(const ValuesReader *reader, Err *err)
     return status;
 }
 
-/* Only the column asked for, or its series, stays wanted. */
+/* Only the column of the wanted name, or its series, stays wanted. */
 static Status choose_wanted(ValuesReader *reader, Err *err)
 {
-    bool series = count_of(reader, reader->wanted, false) == 0;
-    if (series && count_of(reader, reader->wanted, true) == 0)
-        return no_column(reader, err);
-    for (int i = 0; i < reader->n_fields; i++)
-        reader->column[i].wanted =
-            reader->column[i].wanted && is_of(&reader->column[i], reader->wanted, series);
+    const char *name = reader->wanted;
+    ColumnMatch match = count_columns(reader, MATCH_NAME, name) > 0 ? MATCH_NAME : MATCH_SERIES;
+    if (count_columns(reader, match, name) == 0)
+        return refuse_column(reader, err);
+    for (size_t i = 0; i < reader->columns.n; i++)
+        reader->columns.items[i].wanted = matches(&reader->columns.items[i], match, name);
     return STATUS_OK;
 }
 
-static int first_wanted(const ValuesReader *reader)
+/* Finds what all columns are together, and sets reader->what. */
+static Status name_whole(ValuesReader *reader, const char *base, Err *err)
 {
-    int first = 0;
-    while (first < reader->n_fields && !reader->column[first].wanted)
-        first++;
-    return first;
-}
-
-/* What all columns are together, in reader->what. */
-static Status name_whole(ValuesReader *reader, const char *base, int n, Err *err)
-{
-    const char *first = reader->column[first_wanted(reader)].name;
-    size_t length;
+    size_t n = count_columns(reader, MATCH_ALL, NULL), length;
     double time;
+    const ValueColumn *column = reader->columns.items;
+    while (!column->wanted)
+        column++;
+    TRY(mem_strdup(&reader->what, column->name, err));
     if (n == 1)
-        return mem_strdup(&reader->what, first, err);
+        return STATUS_OK;
     if (reader->time != NONE)
         return err_set(err, STATUS_INPUT,
-                       "there are %d columns of values; say which, as in FILE.csv:%.40s", n, first);
-    Text series = TEXT_INIT;
-    if (series_parse(first, &length, &time))
-        text_append(&series, first, length);
-    Status status = text_take(&series, &reader->what, err);
-    text_release(&series);
-    TRY(status);
-    if (*reader->what && count_of(reader, reader->what, true) == n)
-        return STATUS_OK;
+                       "there are %zu columns of values; say which, as in FILE.csv:%.40s", n,
+                       column->name);
+    if (series_parse(column->name, &length, &time)) {
+        reader->what[length] = '\0';
+        if (count_columns(reader, MATCH_SERIES, reader->what) == n)
+            return STATUS_OK;
+    }
     free(reader->what);
     reader->what = NULL;
     TRY(name_frames(reader, base, true, err));
     return mem_strdup(&reader->what, base, err);
 }
 
-static int count_wanted(const ValuesReader *reader)
-{
-    int count = 0;
-    for (int i = 0; i < reader->n_fields; i++)
-        count += reader->column[i].wanted;
-    return count;
-}
-
-/* Settles what the columns are called in the tree and which are read. */
+/* Decides how the columns are called in the tree and which are read. `base` is the file's name
+ * without folders and extension. */
 static Status name_columns(ValuesReader *reader, const char *base, Err *err)
 {
     if (reader->time == NONE)
         TRY(name_frames(reader, base, false, err));
     if (reader->wanted)
         return choose_wanted(reader, err);
-    return reader->one_thing ? name_whole(reader, base, count_wanted(reader), err) : STATUS_OK;
+    return reader->one_thing ? name_whole(reader, base, err) : STATUS_OK;
 }
 
-/* The column of the tree, which no other of the file is. */
+/* Makes a column of the tree. Columns from `before` on are the file's, which have other names. */
 static Status open_column(ValuesReader *reader, const char *name, const char *unit, size_t before,
                           double **value, Err *err)
 {
@@ -251,8 +232,8 @@ static Status open_columns(ValuesReader *reader, Err *err)
 {
     size_t before = reader->tree->n_columns;
     TRY(check_room(reader, reader->n_wanted, err));
-    for (int i = 0; i < reader->n_fields; i++) {
-        ValueColumn *column = &reader->column[i];
+    for (size_t i = 0; i < reader->columns.n; i++) {
+        ValueColumn *column = &reader->columns.items[i];
         if (column->wanted)
             TRY(open_column(reader, column->name, column->unit, before, &column->value, err));
     }
@@ -261,28 +242,30 @@ static Status open_columns(ValuesReader *reader, Err *err)
 
 static Status read_titles(ValuesReader *reader, char *line, Err *err)
 {
-    for (char *at = line; at;) {
-        char *title;
+    const char *name = file_name(reader->path), *dot = strrchr(name, '.');
+    Text base = TEXT_INIT;
+    for (char *at = line, *title; at;) {
         TRY(csv_field(&at, ',', &title, err));
         TRY(add_field(reader, title, err));
     }
-    if (reader->key == NONE || count_wanted(reader) == 0)
+    if (reader->key == NONE || count_columns(reader, MATCH_ALL, NULL) == 0)
         return err_set(err, STATUS_INPUT,
                        reader->key == NONE ? "there is no column id or name, to tell the segments"
                                            : "there is no column of values");
-    Text base = TEXT_INIT;
-    Status status = stem(reader->path, &base, err);
+    TRY(mem_calloc(&reader->field, reader->columns.n, sizeof *reader->field, "fields", err));
+    text_append(&base, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
+    Status status = text_check(&base, err);
     if (status == STATUS_OK)
         status = name_columns(reader, text_chars(&base), err);
     text_release(&base);
     TRY(status);
-    reader->n_wanted = (size_t)count_wanted(reader);
+    reader->n_wanted = count_columns(reader, MATCH_ALL, NULL);
     return reader->time == NONE ? open_columns(reader, err) : STATUS_OK;
 }
 
-/* ---- which segments a row is of -------------------------------------------------------------- */
+/* ---- the segments of a row ------------------------------------------------------------------- */
 
-/* The number in "branch12_seg0"; NONE in any other name. */
+/* Returns the number in "branch12_seg0", or NONE for any other name. */
 static int32_t branch_of(const char *name)
 {
     long long number;
@@ -296,7 +279,7 @@ static int32_t branch_of(const char *name)
     return integer_parse(digits, 0, TREE_MAX_ID, &number) ? (int32_t)number : NONE;
 }
 
-/* The key of a node, NONE without one. */
+/* Returns the key of a node, or NONE. */
 static int32_t key_of(const ValuesReader *reader, const TreeColumn *branches, size_t i)
 {
     if (!branches)
@@ -305,44 +288,45 @@ static int32_t key_of(const ValuesReader *reader, const TreeColumn *branches, si
     return value >= 0 && value <= TREE_MAX_ID && value == floor(value) ? (int32_t)value : NONE;
 }
 
-/* Chains the nodes of each key: ids, or by the first row's name the numbers of branches. */
+/* Lists the nodes of each key. Keys are ids or, by the name in the first row, numbers of branches.
+ */
 static Status index_nodes(ValuesReader *reader, const char *name, Err *err)
 {
     const Tree *tree = reader->tree;
+    IndexLists *nodes = &reader->nodes;
     const TreeColumn *branches = NULL;
+    int32_t n_keys = 0, key;
     reader->of_branches = branch_of(name) != NONE;
     if (reader->of_branches && !(branches = tree_column(tree, "BranchId")))
         return err_set(err, STATUS_INPUT,
                        "'%.40s' is a branch of SimVascular's, and the tree has no column BranchId",
                        name);
     for (size_t i = 0; i < tree->n; i++)
-        if (key_of(reader, branches, i) >= reader->n_keys)
-            reader->n_keys = key_of(reader, branches, i) + 1;
-    TRY(mem_calloc(&reader->first, (size_t)reader->n_keys, sizeof *reader->first, "keys", err));
-    TRY(mem_calloc(&reader->line_of, (size_t)reader->n_keys, sizeof *reader->line_of, "keys", err));
-    TRY(mem_calloc(&reader->next, tree->n, sizeof *reader->next, "keys", err));
-    for (int32_t key = 0; key < reader->n_keys; key++)
-        reader->first[key] = NONE;
-    for (size_t i = tree->n; i-- > 0;) {
-        int32_t key = key_of(reader, branches, i);
-        if (key == NONE)
-            continue;
-        reader->next[i] = reader->first[key];
-        reader->first[key] = (int32_t)i;
-    }
+        if (key_of(reader, branches, i) >= n_keys)
+            n_keys = key_of(reader, branches, i) + 1;
+    TRY(mem_calloc(&reader->line_of, (size_t)n_keys, sizeof *reader->line_of, "keys", err));
+    TRY(indexlists_begin(nodes, (size_t)n_keys, "keys", err));
+    for (size_t i = 0; i < tree->n; i++)
+        if ((key = key_of(reader, branches, i)) != NONE)
+            indexlists_count(nodes, (size_t)key);
+    TRY(indexlists_allot(nodes, "keys", err));
+    for (size_t i = 0; i < tree->n; i++)
+        if ((key = key_of(reader, branches, i)) != NONE)
+            indexlists_put(nodes, (size_t)key, (uint32_t)i);
     return STATUS_OK;
 }
 
 static Status find_key(ValuesReader *reader, const char *name, int32_t *key, Err *err)
 {
     long long number = NONE;
-    if (!reader->first)
+    if (!reader->line_of)
         TRY(index_nodes(reader, name, err));
     if (reader->of_branches)
         number = branch_of(name);
     else if (!integer_parse(name, 0, INT32_MAX, &number))
         return err_set(err, STATUS_INPUT, "'%.40s' is not the id of a segment", name);
-    if (number < 0 || number >= reader->n_keys || reader->first[number] == NONE)
+    if (number < 0 || (size_t)number >= reader->nodes.n ||
+        indexlists_length(&reader->nodes, (size_t)number) == 0)
         return err_set(err, STATUS_INPUT, "the tree has no segment %.40s", name);
     *key = (int32_t)number;
     return STATUS_OK;
@@ -352,71 +336,42 @@ static Status find_key(ValuesReader *reader, const char *name, int32_t *key, Err
 
 static void put_value(const ValuesReader *reader, int32_t key, double *column, double value)
 {
-    for (int32_t i = reader->first[key]; i != NONE; i = reader->next[i])
-        column[i] = value;
+    const IndexLists *nodes = &reader->nodes;
+    for (uint32_t i = nodes->first[key]; i < nodes->first[key + 1]; i++)
+        column[nodes->items[i]] = value;
 }
 
-static Status hold_value(ValuesReader *reader, double value, Err *err)
+static Status take_values(ValuesReader *reader, int32_t key, Err *err)
 {
-    TRY(mem_reserve(&reader->held, &reader->held_capacity, reader->n_held + 1, sizeof value,
-                    "values", err));
-    reader->held[reader->n_held++] = value;
-    return STATUS_OK;
-}
-
-/* Takes in the values of a row, whose fields are parted already. */
-static Status take_values(ValuesReader *reader, char *const *field, int32_t key, Err *err)
-{
-    for (int i = 0; i < reader->n_fields; i++) {
-        const ValueColumn *column = &reader->column[i];
+    for (size_t i = 0; i < reader->columns.n; i++) {
+        const ValueColumn *column = &reader->columns.items[i];
         double value;
         if (!column->wanted)
             continue;
-        TRY(field_value(column->name, field[i], &value, err));
+        TRY(field_value(column->name, reader->field[i], &value, err));
         if (reader->time != NONE)
-            TRY(hold_value(reader, value, err));
+            TRY(ARRAY_PUSH(&reader->held, "values", err, value));
         else
             put_value(reader, key, column->value, value);
     }
     return STATUS_OK;
 }
 
-static Status take_row(ValuesReader *reader, size_t line, char *const *field, Err *err)
-{
-    TimedRow row = {.line = line, .values = reader->n_held};
-    TRY(find_key(reader, field[reader->key], &row.key, err));
-    if (reader->time == NONE && reader->line_of[row.key])
-        return err_set(err, STATUS_INPUT, "segment %.40s stands on line %zu already",
-                       field[reader->key], reader->line_of[row.key]);
-    reader->line_of[row.key] = line;
-    if (reader->time != NONE) {
-        TRY(field_number("time", field[reader->time], -HUGE_VAL, &row.time, err));
-        TRY(mem_reserve(&reader->row, &reader->rows_capacity, reader->n_rows + 1, sizeof row,
-                        "rows", err));
-        reader->row[reader->n_rows++] = row;
-    }
-    return take_values(reader, field, row.key, err);
-}
-
 static Status read_row(ValuesReader *reader, size_t line, char *text, Err *err)
 {
-    char **field = NULL;
-    int n = 0;
-    TRY(mem_calloc(&field, (size_t)reader->n_fields, sizeof *field, "fields", err));
-    Status status = STATUS_OK;
-    for (char *at = text; at && status == STATUS_OK; n++) {
-        char *next;
-        status = csv_field(&at, ',', &next, err);
-        if (n < reader->n_fields)
-            field[n] = next;
+    TimedRow row = {.line = line, .values = reader->held.n};
+    TRY(csv_row(text, ',', reader->field, reader->columns.n, err));
+    const char *name = reader->field[reader->key];
+    TRY(find_key(reader, name, &row.key, err));
+    if (reader->time == NONE && reader->line_of[row.key])
+        return err_set(err, STATUS_INPUT, "segment %.40s stands on line %zu already", name,
+                       reader->line_of[row.key]);
+    reader->line_of[row.key] = line;
+    if (reader->time != NONE) {
+        TRY(field_number("time", reader->field[reader->time], -HUGE_VAL, &row.time, err));
+        TRY(ARRAY_PUSH(&reader->rows, "rows", err, row));
     }
-    if (status == STATUS_OK && n != reader->n_fields)
-        status = err_set(err, STATUS_INPUT, "the row has %d field%s; there are %d columns", n,
-                         n == 1 ? "" : "s", reader->n_fields);
-    if (status == STATUS_OK)
-        status = take_row(reader, line, field, err);
-    free(field);
-    return status;
+    return take_values(reader, row.key, err);
 }
 
 static Status read_line(void *context, size_t number, char *line, Err *err)
@@ -424,7 +379,8 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
     ValuesReader *reader = context;
     if (*line == '#' || !line[strspn(line, TEXT_BLANKS)])
         return STATUS_OK;
-    return reader->n_fields ? read_row(reader, number, line, err) : read_titles(reader, line, err);
+    return reader->columns.n > 0 ? read_row(reader, number, line, err)
+                                 : read_titles(reader, line, err);
 }
 
 /* ---- rows with a time ------------------------------------------------------------------------ */
@@ -442,12 +398,12 @@ static int by_key_and_time(const void *a, const void *b)
 static Status list_times(const ValuesReader *reader, double **times, size_t *n, Err *err)
 {
     double *made;
-    TRY(mem_calloc(&made, reader->n_rows, sizeof *made, "times", err));
-    for (size_t i = 0; i < reader->n_rows; i++)
-        made[i] = reader->row[i].time;
-    sort_numbers(made, reader->n_rows);
+    TRY(mem_calloc(&made, reader->rows.n, sizeof *made, "times", err));
+    for (size_t i = 0; i < reader->rows.n; i++)
+        made[i] = reader->rows.items[i].time;
+    sort_numbers(made, reader->rows.n);
     *n = 0;
-    for (size_t i = 0; i < reader->n_rows; i++)
+    for (size_t i = 0; i < reader->rows.n; i++)
         if (*n == 0 || made[i] != made[*n - 1])
             made[(*n)++] = made[i];
     *times = made;
@@ -458,7 +414,7 @@ static Status list_times(const ValuesReader *reader, double **times, size_t *n, 
 static Status check_times(const ValuesReader *reader, const TimedRow *row, const double *times,
                           size_t n, Err *err)
 {
-    const TimedRow *end = reader->row + reader->n_rows;
+    const TimedRow *end = reader->rows.items + reader->rows.n;
     const char *kind = reader->of_branches ? "branch" : "segment";
     char time[NUMBER_TEXT_SIZE];
     for (size_t k = 0; k < n; k++) {
@@ -482,8 +438,8 @@ static Status check_all_times(const ValuesReader *reader, const double *times, s
     if (n * reader->n_wanted > BUILDER_MAX_COLUMNS)
         return err_set(err, STATUS_INPUT, "%s: there are %zu times, of which at most %zu are read",
                        reader->path, n, BUILDER_MAX_COLUMNS / reader->n_wanted);
-    for (size_t i = 0; i < reader->n_rows; i += n)
-        TRY(check_times(reader, reader->row + i, times, n, err));
+    for (size_t i = 0; i < reader->rows.n; i += n)
+        TRY(check_times(reader, reader->rows.items + i, times, n, err));
     return check_room(reader, n * reader->n_wanted, err);
 }
 
@@ -502,9 +458,9 @@ static Status fill_frames(ValuesReader *reader, const ValueColumn *column, size_
             status = open_column(reader, text_chars(&name), column->unit, before, &value, err);
         text_release(&name);
         TRY(status);
-        for (size_t i = k; i < reader->n_rows; i += n)
-            put_value(reader, reader->row[i].key, value,
-                      reader->held[reader->row[i].values + number]);
+        for (size_t i = k; i < reader->rows.n; i += n)
+            put_value(reader, reader->rows.items[i].key, value,
+                      reader->held.items[reader->rows.items[i].values + number]);
     }
     return STATUS_OK;
 }
@@ -513,14 +469,14 @@ static Status fill_times(ValuesReader *reader, Err *err)
 {
     double *times = NULL;
     size_t n = 0, number = 0;
-    if (reader->time == NONE || reader->n_rows == 0)
+    if (reader->time == NONE || reader->rows.n == 0)
         return STATUS_OK;
     TRY(list_times(reader, &times, &n, err));
-    qsort(reader->row, reader->n_rows, sizeof *reader->row, by_key_and_time);
+    qsort(reader->rows.items, reader->rows.n, sizeof *reader->rows.items, by_key_and_time);
     Status status = check_all_times(reader, times, n, err);
-    for (int i = 0; i < reader->n_fields && status == STATUS_OK; i++)
-        if (reader->column[i].wanted)
-            status = fill_frames(reader, &reader->column[i], number++, times, n, err);
+    for (size_t i = 0; i < reader->columns.n && status == STATUS_OK; i++)
+        if (reader->columns.items[i].wanted)
+            status = fill_frames(reader, &reader->columns.items[i], number++, times, n, err);
     free(times);
     return status;
 }
@@ -533,12 +489,13 @@ static Status read_csv(ValuesReader *reader, Err *err)
 {
     char *bytes = NULL;
     size_t size = 0;
+    Status status = STATUS_OK;
     TRY(file_read(reader->path, &form, &bytes, &size, err));
-    Status status = lines_read(reader->path, bytes, size, read_line, reader, err);
-    if (status == STATUS_OK)
-        status = fill_times(reader, err);
-    if (status == STATUS_OK && !reader->first)
-        status = err_set(err, STATUS_INPUT, "%s: there are no values in it", reader->path);
+    TRY_GOTO(lines_read(reader->path, bytes, size, read_line, reader, err));
+    TRY_GOTO(fill_times(reader, err));
+    if (!reader->line_of)
+        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: there are no values in it", reader->path));
+done:
     free(bytes);
     return status;
 }
@@ -609,22 +566,20 @@ static Status sum_flows(const Tree *tree, const char *path, double *share, doubl
     return STATUS_OK;
 }
 
-/* Read as a column, which becomes the shares. */
+/* The flows are read as a column, which becomes the shares. */
 Status tree_read_flows(Tree *tree, const char *path, Err *err)
 {
     Tree only = {.n = tree->n, .id = tree->id};
     double *share = NULL, sum;
-    Status status = tree_read_values(&only, path, "flow", NULL, err);
-    if (status == STATUS_OK)
-        status = mem_calloc(&share, tree->n, sizeof *share, "flow shares", err);
-    if (status == STATUS_OK)
-        status = sum_flows(&only, path, share, &sum, err);
-    if (status == STATUS_OK) {
-        tree_part_flow(tree, share);
-        tree->meta.number[META_Q_PERF] = sum;
-        tree->meta.known[META_Q_PERF] = true;
-        share = NULL;
-    }
+    Status status = STATUS_OK;
+    TRY_GOTO(tree_read_values(&only, path, "flow", NULL, err));
+    TRY_GOTO(mem_calloc(&share, tree->n, sizeof *share, "flow shares", err));
+    TRY_GOTO(sum_flows(&only, path, share, &sum, err));
+    tree_part_flow(tree, share);
+    tree->meta.number[META_Q_PERF] = sum;
+    tree->meta.known[META_Q_PERF] = true;
+    share = NULL;
+done:
     only.id = NULL; /* the tree's */
     tree_release(&only);
     free(share);

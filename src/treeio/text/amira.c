@@ -1,14 +1,14 @@
-/* Networks of Amira and Avizo (.am): a header of words that states how many elements there are of each
- * kind, and which block holds which of their numbers. The blocks "@1" and so on follow, each after a
- * line of its own: as text, as packed numbers, or as numbers compressed by HxByteRLE (a byte n above
- * 127: the next n - 128 bytes as they are; otherwise: the next byte n times) or HxZip (zlib).
+/* Networks of Amira and Avizo (.am): a header of words that states how many elements there are of
+ * each kind, and which block holds which of their numbers. The blocks "@1" and so on follow, each
+ * after a line of its own: as text, as packed numbers, or as numbers compressed by HxByteRLE (a
+ * byte n above 127: the next n - 128 bytes as they are; otherwise: the next byte n times) or HxZip
+ * (zlib).
  *
  * The ContentType says how elements are connected. All networks become polylines of VtkData.
- * HxSpatialGraph: the points of an edge run from its first vertex to its second, both included, edge
- *     after edge. Edges that share a vertex are joined. Numbers of a vertex go to the points there.
- * HxLineSet: LineIdx lists the vertices of a line, and -1 ends it.
- * SkeletonGraph: NeighbourList lists the neighbours of each vertex, NeighbourCount of them. Origins
- *     are roots. */
+ * HxSpatialGraph: the points of an edge run from its first vertex to its second, both included,
+ * edge after edge. Edges that share a vertex are joined. Numbers of a vertex go to the points
+ * there. HxLineSet: LineIdx lists the vertices of a line, and -1 ends it. SkeletonGraph:
+ * NeighbourList lists the neighbours of each vertex, NeighbourCount of them. Origins are roots. */
 #include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
@@ -23,8 +23,8 @@
 /* Kinds of elements. LINES have the entries of LineIdx, NEIGHBOURS those of NeighbourList. */
 enum { VERTEX, EDGE, POINT, VERTICES, LINES, NEIGHBOURS, ORIGINS, ELEMENTS };
 
-static const char *const element_names[ELEMENTS] = {
-    "VERTEX", "EDGE", "POINT", "Vertices", "Lines", "Neighbours", "Origins"};
+static const char *const element_names[ELEMENTS] = {"VERTEX", "EDGE",       "POINT",  "Vertices",
+                                                    "Lines",  "Neighbours", "Origins"};
 
 /* How elements are connected. */
 typedef enum AmiraContent { SPATIAL_GRAPH, LINE_SET, SKELETON, CONTENTS } AmiraContent;
@@ -36,7 +36,12 @@ typedef enum AmiraPacking { BYTE_RLE, ZIP, PLAIN } AmiraPacking;
 static const char *const packing_names[PLAIN] = {"HxByteRLE", "HxZip"};
 
 static const CursorSyntax syntax = {
-    .between = " \t\r\n\v\f,=", .alone = "{}()", .comment = '#', .has_quotes = true};
+    .between = " \t\r\n\v\f,=",
+    .alone = "{}()",
+    .comment = '#',
+    .has_quotes = true,
+    .skips_zeros = true,
+};
 
 /* Numbers of all elements of a kind. */
 typedef struct AmiraField {
@@ -441,8 +446,8 @@ done:
 }
 
 /* Numbers of vertices as numbers of points, NAN between vertices. */
-static Status spread(const AmiraReader *reader, const AmiraField *field, const size_t *vertex, double **value,
-                     Err *err)
+static Status spread(const AmiraReader *reader, const AmiraField *field, const size_t *vertex,
+                     double **value, Err *err)
 {
     size_t n = reader->count[POINT], components = field->components;
     TRY(mem_calloc(value, n * components, sizeof **value, "numbers of points", err));
@@ -467,19 +472,24 @@ static Status add_array(AmiraReader *reader, AmiraField *field, const size_t *ve
         array.value = field->value;
         field->value = NULL;
     }
-    return vtk_add_array(field->of == EDGE ? &data->arrays[GRAPH_LINES] : &data->arrays[GRAPH_POINTS], &array, err);
+    return vtk_add_array(
+        field->of == EDGE ? &data->arrays[GRAPH_LINES] : &data->arrays[GRAPH_POINTS], &array, err);
 }
 
-/* Those that are needed to connect points are no arrays. */
+/* Names of numbers that connect points, and are no arrays. */
+static const char *const own_arrays[] = {"VertexCoordinates", "EdgeConnectivity",
+                                         "NumEdgePoints",     "EdgePointCoordinates",
+                                         "Coordinates",       "NeighbourCount"};
+
+/* Adds the other numbers as arrays. */
 static Status add_arrays(AmiraReader *reader, const size_t *vertex, Err *err)
 {
-    static const char *const own[] = {"VertexCoordinates",    "EdgeConnectivity", "NumEdgePoints",
-                                      "EdgePointCoordinates", "Coordinates",      "NeighbourCount"};
     for (size_t i = 0; i < reader->fields.n; i++) {
         size_t of = reader->fields.items[i].of;
-        bool is_own = !reader->fields.items[i].value || of == LINES || of == NEIGHBOURS || of == ORIGINS;
-        for (size_t k = 0; k < sizeof own / sizeof *own && !is_own; k++)
-            is_own = strcasecmp(reader->fields.items[i].name, own[k]) == 0;
+        bool is_own =
+            !reader->fields.items[i].value || of == LINES || of == NEIGHBOURS || of == ORIGINS;
+        for (size_t k = 0; k < sizeof own_arrays / sizeof *own_arrays && !is_own; k++)
+            is_own = strcasecmp(reader->fields.items[i].name, own_arrays[k]) == 0;
         if (!is_own)
             TRY(add_array(reader, &reader->fields.items[i], vertex, err));
     }
@@ -631,4 +641,13 @@ done:
 bool amira_detect(const char *start)
 {
     return strncasecmp(start, "# AmiraMesh", 11) == 0 || strncasecmp(start, "# Avizo", 7) == 0;
+}
+
+void amira_keywords(Text *text)
+{
+    KEYWORDS_PUT(element_names, , text);
+    KEYWORDS_PUT(content_names, , text);
+    KEYWORDS_PUT(packing_names, , text);
+    KEYWORDS_PUT(own_arrays, , text);
+    vtk_put_type_names(NAMING_AMIRA, text);
 }

@@ -21,53 +21,52 @@ enum { LAST_NEEDED = RADIUS };
 const char *const csv_segment_titles[CSV_SEGMENT_TITLES + 1] = {
     "id", "parent", "x0_mm", "y0_mm", "z0_mm", "x1_mm", "y1_mm", "z1_mm", "radius_mm", "length_mm"};
 
-/* What a column of the file is. */
-typedef struct Column {
+/* A column of the file. */
+typedef struct CsvColumn {
     const char *title; /* borrowed from the text */
-    size_t meaning;    /* a NodeColumn, or NODE_COLUMNS + its number in the builder */
-} Column;
+    size_t meaning;    /* a NodeColumn, or NODE_COLUMNS + the index of the builder's column */
+} CsvColumn;
 
-typedef struct Columns {
-    Column *column; /* owned */
-    size_t n, capacity;
+typedef struct CsvReader {
+    TreeBuilder *builder;
+    ARRAY(CsvColumn) columns;
     bool has[NODE_COLUMNS];
-} Columns;
+    char **field;  /* of one row; owned */
+    double *value; /* per column of the builder: its value in a row; owned */
+} CsvReader;
 
-static Status read_title(TreeBuilder *builder, Columns *columns, char *title, Err *err)
+static Status read_title(CsvReader *reader, char *title, Err *err)
 {
-    size_t meaning = 0;
+    size_t meaning = 0, number;
     while (meaning < NODE_COLUMNS && strcmp(title, node_columns[meaning]) != 0)
         meaning++;
-    if (meaning < NODE_COLUMNS && columns->has[meaning])
-        return err_set(err, STATUS_INPUT, "two columns are called '%s'", title);
-    if (meaning < NODE_COLUMNS) {
-        columns->has[meaning] = true;
-    } else {
-        size_t number;
+    if (meaning == NODE_COLUMNS) {
         const char *unit = csv_unit(title);
-        TRY(builder_column(builder, title, unit, &number, err));
+        TRY(builder_column(reader->builder, title, unit, &number, err));
         meaning += number;
+    } else if (reader->has[meaning]) {
+        return err_set(err, STATUS_INPUT, "two columns are called '%s'", title);
+    } else {
+        reader->has[meaning] = true;
     }
-    TRY(mem_reserve(&columns->column, &columns->capacity, columns->n + 1, sizeof *columns->column,
-                    "columns", err));
-    columns->column[columns->n++] = (Column){title, meaning};
-    return STATUS_OK;
+    return ARRAY_PUSH(&reader->columns, "columns", err, (CsvColumn){title, meaning});
 }
 
-static Status read_titles(TreeBuilder *builder, Columns *columns, char *line, Err *err)
+static Status read_titles(CsvReader *reader, char *line, Err *err)
 {
-    for (char *at = line; at;) {
-        char *title;
+    for (char *at = line, *title; at;) {
         TRY(csv_field(&at, ',', &title, err));
-        TRY(read_title(builder, columns, title, err));
+        TRY(read_title(reader, title, err));
     }
     for (int column = 0; column <= LAST_NEEDED; column++)
-        if (!columns->has[column])
+        if (!reader->has[column])
             return err_set(err, STATUS_INPUT,
                            "there is no column %s; a CSV of nodes has id, parent, x_mm, y_mm, "
                            "z_mm, radius_mm and any others",
                            node_columns[column]);
-    return STATUS_OK;
+    TRY(mem_calloc(&reader->field, reader->columns.n, sizeof *reader->field, "fields", err));
+    return mem_calloc(&reader->value, reader->builder->n_columns, sizeof *reader->value,
+                      "values of a row", err);
 }
 
 /* An empty parent is none. */
@@ -101,62 +100,51 @@ static Status read_node_field(NodeColumn column, const char *text, BuilderNode *
                         err);
 }
 
-/* A row's fields; what becomes of columns of the tree waits in `value` until the node is added. */
-static Status read_row(TreeBuilder *builder, const Columns *columns, size_t line, char *text,
-                       double *value, Err *err)
+static Status read_row(CsvReader *reader, size_t line, char *text, Err *err)
 {
+    TreeBuilder *builder = reader->builder;
     BuilderNode node = {.type = TREE_VESSEL_TYPE, .record = line};
     double share = 0;
-    size_t n = 0;
-    for (char *at = text; at; n++) {
-        char *field;
-        TRY(csv_field(&at, ',', &field, err));
-        if (n >= columns->n)
-            continue;
-        const Column *column = &columns->column[n];
+    TRY(csv_row(text, ',', reader->field, reader->columns.n, err));
+    for (size_t k = 0; k < reader->columns.n; k++) {
+        const CsvColumn *column = &reader->columns.items[k];
         if (column->meaning < NODE_COLUMNS)
-            TRY(read_node_field((NodeColumn)column->meaning, field, &node, &share, err));
+            TRY(read_node_field((NodeColumn)column->meaning, reader->field[k], &node, &share, err));
         else
-            TRY(field_value(column->title, field, &value[column->meaning - NODE_COLUMNS], err));
+            TRY(field_value(column->title, reader->field[k],
+                            &reader->value[column->meaning - NODE_COLUMNS], err));
     }
-    if (n != columns->n)
-        return err_set(err, STATUS_INPUT, "the row has %zu field%s; there are %zu columns", n,
-                       n == 1 ? "" : "s", columns->n);
     TRY(builder_node(builder, &node, err));
     for (size_t k = 0; k < builder->n_columns; k++)
-        TRY(builder_value(builder, k, value[k], err));
+        TRY(builder_value(builder, k, reader->value[k], err));
     return share > 0 ? builder_share(builder, node.id, share, line, err) : STATUS_OK;
 }
-
-/* What is read so far; `value` has room for one row. */
-typedef struct CsvReader {
-    TreeBuilder *builder;
-    Columns columns;
-    double *value; /* owned */
-} CsvReader;
 
 static Status read_line(void *context, size_t number, char *line, Err *err)
 {
     CsvReader *reader = context;
-    TreeBuilder *builder = reader->builder;
     if (*line == '#')
-        return comment_read(&builder->meta, line + 1, err);
+        return comment_read(&reader->builder->meta, line + 1, err);
     if (!line[strspn(line, TEXT_BLANKS)])
         return STATUS_OK;
-    if (reader->columns.n > 0)
-        return read_row(builder, &reader->columns, number, line, reader->value, err);
-    TRY(read_titles(builder, &reader->columns, line, err));
-    return mem_calloc(&reader->value, builder->n_columns, sizeof *reader->value, "values of a row",
-                      err);
+    return reader->columns.n > 0 ? read_row(reader, number, line, err)
+                                 : read_titles(reader, line, err);
 }
 
 Status csv_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
 {
     CsvReader reader = {.builder = builder};
     Status status = lines_read(builder->name, bytes, size, read_line, &reader, err);
-    free(reader.columns.column);
+    ARRAY_RELEASE(&reader.columns);
+    free(reader.field);
     free(reader.value);
     return status;
+}
+
+void csv_keywords(Text *text)
+{
+    KEYWORDS_PUT(node_columns, , text);
+    table_keywords(text);
 }
 
 /* The first line that is no comment names a parent and coordinates in mm. */
@@ -219,9 +207,10 @@ static void put_titles(const Tree *tree, const char *const *titles, size_t n, Te
 
 static void put_number(double value, Text *text)
 {
-    text_puts(text, ",");
+    char number[NUMBER_TEXT_SIZE + 1] = ",";
     if (!isnan(value))
-        text_number(text, value);
+        number_text(value, number + 1);
+    text_append(text, number, strlen(number));
 }
 
 static void put_position(Vec3 position, Text *text)

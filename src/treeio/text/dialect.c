@@ -1,6 +1,6 @@
-/* A line is cut into fields, the format says to which section it belongs, and the table of fields says
- * what becomes of each. Segments keep the names of their points until the end, because points may
- * come later. */
+/* A line is cut into fields, the format says to which section it belongs, and the table of fields
+ * says what becomes of each. Segments keep the names of their points until the end, because points
+ * may come later. */
 #include "treeio/text/dialect.h"
 
 #include "treeio/cursor.h"
@@ -25,6 +25,12 @@ size_t dialect_find_section(const Dialect *dialect, const char *title)
     while (i < dialect->n_sections && strcasecmp(dialect->section[i].title, title) != 0)
         i++;
     return i;
+}
+
+void dialect_put_keywords(const Dialect *dialect, Text *text)
+{
+    keywords_put(&dialect->section->title, dialect->n_sections, sizeof *dialect->section, text);
+    keywords_put(&dialect->field->name, dialect->n_fields, sizeof *dialect->field, text);
 }
 
 /* ---- fields ---------------------------------------------------------------------------------- */
@@ -151,7 +157,8 @@ static Status read_row(DialectReader *reader, DialectRow *row, Err *err)
     const Dialect *dialect = reader->dialect;
     const DialectSection *section = &dialect->section[reader->section];
     const GraphPoint point = {.radius = (double)NAN, .record = row->line};
-    if (row->count < section->min_fields || (section->max_fields && row->count > section->max_fields))
+    if (row->count < section->min_fields ||
+        (section->max_fields && row->count > section->max_fields))
         return refuse_count(section, row->count, err);
     row->element = section->of == GRAPH_POINTS ? reader->graph->n_points : reader->kept.n;
     row->point = row->start = row->end = point;

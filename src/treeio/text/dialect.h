@@ -1,15 +1,15 @@
 /* Reads text formats of networks that have one element per row, by tables of sections and fields.
  *
- * A format states its sections, the fields of their rows, and at most three functions: which section
- * a line belongs to, what a row means beyond its fields, and what is missing at the end. */
+ * A format states its sections, the fields of their rows, and at most three functions: which
+ * section a line belongs to, what a row means beyond its fields, and what is missing at the end. */
 #ifndef CORCAST_TREEIO_DIALECT_H
 #define CORCAST_TREEIO_DIALECT_H
 
-#include "treeio/names.h"
 #include "tree/tree.h"
+#include "treeio/names.h"
 
-/* The meaning of a field. A row adds a point if it has FIELD_POINT, and a segment if it has FIELD_TO
- * or FIELD_END. */
+/* The meaning of a field. A row adds a point if it has FIELD_POINT, and a segment if it has
+ * FIELD_TO or FIELD_END. */
 typedef enum FieldRole {
     FIELD_POINT,    /* name of the row's point */
     FIELD_OF_POINT, /* name of an earlier point, to which the row's columns belong */
@@ -27,7 +27,7 @@ typedef enum FieldRole {
 } FieldRole;
 
 typedef struct DialectField {
-    size_t section, at;      /* index of the section; index of the field in a row */
+    size_t section, at; /* index of the section; index of the field in a row */
     FieldRole role;
     const char *name, *unit; /* what the field is called; its column's unit */
     bool not_negative;       /* a number below 0 is refused */
@@ -37,10 +37,10 @@ typedef struct DialectField {
 typedef struct DialectRow {
     char **field;
     size_t count, line;
-    size_t element;                  /* index of the point or segment that the row's columns belong to */
+    size_t element; /* index of the point or segment that the row's columns belong to */
     bool has_point, has_segment;
-    GraphPoint point, start, end;    /* the row's point; the segment's own ends */
-    char *from, *to;                 /* names of the segment's ends; NULL: they are its own */
+    GraphPoint point, start, end; /* the row's point; the segment's own ends */
+    char *from, *to;              /* names of the segment's ends; NULL: they are its own */
     GraphLine segment;
 } DialectRow;
 
@@ -52,8 +52,8 @@ typedef struct DialectSection {
     const char *row;               /* what a row is called in errors, "a vessel" */
     size_t min_fields, max_fields; /* of a row; max_fields of 0: any number */
     GraphElement of;               /* what the rows add, and what their columns belong to */
-    ReadDialectRow *read;          /* called when the fields were read, before the row's elements are
-                                    * added; NULL: the fields are all */
+    ReadDialectRow *read; /* called when the fields were read, before the row's elements are
+                           * added; NULL: the fields are all */
 } DialectSection;
 
 typedef struct Dialect {
@@ -90,11 +90,13 @@ struct DialectReader {
  * reader   begin with dialect, graph, own, the names of points and segments, and skip.
  * Errors   STATUS_INPUT, with file and line; STATUS_MEMORY. */
 MUST_CHECK Status dialect_read(DialectReader *reader, char *text, size_t size, Err *err);
-/* Adds the segments to the graph, and sets the points of each in reader->kept. Errors: STATUS_INPUT, with file and line,
- * for a name that no point has; STATUS_MEMORY. */
+/* Adds the segments to the graph, and sets the points of each in reader->kept. Errors:
+ * STATUS_INPUT, with file and line, for a name that no point has; STATUS_MEMORY. */
 MUST_CHECK Status dialect_add_segments(DialectReader *reader, Err *err);
 void dialect_release(DialectReader *reader);
 
+/* Appends the titles of sections and the names of fields, one per line. */
+void dialect_put_keywords(const Dialect *dialect, Text *text);
 /* Returns the section of this title, or n_sections. */
 size_t dialect_find_section(const Dialect *dialect, const char *title);
 

@@ -62,14 +62,14 @@ typedef struct TubeReader {
 } TubeReader;
 
 static const TubeHeader no_header = {.artery = (double)NAN,
-                                 .dimensions = 3,
-                                 .id = -1,
-                                 .parent = -1,
-                                 .parent_point = -1,
-                                 .points = -1,
-                                 .type = VTK_FLOAT,
-                                 .spacing = {1, 1, 1},
-                                 .matrix = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+                                     .dimensions = 3,
+                                     .id = -1,
+                                     .parent = -1,
+                                     .parent_point = -1,
+                                     .points = -1,
+                                     .type = VTK_FLOAT,
+                                     .spacing = {1, 1, 1},
+                                     .matrix = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 
 /* ---- headers ---- */
 
@@ -221,11 +221,11 @@ static Status add_object(TubeReader *reader, Err *err)
         TRY(names_add(&reader->ids, header->id_text, reader->objects.n, line, err));
     return ARRAY_PUSH(&reader->objects, "objects", err,
                       (TubeObject){.id = header->id,
-                               .parent = header->parent < 0 ? NULL : header->parent_text,
-                               .parent_point = header->parent_point,
-                               .first = reader->graph->n_points,
-                               .line = line,
-                               .is_moved = is_moved(header)});
+                                   .parent = header->parent < 0 ? NULL : header->parent_text,
+                                   .parent_point = header->parent_point,
+                                   .first = reader->graph->n_points,
+                                   .line = line,
+                                   .is_moved = is_moved(header)});
 }
 
 /* A new object begins; one without points has ended with its header. */
@@ -425,7 +425,8 @@ typedef struct TubeLink {
 } TubeLink;
 
 /* From the point that the tube names, or else the nearest one, to the end. */
-static TubeLink link_to(const Graph *graph, const TubeObject *tube, const TubeObject *parent, size_t end)
+static TubeLink link_to(const Graph *graph, const TubeObject *tube, const TubeObject *parent,
+                        size_t end)
 {
     Vec3 at = graph->point[end].position;
     size_t from = tube->parent_point < 0 ? nearest(graph, parent, at)
@@ -480,9 +481,9 @@ static Status read_all(TubeReader *reader, Err *err)
 Status metaio_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
     TubeReader reader = {.graph = graph,
-                     .cursor = cursor_of(graph->name, NULL, bytes, size),
-                     .header = no_header,
-                     .ids = {.what = "object of the ID"}};
+                         .cursor = cursor_of(graph->name, NULL, bytes, size),
+                         .header = no_header,
+                         .ids = {.what = "object of the ID"}};
     Status status = read_all(&reader, err);
     ARRAY_RELEASE(&reader.objects);
     names_release(&reader.ids);
@@ -492,4 +493,10 @@ Status metaio_read(Graph *graph, char *bytes, size_t size, Err *err)
 bool metaio_detect(const char *start)
 {
     return strncasecmp(text_first_row(start), "ObjectType", strlen("ObjectType")) == 0;
+}
+
+void metaio_keywords(Text *text)
+{
+    KEYWORDS_PUT(keys, .name, text);
+    vtk_put_type_names(NAMING_METAIO, text);
 }

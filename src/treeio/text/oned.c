@@ -1,8 +1,9 @@
 /* Decks of SimVascular's svOneDSolver: one card per line, with the fields of that program's reader
- * (cvOneDOptionsLegacySerializer.cxx). Nodes at different positions are one node if a JOINT card joins
- * the segments that they end. A segment tapers from one area to the other. Its radius in a tree is
- * that of the outlet, because nodes of other formats have the radius of the segment's distal end. Both
- * areas are columns. Cards may come in any order, so names are looked up at the end. */
+ * (cvOneDOptionsLegacySerializer.cxx). Nodes at different positions are one node if a JOINT card
+ * joins the segments that they end. A segment tapers from one area to the other. Its radius in a
+ * tree is that of the outlet, because nodes of other formats have the radius of the segment's
+ * distal end. Both areas are columns. Cards may come in any order, so names are looked up at the
+ * end. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/text/dialect.h"
@@ -79,8 +80,11 @@ static const DialectSection cards[CARDS] = {
     [JOINT_INLET] = {"JOINTINLET", "a JOINTINLET card", 4, 0, GRAPH_LINES, read_list},
     [JOINT_OUTLET] = {"JOINTOUTLET", "a JOINTOUTLET card", 4, 0, GRAPH_LINES, read_list},
     [DATA_TABLE] = {"DATATABLE", "a DATATABLE card", 2, 0, GRAPH_LINES, begin_table},
-    [OTHER_CARDS] = {.title = "MODEL"}, {.title = "SOLVEROPTIONS"}, {.title = "MATERIAL"},
-    {.title = "OUTPUT"}, {.title = "COUPLING"},
+    [OTHER_CARDS] = {.title = "MODEL"},
+    {.title = "SOLVEROPTIONS"},
+    {.title = "MATERIAL"},
+    {.title = "OUTPUT"},
+    {.title = "COUPLING"},
 };
 
 /* The columns come first, in their order in trees. */
@@ -117,10 +121,10 @@ static Status choose_card(DialectReader *reader, DialectRow *row, bool *is_row, 
         return STATUS_OK;
     }
     reader->section = dialect_find_section(reader->dialect, row->field[0]);
-    return reader->section < CARDS ? STATUS_OK
-                                   : err_set(err, STATUS_INPUT,
-                                             "'%.40s' is no card of a deck of svOneDSolver",
-                                             row->field[0]);
+    return reader->section < CARDS
+               ? STATUS_OK
+               : err_set(err, STATUS_INPUT, "'%.40s' is no card of a deck of svOneDSolver",
+                         row->field[0]);
 }
 
 static const Dialect dialect = {.section = cards,
@@ -129,6 +133,11 @@ static const Dialect dialect = {.section = cards,
                                 .n_fields = sizeof fields / sizeof *fields,
                                 .comment = read_comment,
                                 .choose = choose_card};
+
+void oned_keywords(Text *text)
+{
+    dialect_put_keywords(&dialect, text);
+}
 
 /* The first word is the name of a card. */
 bool oned_detect(const char *start)
@@ -142,8 +151,8 @@ bool oned_detect(const char *start)
 
 /* ---- joints ---------------------------------------------------------------------------------- */
 
-/* Joins the ends of the segments of a list to *point. If *point is no point yet, it becomes the first
- * of them. */
+/* Joins the ends of the segments of a list to *point. If *point is no point yet, it becomes the
+ * first of them. */
 static Status join_list(DialectReader *reader, const SegmentLists *lists, char *name, size_t *point,
                         Err *err)
 {
@@ -274,8 +283,7 @@ done:
 bool oned_keeps(const TreeColumn *column)
 {
     for (size_t k = 0; k < DECK_COLUMNS; k++)
-        if (strcmp(column->name, fields[k].name) == 0 &&
-            strcmp(column->unit, fields[k].unit) == 0)
+        if (strcmp(column->name, fields[k].name) == 0 && strcmp(column->unit, fields[k].unit) == 0)
             return true;
     return false;
 }

@@ -27,23 +27,23 @@ enum { N_FIELDS = 7, MAX_FIELDS = 100 };
 static const char share_key[] = "flow_share";
 
 /* What is read so far. */
-typedef struct Reader {
+typedef struct SwcReader {
     TreeBuilder *builder;
     size_t n_fields;    /* in every row; 0: there has been none */
     int32_t lowest_id;  /* 0 or 1 */
     const char *titles; /* the last line that names columns (borrowed from the text), or NULL */
     char *rest;         /* of the text; NULL: nothing */
     size_t line;        /* number of its first line */
-} Reader;
+} SwcReader;
 
 /* What number of a file is as an id of the tree, whose ids start at 1. Where those of the file do,
  * the parent 0 is none. */
-static int64_t id_of(const Reader *reader, int32_t number)
+static int64_t id_of(const SwcReader *reader, int32_t number)
 {
     return number < reader->lowest_id ? TREE_NO_PARENT : (int64_t)number + 1 - reader->lowest_id;
 }
 
-static Status read_id(const Reader *reader, const char *text, int64_t *id, Err *err)
+static Status read_id(const SwcReader *reader, const char *text, int64_t *id, Err *err)
 {
     int32_t number = 0;
     TRY(field_whole("id", text, reader->lowest_id, TREE_MAX_ID - 1 + reader->lowest_id, &number,
@@ -52,7 +52,7 @@ static Status read_id(const Reader *reader, const char *text, int64_t *id, Err *
     return STATUS_OK;
 }
 
-static Status read_parent(const Reader *reader, const char *text, int64_t *parent, Err *err)
+static Status read_parent(const SwcReader *reader, const char *text, int64_t *parent, Err *err)
 {
     int32_t number = 0;
     TRY(field_whole("parent", text, TREE_NO_PARENT, TREE_MAX_ID, &number, err));
@@ -60,7 +60,7 @@ static Status read_parent(const Reader *reader, const char *text, int64_t *paren
     return STATUS_OK;
 }
 
-static Status read_row(const Reader *reader, size_t line, char *const *field, Err *err)
+static Status read_row(const SwcReader *reader, size_t line, char *const *field, Err *err)
 {
     const double any = -HUGE_VAL;
     TreeBuilder *builder = reader->builder;
@@ -143,7 +143,7 @@ static bool names_columns(const char *line)
 }
 
 /* `comment` is what follows '#'. */
-static Status read_comment(Reader *reader, size_t line, const char *comment, Err *err)
+static Status read_comment(SwcReader *reader, size_t line, const char *comment, Err *err)
 {
     const char *share = comment_value(comment, share_key);
     if (share)
@@ -168,7 +168,7 @@ static size_t cut_fields(char *line, char **field)
 
 /* The columns behind the seventh have the names that a line gives to as many columns as there are,
  * or else "column 8" and so on. */
-static Status add_columns(const Reader *reader, Err *err)
+static Status add_columns(const SwcReader *reader, Err *err)
 {
     char *copy = NULL, *title[MAX_FIELDS], number[32];
     TRY(mem_strdup(&copy, reader->titles ? reader->titles : "", err));
@@ -182,7 +182,7 @@ static Status add_columns(const Reader *reader, Err *err)
     return status;
 }
 
-static Status begin_rows(Reader *reader, const char *id, size_t count, Err *err)
+static Status begin_rows(SwcReader *reader, const char *id, size_t count, Err *err)
 {
     double first;
     reader->lowest_id = !(number_parse(id, &first) && first == 0);
@@ -190,7 +190,7 @@ static Status begin_rows(Reader *reader, const char *id, size_t count, Err *err)
     return add_columns(reader, err);
 }
 
-static Status refuse_count(const Reader *reader, size_t count, Err *err)
+static Status refuse_count(const SwcReader *reader, size_t count, Err *err)
 {
     if (count > MAX_FIELDS)
         return err_set(err, STATUS_INPUT, "the row has %zu fields; it may have at most %d", count,
@@ -203,7 +203,7 @@ static Status refuse_count(const Reader *reader, size_t count, Err *err)
                    count == 1 ? "" : "s", N_FIELDS);
 }
 
-static Status read_line(Reader *reader, char *line, Err *err)
+static Status read_line(SwcReader *reader, char *line, Err *err)
 {
     char *field[MAX_FIELDS];
     line += strspn(line, TEXT_BLANKS);
@@ -229,7 +229,7 @@ static Status read_line(Reader *reader, char *line, Err *err)
 }
 
 /* Reads the lines that begin before `end`. */
-static Status read_lines(Reader *reader, const char *end, Err *err)
+static Status read_lines(SwcReader *reader, const char *end, Err *err)
 {
     for (; reader->rest && reader->rest < end; reader->line++) {
         char *line = text_line(&reader->rest);
@@ -243,19 +243,19 @@ static Status read_lines(Reader *reader, const char *end, Err *err)
 enum { BLOCK = 1 << 18 /* bytes */, SHORTEST_ROW = 14 /* with its end */, BLOCKS_PER_THREAD = 8 };
 
 /* Whole lines of the text. */
-typedef struct Block {
+typedef struct SwcBlock {
     char *rest, *end;  /* what is not read of it */
     BuilderNode *node; /* room for its rows (borrowed) */
     size_t n;          /* of rows that are read */
-} Block;
+} SwcBlock;
 
 /* Blocks that are read at once. */
-typedef struct Wave {
-    const Reader *reader;
-    Block *block;      /* owned */
+typedef struct SwcWave {
+    const SwcReader *reader;
+    SwcBlock *block;   /* owned */
     BuilderNode *node; /* of all blocks; owned */
     size_t n;          /* blocks, at most */
-} Wave;
+} SwcWave;
 
 static bool is_whole(double value, double minimum, double maximum)
 {
@@ -263,7 +263,7 @@ static bool is_whole(double value, double minimum, double maximum)
 }
 
 /* Takes a line of seven numbers that read_row would accept, and moves past it; else false. */
-static bool take_row(const Reader *reader, char **rest, BuilderNode *node)
+static bool take_row(const SwcReader *reader, char **rest, BuilderNode *node)
 {
     const char *at = *rest;
     double field[N_FIELDS];
@@ -290,23 +290,23 @@ static bool take_row(const Reader *reader, char **rest, BuilderNode *node)
 
 static void take_rows(size_t index, int worker, void *context)
 {
-    const Wave *wave = context;
-    Block *block = &wave->block[index];
+    const SwcWave *wave = context;
+    SwcBlock *block = &wave->block[index];
     (void)worker;
     while (block->rest < block->end && take_row(wave->reader, &block->rest, &block->node[block->n]))
         block->n++;
 }
 
 /* The block that begins at `from`: of one line where that is longer than a block. */
-static Block cut_block(char *from, char *end)
+static SwcBlock cut_block(char *from, char *end)
 {
     char *last = end - from > BLOCK ? memrchr(from, '\n', BLOCK) : end - 1;
     last = last ? last : memchr(from, '\n', (size_t)(end - from));
-    return (Block){.rest = from, .end = last ? last + 1 : end};
+    return (SwcBlock){.rest = from, .end = last ? last + 1 : end};
 }
 
 /* Hands the rows of a block on, and reads what is left of it. */
-static Status finish_block(Reader *reader, const Block *block, Err *err)
+static Status finish_block(SwcReader *reader, const SwcBlock *block, Err *err)
 {
     for (size_t i = 0; i < block->n; i++, reader->line++) {
         block->node[i].record = reader->line;
@@ -317,7 +317,8 @@ static Status finish_block(Reader *reader, const Block *block, Err *err)
     return read_lines(reader, block->end, err);
 }
 
-static Status read_wave(Reader *reader, Wave *wave, size_t rows_per_block, char *end, Err *err)
+static Status read_wave(SwcReader *reader, SwcWave *wave, size_t rows_per_block, char *end,
+                        Err *err)
 {
     size_t n = 0;
     for (char *from = reader->rest; n < wave->n && from < end; from = wave->block[n++].end) {
@@ -331,12 +332,12 @@ static Status read_wave(Reader *reader, Wave *wave, size_t rows_per_block, char 
 }
 
 /* Reads the rest of a text whose rows have seven fields. */
-static Status read_plain_rows(Reader *reader, char *end, Err *err)
+static Status read_plain_rows(SwcReader *reader, char *end, Err *err)
 {
     size_t size = (size_t)(end - reader->rest), blocks = size / BLOCK + 1;
     size_t most = (size_t)threads_available() * BLOCKS_PER_THREAD;
     size_t rows = (size < BLOCK ? size : BLOCK) / SHORTEST_ROW + 1;
-    Wave wave = {.reader = reader, .n = blocks < most ? blocks : most};
+    SwcWave wave = {.reader = reader, .n = blocks < most ? blocks : most};
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&wave.block, wave.n, sizeof *wave.block, "blocks of lines", err));
     TRY_GOTO(mem_calloc(&wave.node, wave.n * rows, sizeof *wave.node, "rows", err));
@@ -350,7 +351,7 @@ done:
 
 Status swc_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
 {
-    Reader reader = {.builder = builder, .lowest_id = 1, .rest = bytes, .line = 1};
+    SwcReader reader = {.builder = builder, .lowest_id = 1, .rest = bytes, .line = 1};
     char *end = bytes + size;
     while (reader.rest && reader.rest < end && reader.n_fields != N_FIELDS)
         TRY(read_lines(&reader, reader.rest + 1, err));
@@ -410,17 +411,17 @@ static char *put_row(const Tree *tree, size_t i, char *to)
 
 enum { ROWS = 1024 /* of a page */, LONGEST_ROW = 8 * NUMBER_TEXT_SIZE };
 
-/* Pages of rows that are made at once. */
-typedef struct Pages {
+/* SwcPages of rows that are made at once. */
+typedef struct SwcPages {
     const Tree *tree;
     size_t first;   /* row of the first page */
     size_t *length; /* of each page's text; owned */
     char *text;     /* of all, with room for LONGEST_ROW a row; owned */
-} Pages;
+} SwcPages;
 
 static void fill_page(size_t index, int worker, void *context)
 {
-    const Pages *pages = context;
+    const SwcPages *pages = context;
     size_t first = pages->first + index * ROWS, left = pages->tree->n - first;
     char *text = pages->text + index * ROWS * LONGEST_ROW, *to = text;
     (void)worker;
@@ -432,7 +433,7 @@ static void fill_page(size_t index, int worker, void *context)
 static Status write_rows(const Tree *tree, Text *text, Err *err)
 {
     size_t n = (tree->n + ROWS - 1) / ROWS, most = (size_t)threads_available() * BLOCKS_PER_THREAD;
-    Pages pages = {.tree = tree};
+    SwcPages pages = {.tree = tree};
     Status status = STATUS_OK;
     most = n < most ? n : most;
     TRY_GOTO(mem_calloc(&pages.length, most, sizeof *pages.length, "pages", err));

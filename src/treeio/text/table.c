@@ -81,62 +81,59 @@ static const struct {
 };
 
 /* What an option says: the column called so, or number so, is that. */
-typedef struct Saying {
+typedef struct ColumnOption {
     const char *role, *column;
     size_t number; /* from 1 on; 0: it is no number */
     bool used;
-} Saying;
+} ColumnOption;
 
-typedef struct Sayings {
+typedef struct ColumnOptions {
     char *text; /* owned */
-    Saying *saying;
-    size_t n, capacity;
-} Sayings;
+    ARRAY(ColumnOption) option;
+} ColumnOptions;
 
-typedef struct Column {
+typedef struct TableColumn {
     Role role;
     const char *title; /* borrowed from the text */
     size_t value;      /* ROLE_VALUE: the graph's column */
     size_t texts;      /* its fields that are no numbers */
     LengthUnit unit;   /* of a length; LENGTH_UNITS: the title says none */
-} Column;
+} TableColumn;
 
 /* A node and the name of its parent. */
-typedef struct Child {
+typedef struct TableChild {
     size_t point, line;
     char *parent;
-} Child;
+} TableChild;
 
 typedef struct Table {
     const char *name; /* of the file */
     Graph *graph;
-    Sayings *sayings;
+    ColumnOptions *sayings;
     Names *nodes;
     bool beside; /* it is the table of lines that options name */
     TableKind kind;
     char separator;
-    Column *column;
-    size_t n, capacity;
+    ARRAY(TableColumn) columns;
     size_t first_value; /* the columns before are no values: the table is the program's own */
     size_t at[ROLES];   /* the column + 1 of each role; 0: none */
     char **field;       /* room for one row */
     double radius_factor;
-    Child *child;
-    size_t n_children, children_capacity;
+    ARRAY(TableChild) children;
     size_t rows;
 } Table;
 
 static void release_table(Table *table)
 {
-    free(table->column);
+    ARRAY_RELEASE(&table->columns);
     free(table->field);
-    free(table->child);
+    ARRAY_RELEASE(&table->children);
 }
 
 /* ---- what options say ---- */
 
 /* "x=NAME,y=3" or "x,y,,radius", the columns in order. */
-static Status parse_sayings(Sayings *sayings, const char *said, Err *err)
+static Status parse_sayings(ColumnOptions *sayings, const char *said, Err *err)
 {
     size_t place = 0;
     if (!said)
@@ -149,7 +146,7 @@ static Status parse_sayings(Sayings *sayings, const char *said, Err *err)
             *rest++ = '\0';
         place++;
         char *equals = strchr(entry, '=');
-        Saying saying = {.role = entry, .number = place};
+        ColumnOption saying = {.role = entry, .number = place};
         long long number;
         if (equals) {
             *equals = '\0';
@@ -159,17 +156,15 @@ static Status parse_sayings(Sayings *sayings, const char *said, Err *err)
         }
         if (!*entry)
             continue;
-        TRY(mem_reserve(&sayings->saying, &sayings->capacity, sayings->n + 1,
-                        sizeof *sayings->saying, "columns", err));
-        sayings->saying[sayings->n++] = saying;
+        TRY(ARRAY_PUSH(&sayings->option, "columns", err, saying));
     }
     return STATUS_OK;
 }
 
-static Status check_sayings(const Sayings *sayings, const char *name, Err *err)
+static Status check_sayings(const ColumnOptions *sayings, const char *name, Err *err)
 {
-    for (size_t i = 0; i < sayings->n; i++) {
-        const Saying *saying = &sayings->saying[i];
+    for (size_t i = 0; i < sayings->option.n; i++) {
+        const ColumnOption *saying = &sayings->option.items[i];
         if (!saying->used && saying->column)
             return err_set(err, STATUS_INPUT,
                            "%s: there is no column '%.40s', which `columns` names", name,
@@ -232,12 +227,12 @@ static Role role_of_title(const char *title, LengthUnit *unit)
     return role != ROLES && roles[role].is_length && *unit != LENGTH_UNITS ? role : ROLES;
 }
 
-static Saying *saying_of(const Table *table, const char *title)
+static ColumnOption *saying_of(const Table *table, const char *title)
 {
-    for (size_t i = 0; i < table->sayings->n; i++) {
-        Saying *saying = &table->sayings->saying[i];
+    for (size_t i = 0; i < table->sayings->option.n; i++) {
+        ColumnOption *saying = &table->sayings->option.items[i];
         bool by_name = title && saying->column && strcmp(saying->column, title) == 0;
-        bool by_number = !(title && table->beside) && saying->number == table->n + 1;
+        bool by_number = !(title && table->beside) && saying->number == table->columns.n + 1;
         if (by_name || by_number)
             return saying;
     }
@@ -278,8 +273,8 @@ static Status judge_kind(Table *table, Err *err)
 
 static Status add_column(Table *table, char *title, Err *err)
 {
-    Column column = {.role = ROLE_VALUE, .title = title, .unit = LENGTH_UNITS};
-    Saying *saying = saying_of(table, title);
+    TableColumn column = {.role = ROLE_VALUE, .title = title, .unit = LENGTH_UNITS};
+    ColumnOption *saying = saying_of(table, title);
     Role role = ROLES;
     if (saying) {
         saying->used = true;
@@ -296,17 +291,14 @@ static Status add_column(Table *table, char *title, Err *err)
         return err_set(err, STATUS_INPUT, "two columns are to be %s", roles[role].alias[0]);
     if (role != ROLES && !table->at[role]) {
         column.role = role;
-        table->at[role] = table->n + 1;
+        table->at[role] = table->columns.n + 1;
     }
-    TRY(mem_reserve(&table->column, &table->capacity, table->n + 1, sizeof *table->column,
-                    "columns", err));
-    table->column[table->n++] = column;
-    return STATUS_OK;
+    return ARRAY_PUSH(&table->columns, "columns", err, column);
 }
 
 static Status add_value(Table *table, size_t k, Err *err)
 {
-    Column *column = &table->column[k];
+    TableColumn *column = &table->columns.items[k];
     char number[32], *title = NULL;
     snprintf(number, sizeof number, "column %zu", k + 1);
     TRY(mem_strdup(&title, column->title && *column->title ? column->title : number, err));
@@ -321,10 +313,10 @@ static Status add_value(Table *table, size_t k, Err *err)
 static bool begins_as_own(const Table *table)
 {
     size_t k = 0;
-    while (k < table->n && k < CSV_SEGMENT_TITLES && table->column[k].title &&
-           strcmp(table->column[k].title, csv_segment_titles[k]) == 0)
+    while (k < table->columns.n && k < CSV_SEGMENT_TITLES && table->columns.items[k].title &&
+           strcmp(table->columns.items[k].title, csv_segment_titles[k]) == 0)
         k++;
-    return k == CSV_SEGMENT_TITLES && table->sayings->n == 0;
+    return k == CSV_SEGMENT_TITLES && table->sayings->option.n == 0;
 }
 
 /* Whether a column is not what its title says: tables of this kind have no such column, or it is a
@@ -338,8 +330,8 @@ static bool is_needless(const Table *table, Role role)
 static Status add_values(Table *table, Err *err)
 {
     table->first_value = begins_as_own(table) ? CSV_SEGMENT_TITLES : 0;
-    for (size_t k = table->first_value; k < table->n; k++) {
-        Column *column = &table->column[k];
+    for (size_t k = table->first_value; k < table->columns.n; k++) {
+        TableColumn *column = &table->columns.items[k];
         if (column->role == ROLE_ID && table->kind != NODES)
             column->title = table->kind == LINES ? "edge" : "vessel";
         if (column->role != ROLE_VALUE && is_needless(table, column->role)) {
@@ -356,8 +348,8 @@ static Status add_values(Table *table, Err *err)
 static Status judge_units(Table *table, Err *err)
 {
     LengthUnit unit = LENGTH_UNITS, of_radius = LENGTH_UNITS;
-    for (size_t k = 0; k < table->n; k++) {
-        const Column *column = &table->column[k];
+    for (size_t k = 0; k < table->columns.n; k++) {
+        const TableColumn *column = &table->columns.items[k];
         bool is_radius = column->role == ROLE_RADIUS || column->role == ROLE_DIAMETER;
         if (column->role == ROLE_VALUE || column->unit == LENGTH_UNITS)
             continue;
@@ -379,8 +371,8 @@ static Status judge_units(Table *table, Err *err)
         table->radius_factor *= length_unit_mm(of_radius) / length_unit_mm(graph->unit);
     if (!table->at[ROLE_RADIUS] && table->at[ROLE_DIAMETER])
         return reading_note(graph->reading, err, "radii are half of the column '%s'",
-                            table->column[table->at[ROLE_DIAMETER] - 1].title
-                                ? table->column[table->at[ROLE_DIAMETER] - 1].title
+                            table->columns.items[table->at[ROLE_DIAMETER] - 1].title
+                                ? table->columns.items[table->at[ROLE_DIAMETER] - 1].title
                                 : "diameter");
     return STATUS_OK;
 }
@@ -427,7 +419,7 @@ static Status begin_table(Table *table, char *line, bool *is_row, Err *err)
     char *title;
     table->separator = separator_of(line);
     TRY(look_at_line(table, line, &fields, is_row, err));
-    if (*is_row && table->sayings->n == 0)
+    if (*is_row && table->sayings->option.n == 0)
         return err_set(err, STATUS_INPUT,
                        "the table has no titles; `columns` says which column is which, as in "
                        "x0=1,y0=2,z0=3,x1=4,y1=5,z1=6,radius=7");
@@ -497,8 +489,8 @@ static bool value_of(const char *text, double *value, bool *is_text)
 
 static Status put_values(Table *table, size_t element, Err *err)
 {
-    for (size_t k = table->first_value; k < table->n; k++) {
-        Column *column = &table->column[k];
+    for (size_t k = table->first_value; k < table->columns.n; k++) {
+        TableColumn *column = &table->columns.items[k];
         double value;
         bool is_text;
         if (column->role != ROLE_VALUE)
@@ -538,10 +530,7 @@ static Status read_node(Table *table, size_t line, Err *err)
     TRY(put_values(table, at, err));
     if (!parent || !*parent || strcmp(parent, "-1") == 0)
         return STATUS_OK;
-    TRY(mem_reserve(&table->child, &table->children_capacity, table->n_children + 1,
-                    sizeof *table->child, "parents", err));
-    table->child[table->n_children++] = (Child){at, line, parent};
-    return STATUS_OK;
+    return ARRAY_PUSH(&table->children, "parents", err, (TableChild){at, line, parent});
 }
 
 static Status read_vessel(Table *table, size_t line, Err *err)
@@ -556,9 +545,7 @@ static Status read_vessel(Table *table, size_t line, Err *err)
         ends[0].id = id_of(parent);
         ends[1].id = id_of(id);
         TRY(names_add(table->nodes, id, vessel.b, line, err));
-        TRY(mem_reserve(&table->child, &table->children_capacity, table->n_children + 1,
-                        sizeof *table->child, "parents", err));
-        table->child[table->n_children++] = (Child){vessel.a, line, parent};
+        TRY(ARRAY_PUSH(&table->children, "parents", err, (TableChild){vessel.a, line, parent}));
     }
     TRY(read_position(table, ROLE_X0, &ends[0].position, err));
     TRY(read_position(table, ROLE_X1, &ends[1].position, err));
@@ -574,7 +561,7 @@ static Status find_node(const Table *table, Role role, size_t *node, Err *err)
 {
     char *name = field_of(table, role);
     int32_t number;
-    if (table->nodes->n > 0)
+    if (table->nodes->name.n > 0)
         return names_find(table->nodes, name, node, err);
     TRY(field_whole(roles[role].alias[0], name, 0, (int32_t)table->graph->n_points - 1, &number,
                     err));
@@ -594,15 +581,7 @@ static Status read_edge(Table *table, size_t line, Err *err)
 
 static Status read_row(Table *table, size_t number, char *line, Err *err)
 {
-    size_t count = 0;
-    for (char *at = line, *field; at; count++) {
-        TRY(csv_field(&at, table->separator, &field, err));
-        if (count < table->n)
-            table->field[count] = field;
-    }
-    if (count != table->n)
-        return err_set(err, STATUS_INPUT, "the row has %zu field%s; there are %zu columns", count,
-                       count == 1 ? "" : "s", table->n);
+    TRY(csv_row(line, table->separator, table->field, table->columns.n, err));
     return table->kind == NODES     ? read_node(table, number, err)
            : table->kind == VESSELS ? read_vessel(table, number, err)
                                     : read_edge(table, number, err);
@@ -617,18 +596,18 @@ static Status read_line(void *reader, size_t number, char *line, Err *err)
     if (!*line)
         return STATUS_OK;
     bool is_row = true;
-    if (table->n == 0)
+    if (table->columns.n == 0)
         TRY(begin_table(table, line, &is_row, err));
     return is_row ? read_row(table, number, line, err) : STATUS_OK;
 }
 
 static Status note_texts(const Table *table, Err *err)
 {
-    for (size_t k = 0; k < table->n; k++)
-        if (table->column[k].texts > 0)
+    for (size_t k = 0; k < table->columns.n; k++)
+        if (table->columns.items[k].texts > 0)
             TRY(reading_note(table->graph->reading, err,
                              "the column '%.40s' has text in %zu rows, which is no value",
-                             table->column[k].title, table->column[k].texts));
+                             table->columns.items[k].title, table->columns.items[k].texts));
     return STATUS_OK;
 }
 
@@ -644,9 +623,9 @@ static Status read_table(Table *table, char *bytes, size_t size, Err *err)
  * root, whose first mention stands for it. */
 static Status join_vessels(const Table *table, Err *err)
 {
-    table->graph->is_named = table->n_children > 0;
-    for (size_t i = 0; i < table->n_children; i++) {
-        const Child *child = &table->child[i];
+    table->graph->is_named = table->children.n > 0;
+    for (size_t i = 0; i < table->children.n; i++) {
+        const TableChild *child = &table->children.items[i];
         size_t end;
         if (names_find(table->nodes, child->parent, &end, NULL) != STATUS_OK)
             TRY(names_add(table->nodes, child->parent, child->point, child->line, err));
@@ -659,8 +638,8 @@ static Status join_vessels(const Table *table, Err *err)
 static Status add_parents(const Table *table, Err *err)
 {
     Graph *graph = table->graph;
-    for (size_t i = 0; i < table->n_children; i++) {
-        const Child *child = &table->child[i];
+    for (size_t i = 0; i < table->children.n; i++) {
+        const TableChild *child = &table->children.items[i];
         GraphLine line = {
             .b = child->point, .radius = (double)NAN, .is_directed = true, .record = child->line};
         TRY(graph_blame(graph, GRAPH_LINES, child->line,
@@ -684,7 +663,7 @@ static Status read_beside(const Table *nodes, const char *path, Err *err)
     nodes->graph->line_record = "line of the edges";
     TRY(file_read(path, &form, &bytes, &size, err));
     Status status = read_table(&edges, bytes, size, err);
-    if (status == STATUS_OK && edges.n == 0)
+    if (status == STATUS_OK && edges.columns.n == 0)
         status = err_set(err, STATUS_INPUT, "%s: the table of lines is empty", path);
     release_table(&edges);
     free(bytes);
@@ -719,13 +698,20 @@ static Status read_tables(Table *table, char *bytes, size_t size, Err *err)
 
 Status table_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
-    Sayings sayings = {0};
+    ColumnOptions sayings = {0};
     Names nodes = {.what = "node"};
     Table table = {.name = graph->name, .graph = graph, .sayings = &sayings, .nodes = &nodes};
     Status status = read_tables(&table, bytes, size, err);
     release_table(&table);
     names_release(&nodes);
     free(sayings.text);
-    free(sayings.saying);
+    ARRAY_RELEASE(&sayings.option);
     return status;
+}
+
+void table_keywords(Text *text)
+{
+    keywords_put(csv_segment_titles, CSV_SEGMENT_TITLES, sizeof *csv_segment_titles, text);
+    for (size_t k = 0; k < MAX_ALIASES; k++)
+        KEYWORDS_PUT(roles, .alias[k], text);
 }

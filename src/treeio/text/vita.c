@@ -1,7 +1,7 @@
 /* Trees of VItA (.cco): three sections that begin with "*". "*Tree" holds numbers of the growth.
  * "*Vessels" has one vessel per row; VItA's SingleVessel::saveVesselData says what each number is.
- * "*Connectivity" lists each vessel, its parent or -1, and its children. Blood enters a vessel where
- * its parent ends, wherever its own proximal end is. */
+ * "*Connectivity" lists each vessel, its parent or -1, and its children. Blood enters a vessel
+ * where its parent ends, wherever its own proximal end is. */
 #include "treeio/formats.h"
 #include "treeio/text/dialect.h"
 
@@ -10,8 +10,8 @@
 
 enum { TREE, VESSELS, CONNECTIVITY, SECTIONS };
 
-/* Joins the proximal end of a vessel to the distal end of its parent. Vessel k has the points 2 k and
- * 2 k + 1. */
+/* Joins the proximal end of a vessel to the distal end of its parent. Vessel k has the points 2 k
+ * and 2 k + 1. */
 static Status connect(DialectReader *reader, DialectRow *row, Err *err)
 {
     size_t vessel, parent;
@@ -64,6 +64,11 @@ static const Dialect dialect = {.section = sections,
                                 .field = fields,
                                 .n_fields = sizeof fields / sizeof *fields,
                                 .choose = choose_section};
+
+void vita_keywords(Text *text)
+{
+    dialect_put_keywords(&dialect, text);
+}
 
 Status vita_read(Graph *graph, char *bytes, size_t size, Err *err)
 {

@@ -1,6 +1,6 @@
-/* VMV, the files of VessMorphoVis: sections between "$NAME_BEGIN" and "$NAME_END". $PARAM states counts.
- * $VERT_LIST has one vertex per line: its number, position, radius, and sometimes one more value.
- * $STRANDS_LIST has one polyline of vertices per line, after the polyline's number.
+/* VMV, the files of VessMorphoVis: sections between "$NAME_BEGIN" and "$NAME_END". $PARAM states
+ * counts. $VERT_LIST has one vertex per line: its number, position, radius, and sometimes one more
+ * value. $STRANDS_LIST has one polyline of vertices per line, after the polyline's number.
  * $RADIUS_SIMULATION and similar sections have one row per vertex, with one value per time step.
  * VessMorphoVis states time steps also of sections that it does not write. Ultraliser puts a '$'
  * before the names of parameters, too.
@@ -135,33 +135,34 @@ static Status read_comment(Graph *graph, const char *comment, Err *err)
     return comment_read(&graph->meta, comment, err);
 }
 
-/* Reads "$NAME_BEGIN" or "$NAME_END". */
+/* Reads "NAME_BEGIN" or "NAME_END", which follows a '$'. */
 static Status change_section(DialectReader *reader, const char *title, Err *err)
 {
     for (size_t section = 0; section < SECTIONS; section++) {
         size_t length = strlen(sections[section].title);
-        if (strncasecmp(title + 1, sections[section].title, length) != 0)
+        if (strncasecmp(title, sections[section].title, length) != 0)
             continue;
-        bool begins = strcasecmp(title + 1 + length, "_BEGIN") == 0;
+        bool begins = strcasecmp(title + length, "_BEGIN") == 0;
         reader->section = begins ? section : SECTIONS;
-        if (begins || strcasecmp(title + 1 + length, "_END") == 0)
+        if (begins || strcasecmp(title + length, "_END") == 0)
             return STATUS_OK;
     }
-    return err_set(err, STATUS_INPUT, "'%.40s' begins or ends no section of VMV", title);
+    return err_set(err, STATUS_INPUT, "'$%.40s' begins or ends no section of VMV", title);
 }
 
 /* Lines after the strands may stand in no section. */
 static Status choose_section(DialectReader *reader, DialectRow *row, bool *is_row, Err *err)
 {
     const VmvState *state = reader->own;
-    if (reader->section == PARAMETERS && strncasecmp(row->field[0], "$NUM_", 5) == 0)
-        row->field[0]++;
-    *is_row = *row->field[0] != '$' && reader->section < SECTIONS;
-    if (*row->field[0] == '$')
-        return change_section(reader, row->field[0], err);
+    const char *first = row->field[0];
+    if (reader->section == PARAMETERS && strncasecmp(first, "$NUM_", 5) == 0)
+        first = ++row->field[0];
+    *is_row = *first != '$' && reader->section < SECTIONS;
+    if (*first == '$')
+        return change_section(reader, first[1] || row->count == 1 ? first + 1 : row->field[1], err);
     if (*is_row || state->n_strands > 0)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "'%.40s' stands in no section of VMV", row->field[0]);
+    return err_set(err, STATUS_INPUT, "'%.40s' stands in no section of VMV", first);
 }
 
 static const Dialect dialect = {.section = sections,
@@ -170,6 +171,11 @@ static const Dialect dialect = {.section = sections,
                                 .n_fields = sizeof fields / sizeof *fields,
                                 .comment = read_comment,
                                 .choose = choose_section};
+
+void vmv_keywords(Text *text)
+{
+    dialect_put_keywords(&dialect, text);
+}
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
@@ -189,7 +195,8 @@ static Status check_counts(const Graph *graph, const VmvState *state, Err *err)
     for (size_t section = RADIUS; section < SECTIONS; section++) {
         const TimeSteps *series = &state->series[section];
         if (series->rows > 0)
-            TRY(check_count(graph, series_names[section].steps, series->stated, series->steps, err));
+            TRY(check_count(graph, series_names[section].steps, series->stated, series->steps,
+                            err));
         if (series->rows > 0 && series->rows != graph->n_points)
             return err_set(err, STATUS_INPUT, "%s: %s has %zu rows for %zu vertices", graph->name,
                            sections[section].title, series->rows, graph->n_points);

@@ -260,10 +260,14 @@ static const struct {
     const char *keyword;
     Status (*read)(LegacyReader *reader, Err *err);
 } blocks[] = {
-    {"POINTS", read_points},           {"CELL_TYPES", read_cell_types},
-    {"POINT_DATA", begin_point_data},  {"CELL_DATA", begin_cell_data},
-    {"FIELD", read_field},             {"SCALARS", read_scalars},
-    {"LOOKUP_TABLE", skip_table},      {"METADATA", skip_description},
+    {"POINTS", read_points},
+    {"CELL_TYPES", read_cell_types},
+    {"POINT_DATA", begin_point_data},
+    {"CELL_DATA", begin_cell_data},
+    {"FIELD", read_field},
+    {"SCALARS", read_scalars},
+    {"LOOKUP_TABLE", skip_table},
+    {"METADATA", skip_description},
 };
 
 /* Attributes "KEYWORD name [components] [type]". */
@@ -342,8 +346,9 @@ static Status read_cells(LegacyReader *reader, VtkCells *cells, Err *err)
     TRY(read_count(reader, "cells", &n, err));
     TRY(read_count(reader, "numbers", &size, err));
     cells->n_corners = size;
-    return cursor_take(&reader->cursor, "OFFSETS") ? read_offset_cells(reader, n, cells, err)
-                                                   : read_counted_cells(reader, n, size, cells, err);
+    return cursor_take(&reader->cursor, "OFFSETS")
+               ? read_offset_cells(reader, n, cells, err)
+               : read_counted_cells(reader, n, size, cells, err);
 }
 
 /* ---- the file -------------------------------------------------------------------------------- */
@@ -365,8 +370,8 @@ static Status read_block(LegacyReader *reader, const char *keyword, Err *err)
 /* Reads the four lines before the first block. */
 static Status read_head(LegacyReader *reader, Err *err)
 {
-    static const char *const codings[] = {"ASCII", "BINARY"}, *const sets[] = {
-        "POLYDATA", "UNSTRUCTURED_GRID"};
+    static const char *const codings[] = {"ASCII", "BINARY"}, *const sets[] = {"POLYDATA",
+                                                                               "UNSTRUCTURED_GRID"};
     Cursor *cursor = &reader->cursor;
     char word[CURSOR_WORD];
     size_t length = strcspn(cursor->at, "\r\n");
@@ -413,6 +418,14 @@ static Status add_all_cells(LegacyReader *reader, Err *err)
     for (size_t k = 0; k < VTK_CELL_KINDS; k++)
         TRY(vtk_add_cells(&reader->data, &reader->cells[k], &vtk_cell_kinds[k], 0, err));
     return STATUS_OK;
+}
+
+void vtk_keywords(Text *text)
+{
+    KEYWORDS_PUT(blocks, .keyword, text);
+    KEYWORDS_PUT(attributes, .keyword, text);
+    KEYWORDS_PUT(vtk_cell_kinds, .legacy, text);
+    vtk_put_type_names(NAMING_LEGACY, text);
 }
 
 bool vtk_detect(const char *start)

@@ -3,6 +3,7 @@
  * instead. */
 #include "treeio/vtk/vtkdata.h"
 
+#include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include <math.h>
 #include <stdint.h>
@@ -16,8 +17,8 @@ static const struct {
     size_t size;
     bool is_float, is_signed;
 } types[VTK_TYPES] = {
-    [VTK_TEXT] = {1, false, false},  [VTK_INT8] = {1, false, true},
-    [VTK_UINT8] = {1, false, false}, [VTK_INT16] = {2, false, true},
+    [VTK_TEXT] = {1, false, false},   [VTK_INT8] = {1, false, true},
+    [VTK_UINT8] = {1, false, false},  [VTK_INT16] = {2, false, true},
     [VTK_UINT16] = {2, false, false}, [VTK_INT32] = {4, false, true},
     [VTK_UINT32] = {4, false, false}, [VTK_INT64] = {8, false, true},
     [VTK_UINT64] = {8, false, false}, [VTK_FLOAT] = {4, true, true},
@@ -78,6 +79,11 @@ const char *vtk_type_name(VtkNaming naming, VtkType type)
     return type_names[i].name[naming];
 }
 
+void vtk_put_type_names(VtkNaming naming, Text *text)
+{
+    KEYWORDS_PUT(type_names, .name[naming], text);
+}
+
 size_t vtk_type_size(VtkType type)
 {
     return types[type].size;
@@ -129,24 +135,23 @@ enum { BLOCK = 1 << 19 /* numbers: two huge pages */ };
 
 static void take_block(size_t index, int worker, void *context)
 {
-    const VtkValues *all = context;
-    size_t size = types[all->type].size, first = index * BLOCK, left = all->n - first;
+    const VtkValues all = *(const VtkValues *)context;
+    size_t size = types[all.type].size, first = index * BLOCK, left = all.n - first;
     size_t n = left < BLOCK ? left : BLOCK;
-    const char *bytes = all->bytes + first * size;
-    double *out = all->out + first;
+    const char *bytes = all.bytes + first * size;
     (void)worker;
-    if (take_plain(all->type, all->is_big_endian, bytes, n, out))
+    if (take_plain(all.type, all.is_big_endian, bytes, n, all.out + first))
         return;
     for (size_t i = 0; i < n; i++, bytes += size) {
         uint64_t bits = 0;
         for (size_t k = 0; k < size; k++)
-            bits = bits << 8 | (unsigned char)bytes[all->is_big_endian ? k : size - 1 - k];
-        out[i] = number_of_bits(all->type, bits);
+            bits = bits << 8 | (unsigned char)bytes[all.is_big_endian ? k : size - 1 - k];
+        all.out[first + i] = number_of_bits(all.type, bits);
     }
 }
 
-/* Uses all processors: the system clears the memory of `out` while it is written, which takes longer
- * than the conversion. */
+/* Uses all processors: the system clears the memory of `out` while it is written, which takes
+ * longer than the conversion. */
 void vtk_numbers(VtkType type, bool is_big_endian, const char *bytes, size_t n, double *out)
 {
     VtkValues all = {type, is_big_endian, bytes, n, out};
@@ -325,8 +330,10 @@ Status vtk_take_positions(VtkData *data, const char *const axes[3], const char *
 enum { VERTEX = 1, POLY_VERTEX = 2, LINE = 3, POLY_LINE = 4, QUADRATIC_EDGE = 21 };
 
 const VtkCellKind vtk_cell_kinds[VTK_CELL_KINDS] = {
-    {"VERTICES", "Verts", POLY_VERTEX, false}, {"LINES", "Lines", POLY_LINE, false},
-    {"POLYGONS", "Polys", 0, false},           {"TRIANGLE_STRIPS", "Strips", 0, false},
+    {"VERTICES", "Verts", POLY_VERTEX, false},
+    {"LINES", "Lines", POLY_LINE, false},
+    {"POLYGONS", "Polys", 0, false},
+    {"TRIANGLE_STRIPS", "Strips", 0, false},
     {"CELLS", "Cells", 0, true},
 };
 

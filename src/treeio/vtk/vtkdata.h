@@ -27,7 +27,13 @@ typedef enum VtkType {
 } VtkType;
 
 /* The formats that name types of numbers. */
-typedef enum VtkNaming { NAMING_LEGACY, NAMING_XML, NAMING_AMIRA, NAMING_METAIO, NAMINGS } VtkNaming;
+typedef enum VtkNaming {
+    NAMING_LEGACY,
+    NAMING_XML,
+    NAMING_AMIRA,
+    NAMING_METAIO,
+    NAMINGS
+} VtkNaming;
 
 /* Finds a type by its name in a format. Case does not matter.
  *
@@ -40,6 +46,8 @@ MUST_CHECK Status vtk_find_type(VtkNaming naming, const char *name, const char *
                                 VtkType *type, Err *err);
 /* Returns the first name of a type in a format. */
 const char *vtk_type_name(VtkNaming naming, VtkType type);
+/* Appends all names of types in a format, one per line. */
+void vtk_put_type_names(VtkNaming naming, Text *text);
 /* Returns the number of bytes of one value. Text has bytes of 1. */
 size_t vtk_type_size(VtkType type);
 
@@ -105,9 +113,9 @@ typedef struct VtkData {
     size_t *end;  /* per polyline: its end in `corner` */
     size_t *cell; /* per polyline: its index among all cells */
     size_t n_lines, ends_capacity, cells_capacity;
-    size_t n_cells;   /* number of cells of any kind */
-    size_t not_lines; /* number of cells that are neither lines nor points */
-    bool is_directed; /* blood flows along the lines */
+    size_t n_cells;                 /* number of cells of any kind */
+    size_t not_lines;               /* number of cells that are neither lines nor points */
+    bool is_directed;               /* blood flows along the lines */
     VtkArrays arrays[VTK_ELEMENTS]; /* of points, of cells, of the file */
 } VtkData;
 

@@ -48,16 +48,26 @@ static const VtkArray *find_scalars(const VtkArrays *arrays, const char *name, b
 
 /* Plain names of radii, and then of diameters, best first. */
 static const char *const radius_names[] = {
-    "radius",       "maximuminscribedsphereradius",
-    "vesselradius", "segmentradius",
-    "edgeradius",   "radii",
-    "radiusavg",    "avgradius",
-    "meanradius",   "noderadius",
-    "radiusmm",     "radiusum",
-    "rad",          "r",
-    "thickness",    "diameter",
-    "vesseldiameter", "diameters",
-    "diametermm",   "diam",
+    "radius",
+    "maximuminscribedsphereradius",
+    "vesselradius",
+    "segmentradius",
+    "edgeradius",
+    "radii",
+    "radiusavg",
+    "avgradius",
+    "meanradius",
+    "noderadius",
+    "radiusmm",
+    "radiusum",
+    "rad",
+    "r",
+    "thickness",
+    "diameter",
+    "vesseldiameter",
+    "diameters",
+    "diametermm",
+    "diam",
 };
 enum { N_RADIUS_NAMES = sizeof radius_names / sizeof *radius_names };
 
@@ -67,8 +77,7 @@ static bool take_radius(VtkMeaning *meaning, const VtkData *data, const char *na
     char plain[PLAIN_SIZE];
     to_plain(name, plain);
     const VtkArray *of_cells = find_scalars(&data->arrays[GRAPH_LINES], name, exact);
-    meaning->radius =
-        of_cells ? of_cells : find_scalars(&data->arrays[GRAPH_POINTS], name, exact);
+    meaning->radius = of_cells ? of_cells : find_scalars(&data->arrays[GRAPH_POINTS], name, exact);
     meaning->of = of_cells ? GRAPH_LINES : GRAPH_POINTS;
     meaning->factor = strstr(plain, "diam") ? 0.5 : 1;
     return meaning->radius != NULL;

@@ -36,8 +36,9 @@ static inline Vec3 vtk_position(const VtkData *data, size_t i)
     return (Vec3){data->point[3 * i], data->point[3 * i + 1], data->point[3 * i + 2]};
 }
 
-/* Hands a tree that corcast wrote over to graph->tree. Errors: STATUS_INPUT, with file and record, if
- * two lines lead to one node, and as builder_node, builder_column and meta_parse; STATUS_MEMORY. */
+/* Hands a tree that corcast wrote over to graph->tree. Errors: STATUS_INPUT, with file and record,
+ * if two lines lead to one node, and as builder_node, builder_column and meta_parse; STATUS_MEMORY.
+ */
 MUST_CHECK Status vtk_to_tree(const VtkMeaning *meaning, const VtkData *data, Graph *graph,
                               Err *err);
 

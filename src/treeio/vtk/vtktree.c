@@ -1,8 +1,8 @@
 /* Reads a tree that corcast wrote.
  *
- * Points with the same id are one node: branches have points of their own where they meet. Lines lead
- * away from the root, so that each line gives its distal node a parent. Nodes are handed over by
- * rising id, which was their order in the tree that was written. */
+ * Points with the same id are one node: branches have points of their own where they meet. Lines
+ * lead away from the root, so that each line gives its distal node a parent. Nodes are handed over
+ * by rising id, which was their order in the tree that was written. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkmeaning.h"
@@ -18,8 +18,8 @@ typedef struct VtkTree {
     const VtkData *data;
     const Graph *graph;
     TreeBuilder *builder;
-    /* The nodes, by rising id. Per node: the point and the cell that have its values, + 1, and the id
-     * of its parent; 0 for none. Owned. */
+    /* The nodes, by rising id. Per node: the point and the cell that have its values, + 1, and the
+     * id of its parent; 0 for none. Owned. */
     int32_t *id;
     uint32_t *point, *cell;
     int32_t *parent;

@@ -1,10 +1,12 @@
-/* Writes a tree as VTK, legacy or XML: first a vertex for each root, then a polyline for each branch.
+/* Writes a tree as VTK, legacy or XML: first a vertex for each root, then a polyline for each
+ * branch.
  *
  * A polyline has points of its own, all with the values of its segments. Its first point has the
  * values of its first segment, so that a tube around it is as thick as the vessel from end to end.
- * Points shared with the parent would make it a cone. Points of one node have the same `id`, by which
- * vtktree.c finds the tree again. The tree's metadata are lines of text in the field data. Both kinds
- * of files have the arrays of one table. Numbers pass through one buffer, for trees of any size. */
+ * Points shared with the parent would make it a cone. Points of one node have the same `id`, by
+ * which vtktree.c finds the tree again. The tree's metadata are lines of text in the field data.
+ * Both kinds of files have the arrays of one table. Numbers pass through one buffer, for trees of
+ * any size. */
 #include "treeio/branches.h"
 #include "treeio/comments.h"
 #include "treeio/formats.h"
@@ -47,11 +49,11 @@ static const struct {
 };
 
 /* An array of numbers that a file has. */
-typedef struct Sheet {
+typedef struct VtkSheet {
     SheetKind kind;
     size_t column; /* of the tree, for COLUMN */
     size_t n;      /* number of numbers */
-} Sheet;
+} VtkSheet;
 
 /* The points of a polyline have consecutive indices. */
 typedef struct VtkLines {
@@ -60,7 +62,7 @@ typedef struct VtkLines {
     int32_t *node;   /* per point: its node; owned */
     int32_t *values; /* per point: the node whose values it has; owned */
     size_t n_points, n_roots;
-    ARRAY(Sheet) sheets;
+    ARRAY(VtkSheet) sheets;
 } VtkLines;
 
 static void release(VtkLines *lines)
@@ -122,15 +124,15 @@ static Status list_sheets(VtkLines *lines, Err *err)
                              [LINE_ENDS] = lines->branches.n};
     for (int kind = 0; kind < KINDS; kind++) {
         for (size_t k = 0; kind == COLUMN && k < tree->n_columns; k++)
-            TRY(ARRAY_PUSH(&lines->sheets, "arrays", err, (Sheet){COLUMN, k, points}));
+            TRY(ARRAY_PUSH(&lines->sheets, "arrays", err, (VtkSheet){COLUMN, k, points}));
         if (n[kind] > 0 || kind >= POSITION)
-            TRY(ARRAY_PUSH(&lines->sheets, "arrays", err, (Sheet){(SheetKind)kind, 0, n[kind]}));
+            TRY(ARRAY_PUSH(&lines->sheets, "arrays", err, (VtkSheet){(SheetKind)kind, 0, n[kind]}));
     }
     return STATUS_OK;
 }
 
 /* Returns number `i` of an array. */
-static double number_at(const VtkLines *lines, const Sheet *sheet, size_t i)
+static double number_at(const VtkLines *lines, const VtkSheet *sheet, size_t i)
 {
     const Tree *tree = lines->tree;
     switch (sheet->kind) {
@@ -157,7 +159,8 @@ static double number_at(const VtkLines *lines, const Sheet *sheet, size_t i)
     }
 }
 
-static void put_numbers(const VtkLines *lines, const Sheet *sheet, bool is_big_endian, Text *text)
+static void put_numbers(const VtkLines *lines, const VtkSheet *sheet, bool is_big_endian,
+                        Text *text)
 {
     enum { PIECE = 2048 };
     VtkType type = kinds[sheet->kind].type;
@@ -173,7 +176,7 @@ static void put_numbers(const VtkLines *lines, const Sheet *sheet, bool is_big_e
 }
 
 /* Writes the array's name, for a column "NAME [UNIT]", into `text`. Returns its characters. */
-static const char *name_of(const VtkLines *lines, const Sheet *sheet, Text *text)
+static const char *name_of(const VtkLines *lines, const VtkSheet *sheet, Text *text)
 {
     if (sheet->kind != COLUMN)
         return kinds[sheet->kind].name;
@@ -212,7 +215,7 @@ static void put_remarks(const TreeMeta *meta, Text *text)
     text_release(&line);
 }
 
-static size_t bytes_of(const Sheet *sheet)
+static size_t bytes_of(const VtkSheet *sheet)
 {
     return sheet->n * vtk_type_size(kinds[sheet->kind].type);
 }
@@ -224,7 +227,7 @@ static void put_sheets(const VtkLines *lines, Text *text)
     const char *section = NULL;
     size_t offset = 0;
     for (size_t i = 0; i < lines->sheets.n; i++) {
-        const Sheet *sheet = &lines->sheets.items[i];
+        const VtkSheet *sheet = &lines->sheets.items[i];
         const char *own = kinds[sheet->kind].section;
         if (section && section != own)
             text_printf(text, "      </%s>\n", section);
@@ -347,7 +350,7 @@ Status vtk_write(const Tree *tree, Text *text, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(list_points(&lines, err));
     TRY_GOTO(list_sheets(&lines, err));
-    const Sheet *positions = lines.sheets.items;
+    const VtkSheet *positions = lines.sheets.items;
     while (positions->kind != POSITION)
         positions++;
     text_puts(text, "# vtk DataFile Version 3.0\narterial tree, mm\nBINARY\nDATASET POLYDATA\n");
@@ -358,7 +361,7 @@ Status vtk_write(const Tree *tree, Text *text, Err *err)
     put_cells(&lines, text);
     text_printf(text, "\nPOINT_DATA %zu\nFIELD FieldData %zu\n", lines.n_points,
                 (size_t)(positions - lines.sheets.items));
-    for (const Sheet *sheet = lines.sheets.items; sheet < positions; sheet++) {
+    for (const VtkSheet *sheet = lines.sheets.items; sheet < positions; sheet++) {
         put_encoded(name_of(&lines, sheet, &name), text);
         text_printf(text, " 1 %zu %s\n", sheet->n,
                     vtk_type_name(NAMING_LEGACY, kinds[sheet->kind].type));

@@ -1,7 +1,7 @@
 /* Reads VTK's XML. Arrays are gathered in the order of their elements. Numbers that stand in the
- * document are read at once. Numbers in the element AppendedData are read after the document, because
- * they need not be XML. Then the pieces are put together. The element around an array says what the
- * array is for. */
+ * document are read at once. Numbers in the element AppendedData are read after the document,
+ * because they need not be XML. Then the pieces are put together. The element around an array says
+ * what the array is for. */
 #include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
@@ -116,8 +116,8 @@ static Status begin_piece(VtpReader *reader, const XmlElement *element, Err *err
 }
 
 /* Returns the largest number of numbers, or bytes of text, that an array can have. Nothing states
- * the length of lines, of texts and of the file's own data. The limit of a hundred for each point and
- * cell, and a million more, exceeds what any known file takes. */
+ * the length of lines, of texts and of the file's own data. The limit of a hundred for each point
+ * and cell, and a million more, exceeds what any known file takes. */
 static double max_numbers_of(const VtpReader *reader, const XmlArray *of)
 {
     double components = (double)of->array.components;
@@ -387,9 +387,8 @@ static Status move_arrays(VtpReader *reader, size_t piece, size_t section, VtkDa
         XmlArray *of = &reader->arrays.items[i];
         if (of->piece != piece || of->section != section)
             continue;
-        VtkArray *before = piece > 1 && section != VTK_OF_FILE
-                               ? vtk_find_array(arrays, of->array.name)
-                               : NULL;
+        VtkArray *before =
+            piece > 1 && section != VTK_OF_FILE ? vtk_find_array(arrays, of->array.name) : NULL;
         if (before) {
             TRY(append_values(before, &of->array, err));
             continue;
@@ -412,6 +411,14 @@ static Status join_pieces(VtpReader *reader, VtkData *data, Err *err)
             TRY(move_arrays(reader, piece, section, data, err));
     }
     return STATUS_OK;
+}
+
+void vtp_keywords(Text *text)
+{
+    for (size_t section = 0; section < SECTIONS; section++)
+        text_printf(text, "<%s>\n", section_name(section));
+    KEYWORDS_PUT(packings, , text);
+    vtk_put_type_names(NAMING_XML, text);
 }
 
 bool vtp_detect(const char *start)

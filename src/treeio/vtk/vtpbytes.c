@@ -1,11 +1,11 @@
-/* An array is its number of bytes, and these bytes. If it is compressed, it is the number of blocks,
- * the size of a block and of the last one, the compressed size of each block, and the blocks. In
- * base64, the bytes follow the number without padding, but the blocks may begin after padding. A
- * padded group gives fewer bytes and the next group begins anew, so both are read.
+/* An array is its number of bytes, and these bytes. If it is compressed, it is the number of
+ * blocks, the size of a block and of the last one, the compressed size of each block, and the
+ * blocks. In base64, the bytes follow the number without padding, but the blocks may begin after
+ * padding. A padded group gives fewer bytes and the next group begins anew, so both are read.
  *
  * A file must not make the program allocate much more than its own size. zlib compresses by at most
- * 1032 and LZ4 by at most 255. A file that announces more is refused before memory is allocated, and
- * so is one that announces more than its array can have, or than check_unpacked allows. */
+ * 1032 and LZ4 by at most 255. A file that announces more is refused before memory is allocated,
+ * and so is one that announces more than its array can have, or than check_unpacked allows. */
 #include "treeio/vtk/vtpbytes.h"
 
 #include "treeio/formats.h"
@@ -17,8 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double max_ratio[VTP_PACKINGS] = {
-    [VTP_PLAIN] = 1, [VTP_ZLIB] = 1032, [VTP_LZ4] = 255};
+static const double max_ratio[VTP_PACKINGS] = {[VTP_PLAIN] = 1, [VTP_ZLIB] = 1032, [VTP_LZ4] = 255};
 
 /* The decoder of one array. */
 typedef struct ByteStream {

@@ -43,8 +43,8 @@ typedef struct VtpBytes {
  *          enough memory. */
 MUST_CHECK Status vtp_decode(const VtpSource *source, VtpBytes *out, Err *err);
 
-/* Inflates zlib data. Errors: STATUS_INPUT, with the sentence "no zlib data of N bytes", unless they
- * unpack to exactly `size` bytes; STATUS_MEMORY. */
+/* Inflates zlib data. Errors: STATUS_INPUT, with the sentence "no zlib data of N bytes", unless
+ * they unpack to exactly `size` bytes; STATUS_MEMORY. */
 MUST_CHECK Status bytes_inflate(const char *packed, size_t n, char *out, size_t size, Err *err);
 
 #endif

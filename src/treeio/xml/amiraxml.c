@@ -1,8 +1,8 @@
 /* Reads Amira's spatial graph as a workbook of Excel's XML. The worksheet Points has one point per
- * row, with its position and thickness, which is the radius. The worksheet Segments has one polyline
- * per row, through the points of a list of ids. Each segment has end points of its own, which lie at
- * one position where segments meet, so the worksheet Nodes adds nothing. The first row of a worksheet
- * names its columns. Segments have no direction. */
+ * row, with its position and thickness, which is the radius. The worksheet Segments has one
+ * polyline per row, through the points of a list of ids. Each segment has end points of its own,
+ * which lie at one position where segments meet, so the worksheet Nodes adds nothing. The first row
+ * of a worksheet names its columns. Segments have no direction. */
 #include "treeio/formats.h"
 #include "treeio/xml.h"
 #include "treeio/xml/namednetwork.h"
@@ -16,10 +16,10 @@ enum { MAX_COLUMNS = 256 };
 typedef struct WorkbookReader {
     NamedNetwork network;
     Slabs texts;
-    bool is_read;              /* the worksheet is Points or Segments */
-    GraphElement of;           /* what its rows are */
+    bool is_read;    /* the worksheet is Points or Segments */
+    GraphElement of; /* what its rows are */
     bool in_row;
-    size_t row, column;        /* the current cell, from 0 on */
+    size_t row, column;       /* the current cell, from 0 on */
     char *title[MAX_COLUMNS]; /* per column: borrowed from `texts`, or NULL */
 } WorkbookReader;
 

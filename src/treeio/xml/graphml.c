@@ -1,6 +1,6 @@
-/* GraphML of VesselVio, VesselExpress, igraph and networkx. Keys declare numbers of nodes and edges by
- * name, and each program has its own names. Positions are found by the usual names, or by those that
- * the user states. A node without any is one of VesselExpress, whose id is the text of a tuple
+/* GraphML of VesselVio, VesselExpress, igraph and networkx. Keys declare numbers of nodes and edges
+ * by name, and each program has its own names. Positions are found by the usual names, or by those
+ * that the user states. A node without any is one of VesselExpress, whose id is the text of a tuple
  * (z, y, x). Radii are found as in VTK files. Edges are straight: VesselVio leaves out bends. The
  * metadata of a tree that corcast wrote are data of the graph. */
 #include "treeio/comments.h"
@@ -303,6 +303,12 @@ done:
     names_release(&reader.ids);
     ARRAY_RELEASE(&reader.keys);
     return status;
+}
+
+void graphml_keywords(Text *text)
+{
+    for (int k = 0; k < 3; k++)
+        KEYWORDS_PUT(axis_names, [k], text);
 }
 
 bool graphml_detect(const char *start)

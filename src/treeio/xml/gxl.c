@@ -1,7 +1,7 @@
 /* GXL of VascuSynth and OpenCCO: nodes with a position of two or three numbers, and edges with a
- * radius from the parent to the child. Names have blanks around them. Node types are not always right
- * (OpenCCO calls the first child of the root so), so roots are found by the edges. The tree's metadata
- * are attributes of <info_graph>, as OpenCCO's pressures are. */
+ * radius from the parent to the child. Names have blanks around them. Node types are not always
+ * right (OpenCCO calls the first child of the root so), so roots are found by the edges. The tree's
+ * metadata are attributes of <info_graph>, as OpenCCO's pressures are. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/xml.h"

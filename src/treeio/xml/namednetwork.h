@@ -32,8 +32,8 @@ MUST_CHECK Status namednetwork_begin(NamedNetwork *network, GraphElement of, siz
  * line, if another point has the name; STATUS_MEMORY. */
 MUST_CHECK Status namednetwork_name(NamedNetwork *network, const char *name, size_t record,
                                     Err *err);
-/* Continues the line that was begun last to the point of this name, which may come later. The name is
- * copied. Errors: STATUS_MEMORY. */
+/* Continues the line that was begun last to the point of this name, which may come later. The name
+ * is copied. Errors: STATUS_MEMORY. */
 MUST_CHECK Status namednetwork_go_to(NamedNetwork *network, const char *name, Err *err);
 /* Begins a line from one point to another. Errors: STATUS_MEMORY. */
 MUST_CHECK Status namednetwork_edge(NamedNetwork *network, const char *from, const char *to,
@@ -42,8 +42,8 @@ MUST_CHECK Status namednetwork_edge(NamedNetwork *network, const char *from, con
 MUST_CHECK Status namednetwork_set(NamedNetwork *network, GraphElement of, const char *name,
                                    double value, Err *err);
 
-/* Sets the metadata of a tree that corcast wrote, one comment per line [treeio/comments.h]. Nodes then
- * have its ids, and nodes have the radii of edges. Errors: STATUS_MEMORY. */
+/* Sets the metadata of a tree that corcast wrote, one comment per line [treeio/comments.h]. Nodes
+ * then have its ids, and nodes have the radii of edges. Errors: STATUS_MEMORY. */
 MUST_CHECK Status namednetwork_known(NamedNetwork *network, const char *comments, Err *err);
 /* Appends the metadata for namednetwork_known, with entities where XML needs them. */
 void namednetwork_put_known(const TreeMeta *meta, Text *text);
