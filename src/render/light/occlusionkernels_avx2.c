@@ -2,7 +2,7 @@
 #ifdef __x86_64__
 
 #define LANES_AVX2
-#define BEAM_KERNEL(name) name##_avx2
+#define OCCLUSION_KERNEL(name) name##_avx2
 #include "render/light/kernel_occlusion.h"
 
 #else

@@ -2,7 +2,7 @@
 #ifdef __x86_64__
 
 #define LANES_AVX512
-#define BEAM_KERNEL(name) name##_avx512
+#define OCCLUSION_KERNEL(name) name##_avx512
 #include "render/light/kernel_occlusion.h"
 
 #else
