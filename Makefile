@@ -24,7 +24,9 @@ TEST_SOURCES := $(wildcard tests/unit/*_test.c)
 FORMATTED := $(sort $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
 	tests/alloc/*.c tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h tests/optima/*.c))
 
-ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o)
+# Kernels of the renderer are compiled once for each kind of processor [src/render/tile/lanes.h].
+KERNELS := $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),$(wildcard src/render/*/*kernels.c))
+ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o) $(foreach kind,avx2 avx512,$(KERNELS:%.c=$(BUILD)/%.$(kind).o))
 APP_OBJECTS := $(APP_SOURCES:%.c=$(BUILD)/%.o)
 TEST_OBJECTS := $(TEST_SOURCES:%.c=$(BUILD)/%.o)
 TEST_PROGRAMS := $(TEST_SOURCES:tests/unit/%.c=$(BUILD)/tests/%)
@@ -223,10 +225,19 @@ $(BUILD)/app.a: $(filter-out %/main.o,$(APP_OBJECTS))
 	$(call say,AR,$@)
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
-$(BUILD)/%.o: %.c Makefile | packages
+define COMPILE_OBJECT
 	$(call say,CC,$<)
 	$(Q)mkdir -p $(@D)
-	$(Q)$(COMPILE) -MMD -MP -c -o $@ $<
+	$(Q)$(COMPILE) $(LANES) -MMD -MP -c -o $@ $<
+endef
+$(BUILD)/%.avx2.o: LANES := -DLANES_AVX2
+$(BUILD)/%.avx512.o: LANES := -DLANES_AVX512
+$(BUILD)/%.avx2.o: %.c Makefile | packages
+	$(COMPILE_OBJECT)
+$(BUILD)/%.avx512.o: %.c Makefile | packages
+	$(COMPILE_OBJECT)
+$(BUILD)/%.o: %.c Makefile | packages
+	$(COMPILE_OBJECT)
 
 $(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/app.a $(BUILD)/rooms.a
 	$(call say,LINK,$@)
@@ -283,7 +294,7 @@ $(FAILING): tests/alloc/failing.c Makefile
 $(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/light/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
 
 # Kernels of pictures read no input and write to arrays of fixed size; a check of the stack costs them 2 %.
-$(filter %kernels.o %kernels_avx2.o %kernels_avx512.o,$(ROOM_OBJECTS)): HARDEN_release += -fno-stack-protector
+$(filter %kernels.o %kernels.avx2.o %kernels.avx512.o,$(ROOM_OBJECTS)): HARDEN_release += -fno-stack-protector
 
 -include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 

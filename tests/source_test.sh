@@ -107,7 +107,7 @@ test_the_release_program_is_hardened() {
 # Kernels for one kind of processor say themselves where they fuse.
 test_no_other_source_than_kernels_fuses_a_product_and_a_sum() {
     [ -d "$REPO/build/release/src" ] || skip "this is not the release build"
-    find "$REPO/build/release/src" -name '*.o' ! -name '*_avx2.o' ! -name '*_avx512.o' -exec objdump -d --no-show-raw-insn {} + >code
+    find "$REPO/build/release/src" -name '*.o' ! -name '*avx2.o' ! -name '*avx512.o' -exec objdump -d --no-show-raw-insn {} + >code
     grep -q mulsd code || fail "expected code to read"
     ! grep -E '\bvfn?m(add|sub)' code >fused || fail "$(wc -l <fused) operations are fused: $(head -1 fused)"
 }
@@ -122,7 +122,7 @@ test_no_source_changes_the_umask_or_the_locale() {
 # compile_with OPTION...: an object of growth, one of base and one of kernels that have AVX2, in ./built.
 compile_with() {
     local object objects=()
-    for object in base/elementary grow/cco/grid render/light/occlusionkernels_avx2; do
+    for object in base/elementary grow/cco/grid render/light/occlusionkernels.avx2; do
         objects+=("$PWD/built/src/$object.o")
     done
     run make -C "$REPO" --no-print-directory V=1 MODE=release "BUILD=$PWD/built" "$@" "${objects[@]}"

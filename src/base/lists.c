@@ -61,15 +61,7 @@ Status indexlists_sort(IndexLists *lists, size_t n, ItemKeys keys, const char *w
 
 size_t sorted_find(const uint32_t *sorted, size_t n, uint32_t value)
 {
-    size_t low = 0, high = n;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (sorted[middle] < value)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < n && sorted[low] == value ? low : n;
+    return sorted_find_row(sorted, n, sizeof *sorted, value);
 }
 
 bool indexlists_hold(const IndexLists *lists, size_t i, uint32_t item)

@@ -65,6 +65,21 @@ static inline uint32_t indexlists_length(const IndexLists *lists, size_t i)
     return lists->first[i + 1] - lists->first[i];
 }
 
+/* Returns the index of the first of `n` rows whose key is `key`, or n if there is none. Each row
+ * has `size` bytes and begins with its key, a uint32_t; keys do not fall. O(log n). */
+static inline size_t sorted_find_row(const void *rows, size_t n, size_t size, uint32_t key)
+{
+    size_t low = 0, high = n;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (*(const uint32_t *)((const char *)rows + middle * size) < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < n && *(const uint32_t *)((const char *)rows + low * size) == key ? low : n;
+}
+
 /* Returns the position of `value` in an array of n rising values, or n if it is not there.
  * O(log n). */
 size_t sorted_find(const uint32_t *sorted, size_t n, uint32_t value);

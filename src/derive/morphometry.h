@@ -1,4 +1,4 @@
-/* Published morphometry of arterial trees, and how a tree compares with it. */
+/* Published morphometry of arterial trees, and its comparison with a tree. */
 #ifndef CORCAST_DERIVE_MORPHOMETRY_H
 #define CORCAST_DERIVE_MORPHOMETRY_H
 
@@ -7,45 +7,50 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* How many orders below its own a published table says the daughters of an element of: 0 .. 3. */
+/* A published table has the daughters of an element that are 0 to 3 orders lower. */
 enum { DAUGHTERS_SAID = 4 };
 
-/* One diameter-defined Strahler order of a published table. Whatever is not published is NAN; so is
- * a standard deviation of a single element. */
+/* One diameter-defined Strahler order of a published table. A value that is not published is NAN,
+ * and so is the standard deviation of a single element. */
 typedef struct MorphometryRow {
     Spread diameter_mm, length_mm; /* of the elements */
     double elements;
     Spread vessels_per_element;
-    double daughters[DAUGHTERS_SAID]; /* by k: elements k orders lower that spring from one */
+    double daughters[DAUGHTERS_SAID]; /* [k]: elements k orders lower that branch off one element */
 } MorphometryRow;
 
 /* A published table: row[k] is order k + 1. */
 typedef struct Morphometry {
     char *source; /* owned; author, journal, year */
     OrderRatios ratios;
-    int fitted_from[3];  /* the lowest order that each of the ratios was fitted to */
+    int fitted_from[3];  /* per ratio: the lowest order that it was fitted to */
     MorphometryRow *row; /* owned */
     size_t n;            /* at least 1 */
 } Morphometry;
 
-/* Reads a file of templates/morphometry: "source TEXT", "ratios NUMBER DIAMETER LENGTH",
- * "fitted-from NUMBER DIAMETER LENGTH" (1 each where there is no such line), and a line of 12
- * numbers for each order from 1 on (micrometres, millimetres; "nan" where nothing is published);
- * '#' starts a comment line. In *table (owned; morphometry_release). STATUS_INPUT
- * naming file and line on anything else. */
+/* Reads a table of templates/morphometry. Its lines:
+ *
+ *     source TEXT
+ *     ratios NUMBER DIAMETER LENGTH
+ *     fitted-from NUMBER DIAMETER LENGTH   (default: 1 1 1)
+ *     12 numbers for each order, from 1    (micrometres, millimetres; "nan": not published)
+ *     # comment
+ *
+ * Release *table with morphometry_release. Errors: STATUS_INPUT for any other line, naming file and
+ * line; STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status morphometry_read(Morphometry *table, const char *path, Err *err);
 void morphometry_release(Morphometry *table);
 
-/* What is compared. */
+/* The quantities that are compared. */
 typedef enum MorphometryMeasure {
     COMPARED_DIAMETER,
     COMPARED_LENGTH,
-    COMPARED_VESSELS,          /* vessels of an element */
-    COMPARED_DAUGHTERS,        /* elements of the same order that spring from one */
-    COMPARED_DAUGHTERS_1_LESS, /* of one order less, and so on */
+    COMPARED_VESSELS,          /* vessels per element */
+    COMPARED_DAUGHTERS,        /* elements of the same order that branch off one element */
+    COMPARED_DAUGHTERS_1_LESS, /* elements one order lower, and so on */
     COMPARED_DAUGHTERS_2_LESS,
     COMPARED_DAUGHTERS_3_LESS,
-    COMPARED_NUMBER_RATIO, /* of all orders, as the two that follow */
+    COMPARED_NUMBER_RATIO, /* over all orders, like the next two */
     COMPARED_DIAMETER_RATIO,
     COMPARED_LENGTH_RATIO,
     MORPHOMETRY_MEASURES
@@ -56,32 +61,38 @@ extern const struct MorphometryName {
     const char *name, *unit;
 } morphometry_names[MORPHOMETRY_MEASURES];
 
-/* One number of the tree beside the published one. */
+/* A number of the tree and the published number. */
 typedef struct MorphometryPair {
     MorphometryMeasure measure;
-    int order, published_order; /* 0: of all orders */
-    double value;               /* the tree's */
-    Spread published;           /* sd NAN where none is published */
-    double room;                /* how far the two may be apart */
+    int order, published_order; /* 0: over all orders */
+    double value;               /* of the tree */
+    Spread published;           /* sd is NAN if none is published */
+    double room;                /* allowed difference */
     bool agrees;                /* |value - published.mean| <= room */
 } MorphometryPair;
 
-/* The comparison: pairs measure by measure, orders upwards. Only what both have is compared. */
+/* The pairs, by measure and then by rising order. Quantities that only one of the two has are left
+ * out. */
 typedef struct MorphometryComparison {
     MorphometryPair *pair; /* owned; free */
     size_t n;
     size_t agreeing;
 } MorphometryComparison;
 
-/* How far a number may be from a published one without a standard deviation, as a part of it. */
+/* Allowed relative difference from a published number without a standard deviation. */
 #define MORPHOMETRY_ROOM 0.25
 
-/* Compares a tree's diameter-defined orders with a table. A tree is rarely a whole organ's, so its
- * order k stands beside the published order k + shift, with the shift for which the squared
- * logarithms of the ratios of their mean diameters have the least mean over the orders that both
- * have, of which there are to be as many as can be. Ratios are those of the orders that both have
- * and that gave the published ones. Numbers agree within the published standard deviation, or where
- * there is none within MORPHOMETRY_ROOM of the published value. */
+/* Compares a tree's diameter-defined orders with a table.
+ *
+ * A tree is rarely that of a whole organ, so order k of the tree is compared with the published
+ * order k + shift. Among the shifts for which the most orders have a counterpart, the shift is the
+ * one with the least mean squared logarithm of the ratio of mean diameters. Horton's ratios of the
+ * tree are computed from the orders that also gave the published ratios. A number agrees if it is
+ * within the published standard deviation; if there is none, within MORPHOMETRY_ROOM of the
+ * published value.
+ *
+ * comparison  its `pair` is owned by the caller.
+ * Errors      STATUS_MEMORY. */
 MUST_CHECK Status morphometry_compare(const TreeStatistics *statistics, const Morphometry *table,
                                       MorphometryComparison *comparison, Err *err);
 

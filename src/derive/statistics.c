@@ -237,11 +237,12 @@ static Status make_order_table(const Vessels *vessels, const int32_t *order, Sta
                                OrderRatios *ratios, double **daughters, Err *err)
 {
     int32_t *heir = NULL;
-    TRY(vessels_heirs(vessels, order, &heir, err));
-    Status status = make_table(vessels, order, heir, table, daughters, err);
+    Status status;
+    TRY_GOTO(vessels_heirs(vessels, order, &heir, err));
+    TRY_GOTO(make_table(vessels, order, heir, table, daughters, err));
+    *ratios = statistics_ratios(table, 0, INT_MAX);
+done:
     free(heir);
-    if (status == STATUS_OK)
-        *ratios = statistics_ratios(table, 0, INT_MAX);
     return status;
 }
 
@@ -277,9 +278,9 @@ Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err)
                               &made.diameter_strahler_ratios, &made.daughters, err));
     TRY_GOTO(measure_forks(tree, &vessels, &made, err));
     *statistics = made;
+    made = (TreeStatistics){0};
 done:
-    if (status != STATUS_OK)
-        statistics_release(&made);
+    statistics_release(&made);
     free(group);
     free(diameter_order);
     vessels_release(&vessels);

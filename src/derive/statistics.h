@@ -7,12 +7,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* A vessel is the chain of segments between two branchings, which the morphometric literature calls
- * a segment; its radius is the mean weighted by length. An element is a series of vessels of the
- * same order, each continued by the thickest daughter of its order; its length is their sum and its
- * radius their mean. */
+/* A vessel is the chain of segments between two branchings. The morphometric literature calls it a
+ * segment. Its radius is the mean of the segments' radii, weighted by length. An element is a
+ * series of vessels of the same order, each continued by its thickest daughter of that order. The
+ * length of an element is the sum of the vessels' lengths, and its radius the mean of their radii.
+ */
 
-/* Mean and standard deviation, that of a sample (n - 1); 0 for one value, NAN for none. */
+/* Mean and standard deviation (of a sample: n - 1). sd is 0 for one value, and NAN for none. */
 typedef struct Spread {
     double mean, sd;
 } Spread;
@@ -21,27 +22,28 @@ typedef struct Spread {
 typedef struct StatisticsRow {
     int number;                  /* the level, or the order */
     size_t vessels;              /* of that level or order */
-    size_t elements;             /* at a level every vessel is one */
+    size_t elements;             /* at a level, every vessel is an element */
     Spread radius_mm, length_mm; /* of the elements */
 } StatisticsRow;
 
 typedef struct StatisticsTable {
-    StatisticsRow *row; /* owned; upwards, levels and orders without vessels left out */
+    StatisticsRow
+        *row; /* owned; by rising number, without levels and orders that have no vessels */
     size_t n;
 } StatisticsTable;
 
-/* How number, diameter and length of the elements go with their order n, from straight lines
- * through the logarithms of their numbers and means by least squares, all orders weighing alike
- * [Horton, Geol. Soc. Am. Bull. 56 (1945) 275-370]: numbers as ratio^-n, diameters and lengths as
- * ratio^n. NAN with fewer than two orders; a mean of 0 is left out. */
+/* Horton's ratios of the elements: number ~ ratio^-n, diameter and length ~ ratio^n for order n.
+ * They are fitted by least squares to the logarithms of numbers and means, with equal weights for
+ * all orders [Horton, Geol. Soc. Am. Bull. 56 (1945) 275-370]. A mean of 0 is left out. A ratio is
+ * NAN if there are fewer than two orders. */
 typedef struct OrderRatios {
     double number, diameter, length;
 } OrderRatios;
 
-/* One number at each of some bifurcations. */
+/* The distribution of a number over bifurcations. */
 typedef struct BifurcationSpread {
     size_t count;
-    double mean, sd, median; /* NAN when count is 0 */
+    double mean, sd, median; /* NAN if count is 0 */
 } BifurcationSpread;
 
 typedef struct TreeStatistics {
@@ -49,22 +51,23 @@ typedef struct TreeStatistics {
     double volume_mm3; /* sum of pi r^2 l over the segments */
     StatisticsTable by_level, by_strahler, by_diameter_strahler;
     OrderRatios strahler_ratios, diameter_strahler_ratios;
-    int diameter_rounds;            /* of assignment */
-    bool diameter_orders_converged; /* false when they were given up */
-    /* Connectivity of the diameter orders [Jiang, Kassab & Fung 1994, as in derive.h]:
-     * entry (m - 1) n + k - 1, n = by_diameter_strahler.n, is the mean number of elements of order
-     * k that spring from an element of order m. Owned. */
+    int diameter_rounds;            /* rounds of assigning diameter orders */
+    bool diameter_orders_converged; /* false if the rounds were stopped */
+    /* Connectivity of the diameter orders [Jiang, Kassab & Fung 1994, as in derive.h]. Entry
+     * (m - 1) n + k - 1, with n = by_diameter_strahler.n, is the mean number of elements of order k
+     * that branch off an element of order m. Owned. */
     double *daughters;
     BifurcationSpread symmetry;   /* radius of the thinnest daughter over that of the thickest */
     BifurcationSpread area_ratio; /* sum of r^2 of the daughters over that of the parent */
 } TreeStatistics;
 
-/* Fills *statistics (owned; statistics_release). Bifurcations whose thickest daughter, or whose
- * parent, has no radius are left out of the ratio concerned; so is a root in the area ratio. */
+/* Computes the statistics of a tree. The symmetry leaves out bifurcations whose thickest daughter
+ * has no radius; the area ratio leaves out roots, and bifurcations whose parent has no radius.
+ * Release *statistics with statistics_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err);
 void statistics_release(TreeStatistics *statistics);
 
-/* The ratios over the rows numbered `first` to `last` alone. */
+/* Computes the ratios from the rows with numbers `first` to `last`. */
 OrderRatios statistics_ratios(const StatisticsTable *table, int first, int last);
 
 #endif

@@ -51,9 +51,9 @@ Status vessels_init(Vessels *vessels, const Tree *tree, Err *err)
     TRY_GOTO(field_strahler(tree, &none, strahler, err));
     find_vessels(tree, children, level, strahler, &made);
     *vessels = made;
+    made = (Vessels){0};
 done:
-    if (status != STATUS_OK)
-        vessels_release(&made);
+    vessels_release(&made);
     free(children);
     free(level);
     free(strahler);

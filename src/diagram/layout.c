@@ -23,18 +23,18 @@ static const char branch_field[] = "branch";
 enum { NONE = -1, UP = 0, DOWN = 1 };
 
 /* From the end of the step before, or where the branch begins, on. */
-typedef struct Step {
+typedef struct ContourStep {
     double to_mm;
     double rise_mm; /* over the step before; of the first over the branch's row */
     int32_t next;   /* NONE: it is the last */
-} Step;
+} ContourStep;
 
 typedef struct Contour {
     int32_t first, last;
     double last_mm; /* height of the last step over the row */
 } Contour;
 
-typedef struct Branch {
+typedef struct LayoutBranch {
     int32_t number;        /* the branch, from 0 on: what it leaves has a lower number */
     int32_t parent;        /* the branch that it leaves; NONE of a root */
     int32_t first;         /* node: its first segment */
@@ -45,25 +45,26 @@ typedef struct Branch {
     double offset_mm;      /* of its row, down from the row it leaves */
     int side;              /* of that row */
     double row_mm;         /* from the top */
-} Branch;
+} LayoutBranch;
 
-typedef struct Layout {
+typedef struct TreeLayout {
     const Tree *tree;
     double *path_mm;  /* from the root to each node */
     int32_t *of_node; /* the branch of each segment, NONE at roots */
-    Branch *branch;
+    LayoutBranch *branch;
     size_t n;
     /* The branches that leave branch b are leaving[begin[b + 1]] up to leaving[begin[b + 2] - 1],
      * the last to leave first; those of roots begin with 0. */
     int32_t *leaving;
     size_t *begin;
-    Step *step; /* at most 4 a branch: two of its own, one where it is set on, one at its end */
+    ContourStep
+        *step; /* at most 4 a branch: two of its own, one where it is set on, one at its end */
     size_t n_steps;
-} Layout;
+} TreeLayout;
 
 enum { STEPS_A_BRANCH = 4 };
 
-static void layout_release(Layout *layout)
+static void layout_release(TreeLayout *layout)
 {
     free(layout->path_mm);
     free(layout->of_node);
@@ -73,7 +74,7 @@ static void layout_release(Layout *layout)
     free(layout->step);
 }
 
-static Status find_paths(Layout *layout, Err *err)
+static Status find_paths(TreeLayout *layout, Err *err)
 {
     const Tree *tree = layout->tree;
     TRY(mem_calloc(&layout->path_mm, tree->n, sizeof *layout->path_mm, "paths", err));
@@ -84,7 +85,7 @@ static Status find_paths(Layout *layout, Err *err)
 }
 
 /* Sets of_node and counts the branches. */
-static Status number_branches(Layout *layout, Err *err)
+static Status number_branches(TreeLayout *layout, Err *err)
 {
     const Tree *tree = layout->tree;
     Field field;
@@ -99,16 +100,16 @@ static Status number_branches(Layout *layout, Err *err)
     return STATUS_OK;
 }
 
-static Status find_branches(Layout *layout, Err *err)
+static Status find_branches(TreeLayout *layout, Err *err)
 {
     const Tree *tree = layout->tree;
     TRY(mem_calloc(&layout->branch, layout->n, sizeof *layout->branch, "branches", err));
     for (size_t b = 0; b < layout->n; b++)
-        layout->branch[b] = (Branch){.number = (int32_t)b, .first = NONE};
+        layout->branch[b] = (LayoutBranch){.number = (int32_t)b, .first = NONE};
     for (size_t i = 0; i < tree->n; i++) {
         if (layout->of_node[i] == NONE)
             continue;
-        Branch *branch = &layout->branch[layout->of_node[i]];
+        LayoutBranch *branch = &layout->branch[layout->of_node[i]];
         branch->radius_mm = fmax(branch->radius_mm, tree->radius_mm[i]);
         branch->to_mm = layout->path_mm[i];
         if (branch->first != NONE)
@@ -123,7 +124,7 @@ static Status find_branches(Layout *layout, Err *err)
 /* By what they leave; of those the last to leave first. */
 static int compare_branches(const void *a, const void *b)
 {
-    const Branch *p = a, *q = b;
+    const LayoutBranch *p = a, *q = b;
     if (p->parent != q->parent)
         return p->parent < q->parent ? -1 : 1;
     if (p->from_mm != q->from_mm)
@@ -132,9 +133,9 @@ static int compare_branches(const void *a, const void *b)
 }
 
 /* Fills `leaving` and `begin`. */
-static Status sort_branches(Layout *layout, Err *err)
+static Status sort_branches(TreeLayout *layout, Err *err)
 {
-    Branch *order = NULL;
+    LayoutBranch *order = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&order, layout->n, sizeof *order, "branches", err));
     TRY_GOTO(mem_calloc(&layout->leaving, layout->n, sizeof *layout->leaving, "branches", err));
@@ -152,24 +153,24 @@ done:
     return status;
 }
 
-static int32_t add_step(Layout *layout, Step step)
+static int32_t add_step(TreeLayout *layout, ContourStep step)
 {
     layout->step[layout->n_steps] = step;
     return (int32_t)layout->n_steps++;
 }
 
 /* A place on a contour. */
-typedef struct Walk {
+typedef struct ContourWalk {
     int32_t step; /* NONE behind the end */
     double height_mm;
-} Walk;
+} ContourWalk;
 
-static Walk walk_from(const Layout *layout, const Contour *contour)
+static ContourWalk walk_from(const TreeLayout *layout, const Contour *contour)
 {
-    return (Walk){contour->first, layout->step[contour->first].rise_mm};
+    return (ContourWalk){contour->first, layout->step[contour->first].rise_mm};
 }
 
-static void walk_on(const Layout *layout, Walk *walk)
+static void walk_on(const TreeLayout *layout, ContourWalk *walk)
 {
     walk->step = layout->step[walk->step].next;
     if (walk->step != NONE)
@@ -177,7 +178,7 @@ static void walk_on(const Layout *layout, Walk *walk)
 }
 
 /* Where the step ends; infinity behind the end. */
-static double walk_to(const Layout *layout, const Walk *walk)
+static double walk_to(const TreeLayout *layout, const ContourWalk *walk)
 {
     return walk->step == NONE ? HUGE_VAL : layout->step[walk->step].to_mm;
 }
@@ -185,11 +186,11 @@ static double walk_to(const Layout *layout, const Walk *walk)
 /* How far from the row of `contour` a row has to be whose contour towards it is `inner`, so that
  * they are `gap_mm` apart, and so that nothing crosses the row where `contour` has ended; in
  * *behind where `contour` goes on behind the end of `inner`. */
-static double distance(const Layout *layout, const Contour *contour, const Contour *inner,
-                       double gap_mm, Walk *behind)
+static double distance(const TreeLayout *layout, const Contour *contour, const Contour *inner,
+                       double gap_mm, ContourWalk *behind)
 {
     double least = 0;
-    Walk outer = walk_from(layout, contour), own = walk_from(layout, inner);
+    ContourWalk outer = walk_from(layout, contour), own = walk_from(layout, inner);
     while (own.step != NONE) {
         double height = outer.step == NONE ? 0 : outer.height_mm;
         least = fmax(least, height + gap_mm + own.height_mm);
@@ -205,13 +206,13 @@ static double distance(const Layout *layout, const Contour *contour, const Conto
 
 /* Puts the contour of a branch, `height_mm` above the row, over the beginning of `contour` from the
  * place where the branch leaves to its end, behind which `contour` goes on at `behind`. */
-static void cover(Layout *layout, Contour *contour, const Branch *branch, double height_mm,
-                  Walk behind)
+static void cover(TreeLayout *layout, Contour *contour, const LayoutBranch *branch,
+                  double height_mm, ContourWalk behind)
 {
     const Contour *over = &branch->contour[branch->side];
     double row_mm = layout->step[contour->first].rise_mm;
-    int32_t front =
-        add_step(layout, (Step){.to_mm = branch->from_mm, .rise_mm = row_mm, .next = over->first});
+    int32_t front = add_step(
+        layout, (ContourStep){.to_mm = branch->from_mm, .rise_mm = row_mm, .next = over->first});
     double first_mm = layout->step[over->first].rise_mm;
     layout->step[over->first].rise_mm = height_mm + first_mm - row_mm;
     contour->first = front;
@@ -225,9 +226,9 @@ static void cover(Layout *layout, Contour *contour, const Branch *branch, double
 }
 
 /* Sets a branch beside the row that it leaves. */
-static void set_on(Layout *layout, Branch *row, Branch *branch, double gap_mm)
+static void set_on(TreeLayout *layout, LayoutBranch *row, LayoutBranch *branch, double gap_mm)
 {
-    Walk behind[2];
+    ContourWalk behind[2];
     double height[2];
     for (int side = UP; side <= DOWN; side++)
         height[side] =
@@ -240,11 +241,12 @@ static void set_on(Layout *layout, Branch *row, Branch *branch, double gap_mm)
 }
 
 /* The contours of the branch's own bars. */
-static void begin_contours(Layout *layout, Branch *branch)
+static void begin_contours(TreeLayout *layout, LayoutBranch *branch)
 {
     for (int side = UP; side <= DOWN; side++) {
         int32_t step = add_step(
-            layout, (Step){.to_mm = branch->to_mm, .rise_mm = branch->radius_mm, .next = NONE});
+            layout,
+            (ContourStep){.to_mm = branch->to_mm, .rise_mm = branch->radius_mm, .next = NONE});
         branch->contour[side] = (Contour){step, step, branch->radius_mm};
         branch->reach_mm[side] = branch->radius_mm;
     }
@@ -252,7 +254,7 @@ static void begin_contours(Layout *layout, Branch *branch)
 
 /* Leads the shorter contour on, at the height of the row, which all on its other side keeps below.
  */
-static void end_contours(Layout *layout, Branch *branch)
+static void end_contours(TreeLayout *layout, LayoutBranch *branch)
 {
     double to[2];
     for (int side = UP; side <= DOWN; side++)
@@ -261,27 +263,27 @@ static void end_contours(Layout *layout, Branch *branch)
     if (to[shorter] == to[!shorter])
         return;
     Contour *contour = &branch->contour[shorter];
-    int32_t step =
-        add_step(layout, (Step){.to_mm = to[!shorter], .rise_mm = -contour->last_mm, .next = NONE});
+    int32_t step = add_step(
+        layout, (ContourStep){.to_mm = to[!shorter], .rise_mm = -contour->last_mm, .next = NONE});
     layout->step[contour->last].next = step;
     contour->last = step;
     contour->last_mm = 0;
 }
 
 /* The height of the diagram whose rows are `gap_mm` apart. */
-static double place(Layout *layout, double gap_mm)
+static double place(TreeLayout *layout, double gap_mm)
 {
     double height = 0;
     layout->n_steps = 0;
     for (size_t b = layout->n; b-- > 0;) {
-        Branch *own = &layout->branch[b];
+        LayoutBranch *own = &layout->branch[b];
         begin_contours(layout, own);
         for (size_t k = layout->begin[b + 1]; k < layout->begin[b + 2]; k++)
             set_on(layout, own, &layout->branch[layout->leaving[k]], gap_mm);
         end_contours(layout, own);
     }
     for (size_t b = 0; b < layout->n; b++) {
-        Branch *own = &layout->branch[b];
+        LayoutBranch *own = &layout->branch[b];
         if (own->parent != NONE) {
             own->row_mm = layout->branch[own->parent].row_mm + own->offset_mm;
             continue;
@@ -293,7 +295,7 @@ static double place(Layout *layout, double gap_mm)
     return height;
 }
 
-static double widest_mm(const Layout *layout)
+static double widest_mm(const TreeLayout *layout)
 {
     double width = 0;
     for (size_t i = 0; i < layout->tree->n; i++)
@@ -302,7 +304,7 @@ static double widest_mm(const Layout *layout)
 }
 
 /* The median diameter of the terminals, which are the last segments of branches. */
-static Status least_gap_mm(const Layout *layout, double *gap_mm, Err *err)
+static Status least_gap_mm(const TreeLayout *layout, double *gap_mm, Err *err)
 {
     const Tree *tree = layout->tree;
     double *diameter;
@@ -317,7 +319,7 @@ static Status least_gap_mm(const Layout *layout, double *gap_mm, Err *err)
 }
 
 /* The gap of the wanted height, as far as the height grows with the gap as it does at first. */
-static Status choose_gap(Layout *layout, double *gap_mm, Err *err)
+static Status choose_gap(TreeLayout *layout, double *gap_mm, Err *err)
 {
     double least, wanted = DIAGRAM_ASPECT * widest_mm(layout);
     TRY(least_gap_mm(layout, &least, err));
@@ -330,12 +332,12 @@ static Status choose_gap(Layout *layout, double *gap_mm, Err *err)
 
 /* From the edge of the bar that the branch leaves to that of its own first one; a link has a
  * quarter of the width of what it leads to. */
-static FigureBar link_to(const Layout *layout, const Branch *branch)
+static FigureBar link_to(const TreeLayout *layout, const LayoutBranch *branch)
 {
     const Tree *tree = layout->tree;
     int32_t from = tree->parent[branch->first];
     double half = tree->radius_mm[branch->first] / 4;
-    const Branch *parent = &layout->branch[branch->parent];
+    const LayoutBranch *parent = &layout->branch[branch->parent];
     double start = parent->row_mm, end = branch->row_mm, own = tree->radius_mm[branch->first];
     double x = layout->path_mm[from], edge = tree->radius_mm[from];
     FigureBar bar = {.x = {x, x + 2 * half}, .index = branch->first};
@@ -344,7 +346,7 @@ static FigureBar link_to(const Layout *layout, const Branch *branch)
     return bar;
 }
 
-static FigureBar bar_of(const Layout *layout, size_t node)
+static FigureBar bar_of(const TreeLayout *layout, size_t node)
 {
     const Tree *tree = layout->tree;
     double row = layout->branch[layout->of_node[node]].row_mm, radius = tree->radius_mm[node];
@@ -353,7 +355,7 @@ static FigureBar bar_of(const Layout *layout, size_t node)
                        .index = (int32_t)node};
 }
 
-static Status make_bars(const Layout *layout, Diagram *diagram, Err *err)
+static Status make_bars(const TreeLayout *layout, Diagram *diagram, Err *err)
 {
     TRY(mem_calloc(&diagram->bar, layout->n + layout->tree->n, sizeof *diagram->bar, "bars", err));
     for (size_t b = 0; b < layout->n; b++)
@@ -369,7 +371,7 @@ static Status make_bars(const Layout *layout, Diagram *diagram, Err *err)
 
 Status diagram_lay_out(const Tree *tree, double gap_mm, Diagram *diagram, Err *err)
 {
-    Layout layout = {.tree = tree};
+    TreeLayout layout = {.tree = tree};
     Diagram made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(find_paths(&layout, err));

@@ -42,12 +42,13 @@ static Status refuse_shape(const char *spec, Err *err)
                     : kind == KINDS - 1 ? " or "
                                         : ", ",
                     kinds[kind]->name, kinds[kind]->parameters);
-    Status status = text_check(&shapes, err);
-    if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE,
-                         "`domain` %s: unknown shape; use %s, lengths in mm, and @X,Y,Z behind it "
-                         "to place it",
-                         spec, text_chars(&shapes));
+    Status status = STATUS_OK;
+    TRY_GOTO(text_check(&shapes, err));
+    status = err_set(err, STATUS_USAGE,
+                     "`domain` %s: unknown shape; use %s, lengths in mm, and @X,Y,Z behind it to "
+                     "place it",
+                     spec, text_chars(&shapes));
+done:
     text_release(&shapes);
     return status;
 }

@@ -49,7 +49,7 @@ static void set_tissue(Mask *mask, size_t voxel)
 Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err)
 {
     Picture picture = {0};
-    TRY(picture_read_mask(&picture, path, err));
+    TRY(picture_read(&picture, path, ALPHA_IS_MASK, err));
     const int64_t n[3] = {picture.width, picture.height, 1};
     Status status = STATUS_OK;
     TRY_GOTO(init(mask, path, n, err));

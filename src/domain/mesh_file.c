@@ -17,7 +17,7 @@ enum { MAX_TRIANGLES = INT32_MAX / 3 };
 static const FileForm obj_file = {.name = "an OBJ file", .most_bytes = 8e9, .is_text = true};
 static const FileForm stl_file = {.name = "an STL file", .most_bytes = 8e9};
 
-typedef struct Reader {
+typedef struct MeshReader {
     Soup *soup;
     const char *path;
     double mm;
@@ -28,9 +28,9 @@ typedef struct Reader {
     Vec3 first, last; /* OBJ: corners of the face being read */
     int corners;      /* OBJ: how many the face being read has so far */
     bool goes_on;     /* OBJ: the last line was of a face and ended in a backslash */
-} Reader;
+} MeshReader;
 
-static Status add_triangle(Reader *reader, Vec3 a, Vec3 b, Vec3 c, Err *err)
+static Status add_triangle(MeshReader *reader, Vec3 a, Vec3 b, Vec3 c, Err *err)
 {
     Soup *soup = reader->soup;
     if (soup->n / 3 == MAX_TRIANGLES)
@@ -97,7 +97,7 @@ static Status check_ascii_stl(const char *path, char *bytes, size_t *size, Err *
                    path, little_endian(bytes + STL_TITLE), stated_size(bytes), *size);
 }
 
-static Status read_binary_stl(Reader *reader, const char *bytes, Err *err)
+static Status read_binary_stl(MeshReader *reader, const char *bytes, Err *err)
 {
     for (size_t at = STL_HEADER; at < stated_size(bytes); at += STL_FACET) {
         Vec3 corner[3];
@@ -112,14 +112,14 @@ static Status read_binary_stl(Reader *reader, const char *bytes, Err *err)
     return STATUS_OK;
 }
 
-static Status refuse_line(const Reader *reader, const char *what, const char *word, Err *err)
+static Status refuse_line(const MeshReader *reader, const char *what, const char *word, Err *err)
 {
     return err_set(err, STATUS_INPUT, "%s:%zu: '%.*s' %s", reader->path, reader->line, SHOWN, word,
                    what);
 }
 
 /* The three numbers that follow `vertex` or `v`; what stands behind them is not looked at. */
-static Status add_vertex(Reader *reader, char **rest, Err *err)
+static Status add_vertex(MeshReader *reader, char **rest, Err *err)
 {
     double value[3];
     for (int i = 0; i < 3; i++) {
@@ -158,7 +158,7 @@ static int find_keyword(const char *word, char **rest, const char *const *keywor
     return -1;
 }
 
-static Status read_stl_line(Reader *reader, char *line, Err *err)
+static Status read_stl_line(MeshReader *reader, char *line, Err *err)
 {
     enum { VERTEX, END_LOOP, END_SOLID, SOLID, FACET, OUTER, END_FACET, KEYWORDS };
     static const char *const keywords[KEYWORDS] = {"vertex", "endloop", "endsolid", "solid",
@@ -189,7 +189,7 @@ static Status read_stl_line(Reader *reader, char *line, Err *err)
 
 /* One corner of a face, "7", "7/1", "7//3" or "7/1/3"; negative numbers count from the last vertex
  * back. */
-static Status find_corner(const Reader *reader, char *word, Vec3 *corner, Err *err)
+static Status find_corner(const MeshReader *reader, char *word, Vec3 *corner, Err *err)
 {
     word[strcspn(word, "/")] = '\0';
     long long number = 0, n = (long long)reader->n;
@@ -200,7 +200,7 @@ static Status find_corner(const Reader *reader, char *word, Vec3 *corner, Err *e
 }
 
 /* Reads the corners of a face that stand on one line. */
-static Status add_corners(Reader *reader, char **rest, Err *err)
+static Status add_corners(MeshReader *reader, char **rest, Err *err)
 {
     Vec3 corner;
     for (char *word; (word = strtok_r(NULL, TEXT_BLANKS, rest)); reader->corners++) {
@@ -227,7 +227,7 @@ static bool cut_backslash(char *line)
     return true;
 }
 
-static Status read_obj_line(Reader *reader, char *line, Err *err)
+static Status read_obj_line(MeshReader *reader, char *line, Err *err)
 {
     static char face[] = "f";
     line[strcspn(line, "#")] = '\0';
@@ -247,8 +247,8 @@ static Status read_obj_line(Reader *reader, char *line, Err *err)
     return add_corners(reader, &rest, err);
 }
 
-static Status read_lines(Reader *reader, char *bytes, Status (*read_line)(Reader *, char *, Err *),
-                         Err *err)
+static Status read_lines(MeshReader *reader, char *bytes,
+                         Status (*read_line)(MeshReader *, char *, Err *), Err *err)
 {
     for (char *line; (line = text_line(&bytes));) {
         reader->line++;
@@ -264,7 +264,7 @@ Status soup_read(Soup *soup, const char *path, double mm, Err *err)
     bool is_obj = strcasecmp(file_extension(path), "obj") == 0;
     const FileForm *form = is_obj ? &obj_file : &stl_file;
     TRY(file_read(path, form, &bytes, &size, err));
-    Reader reader = {.soup = soup, .path = path, .mm = mm};
+    MeshReader reader = {.soup = soup, .path = path, .mm = mm};
     Status status = STATUS_OK;
     if (is_obj) {
         TRY_GOTO(read_lines(&reader, bytes, read_obj_line, err));

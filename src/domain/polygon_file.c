@@ -10,13 +10,13 @@
 
 enum { SHOWN = 40 /* characters of a bad line */ };
 
-typedef struct Reader {
+typedef struct PolygonReader {
     Polygon *polygon;
     const char *path;
     double mm;
     size_t line;  /* counted from 1 */
     size_t first; /* edge of the ring being read */
-} Reader;
+} PolygonReader;
 
 static bool same(Vec3 a, Vec3 b)
 {
@@ -24,7 +24,7 @@ static bool same(Vec3 a, Vec3 b)
 }
 
 /* Until the next point is known an edge ends where it begins. */
-static Status add_point(Reader *reader, Vec3 point, Err *err)
+static Status add_point(PolygonReader *reader, Vec3 point, Err *err)
 {
     Polygon *polygon = reader->polygon;
     if (polygon->n > reader->first) {
@@ -41,7 +41,7 @@ static Status add_point(Reader *reader, Vec3 point, Err *err)
     return STATUS_OK;
 }
 
-static Status end_ring(Reader *reader, Err *err)
+static Status end_ring(PolygonReader *reader, Err *err)
 {
     Polygon *polygon = reader->polygon;
     if (polygon->n == reader->first)
@@ -63,7 +63,7 @@ static Status end_ring(Reader *reader, Err *err)
     return STATUS_OK;
 }
 
-static Status read_line(Reader *reader, char *line, Err *err)
+static Status read_line(PolygonReader *reader, char *line, Err *err)
 {
     line += strspn(line, TEXT_BLANKS);
     if (*line == '\0')
@@ -82,7 +82,7 @@ static Status read_line(Reader *reader, char *line, Err *err)
     return add_point(reader, point, err);
 }
 
-static Status read_lines(Reader *reader, char *bytes, Err *err)
+static Status read_lines(PolygonReader *reader, char *bytes, Err *err)
 {
     for (char *line; (line = text_line(&bytes));) {
         reader->line++;
@@ -101,7 +101,7 @@ Status polygon_read(Polygon *polygon, const char *path, double mm, Err *err)
     char *bytes = NULL;
     size_t size = 0;
     TRY(file_read(path, &form, &bytes, &size, err));
-    Reader reader = {.polygon = polygon, .path = path, .mm = mm};
+    PolygonReader reader = {.polygon = polygon, .path = path, .mm = mm};
     Status status = read_lines(&reader, bytes, err);
     free(bytes);
     return status;

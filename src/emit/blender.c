@@ -20,14 +20,6 @@ typedef struct Script {
     size_t n_materials;
 } Script;
 
-static void release(Script *script)
-{
-    curves_release(&script->curves);
-    free(script->paints);
-    free(script->painted);
-    free(script->color_keys);
-}
-
 static int compare_keys(const void *a, const void *b)
 {
     const uint64_t *one = a, *other = b;
@@ -71,31 +63,24 @@ static Status find_materials(Script *script, Err *err)
     return STATUS_OK;
 }
 
-static Status put_materials(Text *out, void *context, Err *err)
+static void put_material(Text *out, const void *context, size_t i)
 {
     const Script *script = context;
-    for (size_t i = 0; i < script->n_materials; i++) {
-        Rgb color = vessel_color(script->params, script->painted[i]);
-        text_puts(out, "(\"vessel_");
-        put_color_code(out, script->params, script->painted[i]);
-        put_mesh_floats(out, "\", (", (const float[3]){color.r, color.g, color.b}, ", ", ")),\n");
-    }
-    return text_check(out, err);
+    Rgb color = vessel_color(script->params, script->painted[i]);
+    text_puts(out, "(\"vessel_");
+    put_color_code(out, script->params, script->painted[i]);
+    put_triple(out, "\", (", (const float[3]){color.r, color.g, color.b}, ", ", ")),\n");
 }
 
 static void put_spline(const Script *script, size_t curve, Text *out)
 {
     const Curves *curves = &script->curves;
-    text_printf(out, "(%u, %u, [", curve_kind(curves, curve)->paint,
-                script->params->vessels->ids[curve_segment(curves, curve, 0)]);
+    put_text(out, "(%u, %u, [", curve_kind(curves, curve)->paint,
+             script->params->vessels->ids[curve_segment(curves, curve, 0)]);
     for (size_t i = 0; i < curve_points(curves, curve); i++) {
         Vec3 at = curve_point(curves, curve, i);
-        char radius[NUMBER_TEXT_SIZE];
-        uint32_t segment = curve_segment(curves, curve, i);
-        put_mesh_floats(out, i ? ", " : "", (const float[3]){(float)at.x, (float)at.y, (float)at.z},
-                        ", ", ", ");
-        text_puts(out,
-                  number_text_float((float)curves->vessels->segments[segment].radius_mm, radius));
+        put_text(out, i ? ", %f, %f, %f, %f" : "%f, %f, %f, %f", at.x, at.y, at.z,
+                 curve_radius(curves, curve, i));
     }
     text_puts(out, "]),\n");
 }
@@ -109,7 +94,7 @@ static Status put_vessels(Text *out, void *context, Err *err)
         end = curves_group_end(curves, curve);
         text_puts(out, "vessels(\"");
         curves_put_name(script->params, kind, out);
-        text_printf(out, "\", %u, %u, [\n", kind->tree + 1, kind->order);
+        put_text(out, "\", %u, %u, [\n", kind->tree + 1, kind->order);
         for (size_t i = curve; i < end; i++)
             put_spline(script, i, out);
         text_puts(out, "])\n");
@@ -125,22 +110,22 @@ static Status put_script(Script *script, Text *out, Err *err)
     add_word(&values, "input", params->file, "");
     add_number(&values, "roughness", microfacet_roughness(&params->appearance->finish));
     add_quoted(&values, "quoted_command", params->command);
-    add_part(&values, "materials", put_materials, script);
+    add_list(&values, "materials", put_material, script, script->n_materials);
     add_part(&values, "vessels", put_vessels, script);
     return values_expand(&values, params, "blender/tree.py", out, err);
 }
 
-Status blender_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
-                     Err *err)
+Status blender_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    (void)second;
-    (void)report;
     Script script = {.params = params};
     Status status;
     TRY_GOTO(find_materials(&script, err));
     TRY_GOTO(curves_find(params, script.paints, &script.curves, err));
-    TRY_GOTO(put_script(&script, out, err));
+    TRY_GOTO(put_script(&script, to->file, err));
 done:
-    release(&script);
+    curves_release(&script.curves);
+    free(script.paints);
+    free(script.painted);
+    free(script.color_keys);
     return status;
 }

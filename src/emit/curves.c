@@ -1,6 +1,6 @@
-/* Each segment is hung behind the one that ends where it starts, if that is of its kind and nothing
- * hangs there yet; those that hang nowhere begin curves. By Strahler's rule an order goes on in one
- * daughter at most, so that curves are as long as they can be. */
+/* A segment continues the segment that ends at its start if that one is of the same kind and is not
+ * continued yet. A segment that continues none begins a curve. By Strahler's rule at most one
+ * daughter has the order of its parent, so curves are as long as possible. */
 #include "emit/curves.h"
 
 #include <stdlib.h>
@@ -37,9 +37,9 @@ static Status find_kinds(const EmitParams *params, const uint32_t *paints, Curve
     return STATUS_OK;
 }
 
-/* The segment that follows each in its curve, or NONE, in next[]; whether one begins a curve, in
- * heads[]. `into` has room for all nodes. */
-static void hang_up(const Curves *curves, uint32_t *into, uint32_t *next, bool *heads)
+/* Finds the next segment in the curve of each segment, or NONE, and the segments that begin a
+ * curve. `into` is workspace for all nodes. */
+static void chain_segments(const Curves *curves, uint32_t *into, uint32_t *next, bool *heads)
 {
     const VesselTree *vessels = curves->vessels;
     for (size_t node = 0; node < vessels->n_nodes; node++)
@@ -81,7 +81,7 @@ static Status sort_heads(const Curves *curves, const bool *heads, Head **sorted,
     return STATUS_OK;
 }
 
-/* Writes the curves down, as they hang together. */
+/* Lists the segments of each curve in their order. */
 static Status list_curves(Curves *curves, const uint32_t *next, const bool *heads, Err *err)
 {
     size_t n = curves->vessels->n_segments, at = 0;
@@ -111,7 +111,7 @@ Status curves_find(const EmitParams *params, const uint32_t *paints, Curves *out
     TRY_GOTO(mem_calloc(&into, made.vessels->n_nodes, sizeof *into, "nodes", err));
     TRY_GOTO(mem_calloc(&next, n, sizeof *next, "curves", err));
     TRY_GOTO(mem_calloc(&heads, n, sizeof *heads, "curves", err));
-    hang_up(&made, into, next, heads);
+    chain_segments(&made, into, next, heads);
     TRY_GOTO(list_curves(&made, next, heads, err));
     *out = made;
     made = (Curves){0};

@@ -1,55 +1,67 @@
-/* Vessels as curves, for formats of lines: segments of one kind that follow one another; private to
- * the room emit. */
+/* Vessels as curves: series of segments of the same kind. Private to the module emit. */
 #ifndef CORCAST_EMIT_CURVES_H
 #define CORCAST_EMIT_CURVES_H
 
 #include "emit/emit.h"
 
-/* What a curve is of, in the order in which curves are sorted. */
+/* What the segments of a curve have in common. Curves are sorted by tree, order and paint. */
 typedef struct CurveKind {
-    uint32_t tree, order, paint; /* paint: whatever else parts curves */
+    uint32_t tree, order;
+    uint32_t paint; /* an index chosen by the caller of curves_find */
 } CurveKind;
 
-/* Curve k has the segments[first[k] .. first[k + 1]), by their indices, from its start on. Zeroed:
- * none. */
+/* Curve k consists of segments[first[k] .. first[k + 1]), from its start to its end. Zeroed, there
+ * are no curves. */
 typedef struct Curves {
     const VesselTree *vessels; /* borrowed */
-    CurveKind *kinds;          /* of each segment, by its index; owned */
-    uint32_t *segments;        /* owned */
+    CurveKind *kinds;          /* per segment; owned */
+    uint32_t *segments;        /* segment indices; owned */
     size_t *first;             /* owned */
     size_t n;
 } Curves;
 
-/* Makes curves of params->vessels by params->anatomy: a segment goes on with the daughter of its
- * Strahler order, of which there is one at most, and of its paint. `paints` has one a segment, by
- * its index; NULL: all are the same. Release with curves_release. STATUS_MEMORY. O(n log n). */
+/* Joins the segments of params->vessels to curves. A segment is continued by its daughter of the
+ * same Strahler order [params->anatomy] and the same paint; there is at most one.
+ *
+ * paints   per segment; NULL: all segments have the same paint.
+ * out      is released with curves_release.
+ * Errors   STATUS_MEMORY.
+ * Cost     O(n log n). */
 MUST_CHECK Status curves_find(const EmitParams *params, const uint32_t *paints, Curves *out,
                               Err *err);
 void curves_release(Curves *curves);
 
+/* Returns the kind of a curve. Borrowed. */
 static inline const CurveKind *curve_kind(const Curves *curves, size_t curve)
 {
     return &curves->kinds[curves->segments[curves->first[curve]]];
 }
-/* The first curve, from `curve` on, of another tree or order; curves->n behind the last. */
+/* Returns the first curve after `curve` that is of another tree or order, or curves->n. */
 size_t curves_group_end(const Curves *curves, size_t curve);
-/* Appends the object's name of a group: "order_3", in a forest "tree_2_order_3". */
+/* Appends the name of a group of curves of one tree and order: "order_3"; "tree_2_order_3" if there
+ * are several trees. */
 void curves_put_name(const EmitParams *params, const CurveKind *kind, Text *out);
 
-/* A curve has a point where it starts and one where each segment ends. */
+/* Returns the number of points of a curve: its start, and the end of each of its segments. */
 static inline size_t curve_points(const Curves *curves, size_t curve)
 {
     return curves->first[curve + 1] - curves->first[curve] + 1;
 }
-/* The segment whose values a point has: the one that ends there, at the start the first one. */
+/* Returns the segment whose values a point has: the one that ends there; at the start, the first.
+ */
 static inline uint32_t curve_segment(const Curves *curves, size_t curve, size_t point)
 {
     return curves->segments[curves->first[curve] + (point ? point - 1 : 0)];
 }
+/* Returns the position and the radius of a point of a curve. */
 static inline Vec3 curve_point(const Curves *curves, size_t curve, size_t point)
 {
     const FieldSegment *segment = &curves->vessels->segments[curve_segment(curves, curve, point)];
     return point ? segment->b : segment->a;
+}
+static inline double curve_radius(const Curves *curves, size_t curve, size_t point)
+{
+    return curves->vessels->segments[curve_segment(curves, curve, point)].radius_mm;
 }
 
 #endif

@@ -186,13 +186,15 @@ static Status open_outputs(Outputs *outputs, Err *err)
     return STATUS_OK;
 }
 
-/* The path of the file that took no more. */
-static const char *failed_path(const Outputs *outputs)
+/* Names the file that could not be written in a failure of I/O. Returns `status`. */
+static Status with_path(Status status, const Outputs *outputs, Err *err)
 {
     size_t i = 0;
     while (i + 1 < outputs->n && !ferror(outputs->files[i].stream))
         i++;
-    return outputs->files[i].path;
+    if (status == STATUS_IO)
+        err_prefix(err, "%s: ", outputs->files[i].path);
+    return status;
 }
 
 /* Hands what has not flowed yet over to the text's stream. */
@@ -211,18 +213,17 @@ static Status fill_outputs(const Emitter *emitter, const EmitParams *params, Out
                            EmitReport *report, Err *err)
 {
     Text *text = outputs->text;
-    Status status = emitter->write(params, &text[0], &text[1], report, err);
-    if (status == STATUS_OK && params->settings)
-        status = emitter->write_settings(params, &text[SETTINGS], err);
+    EmitOutput to = {&text[0], &text[1], report};
+    TRY(emitter->write(params, &to, err));
+    if (params->settings)
+        TRY(emitter->write_settings(params, &text[SETTINGS], err));
     for (size_t i = 0; i < BESIDES; i++)
         if (params->beside[i])
             text_add(&text[BESIDE + i], params->beside[i]);
-    for (size_t i = 0, n = 0; i < OUTPUTS && status == STATUS_OK; i++)
+    for (size_t i = 0, n = 0; i < OUTPUTS; i++)
         if (outputs->path[i])
-            status = end_output(&text[i], outputs->files[n++].stream, err);
-    if (status == STATUS_IO)
-        err_prefix(err, "%s: ", failed_path(outputs));
-    return status;
+            TRY(end_output(&text[i], outputs->files[n++].stream, err));
+    return STATUS_OK;
 }
 
 Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
@@ -238,7 +239,7 @@ Status emit_files(const Emitter *emitter, const EmitParams *params, const char *
     for (size_t i = 0; i < BESIDES; i++)
         outputs.path[BESIDE + i] = params->beside_path[i];
     TRY_GOTO(open_outputs(&outputs, err));
-    TRY_GOTO(fill_outputs(emitter, params, &outputs, &written, err));
+    TRY_GOTO(with_path(fill_outputs(emitter, params, &outputs, &written, err), &outputs, err));
     TRY_GOTO(outfiles_commit(outputs.files, outputs.n, err));
     if (report)
         *report = written;

@@ -22,17 +22,17 @@ typedef struct Vertex {
 
 typedef struct Glb {
     const EmitParams *params;
-    MeshParts parts;
+    IndexLists parts; /* triangles by order */
     Vertex *vertices; /* owned; order by order */
     size_t n_vertices, capacity;
     size_t first[MOST_ORDERS + 2]; /* vertex of each order, as in parts */
-    uint32_t (*corners)[3];        /* owned; of parts.triangles: numbers within the order */
+    uint32_t (*corners)[3];        /* owned; of parts.items: numbers within the order */
     uint32_t *slots; /* owned; of each point, of the wall and of a cap: 1 + its last vertex */
 } Glb;
 
 static void release(Glb *glb)
 {
-    meshparts_release(&glb->parts);
+    indexlists_release(&glb->parts);
     free(glb->vertices);
     free(glb->corners);
     free(glb->slots);
@@ -60,7 +60,7 @@ static Status find_vertices(Glb *glb, Err *err)
         glb->first[order] = glb->n_vertices;
         for (size_t i = glb->parts.first[order]; i < glb->parts.first[order + 1]; i++)
             for (int k = 0; k < 3; k++) {
-                uint32_t triangle = glb->parts.triangles[i];
+                uint32_t triangle = glb->parts.items[i];
                 TRY(find_vertex(glb, triangle, mesh->triangles[triangle][k], glb->first[order],
                                 &glb->corners[i][k], err));
             }
@@ -72,7 +72,7 @@ static Status find_vertices(Glb *glb, Err *err)
 static Status prepare(Glb *glb, Err *err)
 {
     const VesselMesh *mesh = glb->params->mesh;
-    TRY(meshparts_find(glb->params, &glb->parts, err));
+    TRY(triangles_by_order(glb->params, &glb->parts, err));
     TRY(mem_calloc(&glb->corners, mesh->n_triangles, sizeof *glb->corners, "triangles", err));
     TRY(mem_calloc(&glb->slots, 2 * mesh->n_points, sizeof *glb->slots, "points", err));
     return find_vertices(glb, err);
@@ -121,11 +121,10 @@ static json_t *position_accessor(const Glb *glb, size_t first, size_t n)
             low[axis] = fminf(low[axis], x);
             high[axis] = fmaxf(high[axis], x);
         }
-    const JsonMember members[] = {
-        {"min", json_pack("[f,f,f]", (double)low[0], (double)low[1], (double)low[2])},
-        {"max", json_pack("[f,f,f]", (double)high[0], (double)high[1], (double)high[2])},
-    };
-    return json_with_members(accessor(VIEW_POSITIONS, first, n), members, 2);
+    return json_with(
+        json_with(accessor(VIEW_POSITIONS, first, n), "min",
+                  json_pack("[f,f,f]", (double)low[0], (double)low[1], (double)low[2])),
+        "max", json_pack("[f,f,f]", (double)high[0], (double)high[1], (double)high[2]));
 }
 
 /* The four accessors of each order that there is, and its mesh and node. */
@@ -162,11 +161,9 @@ static void add_order(const Glb *glb, size_t order, Lists *lists)
 static json_t *root_extras(const EmitParams *params)
 {
     const ColorScale *scale = &params->appearance->scale;
-    const JsonMember about[] = {
-        {"description", json_text(params->description)},
-        {"coordinates", json_text("mm, y up; the scale of this node makes metres of them")},
-    };
-    json_t *extras = json_with_members(json_object(), about, 2);
+    json_t *extras =
+        json_pack("{s:o, s:s}", "description", json_text(params->description), "coordinates",
+                  "mm, y up; the scale of this node makes metres of them");
     if (!params->appearance->colors)
         return extras;
     const JsonMember colors[] = {
@@ -183,13 +180,8 @@ static json_t *root_node(const Glb *glb, size_t n)
     json_t *children = json_array();
     for (size_t i = 1; i <= n; i++)
         children = json_with_item(children, json_count(i));
-    const JsonMember members[] = {
-        {"name", json_text("tree")},
-        {"scale", json_pack("[f,f,f]", 0.001, 0.001, 0.001)},
-        {"children", children},
-        {"extras", root_extras(glb->params)},
-    };
-    return json_with_members(json_object(), members, 4);
+    return json_pack("{s:s, s:[f,f,f], s:o, s:o}", "name", "tree", "scale", 0.001, 0.001, 0.001,
+                     "children", children, "extras", root_extras(glb->params));
 }
 
 static json_t *material(const Finish *finish)
@@ -202,15 +194,8 @@ static json_t *material(const Finish *finish)
 
 static json_t *asset(const EmitParams *params)
 {
-    const JsonMember extras[] = {
-        {"command", json_text(params->command)},
-    };
-    const JsonMember members[] = {
-        {"version", json_text("2.0")},
-        {"generator", json_text(params->generator)},
-        {"extras", json_with_members(json_object(), extras, 1)},
-    };
-    return json_with_members(json_object(), members, 3);
+    return json_pack("{s:s, s:o, s:{s:o}}", "version", "2.0", "generator",
+                     json_text(params->generator), "extras", "command", json_text(params->command));
 }
 
 static json_t *document(const Glb *glb, size_t buffer_bytes)
@@ -222,18 +207,12 @@ static json_t *document(const Glb *glb, size_t buffer_bytes)
     for (size_t order = 0; order <= MOST_ORDERS; order++)
         if (glb->first[order] < glb->first[order + 1])
             add_order(glb, order, &lists);
-    const JsonMember members[] = {
-        {"asset", asset(glb->params)},
-        {"scene", json_integer(0)},
-        {"scenes", json_pack("[{s:[i]}]", "nodes", 0)},
-        {"nodes", lists.nodes},
-        {"meshes", lists.meshes},
-        {"materials", json_pack("[o]", material(&glb->params->appearance->finish))},
-        {"accessors", lists.accessors},
-        {"bufferViews", buffer_views(glb)},
-        {"buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)buffer_bytes)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return json_pack("{s:o, s:i, s:[{s:[i]}], s:o, s:o, s:[o], s:o, s:o, s:[{s:I}]}", "asset",
+                     asset(glb->params), "scene", 0, "scenes", "nodes", 0, "nodes", lists.nodes,
+                     "meshes", lists.meshes, "materials",
+                     material(&glb->params->appearance->finish), "accessors", lists.accessors,
+                     "bufferViews", buffer_views(glb), "buffers", "byteLength",
+                     (json_int_t)buffer_bytes);
 }
 
 /* ---- the file -------------------------------------------------------------------------------- */
@@ -309,15 +288,13 @@ static Status put_file(const Glb *glb, Text *out, Err *err)
     return status;
 }
 
-Status glb_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
+Status glb_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    (void)second;
-    (void)report;
     Glb glb = {.params = params};
     Status status;
     TRY_GOTO(prepare(&glb, err));
-    TRY_GOTO(put_file(&glb, out, err));
-    TRY_GOTO(text_check(out, err));
+    TRY_GOTO(put_file(&glb, to->file, err));
+    TRY_GOTO(text_check(to->file, err));
 done:
     release(&glb);
     return status;

@@ -58,102 +58,84 @@ static double shortest_beam(const Lattice *lattice)
     return 0.99 * shortest;
 }
 
-static Status put_vertices(Text *out, void *context, Err *err)
+static void put_vertex(Text *out, const void *lattice, size_t i)
 {
-    const Lattice *lattice = context;
-    for (size_t i = 0; i < lattice->n_places; i++)
-        threemf_put_vertex(lattice->places[i], out);
-    return text_check(out, err);
+    threemf_put_vertex(((const Lattice *)lattice)->places[i], out);
 }
 
-static Status put_beams(Text *out, void *context, Err *err)
+static void put_beam(Text *out, const void *context, size_t i)
 {
     const Lattice *lattice = context;
-    const VesselTree *vessels = lattice->params->vessels;
-    for (size_t i = 0; i < vessels->n_segments; i++) {
-        char radius[NUMBER_TEXT_SIZE];
-        number_text_float((float)vessels->segments[i].radius_mm, radius);
-        text_printf(out, "<b:beam v1=\"%u\" v2=\"%u\" r1=\"%s\"", node_of(lattice, i, 0),
-                    node_of(lattice, i, 1), radius);
-        if (lattice->params->appearance->colors)
-            text_printf(out, " pid=\"1\" p1=\"%zu\" p2=\"%zu\"", i, i);
-        text_puts(out, "/>\n");
-    }
-    return text_check(out, err);
-}
-
-static Status put_preview_vertices(Text *out, void *context, Err *err)
-{
-    const Lattice *lattice = context;
-    const VesselTree *vessels = lattice->params->vessels;
-    for (size_t i = 0; i < vessels->n_segments; i++) {
-        const FieldSegment *segment = &vessels->segments[i];
-        Vec3 u, v;
-        vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
-        for (int k = 0; k < 2 * SIDES; k++) {
-            double angle = FULL_TURN * k / SIDES;
-            Vec3 way = vec3_add(vec3_scale(u, elementary_cos(angle)),
-                                vec3_scale(v, elementary_sin(angle)));
-            threemf_put_vertex(
-                vec3_add_scaled(k < SIDES ? segment->a : segment->b, way, segment->radius_mm), out);
-        }
-    }
-    return text_check(out, err);
-}
-
-/* A triangle of prism `prism`, by the numbers of its corners within it: 0 to 3 about its start, 4
- * to 7 about its end. */
-static void put_triangle(const Lattice *lattice, size_t prism, int a, int b, int c, Text *out)
-{
-    size_t first = 2 * SIDES * prism;
-    text_printf(out, "<triangle v1=\"%zu\" v2=\"%zu\" v3=\"%zu\"", first + (size_t)a,
-                first + (size_t)b, first + (size_t)c);
+    put_text(out, "<b:beam v1=\"%u\" v2=\"%u\" r1=\"%f\"", node_of(lattice, i, 0),
+             node_of(lattice, i, 1), lattice->params->vessels->segments[i].radius_mm);
     if (lattice->params->appearance->colors)
-        text_printf(out, " pid=\"1\" p1=\"%zu\"", prism);
+        put_text(out, " pid=\"1\" p1=\"%z\" p2=\"%z\"", i, i);
     text_puts(out, "/>\n");
 }
 
-static Status put_preview_triangles(Text *out, void *context, Err *err)
+/* Appends the corners of the prism of segment i. */
+static void put_preview_vertices(Text *out, const void *lattice, size_t i)
 {
-    const Lattice *lattice = context;
-    for (size_t i = 0; i < lattice->params->vessels->n_segments; i++) {
-        for (int k = 0; k < SIDES; k++) {
-            int next = (k + 1) % SIDES;
-            put_triangle(lattice, i, k, next, SIDES + next, out);
-            put_triangle(lattice, i, k, SIDES + next, SIDES + k, out);
-        }
-        for (int k = 1; k + 1 < SIDES; k++) {
-            put_triangle(lattice, i, 0, k + 1, k, out);
-            put_triangle(lattice, i, SIDES, SIDES + k, SIDES + k + 1, out);
-        }
+    const FieldSegment *segment = &((const Lattice *)lattice)->params->vessels->segments[i];
+    Vec3 u, v;
+    vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
+    for (int k = 0; k < 2 * SIDES; k++) {
+        double angle = FULL_TURN * k / SIDES;
+        Vec3 out_of =
+            vec3_add(vec3_scale(u, elementary_cos(angle)), vec3_scale(v, elementary_sin(angle)));
+        threemf_put_vertex(
+            vec3_add_scaled(k < SIDES ? segment->a : segment->b, out_of, segment->radius_mm), out);
     }
-    return text_check(out, err);
+}
+
+/* Appends a triangle of a prism. Its corners are numbered within the prism: 0 to 3 around its
+ * start, 4 to 7 around its end. */
+static void put_triangle(const Lattice *lattice, size_t prism, const int corner[3], Text *out)
+{
+    size_t first = 2 * SIDES * prism;
+    put_text(out, "<triangle v1=\"%z\" v2=\"%z\" v3=\"%z\"", first + (size_t)corner[0],
+             first + (size_t)corner[1], first + (size_t)corner[2]);
+    if (lattice->params->appearance->colors)
+        put_text(out, " pid=\"1\" p1=\"%z\"", prism);
+    text_puts(out, "/>\n");
+}
+
+/* Appends the triangles of the prism of segment i. */
+static void put_preview_triangles(Text *out, const void *lattice, size_t i)
+{
+    for (int k = 0; k < SIDES; k++) {
+        int next = (k + 1) % SIDES;
+        put_triangle(lattice, i, (const int[]){k, next, SIDES + next}, out);
+        put_triangle(lattice, i, (const int[]){k, SIDES + next, SIDES + k}, out);
+    }
+    for (int k = 1; k + 1 < SIDES; k++) {
+        put_triangle(lattice, i, (const int[]){0, k + 1, k}, out);
+        put_triangle(lattice, i, (const int[]){SIDES, SIDES + k, SIDES + k + 1}, out);
+    }
 }
 
 static Status put_model(Text *out, void *context, Err *err)
 {
-    Lattice *lattice = context;
-    EmitParams params = *lattice->params;
+    const Lattice *lattice = context;
+    const EmitParams *params = lattice->params;
+    const VesselTree *vessels = params->vessels;
     Values values = {0};
-    threemf_add_about(&values, &params);
+    threemf_add_about(&values, params);
     add_float(&values, "shortest", (float)shortest_beam(lattice));
-    add_float(&values, "radius", (float)params.vessels->segments[0].radius_mm);
-    add_part(&values, "preview_vertices", put_preview_vertices, lattice);
-    add_part(&values, "preview_triangles", put_preview_triangles, lattice);
-    add_part(&values, "vertices", put_vertices, lattice);
-    add_part(&values, "beams", put_beams, lattice);
-    return values_expand(&values, &params, "3mf/lattice.xml", out, err);
+    add_float(&values, "radius", (float)vessels->segments[0].radius_mm);
+    add_list(&values, "preview_vertices", put_preview_vertices, lattice, vessels->n_segments);
+    add_list(&values, "preview_triangles", put_preview_triangles, lattice, vessels->n_segments);
+    add_list(&values, "vertices", put_vertex, lattice, lattice->n_places);
+    add_list(&values, "beams", put_beam, lattice, vessels->n_segments);
+    return values_expand(&values, params, "3mf/lattice.xml", out, err);
 }
 
-Status lattice_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
-                     Err *err)
+Status lattice_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    (void)second;
-    (void)report;
     Lattice lattice = {.params = params};
     Status status;
     TRY_GOTO(number_nodes(&lattice, err));
-    TRY_GOTO(threemf_put_archive(params, put_model, &lattice, out, err));
+    TRY_GOTO(threemf_put_archive(params, put_model, &lattice, to->file, err));
 done:
     free(lattice.number);
     free(lattice.places);

@@ -6,14 +6,12 @@
 #include <stdlib.h>
 
 /* 80 bytes of text that do not begin as the text form does, then triangles of 50 bytes. */
-Status stl_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
+Status stl_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    (void)second;
-    (void)report;
     const VesselMesh *mesh = params->mesh;
     char header[81] = {0};
     snprintf(header, sizeof header, "%s, binary STL, units=mm", params->generator);
-    text_append(out, header, 80);
+    text_append(to->file, header, 80);
     Record record = {.length = 0};
     put_word(&record, (uint32_t)mesh->n_triangles, 4);
     for (size_t i = 0; i < mesh->n_triangles; i++) {
@@ -23,9 +21,9 @@ Status stl_write(const EmitParams *params, Text *out, Text *second, EmitReport *
         for (int k = 0; k < 3; k++)
             put_floats(&record, mesh->points[mesh->triangles[i][k]]);
         put_word(&record, 0, 2);
-        flush_record(&record, out);
+        flush_record(&record, to->file);
     }
-    return text_check(out, err);
+    return text_check(to->file, err);
 }
 
 static void put_ply_points(const EmitParams *params, const uint32_t *segments, Text *out)
@@ -59,13 +57,11 @@ static void put_ply_faces(const EmitParams *params, Text *out)
 
 /* Points with normals and colours, and for each triangle the SWC id of its segment and whether it
  * closes an end. */
-Status ply_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
+Status ply_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    (void)second;
-    (void)report;
     uint32_t *segments = NULL;
     TRY(mesh_point_segments(params->mesh, &segments, err));
-    text_printf(out,
+    text_printf(to->file,
                 "ply\nformat binary_little_endian 1.0\ncomment %s, units=mm\n"
                 "element vertex %zu\nproperty float x\nproperty float y\nproperty float z\n"
                 "property float nx\nproperty float ny\nproperty float nz\n"
@@ -73,8 +69,8 @@ Status ply_write(const EmitParams *params, Text *out, Text *second, EmitReport *
                 "element face %zu\nproperty list uchar int vertex_indices\n"
                 "property int segment\nproperty uchar cap\nend_header\n",
                 params->generator, params->mesh->n_points, params->mesh->n_triangles);
-    put_ply_points(params, segments, out);
-    put_ply_faces(params, out);
+    put_ply_points(params, segments, to->file);
+    put_ply_faces(params, to->file);
     free(segments);
-    return text_check(out, err);
+    return text_check(to->file, err);
 }

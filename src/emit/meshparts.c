@@ -1,5 +1,5 @@
-/* Triangles are put in their order by counting, so that they keep their places among those of one
- * Strahler order, and neighbours stay together. */
+/* Triangles are listed by a counting sort, so that they keep their order within a Strahler order,
+ * and neighbours stay together. */
 #include "emit/meshparts.h"
 
 #include "image/image.h"
@@ -12,27 +12,16 @@ static size_t order_of(const EmitParams *params, size_t triangle)
     return (size_t)params->orders[segment];
 }
 
-Status meshparts_find(const EmitParams *params, MeshParts *out, Err *err)
+Status triangles_by_order(const EmitParams *params, IndexLists *out, Err *err)
 {
     const size_t n = params->mesh->n_triangles;
-    MeshParts made = {0};
-    size_t next[MOST_ORDERS + 2];
-    TRY(mem_calloc(&made.triangles, n, sizeof *made.triangles, "triangles", err));
+    TRY(indexlists_begin(out, MOST_ORDERS + 1, "triangles", err));
     for (size_t i = 0; i < n; i++)
-        made.first[order_of(params, i) + 1]++;
-    for (size_t order = 0; order <= MOST_ORDERS; order++)
-        made.first[order + 1] += made.first[order];
-    memcpy(next, made.first, sizeof next);
+        indexlists_count(out, order_of(params, i));
+    TRY(indexlists_allot(out, "triangles", err));
     for (size_t i = 0; i < n; i++)
-        made.triangles[next[order_of(params, i)]++] = (uint32_t)i;
-    *out = made;
+        indexlists_put(out, order_of(params, i), (uint32_t)i);
     return STATUS_OK;
-}
-
-void meshparts_release(MeshParts *parts)
-{
-    free(parts->triangles);
-    *parts = (MeshParts){0};
 }
 
 Rgb vessel_color(const EmitParams *params, uint32_t segment)
@@ -93,13 +82,4 @@ Status mesh_point_segments(const VesselMesh *mesh, uint32_t **segments, Err *err
             made[mesh->triangles[i][k]] = mesh_segment(mesh, i);
     *segments = made;
     return STATUS_OK;
-}
-
-void put_mesh_floats(Text *out, const char *before, const float values[3], const char *between,
-                     const char *after)
-{
-    char text[3][NUMBER_TEXT_SIZE];
-    text_printf(out, "%s%s%s%s%s%s%s", before, number_text_float(values[0] + 0, text[0]), between,
-                number_text_float(values[1] + 0, text[1]), between,
-                number_text_float(values[2] + 0, text[2]), after);
 }

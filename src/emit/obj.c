@@ -2,20 +2,21 @@
  * Points are shared by all triangles about them; the flat normals of caps follow those of points,
  * one for each triangle of a cap, in the order in which these are written. */
 #include "emit/meshparts.h"
+#include "emit/puttext.h"
 #include "emit/rows.h"
 
 #include <stdlib.h>
 
-static void put_normals(const VesselMesh *mesh, const MeshParts *parts, Text *out)
+static void put_normals(const VesselMesh *mesh, const IndexLists *orders, Text *out)
 {
     for (size_t i = 0; i < mesh->n_points; i++)
-        put_mesh_floats(out, "vn ", mesh->normals[i], " ", "\n");
+        put_triple(out, "vn ", mesh->normals[i], " ", "\n");
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         float normal[3];
-        if (!mesh_is_cap(mesh, parts->triangles[i]))
+        if (!mesh_is_cap(mesh, orders->items[i]))
             continue;
-        mesh_flat_normal(mesh, parts->triangles[i], normal);
-        put_mesh_floats(out, "vn ", normal, " ", "\n");
+        mesh_flat_normal(mesh, orders->items[i], normal);
+        put_triple(out, "vn ", normal, " ", "\n");
     }
 }
 
@@ -43,16 +44,16 @@ static void put_material(const EmitParams *params, uint32_t triangle, uint32_t *
     *last = code;
 }
 
-static void put_groups(const EmitParams *params, const MeshParts *parts, Text *out)
+static void put_groups(const EmitParams *params, const IndexLists *orders, Text *out)
 {
     uint32_t material = UINT32_MAX;
     size_t flat = 0;
     for (size_t order = 0; order <= MOST_ORDERS; order++) {
-        if (parts->first[order] < parts->first[order + 1])
+        if (orders->first[order] < orders->first[order + 1])
             text_printf(out, "g order_%zu\n", order);
-        for (size_t i = parts->first[order]; i < parts->first[order + 1]; i++) {
-            put_material(params, parts->triangles[i], &material, out);
-            put_face(params->mesh, parts->triangles[i], &flat, out);
+        for (size_t i = orders->first[order]; i < orders->first[order + 1]; i++) {
+            put_material(params, orders->items[i], &material, out);
+            put_face(params->mesh, orders->items[i], &flat, out);
         }
     }
 }
@@ -96,19 +97,21 @@ Status obj_check_name(const char *second_file, Err *err)
                    second_file);
 }
 
-Status obj_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
+Status obj_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    (void)report;
     const VesselMesh *mesh = params->mesh;
-    MeshParts parts;
-    TRY(meshparts_find(params, &parts, err));
-    text_printf(out, "# %s, by: %s\n# millimetres, y up\nmtllib %s\no tree\n", params->generator,
-                params->command, params->second_file);
+    IndexLists orders = {0};
+    Status status;
+    TRY_GOTO(triangles_by_order(params, &orders, err));
+    text_printf(to->file, "# %s, by: %s\n# millimetres, y up\nmtllib %s\no tree\n",
+                params->generator, params->command, params->second_file);
     for (size_t i = 0; i < mesh->n_points; i++)
-        put_mesh_floats(out, "v ", mesh->points[i], " ", "\n");
-    put_normals(mesh, &parts, out);
-    put_groups(params, &parts, out);
-    meshparts_release(&parts);
-    TRY(put_materials(params, second, err));
-    return text_check(out, err);
+        put_triple(to->file, "v ", mesh->points[i], " ", "\n");
+    put_normals(mesh, &orders, to->file);
+    put_groups(params, &orders, to->file);
+    TRY_GOTO(put_materials(params, to->second, err));
+    TRY_GOTO(text_check(to->file, err));
+done:
+    indexlists_release(&orders);
+    return status;
 }

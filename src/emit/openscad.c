@@ -19,9 +19,8 @@ typedef struct CylinderEnd {
 } CylinderEnd;
 
 typedef struct Parametric {
-    const EmitParams *params;
     const Scene *scene;
-    CylinderEnd *ends; /* in order of place; owned */
+    CylinderEnd *ends; /* sorted by position; owned */
     size_t n_ends;
 } Parametric;
 
@@ -70,70 +69,32 @@ static size_t ends_at(const Parametric *made, Vec3 point, const CylinderEnd **fi
 
 /* ---- calls ----------------------------------------------------------------------------------- */
 
-void put_point(Text *text, Vec3 v)
-{
-    text_puts(text, "[");
-    text_number(text, v.x + 0); /* adding 0 turns -0 into 0 */
-    text_puts(text, ",");
-    text_number(text, v.y + 0);
-    text_puts(text, ",");
-    text_number(text, v.z + 0);
-    text_puts(text, "]");
-}
-
-static void put_rgb(Text *text, Rgb color)
-{
-    char r[NUMBER_TEXT_SIZE], g[NUMBER_TEXT_SIZE], b[NUMBER_TEXT_SIZE];
-    text_printf(text, "[%s,%s,%s]", number_text_float(color.r, r), number_text_float(color.g, g),
-                number_text_float(color.b, b));
-}
-
-/* The radius, what follows it, and the colour, if there is more than one. */
+/* Appends the radius, what follows it, and the colour if vessels differ in colour. */
 static void put_rest(Text *text, const Scene *scene, const Primitive *primitive,
                      const Vec3 *outwards)
 {
-    text_puts(text, ",");
-    text_number(text, primitive->radius_mm);
-    if (outwards) {
-        text_puts(text, ",");
-        put_point(text, *outwards);
-    }
-    if (scene->appearance.colors) {
-        text_puts(text, ",");
-        put_rgb(text, scene->appearance.colors[primitive->segment]);
-    }
+    put_text(text, ",%n", primitive->radius_mm);
+    if (outwards)
+        put_text(text, ",[%v]", *outwards);
+    if (scene->appearance.colors)
+        put_text(text, ",[%c]", scene->appearance.colors[primitive->segment]);
     text_puts(text, ");\n");
 }
 
-static void put_vessel(Text *text, const Scene *scene, const Primitive *cylinder)
-{
-    text_printf(text, "  vessel(%u,", scene->geometry.ids[cylinder->segment]);
-    put_point(text, cylinder->a);
-    text_puts(text, ",");
-    put_point(text, cylinder->b);
-    put_rest(text, scene, cylinder, NULL);
-}
-
-static void put_ball(Text *text, const Parametric *made, const Primitive *ball)
-{
-    const CylinderEnd *first;
-    size_t n = ends_at(made, ball->a, &first);
-    text_puts(text, n == 1 ? "  end(" : n == 2 ? "  bend(" : "  bifurcation(");
-    put_point(text, ball->a);
-    put_rest(text, made->scene, ball, n == 1 ? &first->outwards : NULL);
-}
-
-static Status put_calls(Text *out, void *context, Err *err)
+static void put_call(Text *out, const void *context, size_t i)
 {
     const Parametric *made = context;
-    for (size_t i = 0; i < made->scene->geometry.n_primitives; i++) {
-        const Primitive *primitive = &made->scene->geometry.primitives[i];
-        if (primitive->kind == PRIMITIVE_CYLINDER)
-            put_vessel(out, made->scene, primitive);
-        else
-            put_ball(out, made, primitive);
+    const Primitive *primitive = &made->scene->geometry.primitives[i];
+    if (primitive->kind == PRIMITIVE_CYLINDER) {
+        put_text(out, "  vessel(%u,[%v],[%v]", made->scene->geometry.ids[primitive->segment],
+                 primitive->a, primitive->b);
+        put_rest(out, made->scene, primitive, NULL);
+        return;
     }
-    return text_check(out, err);
+    const CylinderEnd *first;
+    size_t n = ends_at(made, primitive->a, &first);
+    put_text(out, "  %s([%v]", n == 1 ? "end" : n == 2 ? "bend" : "bifurcation", primitive->a);
+    put_rest(out, made->scene, primitive, n == 1 ? &first->outwards : NULL);
 }
 
 /* ---- the file -------------------------------------------------------------------------------- */
@@ -152,12 +113,10 @@ static double largest_radius(const Scene *scene)
     return largest;
 }
 
-Status openscad_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
-                      Err *err)
+Status openscad_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    (void)second;
     const Scene *scene = params->scene;
-    Parametric made = {.params = params, .scene = scene};
+    Parametric made = {.scene = scene};
     Values values = {0};
     TRY(find_ends(&made, err));
     const Geometry *shape = &scene->geometry;
@@ -165,17 +124,17 @@ Status openscad_write(const EmitParams *params, Text *out, Text *second, EmitRep
                         vec3_add(shape->bounds.high, shape->origin)};
     add_file(&values, params->file, ".stl", "");
     add_about(&values, params, bounds, vec3(0, 0, 0));
-    text_printf(add_value(&values, "count"), "%zu", shape->drawn);
-    text_printf(add_value(&values, "quick"), "%d", OPENSCAD_QUICK);
+    add_count(&values, "count", shape->drawn);
+    add_count(&values, "quick", OPENSCAD_QUICK);
     text_printf(add_value(&values, "seconds"), "%.2g", openscad_seconds(scene));
     text_printf(add_value(&values, "max_radius"), "%.2g", largest_radius(scene));
-    put_rgb(add_value(&values, "color"), scene->appearance.color);
-    put_point(add_value(&values, "origin"), scene->geometry.origin);
-    put_point(add_value(&values, "low"), scene->geometry.bounds.low);
-    put_point(add_value(&values, "high"), scene->geometry.bounds.high);
-    add_part(&values, "calls", put_calls, &made);
-    report->openscad_s = openscad_seconds(scene);
-    Status status = values_expand(&values, params, "openscad/parametric.scad", out, err);
+    put_text(add_value(&values, "color"), "[%c]", scene->appearance.color);
+    put_text(add_value(&values, "origin"), "[%v]", shape->origin);
+    put_text(add_value(&values, "low"), "[%v]", shape->bounds.low);
+    put_text(add_value(&values, "high"), "[%v]", shape->bounds.high);
+    add_list(&values, "calls", put_call, &made, shape->n_primitives);
+    to->report->openscad_s = openscad_seconds(scene);
+    Status status = values_expand(&values, params, "openscad/parametric.scad", to->file, err);
     free(made.ends);
     return status;
 }

@@ -8,42 +8,32 @@
  * 7,000 to 40,000 triangles]. */
 static const double seconds_a_triangle = 3e-4;
 
-static Status put_points(Text *out, void *context, Err *err)
+static void put_point(Text *out, const void *mesh, size_t i)
 {
-    const VesselMesh *mesh = context;
-    for (size_t i = 0; i < mesh->n_points; i++)
-        put_mesh_floats(out, "[", mesh->points[i], ",", "],\n");
-    return text_check(out, err);
+    put_triple(out, "[", ((const VesselMesh *)mesh)->points[i], ",", "],\n");
 }
 
-static Status put_faces(Text *out, void *context, Err *err)
+static void put_face(Text *out, const void *mesh, size_t i)
 {
-    const VesselMesh *mesh = context;
-    for (size_t i = 0; i < mesh->n_triangles; i++) {
-        const uint32_t *corner = mesh->triangles[i];
-        text_printf(out, "[%u,%u,%u],\n", corner[2], corner[1], corner[0]);
-    }
-    return text_check(out, err);
+    const uint32_t *corner = ((const VesselMesh *)mesh)->triangles[i];
+    text_printf(out, "[%u,%u,%u],\n", corner[2], corner[1], corner[0]);
 }
 
-Status openscad_write_mesh(const EmitParams *params, Text *out, Text *second, EmitReport *report,
-                           Err *err)
+Status openscad_write_mesh(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    (void)second;
-    (void)report;
-    VesselMesh mesh = *params->mesh;
-    Box box = mesh_box(&mesh);
+    const VesselMesh *mesh = params->mesh;
+    Box box = mesh_box(mesh);
     Values values = {0};
     add_file(&values, params->file, ".stl", "");
     add_about(&values, params, box, vec3(0, 0, 0));
-    text_printf(add_value(&values, "triangles"), "%zu", mesh.n_triangles);
-    text_printf(add_value(&values, "quick"), "%d", OPENSCAD_QUICK);
+    add_count(&values, "triangles", mesh->n_triangles);
+    add_count(&values, "quick", OPENSCAD_QUICK);
     text_printf(add_value(&values, "seconds"), "%.2g",
-                seconds_a_triangle * (double)mesh.n_triangles);
+                seconds_a_triangle * (double)mesh->n_triangles);
     text_printf(add_value(&values, "middle"), "%.4g", (box.low.z + box.high.z) / 2);
-    put_point(add_value(&values, "low"), box.low);
-    put_point(add_value(&values, "high"), box.high);
-    add_part(&values, "points", put_points, &mesh);
-    add_part(&values, "faces", put_faces, &mesh);
-    return values_expand(&values, params, "openscad/polyhedron.scad", out, err);
+    put_text(add_value(&values, "low"), "[%v]", box.low);
+    put_text(add_value(&values, "high"), "[%v]", box.high);
+    add_list(&values, "points", put_point, mesh, mesh->n_points);
+    add_list(&values, "faces", put_face, mesh, mesh->n_triangles);
+    return values_expand(&values, params, "openscad/polyhedron.scad", to->file, err);
 }

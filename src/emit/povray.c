@@ -1,47 +1,47 @@
-/* Two files: the scene (camera, lights) and the geometry, one declaration of Tree
- * [docs/POVRAY.md]; or the one within the other; or, of a surface that is exported, the second
- * alone. Both are made from their templates, of which the
- * long parts, the macros and members of the geometry, are written when the template comes to them.
- * What the geometry is made of chooses its row of `geometries`. */
+/* POV-Ray reads a scene (camera, lights) and a geometry, which is one declaration of Tree
+ * [docs/POVRAY.md]. They are two files, or one within the other; an exported surface is a geometry
+ * alone. Both are made from templates. The long parts, the macros and members of the geometry, are
+ * appended when the template comes to them. The elements of the model choose a row of
+ * `geometries`. */
 #include "emit/meshparts.h"
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/rows.h"
-#include "emit/values.h"
 
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Those of primitives, and those of joints. */
-static Status put_joined_macros(Text *out, void *geometry, Err *err)
-{
-    TRY(put_primitive_macros(out, geometry, err));
-    return put_joint_macros(out, geometry, err);
-}
-
-/* What makes the geometry of models that have the element; the first row that is met holds. */
-static const struct {
+/* How the geometry of a model is written. The first row with an element of the model counts. */
+static const struct PovrayRow {
     unsigned element;
+    Status (*find)(PovrayGeometry *geometry, Err *err); /* finds its pieces; NULL: the items */
     Status (*put_macros)(Text *out, void *geometry, Err *err);
     Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err);
-    /* How many of its pieces POV-Ray reads in some ten seconds, as measured, of a blob and an
-     * isosurface with ids: a load of 1 [povray_load]. */
-    double pieces;
+    double pieces; /* measured: number of pieces that POV-Ray reads in about ten seconds, with ids
+                    * for fields; a load of 1 [povray_load] */
 } geometries[] = {
-    {MODEL_POTENTIAL, put_cell_macros, put_cells, 100000},
-    {MODEL_BLOB, put_blob_macros, put_blob, 32768},
-    {MODEL_TRIANGLES, put_mesh_macros, put_mesh, 4000},
-    {MODEL_JOINTS, put_joined_macros, put_primitives, 200000},
-    {MODEL_CYLINDERS, put_primitive_macros, put_primitives, 400000},
+    {MODEL_POTENTIAL, find_cells, put_cell_macros, put_cells, 100000},
+    {MODEL_BLOB, find_painted, put_blob_macros, put_blob, 32768},
+    {MODEL_TRIANGLES, NULL, put_mesh_macros, put_mesh, 4000},
+    {MODEL_JOINTS, NULL, put_joined_macros, put_primitives, 200000},
+    {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
 };
 
-static size_t row_of(const Scene *scene)
+static const struct PovrayRow *row_of(const Scene *scene)
 {
     size_t row = 0;
     while (!model_has(scene->geometry.model, geometries[row].element))
         row++;
-    return row;
+    return &geometries[row];
+}
+
+/* Finds objects, items and pieces. */
+static Status find_geometry(PovrayGeometry *geometry, Err *err)
+{
+    const struct PovrayRow *row = row_of(geometry->scene);
+    TRY(povray_objects_find(geometry, err));
+    return row->find ? row->find(geometry, err) : STATUS_OK;
 }
 
 Status povray_check_name(const char *geometry_file, Err *err)
@@ -78,21 +78,19 @@ static void put_guard(Text *text, const char *name)
 static Status put_macros(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    return geometries[row_of(geometry->scene)].put_macros(out, context, err);
+    return row_of(geometry->scene)->put_macros(out, context, err);
 }
 
 static Status put_tree(Text *out, void *context, Err *err)
 {
     PovrayGeometry *geometry = context;
-    return put_objects(out, geometry, geometries[row_of(geometry->scene)].put_object, err);
+    return put_objects(out, geometry, row_of(geometry->scene)->put_object, err);
 }
 
 static void put_vectors(Text *text, const Vec3 *v, size_t n)
 {
-    for (size_t i = 0; i < n; i++) {
-        text_puts(text, i ? "," : "");
-        put_vector(text, v[i]);
-    }
+    for (size_t i = 0; i < n; i++)
+        put_text(text, i ? ",<%v>" : "<%v>", v[i]);
 }
 
 /* Where the tree lies; without an anatomy its root is the middle of its extent. */
@@ -103,12 +101,12 @@ static void add_places(Values *values, const EmitParams *params)
     const Anatomy none = {
         .root = (Vec3[]){middle}, .n_trees = 1, .path = (Vec3[]){middle}, .n_path = 1};
     const Anatomy *anatomy = params->anatomy ? params->anatomy : &none;
-    put_vector(add_value(values, "low"), geometry->bounds.low);
-    put_vector(add_value(values, "high"), geometry->bounds.high);
-    text_printf(add_value(values, "segments"), "%zu", geometry->drawn);
-    text_printf(add_value(values, "n_roots"), "%zu", anatomy->n_trees);
+    put_text(add_value(values, "low"), "<%v>", geometry->bounds.low);
+    put_text(add_value(values, "high"), "<%v>", geometry->bounds.high);
+    add_count(values, "segments", geometry->drawn);
+    add_count(values, "n_roots", anatomy->n_trees);
     put_vectors(add_value(values, "roots"), anatomy->root, anatomy->n_trees);
-    text_printf(add_value(values, "n_path"), "%zu", anatomy->n_path);
+    add_count(values, "n_path", anatomy->n_path);
     put_vectors(add_value(values, "path"), anatomy->path, anatomy->n_path);
 }
 
@@ -116,7 +114,6 @@ static void add_places(Values *values, const EmitParams *params)
 static void put_color_map(Text *text, const Appearance *appearance)
 {
     enum { ENTRIES = COLORRAMP_ENTRIES };
-    char place[NUMBER_TEXT_SIZE];
     const ColorScale *scale = &appearance->scale;
     int steps = !appearance->colors ? 1 : colorscale_steps(scale);
     bool stepped = steps > 0 && steps <= ENTRIES / 2;
@@ -128,11 +125,8 @@ static void put_color_map(Text *text, const Appearance *appearance)
         else if (appearance->colors)
             colormap_linear(&scale->map, (double)i / (n - 1), rgb);
         for (int side = 0; side < (stepped ? 2 : 1); side++) {
-            text_printf(
-                text, "[%s rgb ",
-                number_text_float((float)((double)(i + side) / (stepped ? n : n - 1)), place));
-            put_color(text, (Rgb){rgb[0], rgb[1], rgb[2]});
-            text_puts(text, "]");
+            float place = (float)((double)(i + side) / (stepped ? n : n - 1));
+            put_text(text, "[%f rgb <%c>]", (double)place, (Rgb){rgb[0], rgb[1], rgb[2]});
         }
     }
 }
@@ -155,30 +149,23 @@ static void add_scale(Values *values, const Appearance *appearance)
     add_number(values, "value_high", scale->range[1]);
     add_flag(values, "value_log", scale->log);
     put_color_map(add_value(values, "color_map"), appearance);
-    text_printf(add_value(values, "n_bounds"), "%d", scale->n_bounds);
+    add_count(values, "n_bounds", (size_t)scale->n_bounds);
     Text *bounds = add_value(values, "bounds");
-    for (int i = 0; i < scale->n_bounds; i++) {
-        text_number(bounds, scale->bounds[i]);
-        text_puts(bounds, ", ");
-    }
+    for (int i = 0; i < scale->n_bounds; i++)
+        put_text(bounds, "%n, ", scale->bounds[i]);
     put_value_part(add_value(values, "value_part"), scale);
     put_value_map(add_value(values, "value_map"), scale);
     text_printf(add_value(values, "count"), "%d",
                 colorscale_counts(scale) ? colorscale_steps(scale) : 0);
 }
 
-/* A frame is a case of a #switch, of which POV-Ray reads one. */
-static Status put_cases(Text *out, void *context, Err *err)
+/* Appends a frame as a case of a #switch, of which POV-Ray reads one. */
+static void put_case(Text *out, const void *appearance, size_t frame)
 {
-    const PovrayGeometry *geometry = context;
-    const Appearance *appearance = &geometry->scene->appearance;
-    for (size_t k = 0; k < appearance->n_frames; k++) {
-        const Appearance frame = appearance_frame(appearance, k);
-        text_printf(out, "#case (%zu)\n", k + 1);
-        put_frame(out, &frame);
-        text_puts(out, "#break\n");
-    }
-    return text_check(out, err);
+    const Appearance shown = appearance_frame(appearance, frame);
+    put_text(out, "#case (%z)\n", frame + 1);
+    put_frame(out, &shown);
+    text_puts(out, "#break\n");
 }
 
 static Status put_frames(Text *out, void *context, Err *err)
@@ -188,13 +175,11 @@ static Status put_frames(Text *out, void *context, Err *err)
     if (appearance->n_frames == 0)
         return STATUS_OK;
     Values values = {0};
-    text_printf(add_value(&values, "count"), "%zu", appearance->n_frames);
+    add_count(&values, "count", appearance->n_frames);
     Text *times = add_value(&values, "times");
-    for (size_t k = 0; k < appearance->n_frames; k++) {
-        text_puts(times, k ? "," : "");
-        text_number(times, appearance->time[k]);
-    }
-    add_part(&values, "frames", put_cases, context);
+    for (size_t k = 0; k < appearance->n_frames; k++)
+        put_text(times, k ? ",%n" : "%n", appearance->time[k]);
+    add_list(&values, "frames", put_case, appearance, appearance->n_frames);
     return values_expand(&values, geometry->params, "povray/frames.inc", out, err);
 }
 
@@ -228,20 +213,16 @@ static Status put_geometry(Text *out, void *context, Err *err)
 static void put_light(Text *text, const Light *light)
 {
     bool area = light->samples > 1;
-    text_printf(text, "  Light_%s(", light->parallel ? "Parallel" : area ? "Area" : "Point");
-    put_vector(text, light->location);
-    if (light->parallel) {
-        text_puts(text, ", ");
-        put_vector(text, light->target);
-    }
-    text_puts(text, ", ");
-    put_color(text, light->color);
-    for (int side = 0; area && side < 2; side++) {
-        text_puts(text, ", ");
-        put_vector(text, light->sides[side]);
-    }
+    put_text(text, "  Light_%s(<%v>, ",
+             light->parallel ? "Parallel"
+             : area          ? "Area"
+                             : "Point",
+             light->location);
+    if (light->parallel)
+        put_text(text, "<%v>, ", light->target);
+    put_text(text, "<%c>", light->color);
     if (area)
-        text_printf(text, ", %d", light->samples);
+        put_text(text, ", <%v>, <%v>, %d", light->sides[0], light->sides[1], light->samples);
     text_puts(text, ")\n");
 }
 
@@ -250,9 +231,9 @@ static Status put_ground(Text *text, const Ground *ground, const EmitParams *par
     if (!ground->present)
         return STATUS_OK;
     Values values = {0};
-    put_vector(add_value(&values, "normal"), ground->normal);
+    put_text(add_value(&values, "normal"), "<%v>", ground->normal);
     add_number(&values, "offset", ground->offset_mm);
-    put_color(add_value(&values, "color"), ground->color);
+    put_text(add_value(&values, "color"), "<%c>", ground->color);
     add_float(&values, "ambient", ground->finish.ambient);
     add_float(&values, "diffuse", ground->finish.diffuse);
     return values_expand(&values, params, "povray/ground.inc", text, err);
@@ -294,11 +275,11 @@ static Status put_camera(Text *out, void *context, Err *err)
     const Camera *camera = &geometry->scene->view.camera;
     Values values = {0};
     add_flag(&values, "perspective", camera->projection == PROJECTION_PERSPECTIVE);
-    put_vector(add_value(&values, "location"), camera->location);
-    put_vector(add_value(&values, "look_at"), looked_at(geometry->scene));
-    put_vector(add_value(&values, "right"), camera->right);
-    put_vector(add_value(&values, "up"), camera->up);
-    put_vector(add_value(&values, "direction"), camera->direction);
+    put_text(add_value(&values, "location"), "<%v>", camera->location);
+    put_text(add_value(&values, "look_at"), "<%v>", looked_at(geometry->scene));
+    put_text(add_value(&values, "right"), "<%v>", camera->right);
+    put_text(add_value(&values, "up"), "<%v>", camera->up);
+    put_text(add_value(&values, "direction"), "<%v>", camera->direction);
     return values_expand(&values, geometry->params, "povray/camera.inc", out, err);
 }
 
@@ -327,8 +308,8 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
                   params->second_file ? params->second_file : "the last part of this file");
     add_about(&values, params, scene->geometry.bounds, scene->geometry.origin);
     put_effects(add_value(&values, "effects"), &scene->view.effects);
-    text_printf(add_value(&values, "width"), "%d", scene->view.camera.width);
-    text_printf(add_value(&values, "height"), "%d", scene->view.camera.height);
+    add_count(&values, "width", (size_t)scene->view.camera.width);
+    add_count(&values, "height", (size_t)scene->view.camera.height);
     add_part(&values, "camera", put_camera, geometry);
     add_flag(&values, "shadows", params->shadows);
     add_float(&values, "background_red", scene->view.background.r);
@@ -342,33 +323,42 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     return values_expand(&values, params, "povray/scene.pov", out, err);
 }
 
-Status povray_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
+Status povray_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    PovrayGeometry geometry = {.params = params, .scene = params->scene, .report = report};
+    PovrayGeometry geometry = {.params = params, .scene = params->scene, .report = to->report};
     Status status;
-    TRY_GOTO(povray_objects_find(&geometry, err));
-    report->cells = geometry.cells ? geometry.cells[0].n_cells : 0;
+    TRY_GOTO(find_geometry(&geometry, err));
+    to->report->cells = geometry.cells ? geometry.cells[0].n_cells : 0;
     if (params->second_file)
-        TRY_GOTO(put_geometry(second, &geometry, err));
-    TRY_GOTO(put_scene(out, &geometry, err));
+        TRY_GOTO(put_geometry(to->second, &geometry, err));
+    TRY_GOTO(put_scene(to->file, &geometry, err));
 done:
     povray_objects_release(&geometry);
     return status;
 }
 
+/* Returns the number of pieces of the whole: cells, segments of a field, or items. */
+static size_t count_pieces(const PovrayGeometry *geometry)
+{
+    if (geometry->cells)
+        return geometry->cells[0].n_cells;
+    return geometry->painted.n ? geometry->painted.n : geometry->objects[0].n;
+}
+
 Status povray_load(const EmitParams *params, double *load, Err *err)
 {
     PovrayGeometry geometry = {.params = params, .scene = params->scene};
-    Status status = povray_objects_find(&geometry, err);
-    if (status == STATUS_OK)
-        *load = (double)povray_pieces(&geometry) / geometries[row_of(params->scene)].pieces;
+    Status status;
+    TRY_GOTO(find_geometry(&geometry, err));
+    *load = (double)count_pieces(&geometry) / row_of(params->scene)->pieces;
+done:
     povray_objects_release(&geometry);
     return status;
 }
 
 /* ---- a surface ------------------------------------------------------------------------------- */
 
-/* The geometry of what is exported: borrowed but for its ids. */
+/* Makes the geometry of an exported surface. It borrows everything except its ids. */
 static Status take_surface(const EmitParams *params, Geometry *geometry, Err *err)
 {
     const VesselTree *vessels = params->vessels;
@@ -388,18 +378,16 @@ static Status take_surface(const EmitParams *params, Geometry *geometry, Err *er
 }
 
 /* The second file of a scene of triangles, without the first. */
-Status povray_write_mesh(const EmitParams *params, Text *out, Text *second, EmitReport *report,
-                         Err *err)
+Status povray_write_mesh(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    (void)second;
     Scene scene = {.appearance = *params->appearance};
     EmitParams all = *params;
-    PovrayGeometry geometry = {.params = &all, .scene = &scene, .report = report};
+    PovrayGeometry geometry = {.params = &all, .scene = &scene, .report = to->report};
     Status status;
     all.scene = &scene;
     TRY_GOTO(take_surface(params, &scene.geometry, err));
-    TRY_GOTO(povray_objects_find(&geometry, err));
-    TRY_GOTO(put_geometry(out, &geometry, err));
+    TRY_GOTO(find_geometry(&geometry, err));
+    TRY_GOTO(put_geometry(to->file, &geometry, err));
 done:
     povray_objects_release(&geometry);
     free(scene.geometry.ids);
@@ -437,7 +425,7 @@ static Status put_frame_settings(Text *out, void *context, Err *err)
     if (n == 0)
         return STATUS_OK;
     Values values = {0};
-    text_printf(add_value(&values, "count"), "%zu", n);
+    add_count(&values, "count", n);
     return values_expand(&values, params, "povray/frames.ini", out, err);
 }
 
@@ -448,11 +436,9 @@ Status povray_write_settings(const EmitParams *params, Text *out, Err *err)
     Values values = {0};
     TRY(check_settings_name(params->settings, err));
     add_names(&values, params);
-    text_put_line(add_value(&values, "description"), params->description);
-    text_puts(add_value(&values, "generator"), params->generator);
-    text_puts(add_value(&values, "command"), params->command);
-    text_printf(add_value(&values, "width"), "%d", camera->width);
-    text_printf(add_value(&values, "height"), "%d", camera->height);
+    add_source(&values, params);
+    add_count(&values, "width", (size_t)camera->width);
+    add_count(&values, "height", (size_t)camera->height);
     text_puts(add_value(&values, "method"), adaptive ? "2" : "1");
     text_puts(add_value(&values, "threshold"), adaptive ? "0.1" : "0");
     text_printf(add_value(&values, "depth"), "%d", adaptive ? 3 : params->antialias);

@@ -33,11 +33,8 @@ void put_value_part(Text *text, const ColorScale *scale)
 static void put_bounds(Text *text, const ColorScale *scale)
 {
     text_puts(text, "(0.5");
-    for (int i = 0; i < scale->n_bounds; i++) {
-        text_puts(text, " + select(x - (");
-        text_number(text, colorscale_bound(scale, i));
-        text_puts(text, "), 0, 1)");
-    }
+    for (int i = 0; i < scale->n_bounds; i++)
+        put_text(text, " + select(x - (%n), 0, 1)", colorscale_bound(scale, i));
     text_printf(text, ") / %d", scale->n_bounds + 1);
 }
 
@@ -61,8 +58,8 @@ void put_value_map(Text *text, const ColorScale *scale)
 static void put_own(Text *text, const ScaleColor *own)
 {
     const float grey = srgb_decode(0.5f);
-    put_color(text,
-              own->given ? (Rgb){own->rgb[0], own->rgb[1], own->rgb[2]} : (Rgb){grey, grey, grey});
+    put_text(text, "<%c>",
+             own->given ? (Rgb){own->rgb[0], own->rgb[1], own->rgb[2]} : (Rgb){grey, grey, grey});
 }
 
 static bool all_are_known(const Appearance *appearance)

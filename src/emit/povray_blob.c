@@ -37,7 +37,7 @@ static Box reach_of(const FieldSegment *segment, double reach)
 
 /* ---- cells ----------------------------------------------------------------------------------- */
 
-typedef struct Cells {
+typedef struct BlobCells {
     const Scene *scene;
     const Sight *sight; /* cells that it does not meet are left out */
     Text *text;         /* where the others are written to, or NULL */
@@ -46,7 +46,7 @@ typedef struct Cells {
     uint32_t *lists; /* a stack: the segments of both halves of a cell follow those of the cell */
     size_t room;
     size_t written; /* none when all is one blob */
-} Cells;
+} BlobCells;
 
 /* A list of segments on the stack of cells. */
 typedef struct List {
@@ -54,7 +54,7 @@ typedef struct List {
 } List;
 
 /* How many segments of a list are felt at x. */
-static size_t count_felt(const Cells *cells, const uint32_t *list, size_t n, Vec3 x)
+static size_t count_felt(const BlobCells *cells, const uint32_t *list, size_t n, Vec3 x)
 {
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
@@ -62,7 +62,7 @@ static size_t count_felt(const Cells *cells, const uint32_t *list, size_t n, Vec
     return count;
 }
 
-static Status check_crowd(const Cells *cells, const uint32_t *list, size_t n, Err *err)
+static Status check_crowd(const BlobCells *cells, const uint32_t *list, size_t n, Err *err)
 {
     if (n <= CROWD)
         return STATUS_OK;
@@ -82,7 +82,7 @@ static Status check_crowd(const Cells *cells, const uint32_t *list, size_t n, Er
 }
 
 /* Writes the blob of the segments of a list, clipped to a box or whole. */
-static Status put_cell(Cells *cells, List from, const Box *clip, Err *err)
+static Status put_cell(BlobCells *cells, List from, const Box *clip, Err *err)
 {
     Text *text = cells->text;
     const uint32_t *list = cells->lists + from.first;
@@ -97,30 +97,21 @@ static Status put_cell(Cells *cells, List from, const Box *clip, Err *err)
     text_puts(text, clip ? "Blob_Cell()\n" : "Blob_Start()\n");
     for (size_t i = 0; i < n; i++) {
         const FieldSegment *segment = &cells->scene->geometry.segments[list[i]];
-        text_puts(text, "Vessel_Blob(");
-        put_vector(text, segment->a);
-        text_puts(text, ",");
-        put_vector(text, segment->b);
-        text_puts(text, ",");
-        text_number(text, segment->radius_mm);
-        text_puts(text, ")\n");
+        put_text(text, "Vessel_Blob(<%v>,<%v>,%n)\n", segment->a, segment->b, segment->radius_mm);
     }
     if (!clip) {
         text_puts(text, "Blob_Paint()\n");
         return STATUS_OK;
     }
     Vec3 pad = vec3(overlap_mm, overlap_mm, overlap_mm);
-    text_puts(text, "Blob_Cell_End(");
-    put_vector(text, vec3_sub(clip->low, pad));
-    text_puts(text, ",");
-    put_vector(text, vec3_add(clip->high, pad));
-    text_puts(text, ")\n");
+    put_text(text, "Blob_Cell_End(<%v>,<%v>)\n", vec3_sub(clip->low, pad),
+             vec3_add(clip->high, pad));
     cells->written++;
     return STATUS_OK;
 }
 
 /* The segments of a list that reach into the box, put on the stack at `top`. */
-static List take_those_in(const Cells *cells, List from, size_t top, Box box)
+static List take_those_in(const BlobCells *cells, List from, size_t top, Box box)
 {
     const FieldSegment *segments = cells->scene->geometry.segments;
     const uint32_t *list = cells->lists + from.first;
@@ -140,7 +131,7 @@ typedef struct Halves {
 
 /* Halves a box into which the segments of a list reach, with the stack's end at `top`, unless few
  * do or most would reach into both halves. */
-static Status halve(Cells *cells, List list, size_t top, Box box, Halves *out, Err *err)
+static Status halve(BlobCells *cells, List list, size_t top, Box box, Halves *out, Err *err)
 {
     *out = (Halves){.box = {box, box}};
     if (list.n <= CELL)
@@ -149,16 +140,13 @@ static Status halve(Cells *cells, List list, size_t top, Box box, Halves *out, E
                     err));
     Box *half = out->box;
     Vec3 middle = box_center(box);
-    switch (box_longest_axis(box)) {
-    case 0:
+    int axis = box_longest_axis(box);
+    if (axis == 0)
         half[0].high.x = half[1].low.x = middle.x;
-        break;
-    case 1:
+    else if (axis == 1)
         half[0].high.y = half[1].low.y = middle.y;
-        break;
-    default:
+    else
         half[0].high.z = half[1].low.z = middle.z;
-    }
     out->list[0] = take_those_in(cells, list, top, half[0]);
     out->list[1] = take_those_in(cells, list, top + out->list[0].n, half[1]);
     out->is_cut = 2 * (out->list[0].n + out->list[1].n) <= 3 * list.n;
@@ -167,7 +155,7 @@ static Status halve(Cells *cells, List list, size_t top, Box box, Halves *out, E
 
 /* Writes the cells of a box into which the segments of a list reach, with the stack's end at
  * `top`. */
-static Status put_cells_of(Cells *cells, List list, size_t top, Box box, bool whole, Err *err)
+static Status put_cells_of(BlobCells *cells, List list, size_t top, Box box, bool whole, Err *err)
 {
     Halves halves;
     if (!whole && !sight_meets(cells->sight, box_padded(box, overlap_mm)))
@@ -191,16 +179,16 @@ static List all_of(const PovrayGeometry *geometry)
 }
 
 /* The segments of the object, and the box that they reach into. */
-static Status cells_begin(const PovrayGeometry *geometry, Text *text, Cells *cells, Box *box,
+static Status cells_begin(const PovrayGeometry *geometry, Text *text, BlobCells *cells, Box *box,
                           Err *err)
 {
     const Geometry *all = &geometry->scene->geometry;
     const PovrayItems *items = &geometry->objects[geometry->object];
-    *cells = (Cells){.scene = geometry->scene,
-                     .sight = geometry->sight,
-                     .text = text,
-                     .reach = blob_reach(&blob_shape),
-                     .room = items->n};
+    *cells = (BlobCells){.scene = geometry->scene,
+                         .sight = geometry->sight,
+                         .text = text,
+                         .reach = blob_reach(&blob_shape),
+                         .room = items->n};
     TRY(mem_calloc(&cells->lists, cells->room, sizeof *cells->lists, "cells", err));
     *box = box_empty();
     for (size_t i = 0; i < items->n; i++) {
@@ -210,46 +198,52 @@ static Status cells_begin(const PovrayGeometry *geometry, Text *text, Cells *cel
     return STATUS_OK;
 }
 
-/* Whether all of the object is one blob, and not many, each clipped to a cell. */
+/* Finds whether all of the object is one blob, and not many blobs, each clipped to a cell. */
 static Status blob_is_whole(const PovrayGeometry *geometry, bool *whole, Err *err)
 {
-    Cells cells;
+    BlobCells cells = {0};
     Box box;
     Halves halves;
     const List all = all_of(geometry);
-    TRY(cells_begin(geometry, NULL, &cells, &box, err));
-    Status status = halve(&cells, all, all.n, box, &halves, err);
+    Status status;
+    TRY_GOTO(cells_begin(geometry, NULL, &cells, &box, err));
+    TRY_GOTO(halve(&cells, all, all.n, box, &halves, err));
+    *whole = !halves.is_cut;
+done:
     free(cells.lists);
-    if (status == STATUS_OK)
-        *whole = !halves.is_cut;
     return status;
 }
 
 static Status put_blobs(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    Cells cells;
+    BlobCells cells = {0};
     Box box;
     const List all = all_of(geometry);
-    TRY(cells_begin(geometry, out, &cells, &box, err));
-    Status status = put_cells_of(&cells, all, all.n, box, true, err);
-    free(cells.lists);
+    Status status;
+    TRY_GOTO(cells_begin(geometry, out, &cells, &box, err));
+    TRY_GOTO(put_cells_of(&cells, all, all.n, box, true, err));
     geometry->report->cells = cells.written;
-    return status == STATUS_OK ? text_check(out, err) : status;
+    TRY_GOTO(text_check(out, err));
+done:
+    free(cells.lists);
+    return status;
 }
 
 Status put_blob(Text *out, PovrayGeometry *geometry, Err *err)
 {
     bool whole;
+    Values values = {0};
     TRY(blob_is_whole(geometry, &whole, err));
-    return put_declaration(out, geometry, whole ? "blob" : "union", put_blobs, err);
+    add_part(&values, "members", put_blobs, geometry);
+    return put_declaration(out, geometry, whole ? "blob" : "union", &values, err);
 }
 
 Status find_painted(PovrayGeometry *geometry, Err *err)
 {
     const PovrayItems all = geometry->objects[0];
     uint32_t *index = geometry->indices + all.n;
-    Cells cells = {0};
+    BlobCells cells = {0};
     Box box;
     size_t n = 0;
     Status status;
@@ -378,7 +372,7 @@ static void put_term(Text *text, const Paints *paints, uint32_t number)
     if (paints->in_matrices)
         put_column(text, 'e', number, "0,0,0", 'y');
     else
-        text_printf(text, "%u", number);
+        put_text(text, "%u", number);
     text_puts(text, ")");
 }
 
@@ -467,30 +461,29 @@ static double grid_of(Box box)
 static Status put_hierarchy(Text *out, const PovrayGeometry *geometry, const double *places,
                             Err *err)
 {
-    Tmpl node = {0}, matrix = {0};
+    const char *const names[] = {places ? "povray/blob_weight.inc" : "povray/blob_node.inc",
+                                 "povray/matrix.inc"};
+    Tmpl templates[2] = {0};
     const size_t n = geometry->painted.n;
     Paints paints = {.scene = geometry->scene,
                      .painted = geometry->painted,
                      .places = places,
-                     .node = &node,
+                     .node = &templates[0],
                      .in_matrices = n > MOST_INLINE_TERMS,
                      .text = out};
     Status status;
-    TRY_GOTO(load_template(&node, geometry->params,
-                           places ? "povray/blob_weight.inc" : "povray/blob_node.inc", err));
-    TRY_GOTO(load_template(&matrix, geometry->params, "povray/matrix.inc", err));
+    TRY_GOTO(load_templates(templates, geometry->params, names, 2, err));
     TRY_GOTO(mem_calloc(&paints.items, n, sizeof *paints.items, "segments", err));
     for (size_t i = 0; i < n; i++)
         paints.items[i].segment = (uint32_t)i;
     paints.grid_mm = grid_of(box_of_items(&paints, 0, n));
     if (paints.in_matrices && !places)
-        TRY_GOTO(put_matrices(&paints, &matrix, err));
+        TRY_GOTO(put_matrices(&paints, &templates[1], err));
     text_printf(out, "#declare F%c=array[%zu]\n", places ? 'w' : 'n', count_nodes(n));
     TRY_GOTO(put_node(&paints, 0, n, err));
 done:
     free(paints.items);
-    tmpl_release(&node);
-    tmpl_release(&matrix);
+    release_templates(templates, 2);
     return status;
 }
 
@@ -517,24 +510,19 @@ static Status put_blend(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/blob_blend.inc", out, err);
 }
 
-/* The segments' paints. */
-static Status put_groups(Text *out, void *context, Err *err)
+/* Appends the paint of a segment, in groups of as many as a map of textures holds. */
+static void put_paint_of(Text *out, const void *context, size_t i)
 {
     const PovrayGeometry *geometry = context;
     const PovrayItems painted = geometry->painted;
-    for (size_t i = 0; i < painted.n; i++) {
-        const FieldSegment *segment = &geometry->scene->geometry.segments[painted.index[i]];
-        if (i % GROUP == 0)
-            text_printf(out, "Blob_Group(%zu)\n", i / GROUP);
-        text_printf(out, "Blob_Color(%zu,", i);
-        text_number(out, segment->radius_mm);
-        text_puts(out, ",");
-        put_paint(out, geometry->params, segment->segment);
-        text_puts(out, ")\n");
-        if (i % GROUP == GROUP - 1 || i + 1 == painted.n)
-            text_printf(out, "Blob_Group_End(%zu)\n", i / GROUP);
-    }
-    return text_check(out, err);
+    const FieldSegment *segment = &geometry->scene->geometry.segments[painted.index[i]];
+    if (i % GROUP == 0)
+        put_text(out, "Blob_Group(%z)\n", i / GROUP);
+    put_text(out, "Blob_Color(%z,%n,", i, segment->radius_mm);
+    put_paint(out, geometry->params, segment->segment);
+    text_puts(out, ")\n");
+    if (i % GROUP == GROUP - 1 || i + 1 == painted.n)
+        put_text(out, "Blob_Group_End(%z)\n", i / GROUP);
 }
 
 static Status put_nothing(Text *out, void *context, Err *err)
@@ -547,16 +535,15 @@ static void add_shape(Values *values)
 {
     const BlobTube *tube = blob_shape.tube;
     const BlobBead *bead = blob_shape.bead;
-    add_number(values, "r1", tube[0].radius);
-    add_number(values, "s1", tube[0].strength);
-    add_number(values, "r2", tube[1].radius);
-    add_number(values, "s2", tube[1].strength);
-    add_number(values, "h1", bead[0].offset);
-    add_number(values, "q1", bead[0].radius);
-    add_number(values, "c1", bead[0].strength);
-    add_number(values, "h2", bead[1].offset);
-    add_number(values, "q2", bead[1].radius);
-    add_number(values, "c2", bead[1].strength);
+    const struct {
+        const char *name;
+        double value;
+    } numbers[] = {{"r1", tube[0].radius},   {"s1", tube[0].strength}, {"r2", tube[1].radius},
+                   {"s2", tube[1].strength}, {"h1", bead[0].offset},   {"q1", bead[0].radius},
+                   {"c1", bead[0].strength}, {"h2", bead[1].offset},   {"q2", bead[1].radius},
+                   {"c2", bead[1].strength}};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        add_number(values, numbers[i].name, numbers[i].value);
 }
 
 Status put_blob_macros(Text *out, void *context, Err *err)
@@ -574,10 +561,10 @@ Status put_blob_macros(Text *out, void *context, Err *err)
     Text *top = add_value(&values, "top"), *n_groups = add_value(&values, "n_groups");
     if (painted) {
         text_printf(top, "Fn[%zu]", count_nodes(n) - 1);
-        text_printf(n_groups, "%zu", (n + GROUP - 1) / GROUP);
+        put_text(n_groups, "%z", (size_t)((n + GROUP - 1) / GROUP));
     }
     add_part(&values, "paint", painted ? put_functions : put_nothing, context);
     add_part(&values, "blend", put_blend, context);
-    add_part(&values, "groups", painted ? put_groups : put_nothing, context);
+    add_list(&values, "groups", put_paint_of, geometry, painted ? n : 0);
     return values_expand(&values, geometry->params, "povray/blob.inc", out, err);
 }

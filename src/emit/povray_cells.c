@@ -10,6 +10,7 @@
 #include "emit/povray_text.h"
 #include "emit/values.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -87,17 +88,19 @@ static int scale_number(const Cell *cell)
     return ilogb(cell->scale) + SCALE_ONE;
 }
 
-/* A log form for each scale of a cell. */
+/* Appends a log form for each scale of a cell. */
 static Status put_scales(Text *out, void *context, Err *err)
 {
+    static const char *const scale_name = "povray/scale.inc";
     const PovrayGeometry *geometry = context;
     Tmpl template = {0};
     bool used[N_SCALES] = {false};
+    Status status;
     for (size_t k = 0; k < geometry->n_objects; k++)
         for (size_t i = 0; i < geometry->cells[k].n_cells; i++)
             used[scale_number(&geometry->cells[k].cells[i])] = true;
-    Status status = load_template(&template, geometry->params, "povray/scale.inc", err);
-    for (int number = 0; status == STATUS_OK && number < N_SCALES; number++) {
+    TRY_GOTO(load_templates(&template, geometry->params, &scale_name, 1, err));
+    for (int number = 0; number < N_SCALES; number++) {
         char digits[12], scale[NUMBER_TEXT_SIZE], low[NUMBER_TEXT_SIZE], high[NUMBER_TEXT_SIZE],
             slope[NUMBER_TEXT_SIZE];
         snprintf(digits, sizeof digits, "%d", number);
@@ -107,8 +110,10 @@ static Status put_scales(Text *out, void *context, Err *err)
                                     {"ceiling", number_text(LOG_FORM_CEILING, high)},
                                     {"slope", number_text(TUBE_SLOPE, slope)}};
         if (used[number])
-            status = tmpl_apply(&template, values, sizeof values / sizeof *values, out, err);
+            TRY_GOTO(tmpl_apply(&template, values, sizeof values / sizeof *values, out, err));
     }
+    status = STATUS_OK;
+done:
     tmpl_release(&template);
     return status;
 }
@@ -126,26 +131,12 @@ static void find_used(const CellTree *cells, uint8_t *used)
     }
 }
 
-typedef struct TermTemplates {
-    Tmpl term, tube, matrix;
-} TermTemplates;
-
-static Status load_term_templates(const EmitParams *params, TermTemplates *templates, Err *err)
-{
-    TRY(load_template(&templates->term, params, "povray/term.inc", err));
-    TRY(load_template(&templates->tube, params, "povray/tube.inc", err));
-    return load_template(&templates->matrix, params, "povray/matrix.inc", err);
-}
-
-static void release_term_templates(TermTemplates *templates)
-{
-    tmpl_release(&templates->term);
-    tmpl_release(&templates->tube);
-    tmpl_release(&templates->matrix);
-}
+enum { TERM_TEMPLATE, TUBE_TEMPLATE, MATRIX_TEMPLATE, TERM_TEMPLATES };
+static const char *const term_templates[] = {"povray/term.inc", "povray/tube.inc",
+                                             "povray/matrix.inc"};
 
 /* The functions of a segment whose bits are set. */
-static Status put_segment(Text *out, const TermTemplates *templates, const Term *term, uint8_t used,
+static Status put_segment(Text *out, const Tmpl *templates, const Term *term, uint8_t used,
                           Err *err)
 {
     bool to_end = used & (1 << TERM_BOTH_ENDS | 1 << TERM_END);
@@ -153,13 +144,13 @@ static Status put_segment(Text *out, const TermTemplates *templates, const Term 
     const Linear *const start[] = {&form->v, &form->w, &form->start};
     const Linear *const end[] = {&form->v, &form->w, &form->end};
     if (term->in_matrices && used)
-        TRY(put_matrix(out, &templates->matrix, 's', term->segment, start, err));
+        TRY(put_matrix(out, &templates[MATRIX_TEMPLATE], 's', term->segment, start, err));
     if (term->in_matrices && to_end)
-        TRY(put_matrix(out, &templates->matrix, 'e', term->segment, end, err));
+        TRY(put_matrix(out, &templates[MATRIX_TEMPLATE], 'e', term->segment, end, err));
     for (int function = 0; function < N_FUNCTIONS; function++)
         if (used & 1 << function)
-            TRY(put_function(out, function == TUBE ? &templates->tube : &templates->term, term,
-                             function, err));
+            TRY(put_function(out, &templates[function == TUBE ? TUBE_TEMPLATE : TERM_TEMPLATE],
+                             term, function, err));
     return STATUS_OK;
 }
 
@@ -187,9 +178,7 @@ static void put_paints(Text *out, const PovrayGeometry *geometry, const uint8_t 
     for (uint32_t i = 0; i < all->n_segments; i++) {
         if (!used[i])
             continue;
-        text_printf(out, "Term_Paint(%u,", i);
-        text_number(out, all->segments[i].radius_mm);
-        text_puts(out, ",");
+        put_text(out, "Term_Paint(%u,%n,", i, all->segments[i].radius_mm);
         put_paint(out, geometry->params, all->segments[i].segment);
         text_puts(out, ")\n");
     }
@@ -202,23 +191,23 @@ static Status put_terms(Text *out, void *context, Err *err)
     const PovrayGeometry *geometry = context;
     size_t n = geometry->scene->geometry.n_segments;
     bool in_matrices = n > MOST_INLINE_TERMS;
-    TermTemplates templates = {0};
+    Tmpl templates[TERM_TEMPLATES] = {0};
     uint8_t *used = NULL;
     Status status;
-    TRY_GOTO(load_term_templates(geometry->params, &templates, err));
+    TRY_GOTO(load_templates(templates, geometry->params, term_templates, TERM_TEMPLATES, err));
     TRY_GOTO(mem_calloc(&used, n, sizeof *used, "functions", err));
     for (size_t k = 0; k < geometry->n_objects; k++)
         find_used(&geometry->cells[k], used);
     put_arrays(out, n, in_matrices);
     for (uint32_t i = 0; i < n; i++) {
         const Term term = {&geometry->cells[0].forms[i], i, in_matrices};
-        TRY_GOTO(put_segment(out, &templates, &term, used[i], err));
+        TRY_GOTO(put_segment(out, templates, &term, used[i], err));
     }
     if (is_painted(geometry))
         put_paints(out, geometry, used);
 done:
     free(used);
-    release_term_templates(&templates);
+    release_templates(templates, TERM_TEMPLATES);
     return status;
 }
 
@@ -239,48 +228,49 @@ Status put_cell_macros(Text *out, void *context, Err *err)
 
 /* ---- cells ----------------------------------------------------------------------------------- */
 
-/* A cell's values, with room that every cell uses again. */
-typedef struct CellText {
-    Text low, high, function, paint, sum, declared, pick, paints, by_segment, mean, known;
-    char max_gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE];
-} CellText;
+/* The texts of a cell. All cells use the same memory. */
+typedef enum CellTextPart {
+    CELL_LOW,
+    CELL_HIGH,
+    CELL_FUNCTION,
+    CELL_PAINT,
+    CELL_BY_SEGMENT, /* the paint by segment, where colours blend */
+    CELL_DECLARED,
+    CELL_PICK,
+    CELL_PAINTS,
+    CELL_SUM,
+    CELL_MEAN,
+    CELL_KNOWN,
+    CELL_TEXTS
+} CellTextPart;
 
-static void release_cell_text(CellText *part)
+enum { CELL_TEMPLATE, PAINTS_TEMPLATE, BLEND_TEMPLATE, CELL_TEMPLATES };
+static const char *const cell_templates[] = {"povray/cell.inc", "povray/cell_paints.inc",
+                                             "povray/cell_blend.inc"};
+
+/* What the texts of a cell are made of. */
+typedef struct CellWriter {
+    const PovrayGeometry *geometry;
+    const CellTree *cells;
+    Tmpl templates[CELL_TEMPLATES];
+    Text text[CELL_TEXTS];
+} CellWriter;
+
+/* Returns a text of the cell, emptied. */
+static Text *cell_text(CellWriter *writer, CellTextPart part)
 {
-    Text *const texts[] = {&part->low,  &part->high,     &part->function,  &part->paint,
-                           &part->pick, &part->declared, &part->paints,    &part->sum,
-                           &part->mean, &part->known,    &part->by_segment};
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
-        text_release(texts[i]);
+    text_clear(&writer->text[part]);
+    return &writer->text[part];
 }
 
-typedef struct CellTemplates {
-    Tmpl cell, paints, blend;
-} CellTemplates;
-
-static Status load_cell_templates(const EmitParams *params, CellTemplates *templates, Err *err)
+static const char *cell_chars(const CellWriter *writer, CellTextPart part)
 {
-    TRY(load_template(&templates->cell, params, "povray/cell.inc", err));
-    TRY(load_template(&templates->paints, params, "povray/cell_paints.inc", err));
-    return load_template(&templates->blend, params, "povray/cell_blend.inc", err);
-}
-
-static void release_cell_templates(CellTemplates *templates)
-{
-    tmpl_release(&templates->cell);
-    tmpl_release(&templates->paints);
-    tmpl_release(&templates->blend);
-}
-
-static Text *cleared(Text *text)
-{
-    text_clear(text);
-    return text;
+    return text_chars(&writer->text[part]);
 }
 
 static void put_term(Text *text, const CellTerm *term)
 {
-    text_printf(text, "%s[%u](x,y,z)", function_names[term->part], term->segment);
+    put_text(text, "%s[%u](x,y,z)", function_names[term->part], term->segment);
 }
 
 /* Terms of a cell: those at `n` places, or, without any given, the first n. */
@@ -439,13 +429,14 @@ static void put_top(Text *text, const CellTree *cells, const Cell *cell)
     text_puts(text, " Cell_Top_End() ");
 }
 
-/* Appends the paint of a cell: that of the term that is largest all over it, or of each. */
-static Status put_cell_paint(Text *text, const CellTemplates *templates, const CellTree *cells,
-                             const Cell *cell, CellText *part, Err *err)
+/* Appends the paint of a cell: that of the term that is largest in all of it, or of each term where
+ * it is largest. */
+static Status put_cell_paint(CellWriter *writer, const Cell *cell, CellTextPart part, Err *err)
 {
-    const CellTerm *terms = cells->terms + cell->first;
+    const CellTree *cells = writer->cells;
+    Text *text = cell_text(writer, part);
     if (cell->largest != CELL_MIXED) {
-        text_printf(text, "#if(Tree_Painted)texture{Whole_Paints[%u]}#end", cell->largest);
+        put_text(text, "#if(Tree_Painted)texture{Whole_Paints[%u]}#end", cell->largest);
         return STATUS_OK;
     }
     if (cell->count > MOST_PAINTS)
@@ -454,23 +445,24 @@ static Status put_cell_paint(Text *text, const CellTemplates *templates, const C
                        "isosurface at one place; draw them in one colour, or choose another "
                        "model",
                        cell->count, cell->low.x, cell->low.y, cell->low.z, MOST_PAINTS);
-    cleared(&part->declared);
+    Text *declared = cell_text(writer, CELL_DECLARED), *pick = cell_text(writer, CELL_PICK);
     if (cell->n_groups > 0 || cell->count > MOST_COMPARED) {
-        put_top(&part->declared, cells, cell);
-        put_pick_of_many(cleared(&part->pick), cells, cell);
+        put_top(declared, cells, cell);
+        put_pick_of_many(pick, cells, cell);
     } else {
-        put_pick(cleared(&part->pick), cells, cell);
+        put_pick(pick, cells, cell);
     }
-    cleared(&part->paints);
+    Text *paints = cell_text(writer, CELL_PAINTS);
     for (uint32_t k = 0; k < cell->count; k++) {
-        text_puts(&part->paints, "[");
-        put_place(&part->paints, cell, k);
-        text_printf(&part->paints, " Paints[%u]]", terms[k].segment);
+        text_puts(paints, "[");
+        put_place(paints, cell, k);
+        put_text(paints, " Paints[%u]]", cells->terms[cell->first + k].segment);
     }
-    const TmplValue values[] = {{"declared", text_chars(&part->declared)},
-                                {"pick", text_chars(&part->pick)},
-                                {"paints", text_chars(&part->paints)}};
-    return tmpl_apply(&templates->paints, values, sizeof values / sizeof *values, text, err);
+    const TmplValue values[] = {{"declared", cell_chars(writer, CELL_DECLARED)},
+                                {"pick", cell_chars(writer, CELL_PICK)},
+                                {"paints", cell_chars(writer, CELL_PAINTS)}};
+    return tmpl_apply(&writer->templates[PAINTS_TEMPLATE], values, sizeof values / sizeof *values,
+                      text, err);
 }
 
 /* ---- colours that blend ---------------------------------------------------------------------- */
@@ -493,11 +485,8 @@ static void put_known_sum(Text *text, const EmitParams *params, TermChoice choic
             continue;
         text_puts(text, "+");
         put_term(text, term);
-        if (!placed)
-            continue;
-        text_puts(text, "*(");
-        text_number(text, place);
-        text_puts(text, ")");
+        if (placed)
+            put_text(text, "*(%n)", place);
     }
     text_puts(text, ")");
 }
@@ -536,76 +525,126 @@ static void put_cell_ratio(Text *text, const EmitParams *params, const CellTree 
         text_puts(text, ")");
 }
 
-/* Appends the paint of a cell in which colours may blend, in place of that by segment, which is in
- * part->by_segment. */
-static Status put_cell_blend(Text *text, const CellTemplates *templates, const EmitParams *params,
-                             const CellTree *cells, const Cell *cell, CellText *part, Err *err)
+/* Appends the paint of a cell in which colours may blend. It contains the paint by segment. */
+static Status put_cell_blend(CellWriter *writer, const Cell *cell, Err *err)
 {
-    cleared(&part->sum);
+    const EmitParams *params = writer->geometry->params;
+    Text *sum = cell_text(writer, CELL_SUM);
     if (cell->n_groups > 0) {
-        text_puts(&part->sum, "Cell_Sum() ");
-        put_potential(&part->sum, cells, cell);
-        text_puts(&part->sum, " Cell_Sum_End() ");
+        text_puts(sum, "Cell_Sum() ");
+        put_potential(sum, writer->cells, cell);
+        text_puts(sum, " Cell_Sum_End() ");
     }
-    put_cell_ratio(cleared(&part->mean), params, cells, cell, false);
-    put_cell_ratio(cleared(&part->known), params, cells, cell, true);
-    const TmplValue values[] = {{"sum", text_chars(&part->sum)},
-                                {"mean", text_chars(&part->mean)},
-                                {"known", text_chars(&part->known)},
-                                {"paint", text_chars(&part->by_segment)}};
-    return tmpl_apply(&templates->blend, values, sizeof values / sizeof *values, text, err);
+    put_cell_ratio(cell_text(writer, CELL_MEAN), params, writer->cells, cell, false);
+    put_cell_ratio(cell_text(writer, CELL_KNOWN), params, writer->cells, cell, true);
+    const TmplValue values[] = {{"sum", cell_chars(writer, CELL_SUM)},
+                                {"mean", cell_chars(writer, CELL_MEAN)},
+                                {"known", cell_chars(writer, CELL_KNOWN)},
+                                {"paint", cell_chars(writer, CELL_BY_SEGMENT)}};
+    return tmpl_apply(&writer->templates[BLEND_TEMPLATE], values, sizeof values / sizeof *values,
+                      cell_text(writer, CELL_PAINT), err);
 }
 
-static Status put_cell(Text *text, const Tmpl *template, const CellTree *cells, const Cell *cell,
-                       CellText *part, Err *err)
+static Status put_cell(Text *out, CellWriter *writer, const Cell *cell, Err *err)
 {
-    put_vector(cleared(&part->low), cell->low);
-    put_vector(cleared(&part->high), cell->high);
-    put_cell_function(cleared(&part->function), cells, cell);
+    const PovrayGeometry *geometry = writer->geometry;
+    const bool blended = povray_blends(geometry) && cell->count > 1;
+    char max_gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE];
+    text_clear(&writer->text[CELL_PAINT]);
+    text_clear(&writer->text[CELL_BY_SEGMENT]);
+    if (is_painted(geometry))
+        TRY(put_cell_paint(writer, cell, blended ? CELL_BY_SEGMENT : CELL_PAINT, err));
+    if (blended)
+        TRY(put_cell_blend(writer, cell, err));
+    put_text(cell_text(writer, CELL_LOW), "<%v>", cell->low);
+    put_text(cell_text(writer, CELL_HIGH), "<%v>", cell->high);
+    put_cell_function(cell_text(writer, CELL_FUNCTION), writer->cells, cell);
     const TmplValue values[] = {
-        {"function", text_chars(&part->function)},
-        {"low", text_chars(&part->low)},
-        {"high", text_chars(&part->high)},
-        {"paint", text_chars(&part->paint)},
-        {"max_gradient", number_text(cell->max_gradient, part->max_gradient)},
-        {"accuracy", number_text(cell->accuracy, part->accuracy)},
+        {"function", cell_chars(writer, CELL_FUNCTION)},
+        {"low", cell_chars(writer, CELL_LOW)},
+        {"high", cell_chars(writer, CELL_HIGH)},
+        {"paint", cell_chars(writer, CELL_PAINT)},
+        {"max_gradient", number_text(cell->max_gradient, max_gradient)},
+        {"accuracy", number_text(cell->accuracy, accuracy)},
     };
-    return tmpl_apply(template, values, sizeof values / sizeof *values, text, err);
+    return tmpl_apply(&writer->templates[CELL_TEMPLATE], values, sizeof values / sizeof *values,
+                      out, err);
 }
 
 static Status put_isosurfaces(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    const CellTree *cells = &geometry->cells[geometry->object];
-    bool painted = is_painted(geometry);
-    CellTemplates templates = {0};
-    CellText part = {0};
+    CellWriter writer = {.geometry = geometry, .cells = &geometry->cells[geometry->object]};
     Status status;
-    TRY_GOTO(load_cell_templates(geometry->params, &templates, err));
+    TRY_GOTO(
+        load_templates(writer.templates, geometry->params, cell_templates, CELL_TEMPLATES, err));
     text_puts(out, "Cell_Guard()\n");
-    for (size_t i = 0; i < cells->n_cells; i++) {
-        const Cell *cell = &cells->cells[i];
-        bool blended = povray_blends(geometry) && cell->count > 1;
-        cleared(&part.paint);
-        cleared(&part.by_segment);
-        if (painted)
-            TRY_GOTO(put_cell_paint(blended ? &part.by_segment : &part.paint, &templates, cells,
-                                    cell, &part, err));
-        if (blended)
-            TRY_GOTO(
-                put_cell_blend(&part.paint, &templates, geometry->params, cells, cell, &part, err));
-        TRY_GOTO(put_cell(out, &templates.cell, cells, cell, &part, err));
-    }
-    status = text_check(out, err);
+    for (size_t i = 0; i < writer.cells->n_cells; i++)
+        TRY_GOTO(put_cell(out, &writer, &writer.cells->cells[i], err));
+    TRY_GOTO(text_check(out, err));
 done:
-    release_cell_text(&part);
-    release_cell_templates(&templates);
+    for (int part = 0; part < CELL_TEXTS; part++)
+        text_release(&writer.text[part]);
+    release_templates(writer.templates, CELL_TEMPLATES);
     return status;
 }
 
-/* Where no vessel is long enough for its thickness to have a surface, the guard is alone. */
+/* If no vessel is long enough for its thickness to have a surface, the guard is the only member. */
 Status put_cells(Text *out, PovrayGeometry *geometry, Err *err)
 {
     bool alone = geometry->cells[geometry->object].n_cells == 0;
-    return put_declaration(out, geometry, alone ? "object" : "union", put_isosurfaces, err);
+    Values values = {0};
+    add_part(&values, "members", put_isosurfaces, geometry);
+    return put_declaration(out, geometry, alone ? "object" : "union", &values, err);
+}
+
+/* ---- the cells of each object ---------------------------------------------------------------- */
+
+/* Builds the cells of a tree of a forest, with the indices of the whole, so that all trees call the
+ * same functions. */
+static Status part_cells(const PovrayGeometry *geometry, PovrayItems items, CellTree *cells,
+                         Err *err)
+{
+    Geometry part = {0};
+    TRY(geometry_part(&geometry->scene->geometry, items.index, items.n, &part, err));
+    Status status = celltree_build(&part, &geometry->params->cells, cells, err);
+    geometry_release(&part);
+    for (size_t i = 0; i < cells->n_terms; i++)
+        cells->terms[i].segment = items.index[cells->terms[i].segment];
+    for (size_t i = 0; i < cells->n_cells; i++)
+        if (cells->cells[i].largest != CELL_MIXED)
+            cells->cells[i].largest = items.index[cells->cells[i].largest];
+    return status;
+}
+
+/* Takes those of the given cells that rays of the part can hit. */
+static Status take_cells(PovrayGeometry *geometry, Err *err)
+{
+    const CellTree *built = geometry->params->built;
+    TRY(mem_calloc(&geometry->met, built->n_cells, sizeof *geometry->met, "cells", err));
+    size_t n = 0;
+    for (size_t i = 0; i < built->n_cells; i++) {
+        const Cell *cell = &built->cells[i];
+        if (sight_meets(geometry->sight, (Box){cell->low, cell->high}))
+            geometry->met[n++] = *cell;
+    }
+    geometry->cells[0] = *built;
+    geometry->cells[0].cells = geometry->met;
+    geometry->cells[0].n_cells = n;
+    return STATUS_OK;
+}
+
+Status find_cells(PovrayGeometry *geometry, Err *err)
+{
+    const EmitParams *params = geometry->params;
+    assert(!params->part || params->built);
+    TRY(mem_calloc(&geometry->cells, geometry->n_objects, sizeof *geometry->cells, "cells", err));
+    if (params->built)
+        TRY(take_cells(geometry, err));
+    else
+        TRY(celltree_build(&geometry->scene->geometry, &params->cells, &geometry->cells[0], err));
+    for (size_t k = 1; k < geometry->n_objects; k++)
+        if (geometry->objects[k].n)
+            TRY(part_cells(geometry, geometry->objects[k], &geometry->cells[k], err));
+    return STATUS_OK;
 }

@@ -1,7 +1,6 @@
 /* A box of a medium, its density read from a file, under an orthographic camera whose pixels are
  * voxels. The light of a diameter of the thickest vessel is that of a full code. */
 #include "emit/emit.h"
-#include "emit/povray_text.h"
 #include "emit/rows.h"
 #include "emit/values.h"
 
@@ -28,12 +27,12 @@ Status emit_density(const EmitParams *params, const DensityBox *density, Text *o
     add_file(&values, params->file, ".png", "\"");
     add_about(&values, params, density->box, density->origin);
     text_puts(add_value(&values, "density_file"), params->second_file);
-    text_printf(add_value(&values, "width"), "%lld", (long long)n[0]);
-    text_printf(add_value(&values, "height"), "%lld", (long long)n[1]);
-    text_printf(add_value(&values, "samples"), "%lld", (long long)most);
+    add_count(&values, "width", (size_t)n[0]);
+    add_count(&values, "height", (size_t)n[1]);
+    add_count(&values, "samples", (size_t)most);
     add_number(&values, "emission", 1 / density->thickest_mm);
-    put_vector(add_value(&values, "low"), density->box.low);
-    put_vector(add_value(&values, "high"), density->box.high);
+    put_text(add_value(&values, "low"), "<%v>", density->box.low);
+    put_text(add_value(&values, "high"), "<%v>", density->box.high);
     EmitParams for_camera = *params;
     add_part(&values, "camera", put_camera, &for_camera);
     return values_expand(&values, params, "povray/density.pov", out, err);

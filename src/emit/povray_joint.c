@@ -94,7 +94,7 @@ Status put_joint_macros(Text *out, void *context, Err *err)
     size_t all, written;
     count_joints(geometry, &all, &written);
     geometry->report->joint_sides = written > MOST_EXACT ? SIDES_OF_MANY : 0;
-    text_printf(add_value(&values, "sides"), "%d", geometry->report->joint_sides);
+    add_count(&values, "sides", (size_t)geometry->report->joint_sides);
     add_flag(&values, "many_joints", all > MANY);
     return values_expand(&values, geometry->params, "povray/joints.inc", out, err);
 }
@@ -111,21 +111,10 @@ void put_joint(Text *text, const EmitParams *params, const Primitive *joint)
     bool folded = !primitive_joint_is_solid(joint);
     double steepest = fmax(fmax(1, 2 * plane.ratio), sides);
     double scale = folded ? 0 : steepest / largest_gradient(&plane);
-    const double numbers[] = {frame.radius, plane.ax,    plane.az, plane.bx,
-                              plane.bz,     plane.ratio, scale,    2 * steepest};
-    text_puts(text, "Vessel_Joint(");
-    put_vector(text, frame.base);
-    text_puts(text, ",");
-    put_vector(text, across);
-    text_puts(text, ",");
-    put_vector(text, frame.side);
-    text_puts(text, ",");
-    put_vector(text, joint->axes[0]);
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        text_puts(text, ",");
-        text_number(text, numbers[i]);
-    }
-    text_puts(text, folded ? ",1," : ",0,");
+    put_text(text, "Vessel_Joint(<%v>,<%v>,<%v>,<%v>,%n,", frame.base, across, frame.side,
+             joint->axes[0], frame.radius);
+    put_text(text, "%n,%n,%n,%n,%n,%n,%n,%d,", plane.ax, plane.az, plane.bx, plane.bz, plane.ratio,
+             scale, 2 * steepest, folded);
     put_paint(text, params, joint->segment);
     text_puts(text, ")\n");
 }

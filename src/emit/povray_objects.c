@@ -1,17 +1,12 @@
-/* What a geometry declares: all of it as one object and, of a forest, each of its trees as one. The
- * items of the trees are found by a counting sort, which keeps their order.
+/* Trees of primitives and of triangles are members of the whole. Trees of a field cannot be: where
+ * trees come near each other, the whole is the level set of the sum over all of them. Each tree is
+ * therefore declared beside the whole, as a field of its own segments.
  *
- * Trees of primitives and of triangles are members of the whole. Those of a field cannot be: where
- * trees come near, the whole is the level set of the sum over all of them, so that each tree is a
- * field of its own segments, beside it. The cells of an isosurface are found anew for each, with
- * the whole's numbers, so that all call the same functions.
- *
- * Of a part of the picture the items are those that its rays can meet; of a field, whose numbers
- * are sums over segments that may stand elsewhere, so are the cells that space is cut into, each
- * with all that it has in the whole. So POV-Ray meets in a part the very pieces that it meets in
- * the whole. */
-#include "emit/povray_members.h"
-#include "emit/values.h"
+ * If only a part of the picture is drawn, the items are those that its rays can hit. A field keeps
+ * all its segments, because its values are sums over segments elsewhere; its cells are chosen
+ * instead (find_cells, find_painted). POV-Ray thus meets the same pieces in the part as in the
+ * whole picture. */
+#include "emit/povray_objects.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -21,37 +16,32 @@ static bool is_field(const PovrayGeometry *geometry)
     return model_has(geometry->scene->geometry.model, MODEL_FIELD);
 }
 
-/* Else they are field segments. */
+/* Otherwise the items are field segments. */
 static bool items_are_primitives(const Geometry *all)
 {
     return model_has(all->model, MODEL_PRIMITIVES);
 }
 
-static uint32_t segment_of_item(const PovrayGeometry *geometry, size_t item)
-{
-    const Geometry *all = &geometry->scene->geometry;
-    return items_are_primitives(all) ? all->primitives[item].segment : all->segments[item].segment;
-}
-
-/* Sorts the items by tree, behind those of the whole. */
-static void sort_items(PovrayGeometry *geometry, uint32_t *index)
+/* Lists the items of each tree of a forest. */
+static Status sort_items(PovrayGeometry *geometry, Err *err)
 {
     const uint32_t *tree = geometry->params->anatomy->tree;
+    const Geometry *all = &geometry->scene->geometry;
     const size_t n = geometry->objects[0].n;
+    IndexLists *trees = &geometry->trees;
+    TRY(indexlists_begin(trees, geometry->n_objects - 1, "trees", err));
     for (size_t i = 0; i < n; i++)
-        geometry->objects[1 + tree[segment_of_item(geometry, i)]].n++;
-    for (size_t k = 1; k < geometry->n_objects; k++) {
-        geometry->objects[k].index = index;
-        index += geometry->objects[k].n;
-        geometry->objects[k].n = 0;
-    }
-    for (size_t i = 0; i < n; i++) {
-        PovrayItems *object = &geometry->objects[1 + tree[segment_of_item(geometry, i)]];
-        geometry->indices[(size_t)(object->index - geometry->indices) + object->n++] = (uint32_t)i;
-    }
+        indexlists_count(trees, tree[geometry_segment(all, i)]);
+    TRY(indexlists_allot(trees, "trees", err));
+    for (size_t i = 0; i < n; i++)
+        indexlists_put(trees, tree[geometry_segment(all, i)], (uint32_t)i);
+    for (size_t k = 1; k < geometry->n_objects; k++)
+        geometry->objects[k] =
+            (PovrayItems){trees->items + trees->first[k - 1], indexlists_length(trees, k - 1)};
+    return STATUS_OK;
 }
 
-/* Marks the segments of which rays of the part can meet a triangle. */
+/* Marks the segments of which rays of the part can hit a triangle. */
 static void mark_triangles(const PovrayGeometry *geometry, bool *is_met)
 {
     const VesselMesh *mesh = &geometry->scene->geometry.mesh;
@@ -74,7 +64,7 @@ static bool meets_primitive(const PovrayGeometry *geometry, size_t item)
     return sight_meets(geometry->sight, box);
 }
 
-/* Keeps of all items those that rays of the part can meet. */
+/* Keeps the items that rays of the part can hit. */
 static Status choose_items(PovrayGeometry *geometry, Err *err)
 {
     PovrayItems *all = &geometry->objects[0];
@@ -92,11 +82,17 @@ static Status choose_items(PovrayGeometry *geometry, Err *err)
     return STATUS_OK;
 }
 
-static Status find_items(PovrayGeometry *geometry, Err *err)
+Status povray_objects_find(PovrayGeometry *geometry, Err *err)
 {
-    const Anatomy *anatomy = geometry->params->anatomy;
-    const Geometry *all = &geometry->scene->geometry;
+    const EmitParams *params = geometry->params;
+    const Scene *scene = geometry->scene;
+    const Anatomy *anatomy = params->anatomy;
+    const Geometry *all = &scene->geometry;
     const size_t n = items_are_primitives(all) ? all->n_primitives : all->n_segments;
+    assert(!params->part || !anatomy);
+    if (params->part)
+        TRY(sight_new(&scene->view, all->bounds, *params->part, params->shadows, &geometry->sight,
+                      err));
     geometry->n_objects = anatomy && anatomy->n_trees > 1 ? 1 + anatomy->n_trees : 1;
     TRY(mem_calloc(&geometry->objects, geometry->n_objects, sizeof *geometry->objects, "trees",
                    err));
@@ -106,67 +102,7 @@ static Status find_items(PovrayGeometry *geometry, Err *err)
     geometry->objects[0] = (PovrayItems){geometry->indices, n};
     if (geometry->sight && !is_field(geometry))
         TRY(choose_items(geometry, err));
-    if (geometry->n_objects > 1)
-        sort_items(geometry, geometry->indices + n);
-    return STATUS_OK;
-}
-
-/* The cells of a part of the geometry, with the numbers of the whole. */
-static Status part_cells(const PovrayGeometry *geometry, PovrayItems items, CellTree *cells,
-                         Err *err)
-{
-    Geometry part = {0};
-    TRY(geometry_part(&geometry->scene->geometry, items.index, items.n, &part, err));
-    Status status = celltree_build(&part, &geometry->params->cells, cells, err);
-    geometry_release(&part);
-    for (size_t i = 0; i < cells->n_terms; i++)
-        cells->terms[i].segment = items.index[cells->terms[i].segment];
-    for (size_t i = 0; i < cells->n_cells; i++)
-        if (cells->cells[i].largest != CELL_MIXED)
-            cells->cells[i].largest = items.index[cells->cells[i].largest];
-    return status;
-}
-
-/* Those of the cells that are built that rays of the part can meet. */
-static Status take_cells(PovrayGeometry *geometry, Err *err)
-{
-    const CellTree *built = geometry->params->built;
-    TRY(mem_calloc(&geometry->met, built->n_cells, sizeof *geometry->met, "cells", err));
-    size_t n = 0;
-    for (size_t i = 0; i < built->n_cells; i++) {
-        const Cell *cell = &built->cells[i];
-        if (sight_meets(geometry->sight, (Box){cell->low, cell->high}))
-            geometry->met[n++] = *cell;
-    }
-    geometry->cells[0] = *built;
-    geometry->cells[0].cells = geometry->met;
-    geometry->cells[0].n_cells = n;
-    return STATUS_OK;
-}
-
-Status povray_objects_find(PovrayGeometry *geometry, Err *err)
-{
-    const EmitParams *params = geometry->params;
-    const Scene *scene = geometry->scene;
-    const bool cut = model_has(scene->geometry.model, MODEL_POTENTIAL);
-    assert(!params->part || (!params->anatomy && (!cut || params->built)));
-    if (params->part)
-        TRY(sight_new(&scene->view, scene->geometry.bounds, *params->part, params->shadows,
-                      &geometry->sight, err));
-    TRY(find_items(geometry, err));
-    if (model_has(scene->geometry.model, MODEL_BLOB))
-        return find_painted(geometry, err);
-    if (!cut)
-        return STATUS_OK;
-    TRY(mem_calloc(&geometry->cells, geometry->n_objects, sizeof *geometry->cells, "cells", err));
-    if (params->built)
-        TRY(take_cells(geometry, err));
-    else
-        TRY(celltree_build(&scene->geometry, &params->cells, &geometry->cells[0], err));
-    for (size_t k = 1; k < geometry->n_objects; k++)
-        if (geometry->objects[k].n)
-            TRY(part_cells(geometry, geometry->objects[k], &geometry->cells[k], err));
-    return STATUS_OK;
+    return geometry->n_objects > 1 ? sort_items(geometry, err) : STATUS_OK;
 }
 
 void povray_objects_release(PovrayGeometry *geometry)
@@ -178,49 +114,49 @@ void povray_objects_release(PovrayGeometry *geometry)
     free(geometry->met);
     free(geometry->objects);
     free(geometry->indices);
+    indexlists_release(&geometry->trees);
     sight_free(geometry->sight);
 }
 
-size_t povray_pieces(const PovrayGeometry *geometry)
+Status put_declaration(Text *out, const PovrayGeometry *geometry, const char *kind, Values *members,
+                       Err *err)
 {
-    if (geometry->cells)
-        return geometry->cells[0].n_cells;
-    return is_field(geometry) ? geometry->painted.n : geometry->objects[0].n;
-}
-
-Status put_declaration(Text *out, PovrayGeometry *geometry, const char *kind,
-                       Status (*put_members)(Text *, void *, Err *), Err *err)
-{
-    Values values = {0};
-    Text *name = add_value(&values, "name");
+    Text *name = add_value(members, "name");
     text_puts(name, "Tree");
     if (geometry->object > 0)
-        text_printf(name, "_%zu", geometry->object);
-    text_puts(add_value(&values, "kind"), kind);
-    add_part(&values, "members", put_members, geometry);
-    return values_expand(&values, geometry->params, "povray/tree.inc", out, err);
+        put_text(name, "_%z", geometry->object);
+    text_puts(add_value(members, "kind"), kind);
+    return values_expand(members, geometry->params, "povray/tree.inc", out, err);
 }
 
-/* What stands for a tree of which nothing is drawn. */
-static Status put_nothing(Text *out, void *context, Err *err)
+static Status put_nothing_members(Text *out, void *geometry, Err *err)
 {
-    const PovrayGeometry *geometry = context;
-    Values values = {0};
-    return values_expand(&values, geometry->params, "povray/nothing.inc", out, err);
+    return put_template(((const PovrayGeometry *)geometry)->params, "povray/nothing.inc", out, err);
 }
 
-/* The trees, as members of the whole. */
+/* Declares an object of which nothing is drawn. */
+static Status put_nothing(Text *out, PovrayGeometry *geometry, Err *err)
+{
+    Values values = {0};
+    add_part(&values, "members", put_nothing_members, geometry);
+    return put_declaration(out, geometry, "object", &values, err);
+}
+
+/* Appends the trees as members of the whole. */
 static Status put_trees(Text *out, void *context, Err *err)
 {
+    static const char *const member_name = "povray/member.inc";
     const PovrayGeometry *geometry = context;
     Tmpl member = {0};
-    TRY(load_template(&member, geometry->params, "povray/member.inc", err));
-    Status status = STATUS_OK;
-    for (size_t k = 1; status == STATUS_OK && k < geometry->n_objects; k++) {
+    Status status;
+    TRY_GOTO(load_templates(&member, geometry->params, &member_name, 1, err));
+    for (size_t k = 1; k < geometry->n_objects; k++) {
         char number[NUMBER_TEXT_SIZE];
-        status = tmpl_apply(&member, (TmplValue[]){{"number", number_text((double)k, number)}}, 1,
-                            out, err);
+        const TmplValue value = {"number", number_text((double)k, number)};
+        TRY_GOTO(tmpl_apply(&member, &value, 1, out, err));
     }
+    status = STATUS_OK;
+done:
     tmpl_release(&member);
     return status;
 }
@@ -229,14 +165,13 @@ Status put_objects(Text *out, PovrayGeometry *geometry,
                    Status (*put_object)(Text *, PovrayGeometry *, Err *), Err *err)
 {
     for (geometry->object = 1; geometry->object < geometry->n_objects; geometry->object++)
-        if (geometry->objects[geometry->object].n)
-            TRY(put_object(out, geometry, err));
-        else
-            TRY(put_declaration(out, geometry, "object", put_nothing, err));
+        TRY((geometry->objects[geometry->object].n ? put_object : put_nothing)(out, geometry, err));
     geometry->object = 0;
     if (geometry->nothing)
-        return put_declaration(out, geometry, "object", put_nothing, err);
-    if (geometry->n_objects > 1 && !is_field(geometry))
-        return put_declaration(out, geometry, "Tree_Of()", put_trees, err);
-    return put_object(out, geometry, err);
+        return put_nothing(out, geometry, err);
+    if (geometry->n_objects == 1 || is_field(geometry))
+        return put_object(out, geometry, err);
+    Values values = {0};
+    add_part(&values, "members", put_trees, geometry);
+    return put_declaration(out, geometry, "Tree_Of()", &values, err);
 }

@@ -1,47 +1,47 @@
-/* A union of one macro call for each primitive; POV-Ray warns of a union of one alone. */
+/* A union of one macro call for each primitive. POV-Ray warns of a union of one object, so a single
+ * primitive is declared as an object. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/values.h"
 
 static void put_primitive(Text *text, const EmitParams *params, const Primitive *primitive)
 {
-    bool cylinder = primitive->kind == PRIMITIVE_CYLINDER;
-    text_puts(text, cylinder ? "Vessel_Cylinder(" : "Vessel_Sphere(");
-    put_vector(text, primitive->a);
-    if (cylinder) {
-        text_puts(text, ",");
-        put_vector(text, primitive->b);
-    }
-    text_puts(text, ",");
-    text_number(text, primitive->radius_mm);
-    text_puts(text, ",");
+    if (primitive->kind == PRIMITIVE_CYLINDER)
+        put_text(text, "Vessel_Cylinder(<%v>,<%v>,%n,", primitive->a, primitive->b,
+                 primitive->radius_mm);
+    else
+        put_text(text, "Vessel_Sphere(<%v>,%n,", primitive->a, primitive->radius_mm);
     put_paint(text, params, primitive->segment);
     text_puts(text, ")\n");
 }
 
-static Status put_calls(Text *out, void *context, Err *err)
+static void put_call(Text *out, const void *context, size_t i)
 {
     const PovrayGeometry *geometry = context;
     const PovrayItems *items = &geometry->objects[geometry->object];
-    for (size_t i = 0; i < items->n; i++) {
-        const Primitive *primitive = &geometry->scene->geometry.primitives[items->index[i]];
-        if (primitive->kind == PRIMITIVE_JOINT)
-            put_joint(out, geometry->params, primitive);
-        else
-            put_primitive(out, geometry->params, primitive);
-    }
-    return text_check(out, err);
+    const Primitive *primitive = &geometry->scene->geometry.primitives[items->index[i]];
+    if (primitive->kind == PRIMITIVE_JOINT)
+        put_joint(out, geometry->params, primitive);
+    else
+        put_primitive(out, geometry->params, primitive);
 }
 
 Status put_primitives(Text *out, PovrayGeometry *geometry, Err *err)
 {
-    bool alone = geometry->objects[geometry->object].n == 1;
-    return put_declaration(out, geometry, alone ? "object" : "Tree_Of()", put_calls, err);
+    const size_t n = geometry->objects[geometry->object].n;
+    Values values = {0};
+    add_list(&values, "members", put_call, geometry, n);
+    return put_declaration(out, geometry, n == 1 ? "object" : "Tree_Of()", &values, err);
 }
 
-Status put_primitive_macros(Text *out, void *context, Err *err)
+Status put_primitive_macros(Text *out, void *geometry, Err *err)
 {
-    const PovrayGeometry *geometry = context;
-    Values values = {0};
-    return values_expand(&values, geometry->params, "povray/primitives.inc", out, err);
+    return put_template(((const PovrayGeometry *)geometry)->params, "povray/primitives.inc", out,
+                        err);
+}
+
+Status put_joined_macros(Text *out, void *geometry, Err *err)
+{
+    TRY(put_primitive_macros(out, geometry, err));
+    return put_joint_macros(out, geometry, err);
 }

@@ -2,24 +2,7 @@
  * that takes POV-Ray's parser least time: no blanks, no zeros that change nothing. */
 #include "emit/povray_text.h"
 
-void put_vector(Text *text, Vec3 v)
-{
-    /* Adding 0 turns -0 into 0. */
-    text_puts(text, "<");
-    text_number(text, v.x + 0);
-    text_puts(text, ",");
-    text_number(text, v.y + 0);
-    text_puts(text, ",");
-    text_number(text, v.z + 0);
-    text_puts(text, ">");
-}
-
-void put_color(Text *text, Rgb color)
-{
-    char r[NUMBER_TEXT_SIZE], g[NUMBER_TEXT_SIZE], b[NUMBER_TEXT_SIZE];
-    text_printf(text, "<%s,%s,%s>", number_text_float(color.r, r), number_text_float(color.g, g),
-                number_text_float(color.b, b));
-}
+#include "emit/puttext.h"
 
 /* A value in few digits, which are for the artist's own textures. */
 static void put_value(Text *text, double value)
@@ -33,19 +16,16 @@ static void put_value(Text *text, double value)
 void put_paint(Text *text, const EmitParams *params, uint32_t segment)
 {
     const Appearance *appearance = &params->scene->appearance;
-    text_printf(text, "%u,%d,", params->scene->geometry.ids[segment],
-                params->anatomy ? params->anatomy->order[segment] : 0);
+    put_text(text, "%u,%d,", params->scene->geometry.ids[segment],
+             params->anatomy ? params->anatomy->order[segment] : 0);
     if (!appearance->colors) {
         text_puts(text, "0,0");
-        return;
+    } else if (appearance->n_frames > 0) {
+        put_text(text, "Frame_Values[%u],Frame_Colors[%u]", segment, segment);
+    } else {
+        put_value(text, appearance->values[segment]);
+        put_text(text, ",<%c>", appearance->colors[segment]);
     }
-    if (appearance->n_frames > 0) {
-        text_printf(text, "Frame_Values[%u],Frame_Colors[%u]", segment, segment);
-        return;
-    }
-    put_value(text, appearance->values[segment]);
-    text_puts(text, ",");
-    put_color(text, appearance->colors[segment]);
 }
 
 static void put_list_end(Text *text, size_t i, size_t n)
@@ -64,7 +44,7 @@ void put_frame(Text *text, const Appearance *frame)
     }
     text_printf(text, "#declare Frame_Colors = array[%zu] { ", n);
     for (size_t i = 0; i < n; i++) {
-        put_color(text, frame->colors[i]);
+        put_text(text, "<%c>", frame->colors[i]);
         put_list_end(text, i, n);
     }
 }

@@ -1,17 +1,18 @@
-/* Little-endian numbers of binary files, whatever the machine's order: put byte by byte into a
- * record that goes to a text at once; private to the room emit. */
+/* Little-endian numbers of binary files, on any machine. They are collected in a record, which is
+ * appended to a text at once. Private to the module emit. */
 #ifndef CORCAST_EMIT_RECORD_H
 #define CORCAST_EMIT_RECORD_H
 
 #include "base/base.h"
 #include <string.h>
 
+/* Up to 64 bytes. Zeroed, it is empty. */
 typedef struct Record {
     char bytes[64];
     size_t length;
 } Record;
 
-/* Appends the lowest `bytes` bytes of `word`. */
+/* Adds the lowest `bytes` bytes of `word`. */
 static inline void put_word(Record *record, uint32_t word, int bytes)
 {
     for (int i = 0; i < bytes; i++)
@@ -31,6 +32,7 @@ static inline void put_floats(Record *record, const float values[3])
         put_float(record, values[axis]);
 }
 
+/* Appends the record to a text, and empties it. */
 static inline void flush_record(Record *record, Text *out)
 {
     text_append(out, record->bytes, record->length);

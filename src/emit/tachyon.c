@@ -14,20 +14,12 @@
 /* Tachyon reads single precision. Adding 0 turns -0 into 0. */
 static void put_numbers(Text *text, Vec3 v)
 {
-    put_mesh_floats(text, "", (const float[3]){(float)v.x + 0, (float)v.y + 0, (float)v.z + 0}, " ",
-                    "");
+    put_triple(text, "", (const float[3]){(float)v.x + 0, (float)v.y + 0, (float)v.z + 0}, " ", "");
 }
 
 static void put_colors(Text *text, Rgb color)
 {
-    put_mesh_floats(text, "", (const float[3]){color.r, color.g, color.b}, " ", "");
-}
-
-static void put_number(Text *text, const char *name, double value)
-{
-    char number[NUMBER_TEXT_SIZE];
-    text_puts(text, name);
-    text_puts(text, number_text_float((float)value, number));
+    put_triple(text, "", (const float[3]){color.r, color.g, color.b}, " ", "");
 }
 
 static void put_named(Text *text, const char *name, Vec3 v)
@@ -52,19 +44,11 @@ static void put_texture_name(Text *text, const EmitParams *params, uint32_t segm
         text_puts(text, " vessel\n");
 }
 
-static void put_finish(Text *text, const Finish *finish)
-{
-    put_number(text, "AMBIENT ", (double)finish->ambient);
-    put_number(text, " DIFFUSE ", (double)finish->diffuse);
-    put_number(text, " SPECULAR 0 OPACITY 1 PHONG PLASTIC ", (double)finish->phong);
-    put_number(text, " PHONG_SIZE ", (double)finish->phong_size);
-}
-
 static void put_texture(Text *text, const char *name, const Finish *finish, Rgb color)
 {
-    text_printf(text, "TEXDEF %s ", name);
-    put_finish(text, finish);
-    text_puts(text, " COLOR ");
+    put_text(text, "TEXDEF %s AMBIENT %f DIFFUSE %f SPECULAR 0 OPACITY 1 PHONG PLASTIC %f", name,
+             (double)finish->ambient, (double)finish->diffuse, (double)finish->phong);
+    put_text(text, " PHONG_SIZE %f COLOR ", (double)finish->phong_size);
     put_colors(text, color);
     text_puts(text, " TEXFUNC 0\n");
 }
@@ -100,7 +84,7 @@ static Status put_textures(Text *out, void *context, Err *err)
 static void put_radius(Text *text, const char *name, const EmitParams *params,
                        const Primitive *primitive)
 {
-    put_number(text, name, primitive->radius_mm);
+    put_text(text, "%s%f", name, primitive->radius_mm);
     put_texture_name(text, params, primitive->segment);
 }
 
@@ -138,9 +122,9 @@ static void put_triangle(Text *text, const EmitParams *params, size_t triangle)
     bool cap = mesh_is_cap(mesh, triangle);
     text_puts(text, cap ? "TRI" : "STRI");
     for (int k = 0; k < 3; k++)
-        put_mesh_floats(text, corners[k], mesh->points[corner[k]], " ", "");
+        put_triple(text, corners[k], mesh->points[corner[k]], " ", "");
     for (int k = 0; !cap && k < 3; k++)
-        put_mesh_floats(text, normals[k], mesh->normals[corner[k]], " ", "");
+        put_triple(text, normals[k], mesh->normals[corner[k]], " ", "");
     put_texture_name(text, params, geometry->segments[mesh_segment(mesh, triangle)].segment);
 }
 
@@ -162,16 +146,14 @@ static void put_frustum(Text *text, const Camera *camera)
 {
     double width = vec3_length(camera->right), height = vec3_length(camera->up);
     double x = 0.5 / camera->width, y = 0.5 / camera->height;
-    put_number(text, "", (0.5 + x) * width);
-    put_number(text, " ", (x - 0.5) * width);
-    put_number(text, " ", (-0.5 - y) * height);
-    put_number(text, " ", (0.5 - y) * height);
+    put_text(text, "%f %f %f %f", (0.5 + x) * width, (x - 0.5) * width, (-0.5 - y) * height,
+             (0.5 - y) * height);
 }
 
 static void add_camera(Values *values, const Camera *camera)
 {
-    text_printf(add_value(values, "width"), "%d", camera->width);
-    text_printf(add_value(values, "height"), "%d", camera->height);
+    add_count(values, "width", (size_t)camera->width);
+    add_count(values, "height", (size_t)camera->height);
     text_puts(add_value(values, "projection"),
               camera->projection == PROJECTION_PERSPECTIVE ? "PERSPECTIVE" : "ORTHOGRAPHIC");
     put_numbers(add_value(values, "location"), camera->location);
@@ -212,11 +194,8 @@ static Status put_lights(Text *out, void *context, Err *err)
     return text_check(out, err);
 }
 
-Status tachyon_write(const EmitParams *params, Text *out, Text *second, EmitReport *report,
-                     Err *err)
+Status tachyon_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    (void)second;
-    (void)report;
     EmitParams all = *params;
     const Scene *scene = params->scene;
     const View *view = &scene->view;
@@ -231,12 +210,12 @@ Status tachyon_write(const EmitParams *params, Text *out, Text *second, EmitRepo
     if (params->planes) {
         add_number(&values, "depth_near", near_mm);
         add_number(&values, "depth_far", far_mm);
-        return values_expand(&values, params, "tachyon/planes.tachyon", out, err);
+        return values_expand(&values, params, "tachyon/planes.tachyon", to->file, err);
     }
     text_puts(add_value(&values, "shader"), params->shadows ? "FULL" : "MEDIUM");
     text_printf(add_value(&values, "antialiasing"), "%d",
                 params->antialias > 1 ? params->antialias * params->antialias - 1 : 0);
     put_colors(add_value(&values, "background"), view->background);
     add_part(&values, "lights", put_lights, &all);
-    return values_expand(&values, params, "tachyon/picture.tachyon", out, err);
+    return values_expand(&values, params, "tachyon/picture.tachyon", to->file, err);
 }

@@ -1,19 +1,20 @@
-/* What all 3MF files have, whatever their model is made of; private to the room emit. */
+/* The parts that all 3MF files have, for any kind of geometry. Private to the module emit. */
 #ifndef CORCAST_EMIT_THREEMF_H
 #define CORCAST_EMIT_THREEMF_H
 
 #include "emit/values.h"
 
-/* Appends the archive of a model, which `put` appends when it is handed `context`. */
+/* Appends the archive of a model. `put` appends the model; it receives `context`. Errors: those of
+ * `put` and of zip_put. */
 MUST_CHECK Status threemf_put_archive(const EmitParams *params,
                                       Status (*put)(Text *out, void *context, Err *err),
                                       void *context, Text *out, Err *err);
 
-/* `generator`, `description`, `command`, and the part `colors`: one for each segment, or the one of
- * all. */
-void threemf_add_about(Values *values, EmitParams *params);
+/* Adds `generator`, `description`, `command`, and the part `colors`: a colour for each segment, or
+ * one for all. */
+void threemf_add_about(Values *values, const EmitParams *params);
 
-/* A line of single precision. */
+/* Appends a vertex in single precision. */
 void threemf_put_vertex(Vec3 at, Text *out);
 
 #endif

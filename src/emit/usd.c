@@ -14,13 +14,7 @@ typedef struct Group {
     size_t first, end;
 } Group;
 
-static void put_counts(const Group *group, Text *out)
-{
-    for (size_t i = group->first; i < group->end; i++)
-        text_printf(out, "%s%zu", i > group->first ? ", " : "", curve_points(group->curves, i));
-}
-
-/* Appends what `put` does for each point, with commas between. */
+/* Calls `put` for each point, with commas between. */
 static Status put_each(const Group *group, void (*put)(const Group *, size_t, size_t, Text *),
                        Text *out, Err *err)
 {
@@ -33,38 +27,31 @@ static Status put_each(const Group *group, void (*put)(const Group *, size_t, si
     return text_check(out, err);
 }
 
-static void put_tuple(Vec3 v, Text *out)
+static void put_position(const Group *group, size_t curve, size_t i, Text *out)
 {
-    put_mesh_floats(out, "(", (const float[3]){(float)v.x, (float)v.y, (float)v.z}, ", ", ")");
-}
-
-static void put_place(const Group *group, size_t curve, size_t i, Text *out)
-{
-    put_tuple(curve_point(group->curves, curve, i), out);
+    Vec3 at = curve_point(group->curves, curve, i);
+    put_text(out, "(%f, %f, %f)", at.x, at.y, at.z);
 }
 
 static void put_width(const Group *group, size_t curve, size_t i, Text *out)
 {
-    char number[NUMBER_TEXT_SIZE];
-    uint32_t segment = curve_segment(group->curves, curve, i);
-    double radius = group->params->vessels->segments[segment].radius_mm;
-    text_puts(out, number_text_float((float)(2 * radius), number));
+    put_text(out, "%f", 2 * curve_radius(group->curves, curve, i));
 }
 
 static void put_color(const Group *group, size_t curve, size_t i, Text *out)
 {
     Rgb color = vessel_color(group->params, curve_segment(group->curves, curve, i));
-    put_mesh_floats(out, "(", (const float[3]){color.r, color.g, color.b}, ", ", ")");
+    put_triple(out, "(", (const float[3]){color.r, color.g, color.b}, ", ", ")");
 }
 
 static void put_id(const Group *group, size_t curve, size_t i, Text *out)
 {
-    text_printf(out, "%u", group->params->vessels->ids[curve_segment(group->curves, curve, i)]);
+    put_text(out, "%u", group->params->vessels->ids[curve_segment(group->curves, curve, i)]);
 }
 
 static Status put_points(Text *out, void *context, Err *err)
 {
-    return put_each(context, put_place, out, err);
+    return put_each(context, put_position, out, err);
 }
 
 static Status put_widths(Text *out, void *context, Err *err)
@@ -102,13 +89,15 @@ static Status put_group(Group *group, Text *out, Err *err)
     Box box = group_box(group);
     Values values = {0};
     curves_put_name(group->params, kind, add_value(&values, "name"));
-    put_counts(group, add_value(&values, "counts"));
-    put_tuple(box.low, add_value(&values, "low"));
-    put_tuple(box.high, add_value(&values, "high"));
+    Text *counts = add_value(&values, "counts");
+    for (size_t i = group->first; i < group->end; i++)
+        put_text(counts, i > group->first ? ", %z" : "%z", curve_points(group->curves, i));
+    put_text(add_value(&values, "low"), "(%f, %f, %f)", box.low.x, box.low.y, box.low.z);
+    put_text(add_value(&values, "high"), "(%f, %f, %f)", box.high.x, box.high.y, box.high.z);
     text_puts(add_value(&values, "colors_of"),
               group->params->appearance->colors ? "vertex" : "constant");
-    text_printf(add_value(&values, "order"), "%u", kind->order);
-    text_printf(add_value(&values, "tree"), "%u", kind->tree + 1);
+    add_count(&values, "order", kind->order);
+    add_count(&values, "tree", kind->tree + 1);
     add_part(&values, "points", put_points, group);
     add_part(&values, "widths", put_widths, group);
     add_part(&values, "colors", put_colors, group);
@@ -126,10 +115,8 @@ static Status put_groups(Text *out, void *context, Err *err)
     return text_check(out, err);
 }
 
-Status usd_write(const EmitParams *params, Text *out, Text *second, EmitReport *report, Err *err)
+Status usd_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    (void)second;
-    (void)report;
     Curves curves;
     TRY(curves_find(params, NULL, &curves, err));
     Group group = {.params = params, .curves = &curves};
@@ -138,7 +125,7 @@ Status usd_write(const EmitParams *params, Text *out, Text *second, EmitReport *
     add_quoted(&values, "generator", params->generator);
     add_quoted(&values, "description", params->description);
     add_part(&values, "curves", put_groups, &group);
-    Status status = values_expand(&values, params, "usd/tree.usda", out, err);
+    Status status = values_expand(&values, params, "usd/tree.usda", to->file, err);
     curves_release(&curves);
     return status;
 }

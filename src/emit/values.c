@@ -1,5 +1,5 @@
-/* Names and texts stand in arrays of their own because a value's text may still grow when the next
- * one is added; the pointers to the characters are taken last. */
+/* Names and texts are in separate arrays because the text of a value may still grow after the next
+ * value was added. The pointers to the characters are therefore set last. */
 #include "emit/values.h"
 
 #include <assert.h>
@@ -21,8 +21,12 @@ void add_number(Values *values, const char *name, double value)
 
 void add_float(Values *values, const char *name, float value)
 {
-    char number[NUMBER_TEXT_SIZE];
-    text_puts(add_value(values, name), number_text_float(value, number));
+    put_text(add_value(values, name), "%f", (double)value);
+}
+
+void add_count(Values *values, const char *name, size_t count)
+{
+    text_printf(add_value(values, name), "%zu", count);
 }
 
 void add_flag(Values *values, const char *name, bool value)
@@ -44,8 +48,7 @@ void add_quoted(Values *values, const char *name, const char *chars)
     text_release(&line);
 }
 
-/* `name` in `quotes`, which another program reads, as a word of a shell; one line. */
-static void put_word(Text *text, const char *name, const char *quotes)
+void add_word(Values *values, const char *value, const char *name, const char *quotes)
 {
     Text clean = TEXT_INIT, quoted = TEXT_INIT;
     text_put_line(&clean, name);
@@ -54,14 +57,9 @@ static void put_word(Text *text, const char *name, const char *quotes)
     text_puts(&quoted, plain ? "" : quotes);
     text_puts(&quoted, chars);
     text_puts(&quoted, plain ? "" : quotes);
-    text_put_shell_word(text, text_chars(&quoted));
+    text_put_shell_word(add_value(values, value), text_chars(&quoted));
     text_release(&clean);
     text_release(&quoted);
-}
-
-void add_word(Values *values, const char *value, const char *name, const char *quotes)
-{
-    put_word(add_value(values, value), name, quotes);
 }
 
 void add_file(Values *values, const char *file, const char *result, const char *quotes)
@@ -76,11 +74,16 @@ void add_file(Values *values, const char *file, const char *result, const char *
     text_release(&made);
 }
 
-void add_about(Values *values, const EmitParams *params, Box box, Vec3 origin)
+void add_source(Values *values, const EmitParams *params)
 {
     text_put_line(add_value(values, "description"), params->description);
     text_puts(add_value(values, "generator"), params->generator);
     text_puts(add_value(values, "command"), params->command);
+}
+
+void add_about(Values *values, const EmitParams *params, Box box, Vec3 origin)
+{
+    add_source(values, params);
     Text *extent = add_value(values, "extent");
     text_printf(extent, "%.4g to %.4g, %.4g to %.4g, %.4g to %.4g mm", box.low.x, box.high.x,
                 box.low.y, box.high.y, box.low.z, box.high.z);
@@ -106,7 +109,22 @@ void add_part(Values *values, const char *name, Status (*put)(Text *, void *, Er
     values->part[values->n_parts++] = (TmplPart){name, put, context};
 }
 
-Status load_template(Tmpl *template, const EmitParams *params, const char *name, Err *err)
+static Status put_items(Text *out, void *context, Err *err)
+{
+    const ValueList *list = context;
+    for (size_t i = 0; i < list->n; i++)
+        list->put(out, list->context, i);
+    return text_check(out, err);
+}
+
+void add_list(Values *values, const char *name, PutItem *put, const void *context, size_t n)
+{
+    ValueList *list = &values->list[values->n_parts];
+    add_part(values, name, put_items, list);
+    *list = (ValueList){put, context, n};
+}
+
+static Status load_template(Tmpl *template, const EmitParams *params, const char *name, Err *err)
 {
     char *path = NULL;
     TRY(file_join(params->templates, name, &path, err));
@@ -115,18 +133,39 @@ Status load_template(Tmpl *template, const EmitParams *params, const char *name,
     return status;
 }
 
+Status load_templates(Tmpl *templates, const EmitParams *params, const char *const *names, size_t n,
+                      Err *err)
+{
+    for (size_t i = 0; i < n; i++)
+        TRY(load_template(&templates[i], params, names[i], err));
+    return STATUS_OK;
+}
+
+void release_templates(Tmpl *templates, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        tmpl_release(&templates[i]);
+}
+
 Status values_expand(Values *values, const EmitParams *params, const char *name, Text *out,
                      Err *err)
 {
     Tmpl template = {0};
-    Status status = load_template(&template, params, name, err);
+    Status status;
+    TRY_GOTO(load_template(&template, params, name, err));
     for (size_t i = 0; i < values->n; i++)
         values->value[i].text = text_chars(&values->text[i]);
-    if (status == STATUS_OK)
-        status = tmpl_stream(&template, values->value, values->n, values->part, values->n_parts,
-                             out, err);
+    TRY_GOTO(
+        tmpl_stream(&template, values->value, values->n, values->part, values->n_parts, out, err));
+done:
     tmpl_release(&template);
     for (size_t i = 0; i < values->n; i++)
         text_release(&values->text[i]);
     return status;
+}
+
+Status put_template(const EmitParams *params, const char *name, Text *out, Err *err)
+{
+    Values none = {0};
+    return values_expand(&none, params, name, out, err);
 }

@@ -7,8 +7,6 @@
 #include "emit/rows.h"
 #include "emit/values.h"
 
-#include <inttypes.h>
-
 /* In the order of the file. */
 enum { FACES, SEGMENTS, POINTS, CORNERS, OFFSETS, ARRAYS };
 static const char *const places[ARRAYS] = {"at_faces", "at_segments", "at_points", "at_corners",
@@ -68,7 +66,7 @@ static void add_texts(Values *values, const EmitParams *params)
     Text *names = add_value(values, "names");
     for (size_t part = 0; part < meshends_parts(params->ends); part++)
         put_letters(names, meshends_part_name(params->ends, part));
-    text_printf(add_value(values, "n_names"), "%zu", meshends_parts(params->ends));
+    add_count(values, "n_names", meshends_parts(params->ends));
     Text *about = add_value(values, "about");
     put_letters(about, params->generator);
     put_letters(about, params->description);
@@ -76,22 +74,19 @@ static void add_texts(Values *values, const EmitParams *params)
     put_letters(about, "mm");
 }
 
-Status vtp_write_mesh(const EmitParams *params, Text *out, Text *second, EmitReport *report,
-                      Err *err)
+Status vtp_write_mesh(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    (void)second;
-    (void)report;
     const VesselMesh *mesh = params->mesh;
     EmitParams context = *params;
     Values values = {0};
-    uint64_t offset = 0;
+    size_t offset = 0;
     add_texts(&values, params);
-    text_printf(add_value(&values, "n_points"), "%zu", mesh->n_points);
-    text_printf(add_value(&values, "n_triangles"), "%zu", mesh->n_triangles);
+    add_count(&values, "n_points", mesh->n_points);
+    add_count(&values, "n_triangles", mesh->n_triangles);
     for (int array = 0; array < ARRAYS; array++) {
-        text_printf(add_value(&values, places[array]), "%" PRIu64, offset);
-        offset += 8 + 4 * (uint64_t)array_length(mesh, array);
+        add_count(&values, places[array], offset);
+        offset += 8 + 4 * array_length(mesh, array);
     }
     add_part(&values, "arrays", put_arrays, &context);
-    return values_expand(&values, params, "vtk/surface.vtp", out, err);
+    return values_expand(&values, params, "vtk/surface.vtp", to->file, err);
 }

@@ -1,13 +1,14 @@
-/* The blob: what stands in for the potential in POV-Ray's `blob`, whose fields are quartics.
- * Exported by the room's door.
+/* The blob that stands for the potential in POV-Ray's `blob`, whose fields are quartics. Exported
+ * by the module's public header.
  *
- * At x, a component of radius R and strength S adds S (1 - d^2 / R^2)^2, d < R being the distance
- * of x from its segment, a sphere's from its centre; the surface is where the sum is 1
- * [shape/blob.cpp of POV-Ray 3.7.0.10; docs/POVRAY.md section 9]. A vessel segment is a few
- * components [docs/METHODS.md section 2.6]: tubes along it; at each end, for each tube, a sphere of
- * minus half its strength; and pairs of beads on the axis, as far within the end as beyond it, of
- * opposite strengths. In a chain of one radius what stands at the end of one segment is cancelled
- * by the next, whatever the numbers. */
+ * A component of radius R and strength S adds S (1 - d^2 / R^2)^2 at a point whose distance d from
+ * the component's segment, or from a sphere's centre, is below R. The surface is where the sum is 1
+ * [shape/blob.cpp of POV-Ray 3.7.0.10; docs/POVRAY.md section 9].
+ *
+ * A vessel segment consists of a few components [docs/METHODS.md section 2.6]: tubes along it; at
+ * each end, for each tube, a sphere of minus half its strength; and pairs of beads on the axis, one
+ * inside the end and one equally far beyond it, of opposite strengths. In a chain of one radius,
+ * the components at the end of one segment are cancelled by those of the next, for any numbers. */
 #ifndef CORCAST_FIELD_BLOB_H
 #define CORCAST_FIELD_BLOB_H
 
@@ -19,18 +20,19 @@ enum {
     BLOB_TUBES = 2,
     BLOB_BEADS = 2,
     BLOB_COMPONENTS = 3 * BLOB_TUBES + 4 * BLOB_BEADS,
-    /* As POV-Ray counts: a tube's body and its two halves of a ball are three. */
+    /* POV-Ray counts a tube as three: its body and two hemispheres. */
     BLOB_POVRAY_COMPONENTS = BLOB_COMPONENTS + 2 * BLOB_TUBES,
-    BLOB_POVRAY_LIMIT = 1000000 /* POV-Ray draws fewer than this in one blob */
+    BLOB_POVRAY_LIMIT = 1000000 /* one blob of POV-Ray has fewer components than this */
 };
 
-/* Lengths over the vessel's radius. */
+/* Lengths are in units of the vessel's radius. */
 typedef struct BlobTube {
     double radius, strength;
 } BlobTube;
 
 typedef struct BlobBead {
-    double offset; /* from the end, inwards; its opposite stands as far outwards */
+    double offset; /* of the bead inside the segment from the end; the opposite bead is as far
+                      outside */
     double radius, strength;
 } BlobBead;
 
@@ -47,33 +49,52 @@ typedef struct BlobShape {
     }
 extern const BlobShape blob_shape;
 
-/* The strength that tube[0] must have for a long vessel to have its own radius. */
+/* Returns the strength of tube[0] for which the surface of a long vessel has the vessel's radius.
+ */
 double blob_first_strength(const BlobShape *shape);
 
-/* The field of a segment is 0 beyond this many of its radii from it. */
+/* Returns the distance from a segment, in radii, beyond which its field is 0. */
 double blob_reach(const BlobShape *shape);
-/* A ball that holds all of the field of a segment by blob_shape. */
+/* Returns a ball that holds the field of a segment with the shape blob_shape. */
 Ball blob_ball(const FieldSegment *segment);
 
 typedef struct BlobComponent {
-    Vec3 a, b;        /* ends of a tube's axis; of a sphere, both its centre */
+    Vec3 a, b;        /* ends of a tube's axis; a sphere has its centre in both */
     double radius_mm; /* > 0 */
     double strength;  /* not 0 */
 } BlobComponent;
 
-static inline bool blob_component_is_tube(int number)
+/* Returns true if component `index` of blob_components is a tube. */
+static inline bool blob_component_is_tube(int index)
 {
-    return number < BLOB_TUBES;
+    return index < BLOB_TUBES;
 }
 
-/* The components of a segment: the tubes first. */
+/* Fills the components of a segment, the tubes first. */
 void blob_components(const BlobShape *shape, const FieldSegment *segment,
                      BlobComponent components[BLOB_COMPONENTS]);
 
-/* The sum over the components at x, and its gradient (1/mm). */
+/* Returns the sum of the components at x, and sets *gradient to its gradient, 1/mm. */
 double blob_components_at(const BlobComponent components[BLOB_COMPONENTS], Vec3 x, Vec3 *gradient);
 
-/* The same of a segment by blob_shape. */
+/* Returns the field at x of a segment with the shape blob_shape. */
 double blob_term(const FieldSegment *segment, Vec3 x);
+
+enum { BLOB_ROOTS = 16 };
+
+typedef struct BlobRoots {
+    int n;
+    double t[BLOB_ROOTS]; /* rising; the error is 10^-12 of the smallest radius near the ray, plus
+                           * the rounding of the double */
+    bool sure; /* there is certainly no other root in the interval, or before the last of BLOB_ROOTS
+                */
+} BlobRoots;
+
+/* Finds the first places in (t_min, t_max) where the field of the segments' blob crosses 1 along
+ * the ray, in either direction. This is the reference when the root finders of two renderers
+ * disagree: it halves intervals in long double, and uses no acceleration. Errors: STATUS_MEMORY.
+ * O(n). */
+MUST_CHECK Status blob_roots(const FieldSegment *segments, size_t n, Ray ray, double t_min,
+                             double t_max, BlobRoots *roots, Err *err);
 
 #endif

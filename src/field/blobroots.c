@@ -3,70 +3,72 @@
  * -4 S / R^2 and 8 S / R^2; f' has no jump. So |F''| is at most M, the sum of 8 |S| / R^2 over what
  * is felt in an interval of width w, and F is within M w^2 / 8 of the straight line between its
  * ends. If that keeps F off 1, it holds no root; else it is halved. */
-#include "field/blobroots.h"
 
 #include "field/blob.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
-typedef struct Point {
+typedef struct LongVec {
     long double x, y, z;
-} Point;
+} LongVec;
 
 /* A component as the ray feels it, from t0 to t1 at most. */
 typedef struct Felt {
-    Point a, axis;       /* an end and a unit axis */
+    LongVec a, axis;     /* an end and a unit axis */
     long double length;  /* 0: a ball */
     long double radius2; /* mm^2 */
     long double strength;
     long double t0, t1;
 } Felt;
 
-typedef struct Search {
-    Point origin, direction;
-    Felt *felt;
-    long double narrow; /* intervals are halved until they are so wide, mm */
+typedef struct RootSearch {
+    LongVec origin, direction;
+    ARRAY(Felt) felt;
+    long double low, high; /* where a component is felt */
+    long double least;     /* smallest radius of a segment that is felt, mm */
+    long double narrow;    /* intervals are halved until they are this wide, mm */
     BlobRoots *roots;
-} Search;
+} RootSearch;
 
-static Point point_of(Vec3 v)
+static LongVec point_of(Vec3 v)
 {
-    return (Point){v.x, v.y, v.z};
+    return (LongVec){v.x, v.y, v.z};
 }
 
-static Point along(Point p, Point d, long double t)
+static LongVec along(LongVec p, LongVec d, long double t)
 {
-    return (Point){p.x + d.x * t, p.y + d.y * t, p.z + d.z * t};
+    return (LongVec){p.x + d.x * t, p.y + d.y * t, p.z + d.z * t};
 }
 
-static long double dot(Point a, Point b)
+static long double dot(LongVec a, LongVec b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-static Point less(Point a, Point b)
+static LongVec less(LongVec a, LongVec b)
 {
     return along(a, b, -1);
 }
 
 /* The component, if the ray comes as near as its radius to a ball about it between t_min and
  * t_max. */
-static bool take_component(const Search *search, const BlobComponent *component, bool tube,
+static bool take_component(const RootSearch *search, const BlobComponent *component, bool tube,
                            long double t_min, long double t_max, Felt *felt)
 {
-    Point a = point_of(component->a), span = less(point_of(component->b), a);
+    LongVec a = point_of(component->a), span = less(point_of(component->b), a);
     long double length = tube ? sqrtl(dot(span, span)) : 0;
     long double radius = component->radius_mm, reach = radius + length / 2;
-    Point middle = along(a, span, tube ? 0.5L : 0), from = less(middle, search->origin);
+    LongVec middle = along(a, span, tube ? 0.5L : 0), from = less(middle, search->origin);
     long double t = dot(from, search->direction);
-    Point off = along(from, search->direction, -t);
+    LongVec off = along(from, search->direction, -t);
     long double half2 = reach * reach - dot(off, off);
     if (!(half2 > 0))
         return false;
     long double half = sqrtl(half2);
     *felt = (Felt){a,
-                   length > 0 ? along((Point){0, 0, 0}, span, 1 / length) : span,
+                   length > 0 ? along((LongVec){0, 0, 0}, span, 1 / length) : span,
                    length,
                    radius * radius,
                    component->strength,
@@ -75,22 +77,22 @@ static bool take_component(const Search *search, const BlobComponent *component,
     return felt->t0 < felt->t1;
 }
 
-static long double field_of(const Felt *felt, Point x)
+static long double field_of(const Felt *felt, LongVec x)
 {
-    Point from = less(x, felt->a);
+    LongVec from = less(x, felt->a);
     long double foot = fminl(fmaxl(dot(from, felt->axis), 0), felt->length);
-    Point off = along(from, felt->axis, -foot);
+    LongVec off = along(from, felt->axis, -foot);
     long double inside = 1 - dot(off, off) / felt->radius2;
     return inside > 0 ? felt->strength * inside * inside : 0;
 }
 
 /* The sum of the first n less 1. */
-static long double excess(const Search *search, size_t n, long double t)
+static long double excess(const RootSearch *search, size_t n, long double t)
 {
     long double sum = -1;
-    Point x = along(search->origin, search->direction, t);
+    LongVec x = along(search->origin, search->direction, t);
     for (size_t i = 0; i < n; i++)
-        sum += field_of(&search->felt[i], x);
+        sum += field_of(&search->felt.items[i], x);
     return sum;
 }
 
@@ -113,14 +115,14 @@ static size_t keep_felt(Felt *felt, size_t n, long double low, long double high,
 
 /* Finds the roots between `low` and `high`, where the excess is `f_low` and `f_high`, among the
  * first n. */
-static void search_between(Search *search, size_t n, long double low, long double high,
+static void search_between(RootSearch *search, size_t n, long double low, long double high,
                            long double f_low, long double f_high)
 {
     BlobRoots *roots = search->roots;
     if (roots->n == BLOB_ROOTS)
         return;
     long double curvature, width = high - low;
-    n = keep_felt(search->felt, n, low, high, &curvature);
+    n = keep_felt(search->felt.items, n, low, high, &curvature);
     bool passes = (f_low < 0) != (f_high < 0);
     if (!passes && fminl(fabsl(f_low), fabsl(f_high)) > curvature * width * width / 8)
         return;
@@ -143,43 +145,49 @@ static bool meets_ball(Ray ray, Ball ball)
     return vec3_length(off) <= ball.radius;
 }
 
-Status blob_roots(const FieldSegment *segments, size_t n, Ray ray, double t_min, double t_max,
-                  BlobRoots *roots, Err *err)
+/* Finds the components that the ray may meet between t_min and t_max. */
+static Status list_felt(RootSearch *search, const FieldSegment *segments, size_t n, Ray ray,
+                        double t_min, double t_max, Err *err)
 {
-    Search search = {
-        .origin = point_of(ray.origin), .direction = point_of(ray.direction), .roots = roots};
-    size_t felt = 0, room = 0;
-    long double low = HUGE_VALL, high = -HUGE_VALL, least = HUGE_VALL;
-    *roots = (BlobRoots){.sure = true};
     for (size_t i = 0; i < n; i++) {
         BlobComponent components[BLOB_COMPONENTS];
         if (!meets_ball(ray, blob_ball(&segments[i])))
             continue;
         blob_components(&blob_shape, &segments[i], components);
-        if (felt + BLOB_COMPONENTS > room) {
-            Status status = mem_reserve(&search.felt, &room, felt + BLOB_COMPONENTS,
-                                        sizeof *search.felt, "components", err);
-            if (status != STATUS_OK) {
-                free(search.felt);
-                return status;
-            }
-        }
+        TRY(ARRAY_RESERVE(&search->felt, BLOB_COMPONENTS, "components", err));
         for (int c = 0; c < BLOB_COMPONENTS; c++) {
-            Felt *next = &search.felt[felt];
-            if (!take_component(&search, &components[c], blob_component_is_tube(c), t_min, t_max,
+            Felt *next = &search->felt.items[search->felt.n];
+            if (!take_component(search, &components[c], blob_component_is_tube(c), t_min, t_max,
                                 next))
                 continue;
-            low = fminl(low, next->t0);
-            high = fmaxl(high, next->t1);
-            least = fminl(least, segments[i].radius_mm);
-            felt++;
+            search->low = fminl(search->low, next->t0);
+            search->high = fmaxl(search->high, next->t1);
+            search->least = fminl(search->least, segments[i].radius_mm);
+            search->felt.n++;
         }
     }
-    if (felt > 0) {
-        search.narrow = fmaxl(1e-12L * least, 4 * LDBL_EPSILON * fmaxl(fabsl(low), fabsl(high)));
-        search_between(&search, felt, low, high, excess(&search, felt, low),
-                       excess(&search, felt, high));
-    }
-    free(search.felt);
     return STATUS_OK;
+}
+
+Status blob_roots(const FieldSegment *segments, size_t n, Ray ray, double t_min, double t_max,
+                  BlobRoots *roots, Err *err)
+{
+    RootSearch search = {.origin = point_of(ray.origin),
+                         .direction = point_of(ray.direction),
+                         .low = HUGE_VALL,
+                         .high = -HUGE_VALL,
+                         .least = HUGE_VALL,
+                         .roots = roots};
+    Status status;
+    *roots = (BlobRoots){.sure = true};
+    TRY_GOTO(list_felt(&search, segments, n, ray, t_min, t_max, err));
+    if (search.felt.n > 0) {
+        long double low = search.low, high = search.high, far = fmaxl(fabsl(low), fabsl(high));
+        search.narrow = fmaxl(1e-12L * search.least, 4 * LDBL_EPSILON * far);
+        search_between(&search, search.felt.n, low, high, excess(&search, search.felt.n, low),
+                       excess(&search, search.felt.n, high));
+    }
+done:
+    ARRAY_RELEASE(&search.felt);
+    return status;
 }

@@ -17,7 +17,7 @@
  * and grad (log form) = -grad Phi / (Phi L): s_min |grad| <= sqrt(2 ln(sum exp(q_i L^2 / 2))) / L,
  * which grows with Phi. Equality for one term, and for n that coincide. For the largest of sums of
  * some of the terms it holds as it does for each. */
-#include "field/potential.h"
+#include "field/field.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -58,7 +58,7 @@ typedef struct Support {
     double peak, decay, reach2;
 } Support;
 
-typedef struct Builder {
+typedef struct CellBuilder {
     const FieldSegment *segments;
     Support *supports; /* one a segment */
     double beta;
@@ -73,7 +73,7 @@ typedef struct Builder {
     LocalGroups *groups; /* NULL where all segments blend */
     CellTree tree;
     size_t cell_capacity, term_capacity, member_capacity, group_capacity;
-} Builder;
+} CellBuilder;
 
 /* Part of the stack, and what its terms have in common. */
 typedef struct TermList {
@@ -114,7 +114,7 @@ static Box cube_box(const Cube *cube, double margin)
 }
 
 /* The bound of s_min |grad (log form)| for potentials up to `phi`. */
-static double gradient_bound(const Builder *builder, const TermList *terms, double phi)
+static double gradient_bound(const CellBuilder *builder, const TermList *terms, double phi)
 {
     double half_l2 = -elementary_log(phi), sum = 0;
     for (size_t i = terms->first; i < terms->first + terms->count; i++) {
@@ -125,7 +125,8 @@ static double gradient_bound(const Builder *builder, const TermList *terms, doub
 }
 
 /* Pushes those terms of `from` whose bound in the box is above CELL_TERM_CUTOFF. */
-static Status filter_terms(Builder *builder, const TermList *from, Box box, TermList *out, Err *err)
+static Status filter_terms(CellBuilder *builder, const TermList *from, Box box, TermList *out,
+                           Err *err)
 {
     TRY(mem_reserve(&builder->stack, &builder->stack_capacity, builder->depth + from->count,
                     sizeof *builder->stack, "terms", err));
@@ -168,7 +169,7 @@ typedef struct CubeSum {
 } CubeSum;
 
 /* Of the `n` terms at the places given of the list, or of the first n. */
-static CubeSum sum_in(const Builder *builder, const uint32_t *list, const uint32_t *places,
+static CubeSum sum_in(const CellBuilder *builder, const uint32_t *list, const uint32_t *places,
                       size_t n, Vec3 center, double half_diagonal)
 {
     CubeSum sum = {0};
@@ -183,7 +184,7 @@ static CubeSum sum_in(const Builder *builder, const uint32_t *list, const uint32
 }
 
 /* The largest of the sums of the groups. */
-static CubeSum largest_sum(const Builder *builder, const TermList *terms, Vec3 center,
+static CubeSum largest_sum(const CellBuilder *builder, const TermList *terms, Vec3 center,
                            double half_diagonal)
 {
     const uint32_t *list = builder->stack + terms->first;
@@ -204,7 +205,7 @@ static CubeSum largest_sum(const Builder *builder, const TermList *terms, Vec3 c
 /* Whether the potential at the centre proves that the level is not met in the cube widened by
  * `margin`: it is too small to reach the level by the bound of the log form's gradient, or so large
  * that it stays above. */
-static bool misses_surface(const Builder *builder, const TermList *terms, const Cube *cube,
+static bool misses_surface(const CellBuilder *builder, const TermList *terms, const Cube *cube,
                            double margin)
 {
     Vec3 center = box_center(cube_box(cube, 0));
@@ -252,7 +253,7 @@ static TermPart part_in(const TermForm *form, Box box)
     return felt[0] ? (felt[1] ? TERM_BOTH_ENDS : TERM_START) : felt[1] ? TERM_END : TERM_MIDDLE;
 }
 
-static Status push_terms(Builder *builder, const TermList *terms, Box box, Err *err)
+static Status push_terms(CellBuilder *builder, const TermList *terms, Box box, Err *err)
 {
     CellTree *tree = &builder->tree;
     TRY(mem_reserve(&tree->terms, &builder->term_capacity, tree->n_terms + terms->count,
@@ -265,7 +266,7 @@ static Status push_terms(Builder *builder, const TermList *terms, Box box, Err *
 }
 
 /* Adds the groups of the cell, unless its terms are all one. */
-static Status push_groups(Builder *builder, const TermList *terms, Cell *cell, Err *err)
+static Status push_groups(CellBuilder *builder, const TermList *terms, Cell *cell, Err *err)
 {
     CellTree *tree = &builder->tree;
     size_t n_groups = 0;
@@ -291,7 +292,7 @@ static Status push_groups(Builder *builder, const TermList *terms, Cell *cell, E
 
 /* The segment whose term is more than half the level where the sum reaches it, because all others
  * together stay below. */
-static uint32_t largest_in(const Builder *builder, const TermList *terms, Box box)
+static uint32_t largest_in(const CellBuilder *builder, const TermList *terms, Box box)
 {
     for (size_t i = 0; i < terms->count; i++) {
         uint32_t segment = builder->stack[terms->first + i];
@@ -303,7 +304,7 @@ static uint32_t largest_in(const Builder *builder, const TermList *terms, Box bo
 }
 
 /* The bound of the gradient of the cell's function, whose scale is `scale`. */
-static double max_gradient(const Builder *builder, const TermList *terms, const Cell *cell)
+static double max_gradient(const CellBuilder *builder, const TermList *terms, const Cell *cell)
 {
     double bound = 1;
     if (!cell_is_tube(&builder->tree, cell)) {
@@ -316,13 +317,13 @@ static double max_gradient(const Builder *builder, const TermList *terms, const 
 }
 
 /* SHIFTS, or 1, which is no shift, where single precision is too coarse. */
-static int shifts_at(const Builder *builder, double accuracy)
+static int shifts_at(const CellBuilder *builder, double accuracy)
 {
     return 2 * SHIFTS * builder->spacing <= overlap_accuracies * accuracy ? SHIFTS : 1;
 }
 
 /* How far the box of a cell reaches beyond its cube, before it is shifted. */
-static double overlap_of(const Builder *builder, double accuracy)
+static double overlap_of(const CellBuilder *builder, double accuracy)
 {
     double step = shifts_at(builder, accuracy) * builder->spacing;
     return ceil(overlap_accuracies * accuracy / step) * step;
@@ -332,7 +333,7 @@ static double overlap_of(const Builder *builder, double accuracy)
  * shifts where their boxes, before the overlap is added, may begin and end in the same two planes
  * across an axis: the cubes of such cells are at most HALVINGS levels of the octree apart, and if
  * they are of one level, they differ in one or two of their three coordinates. */
-static int shift_of(const Builder *builder, const Cube *cube)
+static int shift_of(const CellBuilder *builder, const Cube *cube)
 {
     int level = ilogb(builder->root_side / cube->side) % (HALVINGS + 1);
     int64_t x = cube->at[0] & 1, y = cube->at[1] & 1, z = cube->at[2] & 1;
@@ -349,7 +350,7 @@ static int shift_of(const Builder *builder, const Cube *cube)
  * - s'), which 13 does not divide. Unequal fractions may be one place; but as the two boxes begin
  * at different places, it is known which of them POV-Ray looks into first.
  */
-static Box box_shifted(const Builder *builder, Box box, const Cube *cube, double accuracy)
+static Box box_shifted(const CellBuilder *builder, Box box, const Cube *cube, double accuracy)
 {
     double unit = builder->spacing;
     int shifts = shifts_at(builder, accuracy);
@@ -367,7 +368,7 @@ static bool box_has_box(Box box, Box other)
 
 /* Widens *box to hold the parts of the cube, halved `times` times, in which the surface can lie,
  * each with `margin` about it. */
-static Status hold_surface(Builder *builder, const TermList *candidates, const Cube *cube,
+static Status hold_surface(CellBuilder *builder, const TermList *candidates, const Cube *cube,
                            double margin, int times, Box *box, Err *err)
 {
     const Box own = cube_box(cube, margin);
@@ -389,7 +390,7 @@ static Status hold_surface(Builder *builder, const TermList *candidates, const C
 }
 
 /* These looks are bounded by the number of cells, and not counted. */
-static Status box_of_surface(Builder *builder, const TermList *candidates, const Cube *cube,
+static Status box_of_surface(CellBuilder *builder, const TermList *candidates, const Cube *cube,
                              double margin, Box *box, Err *err)
 {
     int times = candidates->count > MOST_HALVED_TERMS ? 0 : HALVINGS;
@@ -400,7 +401,7 @@ static Status box_of_surface(Builder *builder, const TermList *candidates, const
     return STATUS_OK;
 }
 
-static Status add_cell(Builder *builder, const TermList *candidates, const Cube *cube, Err *err)
+static Status add_cell(CellBuilder *builder, const TermList *candidates, const Cube *cube, Err *err)
 {
     double accuracy = cell_accuracy(candidates->local_radius);
     Box box;
@@ -435,7 +436,7 @@ static Status add_cell(Builder *builder, const TermList *candidates, const Cube 
 
 /* Adds the cells of a cube, whose parent has the terms `parent`. Terms are kept where they matter
  * in the cube widened by the overlap of any cell that it may hold. */
-static Status descend(Builder *builder, const TermList *parent, const Cube *cube, Err *err)
+static Status descend(CellBuilder *builder, const TermList *parent, const Cube *cube, Err *err)
 {
     size_t depth = builder->depth;
     double accuracy = cell_accuracy(parent->largest_radius);
@@ -459,7 +460,7 @@ static Status descend(Builder *builder, const TermList *parent, const Cube *cube
 
 /* Descends from the cubes of the lattice, two along each axis at most, that hold the box; `all` is
  * the list of all terms. */
-static Status descend_from_top(Builder *builder, const TermList *all, Box box, Err *err)
+static Status descend_from_top(CellBuilder *builder, const TermList *all, Box box, Err *err)
 {
     Vec3 extent = vec3_sub(box.high, box.low);
     double widest = fmax(extent.x, fmax(extent.y, extent.z));
@@ -498,7 +499,7 @@ static Support support_of(const FieldSegment *segment)
     return (Support){peak, decay, elementary_log(peak / CELL_TERM_CUTOFF) / decay};
 }
 
-static Status build(Builder *builder, size_t n_segments, Err *err)
+static Status build(CellBuilder *builder, size_t n_segments, Err *err)
 {
     CellTree *tree = &builder->tree;
     TRY(mem_reserve(&builder->stack, &builder->stack_capacity, n_segments, sizeof *builder->stack,
@@ -527,21 +528,20 @@ static Status build(Builder *builder, size_t n_segments, Err *err)
 
 Status celltree_build(const Geometry *geometry, const CellParams *params, CellTree *cells, Err *err)
 {
-    Builder builder = {.segments = geometry->segments,
-                       .beta = params->beta > 0 ? params->beta : CELL_BETA,
-                       .tree = {.erf = params->erf}};
-    Status status = STATUS_OK;
+    CellBuilder builder = {.segments = geometry->segments,
+                           .beta = params->beta > 0 ? params->beta : CELL_BETA,
+                           .tree = {.erf = params->erf}};
+    Status status;
     if (geometry->blend.n_groups)
-        status = localgroups_new(geometry, &builder.groups, err);
-    if (status == STATUS_OK)
-        status = build(&builder, geometry->n_segments, err);
+        TRY_GOTO(localgroups_new(geometry, &builder.groups, err));
+    TRY_GOTO(build(&builder, geometry->n_segments, err));
+    *cells = builder.tree;
+    builder.tree = (CellTree){0};
+done:
     localgroups_free(builder.groups);
     free(builder.supports);
     free(builder.stack);
-    if (status == STATUS_OK)
-        *cells = builder.tree;
-    else
-        celltree_release(&builder.tree);
+    celltree_release(&builder.tree);
     return status;
 }
 

@@ -9,19 +9,19 @@
 #include <stdlib.h>
 
 /* What the list has of a group. */
-typedef struct Part {
+typedef struct GroupPart {
     uint32_t group;
     uint32_t count, low, high; /* how many segments, and between which */
     bool held;                 /* by another part */
-} Part;
+} GroupPart;
 
 struct LocalGroups {
     const Blend *blend;
     const uint32_t *list;
     size_t n_list;
-    uint32_t *place; /* one a segment */
-    uint32_t *met;   /* one a group: its part */
-    Part *parts;     /* in the order in which the list meets them */
+    uint32_t *place;  /* one a segment */
+    uint32_t *met;    /* one a group: its part */
+    GroupPart *parts; /* in the order in which the list meets them */
     size_t n_parts;
     uint32_t *members; /* one a segment */
 };
@@ -63,7 +63,7 @@ static bool is_listed(const LocalGroups *groups, uint32_t segment)
     return place < groups->n_list && groups->list[place] == segment;
 }
 
-static Part *part_of(const LocalGroups *groups, uint32_t group)
+static GroupPart *part_of(const LocalGroups *groups, uint32_t group)
 {
     uint32_t number = groups->met[group];
     bool met = number < groups->n_parts && groups->parts[number].group == group;
@@ -76,11 +76,11 @@ static void meet(LocalGroups *groups, uint32_t segment)
     const IndexLists *lists = &groups->blend->groups;
     for (uint32_t i = lists->first[segment]; i < lists->first[segment + 1]; i++) {
         uint32_t group = lists->items[i];
-        Part *part = part_of(groups, group);
+        GroupPart *part = part_of(groups, group);
         if (!part) {
             groups->met[group] = (uint32_t)groups->n_parts;
             part = &groups->parts[groups->n_parts++];
-            *part = (Part){.group = group, .low = segment, .high = segment};
+            *part = (GroupPart){.group = group, .low = segment, .high = segment};
         }
         part->count++;
         part->low = segment < part->low ? segment : part->low;
@@ -89,7 +89,7 @@ static void meet(LocalGroups *groups, uint32_t segment)
 }
 
 /* The listed member of a part that is in the fewest groups. */
-static uint32_t rarest_of(const LocalGroups *groups, const Part *part)
+static uint32_t rarest_of(const LocalGroups *groups, const GroupPart *part)
 {
     const IndexLists *members = &groups->blend->members, *holders = &groups->blend->groups;
     uint32_t rarest = part->low, fewest = UINT32_MAX;
@@ -105,7 +105,7 @@ static uint32_t rarest_of(const LocalGroups *groups, const Part *part)
 }
 
 /* Whether what the list has of `part` is all in the other one's group. */
-static bool is_within(const LocalGroups *groups, const Part *part, const Part *other)
+static bool is_within(const LocalGroups *groups, const GroupPart *part, const GroupPart *other)
 {
     const IndexLists *members = &groups->blend->members;
     if (other->count < part->count || other->low > part->low || other->high < part->high)
@@ -124,12 +124,12 @@ static bool is_within(const LocalGroups *groups, const Part *part, const Part *o
 }
 
 /* Of equal parts, the first stays. */
-static bool is_held(const LocalGroups *groups, const Part *part)
+static bool is_held(const LocalGroups *groups, const GroupPart *part)
 {
     const IndexLists *holders = &groups->blend->groups;
     uint32_t rarest = rarest_of(groups, part);
     for (uint32_t i = holders->first[rarest]; i < holders->first[rarest + 1]; i++) {
-        const Part *other = part_of(groups, holders->items[i]);
+        const GroupPart *other = part_of(groups, holders->items[i]);
         if ((other->count > part->count || other < part) && is_within(groups, part, other))
             return true;
     }

@@ -1,23 +1,29 @@
 /* A term in the coordinates of its segment, in units of 1 / k = sqrt(2) s = radius / sqrt(2): u and
- * v are how far x lies inside either end, E its distance from the axis line. Then the term is
- * exp(-E^2) (erf u + erf v) / 2. Beyond an end both erf are close to -1 and +1, and their sum is
- * taken as a difference of erfc, which keeps the digits of the tail. E comes from the part of x - a
- * across the axis and v from b, not from differences of large squares or lengths. */
-#include "field/potential.h"
+ * v are the distances of x from the two ends, inwards along the axis, and E is the distance from
+ * the axis line. The term is exp(-E^2) (erf u + erf v) / 2. Beyond an end, both erf are close to -1
+ * and +1, and their sum is computed as a difference of erfc, which keeps the digits of the tail. E
+ * comes from the component of x - a across the axis, and v from b, so that no large squares or
+ * lengths are subtracted from each other.
+ *
+ * A term is largest half way along its segment, erf(k l / 2). Only a segment for which that is
+ * below the level can be hidden, which means one that is shorter than 0.17 of its radius. Such a
+ * segment is hidden unless its neighbours make up for it. The index of segments finds the
+ * neighbours, and is only built if there is such a segment. */
+#include "field/field.h"
 
 /* 1 / sqrt(pi) */
 static const double inv_sqrt_pi = 0.56418958354775628695;
 
-typedef struct Place {
+typedef struct TermPosition {
     double k;    /* 1/mm */
     double u, v; /* beyond a and before b, times k */
     Vec3 axis;   /* unit, a to b */
     Vec3 across; /* x less its foot on the axis line, mm */
-} Place;
+} TermPosition;
 
-static Place place_of(const FieldSegment *segment, Vec3 x)
+static TermPosition place_of(const FieldSegment *segment, Vec3 x)
 {
-    Place place = {.k = potential_k(segment->radius_mm)};
+    TermPosition place = {.k = potential_k(segment->radius_mm)};
     place.axis = vec3_normalized(vec3_sub(segment->b, segment->a));
     Vec3 from_a = vec3_sub(x, segment->a);
     double along = vec3_dot(from_a, place.axis);
@@ -27,7 +33,7 @@ static Place place_of(const FieldSegment *segment, Vec3 x)
     return place;
 }
 
-static double radial_factor(const Place *place)
+static double radial_factor(const TermPosition *place)
 {
     return elementary_exp(-place->k * place->k * vec3_dot(place->across, place->across));
 }
@@ -43,13 +49,13 @@ static double axial_factor(double u, double v)
 
 double potential_term(const FieldSegment *segment, Vec3 x)
 {
-    Place place = place_of(segment, x);
+    TermPosition place = place_of(segment, x);
     return radial_factor(&place) * axial_factor(place.u, place.v);
 }
 
 double potential_term_gradient(const FieldSegment *segment, Vec3 x, Vec3 *gradient)
 {
-    Place place = place_of(segment, x);
+    TermPosition place = place_of(segment, x);
     double radial = radial_factor(&place);
     double term = radial * axial_factor(place.u, place.v);
     double axial_slope = elementary_exp(-place.u * place.u) - elementary_exp(-place.v * place.v);
@@ -123,4 +129,40 @@ double potential_term_bound(const FieldSegment *segment, Box box)
 double potential_log_form(double phi)
 {
     return sqrt(-2 * elementary_log(fmin(fmax(phi, LOG_FORM_FLOOR), LOG_FORM_CEILING))) - 2;
+}
+
+/* Returns the largest sum of a group that the segment belongs to. */
+static double potential_of_groups(const Geometry *geometry, size_t segment, Vec3 x)
+{
+    const IndexLists *groups = &geometry->blend.groups, *members = &geometry->blend.members;
+    double largest = 0;
+    for (uint32_t i = groups->first[segment]; i < groups->first[segment + 1]; i++) {
+        uint32_t group = groups->items[i];
+        double sum = 0;
+        for (uint32_t k = members->first[group]; k < members->first[group + 1]; k++)
+            sum += potential_term(&geometry->segments[members->items[k]], x);
+        largest = fmax(largest, sum);
+    }
+    return largest;
+}
+
+Status surface_count_hidden(const Geometry *geometry, size_t *count, Err *err)
+{
+    FieldIndex *index = NULL;
+    size_t found = 0;
+    for (size_t i = 0; i < geometry->n_segments; i++) {
+        const FieldSegment *segment = &geometry->segments[i];
+        if (potential_term_peak(segment) >= FIELD_LEVEL)
+            continue;
+        bool all_blend = geometry->blend.n_groups == 0;
+        if (!index && all_blend)
+            TRY(fieldindex_build(geometry, &index, err));
+        Vec3 middle = vec3_scale(vec3_add(segment->a, segment->b), 0.5);
+        double potential = all_blend ? fieldindex_potential(index, middle)
+                                     : potential_of_groups(geometry, i, middle);
+        found += potential < FIELD_LEVEL;
+    }
+    fieldindex_free(index);
+    *count = found;
+    return STATUS_OK;
 }

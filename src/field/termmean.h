@@ -1,5 +1,5 @@
-/* The mean of numbers that segments have, at a point of an implicit surface. Exported by the room's
- * door. */
+/* The mean of the values of segments at a point of an implicit surface. Exported by the module's
+ * public header. */
 #ifndef CORCAST_FIELD_TERMMEAN_H
 #define CORCAST_FIELD_TERMMEAN_H
 
@@ -7,18 +7,20 @@
 #include "geom/geom.h"
 #include "scene/scene.h"
 
-/* Constant once made, shared by threads. */
+/* Immutable after construction; threads may share it. */
 typedef struct TermMean TermMean;
 
-/* Makes it of a potential or a blob, which is borrowed until termmean_free. O(n log n).
- * STATUS_MEMORY. */
+/* Prepares the means for a potential or a blob. The geometry is borrowed until termmean_free.
+ * Errors: STATUS_MEMORY. O(n log n). */
 MUST_CHECK Status termmean_new(const Geometry *geometry, TermMean **out, Err *err);
 void termmean_free(TermMean *mean);
 
-/* The mean of numbers[segment] at x over the segments whose term is felt there, weighted by these:
- * of all, or, where segments blend in groups, of the group whose sum is largest. Segments whose
- * number is NAN do not count; NAN where they have more than half of the weight, or nothing is felt.
- * Terms below RAY_TERM_CUTOFF are left out. O(log n) where few segments are near. */
-double termmean_at(const TermMean *mean, const double *numbers, Vec3 x);
+/* Returns the mean of values[segment] at x, weighted by the terms of the segments at x.
+ *
+ * If segments blend in groups, only the group with the largest sum counts. Segments whose value is
+ * NAN do not count. Terms below RAY_TERM_CUTOFF are left out. Returns NAN if segments with the
+ * value NAN have more than half of the weight, or if there is no term. O(log n) if few segments are
+ * near. */
+double termmean_at(const TermMean *mean, const double *values, Vec3 x);
 
 #endif

@@ -1,8 +1,8 @@
-/* The door of the room figure: a page of pictures, colour bars, scale bars, letters and text, as
- * PDF, as SVG and as pixels.
+/* The public header of the module figure: a page of pictures, diagrams, colour bars, scale bars,
+ * letters and text, as PDF, as SVG and as pixels.
  *
- * Lengths are mm from the page's upper left corner, x to the right and y down; sizes of text are
- * points. Whatever is drawn, pictures lie below all else, each on the pixel grid of the page's
+ * Lengths are mm from the page's upper left corner, x to the right and y down. Sizes of text are
+ * points. Pictures are drawn first, below all other items. Each is on the pixel grid of the page's
  * resolution, so that none is resampled. */
 #ifndef CORCAST_FIGURE_FIGURE_H
 #define CORCAST_FIGURE_FIGURE_H
@@ -17,25 +17,25 @@
 
 /* ---- fonts ----------------------------------------------------------------------------------- */
 
-/* Liberation Sans, regular and bold, of templates/fonts: no other font is looked for. */
+/* Liberation Sans, regular and bold, from templates/fonts. No other font is used. */
 typedef struct FigureFonts FigureFonts;
 
-/* Their files in the folder of templates; NULL ends the list. */
+/* The font files, relative to the folder of templates; NULL ends the list. */
 extern const char *const figure_font_files[];
 
-/* Loads them from the folder of templates, in *out (owned). STATUS_IO naming the file that is
- * missing or no font. */
+/* Loads the fonts from the folder of templates. Free *out with figurefonts_free. Errors: STATUS_IO,
+ * naming the file, if it is missing or not a font; STATUS_MEMORY. */
 MUST_CHECK Status figurefonts_load(const char *templates, FigureFonts **out, Err *err);
-void figurefonts_free(FigureFonts *fonts);
+void figurefonts_free(FigureFonts *fonts); /* NULL is allowed */
 
-/* The width of a line of UTF-8, in mm. */
+/* Returns the width of a line of UTF-8, in mm; 0 if memory runs out. */
 double figure_text_width(const FigureFonts *fonts, const char *text, double size_pt, bool bold);
 
-/* Letters that the font lacks, each once, in the order of the texts; the first FIGURE_LETTERS of
- * each kind. */
+/* Unicode characters that the font lacks, each once, in the order of the texts; the first
+ * FIGURE_LETTERS of each kind. */
 enum { FIGURE_LETTERS = 8 };
 typedef struct FigureLetters {
-    uint32_t substituted[FIGURE_LETTERS]; /* drawn by other letters: superscripts and subscripts by
+    uint32_t substituted[FIGURE_LETTERS]; /* drawn as other letters: superscripts and subscripts as
                                              small ones */
     uint32_t boxed[FIGURE_LETTERS];       /* drawn as a box */
     int n_substituted, n_boxed;
@@ -51,7 +51,7 @@ typedef struct FigureBox {
     double left, top, right, bottom;
 } FigureBox;
 
-/* sRGB. */
+/* Codes of sRGB. */
 typedef struct FigureColor {
     uint8_t rgb[3];
 } FigureColor;
@@ -93,11 +93,11 @@ typedef struct FigureBars {
 
 typedef struct FigureItem {
     FigureKind kind;
-    FigureBox box; /* that it covers */
+    FigureBox box; /* bounds of what the item covers */
     FigureColor color;
-    int n; /* corners of a shape or line */
+    int n; /* number of points in `at` */
     bool closed, upwards, bold;
-    FigureAlign align; /* of a text about at[0], which is on its baseline */
+    FigureAlign align; /* of a text at at[0], which is on its baseline */
     FigurePoint at[FIGURE_CORNERS];
     double width_mm;        /* of a line */
     double size_pt;         /* of a text */
@@ -116,38 +116,39 @@ typedef struct FigurePage {
     const FigureFonts *fonts; /* borrowed; NULL: the page has no text */
     FigureItem *items;        /* owned */
     size_t n, capacity;
-    bool failed;            /* memory ran out while something was added */
-    FigureLetters replaced; /* letters of all texts that the font lacks */
+    bool failed;            /* memory ran out while an item was added */
+    FigureLetters replaced; /* characters of all texts that the font lacks */
 } FigurePage;
 
-/* *page without items, of a size in mm; the fonts are borrowed. */
+/* Makes an empty page with a white background. The fonts are borrowed. */
 void figure_init(FigurePage *page, double width_mm, double height_mm, double dpi,
                  const FigureFonts *fonts);
 void figure_release(FigurePage *page);
-/* Pixels of the page at its resolution. */
+/* Returns a length in pixels of the page, rounded. */
 int figure_pixels(const FigurePage *page, double mm);
 
-/* All of these append an item, or mark the page as failed, which figure_check tells. */
+/* The following functions append an item. If memory runs out they mark the page as failed, which
+ * figure_check reports. */
 void figure_add_picture(FigurePage *page, const Picture *picture, int column, int row);
 void figure_add_box(FigurePage *page, FigureBox box, FigureColor color);
-/* `n` <= FIGURE_CORNERS points. */
+/* Append a polygon or polyline of `n` points, at most FIGURE_CORNERS. */
 void figure_add_shape(FigurePage *page, const FigurePoint *corner, int n, FigureColor color);
 void figure_add_line(FigurePage *page, const FigurePoint *corner, int n, bool closed,
                      double width_mm, FigureColor color);
 void figure_add_ramp(FigurePage *page, FigureBox box, bool upwards,
                      const FigureColor stops[FIGURE_STOPS]);
 
-/* A line drawing, borrowed, whose paper has its upper left corner at a point. */
+/* Appends a line drawing, borrowed. The upper left corner of its paper is at a point. */
 void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at,
                         FigureColor color);
 
-/* A diagram, borrowed, whose origin is at a point; it covers `width_mm` x `height_mm`. */
+/* Appends a diagram, borrowed, of `width_mm` x `height_mm`. Its origin is at a point. */
 void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, double width_mm,
                      double height_mm);
 
 typedef struct FigureText {
-    const char *text; /* one line of UTF-8; copied; control characters become blanks */
-    double x, y;      /* of the baseline */
+    const char *text; /* one line of UTF-8; copied. Control characters become blanks */
+    double x, y;      /* position on the baseline */
     double size_pt;
     bool bold;
     FigureAlign align;
@@ -155,67 +156,68 @@ typedef struct FigureText {
 } FigureText;
 void figure_add_text(FigurePage *page, const FigureText *text);
 
-/* STATUS_MEMORY when something could not be added. */
+/* Errors: STATUS_MEMORY if an item could not be added. */
 MUST_CHECK Status figure_check(const FigurePage *page, Err *err);
-/* Prints a warning on standard error for letters that the font lacks: one line for boxes and,
+/* Prints a warning on standard error for characters that the font lacks: one line for boxes and,
  * unless `quiet`, one for substitutes. Each line begins with `command`. */
 void figure_warn(const FigurePage *page, const char *command, bool quiet);
 
-/* What the items from number `first` on cover, and moves them. Not for pictures. */
+/* Returns the bounds of the items from index `first` on. */
 FigureBox figure_bounds(const FigurePage *page, size_t first);
+/* Moves the items from index `first` on. None may be a picture. */
 void figure_move(FigurePage *page, size_t first, double dx, double dy);
 
-/* ---- what explains a picture ------------------------------------------------------------------
- */
+/* ---- legends --------------------------------------------------------------------------------- */
 
 typedef struct FigureLegend {
     const ColorScale *scale;
-    ScaleOutside outside; /* of the values shown: what lies outside the bar gets its ends */
-    bool whole;           /* all values are whole numbers */
+    ScaleOutside outside; /* numbers of visible values that are outside the range */
+    bool whole;           /* all values are integers */
     const char *title;    /* UTF-8; a quantity with its unit in parentheses, if it has one */
-    bool across;          /* from the left to the right; else upwards */
+    bool across;          /* the bar runs from the left to the right; else upwards */
     double length_mm;     /* of the bar */
     double size_pt;
     FigureColor ink;
 } FigureLegend;
 
-/* Appends a colour bar with title, ticks at round numbers, pointed ends where values lie outside
- * the range, and a swatch for what has no value; one swatch a colour where whole numbers choose
- * among separate ones. It stands anywhere: figure_bounds and figure_move find and place it. */
+/* Appends a colour bar with title, ticks at round numbers, pointed ends where values are outside
+ * the range, and a swatch for vessels without a value. If integers select separate colours, appends
+ * one swatch per colour instead. The position is arbitrary: use figure_bounds and figure_move. */
 void figure_add_legend(FigurePage *page, const FigureLegend *legend);
 
-/* Likewise a bar of this length with its label above the middle. */
+/* Appends a scale bar of this length, with its label above the middle, at an arbitrary position. */
 void figure_add_scale_bar(FigurePage *page, double length_mm, const char *label, double size_pt,
                           FigureColor ink);
 
-/* At most FIGURE_TICKS round numbers within the range of a scale that does not count colours, about
- * `most` of them, ascending; how many. With `whole`, whole numbers alone. */
+/* Stores about `wanted` round numbers within the range of a scale, ascending, and returns how many.
+ * The scale must not count colours [colorscale_counts]. `whole`: only integers. */
 enum { FIGURE_TICKS = 32 };
-int figure_ticks(const ColorScale *scale, int most, bool whole, double ticks[FIGURE_TICKS]);
+int figure_ticks(const ColorScale *scale, int wanted, bool whole, double ticks[FIGURE_TICKS]);
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-/* What a page tells of itself; all is borrowed, one line each. */
+/* The provenance that a page states. All members are borrowed, one line each. */
 typedef struct FigureNotes {
     const char *templates;   /* the folder */
-    const char *description; /* what it shows */
+    const char *description; /* title of the page */
     const char *generator;   /* program and version */
-    const char *command;     /* that makes it */
+    const char *command;     /* the command line that makes the page */
 } FigureNotes;
 
-/* Appends the page as SVG: text as `text`, pictures as PNG within. STATUS_INPUT when a template is
- * missing or does not fit. */
+/* Appends the page as SVG: text as `text`, pictures as embedded PNG. `out` may have a stream.
+ * Errors: STATUS_INPUT if a template is missing or does not fit; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status figure_put_svg(const FigurePage *page, const FigureNotes *notes, Text *out,
                                  Err *err);
-/* Writes the page as PDF 1.5: text as text in embedded fonts, the same bytes each time. STATUS_IO;
- * STATUS_USAGE when a picture has more than FIGURE_PDF_SIDE pixels a side. */
+/* Writes the page as PDF 1.5: text as text in embedded fonts, the same bytes every time. Errors:
+ * STATUS_USAGE if a picture has more than FIGURE_PDF_SIDE pixels per side; STATUS_IO;
+ * STATUS_MEMORY. */
 enum { FIGURE_PDF_SIDE = 32767 };
 MUST_CHECK Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes,
                                    const char *path, Err *err);
 
-/* Draws the page over `rows`, of 8 or 16 bits and 3 channels, which are those of the page at its
- * resolution from row `first` on: their pictures, then all else, smoothed. The same pixels whatever
- * parts the page is drawn in. STATUS_MEMORY. */
+/* Draws the page over `rows`, a picture of 3 channels that is a band of the page at its resolution,
+ * from row `first` on. Items other than pictures are antialiased. The pixels do not depend on the
+ * bands. Errors: STATUS_MEMORY. */
 MUST_CHECK Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err);
 
 /* Draws bars alone over all of `color`, a plane of 3 channels, in linear light. Every pixel is the

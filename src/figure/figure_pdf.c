@@ -2,13 +2,14 @@
  * is always the same.
  *
  * cairo 1.16 ignores some failed allocations and crashes by others, and it keeps the fonts for as
- * long as the process lives. So it runs in a process of its own, and what it writes is checked
- * before the file is. */
+ * long as the process lives. It therefore runs in a process of its own. An allocation that cairo
+ * ignored leaves ENOMEM in errno. */
 #include "figure/fonts.h"
 #include "figure/items.h"
 
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -94,24 +95,24 @@ static Status put_ramp(void *context, const FigureItem *item, Err *err)
 }
 
 /* Glyphs of one size, which cairo draws at once. */
-typedef struct Run {
+typedef struct GlyphRun {
     const Glyph *glyph;
     size_t n;
     const char *text; /* that the glyphs stand for */
     int bytes;        /* of the text */
-} Run;
+} GlyphRun;
 
 /* Returns the run at the beginning of `n` glyphs, whose text begins at `text`. */
-static Run first_run(const Glyph *glyph, size_t n, const char *text)
+static GlyphRun first_run(const Glyph *glyph, size_t n, const char *text)
 {
-    Run run = {.glyph = glyph, .text = text};
+    GlyphRun run = {.glyph = glyph, .text = text};
     while (run.n < n && glyph[run.n].scale == glyph->scale)
         run.bytes += glyph[run.n++].bytes;
     return run;
 }
 
 /* A cluster says which bytes of the text a glyph stands for, so that it can be searched. */
-static Status show_run(const PdfPage *pdf, const FigureItem *item, const Run *run, Err *err)
+static Status show_run(const PdfPage *pdf, const FigureItem *item, const GlyphRun *run, Err *err)
 {
     const double size = item->size_pt * MM_PER_POINT;
     cairo_glyph_t *glyph = NULL;
@@ -140,7 +141,7 @@ static Status show_glyphs(const PdfPage *pdf, const FigureItem *item, const Glyp
 {
     const char *text = item->text;
     for (size_t i = 0; i < glyphs->n;) {
-        const Run run = first_run(&glyphs->glyph[i], glyphs->n - i, text);
+        const GlyphRun run = first_run(&glyphs->glyph[i], glyphs->n - i, text);
         TRY(show_run(pdf, item, &run, err));
         i += run.n;
         text += run.bytes;
@@ -258,43 +259,6 @@ static cairo_status_t take_bytes(void *bytes, const unsigned char *from, unsigne
     return text_chars(bytes) ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
 }
 
-/* Whether number `i` of the table of objects tells where object `i` begins. */
-static bool has_object(const Text *pdf, size_t table, size_t i)
-{
-    enum { ENTRY_BYTES = 20 };
-    const char *bytes = text_chars(pdf);
-    const size_t entry = table + i * ENTRY_BYTES;
-    char head[32];
-    if (entry + ENTRY_BYTES > pdf->length)
-        return false;
-    size_t at = strtoul(bytes + entry, NULL, 10), length;
-    length = (size_t)snprintf(head, sizeof head, "%zu 0 obj", i);
-    return at + length <= pdf->length && strncmp(bytes + at, head, length) == 0;
-}
-
-/* Returns true if the file is complete: its end, its table of objects, and every object of the
- * table are there. */
-static bool is_whole(const Text *pdf)
-{
-    static const char begin[] = "startxref\n", end[] = "%%EOF\n";
-    const char *bytes = text_chars(pdf);
-    if (!bytes)
-        return false;
-    size_t at = pdf->length < 40 ? 0 : pdf->length - 40, n = 0;
-    int length = 0;
-    if (at == 0 || strcmp(bytes + pdf->length - strlen(end), end) != 0)
-        return false;
-    const char *last = memmem(bytes + at, pdf->length - at, begin, strlen(begin));
-    size_t table = last ? strtoul(last + strlen(begin), NULL, 10) : 0;
-    if (table == 0 || table >= pdf->length ||
-        sscanf(bytes + table, "xref\n0 %zu\n%n", &n, &length) != 1 || length == 0)
-        return false;
-    for (size_t i = 1; i < n; i++)
-        if (!has_object(pdf, table + (size_t)length, i))
-            return false;
-    return n > 1;
-}
-
 /* cairo would write today's. */
 static void set_notes(cairo_surface_t *pdf, const FigureNotes *notes)
 {
@@ -326,6 +290,7 @@ static Status put_pdf(const void *context, Text *bytes, Err *err)
 {
     const PdfWork *work = context;
     const FigurePage *page = work->page;
+    errno = 0;
     cairo_surface_t *pdf = cairo_pdf_surface_create_for_stream(
         take_bytes, bytes, page->width_mm / MM_PER_POINT, page->height_mm / MM_PER_POINT);
     PdfPage self = {.cairo = cairo_create(pdf), .page = page};
@@ -333,7 +298,8 @@ static Status put_pdf(const void *context, Text *bytes, Err *err)
     cairo_scale(self.cairo, 1 / MM_PER_POINT, 1 / MM_PER_POINT);
     TRY(set_fonts(&self, err));
     TRY(put_page(&self, err));
-    return check(finish(self.cairo, pdf), err);
+    TRY(check(finish(self.cairo, pdf), err));
+    return errno == ENOMEM ? mem_out_of("for", "the page", err) : STATUS_OK;
 }
 
 Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, const char *path,
@@ -341,11 +307,10 @@ Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, const 
 {
     const PdfWork work = {page, notes};
     Text bytes = TEXT_INIT;
-    Status status = isolated_run(put_pdf, &work, "the page", &bytes, err);
-    if (status == STATUS_OK && !is_whole(&bytes))
-        status = mem_out_of("for", "the page", err);
-    if (status == STATUS_OK)
-        status = file_write_text(path, &bytes, err);
+    Status status;
+    TRY_GOTO(isolated_run(put_pdf, &work, "the page", &bytes, err));
+    status = file_write_text(path, &bytes, err);
+done:
     text_release(&bytes);
     return status;
 }

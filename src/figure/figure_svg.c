@@ -67,27 +67,27 @@ static Status put_text(void *context, const FigureItem *item, Err *err)
 
 static Status put_stops(const SvgPage *svg, const FigureItem *item, Text *out, Err *err)
 {
-    Status status = STATUS_OK;
-    for (int i = 0; i < FIGURE_STOPS && status == STATUS_OK; i++) {
+    for (int i = 0; i < FIGURE_STOPS; i++) {
         Markup parts = {0};
         text_printf(markup_text(&parts, "offset"), "%.6g", (double)i / (FIGURE_STOPS - 1));
         put_color(item->ramp[i], markup_text(&parts, "color"));
-        status = markup_put(&parts, svg->templates, "figure/stop.svg", out, err);
+        TRY(markup_put(&parts, svg->templates, "figure/stop.svg", out, err));
     }
-    return status;
+    return STATUS_OK;
 }
 
 static Status put_ramp(void *context, const FigureItem *item, Err *err)
 {
     const SvgPage *svg = context;
     Markup parts = {0};
-    Status status = put_stops(svg, item, markup_raw(&parts, "stops"), err);
+    Status status;
+    TRY_GOTO(put_stops(svg, item, markup_raw(&parts, "stops"), err));
     put_box(&item->box, &parts);
     text_printf(markup_text(&parts, "id"), "ramp%zu", (size_t)(item - svg->page->items));
     text_puts(markup_text(&parts, "y1"), item->upwards ? "1" : "0");
     text_puts(markup_text(&parts, "x2"), item->upwards ? "0" : "1");
-    if (status == STATUS_OK)
-        return markup_put(&parts, svg->templates, "figure/ramp.svg", svg->out, err);
+    status = markup_put(&parts, svg->templates, "figure/ramp.svg", svg->out, err);
+done:
     markup_release(&parts);
     return status;
 }
@@ -96,10 +96,11 @@ static Status put_picture(void *context, const FigureItem *item, Err *err)
 {
     const SvgPage *svg = context;
     Markup parts = {0};
+    Status status;
     put_box(&item->box, &parts);
-    Status status = picture_put_uri(item->picture, markup_raw(&parts, "png"), err);
-    if (status == STATUS_OK)
-        return markup_put(&parts, svg->templates, "figure/picture.svg", svg->out, err);
+    TRY_GOTO(picture_put_uri(item->picture, markup_raw(&parts, "png"), err));
+    status = markup_put(&parts, svg->templates, "figure/picture.svg", svg->out, err);
+done:
     markup_release(&parts);
     return status;
 }

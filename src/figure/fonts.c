@@ -31,16 +31,16 @@ static Status load_face(FigureFonts *fonts, int i, const char *path, Err *err)
 
 static Status load(FigureFonts *fonts, const char *templates, Err *err)
 {
-    Status status = STATUS_OK;
     if (FT_Init_FreeType(&fonts->library))
         return mem_out_of("to read", "fonts", err);
-    for (int i = 0; i < FACES && status == STATUS_OK; i++) {
+    for (int i = 0; i < FACES; i++) {
         char *path = NULL;
         TRY(file_join(templates, figure_font_files[i], &path, err));
-        status = load_face(fonts, i, path, err);
+        Status status = load_face(fonts, i, path, err);
         free(path);
+        TRY(status);
     }
-    return status;
+    return STATUS_OK;
 }
 
 Status figurefonts_load(const char *templates, FigureFonts **out, Err *err)
@@ -100,12 +100,12 @@ static uint32_t character(const char *at, size_t length)
 typedef enum SubstituteForm { SAME_SIZE, RAISED, LOWERED } SubstituteForm;
 
 /* How a letter that the font lacks is drawn by one that it has. */
-typedef struct Substitute {
+typedef struct FontSubstitute {
     uint32_t letter, drawn;
     SubstituteForm form;
-} Substitute;
+} FontSubstitute;
 
-static const Substitute substitutes[] = {
+static const FontSubstitute substitutes[] = {
     {0x2011, '-', SAME_SIZE},  {0x2070, '0', RAISED},    {0x2071, 'i', RAISED},
     {0x207a, '+', RAISED},     {0x207b, 0x2212, RAISED}, {0x207c, '=', RAISED},
     {0x207d, '(', RAISED},     {0x207e, ')', RAISED},    {0x208a, '+', LOWERED},
@@ -145,7 +145,7 @@ static Glyph find_glyph(FT_Face face, uint32_t letter, FigureLetters *replaced)
     if (glyph.index)
         return glyph;
     for (size_t i = 0; i < sizeof substitutes / sizeof *substitutes; i++) {
-        const Substitute *by = &substitutes[i];
+        const FontSubstitute *by = &substitutes[i];
         if (by->letter != letter)
             continue;
         list_letter(replaced->substituted, &replaced->n_substituted, letter);

@@ -1,4 +1,4 @@
-/* Lines of text as glyphs; private to the room figure. */
+/* Lines of text as glyphs; private to the module figure. */
 #ifndef CORCAST_FIGURE_FONTS_H
 #define CORCAST_FIGURE_FONTS_H
 
@@ -6,27 +6,27 @@
 #include <ft2build.h>
 #include FT_FREETYPE_H
 
-/* A letter of a line. Lengths are in sizes of the font. */
+/* A character of a line. Lengths are multiples of the font size. */
 typedef struct Glyph {
-    unsigned index; /* 0: the font's box for a letter that it lacks */
-    int bytes;      /* of the text */
-    double x;       /* from where the line begins */
-    double scale;   /* of the glyph: 1, or less for a substitute of a superscript or subscript */
-    double rise;    /* of the glyph's baseline above the line's */
+    unsigned index; /* of the glyph; 0: the font's box for a character that it lacks */
+    int bytes;      /* length of the character in the text */
+    double x;       /* distance from the beginning of the line */
+    double scale; /* size of the glyph: 1, or less for a substitute of a superscript or subscript */
+    double rise;  /* height of the glyph's baseline above the line's baseline */
 } Glyph;
 
 typedef struct Glyphs {
     Glyph *glyph; /* owned */
     size_t n;
-    double width;           /* in sizes of the font */
-    FigureLetters replaced; /* letters of the text that the font lacks */
+    double width;           /* multiple of the font size */
+    FigureLetters replaced; /* characters of the text that the font lacks */
 } Glyphs;
 
-/* Adds those letters of `from` that `to` does not list yet. */
+/* Adds the characters of `from` that are not in `to`. */
 void letters_add(FigureLetters *to, const FigureLetters *from);
 
-/* Lays out a line of text. A letter that the font lacks becomes a substitute or a box.
- * STATUS_MEMORY; *out is owned (glyphs_release). */
+/* Lays out a line of text. A character that the font lacks becomes a substitute or a box. Release
+ * *out with glyphs_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status fonts_shape(const FigureFonts *fonts, const char *text, bool bold, Glyphs *out,
                               Err *err);
 void glyphs_release(Glyphs *glyphs);
@@ -34,7 +34,7 @@ void glyphs_release(Glyphs *glyphs);
 FT_Library fonts_library(const FigureFonts *fonts);
 FT_Face fonts_face(const FigureFonts *fonts, bool bold);
 
-/* How high capitals are, and how far letters reach below the baseline, over the font's size. */
+/* Height of capitals, and depth of letters below the baseline, over the font size. */
 #define FONT_CAPITALS 0.73
 #define FONT_DESCENT 0.21
 

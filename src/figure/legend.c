@@ -8,28 +8,29 @@
 #include <string.h>
 
 /* A legend being built: mm. */
-typedef struct Layout {
+typedef struct LegendLayout {
     FigurePage *page;
     const FigureLegend *legend;
     double em; /* size of the text */
     double length;
-} Layout;
+} LegendLayout;
 
 static const double bar_ems = 1.1, tick_ems = 0.25, gap_ems = 0.3, point_ems = 0.9, line_mm = 0.18;
 
 /* A place on the page: upwards the bar begins at its lower end. */
-static FigurePoint place(const Layout *layout, double along, double across)
+static FigurePoint place(const LegendLayout *layout, double along, double across)
 {
     return layout->legend->across ? (FigurePoint){along, across} : (FigurePoint){across, -along};
 }
 
-static FigureBox box_of(const Layout *layout, double from, double to)
+static FigureBox box_of(const LegendLayout *layout, double from, double to)
 {
     FigurePoint a = place(layout, from, 0), b = place(layout, to, bar_ems * layout->em);
     return (FigureBox){fmin(a.x, b.x), fmin(a.y, b.y), fmax(a.x, b.x), fmax(a.y, b.y)};
 }
 
-static void put_text(const Layout *layout, const char *text, double x, double y, FigureAlign align)
+static void put_text(const LegendLayout *layout, const char *text, double x, double y,
+                     FigureAlign align)
 {
     const FigureText line = {.text = text,
                              .x = x,
@@ -41,7 +42,7 @@ static void put_text(const Layout *layout, const char *text, double x, double y,
 }
 
 /* A label beside the bar, or below it, whose middle is at a place along it. */
-static void put_label(const Layout *layout, double along, double across, const char *text)
+static void put_label(const LegendLayout *layout, double along, double across, const char *text)
 {
     FigurePoint at = place(layout, along, across);
     double capitals = FONT_CAPITALS * layout->em;
@@ -82,7 +83,7 @@ static int decimals_of(const double *values, int n)
     return 6;
 }
 
-static void put_tick(const Layout *layout, double along, const char *label)
+static void put_tick(const LegendLayout *layout, double along, const char *label)
 {
     double begin = bar_ems * layout->em, end = begin + tick_ems * layout->em;
     const FigurePoint line[] = {place(layout, along, begin), place(layout, along, end)};
@@ -92,7 +93,7 @@ static void put_tick(const Layout *layout, double along, const char *label)
 
 /* Numbers with a tick each, at their places along the bar; each with its own decimals on a
  * logarithmic scale. */
-static void put_ticks(const Layout *layout, const double *values, const double *along, int n)
+static void put_ticks(const LegendLayout *layout, const double *values, const double *along, int n)
 {
     int decimals = decimals_of(values, n);
     for (int i = 0; i < n; i++) {
@@ -108,7 +109,7 @@ static void put_ticks(const Layout *layout, const double *values, const double *
 }
 
 /* The pointed end beyond the bar for values outside the range. */
-static void put_point(const Layout *layout, double from, double to, const float linear[3])
+static void put_point(const LegendLayout *layout, double from, double to, const float linear[3])
 {
     double width = bar_ems * layout->em;
     const FigurePoint corner[] = {place(layout, from, 0), place(layout, from, width),
@@ -116,7 +117,7 @@ static void put_point(const Layout *layout, double from, double to, const float 
     figure_add_shape(layout->page, corner, 3, figure_color(linear));
 }
 
-static void put_points(const Layout *layout)
+static void put_points(const LegendLayout *layout)
 {
     const FigureLegend *legend = layout->legend;
     double gap = 0.12 * layout->em, point = point_ems * layout->em;
@@ -131,7 +132,7 @@ static void put_points(const Layout *layout)
     }
 }
 
-static void put_ramp(const Layout *layout)
+static void put_ramp(const LegendLayout *layout)
 {
     const FigureLegend *legend = layout->legend;
     FigureColor stops[FIGURE_STOPS];
@@ -161,7 +162,7 @@ static double bound_of(const ColorScale *scale, int step)
 
 /* Classes of one height each; the numbers between them, as far as there is room for them, and of a
  * range also at its ends. */
-static void put_classes(const Layout *layout)
+static void put_classes(const LegendLayout *layout)
 {
     const ColorScale *scale = layout->legend->scale;
     int steps = colorscale_steps(scale), n = 0;
@@ -186,7 +187,8 @@ static void put_classes(const Layout *layout)
         put_points(layout);
 }
 
-static void put_swatch(const Layout *layout, double from, const float linear[3], const char *label)
+static void put_swatch(const LegendLayout *layout, double from, const float linear[3],
+                       const char *label)
 {
     double side = bar_ems * layout->em;
     figure_add_box(layout->page, box_of(layout, from, from + side), figure_color(linear));
@@ -194,7 +196,7 @@ static void put_swatch(const Layout *layout, double from, const float linear[3],
 }
 
 /* A swatch for each whole number of the range, from above, or as many as there are colours. */
-static double put_counts(const Layout *layout)
+static double put_counts(const LegendLayout *layout)
 {
     const ColorScale *scale = layout->legend->scale;
     double first = scale->range[0], values = scale->range[1] - first + 1;
@@ -211,7 +213,7 @@ static double put_counts(const Layout *layout)
     return n * pitch;
 }
 
-static void put_none(const Layout *layout)
+static void put_none(const LegendLayout *layout)
 {
     const FigureLegend *legend = layout->legend;
     float color[3];
@@ -224,7 +226,7 @@ static void put_none(const Layout *layout)
 
 /* The title above all that is there: one line, or the unit on a line of its own where that is
  * narrower than twice the rest. */
-static void put_title(const Layout *layout, size_t first)
+static void put_title(const LegendLayout *layout, size_t first)
 {
     const FigureLegend *legend = layout->legend;
     const char *unit = strrchr(legend->title, '(');
@@ -245,10 +247,10 @@ static void put_title(const Layout *layout, size_t first)
 void figure_add_legend(FigurePage *page, const FigureLegend *legend)
 {
     const size_t first = page->n;
-    Layout layout = {.page = page,
-                     .legend = legend,
-                     .em = legend->size_pt * MM_PER_POINT,
-                     .length = legend->length_mm};
+    LegendLayout layout = {.page = page,
+                           .legend = legend,
+                           .em = legend->size_pt * MM_PER_POINT,
+                           .length = legend->length_mm};
     if (colorscale_counts(legend->scale))
         layout.length = put_counts(&layout);
     else if (colorscale_steps(legend->scale))

@@ -8,17 +8,17 @@
 
 enum { LEAF_SIZE = 2, BINS = 16 };
 
-typedef struct Item {
+typedef struct BoxTreeItem {
     Box box;
     Vec3 center;
     uint32_t number;
-} Item;
+} BoxTreeItem;
 
-typedef struct Builder {
-    Item *items;
+typedef struct BoxTreeBuilder {
+    BoxTreeItem *items;
     BoxNode *nodes;
     uint32_t n_nodes;
-} Builder;
+} BoxTreeBuilder;
 
 /* Half the surface of a box: the chance that a ray meets it. */
 static double box_area(Box box)
@@ -48,14 +48,14 @@ static Scale scale_of(Box centers, int axis, uint32_t n)
     return (Scale){bins, low, size > 0 ? bins / size : 0};
 }
 
-static int bin_of(const Item *item, int axis, Scale scale)
+static int bin_of(const BoxTreeItem *item, int axis, Scale scale)
 {
     int bin = (int)((vec3_component(item->center, axis) - scale.low) * scale.per_bin);
     return bin < scale.bins ? bin : scale.bins - 1;
 }
 
 /* The cheapest split along an axis by the surface area heuristic. */
-static Split best_split(const Item *items, uint32_t n, Box centers, int axis)
+static Split best_split(const BoxTreeItem *items, uint32_t n, Box centers, int axis)
 {
     Box box[BINS];
     uint32_t count[BINS] = {0};
@@ -89,24 +89,24 @@ static Split best_split(const Item *items, uint32_t n, Box centers, int axis)
 }
 
 /* Moves the items of the first child to the front; how many they are. */
-static uint32_t partition(Item *items, uint32_t n, Box centers, Split split)
+static uint32_t partition(BoxTreeItem *items, uint32_t n, Box centers, Split split)
 {
     uint32_t front = 0;
     Scale scale = scale_of(centers, split.axis, n);
     for (uint32_t i = 0; i < n; i++) {
         if (bin_of(&items[i], split.axis, scale) >= split.bin)
             continue;
-        Item item = items[i];
+        BoxTreeItem item = items[i];
         items[i] = items[front];
         items[front++] = item;
     }
     return front;
 }
 
-static uint32_t build_node(Builder *builder, uint32_t first, uint32_t n, int depth)
+static uint32_t build_node(BoxTreeBuilder *builder, uint32_t first, uint32_t n, int depth)
 {
     uint32_t index = builder->n_nodes++;
-    Item *items = builder->items + first;
+    BoxTreeItem *items = builder->items + first;
     Box box = box_empty(), centers = box_empty();
     for (uint32_t i = 0; i < n; i++) {
         box = box_union(box, items[i].box);
@@ -133,7 +133,7 @@ static uint32_t build_node(Builder *builder, uint32_t first, uint32_t n, int dep
 
 Status boxtree_build(const Box *boxes, size_t n, BoxTree *out, Err *err)
 {
-    Builder builder = {0};
+    BoxTreeBuilder builder = {0};
     BoxTree made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&builder.items, n, sizeof *builder.items, "boxes", err));
@@ -142,7 +142,8 @@ Status boxtree_build(const Box *boxes, size_t n, BoxTree *out, Err *err)
     builder.nodes = made.nodes;
     for (size_t i = 0; i < n; i++) {
         double slack = 1e-12 * (vec3_length(boxes[i].low) + vec3_length(boxes[i].high));
-        builder.items[i] = (Item){box_padded(boxes[i], slack), box_center(boxes[i]), (uint32_t)i};
+        builder.items[i] =
+            (BoxTreeItem){box_padded(boxes[i], slack), box_center(boxes[i]), (uint32_t)i};
     }
     build_node(&builder, 0, (uint32_t)n, 0);
     for (size_t i = 0; i < n; i++)

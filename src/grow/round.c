@@ -22,8 +22,8 @@
 enum { EDGE_2D = 34, EDGE_3D = 10 };
 /* With fewer tiles, or fewer points in a tile, one thread connects all points. */
 enum { LEAST_TILES = 4, LEAST_POINTS = 16 };
-/* In a tile, at most one point in POINTS_PER_CONNECTED may be connected; one in three is expected.
- */
+/* In a tile, at most one point in POINTS_PER_CONNECTED may be connected; one in three is
+ * expected. */
 enum { POINTS_PER_CONNECTED = 2 };
 /* How many points ahead memory is asked for. */
 enum { AHEAD = 2 };
@@ -141,7 +141,7 @@ static Status connect(const Running *running, int worker, Tile *tile, const Conn
     grid_remove(&site->grid, connection->segment);
     network_split(
         &site->net,
-        &(Split){
+        &(NetworkSplit){
             connection->segment, connection->bifurcation, connection->terminal, {made[0], made[1]}},
         tile->zone);
     for (int i = 0; i < ENDS; i++) {

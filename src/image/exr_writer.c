@@ -166,5 +166,4 @@ const RowEncoder exr_encoder = {.format = "OpenEXR",
                                 .end = end,
                                 .release = release,
                                 .folds = 2 * DEFLATE_MAX_RATIO, /* halves */
-                                .keeps_dpi = true,
-                                .floats = true};
+                                .traits = {.keeps_dpi = true, .floats = true}};

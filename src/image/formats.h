@@ -103,20 +103,15 @@ typedef struct ImageDecoder {
 extern const ImageDecoder png_decoder, pnm_decoder, pfm_decoder, exr_decoder, tiff_decoder,
     jpeg_decoder, webp_decoder;
 
+/* Returns the decoder of a file by its first bytes; NULL if the format is unknown. */
+const ImageDecoder *imagedecoder_of(const ImageBytes *file);
+
 /* Makes the state of a decoder for a file in memory, or, if `stream` is not NULL, for the rows of a
  * stream, which is borrowed. *out is owned: close it with imageinput_close. Errors:
  * STATUS_MEMORY. */
 MUST_CHECK Status imageinput_open(const ImageDecoder *decoder, const ImageBytes *file, FILE *stream,
                                   ImageInput **out, Err *err);
 void imageinput_close(ImageInput *input); /* NULL is allowed */
-
-/* What happens to an alpha channel that is not opaque throughout. An opaque one is always left
- * out. */
-typedef enum ImageAlpha {
-    ALPHA_REFUSED,
-    ALPHA_KEPT,   /* grey pictures become coloured */
-    ALPHA_IS_MASK /* as picture_read_mask reads it */
-} ImageAlpha;
 
 /* Removes or converts the alpha channel of an image as a decoder leaves it, the last of 2 or 4
  * channels. Errors: STATUS_INPUT, naming the file, if the image is transparent and that is
@@ -159,13 +154,10 @@ typedef struct RowEncoder {
     GuardedWork *rows;  /* writes the next rows */
     GuardedWork *end;   /* writes what comes after the rows; NULL: nothing */
     void (*release)(
-        void *self);  /* releases what the state owns; runs in the guard; NULL: nothing */
-    int channels;     /* in the file; 0: as the form states */
-    double folds;     /* a file is at most this many times smaller than its values; 0: unknown */
-    bool keeps_dpi;   /* stores the resolution on paper */
-    bool has_profile; /* stores an ICC profile, and codes of cyan, magenta, yellow and black */
-    bool keeps_alpha; /* stores codes of red, green, blue and alpha */
-    bool floats;      /* stores floats, not codes */
+        void *self); /* releases what the state owns; runs in the guard; NULL: nothing */
+    int channels;    /* in the file; 0: as the form states */
+    double folds;    /* a file is at most this many times smaller than its values; 0: unknown */
+    ImageTraits traits;
 } RowEncoder;
 
 extern const RowEncoder ppm_encoder, pgm_encoder, png_encoder, tiff_encoder, jpeg_encoder,

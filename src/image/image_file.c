@@ -10,8 +10,7 @@ static const ImageDecoder *const decoders[] = {&png_decoder, &pnm_decoder,  &pfm
                                                &exr_decoder, &tiff_decoder, &jpeg_decoder,
                                                &webp_decoder};
 
-/* Returns NULL if the file is of no known format. */
-static const ImageDecoder *decoder_of(const ImageBytes *file)
+const ImageDecoder *imagedecoder_of(const ImageBytes *file)
 {
     for (size_t i = 0; i < sizeof decoders / sizeof *decoders; i++)
         if (decoders[i]->is(file))
@@ -22,7 +21,7 @@ static const ImageDecoder *decoder_of(const ImageBytes *file)
 static bool is_known(const char *start, size_t count)
 {
     const ImageBytes file = {.bytes = (const uint8_t *)start, .size = count};
-    return decoder_of(&file) != NULL;
+    return imagedecoder_of(&file) != NULL;
 }
 
 static const char *name_of(const char *path)
@@ -64,7 +63,7 @@ void imageinput_close(ImageInput *input)
 /* Decodes a file in memory, whose layer may be NULL. */
 static Status decode(const ImageBytes *file, ImageAlpha alpha, Image *image, Err *err)
 {
-    const ImageDecoder *decoder = decoder_of(file);
+    const ImageDecoder *decoder = imagedecoder_of(file);
     if (file->layer && !decoder->has_layers)
         return err_set(err, STATUS_INPUT, "%s: has no layer '%s': only OpenEXR files have layers",
                        file->name, file->layer);
@@ -82,9 +81,7 @@ done:
     return status;
 }
 
-/* `layer` may be NULL. */
-static Status read_image(Image *image, const char *path, const char *layer, ImageAlpha alpha,
-                         Err *err)
+Status image_read(Image *image, const char *path, ImageAlpha alpha, const char *layer, Err *err)
 {
     static const FileForm form = {
         .name = "a PBM, PGM, PPM, PAM, PFM, PNG, TIFF, OpenEXR, JPEG or WebP file",
@@ -99,26 +96,10 @@ static Status read_image(Image *image, const char *path, const char *layer, Imag
     return status;
 }
 
-Status image_read(Image *image, const char *path, Err *err)
-{
-    return read_image(image, path, NULL, ALPHA_REFUSED, err);
-}
-
-Status image_read_transparent(Image *image, const char *path, Err *err)
-{
-    return read_image(image, path, NULL, ALPHA_KEPT, err);
-}
-
-Status image_read_layer(Image *image, const char *path, const char *layer, bool transparent,
-                        Err *err)
-{
-    return read_image(image, path, layer, transparent ? ALPHA_KEPT : ALPHA_REFUSED, err);
-}
-
-static Status read_picture(Picture *picture, const char *path, ImageAlpha alpha, Err *err)
+Status picture_read(Picture *picture, const char *path, ImageAlpha alpha, Err *err)
 {
     Image image;
-    TRY(read_image(&image, path, NULL, alpha, err));
+    TRY(image_read(&image, path, alpha, NULL, err));
     if (image.plane.values) {
         image_release(&image);
         return err_set(err, STATUS_INPUT,
@@ -128,25 +109,10 @@ static Status read_picture(Picture *picture, const char *path, ImageAlpha alpha,
     return STATUS_OK;
 }
 
-Status picture_read(Picture *picture, const char *path, Err *err)
-{
-    return read_picture(picture, path, ALPHA_REFUSED, err);
-}
-
-Status picture_read_transparent(Picture *picture, const char *path, Err *err)
-{
-    return read_picture(picture, path, ALPHA_KEPT, err);
-}
-
-Status picture_read_mask(Picture *picture, const char *path, Err *err)
-{
-    return read_picture(picture, path, ALPHA_IS_MASK, err);
-}
-
-static Status read_plane(Plane *plane, const char *path, ImageAlpha alpha, Err *err)
+Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, Err *err)
 {
     Image image;
-    TRY(read_image(&image, path, NULL, alpha, err));
+    TRY(image_read(&image, path, alpha, NULL, err));
     if (!image.plane.values) {
         image_release(&image);
         return err_set(
@@ -157,14 +123,4 @@ static Status read_plane(Plane *plane, const char *path, ImageAlpha alpha, Err *
     }
     *plane = image.plane;
     return STATUS_OK;
-}
-
-Status plane_read(Plane *plane, const char *path, Err *err)
-{
-    return read_plane(plane, path, ALPHA_REFUSED, err);
-}
-
-Status plane_read_transparent(Plane *plane, const char *path, Err *err)
-{
-    return read_plane(plane, path, ALPHA_KEPT, err);
 }

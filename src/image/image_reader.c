@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const ImageDecoder *const decoders[] = {&png_decoder, &tiff_decoder};
-
 struct ImageReader {
     ImageInput *input; /* owned */
     FILE *stream;      /* owned */
@@ -25,18 +23,15 @@ Status image_no_rows(const char *name, Err *err)
         name);
 }
 
-/* *decoder is NULL if the file is of no format that is read row by row. */
 static Status choose_decoder(ImageReader *reader, const ImageDecoder **decoder, Err *err)
 {
-    uint8_t start[8];
+    uint8_t start[16];
     const ImageBytes file = {.bytes = start, .size = fread(start, 1, sizeof start, reader->stream)};
     if (ferror(reader->stream))
         return err_set(err, STATUS_IO, "%s: cannot be read: %s", reader->path, strerror(errno));
     rewind(reader->stream);
-    for (size_t i = 0; i < sizeof decoders / sizeof *decoders && !*decoder; i++)
-        if (decoders[i]->is(&file))
-            *decoder = decoders[i];
-    return STATUS_OK;
+    *decoder = imagedecoder_of(&file);
+    return *decoder && (*decoder)->begin ? STATUS_OK : image_no_rows(reader->path, err);
 }
 
 static Status begin(ImageReader *reader, const char *path, Err *err)
@@ -50,8 +45,6 @@ static Status begin(ImageReader *reader, const char *path, Err *err)
     if (!reader->stream)
         return err_set(err, STATUS_INPUT, "%s: cannot be read: %s", path, strerror(errno));
     TRY(choose_decoder(reader, &decoder, err));
-    if (!decoder)
-        return image_no_rows(path, err);
     const ImageBytes file = {.name = reader->path};
     TRY(imageinput_open(decoder, &file, reader->stream, &reader->input, err));
     return guard_run(&reader->input->guard, decoder->begin, reader->input, err);
@@ -85,7 +78,7 @@ Status imagereader_codes(ImageReader *reader, Picture *rows, Err *err)
     const ImageForm *form = &input->form;
     assert(rows->width == form->width && rows->channels == form->channels &&
            rows->bits == form->bits && reader->next + rows->height <= form->height);
-    input->rows = rows->bits == 8 ? (void *)rows->codes8 : (void *)rows->codes16;
+    input->rows = picture_codes(rows);
     input->n_rows = rows->height;
     TRY(guard_run(&input->guard, input->decoder->rows, input, err));
     reader->next += rows->height;

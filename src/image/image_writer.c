@@ -68,7 +68,7 @@ static Status begin_output(ImageOutput *output, Err *err)
 {
     const ImageForm *form = &output->form;
     output->row_bytes = (size_t)form->width * (size_t)form->channels * (size_t)form->bits / 8;
-    if (output->encoder->has_profile) {
+    if (output->encoder->traits.has_profile) {
         TRY(image_profile(form, &output->profile, err));
         TRY(describe(output, err));
     }
@@ -90,11 +90,12 @@ static Status open_output(const RowEncoder *encoder, FILE *stream, const ImageFo
     output->encoder = encoder;
     output->stream = stream;
     output->form = *form;
-    Status status = begin_output(output, err);
-    if (status == STATUS_OK)
-        *out = output;
-    else
-        free_output(output);
+    Status status;
+    TRY_GOTO(begin_output(output, err));
+    *out = output;
+    return STATUS_OK;
+done:
+    free_output(output);
     return status;
 }
 
@@ -156,28 +157,10 @@ static const RowEncoder *encoder_of(const char *path)
     return NULL;
 }
 
-bool image_keeps_dpi(const char *path)
+ImageTraits image_traits(const char *path)
 {
     const RowEncoder *encoder = encoder_of(path);
-    return encoder && encoder->keeps_dpi;
-}
-
-bool image_keeps_inks(const char *path)
-{
-    const RowEncoder *encoder = encoder_of(path);
-    return encoder && encoder->has_profile;
-}
-
-bool image_keeps_alpha(const char *path)
-{
-    const RowEncoder *encoder = encoder_of(path);
-    return encoder && encoder->keeps_alpha;
-}
-
-bool image_is_floats(const char *path)
-{
-    const RowEncoder *encoder = encoder_of(path);
-    return encoder && encoder->floats;
+    return encoder ? encoder->traits : (ImageTraits){0};
 }
 
 static Status check_inks(const char *path, const ImageForm *form, const RowEncoder *encoder,
@@ -185,7 +168,7 @@ static Status check_inks(const char *path, const ImageForm *form, const RowEncod
 {
     if (!form->packing.inks)
         return STATUS_OK;
-    if (!encoder->has_profile)
+    if (!encoder->traits.has_profile)
         return err_set(err, STATUS_USAGE, "%s: only .tif and .jpg hold colours of a press", path);
     if (form->channels != 3)
         return err_set(err, STATUS_USAGE, "%s: only opaque pictures in colour go to a press", path);
@@ -199,11 +182,11 @@ static Status choose_encoder(const char *path, const ImageForm *form, const RowE
     *encoder = encoder_of(path);
     if (form->bits == 32 && *encoder != &exr_encoder)
         *encoder = &pfm_encoder;
-    if (!*encoder || (*encoder)->floats != (form->bits == 32))
+    if (!*encoder || (*encoder)->traits.floats != (form->bits == 32))
         return err_set(err, STATUS_USAGE,
                        "%s: the extension of a picture must be .ppm, .pgm, .png, .tif or .jpg",
                        path);
-    if (form->channels == 4 && !(*encoder)->keeps_alpha && !form->named)
+    if (form->channels == 4 && !(*encoder)->traits.keeps_alpha && !form->named)
         return err_set(err, STATUS_USAGE, "%s: a transparent picture must be .png, .tif or .exr",
                        path);
     if (*encoder == &pgm_encoder && form->channels != 1)
@@ -276,27 +259,23 @@ static Status write_inked(ImageWriter *writer, const uint8_t *values, int n, Err
 static Status write_rows(ImageWriter *writer, const void *values, int n, Err *err)
 {
     assert(n >= 0 && writer->next + n <= writer->form.height);
-    Status status = writer->inked_row ? write_inked(writer, values, n, err)
-                                      : put_rows(writer->output, values, n, err);
+    Status status;
+    TRY_GOTO(writer->inked_row ? write_inked(writer, values, n, err)
+                               : put_rows(writer->output, values, n, err));
     writer->next += n;
-    if (status == STATUS_OK && ferror(writer->file.stream))
-        status = err_set(err, STATUS_IO, "writing failed: %s", strerror(errno));
-    if (status != STATUS_OK)
-        err_prefix(err, "%s: ", writer->path);
+    if (!ferror(writer->file.stream))
+        return STATUS_OK;
+    status = err_set(err, STATUS_IO, "writing failed: %s", strerror(errno));
+done:
+    err_prefix(err, "%s: ", writer->path);
     return status;
-}
-
-/* Returns the codes of all rows. */
-static const void *codes_of(const Picture *picture)
-{
-    return picture->bits == 8 ? (const void *)picture->codes8 : (const void *)picture->codes16;
 }
 
 Status imagewriter_codes(ImageWriter *writer, const Picture *rows, Err *err)
 {
     assert(rows->width == writer->form.width && rows->channels == writer->form.channels &&
            rows->bits == writer->form.bits);
-    return write_rows(writer, codes_of(rows), rows->height, err);
+    return write_rows(writer, picture_codes(rows), rows->height, err);
 }
 
 Status imagewriter_floats(ImageWriter *writer, const Plane *rows, Err *err)
@@ -312,11 +291,11 @@ Status imagewriter_commit(ImageWriter *writer, Err *err)
     assert(writer->next == writer->form.height);
     Status status = end_output(writer->output, err);
     free_output(writer->output);
-    if (status == STATUS_OK) {
-        status = outfile_commit(&writer->file, err);
-    } else {
+    if (status != STATUS_OK) {
         err_prefix(err, "%s: ", writer->path);
         outfile_discard(&writer->file);
+    } else {
+        status = outfile_commit(&writer->file, err);
     }
     release(writer);
     return status;
@@ -343,44 +322,34 @@ static ImageForm form_of(const Picture *picture, Encoding encoding, const ImageN
                        .notes = notes};
 }
 
-/* The last step of writing a whole image. */
+/* Completes the file of a whole image. */
 static Status finish(ImageWriter *writer, Status status, Err *err)
 {
-    if (status == STATUS_OK)
-        return imagewriter_commit(writer, err);
-    imagewriter_discard(writer);
-    return status;
+    if (status != STATUS_OK) {
+        imagewriter_discard(writer);
+        return status;
+    }
+    return imagewriter_commit(writer, err);
 }
 
 Status picture_write(const Picture *picture, const char *path, Encoding encoding,
-                     const ImageNotes *notes, Err *err)
-{
-    return picture_write_packed(picture, path, encoding, notes, (ImagePacking){0}, err);
-}
-
-Status picture_write_packed(const Picture *picture, const char *path, Encoding encoding,
-                            const ImageNotes *notes, ImagePacking packing, Err *err)
+                     const ImageNotes *notes, const ImagePacking *packing, Err *err)
 {
     ImageForm form = form_of(picture, encoding, notes);
-    form.packing = packing;
     ImageWriter *writer;
+    if (packing)
+        form.packing = *packing;
     TRY(imagewriter_open(&writer, path, &form, err));
     return finish(writer, imagewriter_codes(writer, picture, err), err);
 }
 
-Status plane_write(const Plane *plane, const char *path, Err *err)
+Status plane_write(const Plane *plane, const char *path, const ImagePacking *packing, Err *err)
 {
-    return plane_write_packed(plane, path, (ImagePacking){0}, err);
-}
-
-Status plane_write_packed(const Plane *plane, const char *path, ImagePacking packing, Err *err)
-{
-    const ImageForm form = {.width = plane->width,
-                            .height = plane->height,
-                            .channels = plane->channels,
-                            .bits = 32,
-                            .packing = packing};
+    ImageForm form = {
+        .width = plane->width, .height = plane->height, .channels = plane->channels, .bits = 32};
     ImageWriter *writer;
+    if (packing)
+        form.packing = *packing;
     TRY(imagewriter_open(&writer, path, &form, err));
     return finish(writer, imagewriter_floats(writer, plane, err), err);
 }
@@ -391,7 +360,7 @@ static Status stream_png(const Picture *picture, const ImageForm *form, FILE *st
     ImageOutput *output = NULL;
     Status status;
     TRY_GOTO(open_output(&png_encoder, stream, form, &output, err));
-    TRY_GOTO(put_rows(output, codes_of(picture), picture->height, err));
+    TRY_GOTO(put_rows(output, picture_codes(picture), picture->height, err));
     status = end_output(output, err);
 done:
     free_output(output);
@@ -419,5 +388,17 @@ Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNote
                : err_set(err, STATUS_MEMORY, "out of memory: no room for a PNG of %zu bytes", size);
 done:
     free(bytes);
+    return status;
+}
+
+Status picture_put_uri(const Picture *picture, Text *out, Err *err)
+{
+    Text png = TEXT_INIT;
+    Status status;
+    TRY_GOTO(picture_to_png(picture, ENCODING_SRGB, NULL, &png, err));
+    text_puts(out, "data:image/png;base64,");
+    text_base64(out, text_chars(&png), png.length);
+done:
+    text_release(&png);
     return status;
 }

@@ -96,11 +96,12 @@ static Status srgb_profile(ImageProfile *profile, Err *err)
 {
     Guard guard = {.format = "ICC", .name = "the colour profile"};
     ImageProfile made = {0};
-    Status status = guard_run(&guard, make_srgb, &made, err);
-    if (status == STATUS_OK)
-        *profile = made;
-    else
-        free(made.bytes);
+    Status status;
+    TRY_GOTO(guard_run(&guard, make_srgb, &made, err));
+    *profile = made;
+    return STATUS_OK;
+done:
+    free(made.bytes);
     return status;
 }
 

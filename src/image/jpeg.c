@@ -303,5 +303,4 @@ const RowEncoder jpeg_encoder = {.format = "JPEG",
                                  .rows = write_rows,
                                  .end = end,
                                  .release = release_writer,
-                                 .keeps_dpi = true,
-                                 .has_profile = true};
+                                 .traits = {.keeps_dpi = true, .has_profile = true}};

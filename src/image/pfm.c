@@ -122,4 +122,4 @@ const RowEncoder pfm_encoder = {.format = "PFM",
                                 .rows = write_rows,
                                 .release = release,
                                 .folds = 1,
-                                .floats = true};
+                                .traits = {.floats = true}};

@@ -138,32 +138,24 @@ static inline void unfilter(int filter, const uint8_t *in, const uint8_t *up, ui
     }
 }
 
+/* Undoes the filter of a row. Returns false if the filter is unknown. */
 static bool unfilter_row(const PlainPng *plain, const uint8_t *in, const uint8_t *up, uint8_t *out)
 {
-    int filter = in[0];
-    in++;
-    switch (filter > 4 ? 0 : plain->pixel) {
-    case 1:
-        unfilter(filter, in, up, out, plain->row, 1);
-        return true;
-    case 2:
-        unfilter(filter, in, up, out, plain->row, 2);
-        return true;
-    case 3:
-        unfilter(filter, in, up, out, plain->row, 3);
-        return true;
-    case 4:
-        unfilter(filter, in, up, out, plain->row, 4);
-        return true;
-    case 6:
-        unfilter(filter, in, up, out, plain->row, 6);
-        return true;
-    case 8:
-        unfilter(filter, in, up, out, plain->row, 8);
-        return true;
+#define UNFILTER(pixel_bytes)                                                                      \
+    case pixel_bytes:                                                                              \
+        unfilter(in[0], in + 1, up, out, plain->row, pixel_bytes);                                 \
+        return true
+    switch (in[0] > 4 ? 0 : plain->pixel) {
+        UNFILTER(1);
+        UNFILTER(2);
+        UNFILTER(3);
+        UNFILTER(4);
+        UNFILTER(6);
+        UNFILTER(8);
     default:
         return false;
     }
+#undef UNFILTER
 }
 
 /* Inflates into `rows`, which has room for the rows with their filter bytes, and undoes the
@@ -246,11 +238,11 @@ static const uint8_t deflate_end[] = {3, 0};
 enum { HEADER_SIZE = sizeof zlib_header, END_SIZE = sizeof deflate_end + 4 };
 
 /* A compressed stripe. */
-typedef struct Stripe {
+typedef struct PngStripe {
     uint8_t *bytes; /* borrowed; there is space for the header before and the end behind them */
     size_t n;
     uint32_t adler; /* checksum of the uncompressed bytes */
-} Stripe;
+} PngStripe;
 
 typedef struct StripeWorker {
     uint8_t *filtered; /* owned; the rows of a stripe, each after its filter byte */
@@ -268,7 +260,7 @@ struct PngDeflater {
     int n_rows, left;      /* rows of the current call; rows of the image after them */
     size_t capacity;       /* bytes per stripe in `packed` */
     uint8_t *packed;       /* owned */
-    Stripe *stripes;       /* owned; of the current call */
+    PngStripe *stripes;    /* owned; of the current call */
     StripeWorker *workers; /* owned */
     bool has_begun;        /* bytes have been passed on */
     uint32_t adler;        /* checksum of the rows that have been passed on */
@@ -423,14 +415,14 @@ static void deflate_stripe(size_t i, int worker, void *context)
     for (int row = 0; row < n; row++)
         filter_row(self, (int)i * self->stripe_rows + row,
                    work->filtered + (size_t)row * self->line);
-    Stripe *stripe = &self->stripes[i];
+    PngStripe *stripe = &self->stripes[i];
     size_t size = (size_t)n * self->line;
     stripe->bytes = self->packed + i * self->capacity + HEADER_SIZE;
     stripe->n = deflate_rows(self, work, size, stripe->bytes);
     stripe->adler = libdeflate_adler32(libdeflate_adler32(0, NULL, 0), work->filtered, size);
 }
 
-static void put_header(PngDeflater *self, Stripe *stripe)
+static void put_header(PngDeflater *self, PngStripe *stripe)
 {
     stripe->bytes -= HEADER_SIZE;
     stripe->n += HEADER_SIZE;
@@ -438,7 +430,7 @@ static void put_header(PngDeflater *self, Stripe *stripe)
     self->has_begun = true;
 }
 
-static void put_end(const PngDeflater *self, Stripe *stripe)
+static void put_end(const PngDeflater *self, PngStripe *stripe)
 {
     memcpy(stripe->bytes + stripe->n, deflate_end, sizeof deflate_end);
     stripe->n += sizeof deflate_end;
@@ -455,7 +447,7 @@ void pngdeflater_rows(PngDeflater *self, const uint8_t *rows, int n_rows, PngTak
     size_t n = (size_t)count_stripes(self, n_rows);
     threads_for(n, self->threads, deflate_stripe, self);
     for (size_t i = 0; i < n; i++) {
-        Stripe *stripe = &self->stripes[i];
+        PngStripe *stripe = &self->stripes[i];
         self->adler = (uint32_t)adler32_combine(self->adler, stripe->adler,
                                                 (z_off_t)((size_t)rows_of(self, i) * self->line));
         if (!self->has_begun)

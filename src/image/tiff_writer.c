@@ -103,13 +103,12 @@ static void release(void *work)
         TIFFCleanup(self->tiff.handle);
 }
 
-const RowEncoder tiff_encoder = {.format = "TIFF",
-                                 .state_size = sizeof(TiffWriter),
-                                 .begin = begin,
-                                 .rows = write_strip,
-                                 .end = end,
-                                 .release = release,
-                                 .folds = 1400, /* LZW */
-                                 .keeps_dpi = true,
-                                 .has_profile = true,
-                                 .keeps_alpha = true};
+const RowEncoder tiff_encoder = {
+    .format = "TIFF",
+    .state_size = sizeof(TiffWriter),
+    .begin = begin,
+    .rows = write_strip,
+    .end = end,
+    .release = release,
+    .folds = 1400, /* LZW */
+    .traits = {.keeps_dpi = true, .has_profile = true, .keeps_alpha = true}};

@@ -7,6 +7,7 @@
  * that every test of the finished mesh is exact in integers. */
 #include "mesh/assemble.h"
 
+#include "mesh/precision.h"
 #include "mesh/zones/nearpairs.h"
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +37,7 @@ static uint32_t add_point(const Assembly *assembly, Vec3 x, Vec3 normal)
     double grid = assembly->params->grid_mm;
     float *point = mesh->points[mesh->n_points], *own = mesh->normals[mesh->n_points];
     for (int axis = 0; axis < 3; axis++) {
-        point[axis] = patch_rounded(vec3_component(x, axis), grid);
+        point[axis] = mesh_rounded(vec3_component(x, axis), grid);
         own[axis] = (float)vec3_component(normal, axis);
     }
     return (uint32_t)mesh->n_points++;
@@ -82,7 +83,7 @@ static void add_junction(Assembly *assembly, JunctionMesh *part)
     }
 }
 
-/* A regular rim on a segment's wall about a place on its axis, turned by a part of a side. */
+/* Adds a regular rim on a segment's surface about a point of its axis, turned by `turn` sides. */
 static RimRange add_rim(Assembly *assembly, const FieldSegment *self, Vec3 at, double turn)
 {
     Vec3 u, v;
@@ -90,10 +91,9 @@ static RimRange add_rim(Assembly *assembly, const FieldSegment *self, Vec3 at, d
     vec3_across(segment_axis(self), &u, &v);
     for (uint32_t i = 0; i < rim.n; i++) {
         double angle = FULL_TURN * ((i + turn) / rim.n - 0.5);
-        Vec3 way =
-            vec3_add(vec3_scale(u, elementary_cos(angle)), vec3_scale(v, elementary_sin(angle)));
+        Vec3 normal = direction_at(u, v, angle);
         assembly->rim_points[assembly->n_rim_points++] =
-            add_point(assembly, vec3_add_scaled(at, way, self->radius_mm), way);
+            add_point(assembly, vec3_add_scaled(at, normal, self->radius_mm), normal);
     }
     return rim;
 }

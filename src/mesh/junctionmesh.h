@@ -1,4 +1,4 @@
-/* The finished wall of one junction. */
+/* Builds the finished surface of one junction region. */
 #ifndef CORCAST_MESH_JUNCTIONMESH_H
 #define CORCAST_MESH_JUNCTIONMESH_H
 
@@ -7,56 +7,58 @@
 #include "mesh/lattice/planecut.h"
 #include "mesh/lattice/repair.h"
 
-/* The points on the rim of an stub: rim_points[first .. first + n), by rising angle about the axis
- * of the segment, from its first to its second end. */
+/* The rim of a branch stub: the points rim_points[first .. first + n), by rising angle about the
+ * axis that leads from the segment's first end to its second. */
 typedef struct Rim {
     uint32_t segment;
-    int end;
+    int end; /* the segment's end that is in the region */
     uint32_t first, n;
 } Rim;
 
-/* A point of a finished wall, in as few bytes as it takes. */
+/* A point of a finished surface, in little memory. */
 typedef struct JunctionPoint {
-    float x[3], normal[3]; /* on the grid of the mesh; unit */
-    uint32_t segment;      /* whose term is largest there */
+    float x[3], normal[3]; /* mm, on the grid of the mesh; unit, outward */
+    uint32_t segment;      /* the vessel whose term is largest here */
 } JunctionPoint;
 
+/* All arrays are owned. Release it with junctionmesh_release. */
 typedef struct JunctionMesh {
-    JunctionPoint *points; /* owned, as all of it */
-    Triangle *triangles;
+    JunctionPoint *points;
+    PatchTriangle *triangles;
     size_t n_points, n_triangles;
-    Rim *rims;
+    Rim *rims; /* per stub */
     size_t n_rims;
     uint32_t *rim_points;
-    int repeats; /* with finer cells */
-    MeshOff off; /* of the triangles' middles and longest edges */
+    int repeats; /* number of attempts with finer cells */
+    MeshOff off; /* at the middles of triangles and of their longest edges */
 } JunctionMesh;
 
-void junctionmesh_release(JunctionMesh *piece);
+void junctionmesh_release(JunctionMesh *mesh);
 
-/* What has become of a segment. */
+/* The surface of a segment in the mesh. */
 typedef enum SegmentStatus {
-    SEGMENT_MISSING, /* it has a wall, which is not in the mesh */
-    SEGMENT_PRESENT,
-    SEGMENT_ENCLOSED, /* it lies within others */
-    SEGMENT_SLIVER    /* it has a wall, but so narrow a one that no triangle is its own */
+    SEGMENT_MISSING,  /* it has a surface, which is not in the mesh */
+    SEGMENT_PRESENT,  /* its surface is in the mesh */
+    SEGMENT_ENCLOSED, /* it has no surface: it is inside other vessels */
+    SEGMENT_SLIVER    /* its surface is so narrow that no triangle belongs to it */
 } SegmentStatus;
 
+/* How fine a mesh is. All but grid_mm are in units of the local radius. */
 typedef struct MeshFineness {
     CellSize cells;
-    double sagitta;  /* of the local radius, for edges */
-    double split;    /* likewise, triangles that are farther off the wall are split */
-    double farthest; /* likewise, of points that close a gap, off the wall */
-    double worst;    /* likewise; junctions with triangles farther off get finer cells */
-    double grid_mm;  /* coordinates are rounded to its multiples */
+    double sagitta;  /* maximum distance of an edge from the surface when points are removed */
+    double split;    /* triangles that are farther from the surface are split */
+    double farthest; /* maximum distance from the surface of points that close a gap */
+    double worst; /* regions with a triangle farther from the surface are built with finer cells */
+    double grid_mm; /* coordinates are rounded to integer multiples of it */
 } MeshFineness;
 
-/* A triangle and where it stands among others that are near in space. */
+/* A triangle and the Morton code of its first point. */
 typedef struct PlacedTriangle {
-    uint32_t code, number;
+    uint32_t code, index;
 } PlacedTriangle;
 
-/* Workspace of a thread; zeroed before the first use. */
+/* Workspace of one thread. Zero it before first use; release it with junctionworkspace_release. */
 typedef struct JunctionWorkspace {
     Octree tree;
     Lattice lattice;
@@ -66,18 +68,28 @@ typedef struct JunctionWorkspace {
     Refiner refiner;
     KeyMap edges;
     Patch patch;
-    uint32_t *next;
-    PlacedTriangle *order;
-    size_t next_capacity, order_capacity;
+    ARRAY(uint32_t) next; /* per point: the next point along its rim */
+    ARRAY(PlacedTriangle) order;
 } JunctionWorkspace;
 
-void junctionworkspace_release(JunctionWorkspace *worker);
+void junctionworkspace_release(JunctionWorkspace *workspace);
 
-/* Makes the wall of a junction; of the segments that lie wholly in it, segment_status[segment] is
- * set. Repeats with finer cells what is not a sphere with one hole for each stub.
- * STATUS_INFEASIBLE, naming the id of a segment, when that does not help. */
-MUST_CHECK Status junctionmesh_make(JunctionWorkspace *worker, const VesselTree *tree,
-                                    JunctionPlan *plan, const MeshFineness *fineness,
-                                    JunctionMesh *piece, uint8_t *segment_status, Err *err);
+/* The region to be built. All pointers are borrowed. */
+typedef struct JunctionInput {
+    const VesselTree *tree;
+    const JunctionPlan *plan;
+    const MeshFineness *fineness;
+} JunctionInput;
+
+/* Builds the surface of a region, and proves that it is a sphere with one hole for each stub. Tries
+ * again with finer cells if it is not.
+ *
+ * mesh      receives the surface; owned by the caller.
+ * statuses  per segment of the tree: the SegmentStatus of the segments that are wholly in the
+ * region is set, also on failure. Errors    STATUS_INFEASIBLE with the id of a segment if finer
+ * cells do not help, STATUS_INPUT if the region is too far from the origin [precision.h],
+ * STATUS_MEMORY. */
+MUST_CHECK Status junctionmesh_make(JunctionWorkspace *workspace, const JunctionInput *input,
+                                    JunctionMesh *mesh, uint8_t *statuses, Err *err);
 
 #endif

@@ -147,8 +147,9 @@ static Status build_junction(size_t index, int worker, void *context, Err *err)
     JunctionWorkspace *workspace = &build->workspaces[worker];
     JunctionPlan plan;
     TRY(junctionplan_make(build->tree, &build->junctions, (uint32_t)index, &plan, err));
-    Status status = junctionmesh_make(workspace, build->tree, &plan, &fineness,
-                                      &build->meshes[index], build->segment_status, err);
+    const JunctionInput input = {build->tree, &plan, &fineness};
+    Status status =
+        junctionmesh_make(workspace, &input, &build->meshes[index], build->segment_status, err);
     if (plan.field.n_terms > TERMS_TO_KEEP)
         junctionworkspace_release(workspace);
     junctionplan_release(&plan);

@@ -1,4 +1,5 @@
-/* See meshreport.h. */
+/* A mesh is not written if one of its facts is not as expected: programs that read it rely on a
+ * closed surface, and a wrong one is harder to notice than an error. */
 #include "mesh/meshreport.h"
 
 #include "mesh/precision.h"

@@ -1,4 +1,5 @@
-/* What a mesh is made for, and what is true of it. Exported by the door of the room mesh. */
+/* The parameters of a mesh, and the facts about a finished one. Exported by the public header of
+ * the module mesh. */
 #ifndef CORCAST_MESH_MESHREPORT_H
 #define CORCAST_MESH_MESHREPORT_H
 
@@ -6,65 +7,75 @@
 #include "scene/scene.h"
 
 typedef struct MeshParams {
-    double tolerance; /* of the local radius, in [0.001, 0.2]: what few places exceed */
-    double lod; /* in (0, 1]: about this part of the triangles that the tolerance takes, and no
-                 * fewer than about 9 for each radius of length; 0: as 1 */
-    double tube_edge; /* how long triangles of straight tubes are along them, in radii; 0: any */
+    double tolerance; /* maximum distance of nearly all triangles from the surface, in local radii,
+                       * in [0.001, 0.2] */
+    double lod; /* in (0, 1]: the fraction of the triangles of this tolerance that are made, but at
+                 * least about 9 per radius of length; 0 is taken as 1 */
+    double tube_edge; /* maximum length of a tube's triangles along it, in radii; 0: no limit */
     int threads;      /* 0: all processors */
-    double reach_mm;  /* 0, or a coordinate of what it is to be joined with: both lie on one grid */
+    double reach_mm;  /* 0, or a coordinate of another object that the mesh is to be joined with, so
+                       * that both are on one grid */
     void (*progress)(double fraction, void *context); /* NULL: none */
     void *context;
 } MeshParams;
 
-/* Two segments of different parts of a tree, or of different trees, that come near. */
+/* Two segments of different parts of a tree, or of different trees, that are near each other. */
 typedef struct NearPair {
-    uint32_t segments[2]; /* by rising index */
-    double gap_mm;        /* between their walls; below 0: they overlap */
+    uint32_t segments[2]; /* rising indices */
+    double gap_mm;        /* between their surfaces; below 0: they overlap */
 } NearPair;
 
-/* How far triangles are off the surface at most. */
+/* The largest distance of a triangle from the surface. The two maxima may be at different places.
+ */
 typedef struct MeshOff {
-    double mm, ratio; /* ratio: over the local radius, not at the same place */
+    double mm;
+    double ratio; /* in local radii */
 } MeshOff;
 
+/* Raises *off to a distance found where the local radius is radius_mm. */
 static inline void meshoff_add(MeshOff *off, double mm, double radius_mm)
 {
     off->mm = mm > off->mm ? mm : off->mm;
     off->ratio = mm / radius_mm > off->ratio ? mm / radius_mm : off->ratio;
 }
 
-/* What is true of a mesh, established on its final points. */
+/* The facts about a mesh, found on its final points. All arrays are owned. */
 typedef struct MeshReport {
-    size_t trees;                               /* of the input */
-    size_t components;                          /* of the mesh */
-    size_t genus;                               /* all components together */
-    size_t expected_components, expected_genus; /* of a sound mesh: one for each tree, and 0, unless
-                                                 * it was made into a solid for printing */
-    long long euler;                            /* points - edges + triangles, of all */
-    size_t open_edges; /* that not two triangles share, one each way; 0: closed and oriented */
-    size_t crossings;  /* pairs of triangles that meet elsewhere than in what they share */
-    size_t bridges;    /* components that hold segments of several trees */
-    size_t n_missing;  /* segments with a wall that has no triangle */
-    size_t n_enclosed; /* segments that lie within others, so that they have no wall */
-    size_t n_slivers;  /* segments whose wall is so narrow that no triangle is their own */
-    size_t n_round;    /* ends that could not be cut flat, because other vessels are in the way */
-    uint32_t *missing, *enclosed, *slivers, *round; /* their segments; owned */
-    NearPair *near; /* owned; gaps below NEAR_GAP of the thinner radius, overlaps first */
+    size_t trees;                               /* number of trees of the input */
+    size_t components;                          /* number of connected parts of the mesh */
+    size_t genus;                               /* sum over all components */
+    size_t expected_components, expected_genus; /* of a valid mesh: the number of trees, and 0;
+                                                 * another number for a solid for printing */
+    long long euler;                            /* points - edges + triangles */
+    size_t open_edges; /* edges that do not have two triangles, one in each direction */
+    size_t
+        crossings;  /* pairs of triangles that meet elsewhere than in a corner or edge they share */
+    size_t bridges; /* triangles of a segment of another tree than the rest of their component */
+    size_t n_missing;  /* segments with a surface that has no triangle */
+    size_t n_enclosed; /* segments that are inside others, so that they have no surface */
+    size_t n_slivers;  /* segments whose surface is so narrow that no triangle belongs to it */
+    size_t n_round; /* ends that could not be cut off flat, because other vessels are in the way */
+    uint32_t *missing, *enclosed, *slivers, *round; /* the segments of these four counts */
+    NearPair *near; /* pairs with a gap below NEAR_GAP, by rising gap */
     size_t n_near, n_overlapping;
     double volume_mm3;
-    double tolerance; /* that the triangles were made for: above what was asked where `lod` is below
-                         1 */
-    MeshOff off;      /* of junctions at the middle of each triangle and of its longest edge */
-    size_t junctions, repeated; /* junction junctions, and those that needed finer cells */
+    double tolerance; /* the triangles were made for this tolerance: larger than
+                       * MeshParams.tolerance if `lod` is below 1 */
+    MeshOff off; /* at the middle of each triangle of a junction region and of its longest edge */
+    size_t junctions; /* number of junction regions */
+    size_t repeated;  /* junction regions that needed finer cells */
 } MeshReport;
 
+/* In units of the smaller radius: vessels with a smaller gap are near each other. */
 #define NEAR_GAP 0.4
 
 void meshreport_release(MeshReport *report);
 
-/* Whether the report is that of a mesh to be handed out. */
+/* Returns true if the mesh is valid: closed, without crossings, with the expected topology, and
+ * with a surface for every segment. */
 bool meshreport_is_sound(const MeshReport *report);
-/* STATUS_DIFFERS, saying what is wrong, unless it is. */
+/* Returns STATUS_OK for a valid mesh, else STATUS_DIFFERS with a sentence that says what is wrong,
+ * or STATUS_INPUT if the tree is too far from the origin. */
 MUST_CHECK Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *err);
 
 #endif

@@ -8,7 +8,7 @@
 #include "mesh/proof/meshcheck.h"
 #include <string.h>
 
-static Box box_of(const Patch *patch, const Triangle *triangle)
+static Box box_of(const Patch *patch, const PatchTriangle *triangle)
 {
     Box box = box_empty();
     for (int k = 0; k < 3; k++)
@@ -16,7 +16,7 @@ static Box box_of(const Patch *patch, const Triangle *triangle)
     return box;
 }
 
-static bool is_new(const Triangle *triangle, size_t first_new)
+static bool is_new(const PatchTriangle *triangle, size_t first_new)
 {
     return triangle->at[0] >= first_new || triangle->at[1] >= first_new ||
            triangle->at[2] >= first_new;
@@ -27,7 +27,7 @@ static void copy_near(const Patch *patch, Box near, Vec3 origin, double grid_mm,
     for (; mesh->n_points < patch->n_points; mesh->n_points++) {
         Vec3 x = vec3_sub(patch->points[mesh->n_points].x, origin);
         for (int axis = 0; axis < 3; axis++)
-            mesh->points[mesh->n_points][axis] = patch_rounded(vec3_component(x, axis), grid_mm);
+            mesh->points[mesh->n_points][axis] = mesh_rounded(vec3_component(x, axis), grid_mm);
     }
     for (size_t i = 0; i < patch->n_triangles; i++)
         if (box_meets(box_of(patch, &patch->triangles[i]), near))

@@ -1,4 +1,4 @@
-/* Crossings of a patch that is not in the mesh yet. */
+/* Finds triangles of one region that cross each other, before the region is part of the mesh. */
 #ifndef CORCAST_MESH_PATCHCROSS_H
 #define CORCAST_MESH_PATCHCROSS_H
 
@@ -6,16 +6,16 @@
 
 typedef enum PatchCrossing {
     PATCHCROSS_NONE,
-    PATCHCROSS_OWN,     /* triangles cross wherever the patch lies */
-    PATCHCROSS_ROUNDING /* they cross only once their points are rounded to the grid of the mesh */
+    PATCHCROSS_OWN,     /* triangles cross, wherever the patch is */
+    PATCHCROSS_ROUNDING /* they cross only after their points are rounded to the grid of the mesh */
 } PatchCrossing;
 
-/* Finds whether triangles near those that have a point from `first_new` on cross each other, once
- * the points are rounded to whole multiples of `grid_mm`, and if so, whether they also cross
- * before.
+/* Finds whether triangles near those with a point of index `first_new` or higher cross each other,
+ * after the points are rounded to integer multiples of `grid_mm`. If so, finds whether they also
+ * cross before.
  *
  * Errors   STATUS_MEMORY.
- * Cost     O(triangles), and n log n in those near. */
+ * Cost     O(triangles), and O(n log n) for n triangles near the new ones. */
 MUST_CHECK Status patchcross_find(const Patch *patch, size_t first_new, double grid_mm,
                                   PatchCrossing *crossing, Err *err);
 

@@ -16,13 +16,13 @@
 
 enum { PIECE = 3 << 10, NONE = 0xffff };
 
-typedef struct Packer {
+typedef struct BlockPacker {
     uint8_t bytes[PIECE + 4];
     size_t n;
     Text *out;
-} Packer;
+} BlockPacker;
 
-static void put_word(Packer *packer, uint32_t word, int bytes)
+static void put_word(BlockPacker *packer, uint32_t word, int bytes)
 {
     for (int i = 0; i < bytes; i++)
         packer->bytes[packer->n++] = (uint8_t)(word >> 8 * i & 0xff);
@@ -33,7 +33,7 @@ static void put_word(Packer *packer, uint32_t word, int bytes)
     memmove(packer->bytes, packer->bytes + PIECE, packer->n);
 }
 
-static void put_float(Packer *packer, double value)
+static void put_float(BlockPacker *packer, double value)
 {
     float rounded = (float)value;
     uint32_t bits;
@@ -41,7 +41,7 @@ static void put_float(Packer *packer, double value)
     put_word(packer, bits, 4);
 }
 
-static void begin(Packer *packer, const char *name, size_t number, bool is_numbered)
+static void begin(BlockPacker *packer, const char *name, size_t number, bool is_numbered)
 {
     packer->n = 0;
     text_printf(packer->out, "<script type=\"text/plain\" id=\"%s", name);
@@ -50,7 +50,7 @@ static void begin(Packer *packer, const char *name, size_t number, bool is_numbe
     text_puts(packer->out, "\">");
 }
 
-static void end(Packer *packer)
+static void end(BlockPacker *packer)
 {
     text_base64(packer->out, packer->bytes, packer->n);
     text_puts(packer->out, "</script>\n");
@@ -66,7 +66,7 @@ bool field_is_whole(const FieldSeries *series)
     return true;
 }
 
-static void put_field(Packer *packer, const FieldSeries *series, size_t number)
+static void put_field(BlockPacker *packer, const FieldSeries *series, size_t number)
 {
     const bool whole = field_is_whole(series);
     begin(packer, "field", number, true);
@@ -80,7 +80,7 @@ static void put_field(Packer *packer, const FieldSeries *series, size_t number)
     end(packer);
 }
 
-static void put_map(Packer *packer, const Colormap *map, size_t number)
+static void put_map(BlockPacker *packer, const Colormap *map, size_t number)
 {
     begin(packer, "map", number, true);
     for (size_t i = 0; i < map->n; i++)
@@ -89,7 +89,7 @@ static void put_map(Packer *packer, const Colormap *map, size_t number)
     end(packer);
 }
 
-static void put_nodes(Packer *packer, const Tree *tree, Vec3 origin)
+static void put_nodes(BlockPacker *packer, const Tree *tree, Vec3 origin)
 {
     begin(packer, "position", 0, false);
     for (size_t i = 0; i < tree->n; i++) {
@@ -115,7 +115,7 @@ static void put_nodes(Packer *packer, const Tree *tree, Vec3 origin)
 
 void put_blocks(const PageParams *params, Text *out)
 {
-    Packer packer = {.out = out};
+    BlockPacker packer = {.out = out};
     put_nodes(&packer, params->tree, params->origin);
     for (size_t i = 0; i < params->n_fields; i++)
         put_field(&packer, &params->fields[i], i);

@@ -1,13 +1,13 @@
-/* The numbers of a page, as blocks of base64; private to the room page. */
+/* The numbers of a page as blocks of base64; private to the module page. */
 #ifndef CORCAST_PAGE_BLOCKS_H
 #define CORCAST_PAGE_BLOCKS_H
 
 #include "page/page.h"
 
-/* Whether all values are whole numbers that 16 bits hold, or NAN. */
+/* Returns true if every value is an integer from 0 to 65534, or NAN. */
 bool field_is_whole(const FieldSeries *series);
 
-/* Appends all blocks, a script element for each, whose id names it. */
+/* Appends all blocks, each a script element whose id is the name of the block [blocks.c]. */
 void put_blocks(const PageParams *params, Text *out);
 
 #endif

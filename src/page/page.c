@@ -130,12 +130,12 @@ static Status put_data(Text *out, void *context, Err *err)
 }
 
 /* What a page is made of besides: the template, the viewer, and whose colours the maps are. */
-typedef struct Parts {
+typedef struct PageTexts {
     Tmpl page;
     char *viewer, *notices; /* owned */
-} Parts;
+} PageTexts;
 
-static Status put_page(const PageParams *params, const Parts *from, Text *out, Err *err)
+static Status put_page(const PageParams *params, const PageTexts *from, Text *out, Err *err)
 {
     Text told = TEXT_INIT, title = TEXT_INIT, notices = TEXT_INIT;
     put_told(params, &told);
@@ -160,7 +160,7 @@ done:
     return status;
 }
 
-static Status read_parts(const PageParams *params, Parts *parts, Err *err)
+static Status read_parts(const PageParams *params, PageTexts *parts, Err *err)
 {
     static const FileForm text = {.name = "a text", .most_bytes = 1e7, .is_text = true};
     char *page = NULL, *notices = NULL;
@@ -179,10 +179,11 @@ done:
 
 Status page_put(const PageParams *params, Text *out, Err *err)
 {
-    Parts parts = {0};
-    Status status = read_parts(params, &parts, err);
-    if (status == STATUS_OK)
-        status = put_page(params, &parts, out, err);
+    PageTexts parts = {0};
+    Status status;
+    TRY_GOTO(read_parts(params, &parts, err));
+    status = put_page(params, &parts, out, err);
+done:
     tmpl_release(&parts.page);
     free(parts.viewer);
     free(parts.notices);

@@ -1,7 +1,8 @@
-/* The door of the room page: a tree as one page for browsers, in which it can be turned.
+/* The public header of the module page: a tree as an HTML page, in which the user can rotate it.
  *
- * The page is a file that needs nothing else: a template, the viewer [templates/viewer/], and the
- * tree's numbers in base64, from which the viewer draws cylinders and balls. */
+ * The page is a file that needs no other file. It consists of a template, the viewer
+ * [templates/viewer/], and the tree's numbers in base64, from which the viewer draws cylinders and
+ * spheres. */
 #ifndef CORCAST_PAGE_PAGE_H
 #define CORCAST_PAGE_PAGE_H
 
@@ -11,33 +12,33 @@
 #include "stage/stage.h"
 #include "tree/tree.h"
 
-/* A colour map that the viewer can be switched to. */
+/* A colour map that the user can select. */
 typedef struct PageMap {
     char *name; /* owned */
     Colormap map;
 } PageMap;
 
-/* What a page shows and says; all of it borrowed. */
+/* The content of a page. All members are borrowed. */
 typedef struct PageParams {
     const char *templates;     /* the folder of templates */
-    const char *viewer;        /* the viewer's file, a script */
-    const char *title;         /* a line: what the tree is called */
+    const char *viewer;        /* path of the viewer, a script */
+    const char *title;         /* name of the tree, one line */
     const char *generator;     /* program and version */
-    const char *command;       /* that makes the page, one line */
-    const Tree *tree;          /* coordinates are its own, written as float from `origin` on */
-    Vec3 origin;               /* near the tree */
-    const FieldSeries *fields; /* of the tree */
+    const char *command;       /* the command line that makes the page */
+    const Tree *tree;          /* its coordinates are written as floats relative to `origin` */
+    Vec3 origin;               /* a point near the tree, so that floats are precise */
+    const FieldSeries *fields; /* fields of the tree that the user can select */
     size_t n_fields;
     const PageMap *maps;
     size_t n_maps;
     const Look *look;
-    const char *look_name;   /* as `render` knows it */
-    const ColorScale *scale; /* that the page opens with, of a field of that name; or NULL */
-    const char *map;         /* the name of its map, which need not be among the others */
+    const char *look_name;   /* name of the look in `render` */
+    const ColorScale *scale; /* initial scale, of the field with its name; NULL: no field */
+    const char *map;         /* name of the scale's map, which need not be in `maps` */
 } PageParams;
 
-/* Appends the page. STATUS_INPUT when a file of the templates or the viewer is missing or does not
- * fit, and as file_read and text_check. */
+/* Appends the page. Errors: STATUS_INPUT if a template or the viewer is missing or does not fit;
+ * those of file_read and text_check. */
 MUST_CHECK Status page_put(const PageParams *params, Text *out, Err *err);
 
 #endif

@@ -1,28 +1,17 @@
-/* What is left of a block is bounded by its faces and by the vessels' surface turned inside out;
- * ports join the two, so that no boolean is needed. */
+/* The rest of a block is bounded by its faces and by the vessels' surface turned inside out. Ports
+ * join the two, so that no boolean operation is needed. */
 #include "print/block.h"
 
 #include <stdlib.h>
 
-static Box box_of(const VesselTree *tree)
-{
-    Box box = box_empty();
-    for (size_t i = 0; i < tree->n_segments; i++) {
-        const FieldSegment *segment = &tree->segments[i];
-        box = box_with_ball(box, segment->a, segment->radius_mm);
-        box = box_with_ball(box, segment->b, segment->radius_mm);
-    }
-    return box;
-}
-
-/* How far vessels are from the axis of a cylinder about the middle of their box. */
+/* Returns the maximum distance of vessels from the axis through `middle`, mm. */
 static double reach_about(const VesselTree *tree, Vec3 middle, int axis)
 {
     double reach = 0;
     for (size_t i = 0; i < tree->n_segments; i++)
         for (int end = 0; end < 2; end++) {
             const FieldSegment *segment = &tree->segments[i];
-            Vec3 from = vec3_sub(end ? segment->b : segment->a, middle);
+            Vec3 from = vec3_sub(segment_end(segment, end), middle);
             double along = vec3_component(from, axis);
             reach = fmax(reach,
                          sqrt(fmax(vec3_dot(from, from) - along * along, 0)) + segment->radius_mm);
@@ -33,10 +22,10 @@ static double reach_about(const VesselTree *tree, Vec3 middle, int axis)
 /* A cylinder stands along the axis that the first vessel is nearest to. */
 static int axis_of(const VesselTree *tree)
 {
-    Vec3 way = vec3_sub(tree->segments[0].b, tree->segments[0].a);
+    Vec3 span = vec3_sub(tree->segments[0].b, tree->segments[0].a);
     int best = 0;
     for (int axis = 1; axis < 3; axis++)
-        if (fabs(vec3_component(way, axis)) > fabs(vec3_component(way, best)))
+        if (fabs(vec3_component(span, axis)) > fabs(vec3_component(span, best)))
             best = axis;
     return best;
 }
@@ -44,8 +33,8 @@ static int axis_of(const VesselTree *tree)
 Status block_casing(const VesselTree *tree, const PrintBlock *block, Casing *out, Err *err)
 {
     Casing casing = {.is_round = block->is_round, .axis = axis_of(tree)};
-    Box box = box_of(tree);
-    Vec3 middle = vec3_scale(vec3_add(box.low, box.high), 0.5);
+    Box box = vesseltree_box(tree, 0);
+    Vec3 middle = box_center(box);
     double least[3], size[3], half[3];
     for (int axis = 0; axis < 3; axis++) {
         bool across = casing.is_round && axis != casing.axis;
@@ -84,20 +73,18 @@ static Status add_faces(Solid *solid, const Casing *casing, const Ports *ports, 
     return status;
 }
 
-Status block_add(Solid *solid, const VesselTree *tree, const VesselMesh *mesh, CutEnds *ends,
-                 const PrintBlock *block, const Casing *casing, Seams *seams, size_t *n_ports,
-                 Err *err)
+Status block_add(Solid *solid, const BlockInput *input, Seams *seams, size_t *n_ports, Err *err)
 {
     Ports ports = {0};
     Status status;
-    TRY_GOTO(ports_find(tree, ends, casing, block, &ports, err));
-    if (block->ports != PORTS_NONE && ports.n == 0)
+    TRY_GOTO(ports_find(input->tree, input->ends, input->casing, input->block, &ports, err));
+    if (input->block->ports != PORTS_NONE && ports.n == 0)
         TRY_GOTO(err_set(err, STATUS_INFEASIBLE,
                          "no end of a vessel can be led to a face of the block; a wider margin "
                          "may help"));
-    TRY_GOTO(solid_surface(solid, mesh, ends, true, 0, err));
-    TRY_GOTO(ports_add(tree, &ports, solid, err));
-    TRY_GOTO(add_faces(solid, casing, &ports, err));
+    TRY_GOTO(solid_surface(solid, input->mesh, input->ends, (SurfaceUse){.turned = true}, err));
+    TRY_GOTO(ports_add(input->tree, &ports, solid, err));
+    TRY_GOTO(add_faces(solid, input->casing, &ports, err));
     seams_add(seams, MESH_FRAME);
     for (size_t i = 0; i < ports.n; i++)
         seams_ring(seams, ports.items[i].end->segment, MESH_FRAME);

@@ -1,20 +1,29 @@
-/* A block about vessels, which are hollow in it. */
+/* A block about vessels, in which they are hollow. */
 #ifndef CORCAST_PRINT_BLOCK_H
 #define CORCAST_PRINT_BLOCK_H
 
 #include "print/ports.h"
 #include "print/seams.h"
 
-/* The block about a tree, before its corners are rounded to a grid. STATUS_INPUT, with both sizes,
- * when it is to be smaller than the tree and its margin. O(n). */
+/* Finds the block about a tree. Its corners are not on a grid yet. Errors: STATUS_INPUT, with both
+ * sizes, if the wanted block is smaller than the tree and its margin. O(n). */
 MUST_CHECK Status block_casing(const VesselTree *tree, const PrintBlock *block, Casing *out,
                                Err *err);
 
-/* Adds to an empty solid what is left of the block without the vessels, whose surface `mesh` is;
- * the ends that become ports are opened. *n_ports counts them. STATUS_INFEASIBLE when ports are
- * asked for and no end can have one. */
-MUST_CHECK Status block_add(Solid *solid, const VesselTree *tree, const VesselMesh *mesh,
-                            CutEnds *ends, const PrintBlock *block, const Casing *casing,
-                            Seams *seams, size_t *n_ports, Err *err);
+/* What a block is made of. All pointers are borrowed. */
+typedef struct BlockInput {
+    const VesselTree *tree;
+    const VesselMesh *mesh; /* the vessels' surface */
+    CutEnds *ends;          /* of the mesh; those that get a port are opened */
+    const PrintBlock *block;
+    const Casing *casing;
+} BlockInput;
+
+/* Adds the block without the vessels to an empty solid.
+ *
+ * n_ports  receives the number of ports.
+ * Errors   STATUS_INFEASIBLE if ports are wanted and no end can have one, STATUS_MEMORY. */
+MUST_CHECK Status block_add(Solid *solid, const BlockInput *input, Seams *seams, size_t *n_ports,
+                            Err *err);
 
 #endif

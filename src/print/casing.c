@@ -1,11 +1,11 @@
-/* Corners are shared by the faces that meet there. */
+/* A cylinder is a prism. Corners are shared by the faces that meet there, so that the casing is
+ * closed. */
 #include "print/casing.h"
 
-#include "print/face.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the radius: what lies in the prism. */
+/* In units of the radius: a disc of this radius is inside the prism. */
 static const double in_prism = 0.998;
 
 typedef struct Enclosing {
@@ -24,11 +24,6 @@ static double radius_of(const Casing *casing)
     return 0.5 * (vec3_component(casing->box.high, u) - vec3_component(casing->box.low, u));
 }
 
-static Vec3 middle_of(const Casing *casing)
-{
-    return vec3_scale(vec3_add(casing->box.low, casing->box.high), 0.5);
-}
-
 bool casing_has_face(const Casing *casing, int face)
 {
     return !casing->is_round || face_axis(face) == casing->axis;
@@ -36,7 +31,7 @@ bool casing_has_face(const Casing *casing, int face)
 
 bool casing_holds_disc(const Casing *casing, int face, Vec3 at, double radius_mm)
 {
-    Vec3 from = vec3_sub(at, middle_of(casing));
+    Vec3 from = vec3_sub(at, box_center(casing->box));
     double far2 = 0;
     bool holds = true;
     for (int axis = 0; axis < 3; axis++) {
@@ -49,7 +44,7 @@ bool casing_holds_disc(const Casing *casing, int face, Vec3 at, double radius_mm
     return holds && (!casing->is_round || sqrt(far2) + radius_mm <= in_prism * radius_of(casing));
 }
 
-/* One face, whose edge is given counterclockwise seen from outside, with its holes. */
+/* Adds a face with its holes. The edge is counterclockwise seen from outside. */
 static Status add_face(const Enclosing *enclosing, int face, const uint32_t *edge, uint32_t n)
 {
     size_t n_loops = 0, n_turned = 0;
@@ -64,14 +59,14 @@ static Status add_face(const Enclosing *enclosing, int face, const uint32_t *edg
         n_turned += hole->n;
         enclosing->loops[n_loops++] = (FaceLoop){points, hole->n};
     }
-    return face_fill(enclosing->solid, face_axis(face), face_is_low(face), enclosing->loops,
-                     n_loops, MESH_CAP | MESH_FRAME, enclosing->err);
+    return face_fill(enclosing->solid, face, enclosing->loops, n_loops, MESH_CAP | MESH_FRAME,
+                     enclosing->err);
 }
 
 static Status add_corner(const Enclosing *enclosing, const double at[3], uint32_t *number)
 {
     Vec3 place = vec3(at[0], at[1], at[2]);
-    Vec3 out = vec3_normalized(vec3_sub(place, middle_of(enclosing->casing)));
+    Vec3 out = vec3_normalized(vec3_sub(place, box_center(enclosing->casing->box)));
     return solid_point(enclosing->solid, place, out, number, enclosing->err);
 }
 
@@ -83,14 +78,14 @@ static Status add_box(const Enclosing *enclosing)
     for (int i = 0; i < 8; i++) {
         double at[3];
         for (int axis = 0; axis < 3; axis++)
-            at[axis] = face_place(enclosing->casing, 2 * axis + (i >> axis & 1));
+            at[axis] = face_coordinate(enclosing->casing, 2 * axis + (i >> axis & 1));
         TRY(add_corner(enclosing, at, &corners[i]));
     }
     for (int face = 0; face < CASING_FACES; face++) {
         int axis = face_axis(face), u = (axis + 1) % 3, v = (axis + 2) % 3;
         for (int k = 0; k < 4; k++) {
-            int way = round_face[k], high = !face_is_low(face);
-            int corner = high << axis | (way & 1) << u | (way >> 1) << v;
+            int place = round_face[k], high = !face_is_low(face);
+            int corner = high << axis | (place & 1) << u | (place >> 1) << v;
             edge[high ? k : 3 - k] = corners[corner];
         }
         TRY(add_face(enclosing, face, edge, 4));
@@ -102,12 +97,12 @@ static Status add_cylinder(const Enclosing *enclosing)
 {
     const Casing *casing = enclosing->casing;
     int axis = casing->axis, u = (axis + 1) % 3, v = (axis + 2) % 3;
-    Vec3 middle = middle_of(casing);
+    Vec3 middle = box_center(casing->box);
     uint32_t rings[2][CASING_SIDES], turned[CASING_SIDES];
     for (int end = 0; end < 2; end++)
         for (int i = 0; i < CASING_SIDES; i++) {
             double at[3], angle = FULL_TURN * i / CASING_SIDES;
-            at[axis] = face_place(casing, 2 * axis + end);
+            at[axis] = face_coordinate(casing, 2 * axis + end);
             at[u] = vec3_component(middle, u) + radius_of(casing) * elementary_cos(angle);
             at[v] = vec3_component(middle, v) + radius_of(casing) * elementary_sin(angle);
             TRY(add_corner(enclosing, at, &rings[end][i]));

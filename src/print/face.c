@@ -1,28 +1,28 @@
-/* Each hole is joined to the way round the face by a bridge, gone along there and back, from its
- * point that is farthest along the first axis to the nearest corner that it sees; holes farther
- * along come first, so that there always is one. Of the one way that is left, ears are cut off: a
- * corner that turns left and whose triangle has no other corner in it [Eberly, Triangulation by Ear
- * Clipping]. Coordinates are whole multiples of a grid, differences of which have 26 bits, so that
- * every turn is exact. */
-#include "print/face.h"
+/* Each hole is joined to the loop round the face by a bridge, which is gone along there and back.
+ * The bridge leads from the hole's point that is farthest along the first axis to the nearest
+ * corner that is visible from there. Holes that are farther along come first, so that there always
+ * is such a corner. Then ears are cut off the one loop that is left: corners that turn left, and
+ * whose triangle has no other corner in it [Eberly, Triangulation by Ear Clipping]. Coordinates are
+ * integer multiples of a grid, and their differences have 26 bits, so that every turn is exact. */
+#include "print/casing.h"
 
 #include <stdlib.h>
 
-typedef struct Corner {
+typedef struct FaceCorner {
     uint32_t point, next, before; /* the others are corners */
-} Corner;
+} FaceCorner;
 
-typedef struct Candidate {
+typedef struct BridgeCandidate {
     double distance2;
     uint32_t corner;
-} Candidate;
+} BridgeCandidate;
 
 typedef struct FaceWork {
     const VesselMesh *mesh;
     int u, v; /* axes */
-    Corner *corners;
+    FaceCorner *corners;
     uint32_t n;
-    Candidate *candidates;
+    BridgeCandidate *candidates;
     FaceLoop *holes; /* farthest first */
     size_t n_holes;
 } FaceWork;
@@ -32,7 +32,7 @@ static double across(const FaceWork *work, uint32_t point, int axis)
     return (double)work->mesh->points[point][axis ? work->v : work->u];
 }
 
-/* Above 0 where the way from a over b to c turns left. */
+/* Returns a number above 0 if the path from a over b to c turns left. */
 static double turn(const FaceWork *work, uint32_t a, uint32_t b, uint32_t c)
 {
     double x = across(work, b, 0) - across(work, a, 0), y = across(work, b, 1) - across(work, a, 1);
@@ -40,7 +40,7 @@ static double turn(const FaceWork *work, uint32_t a, uint32_t b, uint32_t c)
            y * (across(work, c, 0) - across(work, a, 0));
 }
 
-/* Whether p, on the line through a and b, lies between them. */
+/* Returns true if p, which is on the line through a and b, is between them. */
 static bool is_between(const FaceWork *work, uint32_t a, uint32_t b, uint32_t p)
 {
     double along = 0, whole = 0;
@@ -57,7 +57,8 @@ static bool lies_on(const FaceWork *work, uint32_t a, uint32_t b, uint32_t p)
     return p != a && p != b && turn(work, a, b, p) == 0 && is_between(work, a, b, p);
 }
 
-/* Whether the edge from a to b meets the bridge elsewhere than in a point that they share. */
+/* Returns true if the edge from a to b meets the bridge elsewhere than in a point that they share.
+ */
 static bool blocks(const FaceWork *work, uint32_t a, uint32_t b, uint32_t from, uint32_t to)
 {
     if (lies_on(work, from, to, a) || lies_on(work, from, to, b) || lies_on(work, a, b, from) ||
@@ -69,8 +70,8 @@ static bool blocks(const FaceWork *work, uint32_t a, uint32_t b, uint32_t from, 
            turn(work, from, to, a) * turn(work, from, to, b) < 0;
 }
 
-/* Whether the way from a corner to a point begins on the left of the way round. */
-static bool opens_to(const FaceWork *work, const Corner *corner, uint32_t point)
+/* Returns true if the path from a corner to a point begins on the left of the loop. */
+static bool opens_to(const FaceWork *work, const FaceCorner *corner, uint32_t point)
 {
     uint32_t before = work->corners[corner->before].point, next = work->corners[corner->next].point;
     bool one = turn(work, before, corner->point, point) > 0;
@@ -78,7 +79,8 @@ static bool opens_to(const FaceWork *work, const Corner *corner, uint32_t point)
     return turn(work, before, corner->point, next) > 0 ? one && other : one || other;
 }
 
-static bool sees(const FaceWork *work, size_t first_hole, const Corner *corner, uint32_t point)
+static bool is_visible(const FaceWork *work, size_t first_hole, const FaceCorner *corner,
+                       uint32_t point)
 {
     if (!opens_to(work, corner, point))
         return false;
@@ -98,7 +100,7 @@ static bool sees(const FaceWork *work, size_t first_hole, const Corner *corner, 
 
 static int compare_candidates(const void *a, const void *b)
 {
-    const Candidate *one = a, *other = b;
+    const BridgeCandidate *one = a, *other = b;
     if (one->distance2 != other->distance2)
         return one->distance2 < other->distance2 ? -1 : 1;
     return (one->corner > other->corner) - (one->corner < other->corner);
@@ -109,7 +111,7 @@ static void order_candidates(FaceWork *work, uint32_t point)
     for (uint32_t i = 0; i < work->n; i++) {
         double x = across(work, work->corners[i].point, 0) - across(work, point, 0);
         double y = across(work, work->corners[i].point, 1) - across(work, point, 1);
-        work->candidates[i] = (Candidate){x * x + y * y, i};
+        work->candidates[i] = (BridgeCandidate){x * x + y * y, i};
     }
     qsort(work->candidates, work->n, sizeof *work->candidates, compare_candidates);
 }
@@ -117,13 +119,13 @@ static void order_candidates(FaceWork *work, uint32_t point)
 static uint32_t add_corner(FaceWork *work, uint32_t point, uint32_t before)
 {
     uint32_t own = work->n++;
-    work->corners[own] = (Corner){.point = point, .before = before};
+    work->corners[own] = (FaceCorner){.point = point, .before = before};
     if (own != before)
         work->corners[before].next = own;
     return own;
 }
 
-/* The place in the loop of its point farthest along the first axis. */
+/* Returns the position in the loop of the point that is farthest along the first axis. */
 static uint32_t farthest_of(const FaceWork *work, const FaceLoop *loop)
 {
     uint32_t best = 0;
@@ -133,13 +135,14 @@ static uint32_t farthest_of(const FaceWork *work, const FaceLoop *loop)
     return best;
 }
 
-/* Joins a hole to the way round. False when it sees no corner. */
+/* Joins a hole to the loop. Returns false if no corner is visible from it. */
 static bool bridge(FaceWork *work, size_t number)
 {
     const FaceLoop *hole = &work->holes[number];
     uint32_t first = farthest_of(work, hole), point = hole->points[first], i = 0;
     order_candidates(work, point);
-    while (i < work->n && !sees(work, number, &work->corners[work->candidates[i].corner], point))
+    while (i < work->n &&
+           !is_visible(work, number, &work->corners[work->candidates[i].corner], point))
         i++;
     if (i == work->n)
         return false;
@@ -153,9 +156,9 @@ static bool bridge(FaceWork *work, size_t number)
     return true;
 }
 
-static bool has_corner_in(const FaceWork *work, const Corner *ear)
+static bool has_corner_in(const FaceWork *work, const FaceCorner *ear)
 {
-    const Corner *corners = work->corners;
+    const FaceCorner *corners = work->corners;
     uint32_t a = corners[ear->before].point, b = ear->point, c = corners[ear->next].point;
     for (uint32_t i = corners[ear->next].next; i != ear->before; i = corners[i].next) {
         uint32_t p = corners[i].point;
@@ -166,7 +169,7 @@ static bool has_corner_in(const FaceWork *work, const Corner *ear)
     return false;
 }
 
-static bool is_ear(const FaceWork *work, const Corner *corner)
+static bool is_ear(const FaceWork *work, const FaceCorner *corner)
 {
     return turn(work, work->corners[corner->before].point, corner->point,
                 work->corners[corner->next].point) > 0 &&
@@ -177,7 +180,7 @@ static Status cut_ears(FaceWork *work, Solid *solid, uint32_t label, Err *err)
 {
     uint32_t at = 0, tried = 0, left = work->n;
     while (left > 2 && tried < left) {
-        Corner *corner = &work->corners[at];
+        FaceCorner *corner = &work->corners[at];
         if (!is_ear(work, corner)) {
             at = corner->next;
             tried++;
@@ -210,10 +213,11 @@ static void order_holes(FaceWork *work, const FaceLoop *holes, size_t n)
     }
 }
 
-Status face_fill(Solid *solid, int axis, bool is_low, const FaceLoop *loops, size_t n_loops,
-                 uint32_t label, Err *err)
+Status face_fill(Solid *solid, int face, const FaceLoop *loops, size_t n_loops, uint32_t label,
+                 Err *err)
 {
-    int next = (axis + 1) % 3, other = (axis + 2) % 3;
+    int next = (face_axis(face) + 1) % 3, other = (face_axis(face) + 2) % 3;
+    bool is_low = face_is_low(face);
     FaceWork work = {.mesh = &solid->mesh, is_low ? other : next, is_low ? next : other};
     size_t most = 0;
     Status status;

@@ -42,14 +42,14 @@ void ports_release(Ports *ports)
 static PortRing rim_of(const VesselTree *tree, const CutEnd *end)
 {
     const FieldSegment *segment = &tree->segments[end->segment];
-    Vec3 at = end->end ? segment->b : segment->a, other = end->end ? segment->a : segment->b;
+    Vec3 at = segment_end(segment, end->end), other = segment_end(segment, !end->end);
     return (PortRing){at, vec3_normalized(vec3_sub(at, other)), segment->radius_mm};
 }
 
 /* How far the rim's middle lies below a face. */
 static double depth_of(const PortRing *rim, const Casing *casing, int face)
 {
-    double off = face_place(casing, face) - vec3_component(rim->center, face_axis(face));
+    double off = face_coordinate(casing, face) - vec3_component(rim->center, face_axis(face));
     return face_is_low(face) ? -off : off;
 }
 
@@ -63,16 +63,16 @@ static double edge_room(double radius_mm)
  * takes one bend, or as near to it as the edges leave room. */
 static Vec3 place_on_face(const PortRing *rim, const Casing *casing, int face, double radius_mm)
 {
-    double along = fmax(vec3_dot(rim->way, face_normal(face)), 0.7), at[3];
+    double along = fmax(vec3_dot(rim->direction, face_normal(face)), 0.7), at[3];
     double way_mm = 0.5 * depth_of(rim, casing, face) / along;
-    Vec3 ahead = vec3_add_scaled(rim->center, rim->way, way_mm);
+    Vec3 ahead = vec3_add_scaled(rim->center, rim->direction, way_mm);
     for (int axis = 0; axis < 3; axis++) {
         double room = radius_mm + 1.01 * edge_room(radius_mm);
         double low = vec3_component(casing->box.low, axis) + room;
         double high = vec3_component(casing->box.high, axis) - room;
         at[axis] = fmin(fmax(vec3_component(ahead, axis), low), high);
     }
-    at[face_axis(face)] = face_place(casing, face);
+    at[face_axis(face)] = face_coordinate(casing, face);
     return vec3(at[0], at[1], at[2]);
 }
 
@@ -80,7 +80,7 @@ static Vec3 place_on_face(const PortRing *rim, const Casing *casing, int face, d
 static bool is_within(const Casing *casing, const PortRing *ring)
 {
     for (int face = 0; face < CASING_FACES; face++) {
-        double cosine = vec3_dot(ring->way, face_normal(face));
+        double cosine = vec3_dot(ring->direction, face_normal(face));
         double high = ring->radius_mm * sqrt(fmax(1 - cosine * cosine, 0));
         if (depth_of(ring, casing, face) < high + 0.1 * ring->radius_mm)
             return false;
@@ -93,7 +93,7 @@ static bool is_smooth(const Casing *casing, const PortRing *rim, const Port *por
 {
     for (int i = 0; i < port->n_rings; i++) {
         const PortRing *from = i ? &port->rings[i - 1] : rim, *to = &port->rings[i];
-        double turned = vec3_distance(from->way, to->way);
+        double turned = vec3_distance(from->direction, to->direction);
         double step = vec3_distance(from->center, to->center);
         if (step < 1.2 * turned * fmax(from->radius_mm, to->radius_mm) ||
             (i + 1 < port->n_rings && !is_within(casing, to)))
@@ -107,12 +107,13 @@ static bool is_smooth(const Casing *casing, const PortRing *rim, const Port *por
 static bool lay_straight(const PortSearch *search, const PortRing *rim, int face, Port *port)
 {
     Vec3 normal = face_normal(face);
-    double depth = depth_of(rim, search->casing, face), cosine = vec3_dot(rim->way, normal);
+    double depth = depth_of(rim, search->casing, face), cosine = vec3_dot(rim->direction, normal);
     if (cosine < least_cosine || search->block->is_luer)
         return false;
     double way_mm = depth / cosine, radius = rim->radius_mm + search->block->taper / 2 * way_mm;
     double sine = sqrt(fmax(1 - cosine * cosine, 0)), reach = radius / cosine;
-    port->rings[0] = (PortRing){vec3_add_scaled(rim->center, rim->way, way_mm), rim->way, radius};
+    port->rings[0] =
+        (PortRing){vec3_add_scaled(rim->center, rim->direction, way_mm), rim->direction, radius};
     port->n_rings = 1;
     port->is_straight = true;
     port->face = face;
@@ -136,7 +137,7 @@ static bool lay_bent(const PortSearch *search, const PortRing *rim, int face, Po
     double bend_mm = vec3_distance(bottom, rim->center);
     if (depth <= straight)
         return false;
-    Vec3 one = vec3_add_scaled(rim->center, rim->way, pull * bend_mm);
+    Vec3 one = vec3_add_scaled(rim->center, rim->direction, pull * bend_mm);
     Vec3 other = vec3_add_scaled(bottom, normal, -pull * bend_mm);
     for (int i = 0; i < PORT_RINGS - 1; i++) {
         double t = (i + 1.0) / (PORT_RINGS - 1), s = 1 - t;
@@ -146,7 +147,7 @@ static bool lay_bent(const PortSearch *search, const PortRing *rim, int face, Po
                      vec3_add(vec3_scale(other, 3 * s * t * t), vec3_scale(bottom, t * t * t)));
         Vec3 way = vec3_scale(vec3_sub(one, rim->center), s * s);
         way = vec3_add_scaled(way, vec3_sub(other, one), 2 * s * t);
-        ring->way = vec3_normalized(vec3_add_scaled(way, vec3_sub(bottom, other), t * t));
+        ring->direction = vec3_normalized(vec3_add_scaled(way, vec3_sub(bottom, other), t * t));
         ring->radius_mm = rim->radius_mm + t * (before_mm - rim->radius_mm);
     }
     port->rings[PORT_RINGS - 1] = (PortRing){out, normal, last_mm};
@@ -161,11 +162,11 @@ static bool lay_bent(const PortSearch *search, const PortRing *rim, int face, Po
 static FieldSegment stretch_of(const PortRing *rim, const Port *port, int i)
 {
     const PortRing *from = i ? &port->rings[i - 1] : rim, *to = &port->rings[i];
-    double cosine = vec3_dot(to->way, face_normal(port->face)), beyond = 0;
+    double cosine = vec3_dot(to->direction, face_normal(port->face)), beyond = 0;
     if (port->is_straight)
         beyond = to->radius_mm * sqrt(fmax(1 - cosine * cosine, 0)) / cosine;
     return (FieldSegment){.a = from->center,
-                          .b = vec3_add_scaled(to->center, to->way, beyond),
+                          .b = vec3_add_scaled(to->center, to->direction, beyond),
                           .radius_mm = fmax(from->radius_mm, to->radius_mm)};
 }
 
@@ -279,7 +280,7 @@ static bool lay_way(const PortSearch *search, const PortRing *rim, int face, boo
 static double distance_to(const PortRing *rim, const Casing *casing, int face)
 {
     double depth = depth_of(rim, casing, face);
-    return depth / fmax(vec3_dot(rim->way, face_normal(face)), 0.05);
+    return depth / fmax(vec3_dot(rim->direction, face_normal(face)), 0.05);
 }
 
 /* Tries the faces, the nearest along the axis first. */
@@ -349,19 +350,16 @@ static Vec3 cut_of(const PortRing *rim, const Port *port, Vec3 across)
     return vec3_add_scaled(from, along, t);
 }
 
-/* The points of one ring, by rising angle about the segment's axis. */
-static Status add_ring(const PortRing *rim, const Port *port, int number, Vec3 u, Vec3 v,
-                       uint32_t *points, Solid *solid, Err *err)
+/* Adds the points of one ring, by rising angle from u towards v. */
+static Status add_ring(const PortRing *rim, const Port *port, const PortRing *ring,
+                       const Vec3 uv[2], uint32_t *points, Solid *solid, Err *err)
 {
-    const PortRing *ring = &port->rings[number];
     uint32_t n = port->end->n;
     for (uint32_t i = 0; i < n; i++) {
-        double angle = FULL_TURN * ((i + 0.5) / n - 0.5);
-        Vec3 way =
-            vec3_add(vec3_scale(u, elementary_cos(angle)), vec3_scale(v, elementary_sin(angle)));
-        Vec3 at = port->is_straight ? cut_of(rim, port, way)
-                                    : vec3_add_scaled(ring->center, way, ring->radius_mm);
-        TRY(solid_point(solid, at, vec3_scale(way, -1), &points[i], err));
+        Vec3 out = direction_at(uv[0], uv[1], FULL_TURN * ((i + 0.5) / n - 0.5));
+        Vec3 at = port->is_straight ? cut_of(rim, port, out)
+                                    : vec3_add_scaled(ring->center, out, ring->radius_mm);
+        TRY(solid_point(solid, at, vec3_scale(out, -1), &points[i], err));
     }
     return STATUS_OK;
 }
@@ -369,30 +367,28 @@ static Status add_ring(const PortRing *rim, const Port *port, int number, Vec3 u
 static Status add_port(const VesselTree *tree, Port *port, Solid *solid, Err *err)
 {
     const CutEnd *end = port->end;
-    const FieldSegment *segment = &tree->segments[end->segment];
     const PortRing rim = rim_of(tree, end);
-    Vec3 u, v, way = rim.way;
-    uint32_t *points[2], n = end->n;
-    Status status;
-    TRY(mem_calloc(&points[0], 2 * (size_t)n, sizeof **points, "ports", err));
-    points[1] = &points[0][n];
-    vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
+    Vec3 uv[2], direction = rim.direction;
+    uint32_t *points[2] = {NULL, NULL}, n = end->n;
     const uint32_t *before = end->rim;
+    Status status;
+    TRY_GOTO(mem_calloc(&port->points, n, sizeof *port->points, "ports", err));
+    TRY_GOTO(mem_calloc(&points[0], n, sizeof **points, "ports", err));
+    TRY_GOTO(mem_calloc(&points[1], n, sizeof **points, "ports", err));
+    vec3_across(segment_axis(&tree->segments[end->segment]), &uv[0], &uv[1]);
     for (int i = 0; i < port->n_rings; i++) {
-        uint32_t *own = points[i % 2];
-        u = turned_with(u, way, port->rings[i].way);
-        way = port->rings[i].way;
-        v = vec3_scale(vec3_cross(way, u), end->end ? 1 : -1);
-        TRY_GOTO(add_ring(&rim, port, i, u, v, own, solid, err));
+        uint32_t *own = i + 1 < port->n_rings ? points[i % 2] : port->points;
+        uv[0] = turned_with(uv[0], direction, port->rings[i].direction);
+        direction = port->rings[i].direction;
+        uv[1] = vec3_scale(vec3_cross(direction, uv[0]), end->end ? 1 : -1);
+        TRY_GOTO(add_ring(&rim, port, &port->rings[i], uv, own, solid, err));
         TRY_GOTO(solid_ring(solid, end->end ? own : before, end->end ? before : own, n,
                             end->segment, err));
         before = own;
     }
-    TRY_GOTO(mem_calloc(&port->points, n, sizeof *port->points, "ports", err));
-    for (uint32_t i = 0; i < n; i++)
-        port->points[i] = before[i];
 done:
     free(points[0]);
+    free(points[1]);
     return status;
 }
 

@@ -13,23 +13,23 @@
 #include <string.h>
 
 /* A surface, and where it is cut off flat. */
-typedef struct Side {
+typedef struct PrintSide {
     VesselMesh mesh;
     MeshReport report;
     CutEnds ends;
-} Side;
+} PrintSide;
 
-typedef struct Making {
+typedef struct PrintMaking {
     VesselTree *tree;
     VesselTree outer; /* with radii of the wall, and with pins */
-    Pins pins;
+    SupportPins pins;
     PrintParams params;
-    Side sides[2]; /* the outer one, and that of the lumen */
-    Casing casing; /* the block or the plate */
+    PrintSide sides[2]; /* the outer one, and that of the lumen */
+    Casing casing;      /* the block or the plate */
     Solid solid;
     Seams seams;
     PrintReport report;
-} Making;
+} PrintMaking;
 
 void printreport_release(PrintReport *report)
 {
@@ -39,17 +39,17 @@ void printreport_release(PrintReport *report)
     *report = (PrintReport){0};
 }
 
-static void release_side(Side *side)
+static void release_side(PrintSide *side)
 {
     vesselmesh_release(&side->mesh);
     meshreport_release(&side->report);
     cutends_release(&side->ends);
 }
 
-static void release_making(Making *making)
+static void release_making(PrintMaking *making)
 {
     vesseltree_release(&making->outer);
-    pins_release(&making->pins);
+    supportpins_release(&making->pins);
     release_side(&making->sides[0]);
     release_side(&making->sides[1]);
     solid_release(&making->solid);
@@ -62,7 +62,7 @@ static double outer_radius(const PrintParams *params, double radius_mm)
     return radius_mm * (1 + params->wall_ratio) + params->wall_mm;
 }
 
-static Status take_outer(Making *making, Err *err)
+static Status take_outer(PrintMaking *making, Err *err)
 {
     VesselTree *outer = &making->outer;
     const VesselTree *tree = making->tree;
@@ -82,7 +82,7 @@ static Status take_outer(Making *making, Err *err)
 }
 
 /* What was changed on the outer side is changed in the tree, which keeps its wall. */
-static Status take_changes(Making *making, Err *err)
+static Status take_changes(PrintMaking *making, Err *err)
 {
     const PrintParams *params = &making->params;
     const PrintReport *report = &making->report;
@@ -108,7 +108,7 @@ static Status take_changes(Making *making, Err *err)
 }
 
 /* Parts overlaps, lengthens ends and sets up pins. */
-static Status prepare(Making *making, Err *err)
+static Status prepare(PrintMaking *making, Err *err)
 {
     const PrintParams *params = &making->params;
     PrintReport *report = &making->report;
@@ -124,10 +124,10 @@ static Status prepare(Making *making, Err *err)
                                 &report->has_closest, err));
     if (!params->base.is_there)
         return STATUS_OK;
-    TRY(pins_add(&making->outer, &params->base, print_has_wall(params), &params->mesh,
-                 &making->pins, err));
+    TRY(supportpins_add(&making->outer, &params->base, print_has_wall(params), &params->mesh,
+                        &making->pins, err));
     report->pins = making->pins.n_pins;
-    report->hanging = making->pins.n_hanging;
+    report->hanging = making->pins.n_unsupported;
     if (report->pins == 0)
         return err_set(err, STATUS_INFEASIBLE,
                        "no pin can be led from the vessels to a base: all %zu places that need one "
@@ -142,16 +142,16 @@ static double rounded(double x, double step)
 }
 
 /* Finds the grid of all coordinates, and puts the block on it. */
-static Status lay_grid(Making *making, Err *err)
+static Status lay_grid(PrintMaking *making, Err *err)
 {
     Casing *casing = &making->casing;
     double reach = mesh_reach(&making->outer), grid;
     if (making->params.block.is_there)
         TRY(block_casing(making->tree, &making->params.block, casing, err));
     if (making->params.base.is_there)
-        *casing = pins_plate(&making->outer, &making->params.base, &making->pins);
+        *casing = supportpins_base_plate(&making->outer, &making->params.base, &making->pins);
     for (int face = 0; face < CASING_FACES; face++)
-        reach = fmax(reach, fabs(face_place(casing, face)));
+        reach = fmax(reach, fabs(face_coordinate(casing, face)));
     making->params.mesh.reach_mm = reach;
     making->solid.grid_mm = grid = mesh_grid(reach);
     Vec3 *ends[2] = {&casing->box.low, &casing->box.high};
@@ -161,14 +161,15 @@ static Status lay_grid(Making *making, Err *err)
     return STATUS_OK;
 }
 
-static Status build_side(const VesselTree *tree, const MeshParams *params, Side *side, Err *err)
+static Status build_side(const VesselTree *tree, const MeshParams *params, PrintSide *side,
+                         Err *err)
 {
     TRY(vesselmesh_build(tree, params, &side->mesh, &side->report, err));
     TRY(meshreport_check(&side->report, tree, err));
     return cutends_find(&side->mesh, &side->ends, err);
 }
 
-static Status build_sides(Making *making, Err *err)
+static Status build_sides(PrintMaking *making, Err *err)
 {
     const PrintParams *params = &making->params;
     Status status = build_side(&making->outer, &params->mesh, &making->sides[0], err);
@@ -183,13 +184,13 @@ static Status build_sides(Making *making, Err *err)
     return status;
 }
 
-static bool is_pin(const Pins *pins, const CutEnd *end)
+static bool is_pin(const SupportPins *pins, const CutEnd *end)
 {
-    return end->segment >= pins->n_segments && pins->is_pin[end->segment - pins->n_segments];
+    return end->segment >= pins->n_original && pins->is_pin[end->segment - pins->n_original];
 }
 
 /* Opens the ends of pins, and those that both sides are cut off flat at. */
-static void open_ends(Making *making)
+static void open_ends(PrintMaking *making)
 {
     CutEnds *ends = &making->sides[0].ends;
     for (size_t i = 0; i < ends->n; i++) {
@@ -203,7 +204,7 @@ static void open_ends(Making *making)
 }
 
 /* Joins the sides where they are open. */
-static Status join_sides(Making *making, Err *err)
+static Status join_sides(PrintMaking *making, Err *err)
 {
     const CutEnds *ends = &making->sides[0].ends;
     for (size_t i = 0; i < ends->n; i++) {
@@ -219,37 +220,39 @@ static Status join_sides(Making *making, Err *err)
     return STATUS_OK;
 }
 
-static Status add_vessels(Making *making, Err *err)
+static Status add_vessels(PrintMaking *making, Err *err)
 {
-    Side *outer = &making->sides[0], *lumen = &making->sides[1];
+    PrintSide *outer = &making->sides[0], *lumen = &making->sides[1];
     open_ends(making);
     if (print_has_wall(&making->params)) {
         for (uint32_t i = 0; i < making->tree->n_segments; i++)
             seams_add(&making->seams, i | MESH_LUMEN);
-        TRY(solid_surface(&making->solid, &lumen->mesh, &lumen->ends, true, MESH_LUMEN, err));
+        TRY(solid_surface(&making->solid, &lumen->mesh, &lumen->ends,
+                          (SurfaceUse){true, MESH_LUMEN}, err));
     }
-    TRY(solid_surface(&making->solid, &outer->mesh, &outer->ends, false, 0, err));
+    TRY(solid_surface(&making->solid, &outer->mesh, &outer->ends, (SurfaceUse){0}, err));
     TRY(join_sides(making, err));
     if (!making->params.base.is_there)
         return STATUS_OK;
-    return pins_join(&making->solid, &making->casing, &outer->ends, &making->pins, &making->seams,
-                     err);
+    return supportpins_join(&making->solid, &making->casing, &outer->ends, &making->pins,
+                            &making->seams, err);
 }
 
-static Status add_all(Making *making, Err *err)
+static Status add_all(PrintMaking *making, Err *err)
 {
-    Side *outer = &making->sides[0];
+    PrintSide *outer = &making->sides[0];
     for (uint32_t i = 0; i < making->outer.n_segments; i++)
         seams_add(&making->seams, i);
     if (making->params.block.is_there)
-        return block_add(&making->solid, &making->outer, &outer->mesh, &outer->ends,
-                         &making->params.block, &making->casing, &making->seams,
-                         &making->report.openings, err);
+        return block_add(&making->solid,
+                         &(const BlockInput){&making->outer, &outer->mesh, &outer->ends,
+                                             &making->params.block, &making->casing},
+                         &making->seams, &making->report.openings, err);
     return add_vessels(making, err);
 }
 
 /* Lists the segments with an end that nothing meets and that is not open. */
-static Status list_closed(Making *making, Err *err)
+static Status list_closed(PrintMaking *making, Err *err)
 {
     PrintReport *report = &making->report;
     const VesselTree *tree = making->tree;
@@ -271,9 +274,9 @@ done:
 }
 
 /* What was added to the tree is said of the segments that it was added to. */
-static void name_owners(Making *making, MeshReport *report)
+static void name_owners(PrintMaking *making, MeshReport *report)
 {
-    const Pins *pins = &making->pins;
+    const SupportPins *pins = &making->pins;
     VesselMesh *mesh = &making->solid.mesh;
     uint32_t *const lists[] = {report->enclosed, report->slivers, report->round};
     const size_t counts[] = {report->n_enclosed, report->n_slivers, report->n_round};
@@ -282,22 +285,23 @@ static void name_owners(Making *making, MeshReport *report)
         return;
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         uint32_t segment = mesh_segment(mesh, i);
-        bool is_own = segment < pins->n_segments || !pins->is_pin[segment - pins->n_segments];
-        mesh->labels[i] =
-            (mesh->labels[i] & MESH_FLAGS) | pins_owner(pins, segment) | (is_own ? 0 : MESH_FRAME);
+        bool is_own = segment < pins->n_original || !pins->is_pin[segment - pins->n_original];
+        mesh->labels[i] = (mesh->labels[i] & MESH_FLAGS) |
+                          supportpins_original_segment(pins, segment) | (is_own ? 0 : MESH_FRAME);
     }
     for (int k = 0; k < LISTS; k++)
         for (size_t i = 0; i < counts[k]; i++)
-            lists[k][i] = pins_owner(pins, lists[k][i]);
+            lists[k][i] = supportpins_original_segment(pins, lists[k][i]);
     for (size_t i = 0; i < report->n_near; i++)
         for (int k = 0; k < 2; k++)
-            report->near[i].segments[k] = pins_owner(pins, report->near[i].segments[k]);
+            report->near[i].segments[k] =
+                supportpins_original_segment(pins, report->near[i].segments[k]);
 }
 
 /* The report of the solid: what is said of segments is what the outer side has. */
-static Status prove(Making *making, MeshReport *report, Err *err)
+static Status prove(PrintMaking *making, MeshReport *report, Err *err)
 {
-    Side *outer = &making->sides[0];
+    PrintSide *outer = &making->sides[0];
     *report = outer->report;
     outer->report = (MeshReport){0};
     making->report.outer_mm3 = report->volume_mm3;
@@ -321,7 +325,7 @@ static Status prove(Making *making, MeshReport *report, Err *err)
 }
 
 /* A disc about the middle of each opening of the lumen, with the outside of the lumen outside. */
-static Status add_lids(Making *making, Err *err)
+static Status add_lids(PrintMaking *making, Err *err)
 {
     const CutEnds *ends = &making->sides[1].ends;
     const PrintReport *report = &making->report;
@@ -349,7 +353,7 @@ static Status add_lids(Making *making, Err *err)
 Status print_build(VesselTree *tree, const PrintParams *params, VesselMesh *mesh,
                    MeshReport *report, PrintReport *print, Err *err)
 {
-    Making making = {.tree = tree, .params = *params};
+    PrintMaking making = {.tree = tree, .params = *params};
     MeshReport found = {0};
     Status status;
     TRY_GOTO(prepare(&making, err));

@@ -1,6 +1,6 @@
-/* A ring takes a disc off either end of what it joins, and two discs' worth of the sum of Euler
- * numbers with them. So a part of the solid, made of s spheres and r rings, has 2 (s - r); it must
- * be connected in the mesh as it is in the graph. */
+/* A ring takes a disc off either end of what it joins. With them it takes 2 from the sum of Euler
+ * numbers. So a part of the solid that is made of s spheres and r rings has the Euler number 2 (s -
+ * r). The part must be connected in the mesh as it is in the graph. */
 #include "print/seams.h"
 
 #include "mesh/mesh.h"
@@ -22,13 +22,6 @@ static uint32_t surface_count(const Seams *seams)
     return 2 * seams->n_nodes + 1;
 }
 
-static uint32_t root_of(uint32_t *root, uint32_t item)
-{
-    while (root[item] != item)
-        item = root[item] = root[root[item]];
-    return item;
-}
-
 Status seams_make(const VesselTree *tree, Seams *out, Err *err)
 {
     Seams seams = {.n_nodes = (uint32_t)tree->n_nodes, .n_segments = tree->n_segments};
@@ -38,8 +31,7 @@ Status seams_make(const VesselTree *tree, Seams *out, Err *err)
     TRY_GOTO(mem_calloc(&seams.root, n, sizeof *seams.root, "trees", err));
     TRY_GOTO(mem_calloc(&seams.rings, n, sizeof *seams.rings, "trees", err));
     TRY_GOTO(mem_calloc(&seams.is_there, n, sizeof *seams.is_there, "trees", err));
-    for (uint32_t i = 0; i < n; i++)
-        seams.root[i] = i;
+    sets_begin(seams.root, n);
     *out = seams;
     return STATUS_OK;
 done:
@@ -61,12 +53,11 @@ void seams_add(Seams *seams, uint32_t label)
 
 void seams_ring(Seams *seams, uint32_t label, uint32_t other)
 {
-    uint32_t a = root_of(seams->root, seams_surface(seams, label));
-    uint32_t b = root_of(seams->root, seams_surface(seams, other));
-    if (a != b)
-        seams->rings[a] += seams->rings[b];
-    seams->root[b] = a;
-    seams->rings[a]++;
+    uint32_t a = sets_find(seams->root, seams_surface(seams, label));
+    uint32_t b = sets_find(seams->root, seams_surface(seams, other));
+    uint32_t rings = seams->rings[a] + (a != b ? seams->rings[b] : 0);
+    sets_join(seams->root, a, b);
+    seams->rings[sets_find(seams->root, a)] = rings + 1;
     seams->n_rings++;
 }
 
@@ -79,13 +70,14 @@ size_t seams_lone(const Seams *seams, uint32_t kind)
     return n;
 }
 
-/* Euler numbers that the parts of the graph are to have, each at its root. */
+/* Finds the Euler number that each part of the graph must have, at the surface that represents the
+ * part. */
 static void expect(const Seams *seams, long long *euler, MeshReport *report)
 {
     long long sum = 0;
     report->expected_components = 0;
     for (uint32_t i = 0; i < surface_count(seams); i++) {
-        uint32_t root = root_of(seams->root, i);
+        uint32_t root = sets_find(seams->root, i);
         if (!seams->is_there[i])
             continue;
         euler[root] += 2;
@@ -99,8 +91,8 @@ static void expect(const Seams *seams, long long *euler, MeshReport *report)
     report->expected_genus = (size_t)((2 * (long long)report->expected_components - sum) / 2);
 }
 
-/* Takes from euler[] what the parts of the mesh have: twice points less triangles, halved. Returns
- * how many points have triangles of two parts. */
+/* Doubles euler[] and subtracts twice the Euler number of the parts of the mesh, which is twice
+ * their points less their triangles. Returns how often a point has triangles of two parts. */
 static size_t take_found(const Seams *seams, const VesselMesh *mesh, uint32_t *part_of,
                          long long *euler)
 {
@@ -110,7 +102,7 @@ static size_t take_found(const Seams *seams, const VesselMesh *mesh, uint32_t *p
     for (uint32_t i = 0; i < surface_count(seams); i++)
         euler[i] *= 2;
     for (size_t i = 0; i < mesh->n_triangles; i++) {
-        uint32_t part = root_of(seams->root, seams_surface(seams, mesh->labels[i]));
+        uint32_t part = sets_find(seams->root, seams_surface(seams, mesh->labels[i]));
         euler[part]++;
         for (int k = 0; k < 3; k++) {
             uint32_t *of = &part_of[mesh->triangles[i][k]];
@@ -122,7 +114,7 @@ static size_t take_found(const Seams *seams, const VesselMesh *mesh, uint32_t *p
     return mixed;
 }
 
-/* Whether each part is what it is to be; after meshcheck_topology. */
+/* Checks each part; after meshcheck_topology. */
 static Status check_parts(const Seams *seams, const VesselMesh *mesh, MeshReport *report, Err *err)
 {
     long long *euler = NULL;
@@ -132,12 +124,12 @@ static Status check_parts(const Seams *seams, const VesselMesh *mesh, MeshReport
     TRY_GOTO(mem_calloc(&part_of, mesh->n_points, sizeof *part_of, "points", err));
     expect(seams, euler, report);
     report->bridges = take_found(seams, mesh, part_of, euler);
-    for (uint32_t i = 0; i < surface_count(seams) && status == STATUS_OK; i++)
+    for (uint32_t i = 0; i < surface_count(seams); i++)
         if (euler[i] != 0)
-            status = err_set(err, STATUS_DIFFERS,
+            TRY_GOTO(err_set(err, STATUS_DIFFERS,
                              "the solid is not sound: a part of it has the Euler number %+lld off "
                              "that of the surfaces it is made of; nothing is written",
-                             -euler[i] / 2);
+                             -euler[i] / 2));
 done:
     free(euler);
     free(part_of);

@@ -1,6 +1,6 @@
-/* A cap of the mesher is a fan of triangles about a point that no other triangle has, so that
- * leaving it out opens one rim, whose points keep their order by angle. Two surfaces of one tree
- * whose segments differ in their radii alone have rims of as many points at the same angles. */
+/* A cap of the mesher is a fan of triangles about a point that no other triangle has. Leaving the
+ * fan out opens one rim, whose points keep their order by angle. Two surfaces of one tree whose
+ * segments differ only in their radii have rims of equally many points at the same angles. */
 #include "print/solid.h"
 
 #include <stdlib.h>
@@ -29,34 +29,28 @@ Status cutends_find(const VesselMesh *mesh, CutEnds *out, Err *err)
 {
     CutEnds ends = {0};
     size_t capacity = 0, points = 0;
-    for (size_t i = 0; i < mesh->n_triangles;) {
-        if (!mesh_is_cap(mesh, i)) {
-            i++;
+    Status status;
+    for (size_t i = 0, n; i < mesh->n_triangles; i += n) {
+        n = mesh_is_cap(mesh, i) ? count_fan(mesh, i) : 1;
+        if (!mesh_is_cap(mesh, i))
             continue;
-        }
-        Status status = mem_reserve(&ends.items, &capacity, ends.n + 1, sizeof *ends.items,
-                                    "ends of vessels", err);
-        if (status != STATUS_OK) {
-            cutends_release(&ends);
-            return status;
-        }
-        uint32_t n = count_fan(mesh, i);
-        int end = mesh->triangles[i][2] == mesh->triangles[i + 1][1];
-        ends.items[ends.n++] =
-            (CutEnd){.segment = mesh_segment(mesh, i), .end = end, .first = (uint32_t)i, .n = n};
+        TRY_GOTO(mem_reserve(&ends.items, &capacity, ends.n + 1, sizeof *ends.items,
+                             "ends of vessels", err));
+        ends.items[ends.n++] = (CutEnd){.segment = mesh_segment(mesh, i),
+                                        .end = mesh->triangles[i][2] == mesh->triangles[i + 1][1],
+                                        .first = (uint32_t)i,
+                                        .n = (uint32_t)n};
         points += n;
-        i += n;
     }
-    Status status = mem_calloc(&ends.rims, points, sizeof *ends.rims, "ends of vessels", err);
-    if (status != STATUS_OK) {
-        cutends_release(&ends);
-        return status;
-    }
+    TRY_GOTO(mem_calloc(&ends.rims, points, sizeof *ends.rims, "ends of vessels", err));
     uint32_t *rim = ends.rims;
     for (size_t i = 0; i < ends.n; rim += ends.items[i++].n)
         ends.items[i].rim = rim;
     *out = ends;
     return STATUS_OK;
+done:
+    cutends_release(&ends);
+    return status;
 }
 
 CutEnd *cutends_at(const CutEnds *ends, uint32_t segment, int end)
@@ -80,7 +74,7 @@ void solid_release(Solid *solid)
     *solid = (Solid){0};
 }
 
-Status solid_point(Solid *solid, Vec3 x, Vec3 normal, uint32_t *number, Err *err)
+Status solid_point(Solid *solid, Vec3 x, Vec3 normal, uint32_t *index, Err *err)
 {
     VesselMesh *mesh = &solid->mesh;
     size_t needed = mesh->n_points + 1;
@@ -89,11 +83,10 @@ Status solid_point(Solid *solid, Vec3 x, Vec3 normal, uint32_t *number, Err *err
     TRY(mem_reserve(&mesh->normals, &solid->normal_capacity, needed, sizeof *mesh->normals,
                     "points", err));
     for (int axis = 0; axis < 3; axis++) {
-        double place = round(vec3_component(x, axis) / solid->grid_mm) * solid->grid_mm;
-        mesh->points[mesh->n_points][axis] = (float)place;
+        mesh->points[mesh->n_points][axis] = mesh_rounded(vec3_component(x, axis), solid->grid_mm);
         mesh->normals[mesh->n_points][axis] = (float)vec3_component(normal, axis);
     }
-    *number = (uint32_t)mesh->n_points++;
+    *index = (uint32_t)mesh->n_points++;
     return STATUS_OK;
 }
 
@@ -111,54 +104,54 @@ Status solid_triangle(Solid *solid, uint32_t a, uint32_t b, uint32_t c, uint32_t
     return STATUS_OK;
 }
 
-/* number[i] becomes the number in the solid of the mesh's i-th point, where it is not NONE. */
-static Status add_points(Solid *solid, const VesselMesh *mesh, bool turned, uint32_t *number,
+/* Adds the points of a mesh. index[i] receives the index in the solid of point i, unless it is
+ * NONE: then the point is left out. */
+static Status add_points(Solid *solid, const VesselMesh *mesh, bool turned, uint32_t *index,
                          Err *err)
 {
     for (size_t i = 0; i < mesh->n_points; i++) {
         const float *own = mesh->normals[i];
         Vec3 normal = vec3((double)own[0], (double)own[1], (double)own[2]);
-        if (number[i] != NONE)
+        if (index[i] != NONE)
             TRY(solid_point(solid, mesh_point(mesh, (uint32_t)i),
-                            vec3_scale(normal, turned ? -1 : 1), &number[i], err));
+                            vec3_scale(normal, turned ? -1 : 1), &index[i], err));
     }
     return STATUS_OK;
 }
 
-Status solid_surface(Solid *solid, const VesselMesh *mesh, CutEnds *ends, bool turned,
-                     uint32_t flags, Err *err)
+Status solid_surface(Solid *solid, const VesselMesh *mesh, CutEnds *ends, SurfaceUse use, Err *err)
 {
-    uint32_t *number;
+    uint32_t *index;
     Status status;
-    TRY(mem_calloc(&number, mesh->n_points, sizeof *number, "points", err));
+    TRY(mem_calloc(&index, mesh->n_points, sizeof *index, "points", err));
     for (size_t e = 0; e < ends->n; e++)
         if (ends->items[e].opened)
-            number[mesh->triangles[ends->items[e].first][0]] = NONE;
-    TRY_GOTO(add_points(solid, mesh, turned, number, err));
+            index[mesh->triangles[ends->items[e].first][0]] = NONE;
+    TRY_GOTO(add_points(solid, mesh, use.turned, index, err));
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         const uint32_t *at = mesh->triangles[i];
-        uint32_t label = mesh->labels[i] | flags;
-        if (number[at[0]] != NONE)
-            TRY_GOTO(solid_triangle(solid, number[at[0]], number[at[turned ? 2 : 1]],
-                                    number[at[turned ? 1 : 2]], label, err));
+        uint32_t label = mesh->labels[i] | use.flags;
+        if (index[at[0]] != NONE)
+            TRY_GOTO(solid_triangle(solid, index[at[0]], index[at[use.turned ? 2 : 1]],
+                                    index[at[use.turned ? 1 : 2]], label, err));
     }
     for (size_t e = 0; e < ends->n; e++)
         for (uint32_t i = 0; i < ends->items[e].n; i++) {
             const CutEnd *end = &ends->items[e];
-            end->rim[i] = number[mesh->triangles[end->first + i][end->end ? 1 : 2]];
+            end->rim[i] = index[mesh->triangles[end->first + i][end->end ? 1 : 2]];
         }
 done:
-    free(number);
+    free(index);
     return status;
 }
 
-Status solid_ring(Solid *solid, const uint32_t *ring, const uint32_t *next, uint32_t n,
+Status solid_ring(Solid *solid, const uint32_t *rim, const uint32_t *next, uint32_t n,
                   uint32_t label, Err *err)
 {
     for (uint32_t i = 0; i < n; i++) {
         uint32_t k = (i + 1) % n;
-        TRY(solid_triangle(solid, ring[i], ring[k], next[k], label, err));
-        TRY(solid_triangle(solid, ring[i], next[k], next[i], label, err));
+        TRY(solid_triangle(solid, rim[i], rim[k], next[k], label, err));
+        TRY(solid_triangle(solid, rim[i], next[k], next[i], label, err));
     }
     return STATUS_OK;
 }

@@ -1,52 +1,75 @@
-/* A closed solid that is put together from surfaces: proved ones, whose flat ends are opened, and
- * what joins the rims. */
+/* A closed solid that is put together from valid surfaces, whose flat ends are opened, and from
+ * triangles that join the rims. */
 #ifndef CORCAST_PRINT_SOLID_H
 #define CORCAST_PRINT_SOLID_H
 
 #include "mesh/mesh.h"
 
-/* A flat end of a surface: a disc of `n` triangles that follow each other, about one point. */
+/* A flat end of a surface: a disc of `n` consecutive triangles about one point. */
 typedef struct CutEnd {
     uint32_t segment;
     int end;        /* of the segment, 0 or 1 */
-    uint32_t first; /* triangle */
+    uint32_t first; /* index of the first triangle */
     uint32_t n;
-    bool opened;   /* left out of the solid */
-    uint32_t *rim; /* in a solid: its points there, by rising angle about the segment's axis */
+    bool opened;   /* the disc is left out of the solid */
+    uint32_t *rim; /* the rim's points in the solid, by rising angle about the segment's axis; set
+                    * by solid_surface */
 } CutEnd;
 
 typedef struct CutEnds {
-    CutEnd *items; /* owned; by rising segments and ends */
+    CutEnd *items; /* owned; by rising segment, then end */
     size_t n;
-    uint32_t *rims; /* owned: what the items point into */
+    uint32_t *rims; /* owned; the items point into it */
 } CutEnds;
 
-/* Lists the flat ends of a mesh of vesselmesh_build. O(triangles). */
+/* Lists the flat ends of a mesh of vesselmesh_build. Errors: STATUS_MEMORY. O(triangles). */
 MUST_CHECK Status cutends_find(const VesselMesh *mesh, CutEnds *out, Err *err);
 void cutends_release(CutEnds *ends);
-/* The end of this segment, or NULL. O(log n). */
+/* Returns the flat end of a segment, or NULL if this end is not flat. O(log n). */
 CutEnd *cutends_at(const CutEnds *ends, uint32_t segment, int end);
 
-/* Zeroed before the first use but for the grid. */
+/* Zero it, except grid_mm, before first use; release it with solid_release. */
 typedef struct Solid {
     VesselMesh mesh;
-    double grid_mm; /* points lie on its multiples */
+    double grid_mm; /* coordinates are integer multiples of it */
     size_t point_capacity, normal_capacity, triangle_capacity, label_capacity;
 } Solid;
 
 void solid_release(Solid *solid);
 
-MUST_CHECK Status solid_point(Solid *solid, Vec3 x, Vec3 normal, uint32_t *number, Err *err);
-/* Counterclockwise seen from outside. */
+/* Adds a point, rounded to the grid, and sets *index to its index. Errors: STATUS_MEMORY. */
+MUST_CHECK Status solid_point(Solid *solid, Vec3 x, Vec3 normal, uint32_t *index, Err *err);
+/* Adds a triangle, counterclockwise seen from outside. Errors: STATUS_MEMORY. */
 MUST_CHECK Status solid_triangle(Solid *solid, uint32_t a, uint32_t b, uint32_t c, uint32_t label,
                                  Err *err);
-/* Adds a surface without the ends that are opened, `flags` set in its labels, with its inside
- * outside if it is `turned`; fills the ends' rims. */
-MUST_CHECK Status solid_surface(Solid *solid, const VesselMesh *mesh, CutEnds *ends, bool turned,
-                                uint32_t flags, Err *err);
-/* Joins two rings of n points by 2 n triangles: seen from outside, `next` lies to the left of the
- * way along `ring`. */
-MUST_CHECK Status solid_ring(Solid *solid, const uint32_t *ring, const uint32_t *next, uint32_t n,
+
+/* How a surface is added to a solid. */
+typedef struct SurfaceUse {
+    bool turned;    /* its inside becomes the outside */
+    uint32_t flags; /* set in the labels of its triangles */
+} SurfaceUse;
+
+/* Adds a surface without its opened ends, and fills the rims of the ends. Errors: STATUS_MEMORY. */
+MUST_CHECK Status solid_surface(Solid *solid, const VesselMesh *mesh, CutEnds *ends, SurfaceUse use,
+                                Err *err);
+/* Joins two rims of n points by 2 n triangles. Seen from outside, `next` is on the left of the
+ * direction along `rim`. Errors: STATUS_MEMORY. */
+MUST_CHECK Status solid_ring(Solid *solid, const uint32_t *rim, const uint32_t *next, uint32_t n,
                              uint32_t label, Err *err);
+
+/* Points of a solid, in order round a closed loop. */
+typedef struct FaceLoop {
+    const uint32_t *points;
+    uint32_t n;
+} FaceLoop;
+
+/* Fills a flat face with triangles.
+ *
+ * face     2 axis + 1 if the outside is towards the high end of the axis, 2 axis if it is towards
+ * the low end. All points have the same coordinate along the axis. loops    The first is the face's
+ * edge, counterclockwise seen from outside. The others are holes in it, clockwise. Loops do not
+ * touch. Errors   STATUS_INFEASIBLE if loops touch, STATUS_MEMORY. Cost     O(n^2) for n points. */
+MUST_CHECK Status face_fill(Solid *solid, int face, const FaceLoop *loops, size_t n_loops,
+                            uint32_t label, Err *err);
 
 #endif

@@ -17,11 +17,11 @@ static const double most_rise = 0.5;
 static const double level_part = 0.25;
 
 /* A place that a pin is to begin at. */
-typedef struct Foot {
+typedef struct PinFoot {
     uint32_t node, segment; /* one that ended there before any was cut */
     Vec3 at;
     double radius_mm;
-} Foot;
+} PinFoot;
 
 typedef struct Standing {
     VesselTree *tree;
@@ -29,40 +29,40 @@ typedef struct Standing {
     BoxTree boxes;         /* of the tree as it was; owned */
     IndexLists incident;   /* likewise ... */
     size_t incident_nodes; /* ... which had so many nodes */
-    Foot *feet;
+    PinFoot *feet;
     size_t n_feet, foot_capacity;
     size_t segment_capacity[3], owner_capacity, pin_capacity;
-    Pins pins;
+    SupportPins pins;
     Err *err;
 } Standing;
 
-void pins_release(Pins *pins)
+void supportpins_release(SupportPins *pins)
 {
     free(pins->owner);
     free(pins->is_pin);
-    *pins = (Pins){0};
+    *pins = (SupportPins){0};
 }
 
-static Vec3 place_of(const VesselTree *tree, uint32_t segment, int end)
+static Vec3 end_of(const VesselTree *tree, uint32_t segment, int end)
 {
-    return end ? tree->segments[segment].b : tree->segments[segment].a;
+    return segment_end(&tree->segments[segment], end);
 }
 
 /* Whether a node is lower than all that leads away from it. */
-static bool is_lowest(const Standing *standing, uint32_t node, Foot *foot)
+static bool is_lowest(const Standing *standing, uint32_t node, PinFoot *foot)
 {
     const VesselTree *tree = standing->tree;
     const uint32_t *first = &standing->incident.first[node];
-    *foot = (Foot){.node = node};
+    *foot = (PinFoot){.node = node};
     for (uint32_t i = first[0]; i < first[1]; i++) {
         uint32_t segment = standing->incident.items[i];
         int end = segment_end_at(tree, segment, node);
         double radius = tree->segments[segment].radius_mm;
-        double rise = place_of(tree, segment, !end).z - place_of(tree, segment, end).z;
+        double rise = end_of(tree, segment, !end).z - end_of(tree, segment, end).z;
         if (rise < -level_part * radius)
             return false;
         if (radius > foot->radius_mm)
-            *foot = (Foot){node, segment, place_of(tree, segment, end), radius};
+            *foot = (PinFoot){node, segment, end_of(tree, segment, end), radius};
     }
     return first[1] > first[0];
 }
@@ -70,7 +70,7 @@ static bool is_lowest(const Standing *standing, uint32_t node, Foot *foot)
 static Status find_feet(Standing *standing)
 {
     for (uint32_t node = 0; node < standing->tree->n_nodes; node++) {
-        Foot foot;
+        PinFoot foot;
         if (!is_lowest(standing, node, &foot))
             continue;
         foot.radius_mm = fmax(pin_part * foot.radius_mm, standing->base->least_radius_mm);
@@ -84,11 +84,7 @@ static Status find_feet(Standing *standing)
 static double top_of(const Standing *standing)
 {
     const VesselTree *tree = standing->tree;
-    double low = HUGE_VAL, thick = 0;
-    for (size_t i = 0; i < tree->n_segments; i++) {
-        const FieldSegment *segment = &tree->segments[i];
-        low = fmin(low, fmin(segment->a.z, segment->b.z) - segment->radius_mm);
-    }
+    double low = vesseltree_box(tree, 0).low.z, thick = 0;
     for (size_t i = 0; i < standing->n_feet; i++)
         thick = fmax(thick, standing->feet[i].radius_mm);
     return low - fmax(least_lift_mm, lift_part * thick);
@@ -98,7 +94,7 @@ static Status add_segment(Standing *standing, FieldSegment segment, uint32_t fro
                           uint32_t owner, bool is_pin)
 {
     VesselTree *tree = standing->tree;
-    Pins *pins = &standing->pins;
+    SupportPins *pins = &standing->pins;
     size_t n = tree->n_segments + 1, *capacity = standing->segment_capacity;
     TRY(mem_reserve(&tree->segments, &capacity[0], n, sizeof *tree->segments, "pins",
                     standing->err));
@@ -124,7 +120,7 @@ static bool is_off(const Standing *standing, const FieldSegment *pin, uint32_t n
 {
     const VesselTree *tree = standing->tree;
     const FieldSegment *other = &tree->segments[i];
-    double gap = segments_distance(pin, other) - pin->radius_mm - other->radius_mm;
+    double gap = segments_gap(pin, other);
     return tree->nodes[i][0] == node || tree->nodes[i][1] == node ||
            gap >= free_part * fmin(pin->radius_mm, other->radius_mm);
 }
@@ -139,7 +135,7 @@ static bool is_free(const Standing *standing, const FieldSegment *pin, uint32_t 
     for (BoxWalk walk = boxwalk_box(&standing->boxes, around); boxwalk_next(&walk, &number);)
         if (!is_off(standing, pin, node, number))
             return false;
-    for (size_t i = standing->pins.n_segments; i < tree->n_segments; i++) {
+    for (size_t i = standing->pins.n_original; i < tree->n_segments; i++) {
         const FieldSegment *added = &tree->segments[i];
         if (box_meets(around, segment_box(added, added->radius_mm)) &&
             !is_off(standing, pin, node, i))
@@ -156,7 +152,7 @@ typedef struct Spot {
 } Spot;
 
 /* Goes from an open end so far along the vessel. False where it ends or branches before. */
-static bool walk_from(const Standing *standing, const Foot *foot, double mm, Spot *spot)
+static bool walk_from(const Standing *standing, const PinFoot *foot, double mm, Spot *spot)
 {
     const VesselTree *tree = standing->tree;
     uint32_t node = foot->node, segment = foot->segment;
@@ -184,16 +180,16 @@ static Status cut_at(Standing *standing, const Spot *spot, uint32_t *node)
 {
     VesselTree *tree = standing->tree;
     FieldSegment own = tree->segments[spot->segment], rest = own;
-    Vec3 from = place_of(tree, spot->segment, spot->end);
-    Vec3 to = place_of(tree, spot->segment, !spot->end);
+    Vec3 from = end_of(tree, spot->segment, spot->end);
+    Vec3 to = end_of(tree, spot->segment, !spot->end);
     Vec3 at = vec3_add_scaled(from, vec3_normalized(vec3_sub(to, from)), spot->mm);
     uint32_t ends[2] = {tree->nodes[spot->segment][0], tree->nodes[spot->segment][1]};
     *node = (uint32_t)tree->n_nodes++;
     *(spot->end ? &rest.b : &rest.a) = at;
     *(spot->end ? &own.a : &own.b) = at;
     ends[spot->end] = *node;
-    TRY(add_segment(standing, rest, ends[0], ends[1], pins_owner(&standing->pins, spot->segment),
-                    false));
+    TRY(add_segment(standing, rest, ends[0], ends[1],
+                    supportpins_original_segment(&standing->pins, spot->segment), false));
     tree->segments[spot->segment] = own;
     tree->nodes[spot->segment][!spot->end] = *node;
     return STATUS_OK;
@@ -201,7 +197,7 @@ static Status cut_at(Standing *standing, const Spot *spot, uint32_t *node)
 
 /* Moves a foot from an open end to a place beside it. False when there is none, or when the end
  * would be much lower. */
-static Status move_foot(Standing *standing, Foot *foot, bool *done)
+static Status move_foot(Standing *standing, PinFoot *foot, bool *done)
 {
     VesselTree *tree = standing->tree;
     double radius = tree->segments[foot->segment].radius_mm, off = from_end * radius;
@@ -210,8 +206,8 @@ static Status move_foot(Standing *standing, Foot *foot, bool *done)
     *done = walk_from(standing, foot, off, &spot);
     if (!*done)
         return STATUS_OK;
-    Vec3 from = place_of(tree, spot.segment, spot.end);
-    Vec3 to = place_of(tree, spot.segment, !spot.end);
+    Vec3 from = end_of(tree, spot.segment, spot.end);
+    Vec3 to = end_of(tree, spot.segment, !spot.end);
     double left = vec3_distance(from, to) - spot.mm;
     double rise = from.z + (to.z - from.z) * spot.mm / (spot.mm + left) - end.z;
     *done = rise <= most_rise * off;
@@ -222,7 +218,7 @@ static Status move_foot(Standing *standing, Foot *foot, bool *done)
     return *done && left > radius ? cut_at(standing, &spot, &foot->node) : STATUS_OK;
 }
 
-static Status add_pin(Standing *standing, Foot foot, bool open_ends)
+static Status add_pin(Standing *standing, PinFoot foot, bool open_ends)
 {
     VesselTree *tree = standing->tree;
     const uint32_t *first = &standing->incident.first[foot.node];
@@ -230,15 +226,15 @@ static Status add_pin(Standing *standing, Foot foot, bool open_ends)
     if (open_ends && first[1] - first[0] == 1)
         TRY(move_foot(standing, &foot, &has_room));
     const FieldSegment pin = {.a = foot.at,
-                              .b = vec3(foot.at.x, foot.at.y, standing->pins.top_mm),
+                              .b = vec3(foot.at.x, foot.at.y, standing->pins.plate_top_mm),
                               .radius_mm = foot.radius_mm};
     if (!has_room || !is_free(standing, &pin, foot.node)) {
-        standing->pins.n_hanging++;
+        standing->pins.n_unsupported++;
         return STATUS_OK;
     }
     standing->pins.n_pins++;
     return add_segment(standing, pin, foot.node, (uint32_t)tree->n_nodes++,
-                       pins_owner(&standing->pins, foot.segment), true);
+                       supportpins_original_segment(&standing->pins, foot.segment), true);
 }
 
 /* Whether a pin is not cut off flat at the plate, or overlaps a vessel. */
@@ -255,10 +251,10 @@ static bool is_spoilt(const Standing *standing, const Junctions *junctions, uint
 static size_t take_spoilt(Standing *standing, const Junctions *junctions)
 {
     VesselTree *tree = standing->tree;
-    Pins *pins = &standing->pins;
+    SupportPins *pins = &standing->pins;
     size_t kept = 0, n = pins->n_added;
     for (size_t i = 0; i < n; i++) {
-        size_t from = pins->n_segments + i, to = pins->n_segments + kept;
+        size_t from = pins->n_original + i, to = pins->n_original + kept;
         if (pins->is_pin[i] && is_spoilt(standing, junctions, (uint32_t)from))
             continue;
         tree->segments[to] = tree->segments[from];
@@ -270,8 +266,8 @@ static size_t take_spoilt(Standing *standing, const Junctions *junctions)
     }
     pins->n_added = kept;
     pins->n_pins -= n - kept;
-    pins->n_hanging += n - kept;
-    tree->n_segments = pins->n_segments + kept;
+    pins->n_unsupported += n - kept;
+    tree->n_segments = pins->n_original + kept;
     return n - kept;
 }
 
@@ -288,49 +284,45 @@ static Status keep_flat(Standing *standing, const MeshParams *params)
     return STATUS_OK;
 }
 
-Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends, const MeshParams *params,
-                Pins *out, Err *err)
+Status supportpins_add(VesselTree *tree, const PrintBase *base, bool open_ends,
+                       const MeshParams *params, SupportPins *out, Err *err)
 {
     size_t n = tree->n_segments;
     Standing standing = {.tree = tree,
                          .base = base,
                          .segment_capacity = {n, n, n},
                          .incident_nodes = tree->n_nodes,
-                         .pins.n_segments = n,
+                         .pins.n_original = n,
                          .err = err};
     Status status;
     TRY_GOTO(segments_boxtree(tree, &standing.boxes, err));
     TRY_GOTO(vesseltree_incident(tree, &standing.incident, err));
     TRY_GOTO(find_feet(&standing));
-    standing.pins.top_mm = top_of(&standing);
+    standing.pins.plate_top_mm = top_of(&standing);
     for (size_t i = 0; i < standing.n_feet; i++)
         TRY_GOTO(add_pin(&standing, standing.feet[i], open_ends));
     TRY_GOTO(keep_flat(&standing, params));
     *out = standing.pins;
-    standing.pins = (Pins){0};
+    standing.pins = (SupportPins){0};
 done:
     boxtree_release(&standing.boxes);
     indexlists_release(&standing.incident);
     free(standing.feet);
-    pins_release(&standing.pins);
+    supportpins_release(&standing.pins);
     return status;
 }
 
-Casing pins_plate(const VesselTree *tree, const PrintBase *base, const Pins *pins)
+Casing supportpins_base_plate(const VesselTree *tree, const PrintBase *base,
+                              const SupportPins *pins)
 {
-    Box box = box_empty();
-    for (size_t i = 0; i < tree->n_segments; i++) {
-        const FieldSegment *segment = &tree->segments[i];
-        box = box_with_ball(box, segment->a, segment->radius_mm + edge_mm);
-        box = box_with_ball(box, segment->b, segment->radius_mm + edge_mm);
-    }
-    box.high.z = pins->top_mm;
-    box.low.z = pins->top_mm - base->thickness_mm;
+    Box box = vesseltree_box(tree, edge_mm);
+    box.high.z = pins->plate_top_mm;
+    box.low.z = pins->plate_top_mm - base->thickness_mm;
     return (Casing){.box = box};
 }
 
-Status pins_join(Solid *solid, const Casing *plate, const CutEnds *ends, const Pins *pins,
-                 Seams *seams, Err *err)
+Status supportpins_join(Solid *solid, const Casing *plate, const CutEnds *ends,
+                        const SupportPins *pins, Seams *seams, Err *err)
 {
     CasingHole *holes;
     size_t n = 0;
@@ -338,7 +330,7 @@ Status pins_join(Solid *solid, const Casing *plate, const CutEnds *ends, const P
     seams_add(seams, MESH_FRAME);
     for (size_t i = 0; i < ends->n; i++) {
         const CutEnd *end = &ends->items[i];
-        if (end->segment < pins->n_segments || !pins->is_pin[end->segment - pins->n_segments])
+        if (end->segment < pins->n_original || !pins->is_pin[end->segment - pins->n_original])
             continue;
         holes[n++] = (CasingHole){5, false, end->rim, end->n};
         seams_ring(seams, end->segment, MESH_FRAME);

@@ -1,4 +1,4 @@
-/* A plate that vessels stand on, and pins between them. */
+/* A base plate for printing, and the support pins between the plate and the vessels. */
 #ifndef CORCAST_PRINT_SUPPORTPINS_H
 #define CORCAST_PRINT_SUPPORTPINS_H
 
@@ -6,36 +6,47 @@
 #include "print/print.h"
 #include "print/seams.h"
 
-/* Segments that are added to a tree: pins, whose second ends lie on the plate, and pieces that
- * vessels are cut into where a pin begins. */
-typedef struct Pins {
-    size_t n_segments; /* that the tree had before */
-    uint32_t *owner;   /* of each that is added: one that the tree had; owned, as all of it */
-    bool *is_pin;
+/* Segments added to a tree for printing: support pins, whose second ends are on the base plate, and
+ * the pieces of vessels that were split where a pin attaches. Added segment i has the index
+ * n_original + i in the tree. */
+typedef struct SupportPins {
+    size_t n_original; /* number of segments before any was added */
+    uint32_t *owner;   /* owner[i]: the original segment that added segment i belongs to; owned */
+    bool *is_pin;      /* is_pin[i]: added segment i is a pin, not a piece of a vessel; owned */
     size_t n_added, n_pins;
-    size_t n_hanging; /* places that need a pin and have no room for it */
-    double top_mm;    /* of the plate */
-} Pins;
+    size_t n_unsupported; /* points that need a pin, but where no pin is possible */
+    double plate_top_mm;  /* z of the plate's upper face */
+} SupportPins;
 
-void pins_release(Pins *pins);
+void supportpins_release(SupportPins *pins);
 
-/* Adds pins to a tree whose arrays are its own, from each node that has nothing below it: a printer
- * would begin it in the air; but for pins that cannot be cut off flat. Where vessels are open at
- * their ends, a pin begins beside the end. O(pins segments). */
-MUST_CHECK Status pins_add(VesselTree *tree, const PrintBase *base, bool open_ends,
-                           const MeshParams *params, Pins *out, Err *err);
+/* Adds a vertical pin below each node from which no segment descends. Without a pin, the printer
+ * would have to start this node in mid-air.
+ *
+ * If `open_ends` is true, the vessels are open at their ends, and the pin of an end attaches beside
+ * the end. A node gets no pin if there is no point beside its end, if the pin would be too close to
+ * another vessel, or if the pin could not be cut flat at the plate.
+ *
+ * tree     must own its arrays. Segments and nodes are added, also before an error.
+ * out      is set on success; release it with supportpins_release.
+ * Cost     O(pins * segments). */
+MUST_CHECK Status supportpins_add(VesselTree *tree, const PrintBase *base, bool open_ends,
+                                  const MeshParams *params, SupportPins *out, Err *err);
 
-/* The plate below the pins. */
-Casing pins_plate(const VesselTree *tree, const PrintBase *base, const Pins *pins);
+/* Returns the plate below the pins. */
+Casing supportpins_base_plate(const VesselTree *tree, const PrintBase *base,
+                              const SupportPins *pins);
 
-/* Joins the plate to the pins, whose ends are opened and in the solid. */
-MUST_CHECK Status pins_join(Solid *solid, const Casing *plate, const CutEnds *ends,
-                            const Pins *pins, Seams *seams, Err *err);
+/* Adds the plate to the solid and joins it to the pins. The pins must already be in the solid,
+ * their lower ends opened. Errors: STATUS_INFEASIBLE if two pins touch at the plate,
+ * STATUS_MEMORY. */
+MUST_CHECK Status supportpins_join(Solid *solid, const Casing *plate, const CutEnds *ends,
+                                   const SupportPins *pins, Seams *seams, Err *err);
 
-/* The segment of the tree as it was that a segment stands for. */
-static inline uint32_t pins_owner(const Pins *pins, uint32_t segment)
+/* Returns the original segment that a segment of the extended tree belongs to. */
+static inline uint32_t supportpins_original_segment(const SupportPins *pins, uint32_t segment)
 {
-    return segment < pins->n_segments ? segment : pins->owner[segment - pins->n_segments];
+    return segment < pins->n_original ? segment : pins->owner[segment - pins->n_original];
 }
 
 #endif

@@ -1,20 +1,22 @@
-/* What the geometry alone decides, the search structure of rays (Caster), is made once and kept.
- * What a view decides, an engine's lists of tiles and of what lights see, is kept until a camera,
- * lights, a ground plane or an antialiasing come that are not the same to the last bit, or another
- * engine, or until colours are wanted of what was prepared for planes of geometry alone. An
- * appearance decides nothing but colours.
+/* A picture is drawn in passes. The colours come from one pass, and the planes of geometry from the
+ * same pass if the colours show just what the planes do [opaque_rows].
  *
- * Where vessels thinner than the distance of samples are drawn by coverage, the colours come from a
- * second renderer of the same geometry, whose camera does not see the thin vessels. They are drawn
- * over each of its samples [thin/thinvessels.h]. Shadows and occlusion are those of all vessels.
- * The lights are asked once for all thin vessels of a view: area lights with its first rows, for
- * which they are looked from point by point, other lights after them.
+ * What the geometry alone decides, such as the search structure of rays (Caster), is made once.
+ * What a view decides, such as an engine's lists of tiles and its light views, is kept as long as
+ * its key stays the same [ViewKey]. An appearance decides colours only.
  *
  * The first engine of the table that can draws: the special ones first, rays, which can draw
  * anything, last.
  *
+ * Vessels that are thinner than the distance of samples are drawn by coverage. Their colours come
+ * from a second renderer of the same geometry, the covering one, whose camera does not see the thin
+ * vessels. They are drawn over each of its samples [thin/thinvessels.h]. Shadows and occlusion are
+ * those of all vessels. The visibility of lights at the thin vessels of a view is found once: that
+ * of area lights with the view's first rows, whose light views it uses, that of other lights after
+ * them.
+ *
  * A picture with effects is drawn as one of N x N times the pixels, N being its antialiasing, part
- * of the band by part; effects are drawn on those samples, whose means are its pixels. */
+ * of the band by part. Effects are drawn on those samples. A pixel is the mean of its samples. */
 #include "render/render.h"
 
 #include "render/cast/caster.h"
@@ -29,38 +31,44 @@
 #include "render/xray/xray.h"
 #include <assert.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const Engine *const engines[] = {&xray_engine, &field_engine, &raster_engine,
                                         &zbuffer_engine, &ray_engine};
 
-struct Renderer {
-    const Geometry *geometry;
-    RenderParams params; /* with the number of threads */
-    Caster *caster;      /* of the geometry; NULL until a view needs it */
-    TermMean *mean;      /* likewise; NULL until an appearance needs it */
-    RadiusTable radii;   /* likewise; empty until effects need it */
-    OccluderSet beams;   /* likewise; none until there is occlusion */
-    RenderStats stats;
-    /* What is kept while engine, camera, lights, ground and antialiasing are these. */
-    const Engine *engine; /* NULL: nothing is */
-    void *prepared;       /* the engine's */
+/* Everything that decides what is prepared for a view. Keys are equal if all their bytes are:
+ * unused members and padding are zero. */
+typedef struct ViewKey {
+    const Engine *engine; /* NULL: no engine is prepared */
     Camera camera;
     Light lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
-    Ground ground;
+    bool has_ground; /* the ground decides which lights reach all vessels */
+    Vec3 ground_normal;
+    double ground_offset_mm;
     int antialias;
-    bool has_color; /* it was prepared for colours, which need shadows, and serves planes too */
-    Renderer
-        *covering; /* draws colours where vessels are thin; NULL: there are none, or it is this */
-    /* Of a covering renderer, what is kept while the camera is that of `thin`, and the antialiasing
-     * this. */
+    bool has_color;
+} ViewKey;
+
+struct Renderer {
+    const Geometry *geometry;
+    RenderParams params; /* with the number of threads */
+    RenderStats stats;
+    /* What the geometry decides. Each is made when it is first needed: */
+    Caster *caster;
+    TermMean *mean;
+    RadiusTable radii;
+    OccluderSet occluders;
+    /* What a view decides: */
+    ViewKey key;
+    void *prepared;     /* the engine's, for `key` */
+    Renderer *covering; /* draws the colours where vessels are thin; NULL until a view has some */
+    /* Only in a covering renderer: */
+    ViewKey thin_key; /* of `thin`; without an engine */
     ThinVessels thin;
-    int thin_antialias;
-    View thin_lights; /* whose lights and ground thin.lights and thin.open are for */
-    OffPixelPoints
-        *asked; /* those of `thin` while area lights are yet to be asked for them; borrowed */
+    OffPixelPoints *unlit; /* those of `thin` until its visibility is known; borrowed */
 };
 
 /* ---- planes ------------------------------------------------------------------------------------
@@ -200,9 +208,9 @@ Status renderer_new(const Geometry *geometry, const RenderParams *params, Render
 static void forget_view(Renderer *renderer)
 {
     if (renderer->prepared)
-        renderer->engine->free(renderer->prepared);
+        renderer->key.engine->free(renderer->prepared);
     renderer->prepared = NULL;
-    renderer->engine = NULL;
+    renderer->key.engine = NULL;
 }
 
 void renderer_free(Renderer *renderer)
@@ -215,53 +223,48 @@ void renderer_free(Renderer *renderer)
     caster_free(renderer->caster);
     termmean_free(renderer->mean);
     radiustable_release(&renderer->radii);
-    occluderset_release(&renderer->beams);
+    occluderset_release(&renderer->occluders);
     free(renderer);
 }
 
-/* Whether the view has these lights, bit by bit. */
-static bool has_lights(const View *view, const Light *lights, size_t n)
+static void key_make(ViewKey *key, const Engine *engine, const Camera *camera, const View *view,
+                     const RenderParams *params)
 {
-    return view->n_lights == n && memcmp(view->lights, lights, n * sizeof *lights) == 0;
+    memset(key, 0, sizeof *key);
+    key->engine = engine;
+    memcpy(&key->camera, camera, sizeof *camera);
+    memcpy(key->lights, view->lights, view->n_lights * sizeof *view->lights);
+    key->n_lights = view->n_lights;
+    key->has_ground = view->ground.present;
+    if (key->has_ground) {
+        key->ground_normal = view->ground.normal;
+        key->ground_offset_mm = view->ground.offset_mm;
+    }
+    key->antialias = params->antialias;
+    key->has_color = params->want_color;
 }
 
-/* Returns true if the ground planes are equal. The plane decides which lights see all vessels. */
-static bool is_same_plane(const Ground *a, const Ground *b)
+/* Returns true if what was prepared for `key` serves what `wanted` asks for. */
+static bool key_serves(const ViewKey *key, const ViewKey *wanted)
 {
-    return a->present == b->present &&
-           (!a->present || (memcmp(&a->normal, &b->normal, sizeof a->normal) == 0 &&
-                            memcmp(&a->offset_mm, &b->offset_mm, sizeof a->offset_mm) == 0));
+    return memcmp(key, wanted, offsetof(ViewKey, has_color)) == 0 &&
+           (key->has_color || !wanted->has_color);
 }
 
-static bool is_prepared(const Renderer *renderer, const Engine *engine, const Drawing *drawing)
-{
-    const View *view = drawing->view;
-    return renderer->engine == engine && renderer->antialias == drawing->params->antialias &&
-           (renderer->has_color || !drawing->params->want_color) &&
-           memcmp(&renderer->camera, &view->camera, sizeof view->camera) == 0 &&
-           has_lights(view, renderer->lights, renderer->n_lights) &&
-           is_same_plane(&renderer->ground, &view->ground);
-}
-
-/* Frees what was prepared for another view, and prepares this. */
+/* Prepares the engine for the drawing's view, unless what is prepared serves it. */
 static Status prepare_view(Renderer *renderer, const Drawing *drawing, Err *err)
 {
-    const View *view = drawing->view;
     const Engine *engine = engine_for(drawing);
-    double start_s = clock_seconds();
-    if (is_prepared(renderer, engine, drawing))
+    const double start_s = clock_seconds();
+    ViewKey key;
+    key_make(&key, engine, &drawing->view->camera, drawing->view, drawing->params);
+    if (key_serves(&renderer->key, &key))
         return STATUS_OK;
     forget_view(renderer);
     if (engine->prepare)
         TRY(engine->prepare(drawing, &renderer->prepared, err));
-    renderer->engine = engine;
+    memcpy(&renderer->key, &key, sizeof key);
     renderer->stats.engine = engine->name;
-    memcpy(&renderer->camera, &view->camera, sizeof view->camera);
-    memcpy(renderer->lights, view->lights, view->n_lights * sizeof *view->lights);
-    renderer->n_lights = view->n_lights;
-    renderer->ground = view->ground;
-    renderer->antialias = drawing->params->antialias;
-    renderer->has_color = drawing->params->want_color;
     renderer->stats.preparations++;
     renderer->stats.prepare_s += clock_seconds() - start_s;
     return STATUS_OK;
@@ -310,7 +313,7 @@ static Status see_vessels(const Drawing *drawing, void *context, Frame *planes, 
     seen.params = &params;
     seen.view = &vessels;
     TRY(make_planes(drawing->view->camera.width, drawing->band.rows, &params, false, planes, err));
-    return renderer->engine->rows(&seen, renderer->prepared, planes, err);
+    return renderer->key.engine->rows(&seen, renderer->prepared, planes, err);
 }
 
 static int rounded_up(int rows, int step)
@@ -339,49 +342,34 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Pixe
     const RenderParams *params = drawing->params;
     if (!pixelvisibility_is_needed(drawing->view, params))
         return STATUS_OK;
-    if (params->occlusion > 0 && !renderer->beams.capsules)
-        TRY(occluderset_new(renderer->geometry, &renderer->beams, err));
+    if (params->occlusion > 0 && !renderer->occluders.capsules)
+        TRY(occluderset_new(renderer->geometry, &renderer->occluders, err));
     const bool soft = softshadows_are_on(drawing->view, params);
     const Drawing wide = widened(drawing, margin, soft ? VISIBILITY_BLOCK : 1);
     const VisibilitySources from = {.draw_planes = see_vessels,
                                     .context = renderer,
-                                    .engine = renderer->engine->shadows,
-                                    .occluders = &renderer->beams,
-                                    .off_pixel = renderer->asked};
+                                    .engine = renderer->key.engine->shadows,
+                                    .occluders = &renderer->occluders,
+                                    .off_pixel = renderer->unlit};
     return pixelvisibility_compute(&wide, &from, out, err);
 }
 
 /* ---- light of thin vessels --------------------------------------------------------------------
  */
 
-/* Has area lights asked for thin vessels with the rows to come, unless it is known what of the
- * view's lights reaches them. */
-static Status begin_light(Renderer *renderer, const View *view, Err *err)
-{
-    const View *known = &renderer->thin_lights;
-    OffPixelPoints *places = &renderer->thin.lights;
-    if (places->n > 0 && has_lights(view, known->lights, known->n_lights) &&
-        memcmp(&view->ground, &known->ground, sizeof view->ground) == 0)
-        return STATUS_OK;
-    thinvessels_place(&renderer->thin);
-    renderer->thin_lights = (View){0};
-    renderer->asked = places;
-    return renderer->params.shadows ? offpixel_init(view, places, err) : STATUS_OK;
-}
-
 /* Asks a light for the thin vessels as rows do, or by rays. */
 static Status ask_light(Renderer *renderer, const Drawing *drawing, size_t light, Err *err)
 {
     const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
-    const Engine *engine = renderer->engine;
+    const Engine *engine = renderer->key.engine;
     LightBins *bins = engine->light_bins ? engine->light_bins(renderer->prepared, light) : NULL;
     if (bins)
-        return offpixel_query(drawing, &(OffPixelViews){&bins, 1, &eye}, light, renderer->asked,
+        return offpixel_query(drawing, &(OffPixelViews){&bins, 1, &eye}, light, renderer->unlit,
                               err);
     Drawing casting = *drawing;
     TRY(make_caster(renderer, err));
     casting.caster = renderer->caster;
-    offpixel_trace(&casting, light, renderer->asked);
+    offpixel_trace(&casting, light, renderer->unlit);
     return STATUS_OK;
 }
 
@@ -391,16 +379,15 @@ static Status end_light(Renderer *renderer, const Drawing *drawing, Err *err)
 {
     const View *view = drawing->view;
     const RenderParams *params = drawing->params;
-    if (!renderer->asked)
+    if (!renderer->unlit)
         return STATUS_OK;
     const bool shared = pixelvisibility_is_needed(view, params);
     for (size_t i = 0; i < view->n_lights && params->shadows; i++)
         if (view->lights[i].casts_shadows && !(shared && light_is_soft(&view->lights[i])))
             TRY(ask_light(renderer, drawing, i, err));
     if (params->occlusion > 0 && shared)
-        TRY(thinvessels_find_open(drawing, &renderer->beams, &renderer->thin, err));
-    memcpy(&renderer->thin_lights, view, sizeof *view);
-    renderer->asked = NULL;
+        TRY(thinvessels_find_open(drawing, &renderer->occluders, &renderer->thin, err));
+    renderer->unlit = NULL;
     return STATUS_OK;
 }
 
@@ -412,37 +399,36 @@ static Status light_thin(Renderer *renderer, const Drawing *drawing, Err *err)
     return STATUS_OK;
 }
 
-/* ---- rows ------------------------------------------------------------------------------------ */
+/* ---- passes ---------------------------------------------------------------------------------- */
 
+/* Draws the band of a drawing, whose visibility is found unless it is given, into new planes. */
 static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
 {
     const RenderParams *params = drawing->params;
     Drawing lit = *drawing;
-    /* Planes alone may have another engine than colours, which asks for rays. */
-    TRY(prepare_caster(renderer, &lit, err));
-    TRY(prepare_view(renderer, drawing, err));
-    double start_s = clock_seconds();
-    bool codes = params->codes_suffice && params->antialias == 1 && renderer->engine->makes_codes;
-    TRY(make_planes(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
-    PixelVisibility *shared = NULL;
-    Status status = STATUS_OK;
+    PixelVisibility *visibility = NULL;
+    Status status;
+    /* Planes alone may have another engine than colours, one that casts rays. */
+    TRY_GOTO(prepare_caster(renderer, &lit, err));
+    TRY_GOTO(prepare_view(renderer, drawing, err));
+    const Engine *engine = renderer->key.engine;
+    const double start_s = clock_seconds();
+    const bool codes = params->codes_suffice && params->antialias == 1 && engine->makes_codes;
+    TRY_GOTO(
+        make_planes(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
     if (!drawing->visibility) {
-        status = share(renderer, drawing, RENDER_BAND_STEP, &shared, err);
-        lit.visibility = shared;
+        TRY_GOTO(share(renderer, drawing, RENDER_BAND_STEP, &visibility, err));
+        lit.visibility = visibility;
     }
-    if (status == STATUS_OK && drawing->hidden)
-        status = light_thin(renderer, &lit, err);
-    if (status == STATUS_OK)
-        status = renderer->engine->rows(&lit, renderer->prepared, frame, err);
-    pixelvisibility_free(shared);
-    TRY(status);
+    if (drawing->hidden)
+        TRY_GOTO(light_thin(renderer, &lit, err));
+    TRY_GOTO(engine->rows(&lit, renderer->prepared, frame, err));
     renderer->stats.trace_s += clock_seconds() - start_s;
     renderer->stats.rays += (size_t)drawing->view->camera.width * (size_t)drawing->band.rows;
-    return STATUS_OK;
+done:
+    pixelvisibility_free(visibility);
+    return status;
 }
-
-/* ---- pictures with effects --------------------------------------------------------------------
- */
 
 /* About how many samples are drawn at a time, of some fifty bytes each. */
 static const double samples_at_once = 2e6;
@@ -461,8 +447,9 @@ static Status draw_samples(Renderer *renderer, const Drawing *fine, int first, i
     const View *view = fine->view;
     Frame frame = {0};
     Drawing drawing = *fine;
+    Status status;
     drawing.band = band_of_samples(view, renderer->params.antialias, first, rows);
-    TRY(draw(renderer, &drawing, &frame, err));
+    TRY_GOTO(draw(renderer, &drawing, &frame, err));
     const Samples samples = {.effects = &view->effects,
                              .camera = &view->camera,
                              .radii = &renderer->radii,
@@ -471,11 +458,12 @@ static Status draw_samples(Renderer *renderer, const Drawing *fine, int first, i
                              .threads = fine->params->threads,
                              .band = drawing.band,
                              .frame = &frame};
-    Status status = frame.id.ids ? effects_draw(&samples, err) : STATUS_OK;
-    if (status == STATUS_OK && drawing.hidden)
-        status = thinvessels_draw(&drawing, &renderer->thin, &frame, err);
-    if (status == STATUS_OK)
-        effects_reduce(&samples, color, row);
+    if (frame.id.ids)
+        TRY_GOTO(effects_draw(&samples, err));
+    if (drawing.hidden)
+        TRY_GOTO(thinvessels_draw(&drawing, &renderer->thin, &frame, err));
+    effects_reduce(&samples, color, row);
+done:
     frame_release(&frame);
     return status;
 }
@@ -497,7 +485,14 @@ static Status share_for_effects(Renderer *renderer, const Drawing *drawing, Pixe
     return STATUS_OK;
 }
 
-/* The colours of the drawing's band. */
+/* Rows of samples that are drawn at a time: whole rows of pixels, in steps of bands. */
+static int rows_at_once(const Camera *fine, int antialias)
+{
+    const int rows = (int)fmin(samples_at_once / fine->width / antialias, 1e6);
+    return rows < RENDER_BAND_STEP ? RENDER_BAND_STEP : rows / RENDER_BAND_STEP * RENDER_BAND_STEP;
+}
+
+/* Draws the colours of the drawing's band with effects. */
 static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
 {
     const RenderParams *params = drawing->params;
@@ -505,7 +500,8 @@ static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *fr
     RenderParams once = *params;
     View fine = *drawing->view;
     Drawing of_samples = *drawing;
-    PixelVisibility *shared = NULL;
+    PixelVisibility *visibility = NULL;
+    Status status;
     fine.camera.width *= params->antialias;
     fine.camera.height *= params->antialias;
     once.antialias = 1;
@@ -515,71 +511,61 @@ static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *fr
     of_samples.view = &fine;
     of_samples.params = &once;
     if (!renderer->radii.rows)
-        TRY(radiustable_make(renderer->geometry, &renderer->radii, err));
-    TRY(plane_init(&frame->color, drawing->view->camera.width, band->rows, 3, err));
-    TRY(share_for_effects(renderer, drawing, &shared, err));
-    of_samples.visibility = shared;
-    Status status = STATUS_OK;
-    int step = (int)fmin(samples_at_once / fine.camera.width / params->antialias, 1e6);
-    step = step < RENDER_BAND_STEP ? RENDER_BAND_STEP : step / RENDER_BAND_STEP * RENDER_BAND_STEP;
-    for (int row = 0; row < band->rows && status == STATUS_OK; row += step) {
-        int rows = step < band->rows - row ? step : band->rows - row;
-        status =
-            draw_samples(renderer, &of_samples, band->first + row, rows, &frame->color, row, err);
-    }
-    pixelvisibility_free(shared);
+        TRY_GOTO(radiustable_make(renderer->geometry, &renderer->radii, err));
+    TRY_GOTO(plane_init(&frame->color, drawing->view->camera.width, band->rows, 3, err));
+    TRY_GOTO(share_for_effects(renderer, drawing, &visibility, err));
+    of_samples.visibility = visibility;
+    const int step = rows_at_once(&fine.camera, params->antialias);
+    for (int row = 0; row < band->rows; row += step)
+        TRY_GOTO(draw_samples(renderer, &of_samples, band->first + row,
+                              step < band->rows - row ? step : band->rows - row, &frame->color, row,
+                              err));
+done:
+    pixelvisibility_free(visibility);
     return status;
 }
 
-/* The planes of geometry, of the pixels' centres, and the colours with effects. */
-static Status draw_with_effects(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
-{
-    RenderParams shape = *drawing->params;
-    Drawing centers = *drawing;
-    shape.want_color = false;
-    centers.params = &shape;
-    if (shape.want_depth || shape.want_normal || shape.want_id)
-        TRY(draw(renderer, &centers, frame, err));
-    return draw_effects(renderer, drawing, frame, err);
-}
+/* The rows of an image that are to be drawn. */
+typedef struct WantedRows {
+    const View *view;
+    const Appearance *appearance;
+    int first, rows;
+} WantedRows;
 
-/* The rows, with thin vessels drawn by coverage if this renderer covers, else as samples see all
- * vessels. */
-static Status sampled_rows(Renderer *renderer, const View *view, const Appearance *appearance,
-                           int first, int rows, Frame *frame, Err *err)
+/* Draws the planes that `params` asks for, all of them by one engine. Colours have effects if the
+ * view has any; then `params` asks for no other plane. A renderer that has found thin vessels draws
+ * these by coverage; else samples hit or miss them. */
+static Status draw_pass(Renderer *renderer, const WantedRows *wanted, const RenderParams *params,
+                        Frame *frame, Err *err)
 {
-    const RenderParams *params = &renderer->params;
+    const View *view = wanted->view;
     const bool effects = params->want_color && effects_present(&view->effects);
-    /* Adaptive antialiasing looks at neighbours. */
-    const bool adaptive = !effects && params->antialias > 1 && params->antialias_threshold > 0;
-    const ThinVessels *thin = &renderer->thin;
-    const bool covers = thin->layer.n > 0;
+    /* Adaptive antialiasing compares pixels with their neighbours. */
+    const bool adaptive =
+        params->want_color && !effects && params->antialias > 1 && params->antialias_threshold > 0;
+    const ThinLayer *thin = renderer->thin.layer.n > 0 ? &renderer->thin.layer : NULL;
+    const double start_cpu_s = clock_cpu_seconds();
     Frame made = {0};
-    double start_cpu_s = clock_cpu_seconds();
-    Drawing drawing = {
-        .geometry = renderer->geometry,
-        .view = view,
-        .appearance = appearance,
-        .params = params,
-        .hidden = covers ? thin->layer.is_thin : NULL,
-        .thin = covers && !effects ? &thin->layer : NULL,
-        .band = band_between(first, rows, adaptive ? RENDER_BAND_STEP : 0, view->camera.height)};
-    Status status = prepare_caster(renderer, &drawing, err);
-    if (status == STATUS_OK && covers)
-        status = begin_light(renderer, view, err);
-    if (status == STATUS_OK)
-        status = prepare_mean(renderer, &drawing, err);
-    if (status == STATUS_OK)
-        status = (effects ? draw_with_effects : draw)(renderer, &drawing, &made, err);
-    renderer->stats.cpu_s += clock_cpu_seconds() - start_cpu_s;
-    if (status != STATUS_OK) {
-        frame_release(&made);
-        return status;
-    }
+    Drawing drawing = {.geometry = renderer->geometry,
+                       .view = view,
+                       .appearance = wanted->appearance,
+                       .params = params,
+                       .hidden = thin ? thin->is_thin : NULL,
+                       .thin = effects ? NULL : thin,
+                       .band = band_between(wanted->first, wanted->rows,
+                                            adaptive ? RENDER_BAND_STEP : 0, view->camera.height)};
+    Status status;
+    TRY_GOTO(prepare_caster(renderer, &drawing, err));
+    TRY_GOTO(prepare_mean(renderer, &drawing, err));
+    TRY_GOTO((effects ? draw_effects : draw)(renderer, &drawing, &made, err));
     if (drawing.band.above + drawing.band.below)
         cut_planes(&made, &drawing.band);
     *frame = made;
-    return STATUS_OK;
+    made = (Frame){0};
+done:
+    renderer->stats.cpu_s += clock_cpu_seconds() - start_cpu_s;
+    frame_release(&made);
+    return status;
 }
 
 /* ---- thin vessels ---------------------------------------------------------------------------- */
@@ -601,66 +587,32 @@ static Camera camera_of_samples(const View *view, const RenderParams *params)
     return camera;
 }
 
-/* Finds the thin vessels of a view, unless they are those of the rows before. */
+/* Finds the thin vessels of a view, unless they are those of the rows before. Their visibility is
+ * found with the next rows. */
 static Status find_thin(Renderer *covering, const View *view, Err *err)
 {
     const RenderParams *params = &covering->params;
+    ThinVessels *thin = &covering->thin;
     const int pixel = effects_present(&view->effects) ? params->antialias : 1;
-    Camera camera = camera_of_samples(view, params);
-    if (covering->thin_antialias == params->antialias &&
-        memcmp(&covering->thin.camera, &camera, sizeof camera) == 0)
+    const Camera camera = camera_of_samples(view, params);
+    const double start_s = clock_seconds();
+    ViewKey key;
+    key_make(&key, NULL, &camera, view, params);
+    if (!covering->unlit && key_serves(&covering->thin_key, &key))
         return STATUS_OK;
-    double start_s = clock_seconds();
     forget_view(covering);
-    thinvessels_release(&covering->thin);
+    thinvessels_release(thin);
+    memset(&covering->thin_key, 0, sizeof covering->thin_key);
     TRY(thinvessels_find(covering->geometry, &camera,
                          pixel * fmin(1, most_samples / params->antialias),
-                         pixel * params->least_px, params->threads, &covering->thin, err));
-    covering->thin_antialias = params->antialias;
+                         pixel * params->least_px, params->threads, thin, err));
+    thinvessels_place(thin);
+    covering->unlit = &thin->lights;
+    if (params->shadows)
+        TRY(offpixel_init(view, &thin->lights, err));
+    memcpy(&covering->thin_key, &key, sizeof key);
     covering->stats.prepare_s += clock_seconds() - start_s;
     return STATUS_OK;
-}
-
-/* Makes the renderer that draws thin vessels by coverage, and finds these. */
-static Status prepare_thin(Renderer *renderer, const View *view, Err *err)
-{
-    RenderParams colors = renderer->params;
-    colors.codes_suffice = colors.want_depth = colors.want_normal = colors.want_id = false;
-    if (!renderer->covering)
-        TRY(renderer_new(renderer->geometry, &colors, &renderer->covering, err));
-    return find_thin(renderer->covering, view, err);
-}
-
-/* The planes that samples of all vessels find, beside colours that are there. */
-static Status add_planes(Renderer *renderer, const View *view, const Appearance *appearance,
-                         int first, Frame *frame, Err *err)
-{
-    RenderParams *params = &renderer->params;
-    Frame planes;
-    if (!params->want_depth && !params->want_normal && !params->want_id)
-        return STATUS_OK;
-    params->want_color = false;
-    Status status =
-        sampled_rows(renderer, view, appearance, first, frame->color.height, &planes, err);
-    params->want_color = true;
-    if (status != STATUS_OK)
-        return status;
-    planes.color = frame->color;
-    *frame = planes;
-    return STATUS_OK;
-}
-
-static Status covered_rows(Renderer *renderer, const View *view, const Appearance *appearance,
-                           int first, int rows, Frame *frame, Err *err)
-{
-    Frame made;
-    TRY(sampled_rows(renderer->covering, view, appearance, first, rows, &made, err));
-    Status status = add_planes(renderer, view, appearance, first, &made, err);
-    if (status == STATUS_OK)
-        *frame = made;
-    else
-        frame_release(&made);
-    return status;
 }
 
 /* Whether vessels that are thin in this view, if there are any, are drawn by coverage. */
@@ -672,16 +624,49 @@ static bool may_cover(const Renderer *renderer, const View *view)
            engine_for(&drawing)->covers;
 }
 
-static Status opaque_rows(Renderer *renderer, const View *view, const Appearance *appearance,
-                          int first, int rows, Frame *frame, Err *err)
+/* Sets *colors to the renderer that draws the view's colours. */
+static Status choose_renderer(Renderer *renderer, const View *view, Renderer **colors, Err *err)
 {
-    assert(first >= 0 && rows > 0 && first + rows <= view->camera.height &&
-           first % RENDER_BAND_STEP == 0);
-    const bool covers = may_cover(renderer, view);
-    if (covers)
-        TRY(prepare_thin(renderer, view, err));
-    return (covers && renderer->covering->thin.layer.n > 0 ? covered_rows : sampled_rows)(
-        renderer, view, appearance, first, rows, frame, err);
+    *colors = renderer;
+    if (!may_cover(renderer, view))
+        return STATUS_OK;
+    RenderParams params = renderer->params;
+    params.codes_suffice = false;
+    if (!renderer->covering)
+        TRY(renderer_new(renderer->geometry, &params, &renderer->covering, err));
+    TRY(find_thin(renderer->covering, view, err));
+    if (renderer->covering->thin.layer.n > 0)
+        *colors = renderer->covering;
+    return STATUS_OK;
+}
+
+/* Draws the planes of geometry and the colours, in one pass if the colours show just what the
+ * planes do. Else the planes are drawn first: what the centres of pixels hit of all vessels. */
+static Status opaque_rows(Renderer *renderer, const WantedRows *wanted, Frame *frame, Err *err)
+{
+    const View *view = wanted->view;
+    const RenderParams *params = &renderer->params;
+    RenderParams geometry = *params, color = *params;
+    Renderer *colors;
+    Frame made = {0}, colored = {0};
+    Status status;
+    assert(wanted->first >= 0 && wanted->rows > 0 &&
+           wanted->first + wanted->rows <= view->camera.height &&
+           wanted->first % RENDER_BAND_STEP == 0);
+    TRY_GOTO(choose_renderer(renderer, view, &colors, err));
+    if (!params->want_color || (colors == renderer && !effects_present(&view->effects)))
+        return draw_pass(renderer, wanted, params, frame, err);
+    geometry.want_color = false;
+    color.codes_suffice = color.want_depth = color.want_normal = color.want_id = false;
+    if (params->want_depth || params->want_normal || params->want_id)
+        TRY_GOTO(draw_pass(renderer, wanted, &geometry, &made, err));
+    TRY_GOTO(draw_pass(colors, wanted, &color, &colored, err));
+    made.color = colored.color;
+    *frame = made;
+    made = (Frame){0};
+done:
+    frame_release(&made);
+    return status;
 }
 
 /* ---- what is transparent --------------------------------------------------------------------- */
@@ -716,18 +701,19 @@ static Status find_alpha(Frame *over_black, const Frame *over_white, int antiali
     return STATUS_OK;
 }
 
-/* Whatever the engine and the effects, a pixel's colour is that of what is drawn plus its
- * background's, linear, times the part that is left: two backgrounds tell both. */
-static Status transparent_rows(Renderer *renderer, const View *view, const Appearance *appearance,
-                               int first, int rows, Frame *frame, Err *err)
+/* A pixel's linear colour is the colour of what is drawn plus the background's times the part that
+ * is left, whatever the engine and the effects. Two backgrounds give both. */
+static Status transparent_rows(Renderer *renderer, const WantedRows *wanted, Frame *frame, Err *err)
 {
-    View over = *view;
+    View over = *wanted->view;
+    WantedRows rows = *wanted;
     Frame black = {0}, white = {0};
     Status status;
+    rows.view = &over;
     over.background = (Rgb){0, 0, 0};
-    TRY_GOTO(opaque_rows(renderer, &over, appearance, first, rows, &black, err));
+    TRY_GOTO(opaque_rows(renderer, &rows, &black, err));
     over.background = (Rgb){1, 1, 1};
-    TRY_GOTO(opaque_rows(renderer, &over, appearance, first, rows, &white, err));
+    TRY_GOTO(opaque_rows(renderer, &rows, &white, err));
     TRY_GOTO(find_alpha(&black, &white, renderer->params.antialias, err));
     *frame = black;
     black = (Frame){0};
@@ -741,9 +727,9 @@ Status renderer_rows(Renderer *renderer, const View *view, const Appearance *app
                      int rows, Frame *frame, Err *err)
 {
     const RenderParams *params = &renderer->params;
+    const WantedRows wanted = {view, appearance, first, rows};
     const bool transparent = view->transparent && params->want_color && !params->codes_suffice;
-    return (transparent ? transparent_rows : opaque_rows)(renderer, view, appearance, first, rows,
-                                                          frame, err);
+    return (transparent ? transparent_rows : opaque_rows)(renderer, &wanted, frame, err);
 }
 
 Status render(const Scene *scene, const RenderParams *params, Frame *frame, RenderStats *stats,

@@ -1,5 +1,5 @@
-/* How vessels hang together, beside their shape: what a file of a scene names, so that who uses the
- * scene can tell its vessels apart and follow them. Coordinates are those of the Geometry. */
+/* How the vessels of a tree are connected. Emitters write it beside the geometry, so that the user
+ * of a scene file can identify vessels and follow them. Coordinates are those of the Geometry. */
 #ifndef CORCAST_SCENE_ANATOMY_H
 #define CORCAST_SCENE_ANATOMY_H
 
@@ -7,14 +7,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Constant once made [stage_anatomy]. */
+/* Immutable once made [stage_anatomy]. All arrays are owned. */
 typedef struct Anatomy {
-    int *order;     /* owned; Strahler order of each segment, by its number; 0 at roots */
-    uint32_t *tree; /* owned; the tree of each segment, by its number, from 0 on */
-    Vec3 *root;     /* owned; of each tree */
+    int *order;     /* per node: Strahler order of the segment that ends there; 0 at roots */
+    uint32_t *tree; /* per node: index of its tree, from 0 */
+    Vec3 *root;     /* per tree: position of its root */
     size_t n_trees; /* at least 1 */
-    Vec3 *path; /* owned; the main branch of the first tree, from its root on: different points */
-    size_t n_path; /* at least 1 */
+    Vec3 *path;     /* the main branch of the first tree, from its root; no point occurs twice */
+    size_t n_path;  /* at least 1 */
 } Anatomy;
 
 /* Frees the arrays and zeroes *anatomy. */

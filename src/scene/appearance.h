@@ -1,5 +1,5 @@
-/* What vessels look like, whatever their shape and from wherever they are seen: colours and their
- * meaning, and finish. Colours are linear RGB. */
+/* The appearance of vessels, which depends neither on geometry nor on view: colours, what they
+ * stand for, and finish. Colours are linear RGB. */
 #ifndef CORCAST_SCENE_APPEARANCE_H
 #define CORCAST_SCENE_APPEARANCE_H
 
@@ -10,7 +10,7 @@ typedef struct Rgb {
     float r, g, b;
 } Rgb;
 
-/* A colour on the way from one to another, at a part of it in [0, 1]. */
+/* Returns the linear mixture of two colours: `from` if part is 0, `to` if part is 1. */
 static inline Rgb rgb_mixed(Rgb from, Rgb to, double part)
 {
     return (Rgb){(float)((double)from.r + ((double)to.r - (double)from.r) * part),
@@ -18,41 +18,44 @@ static inline Rgb rgb_mixed(Rgb from, Rgb to, double part)
                  (float)((double)from.b + ((double)to.b - (double)from.b) * part)};
 }
 
-/* POV-Ray's finish; METHODS section 3. */
+/* The parameters of POV-Ray's `finish` [METHODS section 3]. */
 typedef struct Finish {
     float ambient, diffuse, brilliance, phong, phong_size, specular, roughness;
 } Finish;
 
-/* Constant once made [stage_appearance]; fits every Geometry of the tree that it was made for, as
- * segments have the same numbers in all of them. */
+/* Immutable once made [stage_appearance]. It fits every Geometry of the same tree, because a
+ * segment has the same index in all of them. All pointers are owned. */
 typedef struct Appearance {
     Finish finish;
-    Rgb color;         /* of all segments, if `colors` is NULL */
-    Rgb *colors;       /* owned; one for each segment, by its number; or NULL */
-    double *values;    /* owned; what `colors` stand for, NAN where there is none; or NULL */
-    ColorScale scale;  /* what `colors` mean; its map is owned; zeroed without `colors` */
-    char *name, *unit; /* of the scale; owned */
+    Rgb color;         /* colour of all segments if `colors` is NULL */
+    Rgb *colors;       /* per segment index; NULL: all have `color` */
+    double *values;    /* per segment index: the value its colour stands for, or NAN; NULL: none */
+    ColorScale scale;  /* from values to colours; zeroed if `colors` is NULL */
+    char *name, *unit; /* of the scale */
     size_t n_values;
-    ScaleOutside outside; /* of the segments drawn */
-    double *places;       /* owned; of the values on the scale, where colours blend; or NULL */
-    ColorRamp *ramp;      /* owned; that they blend on; or NULL */
-    char *said;  /* owned; what `colors` mean, for people: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
-    bool fitted; /* the range is that of values, and nobody's choice */
-    /* Where colours change with time: `colors` and `values` are frame after frame of n_segments
-     * each, and these are those of the first one. */
-    double *time; /* owned; of each frame, upwards; NULL without frames */
+    ScaleOutside outside; /* how many of the drawn segments lie outside of the scale */
+    double *places;       /* per segment index: the value's position on the scale, if colours
+                           * blend [stage_blend]; else NULL */
+    ColorRamp *ramp; /* the colours that positions are mapped to, if colours blend; else NULL */
+    char *said;  /* the meaning of the colours in words: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
+    bool fitted; /* the range of the scale was computed from values, and not specified */
+    /* If colours change with time, `colors`, `values` and `places` hold n_frames frames one after
+     * another, of n_segments entries each. */
+    double *time; /* per frame: its time, rising; NULL: colours do not change */
     size_t n_frames, n_segments;
 } Appearance;
 
+/* Frees the arrays and zeroes *appearance. */
 void appearance_release(Appearance *appearance);
 
-/* What vessels look like in a frame, from 0 on: borrowed from the appearance, and not to be
+/* Returns the appearance in frame `frame`. The result borrows from `appearance` and must not be
  * released. O(1). */
 Appearance appearance_frame(const Appearance *appearance, size_t frame);
 
-/* The linear colour of a place on the scale, where colours blend. */
+/* Returns the linear colour at a position on the scale. Requires that colours blend. */
 Rgb appearance_blended(const Appearance *appearance, double place);
 
+/* Returns the linear colour of a segment, given by its index. */
 static inline Rgb appearance_color(const Appearance *appearance, uint32_t segment)
 {
     return appearance->colors ? appearance->colors[segment] : appearance->color;

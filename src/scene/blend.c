@@ -8,31 +8,17 @@
 
 #include <stdlib.h>
 
-/* The lists of the numbers below n_items: in which of the n lists each is. */
-static Status turn_over(const IndexLists *lists, size_t n, size_t n_items, IndexLists *out,
-                        Err *err)
+/* Lists, for each item below n_items, the lists that hold the item. */
+static Status turn_over(const IndexLists *lists, size_t n_items, IndexLists *out, Err *err)
 {
-    IndexLists turned = {0};
-    Status status;
-    TRY_GOTO(mem_calloc(&turned.first, n_items + 2, sizeof *turned.first, "groups", err));
-    TRY_GOTO(mem_calloc(&turned.items, lists->first[n], sizeof *turned.items, "groups", err));
-    for (uint32_t i = 0; i < lists->first[n]; i++)
-        turned.first[lists->items[i] + 2]++;
-    for (size_t i = 2; i <= n_items; i++)
-        turned.first[i] += turned.first[i - 1];
-    for (uint32_t list = 0; list < n; list++)
+    TRY(indexlists_begin(out, n_items, "groups", err));
+    for (uint32_t i = 0; i < lists->first[lists->n]; i++)
+        indexlists_count(out, lists->items[i]);
+    TRY(indexlists_allot(out, "groups", err));
+    for (uint32_t list = 0; list < lists->n; list++)
         for (uint32_t i = lists->first[list]; i < lists->first[list + 1]; i++)
-            turned.items[turned.first[lists->items[i] + 1]++] = list;
-    *out = turned;
+            indexlists_put(out, lists->items[i], list);
     return STATUS_OK;
-done:
-    indexlists_release(&turned);
-    return status;
-}
-
-static uint32_t length_of(const IndexLists *lists, uint32_t i)
-{
-    return lists->first[i + 1] - lists->first[i];
 }
 
 /* Whether list b holds all of list a, which is not empty. */
@@ -59,7 +45,7 @@ static bool is_idle(const IndexLists *lists, const IndexLists *holders, uint32_t
 {
     uint32_t rarest = 0, fewest = UINT32_MAX;
     for (uint32_t i = lists->first[self]; i < lists->first[self + 1]; i++) {
-        uint32_t count = length_of(holders, lists->items[i]);
+        uint32_t count = indexlists_length(holders, lists->items[i]);
         rarest = count < fewest ? lists->items[i] : rarest;
         fewest = count < fewest ? count : fewest;
     }
@@ -67,35 +53,33 @@ static bool is_idle(const IndexLists *lists, const IndexLists *holders, uint32_t
         return true;
     for (uint32_t i = holders->first[rarest]; i < holders->first[rarest + 1]; i++) {
         uint32_t other = holders->items[i];
-        bool larger = length_of(lists, other) > length_of(lists, self);
+        bool larger = indexlists_length(lists, other) > indexlists_length(lists, self);
         if ((larger || other < self) && is_part(lists, self, other))
             return true;
     }
     return false;
 }
 
-/* The lists that are not idle, in *out, and how many. */
-static Status keep_busy(const IndexLists *lists, const IndexLists *holders, size_t n,
-                        IndexLists *out, size_t *n_out, Err *err)
+/* Keeps the lists that are not idle. */
+static Status keep_busy(const IndexLists *lists, const IndexLists *holders, IndexLists *kept,
+                        Err *err)
 {
-    IndexLists kept = {0};
-    size_t count = 0;
+    uint32_t *busy = NULL;
+    size_t n = 0;
     Status status;
-    TRY_GOTO(mem_calloc(&kept.first, n + 1, sizeof *kept.first, "groups", err));
-    TRY_GOTO(mem_calloc(&kept.items, lists->first[n], sizeof *kept.items, "groups", err));
-    for (uint32_t i = 0; i < n; i++) {
-        if (is_idle(lists, holders, i))
-            continue;
-        kept.first[count + 1] = kept.first[count];
-        count++;
-        for (uint32_t k = lists->first[i]; k < lists->first[i + 1]; k++)
-            kept.items[kept.first[count]++] = lists->items[k];
-    }
-    *out = kept;
-    *n_out = count;
-    return STATUS_OK;
+    TRY_GOTO(mem_calloc(&busy, lists->n, sizeof *busy, "groups", err));
+    for (uint32_t i = 0; i < lists->n; i++)
+        if (!is_idle(lists, holders, i))
+            busy[n++] = i;
+    TRY_GOTO(indexlists_begin(kept, n, "groups", err));
+    for (size_t i = 0; i < n; i++)
+        kept->first[i + 2] = indexlists_length(lists, busy[i]);
+    TRY_GOTO(indexlists_allot(kept, "groups", err));
+    for (size_t i = 0; i < n; i++)
+        for (uint32_t k = lists->first[busy[i]]; k < lists->first[busy[i] + 1]; k++)
+            indexlists_put(kept, i, lists->items[k]);
 done:
-    indexlists_release(&kept);
+    free(busy);
     return status;
 }
 
@@ -106,9 +90,10 @@ Status vesseltree_blend(const VesselTree *tree, Blend *out, Err *err)
     Status status;
     TRY_GOTO(vesseltree_incident(tree, &incident, err));
     TRY_GOTO(vesseltree_blending(tree, &incident, &blending, err));
-    TRY_GOTO(turn_over(&blending, tree->n_nodes, tree->n_segments, &nodes, err));
-    TRY_GOTO(keep_busy(&blending, &nodes, tree->n_nodes, &blend.members, &blend.n_groups, err));
-    TRY_GOTO(turn_over(&blend.members, blend.n_groups, tree->n_segments, &blend.groups, err));
+    TRY_GOTO(turn_over(&blending, tree->n_segments, &nodes, err));
+    TRY_GOTO(keep_busy(&blending, &nodes, &blend.members, err));
+    TRY_GOTO(turn_over(&blend.members, tree->n_segments, &blend.groups, err));
+    blend.n_groups = blend.members.n;
     *out = blend;
     blend = (Blend){0};
 done:
@@ -145,9 +130,9 @@ static Status part_members(const Blend *whole, const uint32_t *indices, size_t n
     size_t most = 0, n_items = 0;
     uint32_t longest = 0;
     for (size_t i = 0; i < n; i++)
-        most += length_of(groups, indices[i]);
+        most += indexlists_length(groups, indices[i]);
     for (uint32_t g = 0; g < whole->n_groups; g++)
-        longest = length_of(members, g) > longest ? length_of(members, g) : longest;
+        longest = indexlists_length(members, g) > longest ? indexlists_length(members, g) : longest;
     TRY(mem_calloc(&part->members.first, most + 1, sizeof *part->members.first, "groups", err));
     TRY(mem_calloc(&part->members.items, most + longest, sizeof *part->members.items, "groups",
                    err));
@@ -156,6 +141,7 @@ static Status part_members(const Blend *whole, const uint32_t *indices, size_t n
             if (add_members(members, groups->items[k], indices, n, i, part->members.items,
                             &n_items))
                 part->members.first[++part->n_groups] = (uint32_t)n_items;
+    part->members.n = part->n_groups;
     return STATUS_OK;
 }
 
@@ -176,7 +162,7 @@ Status geometry_part(const Geometry *whole, const uint32_t *indices, size_t n, G
     made.n_segments = made.drawn = n;
     if (whole->blend.n_groups) {
         TRY_GOTO(part_members(&whole->blend, indices, n, &made.blend, err));
-        TRY_GOTO(turn_over(&made.blend.members, made.blend.n_groups, n, &made.blend.groups, err));
+        TRY_GOTO(turn_over(&made.blend.members, n, &made.blend.groups, err));
     }
     *part = made;
     return STATUS_OK;

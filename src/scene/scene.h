@@ -1,9 +1,9 @@
-/* The door of the room scene: what there is to draw, with no knowledge of trees.
+/* The public header of the module scene: what is drawn, independent of trees.
  *
- * A picture is of three things, each of which is made once and then constant: the shape of vessels
- * (Geometry), what they look like (Appearance), and from where and in what light they are seen
- * (View). Any appearance goes with any geometry of the same tree, any view with any of both.
- * Right-handed, millimetres, linear RGB. */
+ * A picture is made of a Geometry (the shape of the vessels), an Appearance (their colours and
+ * finish) and a View (camera, lights, ground and effects). All three are immutable after
+ * construction. Any appearance fits any geometry of the same tree, and any view fits both.
+ * Coordinates are right-handed and in millimetres, colours are linear RGB. */
 #ifndef CORCAST_SCENE_SCENE_H
 #define CORCAST_SCENE_SCENE_H
 
@@ -19,13 +19,14 @@
 #include "scene/vesseltree.h"
 #include "scene/view.h"
 
-/* All three, where they travel together. */
+/* What a picture is made of. Owns the three. */
 typedef struct Scene {
     Geometry geometry;
     Appearance appearance;
     View view;
 } Scene;
 
+/* Releases geometry and appearance, and zeroes *scene. A view owns nothing. */
 void scene_release(Scene *scene);
 
 #endif

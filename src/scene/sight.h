@@ -1,4 +1,5 @@
-/* What the rays that draw a part of a picture can meet. */
+/* The volume that the rays of a part of a picture pass through. A conservative test: what lies
+ * outside is hit by none of these rays. */
 #ifndef CORCAST_SCENE_SIGHT_H
 #define CORCAST_SCENE_SIGHT_H
 
@@ -9,15 +10,19 @@
 
 typedef struct Sight Sight;
 
-/* Of the rays through the pixels of `part`, the samples of antialiasing included, and where
- * `shadows`, of those from all that they can see, vessels within `bounds` and the ground, to the
- * lights. *sight is the caller's (sight_free). STATUS_MEMORY. */
+/* Builds the volume of the rays through the pixels of `part`, antialiasing samples included.
+ *
+ * bounds   the box that holds all vessels.
+ * shadows  adds the shadow rays: those from vessels within `bounds` and from the ground, as far as
+ *          they are visible in `part`, to the lights.
+ * sight    receives the volume; release it with sight_free.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status sight_new(const View *view, Box bounds, PixelRect part, bool shadows,
                             Sight **sight, Err *err);
 void sight_free(Sight *sight);
 
-/* Whether one of those rays can meet what is in the box, which lies within the bounds; true, too,
- * for some boxes that no ray meets. A sight of NULL meets every box. */
+/* Returns false only if no ray can hit anything in the box, which must lie within the bounds. May
+ * return true for a box that no ray hits. Returns true for every box if `sight` is NULL. */
 bool sight_meets(const Sight *sight, Box box);
 
 #endif

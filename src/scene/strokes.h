@@ -1,23 +1,25 @@
-/* Lines on paper. */
+/* A line drawing on paper. */
 #ifndef CORCAST_SCENE_STROKES_H
 #define CORCAST_SCENE_STROKES_H
 
 #include <stddef.h>
 
-/* A polyline with round ends, through points[first .. first + n), n >= 2. */
+/* A polyline with round ends through points[first .. first + n), n >= 2. */
 typedef struct Stroke {
     size_t first, n;
     double width_mm;
 } Stroke;
 
-/* Millimetres, x to the right and y down from the paper's upper left corner. */
+/* Strokes and their points. Coordinates are in millimetres from the upper left corner of the
+ * paper, x to the right and y down. */
 typedef struct Strokes {
     double (*points)[2]; /* owned */
     Stroke *strokes;     /* owned */
     size_t n_points, n;
-    double width_mm, height_mm; /* of the paper */
+    double width_mm, height_mm; /* size of the paper */
 } Strokes;
 
+/* Frees the arrays and zeroes *strokes. */
 void strokes_release(Strokes *strokes);
 
 #endif

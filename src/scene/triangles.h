@@ -1,4 +1,4 @@
-/* The wall of vessels as triangles. */
+/* The surface of vessels as triangles. */
 #ifndef CORCAST_SCENE_TRIANGLES_H
 #define CORCAST_SCENE_TRIANGLES_H
 
@@ -8,49 +8,53 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Set in the label of a triangle that is flat, as one that closes an end; of the inner side of a
- * wall; or of a block or a plate, and not of the segment. */
-#define MESH_CAP 0x80000000u
-#define MESH_LUMEN 0x40000000u
-#define MESH_FRAME 0x20000000u
+/* Flags in the label of a triangle. */
+#define MESH_CAP 0x80000000u   /* the triangle is flat, such as one that closes an end */
+#define MESH_LUMEN 0x40000000u /* it is on the inner side of a hollow wall */
+#define MESH_FRAME 0x20000000u /* it belongs to a block or a base plate, not to the segment */
 #define MESH_FLAGS (MESH_CAP | MESH_LUMEN | MESH_FRAME)
 
-/* Triangles, counterclockwise seen from outside. Points are single precision, as most formats hold
- * them, so that what is checked is what is written. */
+/* Triangles, whose corners are counterclockwise when viewed from outside. Points are in single
+ * precision, as in most file formats, so that the mesh that is checked is the mesh that is written.
+ * All arrays are owned. */
 typedef struct VesselMesh {
-    float (*points)[3];  /* mm; owned, as all of it */
-    float (*normals)[3]; /* unit, outward, of the exact surface; on the rim of a cap, of the wall */
+    float (*points)[3];  /* mm */
+    float (*normals)[3]; /* per point: unit, outward normal of the exact surface; on the boundary of
+                          * a cap, the normal of the wall */
     size_t n_points;
-    uint32_t (*triangles)[3];
-    uint32_t *labels; /* one a triangle: index of its segment, and MESH_FLAGS */
+    uint32_t (*triangles)[3]; /* indices of points */
+    uint32_t *labels;         /* per triangle: index of its segment, and flags */
     size_t n_triangles;
 } VesselMesh;
 
 /* Frees the arrays and zeroes *mesh. */
 void vesselmesh_release(VesselMesh *mesh);
 
+/* Returns point i in double precision. */
 static inline Vec3 mesh_point(const VesselMesh *mesh, uint32_t i)
 {
     const float *x = mesh->points[i];
     return vec3((double)x[0], (double)x[1], (double)x[2]);
 }
 
-/* The triangles of `n` segments, given by rising index, and their points, in *out (owned); labels
- * become indices of that list. STATUS_MEMORY. O(points + triangles log n). */
+/* Copies the triangles of `n` segments, and their points. `segments` holds rising segment indices;
+ * the labels of *out are positions in this list. Release *out with vesselmesh_release. Errors:
+ * STATUS_MEMORY. O(points + triangles log n). */
 MUST_CHECK Status vesselmesh_part(const VesselMesh *mesh, const uint32_t *segments, size_t n,
                                   VesselMesh *out, Err *err);
 
-/* Index of the segment that a triangle belongs to, and whether the triangle is flat. */
+/* Returns the index of the segment that a triangle belongs to. */
 static inline uint32_t mesh_segment(const VesselMesh *mesh, size_t triangle)
 {
     return mesh->labels[triangle] & ~MESH_FLAGS;
 }
+/* Returns true if the triangle is flat [MESH_CAP]. */
 static inline bool mesh_is_cap(const VesselMesh *mesh, size_t triangle)
 {
     return (mesh->labels[triangle] & MESH_CAP) != 0;
 }
 
-/* The unit normal of a triangle, by the right hand; 0 where it has no area. */
+/* Computes the unit outward normal of a triangle; 0 if the triangle has no area. */
 void mesh_flat_normal(const VesselMesh *mesh, size_t triangle, float normal[3]);
 
 #endif

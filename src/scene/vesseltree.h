@@ -1,22 +1,23 @@
-/* Vessels as lines with radii, and how they hang together: what an implicit surface is made from
- * whose vessels blend only where they meet. */
+/* Vessels as segments with radii, and the nodes that connect them. An implicit surface is built
+ * from such a tree: its vessels blend only where they are connected. */
 #ifndef CORCAST_SCENE_VESSELTREE_H
 #define CORCAST_SCENE_VESSELTREE_H
 
 #include "scene/geometry.h"
 
-/* What is made of vessels. */
+/* The solid that is built from the segments. */
 typedef enum VesselBody {
-    BODY_POTENTIAL, /* what exceeds FIELD_LEVEL; cut off flat at ends */
-    BODY_ROUND      /* cylinders, and at each node a ball of the largest radius that meets there */
+    BODY_POTENTIAL, /* points where the potential exceeds FIELD_LEVEL; ends are cut flat */
+    BODY_ROUND      /* cylinders, and at each node a ball of the largest radius at that node */
 } VesselBody;
 
-/* Segments, and the nodes at their ends a and b. Any number of trees; a segment joins two different
- * nodes, and segments make no loops. */
+/* Segments, each with its ends a and b, and the nodes at these ends. The segments form any number
+ * of trees: a segment connects two different nodes, and there are no loops. All arrays are
+ * owned. */
 typedef struct VesselTree {
-    FieldSegment *segments; /* owned, as all of it */
-    uint32_t (*nodes)[2];   /* of each segment; below n_nodes */
-    uint32_t *ids;          /* SWC id of each segment */
+    FieldSegment *segments;
+    uint32_t (*nodes)[2]; /* per segment: the nodes at a and b, each below n_nodes */
+    uint32_t *ids;        /* per segment: its SWC id */
     size_t n_segments, n_nodes;
     VesselBody body;
 } VesselTree;
@@ -24,26 +25,35 @@ typedef struct VesselTree {
 /* Frees the arrays and zeroes *tree. */
 void vesseltree_release(VesselTree *tree);
 
-/* The end, 0 or 1, of a segment that lies at a node, which must be one of its two. */
+/* Returns the segment's end (0: a, 1: b) at `node`, which must be one of its two nodes. */
 static inline int segment_end_at(const VesselTree *tree, uint32_t segment, uint32_t node)
 {
     return tree->nodes[segment][1] == node;
 }
 
-/* A segment blends at both its nodes and at those that a way through other segments of at most so
- * many of its own radii leads to. */
+/* Reach of a segment's blend, in units of its radius. A segment blends at its two nodes, and at
+ * every node that a path along other segments reaches from them within BLEND_REACH radii. A finely
+ * sampled centreline needs this reach, or the vessel gets thinner [METHODS section 2.5]. */
 #define BLEND_REACH 2
 
-/* The segments with an end at each node. */
+/* Lists, for each node, the segments that end there. Release *out with indexlists_release, also
+ * after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status vesseltree_incident(const VesselTree *tree, IndexLists *out, Err *err);
-/* The segments that blend at each node. O(size of the result). */
+
+/* Lists, for each node, the segments that blend there. `incident` is the result of
+ * vesseltree_incident. Release *out with indexlists_release, also after an error. Errors:
+ * STATUS_MEMORY. Cost: O(size of the result). */
 MUST_CHECK Status vesseltree_blending(const VesselTree *tree, const IndexLists *incident,
                                       IndexLists *out, Err *err);
 
-/* The blend of the tree's segments: the solid is the union over the nodes of where the sum of the
- * terms of those that blend there exceeds FIELD_LEVEL. A group stands for each node whose segments
- * are not all among those of another. O(n) where few segments blend. *out is owned; it is released
- * with the geometry that holds it. STATUS_MEMORY. */
+/* Builds the blend groups of the tree's segments. At each node, the terms of the segments that
+ * blend there are summed. The solid is the union, over all nodes, of the sets where this sum
+ * exceeds FIELD_LEVEL. There is one group per node; a node whose segments are a subset of another
+ * node's segments has none.
+ *
+ * out      is owned; it is released with the geometry that holds it.
+ * Errors   STATUS_MEMORY.
+ * Cost     O(n) if few segments blend at each node. */
 MUST_CHECK Status vesseltree_blend(const VesselTree *tree, Blend *out, Err *err);
 
 #endif

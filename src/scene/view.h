@@ -1,5 +1,5 @@
-/* From where and in what light vessels are seen. Lengths in mm, colours linear RGB, right-handed.
- */
+/* Camera, lights, ground and effects. Coordinates are right-handed and in mm, colours are linear
+ * RGB. */
 #ifndef CORCAST_SCENE_VIEW_H
 #define CORCAST_SCENE_VIEW_H
 
@@ -19,36 +19,38 @@ typedef struct Camera {
     Projection projection;
     Vec3 location;
     Vec3 right;        /* full width: mm (orthographic), or per unit of direction (perspective) */
-    Vec3 up;           /* full height likewise; right x up points against direction */
+    Vec3 up;           /* full height in the same unit; right x up points against direction */
     Vec3 direction;    /* unit */
     int width, height; /* pixels */
 } Camera;
 
-/* The ray through the point (i + dx, j + dy) of the pixel grid, dx = dy = 0 at the centre of pixel
- * (i, j). Its direction is unit, so that its parameter t is the depth in mm along the ray from the
- * camera point (perspective) or from the plane through location (orthographic). */
+/* Returns the ray through a point of the picture. Integers i, j are the centre of pixel (i, j). The
+ * direction is unit, so the parameter t of the ray is the depth in mm: from `location`
+ * (perspective), or from the plane through `location` (orthographic). */
 Ray camera_ray(const Camera *camera, double i, double j);
 
-/* Where a camera sees a point. */
+/* The projection of a point by a camera. */
 typedef struct CameraPoint {
     double x, y;     /* pixels from the left and upper edges of the picture */
-    double depth_mm; /* as camera_ray has it */
-    double per_mm; /* pixels that 1 mm across the view takes there; 0: the point is not in front of
-                    * a perspective camera, and nothing else is said of it */
+    double depth_mm; /* as the parameter of camera_ray */
+    double per_mm;   /* pixels per mm across the view at this depth; 0: the point is not in front
+                      * of a perspective camera, and the other members are undefined */
 } CameraPoint;
 
+/* Projects a point. */
 CameraPoint camera_point(const Camera *camera, Vec3 point);
 
-/* A camera of 1 x 1 pixels that sees what pixel (i, j) sees, the further samples of antialiasing
- * included. In perspective its direction is neither unit nor square to right and up. */
+/* Returns a camera of 1 x 1 pixels whose pixel is pixel (i, j) of `camera`, antialiasing samples
+ * included. The direction of a perspective result is neither unit nor perpendicular to right and
+ * up. */
 Camera camera_of_pixel(const Camera *camera, int i, int j);
 
-/* Where the n x n further samples of an antialiased pixel stand, from its centre, in pixels:
- * offsets[n], the same in both directions; POV-Ray's places [docs/POVRAY.md], summed up as it sums
- * them. */
+/* Computes the positions of the n x n additional samples of an antialiased pixel: offsets[n] from
+ * its centre in pixels, the same in both directions. They are POV-Ray's, rounding included
+ * [docs/POVRAY.md]. */
 void camera_sample_offsets(int n, double *offsets);
 
-/* An interval of depth that holds all of the box, whatever the pixel. */
+/* Computes an interval of depths that holds the box for every pixel. */
 void camera_depth_range(const Camera *camera, Box box, double *near_mm, double *far_mm);
 
 /* A point light at `location`, or, when `parallel`, light that travels from `location` towards
@@ -67,26 +69,28 @@ typedef struct Light {
     Vec3 sides[2];
 } Light;
 
-/* The way from a place to a light. */
+/* Direction and distance from a point to a light. */
 typedef struct LightWay {
     Vec3 towards;    /* unit */
-    double distance; /* mm; of a parallel light, to the plane through `location` */
+    double distance; /* mm; for a parallel light, to the plane through its `location` */
 } LightWay;
 
+/* Returns direction and distance from `place` to a light. */
 LightWay light_way(const Light *light, Vec3 place);
 
-/* Whether the light casts soft shadows, which are averaged over more than one point of it. */
+/* Returns true if the light casts shadows that are averaged over more than one of its points. */
 bool light_is_soft(const Light *light);
 
-/* Points that shadows are averaged over: 1, or samples x samples. */
+/* Returns the number of points that shadows are averaged over: 1, or samples x samples. */
 int light_points(const Light *light);
-/* Point k of them, 0 <= k < light_points(), row by row along sides[0], as a light of its own; and
- * the way to it. */
+/* Returns point k of a light, 0 <= k < light_points(), as a light of its own. Points are in rows
+ * along sides[0]. */
 Light light_at_point(const Light *light, int k);
+/* Returns direction and distance from `place` to point k of a light. */
 LightWay light_way_to_point(const Light *light, int k, Vec3 place);
 
-/* A plane under or behind the vessels: the points x with normal . x = offset_mm. Only colour knows
- * of it; depth, normals and ids are of vessels. */
+/* A plane under or behind the vessels: the points x with normal . x = offset_mm. It appears in
+ * colours only; planes of depth, normals and ids show vessels alone. */
 typedef struct Ground {
     bool present;
     Vec3 normal; /* unit, towards the vessels */
@@ -95,33 +99,34 @@ typedef struct Ground {
     Finish finish;
 } Ground;
 
-/* Where a ray meets the ground, if it does so between `near_mm` and `far_mm`; POV-Ray's plane,
- * order of evaluation included (plane.cpp of 3.7.0.10). */
+/* Intersects a ray with the ground. Returns false if there is no intersection between `near_mm` and
+ * `far_mm`; *t is then not set. This is POV-Ray's plane, order of evaluation included (plane.cpp of
+ * 3.7.0.10). */
 bool ground_hit(const Ground *ground, Ray ray, double near_mm, double far_mm, double *t);
 
 enum { VIEW_MAX_LIGHTS = 64 };
 
-/* A value: nothing in it is owned. Constant once made [stage_view]. */
+/* A value that owns nothing. Immutable once made [stage_view]. */
 typedef struct View {
     Camera camera;
     Light lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
     Ground ground;
-    Rgb background;   /* the paper */
-    bool transparent; /* there is none; `background` is for those who cannot leave it out */
+    Rgb background;
+    bool transparent; /* the picture has no background; `background` is for outputs without alpha */
     Effects effects;
 } View;
 
-/* Whether a light of the view casts soft shadows. */
+/* Returns true if a light of the view casts soft shadows. */
 bool view_has_soft_shadows(const View *view);
 
-/* The view with all that is in it moved, or turned about an axis through `center`, by radians: what
- * is seen moves the other way. */
+/* Returns the view with camera, lights and ground moved by `by`. */
 View view_moved(const View *view, Vec3 by);
+/* Returns the view turned around an axis through `center`, by an angle in radians. */
 View view_turned(const View *view, Vec3 center, Vec3 axis, double angle);
 
-/* STATUS_INPUT unless camera and ground are finite, the camera lies within SCENE_FARTHEST_MM of
- * the origin, and its vectors are not zero. */
+/* Checks that camera and ground are finite, that the camera lies within SCENE_FARTHEST_MM of the
+ * origin, and that its vectors are not zero. Errors: STATUS_INPUT. */
 MUST_CHECK Status view_check(const View *view, Err *err);
 
 #endif

@@ -1,4 +1,5 @@
-/* How far the vessels that meet at one place are cut back to make room for their joints. */
+/* The lengths by which vessels that meet at one place are shortened for their joints. Private to
+ * the module stage. */
 #ifndef CORCAST_STAGE_CUTS_H
 #define CORCAST_STAGE_CUTS_H
 
@@ -6,18 +7,23 @@
 #include "geom/geom.h"
 #include <stdint.h>
 
-/* One vessel's end at the place. */
+/* The end of a vessel at the place. */
 typedef struct VesselEnd {
-    Vec3 axis;     /* unit, from the place along the vessel */
+    Vec3 axis;     /* unit, from the place into the vessel */
     double radius; /* > 0 */
 } VesselEnd;
 
-/* Cuts of n >= 1 ends into cut[n], in the unit of the radii: the least lengths, none below 0, with
- *   cut_i >= cut_j cos(i, j) + radius_j sin(i, j)  for all j,
- * so that the disc that ends each vessel lies on one side of the plane that ends each other
- * [docs/METHODS.md section 7]. Ends whose axes are parallel to within 1e-6 ignore each other.
- * *steps, above 0, is how many comparisons of two ends may be made, and becomes how many are left:
- * 0 when they did not do, and the cuts are then of no use. */
+/* Computes the cuts of n >= 1 ends: the smallest lengths cut[i] >= 0 with
+ *
+ *     cut_i >= cut_j cos(i, j) + radius_j sin(i, j)  for all j.
+ *
+ * The disc at which each vessel then ends lies on one side of the plane in which each other vessel
+ * ends [docs/METHODS.md section 7]. Ends whose axes are parallel to within 1e-6 ignore each other.
+ *
+ * cut      in the unit of the radii.
+ * steps    the allowed number of comparisons of two ends, > 0. Receives the number that is left; 0
+ *          if it was not sufficient, and the cuts are then undefined.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status cuts_compute(const VesselEnd *ends, size_t n, double *cut, uint64_t *steps,
                                Err *err);
 

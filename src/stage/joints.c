@@ -30,29 +30,28 @@ typedef enum PlaceKind {
 } PlaceKind;
 
 /* End 2 i is where segment i begins, 2 i + 1 where it ends. */
-typedef struct Builder {
+typedef struct JointBuilder {
     const Tree *tree;
     const Places *places;
-    size_t *first;    /* n + 1: where each place's ends stand in `ends` */
-    size_t *ends;     /* by place, ascending */
+    IndexLists ends;  /* by place, rising */
     double *cut;      /* one an end, mm */
     PlaceKind *kinds; /* one a node; of those that stand for a place */
     uint64_t steps;   /* left of most_steps */
-} Builder;
+} JointBuilder;
 
 typedef struct Demand {
     double part; /* the largest part of a vessel that a cut at the place takes */
     size_t place;
 } Demand;
 
-static size_t place_of(const Builder *builder, size_t end)
+static size_t place_of(const JointBuilder *builder, size_t end)
 {
     size_t node = end / 2;
     return (size_t)builder->places->place[end % 2 ? node : (size_t)builder->tree->parent[node]];
 }
 
 /* The point at an end before it is cut, and the unit axis from there along the vessel. */
-static Vec3 end_axis(const Builder *builder, size_t end, Vec3 *at)
+static Vec3 end_axis(const JointBuilder *builder, size_t end, Vec3 *at)
 {
     const Tree *tree = builder->tree;
     Vec3 distal = tree->position[end / 2], proximal = tree->position[tree->parent[end / 2]];
@@ -61,38 +60,34 @@ static Vec3 end_axis(const Builder *builder, size_t end, Vec3 *at)
 }
 
 /* The centre of the disc at an end. */
-static Vec3 end_center(const Builder *builder, size_t end)
+static Vec3 end_center(const JointBuilder *builder, size_t end)
 {
     Vec3 at, axis = end_axis(builder, end, &at);
     return vec3_add_scaled(at, axis, builder->cut[end]);
 }
 
-static Status collect_ends(Builder *builder, Err *err)
+static Status collect_ends(JointBuilder *builder, Err *err)
 {
-    const Tree *tree = builder->tree;
-    TRY(mem_calloc(&builder->first, tree->n + 2, sizeof *builder->first, "places", err));
-    TRY(mem_calloc(&builder->ends, 2 * tree->n, sizeof *builder->ends, "vessel ends", err));
-    TRY(mem_calloc(&builder->cut, 2 * tree->n, sizeof *builder->cut, "vessel ends", err));
-    TRY(mem_calloc(&builder->kinds, tree->n, sizeof *builder->kinds, "places", err));
-    size_t *first = builder->first;
-    for (size_t end = 0; end < 2 * tree->n; end++)
+    const size_t n = builder->tree->n;
+    TRY(mem_calloc(&builder->cut, 2 * n, sizeof *builder->cut, "vessel ends", err));
+    TRY(mem_calloc(&builder->kinds, n, sizeof *builder->kinds, "places", err));
+    TRY(indexlists_begin(&builder->ends, n, "vessel ends", err));
+    for (size_t end = 0; end < 2 * n; end++)
         if (places_draw(builder->places, end / 2))
-            first[place_of(builder, end) + 2]++;
-    for (size_t i = 2; i < tree->n + 2; i++)
-        first[i] += first[i - 1];
-    /* What counts up to the end of each place's ends is then the beginning of the next one's. */
-    for (size_t end = 0; end < 2 * tree->n; end++)
+            indexlists_count(&builder->ends, place_of(builder, end));
+    TRY(indexlists_allot(&builder->ends, "vessel ends", err));
+    for (uint32_t end = 0; end < 2 * n; end++)
         if (places_draw(builder->places, end / 2))
-            builder->ends[first[place_of(builder, end) + 1]++] = end;
+            indexlists_put(&builder->ends, place_of(builder, end), end);
     return STATUS_OK;
 }
 
 /* The end that all joints of a place begin at. */
-static size_t trunk_of(const Builder *builder, size_t place)
+static size_t trunk_of(const JointBuilder *builder, size_t place)
 {
-    size_t trunk = builder->ends[builder->first[place]];
-    for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
-        size_t end = builder->ends[k];
+    size_t trunk = builder->ends.items[builder->ends.first[place]];
+    for (size_t k = builder->ends.first[place]; k < builder->ends.first[place + 1]; k++) {
+        size_t end = builder->ends.items[k];
         if (end % 2)
             return end;
         if (builder->tree->radius_mm[end / 2] > builder->tree->radius_mm[trunk / 2])
@@ -103,16 +98,16 @@ static size_t trunk_of(const Builder *builder, size_t place)
 
 /* Cuts the ends of a place as its joints ask for, and tells what kind of place that makes it and
  * which part of a vessel it takes. `ends` and `cut` have room for those of any place. */
-static Status cut_place(Builder *builder, size_t place, VesselEnd *ends, double *cut,
+static Status cut_place(JointBuilder *builder, size_t place, VesselEnd *ends, double *cut,
                         double *demand, Err *err)
 {
-    size_t first = builder->first[place], n = builder->first[place + 1] - first;
+    size_t first = builder->ends.first[place], n = indexlists_length(&builder->ends, place);
     size_t trunk = trunk_of(builder, place);
     Vec3 at, trunk_axis = end_axis(builder, trunk, &at);
     double largest_radius = 0, largest_cut = 0;
     PlaceKind kind = PLACE_JOINED;
     for (size_t k = 0; k < n; k++) {
-        size_t end = builder->ends[first + k];
+        size_t end = builder->ends.items[first + k];
         ends[k] = (VesselEnd){end_axis(builder, end, &at), builder->tree->radius_mm[end / 2]};
         largest_radius = fmax(largest_radius, ends[k].radius);
         if (end != trunk && vec3_dot(ends[k].axis, trunk_axis) > sharp_cosine)
@@ -126,7 +121,7 @@ static Status cut_place(Builder *builder, size_t place, VesselEnd *ends, double 
         return STATUS_OK;
     }
     for (size_t k = 0; k < n; k++) {
-        size_t end = builder->ends[first + k];
+        size_t end = builder->ends.items[first + k];
         builder->cut[end] = cut[k];
         largest_cut = fmax(largest_cut, cut[k]);
         *demand = fmax(*demand, cut[k] / tree_segment_length(builder->tree, end / 2));
@@ -145,10 +140,10 @@ static int by_demand(const void *a, const void *b)
 }
 
 /* Whether the cuts of a place fit beside those already made at the other ends of its vessels. */
-static bool cuts_fit(const Builder *builder, size_t place, const bool *made)
+static bool cuts_fit(const JointBuilder *builder, size_t place, const bool *made)
 {
-    for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
-        size_t end = builder->ends[k], other = end ^ 1;
+    for (size_t k = builder->ends.first[place]; k < builder->ends.first[place + 1]; k++) {
+        size_t end = builder->ends.items[k], other = end ^ 1;
         double taken = builder->cut[end] + (made[other] ? builder->cut[other] : 0);
         if (taken > usable_part * tree_segment_length(builder->tree, end / 2))
             return false;
@@ -157,7 +152,7 @@ static bool cuts_fit(const Builder *builder, size_t place, const bool *made)
 }
 
 /* Decides the places whose cuts are known, in the order of their demands. */
-static Status settle_places(Builder *builder, Demand *demands, size_t n, Err *err)
+static Status settle_places(JointBuilder *builder, Demand *demands, size_t n, Err *err)
 {
     bool *made = NULL; /* one an end */
     TRY(mem_calloc(&made, 2 * builder->tree->n, sizeof *made, "vessel ends", err));
@@ -167,15 +162,15 @@ static Status settle_places(Builder *builder, Demand *demands, size_t n, Err *er
         PlaceKind *kind = &builder->kinds[place];
         if (*kind != PLACE_OPEN && *kind != PLACE_CROWDED && !cuts_fit(builder, place, made))
             *kind = PLACE_SHORT;
-        for (size_t k = builder->first[place];
-             *kind == PLACE_JOINED && k < builder->first[place + 1]; k++)
-            made[builder->ends[k]] = true;
+        for (size_t k = builder->ends.first[place];
+             *kind == PLACE_JOINED && k < builder->ends.first[place + 1]; k++)
+            made[builder->ends.items[k]] = true;
     }
     free(made);
     return STATUS_OK;
 }
 
-static Status cut_places(Builder *builder, Err *err)
+static Status cut_places(JointBuilder *builder, Err *err)
 {
     size_t n = builder->tree->n, n_demands = 0, most = 0;
     VesselEnd *ends = NULL;
@@ -183,14 +178,14 @@ static Status cut_places(Builder *builder, Err *err)
     Demand *demands = NULL;
     Status status = STATUS_OK;
     for (size_t place = 0; place < n; place++) {
-        size_t count = builder->first[place + 1] - builder->first[place];
+        size_t count = indexlists_length(&builder->ends, place);
         most = count > most ? count : most;
     }
     TRY_GOTO(mem_calloc(&ends, most, sizeof *ends, "vessel ends", err));
     TRY_GOTO(mem_calloc(&cut, most, sizeof *cut, "vessel ends", err));
     TRY_GOTO(mem_calloc(&demands, n, sizeof *demands, "places", err));
     for (size_t place = 0; place < n; place++) {
-        if (builder->first[place + 1] - builder->first[place] < 2)
+        if (indexlists_length(&builder->ends, place) < 2)
             continue;
         Demand *demand = &demands[n_demands++];
         demand->place = place;
@@ -211,13 +206,13 @@ static bool is_joined(PlaceKind kind, JointForm form)
 }
 
 /* Makes the cuts final: none where there is no joint, and never more than the vessel. */
-static void trim_cuts(Builder *builder, JointForm form)
+static void trim_cuts(JointBuilder *builder, JointForm form)
 {
     for (size_t place = 0; place < builder->tree->n; place++) {
         PlaceKind kind = builder->kinds[place];
         bool joined = is_joined(kind, form);
-        for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
-            size_t end = builder->ends[k];
+        for (size_t k = builder->ends.first[place]; k < builder->ends.first[place + 1]; k++) {
+            size_t end = builder->ends.items[k];
             double length = tree_segment_length(builder->tree, end / 2);
             builder->cut[end] = joined ? fmin(builder->cut[end], length) : 0;
         }
@@ -225,13 +220,13 @@ static void trim_cuts(Builder *builder, JointForm form)
 }
 
 /* Whether no other vessel ends where this one does. */
-static bool end_is_free(const Builder *builder, size_t end)
+static bool end_is_free(const JointBuilder *builder, size_t end)
 {
     size_t place = place_of(builder, end);
-    return builder->first[place + 1] - builder->first[place] == 1;
+    return indexlists_length(&builder->ends, place) == 1;
 }
 
-static void add_cylinder(const Builder *builder, size_t i, Geometry *geometry)
+static void add_cylinder(const JointBuilder *builder, size_t i, Geometry *geometry)
 {
     double left = tree_segment_length(builder->tree, i);
     left -= builder->cut[2 * i] + builder->cut[2 * i + 1];
@@ -247,7 +242,7 @@ static void add_cylinder(const Builder *builder, size_t i, Geometry *geometry)
                     .segment = (uint32_t)i};
 }
 
-static void add_joint(const Builder *builder, size_t trunk, size_t end, Vec3 axes[2],
+static void add_joint(const JointBuilder *builder, size_t trunk, size_t end, Vec3 axes[2],
                       Geometry *geometry)
 {
     const Tree *tree = builder->tree;
@@ -266,12 +261,12 @@ static void add_joint(const Builder *builder, size_t trunk, size_t end, Vec3 axe
 
 /* The sphere of a place that cannot be joined; of equals, the trunk gives it its size and
  * colour. */
-static void add_sphere(const Builder *builder, size_t place, Geometry *geometry)
+static void add_sphere(const JointBuilder *builder, size_t place, Geometry *geometry)
 {
     const Tree *tree = builder->tree;
     size_t thickest = trunk_of(builder, place) / 2;
-    for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
-        size_t segment = builder->ends[k] / 2;
+    for (size_t k = builder->ends.first[place]; k < builder->ends.first[place + 1]; k++) {
+        size_t segment = builder->ends.items[k] / 2;
         if (tree->radius_mm[segment] > tree->radius_mm[thickest])
             thickest = segment;
     }
@@ -283,7 +278,7 @@ static void add_sphere(const Builder *builder, size_t place, Geometry *geometry)
                     .segment = (uint32_t)thickest};
 }
 
-static void add_place(const Builder *builder, size_t place, JointForm form, Geometry *geometry,
+static void add_place(const JointBuilder *builder, size_t place, JointForm form, Geometry *geometry,
                       StageReport *report)
 {
     PlaceKind kind = builder->kinds[place];
@@ -297,43 +292,41 @@ static void add_place(const Builder *builder, size_t place, JointForm form, Geom
         return;
     }
     size_t trunk = trunk_of(builder, place);
-    for (size_t k = builder->first[place]; k < builder->first[place + 1]; k++) {
-        if (builder->ends[k] == trunk)
+    for (size_t k = builder->ends.first[place]; k < builder->ends.first[place + 1]; k++) {
+        if (builder->ends.items[k] == trunk)
             continue;
-        add_joint(builder, trunk, builder->ends[k], geometry->axes + 2 * report->joints++,
+        add_joint(builder, trunk, builder->ends.items[k], geometry->axes + 2 * report->joints++,
                   geometry);
     }
 }
 
 /* Makes room for the axes of all joints. */
-static Status reserve_axes(const Builder *builder, JointForm form, Geometry *geometry, Err *err)
+static Status reserve_axes(const JointBuilder *builder, JointForm form, Geometry *geometry,
+                           Err *err)
 {
     size_t joints = 0;
     for (size_t place = 0; place < builder->tree->n; place++)
         if (is_joined(builder->kinds[place], form))
-            joints += builder->first[place + 1] - builder->first[place] - 1;
+            joints += indexlists_length(&builder->ends, place) - 1;
     return mem_calloc(&geometry->axes, joints, 2 * sizeof *geometry->axes, "joints", err);
 }
 
 Status joints_add(const Tree *tree, const Places *places, JointForm form, Geometry *geometry,
                   StageReport *report, Err *err)
 {
-    Builder builder = {.tree = tree, .places = places, .steps = most_steps};
-    Status status = collect_ends(&builder, err);
-    if (status == STATUS_OK)
-        status = cut_places(&builder, err);
-    if (status == STATUS_OK)
-        status = reserve_axes(&builder, form, geometry, err);
-    if (status == STATUS_OK) {
-        trim_cuts(&builder, form);
-        for (size_t i = 0; i < tree->n; i++)
-            if (places_draw(places, i))
-                add_cylinder(&builder, i, geometry);
-        for (size_t place = 0; place < tree->n; place++)
-            add_place(&builder, place, form, geometry, report);
-    }
-    free(builder.first);
-    free(builder.ends);
+    JointBuilder builder = {.tree = tree, .places = places, .steps = most_steps};
+    Status status;
+    TRY_GOTO(collect_ends(&builder, err));
+    TRY_GOTO(cut_places(&builder, err));
+    TRY_GOTO(reserve_axes(&builder, form, geometry, err));
+    trim_cuts(&builder, form);
+    for (size_t i = 0; i < tree->n; i++)
+        if (places_draw(places, i))
+            add_cylinder(&builder, i, geometry);
+    for (size_t place = 0; place < tree->n; place++)
+        add_place(&builder, place, form, geometry, report);
+done:
+    indexlists_release(&builder.ends);
     free(builder.cut);
     free(builder.kinds);
     return status;

@@ -1,13 +1,16 @@
-/* The joined model: cylinders cut back, and the ruled surfaces between their rims. */
+/* Models with joints: shortened cylinders, and ruled surfaces between their rims. Private to the
+ * module stage. */
 #ifndef CORCAST_STAGE_JOINTS_H
 #define CORCAST_STAGE_JOINTS_H
 
 #include "stage/places.h"
 #include "stage/stage.h"
 
-/* Appends cylinders, joints and, where no joint can be, spheres to geometry->primitives, which has
- * room for two primitives a node, and counts joints and places without in *report. STATUS_MEMORY.
- */
+/* Appends cylinders, joints, and spheres where the construction of joints fails. Counts joints and
+ * these places in *report.
+ *
+ * geometry  its `primitives` has room for two per node.
+ * Errors    STATUS_MEMORY. */
 MUST_CHECK Status joints_add(const Tree *tree, const Places *places, JointForm form,
                              Geometry *geometry, StageReport *report, Err *err);
 

@@ -1,226 +1,100 @@
-/* Looks are INI files because POV-Ray's users know the form and artists edit it. */
+/* Looks are INI files because POV-Ray's users know the form and artists edit it. A key is a row:
+ * the type and the range of its value, and where the value is in the Look. */
 #include "stage/stage.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
-typedef struct Reading {
+typedef struct LookReading {
     Look look;
-    const char *problem; /* what the line should have been */
-} Reading;
+    char problem[160]; /* what the line should have been */
+} LookReading;
 
-/* `count` numbers, each in [low, high]. */
-static bool read_numbers(const char *text, size_t count, double low, double high, double *out)
-{
-    bool fits = numbers_parse(text, count, out);
-    for (size_t i = 0; fits && i < count; i++)
-        fits = out[i] >= low && out[i] <= high;
-    return fits;
-}
+typedef enum LookType {
+    TYPE_FLOAT,
+    TYPE_DOUBLE,
+    TYPE_SAMPLES,
+    TYPE_COLOR,
+    TYPE_VECTOR,
+    TYPE_LINE
+} LookType;
 
-static bool read_color(Reading *reading, const char *value, Rgb *out)
-{
-    double rgb[3];
-    reading->problem = "three numbers from 0 to 1, red green blue";
-    if (!read_numbers(value, 3, 0, 1, rgb))
-        return false;
-    *out = (Rgb){(float)rgb[0], (float)rgb[1], (float)rgb[2]};
-    return true;
-}
+#define LIGHT "light NAME"
 
-static bool read_finish(Reading *reading, const char *name, const char *value)
-{
-    Finish *finish = &reading->look.finish;
-    const struct {
-        const char *name;
-        float *where;
-        double low, high;
-        const char *allowed;
-    } keys[] = {
-        {"ambient", &finish->ambient, 0, 1, "a number from 0 to 1"},
-        {"diffuse", &finish->diffuse, 0, 1, "a number from 0 to 1"},
-        {"brilliance", &finish->brilliance, 0.1, 10, "a number from 0.1 to 10"},
-        {"phong", &finish->phong, 0, 1, "a number from 0 to 1"},
-        {"phong_size", &finish->phong_size, 1, 1000, "a number from 1 to 1000"},
-        {"specular", &finish->specular, 0, 1, "a number from 0 to 1"},
-        {"roughness", &finish->roughness, 0.0005, 1, "a number from 0.0005 to 1"},
-    };
-    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
-        if (strcmp(name, keys[i].name) != 0)
-            continue;
-        double number;
-        reading->problem = keys[i].allowed;
-        if (!read_numbers(value, 1, keys[i].low, keys[i].high, &number))
-            return false;
-        *keys[i].where = (float)number;
-        return true;
-    }
-    reading->problem =
-        "one of ambient, diffuse, brilliance, phong, phong_size, specular, roughness";
-    return false;
-}
-
-static bool read_vector(Reading *reading, const char *value, Vec3 *out)
-{
-    double xyz[3];
-    reading->problem = "three numbers from -1000000 to 1000000, not all zero";
-    if (!read_numbers(value, 3, -1e6, 1e6, xyz) || (xyz[0] == 0 && xyz[1] == 0 && xyz[2] == 0))
-        return false;
-    *out = vec3(xyz[0], xyz[1], xyz[2]);
-    return true;
-}
-
-static bool add_light(Reading *reading)
-{
-    Look *look = &reading->look;
-    reading->problem = "at most 64 lights";
-    if (look->n_lights == LOOK_MAX_LIGHTS)
-        return false;
-    look->lights[look->n_lights++] =
-        (LookLight){.direction = {0, 0, 1}, .samples = 4, .color = {1, 1, 1}};
-    return true;
-}
-
-static bool read_light(Reading *reading, const char *name, const char *value)
-{
-    LookLight *light = &reading->look.lights[reading->look.n_lights - 1];
-    if (strcmp(name, "color") == 0)
-        return read_color(reading, value, &light->color);
-    if (strcmp(name, "size") == 0) {
-        reading->problem =
-            "a number from 0 to 100, below the position of a light that has a position";
-        return light->is_point && read_numbers(value, 1, 0, 100, &light->size);
-    }
-    if (strcmp(name, "samples") == 0) {
-        double samples;
-        reading->problem = "2, 4, 8 or 16";
-        if (!read_numbers(value, 1, 2, 16, &samples))
-            return false;
-        light->samples = (int)samples;
-        return samples == 2 || samples == 4 || samples == 8 || samples == 16;
-    }
-    if (strcmp(name, "direction") == 0 || strcmp(name, "position") == 0) {
-        light->is_point = strcmp(name, "position") == 0;
-        return read_vector(reading, value, &light->direction);
-    }
-    reading->problem = "direction, position, color, size or samples";
-    return false;
-}
-
-static bool read_ground(Reading *reading, const char *name, const char *value)
-{
-    LookGround *ground = &reading->look.ground;
-    ground->present = true;
-    if (strcmp(name, "color") == 0)
-        return read_color(reading, value, &ground->color);
-    if (strcmp(name, "normal") == 0 || strcmp(name, "axis") == 0) {
-        ground->in_world = strcmp(name, "axis") == 0;
-        return read_vector(reading, value, &ground->normal);
-    }
-    if (strcmp(name, "gap") == 0) {
-        reading->problem = "a number from 0 to 100";
-        return read_numbers(value, 1, 0, 100, &ground->gap);
-    }
-    bool ambient = strcmp(name, "ambient") == 0;
-    if (ambient || strcmp(name, "diffuse") == 0) {
-        reading->problem = "a number from 0 to 1";
-        return read_numbers(value, 1, 0, 1, ambient ? &ground->ambient : &ground->diffuse);
-    }
-    reading->problem = "normal, axis, gap, color, ambient or diffuse";
-    return false;
-}
-
-static bool read_about(Reading *reading, const char *name, const char *value)
-{
-    reading->problem = "about, a line of at most 160 bytes";
-    if (strcmp(name, "about") != 0 || strlen(value) > LOOK_MAX_ABOUT)
-        return false;
-    memcpy(reading->look.about, value, strlen(value) + 1);
-    return true;
-}
-
-/* A number of a section. */
-typedef struct NumberKey {
+static const struct LookSection {
     const char *name;
-    double *where, low, high;
-    const char *allowed;
-} NumberKey;
+    const char *keys; /* for the message about an unknown key */
+    size_t preset;    /* the double that the head of the section sets; 0: none */
+    double value;
+} sections[] = {
+    {"look", "about, a line of at most 160 bytes", 0, 0},
+    {"vessel", "color", 0, 0},
+    {"background", "color", 0, 0},
+    {"finish", "one of ambient, diffuse, brilliance, phong, phong_size, specular, roughness", 0, 0},
+    {LIGHT, "direction, position, color, size or samples", 0, 0},
+    {"ground", "normal, axis, gap, color, ambient or diffuse", 0, 0},
+    {"outline", "width, radii, deeper, crease or color", offsetof(Look, effects.outline_width), 1},
+    {"halo", "width, radii or deeper", offsetof(Look, effects.halo_width), 2},
+    {"fade", "nearest or farthest", offsetof(Look, effects.fade_farthest), 0.8},
+    {"xray", "per_diameter or per_mm", offsetof(Look, effects.xray_per_diameter), 1},
+};
 
-/* `names` lists them all. */
-static bool read_number_of(Reading *reading, const NumberKey *keys, size_t n, const char *names,
-                           const char *name, const char *value)
+#define IN_FINISH(member) TYPE_FLOAT, offsetof(Look, finish.member)
+#define IN_GROUND(member) offsetof(Look, ground.member)
+#define IN_EFFECTS(member) TYPE_DOUBLE, offsetof(Look, effects.member)
+#define A_COLOR 0, 1, "three numbers from 0 to 1, red green blue"
+#define A_VECTOR -1e6, 1e6, "three numbers from -1000000 to 1000000, not all zero"
+
+static const struct LookKey {
+    const char *section, *name;
+    LookType type;
+    size_t at; /* in the Look; of a light, in the LookLight */
+    double low, high;
+    const char *allowed; /* for the message about a bad value; NULL: "a number from LOW to HIGH" */
+} keys[] = {
+    {"look", "about", TYPE_LINE, offsetof(Look, about), 0, 0, "about, a line of at most 160 bytes"},
+    {"vessel", "color", TYPE_COLOR, offsetof(Look, color), A_COLOR},
+    {"background", "color", TYPE_COLOR, offsetof(Look, background), A_COLOR},
+    {"finish", "ambient", IN_FINISH(ambient), 0, 1, NULL},
+    {"finish", "diffuse", IN_FINISH(diffuse), 0, 1, NULL},
+    {"finish", "brilliance", IN_FINISH(brilliance), 0.1, 10, NULL},
+    {"finish", "phong", IN_FINISH(phong), 0, 1, NULL},
+    {"finish", "phong_size", IN_FINISH(phong_size), 1, 1000, NULL},
+    {"finish", "specular", IN_FINISH(specular), 0, 1, NULL},
+    {"finish", "roughness", IN_FINISH(roughness), 0.0005, 1, NULL},
+    {LIGHT, "color", TYPE_COLOR, offsetof(LookLight, color), A_COLOR},
+    {LIGHT, "direction", TYPE_VECTOR, offsetof(LookLight, direction), A_VECTOR},
+    {LIGHT, "position", TYPE_VECTOR, offsetof(LookLight, direction), A_VECTOR},
+    {LIGHT, "samples", TYPE_SAMPLES, offsetof(LookLight, samples), 2, 16, "2, 4, 8 or 16"},
+    {LIGHT, "size", TYPE_DOUBLE, offsetof(LookLight, size), 0, 100,
+     "a number from 0 to 100, below the position of a light that has a position"},
+    {"ground", "color", TYPE_COLOR, IN_GROUND(color), A_COLOR},
+    {"ground", "normal", TYPE_VECTOR, IN_GROUND(normal), A_VECTOR},
+    {"ground", "axis", TYPE_VECTOR, IN_GROUND(normal), A_VECTOR},
+    {"ground", "gap", TYPE_DOUBLE, IN_GROUND(gap), 0, 100, NULL},
+    {"ground", "ambient", TYPE_DOUBLE, IN_GROUND(ambient), 0, 1, NULL},
+    {"ground", "diffuse", TYPE_DOUBLE, IN_GROUND(diffuse), 0, 1, NULL},
+    {"outline", "width", IN_EFFECTS(outline_width), 0.1, 50, NULL},
+    {"outline", "radii", IN_EFFECTS(outline_radii), 0.01, 10, NULL},
+    {"outline", "deeper", IN_EFFECTS(outline_deeper), 0, 1000, NULL},
+    {"outline", "crease", IN_EFFECTS(crease_deg), 1, 180, NULL},
+    {"outline", "color", TYPE_COLOR, offsetof(Look, effects.outline_color), A_COLOR},
+    {"halo", "width", IN_EFFECTS(halo_width), 0.1, 50, NULL},
+    {"halo", "radii", IN_EFFECTS(halo_radii), 0.01, 10, NULL},
+    {"halo", "deeper", IN_EFFECTS(halo_deeper), 0, 1000, NULL},
+    {"fade", "nearest", IN_EFFECTS(fade_nearest), 0, 1, NULL},
+    {"fade", "farthest", IN_EFFECTS(fade_farthest), 0, 1, NULL},
+    {"xray", "per_diameter", IN_EFFECTS(xray_per_diameter), 0.001, 1000, NULL},
+    {"xray", "per_mm", IN_EFFECTS(xray_per_mm), 1e-6, 1e6, "a number from 1e-6 to 1e6"},
+};
+
+/* Records what the line should have been, and returns false. */
+static bool expected(LookReading *reading, const char *problem)
 {
-    reading->problem = names;
-    for (size_t i = 0; i < n; i++)
-        if (strcmp(name, keys[i].name) == 0) {
-            reading->problem = keys[i].allowed;
-            return read_numbers(value, 1, keys[i].low, keys[i].high, keys[i].where);
-        }
+    snprintf(reading->problem, sizeof reading->problem, "%s", problem);
     return false;
-}
-
-static bool read_outline(Reading *reading, const char *name, const char *value)
-{
-    LookEffects *effects = &reading->look.effects;
-    const NumberKey keys[] = {
-        {"width", &effects->outline_width, 0.1, 50, "a number from 0.1 to 50"},
-        {"radii", &effects->outline_radii, 0.01, 10, "a number from 0.01 to 10"},
-        {"deeper", &effects->outline_deeper, 0, 1000, "a number from 0 to 1000"},
-        {"crease", &effects->crease_deg, 1, 180, "a number from 1 to 180"},
-    };
-    if (strcmp(name, "color") == 0)
-        return read_color(reading, value, &effects->outline_color);
-    return read_number_of(reading, keys, sizeof keys / sizeof *keys,
-                          "width, radii, deeper, crease or color", name, value);
-}
-
-static bool read_halo(Reading *reading, const char *name, const char *value)
-{
-    LookEffects *effects = &reading->look.effects;
-    const NumberKey keys[] = {
-        {"width", &effects->halo_width, 0.1, 50, "a number from 0.1 to 50"},
-        {"radii", &effects->halo_radii, 0.01, 10, "a number from 0.01 to 10"},
-        {"deeper", &effects->halo_deeper, 0, 1000, "a number from 0 to 1000"},
-    };
-    return read_number_of(reading, keys, sizeof keys / sizeof *keys, "width, radii or deeper", name,
-                          value);
-}
-
-static bool read_fade(Reading *reading, const char *name, const char *value)
-{
-    LookEffects *effects = &reading->look.effects;
-    const NumberKey keys[] = {
-        {"nearest", &effects->fade_nearest, 0, 1, "a number from 0 to 1"},
-        {"farthest", &effects->fade_farthest, 0, 1, "a number from 0 to 1"},
-    };
-    return read_number_of(reading, keys, sizeof keys / sizeof *keys, "nearest or farthest", name,
-                          value);
-}
-
-/* The one excludes the other: the last line counts. */
-static bool read_xray(Reading *reading, const char *name, const char *value)
-{
-    LookEffects *effects = &reading->look.effects;
-    const NumberKey keys[] = {
-        {"per_diameter", &effects->xray_per_diameter, 0.001, 1000, "a number from 0.001 to 1000"},
-        {"per_mm", &effects->xray_per_mm, 1e-6, 1e6, "a number from 1e-6 to 1e6"},
-    };
-    effects->xray_per_diameter = effects->xray_per_mm = 0;
-    return read_number_of(reading, keys, sizeof keys / sizeof *keys, "per_diameter or per_mm", name,
-                          value);
-}
-
-/* What a section of effects means by being there. */
-static void begin_effect(LookEffects *effects, const char *section)
-{
-    if (strcmp(section, "outline") == 0)
-        effects->outline_width = 1;
-    if (strcmp(section, "halo") == 0)
-        effects->halo_width = 2;
-    if (strcmp(section, "fade") == 0)
-        effects->fade_farthest = 0.8;
-    if (strcmp(section, "xray") == 0)
-        effects->xray_per_diameter = 1;
 }
 
 static bool is_light(const char *section)
@@ -228,60 +102,108 @@ static bool is_light(const char *section)
     return strncmp(section, "light ", 6) == 0;
 }
 
-static bool read_vessel(Reading *reading, const char *name, const char *value)
-{
-    reading->problem = "color";
-    return strcmp(name, "color") == 0 && read_color(reading, value, &reading->look.color);
-}
-
-static bool read_background(Reading *reading, const char *name, const char *value)
-{
-    reading->problem = "color";
-    return strcmp(name, "color") == 0 && read_color(reading, value, &reading->look.background);
-}
-
-typedef struct Section {
-    const char *name;
-    bool (*read)(Reading *reading, const char *name, const char *value);
-} Section;
-
-static const Section sections[] = {
-    {"look", read_about},    {"vessel", read_vessel}, {"background", read_background},
-    {"finish", read_finish}, {"ground", read_ground}, {"outline", read_outline},
-    {"halo", read_halo},     {"fade", read_fade},     {"xray", read_xray},
-};
-
-static const Section light_section = {"light NAME", read_light};
-
-/* NULL where there is none of that name. */
-static const Section *find_section(const char *name)
+/* Returns the row of a section, or NULL. */
+static const struct LookSection *find_section(const char *name)
 {
     for (size_t i = 0; i < sizeof sections / sizeof *sections; i++)
-        if (strcmp(name, sections[i].name) == 0)
+        if (strcmp(is_light(name) ? LIGHT : name, sections[i].name) == 0)
             return &sections[i];
-    return is_light(name) ? &light_section : NULL;
+    return NULL;
 }
 
-/* Each head of a section `light NAME` is a light more. */
-static bool read_head(Reading *reading, const char *section)
+/* Stores a value of one or three numbers, or a line. Returns false if it is out of range. */
+static bool store(const struct LookKey *key, const char *text, char *at)
 {
-    reading->problem = "one of the sections look, vessel, background, finish, light NAME, ground, "
-                       "outline, halo, fade, xray";
-    begin_effect(&reading->look.effects, section);
-    return find_section(section) && (!is_light(section) || add_light(reading));
+    double number[3] = {0};
+    size_t count = key->type == TYPE_COLOR || key->type == TYPE_VECTOR ? 3 : 1;
+    bool fits = key->type == TYPE_LINE ? strlen(text) <= LOOK_MAX_ABOUT
+                                       : numbers_parse(text, count, number);
+    for (size_t i = 0; fits && key->type != TYPE_LINE && i < count; i++)
+        fits = number[i] >= key->low && number[i] <= key->high;
+    if (!fits)
+        return false;
+    switch (key->type) {
+    case TYPE_FLOAT:
+        *(float *)(void *)at = (float)number[0];
+        break;
+    case TYPE_DOUBLE:
+        *(double *)(void *)at = number[0];
+        break;
+    case TYPE_SAMPLES:
+        *(int *)(void *)at = (int)number[0];
+        return number[0] == 2 || number[0] == 4 || number[0] == 8 || number[0] == 16;
+    case TYPE_COLOR:
+        *(Rgb *)(void *)at = (Rgb){(float)number[0], (float)number[1], (float)number[2]};
+        break;
+    case TYPE_VECTOR:
+        *(Vec3 *)(void *)at = vec3(number[0], number[1], number[2]);
+        return number[0] != 0 || number[1] != 0 || number[2] != 0;
+    case TYPE_LINE:
+        memcpy(at, text, strlen(text) + 1);
+    }
+    return true;
 }
 
-static bool read_pair(Reading *reading, const char *section, const char *name, const char *value)
+/* Stores the value of a key, after what the key implies for its section. */
+static bool read_key(LookReading *reading, const struct LookKey *key, const char *text)
 {
-    const Section *found = find_section(section);
-    reading->problem = "a section, such as [vessel], first";
-    return found && found->read(reading, name, value);
+    Look *look = &reading->look;
+    bool of_light = strcmp(key->section, LIGHT) == 0;
+    LookLight *light = of_light ? &look->lights[look->n_lights - 1] : NULL;
+    if (of_light && key->type == TYPE_VECTOR)
+        light->is_point = strcmp(key->name, "position") == 0;
+    if (strcmp(key->section, "ground") == 0) {
+        look->ground.present = true;
+        if (key->type == TYPE_VECTOR)
+            look->ground.in_world = strcmp(key->name, "axis") == 0;
+    }
+    if (strcmp(key->section, "xray") == 0) /* the two keys exclude each other; the last counts */
+        look->effects.xray_per_diameter = look->effects.xray_per_mm = 0;
+    bool allowed = strcmp(key->name, "size") != 0 || light->is_point;
+    if (allowed && store(key, text, (of_light ? (char *)light : (char *)look) + key->at))
+        return true;
+    if (key->allowed)
+        return expected(reading, key->allowed);
+    snprintf(reading->problem, sizeof reading->problem, "a number from %g to %g", key->low,
+             key->high);
+    return false;
+}
+
+static bool read_pair(LookReading *reading, const char *section, const char *name,
+                      const char *value)
+{
+    const struct LookSection *found = find_section(section);
+    if (!found)
+        return expected(reading, "a section, such as [vessel], first");
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+        if (strcmp(found->name, keys[i].section) == 0 && strcmp(name, keys[i].name) == 0)
+            return read_key(reading, &keys[i], value);
+    return expected(reading, found->keys);
+}
+
+/* Each head of a section `light NAME` adds a light. */
+static bool read_head(LookReading *reading, const char *section)
+{
+    Look *look = &reading->look;
+    const struct LookSection *found = find_section(section);
+    if (!found)
+        return expected(reading, "one of the sections look, vessel, background, finish, "
+                                 "light NAME, ground, outline, halo, fade, xray");
+    if (found->preset)
+        *(double *)(void *)((char *)look + found->preset) = found->value;
+    if (!is_light(section))
+        return true;
+    if (look->n_lights == LOOK_MAX_LIGHTS)
+        return expected(reading, "at most 64 lights");
+    look->lights[look->n_lights++] =
+        (LookLight){.direction = {0, 0, 1}, .samples = 4, .color = {1, 1, 1}};
+    return true;
 }
 
 static Status take_line(void *user, const char *section, const char *name, const char *value,
                         Err *err)
 {
-    Reading *reading = user;
+    LookReading *reading = user;
     if (name ? read_pair(reading, section, name, value) : read_head(reading, section))
         return STATUS_OK;
     if (!name)
@@ -293,7 +215,7 @@ static Status take_line(void *user, const char *section, const char *name, const
 
 Status look_read(Look *look, const char *path, Err *err)
 {
-    Reading reading = {
+    LookReading reading = {
         .look =
             {.finish = {.ambient = 0.1f,
                         .diffuse = 0.6f,

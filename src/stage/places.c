@@ -211,15 +211,14 @@ Status places_find(const Tree *tree, Places *places, Err *err)
     find_returning_covers(tree, found.cover);
     for (size_t i = 0; i < tree->n; i++)
         found.place[i] = place_of(tree, &found, i);
+    *places = found;
+    found = (Places){0};
 done:
     free(bins.start);
     free(bins.daughters);
     free(bins.first);
     free(bins.next);
-    if (status == STATUS_OK)
-        *places = found;
-    else
-        places_release(&found);
+    places_release(&found);
     return status;
 }
 

@@ -1,4 +1,5 @@
-/* Which segments of a tree are drawn, and which of its nodes are one place. */
+/* The segments of a tree that are drawn, and its nodes that are at the same place. Private to the
+ * module stage. */
 #ifndef CORCAST_STAGE_PLACES_H
 #define CORCAST_STAGE_PLACES_H
 
@@ -9,33 +10,33 @@
 /* POV-Ray refuses cylinders shorter than this [docs/POVRAY.md]. */
 #define SHORTEST_MM 1e-9
 
-/* What a segment has instead of a sister that covers it. */
+/* Values of Places.cover for a segment that no sister covers. */
 enum { PLACES_UNCOVERED = -1, PLACES_CANNOT_DRAW = -2, PLACES_COVERED_BACKWARDS = -3 };
 
 typedef struct Places {
-    /* For each node: the twin that the node's segment lies within, so that the segment is not
-     * drawn. A twin is a segment between the same two points that is at least as thick. The twin is
-     * a sister, which begins at the same node; or PLACES_COVERED_BACKWARDS for a twin that runs the
-     * other way. PLACES_UNCOVERED if there is none; PLACES_CANNOT_DRAW where there is no segment
-     * that can be drawn. All arrays are owned. */
+    /* Per node: the twin of the segment that ends there, or a PLACES_... A segment with a twin is
+     * not drawn. A twin is a segment between the same two points that is at least as thick: a
+     * sister, which starts at the same node, or PLACES_COVERED_BACKWARDS, which runs the other way.
+     * Without a twin: PLACES_UNCOVERED; without a segment that can be drawn: PLACES_CANNOT_DRAW.
+     * Owned. */
     int32_t *cover;
-    int32_t *place; /* for each node: the node that stands for all nodes at the same place */
+    int32_t *place; /* per node: the node that represents all nodes at the same place; owned */
 } Places;
 
-/* Fills *places (owned; places_release). O(n) of n nodes, unless many lie close to
- * each other. STATUS_MEMORY. */
+/* Finds the twins and places of a tree. Release *places with places_release. Errors: STATUS_MEMORY.
+ * O(n) for n nodes, unless many are close to each other. */
 MUST_CHECK Status places_find(const Tree *tree, Places *places, Err *err);
 void places_release(Places *places);
 /* Returns the counts `drawn`, `dropped` and `covered` of the tree's segments, and nothing else. */
 StageReport places_count(const Tree *tree, const Places *places);
 
-/* segment_can_be_drawn, found before. */
+/* Returns the stored result of segment_can_be_drawn. */
 static inline bool places_can_draw(const Places *places, size_t i)
 {
     return places->cover[i] != PLACES_CANNOT_DRAW;
 }
 
-/* Whether segment i can be drawn and does not lie within a twin. */
+/* Returns true if segment i can be drawn and has no twin. */
 static inline bool places_draw(const Places *places, size_t i)
 {
     return places->cover[i] == PLACES_UNCOVERED;

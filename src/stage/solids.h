@@ -1,13 +1,16 @@
-/* Cylinders and spheres of a tree. */
+/* Models of cylinders and spheres. Private to the module stage. */
 #ifndef CORCAST_STAGE_SOLIDS_H
 #define CORCAST_STAGE_SOLIDS_H
 
 #include "stage/places.h"
 #include "stage/stage.h"
 
-/* Fills geometry->primitives, which are empty and have room for two a node, with the cylinders and,
- * where the model has balls, the spheres of a tree, on as many threads as of a mesh, which do not
- * change the result. O(n). STATUS_MEMORY. */
+/* Makes the cylinders of a tree and, if the model has balls, the spheres.
+ *
+ * params    uses params->mesh.threads threads, which do not change the result.
+ * geometry  its `primitives` is empty and has room for two per node.
+ * Errors    STATUS_MEMORY.
+ * Cost      O(n). */
 MUST_CHECK Status solids_add(const Tree *tree, const Places *places, const GeometryParams *params,
                              Geometry *geometry, Err *err);
 

@@ -1,4 +1,4 @@
-/* The door of the room stage: tree + fields + look -> geometry, appearance and view. */
+/* The public header of the module stage: makes the geometry, appearance and view of a tree. */
 #ifndef CORCAST_STAGE_STAGE_H
 #define CORCAST_STAGE_STAGE_H
 
@@ -9,17 +9,21 @@
 #include "scene/scene.h"
 #include "tree/tree.h"
 
-/* A look is what pictures of any tree have in common: finish, colours, lights and ground, in sizes
- * of the tree and mostly in the camera's axes. Colours are linear RGB. */
+/* ---- looks ------------------------------------------------------------------------------------
+ *
+ * A look holds the properties that pictures of different trees share: finish, colours, lights,
+ * ground and effects. Lengths are relative to the tree's size, and directions are mostly in the
+ * camera's axes. Colours are linear RGB. */
 
 typedef struct LookLight {
     bool is_point;
-    /* x right, y up, z towards the viewer. Of a parallel light: towards it, of any length. Of a
-     * point light: its place from the middle of the tree, in half diagonals of the tree's box. */
+    /* In the camera's axes: x right, y up, z towards the viewer. Parallel light: direction towards
+     * the light, of any length. Point light: its position relative to the middle of the tree, in
+     * half diagonals of the tree's box. */
     Vec3 direction;
-    double size; /* of a point light: the side of the square, facing the tree, that casts its
-                  * shadows, in half diagonals; 0: a point */
-    int samples; /* along that side: 2, 4, 8 or 16 */
+    double size; /* point light: side of the square, facing the tree, that casts soft shadows, in
+                  * half diagonals; 0: a point */
+    int samples; /* along a side of that square: 2, 4, 8 or 16 */
     Rgb color;
 } LookLight;
 
@@ -28,32 +32,32 @@ enum { LOOK_MAX_LIGHTS = VIEW_MAX_LIGHTS };
 /* A plane beyond the tree, on which shadows fall. */
 typedef struct LookGround {
     bool present;
-    bool in_world; /* `normal` is in the tree's axes: x, y, z; else right, up, towards the viewer */
+    bool in_world; /* true: `normal` is in the tree's axes; false: in the camera's axes */
     Vec3 normal;   /* towards the tree, of any length */
-    double gap;    /* from the tree, in half diagonals of its box, at least 0 */
+    double gap;    /* distance from the tree, in half diagonals of its box, >= 0 */
     Rgb color;
     double ambient, diffuse;
 } LookGround;
 
-/* Effects [scene/effects.h] in sizes of picture and tree. Widths are in thousandths of the
+/* Effects [scene/effects.h], relative to picture and tree. Widths are in thousandths of the
  * picture's shorter side, so that a picture of twice the pixels looks the same. */
 typedef struct LookEffects {
-    double outline_width, outline_radii, outline_deeper; /* width 0: none */
-    double crease_deg; /* between normals of vessels that touch, from which on a line parts them;
-                        * 180: never */
+    double outline_width, outline_radii, outline_deeper; /* width 0: no outlines */
+    double crease_deg; /* minimum angle between the normals of touching vessels at which a line
+                        * separates them; 180: never */
     Rgb outline_color;
-    double halo_width, halo_radii, halo_deeper; /* width 0: none */
-    double fade_nearest, fade_farthest;         /* parts of the paper's colour */
-    double xray_per_diameter;                   /* of the thickest vessel, or */
-    double xray_per_mm;                         /* 0, both: no x-ray */
+    double halo_width, halo_radii, halo_deeper; /* width 0: no halos */
+    double fade_nearest, fade_farthest;         /* fractions of the background's colour; 0: none */
+    double xray_per_diameter; /* absorption per diameter of the thickest vessel, or */
+    double xray_per_mm;       /* absorption per mm; both 0: no x-ray */
 } LookEffects;
 
 enum { LOOK_MAX_ABOUT = 160 };
 
 typedef struct Look {
-    char about[LOOK_MAX_ABOUT + 1]; /* one line for people, or "" */
+    char about[LOOK_MAX_ABOUT + 1]; /* a description in one line, or "" */
     Finish finish;
-    Rgb color; /* of vessels that no field colours */
+    Rgb color; /* of vessels that are not coloured by a field */
     Rgb background;
     LookLight lights[LOOK_MAX_LIGHTS];
     int n_lights;
@@ -61,17 +65,25 @@ typedef struct Look {
     LookEffects effects;
 } Look;
 
-/* The effects of the look, none of which POV-Ray draws, in a picture whose shorter side has 1000
- * thousandth_px pixels, of a tree whose thickest vessel has this diameter; it fades from 0 to 1 mm.
- */
+/* Returns the effects of a look for one picture. The picture's shorter side has 1000 thousandth_px
+ * pixels, and the thickest vessel has this diameter. The fade is over 0 to 1 mm; stage_view
+ * replaces these depths. */
 Effects look_effects(const Look *look, double thousandth_px, double diameter_mm);
 
-/* Reads an INI file with the sections [look] about, [vessel] color, [background] color, [finish]
- * ambient diffuse brilliance phong phong_size specular roughness, [light NAME] direction or
- * position, color, size, samples, [ground] normal or axis, gap, color, ambient, diffuse, [outline]
- * width, radii, deeper, crease, color, [halo] width, radii, deeper, [fade] nearest, farthest, and
- * [xray] per_diameter or per_mm. STATUS_INPUT naming file and line on an unknown section or key and
- * on a bad value. */
+/* Reads a look from an INI file. Its sections and keys:
+ *
+ *     [look]        about
+ *     [vessel]      color
+ *     [background]  color
+ *     [finish]      ambient, diffuse, brilliance, phong, phong_size, specular, roughness
+ *     [light NAME]  direction or position; color, size, samples
+ *     [ground]      normal or axis; gap, color, ambient, diffuse
+ *     [outline]     width, radii, deeper, crease, color
+ *     [halo]        width, radii, deeper
+ *     [fade]        nearest, farthest
+ *     [xray]        per_diameter or per_mm
+ *
+ * Errors: STATUS_INPUT for an unknown section or key and for a bad value, naming file and line. */
 MUST_CHECK Status look_read(Look *look, const char *path, Err *err);
 
 typedef enum NamedView {
@@ -87,136 +99,157 @@ typedef enum NamedView {
 /* The axis of the tree's coordinates that points up. */
 typedef enum UpAxis { UP_Y, UP_Z } UpAxis;
 
-/* What a joined model does where vessels are too short, or turn back too sharply, for their
- * joints. */
+/* How a model with joints draws a place where vessels are too short, or turn back too sharply, for
+ * their joints. */
 typedef enum JointForm {
-    JOINTS_ROBUST, /* draws the place as the rounded model does */
-    JOINTS_PAPER   /* follows the construction of [N] to the letter */
+    JOINTS_ROBUST, /* with a ball, as the model `rounded` does */
+    JOINTS_PAPER   /* with the joints of [N], although they are defective there */
 } JointForm;
 
-/* What a geometry is made by. */
+/* Parameters of stage_geometry. */
 typedef struct GeometryParams {
     SceneModel model;
-    JointForm joints;  /* of a joined model */
-    bool implied_ends; /* of a rounded model, as in Geometry: for pictures tile by tile, which take
-                        * half the memory so */
-    bool graph; /* isosurface: segments blend only where they meet [docs/METHODS.md section 2.5] */
-    bool part_overlaps; /* mesh: vessels that overlap others than their own are thinned */
-    MeshParams mesh;    /* of a mesh; its threads are those of all models */
+    JointForm joints;   /* models with joints */
+    bool implied_ends;  /* models with round ends: sets Geometry.implied_ends, which halves the
+                         * memory of pictures that are drawn tile by tile */
+    bool graph;         /* models of the potential: segments blend only where they are connected
+                         * [docs/METHODS.md section 2.5]; false: all segments blend */
+    bool part_overlaps; /* models of triangles: makes vessels thinner that overlap vessels to which
+                         * they are not connected */
+    MeshParams mesh;    /* models of triangles; its `threads` applies to all models */
 } GeometryParams;
 
-/* What a view is made by. Vectors are in the coordinates of the tree. */
+/* Parameters of stage_view. Vectors are in the coordinates of the tree. */
 typedef struct ViewParams {
     int width, height; /* pixels, >= 1 */
     Projection projection;
-    /* What ground and lights are placed about, and what is framed: the ends of the tree's segments,
-     * so that all models of it have one view; NULL: those of what is drawn. Borrowed. */
-    const Tree *tree;
-    const Box *box;    /* what stage_box gave for tree and geometry, or NULL; borrowed */
-    const Box *domain; /* framed in its place, if not NULL; borrowed */
+    const Tree *tree; /* ground and lights are placed around this tree, and the camera frames it, so
+                       * that all its models have one view; NULL: the geometry; borrowed */
+    const Box *box;   /* the result of stage_box, which saves time; NULL: unknown; borrowed */
+    const Box *domain; /* the camera frames this box instead; NULL: none; borrowed */
     UpAxis up_axis;
-    NamedView view; /* used when has_location is false, and the next two, which turn the camera
-                     * about the upright, to the right, and then up */
-    double turn_deg, rise_deg;
+    NamedView view;            /* ignored if has_location, like the next two */
+    double turn_deg, rise_deg; /* turn the camera around the up axis to the right, then up */
     bool has_location, has_look_at, has_up;
-    Vec3 location, look_at, up;
-    double angle_deg; /* full horizontal angle of a perspective camera, in (0, 180) */
-    double height_mm; /* of an orthographic picture; 0: frames the tree */
-    double margin;    /* free part of the picture on each side when framing, in [0, 0.45] */
-    int room[2];      /* pixels at the right edge and the lower one that framing leaves free; of a
-                       * perspective picture at the edges across from them, too */
-    bool shadows;     /* whether lights cast them */
+    Vec3 location, look_at, up; /* each ignored unless has_... is true */
+    double angle_deg;           /* perspective: full horizontal angle, in (0, 180) */
+    double height_mm;           /* orthographic: height of the picture; 0: frames the tree */
+    double margin;    /* free fraction of the picture on each side when framing, in [0, 0.45] */
+    int room[2];      /* pixels that framing leaves free at the right and at the lower edge; in
+                       * perspective also at the left and upper edges */
+    bool shadows;     /* lights cast shadows */
     bool transparent; /* as in View */
 } ViewParams;
 
-/* front, orthographic, 1000 x 1000, 30 degrees, margin 0.05, of what is drawn. */
+/* Returns: front view, orthographic, 1000 x 1000 pixels, 30 degrees, margin 0.05, of the geometry.
+ */
 ViewParams view_defaults(void);
 
 typedef struct StageReport {
-    size_t drawn;   /* segments that the geometry stands for */
+    size_t drawn;   /* segments that the geometry represents */
     size_t dropped; /* segments without length or radius, which cannot be drawn */
-    size_t covered; /* of those in `drawn`: segments that lie within a twin, a segment between the
-                     * same two points that is at least as thick; no model draws them */
-    size_t thinned; /* segments that part_overlaps thinned */
-    /* Of a joined model. The construction of joints breaks down at a place if a vessel is too short
-     * for its joints; else if a vessel turns back too sharply; or it is not tried, because too many
-     * vessels meet. */
-    size_t joints; /* drawn */
-    size_t places_short, places_sharp, places_crowded;
+    size_t covered; /* those of `drawn` that lie within a twin: another segment between the same two
+                     * points that is at least as thick; they add nothing to any model */
+    size_t thinned; /* segments that part_overlaps made thinner */
+    size_t joints;  /* joints drawn */
+    /* Places where the construction of joints fails: */
+    size_t places_short;   /* a vessel is too short for its joints */
+    size_t places_sharp;   /* else: a vessel turns back too sharply */
+    size_t places_crowded; /* not tried, because too many vessels meet */
 } StageReport;
 
-/* The shape of a tree in *geometry (owned; geometry_release), of which nothing is borrowed. If the
- * tree lies farther from the origin than 16 times its size, the geometry is moved next to it by
- * whole millimetres, geometry->origin, and nothing seen changes. `report` may be NULL. STATUS_INPUT
- * when nothing can be drawn or a number is out of range, STATUS_MEMORY; of a mesh as
- * vesselmesh_build, and STATUS_DIFFERS when it is not sound. O(n) of n nodes, but for joints
- * [cuts.h], the graph and the mesh. */
+/* Makes the geometry of a tree.
+ *
+ * A tree that is farther from the origin than 16 times its size is moved next to the origin by
+ * whole millimetres (geometry->origin), so that no digits are lost. Pictures do not change.
+ *
+ * geometry  borrows nothing; release it with geometry_release.
+ * report    may be NULL.
+ * Errors    STATUS_INPUT if nothing can be drawn or a number is out of range, STATUS_MEMORY. Models
+ *           of triangles: also those of vesselmesh_build, and STATUS_DIFFERS if the mesh is not
+ *           sound.
+ * Cost      O(n) for n nodes, except for joints [cuts.h], `graph` and triangles. */
 MUST_CHECK Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *geometry,
                                  StageReport *report, Err *err);
 
-/* The vessels of a tree for the triangulation of their surface, in *vessels (owned): its segments
- * that can be drawn and do not lie within a twin, nodes at one place being one. Coordinates are the
- * tree's. *report, unless it is NULL, gets the counts `drawn`, `dropped` and `covered`.
- * STATUS_INPUT when none can be drawn. */
+/* Lists the vessels of a tree: its segments that can be drawn and do not lie within a twin
+ * [StageReport.covered]. Nodes at the same position are one node. Coordinates are the tree's.
+ *
+ * vessels  is released with vesseltree_release.
+ * report   receives `drawn`, `dropped` and `covered`; may be NULL.
+ * Errors   STATUS_INPUT if no segment can be drawn, STATUS_MEMORY. */
 MUST_CHECK Status stage_vessels(const Tree *tree, VesselTree *vessels, StageReport *report,
                                 Err *err);
 
-/* How the tree hangs together, in *anatomy (owned; anatomy_release), `origin` being that of the
- * Geometry. O(n) of n nodes. */
+/* Finds how the vessels of a tree are connected. `origin` is Geometry.origin. Release *anatomy with
+ * anatomy_release. Errors: STATUS_MEMORY. O(n) for n nodes. */
 MUST_CHECK Status stage_anatomy(const Tree *tree, Vec3 origin, Anatomy *anatomy, Err *err);
 
-/* Whether segment i has a radius and a length that can be drawn; false for a root. */
+/* Returns true if segment i has a radius and a length that can be drawn. Returns false for a root.
+ */
 bool segment_can_be_drawn(const Tree *tree, size_t i);
 
-/* The finish of the look, and a colour for each segment: that of its value on the scale, whose map
- * *appearance owns from then on (appearance_release); or, if `field` is NULL, the look's one
- * colour, and `scale` is not read. A field of several frames, one behind the other, has as many
- * colours; who hands it over says so in *appearance. STATUS_MEMORY, and the map stays the
- * caller's. */
+/* Makes an appearance: the finish of the look, and for each segment the colour of its value.
+ *
+ * field       values by segment index; several frames may follow one another, and the caller then
+ *             sets n_frames, n_segments and time. NULL: all segments have the look's colour.
+ * scale       not read if `field` is NULL. On success *appearance owns its map.
+ * appearance  is released with appearance_release.
+ * Errors      STATUS_MEMORY; the caller then still owns the map. */
 MUST_CHECK Status stage_appearance(const Look *look, const Field *field, const ColorScale *scale,
                                    Appearance *appearance, Err *err);
 
-/* Has an appearance of a scale blend its colours where segments do: a point has the colour of the
- * mean of their places on the scale, weighted by their terms [surface/termmean.h], and a segment
- * alone that of its own place, likewise on the ramp. STATUS_MEMORY. */
+/* Makes the colours of an appearance blend where segments blend. A point then has the colour at the
+ * mean of the segments' positions on the scale, weighted by their terms [field/termmean.h].
+ * Requires an appearance with a scale. Errors: STATUS_MEMORY. */
 MUST_CHECK Status stage_blend(Appearance *appearance, Err *err);
 
-/* The smallest box that holds the balls that views of the geometry are made about, in its
- * coordinates. stage_view takes as much less time where it is in ViewParams. O(n). */
+/* Returns the box that ground and lights are placed around, in the coordinates of the geometry.
+ * Stored in ViewParams.box, it saves stage_view this O(n) computation. */
 Box stage_box(const ViewParams *params, const Geometry *geometry);
 
-/* The camera that `params` asks for, with lights, ground and background of the look. A camera whose
- * place or height is left open shows all that is framed, with the shadows that lights more than 10
- * degrees over the ground cast on it; with look_at alone, that is moved to the picture's middle.
- * STATUS_USAGE when the vectors given make no camera, STATUS_INPUT when it is too far away. O(size
- * of the geometry and the tree). */
+/* Makes the view of a geometry: the camera of `params`, and lights, ground, background and effects
+ * of the look.
+ *
+ * A camera without a specified location or height frames the tree, and the shadows that fall on the
+ * ground from lights more than 10 degrees above it. If only look_at is specified, this point is in
+ * the middle of the picture instead.
+ *
+ * Errors  STATUS_USAGE if the vectors in `params` do not define a camera, STATUS_INPUT if the
+ * camera is too far away. Cost    O(size of the geometry and the tree). */
 MUST_CHECK Status stage_view(const Look *look, const ViewParams *params, const Geometry *geometry,
                              View *view, Err *err);
 
-/* Unit direction and up vector of a named view, turned: front looks along -z with y up, back along
- * z, left, from the left, along x, right along -x, top along -y with -z up, bottom along y with z
- * up, iso along (-1, -1, -1). Where z is up, front looks along y, and all else is turned with it.
- */
+/* Computes unit direction and up vector of the named view in `params`, turned by turn_deg and
+ * rise_deg. Direction and up vector, if y is up:
+ *
+ *     front  -z, y     left   x, y     top     -y, -z     iso  (-1, -1, -1), y
+ *     back    z, y     right -x, y     bottom   y,  z
+ *
+ * If z is up, front looks along y, and the other views turn with it. */
 void view_axes(const ViewParams *params, Vec3 *direction, Vec3 *up);
 
-/* ---- a camera that is moved about what it looks at: the parameters that make it, location,
- * look_at, up, projection, and height_mm or angle_deg, all of them given */
+/* ---- interactive camera -----------------------------------------------------------------------
+ *
+ * Functions that move a camera around the point that it looks at. They change location, look_at,
+ * up, projection, and height_mm or angle_deg of `params`, all of which must be specified. */
 
-/* Sets these from a camera; it looks at the point of its axis nearest to the middle of the
- * geometry. */
+/* Sets these parameters from a camera. look_at becomes the point on the camera's axis that is
+ * nearest to the middle of the geometry. */
 void orbit_begin(ViewParams *params, const Camera *camera, const Geometry *geometry);
 
-/* Sets these so that a named view, turned about its own up vector through the middle of the
- * geometry, shows all that is framed, but not its shadow, at any angle. */
+/* Sets the camera of a turntable: the named view shows all that is framed, except its shadows, at
+ * any angle of rotation around its up vector through the middle of the geometry. */
 void orbit_frame_turn(ViewParams *params, const Geometry *geometry);
 
-/* Turns what is seen to the right and up, in radians. */
+/* Rotates the picture's content to the right and up, by angles in radians. */
 void orbit_turn(ViewParams *params, double right, double up);
-/* Makes what is seen larger by the factor, > 0: a picture of less height, or a nearer camera. */
+/* Enlarges the picture's content by a factor > 0: reduces height_mm, or moves a perspective camera
+ * nearer. */
 void orbit_zoom(ViewParams *params, double factor);
-/* Moves what is seen to the right and up, in heights of the picture. */
+/* Moves the picture's content to the right and up, in heights of the picture. */
 void orbit_pan(ViewParams *params, double right, double up);
-/* Changes the projection; what is looked at keeps its size. */
+/* Changes the projection. The object at look_at keeps its size in the picture. */
 void orbit_project(ViewParams *params, Projection projection, const Geometry *geometry);
 
 #endif

@@ -1,5 +1,5 @@
-/* What a view is made about, and what of it is framed: balls at the ends of vessels and their
- * shadows on the ground. Coordinates are the geometry's. */
+/* The objects that a view is made for, as balls: the ends of vessels, and their shadows on the
+ * ground. Coordinates are those of the geometry. Private to the module stage. */
 #ifndef CORCAST_STAGE_SUBJECT_H
 #define CORCAST_STAGE_SUBJECT_H
 
@@ -8,38 +8,39 @@
 #include "stage/stage.h"
 #include "tree/tree.h"
 
-/* The balls about the ends of all that is drawn, or of the tree's segments. Borrows both. */
+/* The balls around the ends of the geometry, or of the tree's segments. Borrows both. */
 typedef struct Subject {
     const Geometry *geometry;
-    const Tree *tree; /* NULL: the geometry's own balls */
-    Box box;          /* the smallest that holds them */
+    const Tree *tree; /* NULL: the balls of the geometry */
+    Box box;          /* the smallest box that holds the balls */
 } Subject;
 
-/* O(n) of n segments of the tree, where their box is not known. */
+/* Makes the subject of a view. O(n) for n segments of the tree if params->box is not known. */
 Subject subject_of(const ViewParams *params, const Geometry *geometry);
 
-/* How many segments are numbered. */
+/* Returns the number of segments. */
 size_t subject_segments(const Subject *subject);
-/* The balls about the ends of segment `number`, in ends[2], and how many: 2, or 0 when it is not
- * drawn. */
+/* Computes the balls around the ends of segment `number`. Returns their number: 2, or 0 if the
+ * segment is not drawn. */
 int subject_ends(const Subject *subject, size_t number, Ball ends[2]);
 
 enum { FRAMED_LIGHTS = 4 * VIEW_MAX_LIGHTS };
 
-/* What is to be in the picture: the subject, or the corners of a box in its place, and their
- * shadows, as balls about them. Borrows the subject. */
+/* The balls that the picture must show: those of the subject, or the corners of a box instead, and
+ * balls around their shadows. Borrows the subject. */
 typedef struct Framed {
     const Subject *subject;
-    const Box *domain; /* NULL: the subject's balls; in the coordinates of the tree */
+    const Box *domain; /* in the coordinates of the tree; NULL: the subject's balls */
     Ground ground;
-    Light lights[FRAMED_LIGHTS]; /* points, or parallel, whose shadows fall on the ground */
+    Light lights[FRAMED_LIGHTS]; /* point and parallel lights whose shadows fall on the ground */
     size_t n_lights;
-    Box box; /* the smallest that holds it all */
+    Box box; /* the smallest box that holds all balls */
 } Framed;
 
-/* With the shadows of the view's lights on its ground. */
+/* Makes the balls of a view, with the shadows of its lights on its ground. */
 Framed framed_of(const Subject *subject, const ViewParams *params, const View *view);
-/* As those of a subject; of a shadow that is too long to be framed there may be 1 ball. */
+/* Work like subject_segments and subject_ends. A shadow that is too long to be framed has no ball,
+ * so there may also be 1 ball. */
 size_t framed_segments(const Framed *framed);
 int framed_ends(const Framed *framed, size_t number, Ball ends[2]);
 

@@ -7,14 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct Expansion {
+typedef struct TmplExpansion {
     const char *path;
     const TmplValue *values;
     const TmplPart *parts;
     size_t n, n_parts;
     bool *used; /* owned; one for each value, then one for each part */
     Text *out;  /* NULL in the first pass */
-} Expansion;
+} TmplExpansion;
 
 static bool is_name_char(char c, bool first)
 {
@@ -37,7 +37,7 @@ static bool is_name(const char *name, const char *chars, size_t length)
 }
 
 /* Appends the value or part of this name; *found says whether there is one. */
-static Status put_named(Expansion *self, const char *name, size_t length, bool *found, Err *err)
+static Status put_named(TmplExpansion *self, const char *name, size_t length, bool *found, Err *err)
 {
     *found = true;
     for (size_t i = 0; i < self->n; i++) {
@@ -60,7 +60,8 @@ static Status put_named(Expansion *self, const char *name, size_t length, bool *
 }
 
 /* Appends what the '$' at `dollar` stands for; *next is the first character after it. */
-static Status expand_one(Expansion *self, const char *dollar, int line, const char **next, Err *err)
+static Status expand_one(TmplExpansion *self, const char *dollar, int line, const char **next,
+                         Err *err)
 {
     if (dollar[1] == '$') {
         if (self->out)
@@ -83,7 +84,7 @@ static Status expand_one(Expansion *self, const char *dollar, int line, const ch
                    self->path, line, (int)length, name);
 }
 
-static Status expand_all(Expansion *self, const char *source, Err *err)
+static Status expand_all(TmplExpansion *self, const char *source, Err *err)
 {
     int line = 1;
     for (const char *at = source; *at;) {
@@ -99,7 +100,7 @@ static Status expand_all(Expansion *self, const char *source, Err *err)
     return STATUS_OK;
 }
 
-static Status check_used(const Expansion *self, Err *err)
+static Status check_used(const TmplExpansion *self, Err *err)
 {
     for (size_t i = 0; i < self->n + self->n_parts; i++)
         if (!self->used[i])
@@ -113,13 +114,13 @@ Status tmpl_load(Tmpl *tmpl, const char *path, Err *err)
     static const FileForm form = {.name = "a template", .most_bytes = 1e7, .is_text = true};
     Tmpl loaded = {0};
     size_t size = 0;
-    Status status = file_read(path, &form, &loaded.source, &size, err);
-    if (status == STATUS_OK)
-        status = mem_strdup(&loaded.path, path, err);
-    if (status == STATUS_OK)
-        *tmpl = loaded;
-    else
-        tmpl_release(&loaded);
+    Status status;
+    TRY_GOTO(file_read(path, &form, &loaded.source, &size, err));
+    TRY_GOTO(mem_strdup(&loaded.path, path, err));
+    *tmpl = loaded;
+    return STATUS_OK;
+done:
+    tmpl_release(&loaded);
     return status;
 }
 
@@ -133,18 +134,18 @@ void tmpl_release(Tmpl *tmpl)
 Status tmpl_stream(const Tmpl *tmpl, const TmplValue *values, size_t n, const TmplPart *parts,
                    size_t n_parts, Text *out, Err *err)
 {
-    Expansion self = {
+    TmplExpansion self = {
         .path = tmpl->path, .values = values, .parts = parts, .n = n, .n_parts = n_parts};
-    Status status = mem_calloc(&self.used, n + n_parts, sizeof *self.used, "template values", err);
-    if (status == STATUS_OK)
-        status = expand_all(&self, tmpl->source, err);
-    if (status == STATUS_OK)
-        status = check_used(&self, err);
+    Status status;
+    TRY_GOTO(mem_calloc(&self.used, n + n_parts, sizeof *self.used, "template values", err));
+    TRY_GOTO(expand_all(&self, tmpl->source, err));
+    TRY_GOTO(check_used(&self, err));
     self.out = out;
-    if (status == STATUS_OK)
-        status = expand_all(&self, tmpl->source, err);
+    TRY_GOTO(expand_all(&self, tmpl->source, err));
+    status = text_check(out, err);
+done:
     free(self.used);
-    return status == STATUS_OK ? text_check(out, err) : status;
+    return status;
 }
 
 Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out, Err *err)

@@ -12,18 +12,18 @@
 static const ReadOptions no_options = {0};
 
 /* A line of the graph between kept points. */
-typedef struct Link {
+typedef struct GraphLink {
     uint32_t a, b;
     uint32_t line;    /* of the graph */
     double thickness; /* mm */
-} Link;
+} GraphLink;
 
 typedef struct Building {
     Graph *graph;
     const ReadOptions *options;
     TreeReading *reading;
     uint32_t *place; /* the kept point of each point */
-    Link *link;
+    GraphLink *link;
     size_t n_links;
     uint32_t *component; /* of each kept point, the first of its members */
     uint32_t *degree;    /* links of each kept point */
@@ -68,10 +68,10 @@ static Status link_lines(Building *building, Err *err)
                                        "numbered from 0 on",
                                        line->a > line->b ? line->a : line->b, graph->n_points),
                                err);
-        Link link = {building->place[line->a], building->place[line->b], (uint32_t)i,
-                     thickness_of(graph, line)};
+        GraphLink link = {building->place[line->a], building->place[line->b], (uint32_t)i,
+                          thickness_of(graph, line)};
         if (link.a == link.b)
-            building->reading->without_length++;
+            building->reading->network.without_length++;
         else
             building->link[building->n_links++] = link;
     }
@@ -80,13 +80,13 @@ static Status link_lines(Building *building, Err *err)
 
 static int order_lines(const void *a, const void *b)
 {
-    const Link *one = a, *other = b;
+    const GraphLink *one = a, *other = b;
     return one->line < other->line ? -1 : 1;
 }
 
 static int thickest_first(const void *a, const void *b)
 {
-    const Link *one = a, *other = b;
+    const GraphLink *one = a, *other = b;
     int order = number_order(other->thickness, one->thickness);
     return order ? order : order_lines(a, b);
 }
@@ -96,7 +96,7 @@ static int thickest_first(const void *a, const void *b)
  * several lines may overlap another polyline, as where each runs from the root to one outlet; only
  * points and radii count there. `out` has space for 4 numbers and 2 per column. Returns how many
  * there are. */
-static size_t describe_link(const Building *building, const Link *link, double *out)
+static size_t describe_link(const Building *building, const GraphLink *link, double *out)
 {
     const Graph *graph = building->graph;
     const GraphLine *line = &graph->line[link->line];
@@ -120,66 +120,67 @@ static size_t describe_link(const Building *building, const Link *link, double *
     return n;
 }
 
-static uint64_t hash_numbers(const double *number, size_t n)
-{
-    uint64_t hash = n;
-    for (size_t i = 0; i < n; i++) {
-        uint64_t bits;
-        memcpy(&bits, &number[i], sizeof bits);
-        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 32;
-    }
-    return hash;
-}
-
-/* A hash table with linear probing holds the indices + 1 of links that are kept. */
+/* The links that are kept, by the hash of their descriptions. */
 typedef struct LinkTable {
-    uint32_t *slot;
-    double *one, *other; /* descriptions of two links */
-    size_t slots;        /* a power of two */
+    KeyMap last;         /* the last link + 1 of each hash */
+    uint32_t *next;      /* per link: the next link + 1 with the same hash; owned */
+    double *one, *other; /* descriptions of two links; owned */
 } LinkTable;
 
-static bool joins_same(const Link *one, const Link *other)
+static bool joins_same(const GraphLink *one, const GraphLink *other)
 {
     return (one->a == other->a && one->b == other->b) || (one->a == other->b && one->b == other->a);
 }
 
-/* Adds link `kept`, or returns false if it repeats a link of the table. */
-static bool take_link(const Building *building, LinkTable *table, size_t kept)
+/* Adds link `kept`, and sets *repeats instead if the link repeats one of the table. */
+static Status take_link(const Building *building, LinkTable *table, size_t kept, bool *repeats,
+                        Err *err)
 {
-    const Link *link = building->link;
+    const GraphLink *link = building->link;
     size_t n = describe_link(building, &link[kept], table->one);
-    size_t at = hash_numbers(table->one, n) & (table->slots - 1);
-    for (; table->slot[at]; at = (at + 1) & (table->slots - 1))
-        if (joins_same(&link[kept], &link[table->slot[at] - 1]) &&
-            describe_link(building, &link[table->slot[at] - 1], table->other) == n &&
-            memcmp(table->one, table->other, n * sizeof *table->one) == 0)
-            return false;
-    table->slot[at] = (uint32_t)kept + 1;
-    return true;
+    uint32_t *last;
+    bool is_new;
+    TRY(keymap_put(&table->last, key_of_numbers(table->one, n), &last, &is_new, err));
+    *repeats = false;
+    for (uint32_t i = *last; i && !*repeats; i = table->next[i - 1])
+        *repeats = joins_same(&link[kept], &link[i - 1]) &&
+                   describe_link(building, &link[i - 1], table->other) == n &&
+                   memcmp(table->one, table->other, n * sizeof *table->one) == 0;
+    if (*repeats)
+        return STATUS_OK;
+    table->next[kept] = *last;
+    *last = (uint32_t)kept + 1;
+    return STATUS_OK;
+}
+
+static Status begin_links(const Building *building, LinkTable *table, Err *err)
+{
+    const size_t most = 4 + 2 * building->graph->n_columns;
+    TRY(keymap_begin(&table->last, building->n_links, "slots for lines", err));
+    TRY(mem_calloc(&table->next, building->n_links, sizeof *table->next, "lines", err));
+    TRY(mem_calloc(&table->one, most, sizeof *table->one, "values of a line", err));
+    return mem_calloc(&table->other, most, sizeof *table->other, "values of a line", err);
 }
 
 /* Of links that repeat each other the first stays. Other links between the same two points are
  * vessels of their own, which close a loop. */
 static Status drop_repeated(Building *building, Err *err)
 {
-    LinkTable table = {.slots = 64};
-    const size_t most = 4 + 2 * building->graph->n_columns;
+    LinkTable table = {0};
     size_t kept = 0;
     Status status = STATUS_OK;
-    while (table.slots < 2 * building->n_links)
-        table.slots *= 2;
-    TRY_GOTO(mem_calloc(&table.slot, table.slots, sizeof *table.slot, "slots for lines", err));
-    TRY_GOTO(mem_calloc(&table.one, most, sizeof *table.one, "values of a line", err));
-    TRY_GOTO(mem_calloc(&table.other, most, sizeof *table.other, "values of a line", err));
+    TRY_GOTO(begin_links(building, &table, err));
     for (size_t i = 0; i < building->n_links; i++) {
+        bool repeats;
         building->link[kept] = building->link[i];
-        kept += take_link(building, &table, kept);
+        TRY_GOTO(take_link(building, &table, kept, &repeats, err));
+        kept += !repeats;
     }
-    building->reading->repeated = building->n_links - kept;
+    building->reading->network.repeated = building->n_links - kept;
     building->n_links = kept;
 done:
-    free(table.slot);
+    keymap_release(&table.last);
+    free(table.next);
     free(table.one);
     free(table.other);
     return status;
@@ -187,16 +188,17 @@ done:
 
 /* ---- loops ---- */
 
-static Status note_cut(Building *building, const Link *link, Err *err)
+static Status note_cut(Building *building, const GraphLink *link, Err *err)
 {
     TreeReading *reading = building->reading;
     const Graph *graph = building->graph;
-    if (reading->n_cuts == READ_MAX_CUTS)
+    if (reading->network.n_cuts == READ_MAX_CUTS)
         return STATUS_OK;
-    if (!reading->cut)
-        TRY(mem_calloc(&reading->cut, READ_MAX_CUTS, sizeof *reading->cut, "cuts", err));
+    if (!reading->network.cut)
+        TRY(mem_calloc(&reading->network.cut, READ_MAX_CUTS, sizeof *reading->network.cut, "cuts",
+                       err));
     Vec3 a = graph->point[link->a].position, b = graph->point[link->b].position;
-    reading->cut[reading->n_cuts++] =
+    reading->network.cut[reading->network.n_cuts++] =
         (ReadCut){graph->line[link->line].record, vec3_scale(vec3_add(a, b), 0.5), link->thickness};
     return STATUS_OK;
 }
@@ -205,16 +207,13 @@ static Status note_cut(Building *building, const Link *link, Err *err)
 static void span(Building *building, size_t *kept)
 {
     uint32_t *component = building->component;
-    Link *link = building->link;
-    for (uint32_t i = 0; i < building->graph->n_points; i++)
-        component[i] = i;
+    GraphLink *link = building->link;
+    sets_begin(component, building->graph->n_points);
     *kept = 0;
     for (size_t i = 0; i < building->n_links; i++) {
-        uint32_t a = graph_first(component, link[i].a), b = graph_first(component, link[i].b);
-        if (a == b)
+        if (!sets_join(component, link[i].a, link[i].b))
             continue;
-        component[a < b ? b : a] = a < b ? a : b;
-        Link taken = link[i];
+        GraphLink taken = link[i];
         link[i] = link[*kept];
         link[(*kept)++] = taken;
     }
@@ -228,7 +227,7 @@ static Status connect_points(Building *building, bool by_place, Err *err)
     free(building->link);
     building->place = NULL;
     building->link = NULL;
-    building->n_links = building->reading->without_length = 0;
+    building->n_links = building->reading->network.without_length = 0;
     TRY(graph_merge(building->graph, by_place, &building->place, err));
     TRY(link_lines(building, err));
     return building->graph->is_tree ? STATUS_OK : drop_repeated(building, err);
@@ -273,7 +272,7 @@ static Status connect(Building *building, Err *err)
                                                               : connect_points(building, true, err);
 }
 
-static Status refuse_loops(const Building *building, const Link *link, size_t loops, Err *err)
+static Status refuse_loops(const Building *building, const GraphLink *link, size_t loops, Err *err)
 {
     const Graph *graph = building->graph;
     Vec3 at = graph->point[link->a].position;
@@ -290,7 +289,7 @@ static Status cut_loops(Building *building, Err *err)
 {
     size_t kept;
     span(building, &kept);
-    size_t loops = building->reading->loops = building->n_links - kept;
+    size_t loops = building->reading->network.loops = building->n_links - kept;
     if (loops > 0 && !building->options->break_loops)
         return refuse_loops(building, &building->link[kept], loops, err);
     if (loops > 0) {
@@ -334,7 +333,7 @@ static Status list_links(Building *building, Err *err)
     return STATUS_OK;
 }
 
-static const Link *link_at(const Building *building, uint32_t point, uint32_t k)
+static const GraphLink *link_at(const Building *building, uint32_t point, uint32_t k)
 {
     return &building->link[building->at[building->first[point] + k]];
 }
@@ -342,19 +341,19 @@ static const Link *link_at(const Building *building, uint32_t point, uint32_t k)
 /* How well a point would do as the root of its component. */
 typedef enum Rank { RANK_ANY, RANK_END, RANK_SOURCE, RANK_INLET } Rank;
 
-typedef struct Candidate {
+typedef struct LinkCandidate {
     uint32_t point; /* + 1; 0: none yet */
     Rank rank;
     double thickness;
-} Candidate;
+} LinkCandidate;
 
-static Candidate judge(const Building *building, uint32_t point)
+static LinkCandidate judge(const Building *building, uint32_t point)
 {
     const Graph *graph = building->graph;
-    Candidate made = {.point = point + 1};
+    LinkCandidate made = {.point = point + 1};
     bool leads_away = true;
     for (uint32_t k = 0; k < building->degree[point]; k++) {
-        const Link *link = link_at(building, point, k);
+        const GraphLink *link = link_at(building, point, k);
         leads_away = leads_away && graph->line[link->line].is_directed && link->a == point;
         made.thickness = fmax(made.thickness, link->thickness);
     }
@@ -365,20 +364,21 @@ static Candidate judge(const Building *building, uint32_t point)
     return made;
 }
 
-static bool is_better(const Candidate *a, const Candidate *b)
+static bool is_better(const LinkCandidate *a, const LinkCandidate *b)
 {
     return !b->point || a->rank > b->rank || (a->rank == b->rank && a->thickness > b->thickness);
 }
 
 /* The best candidate of each component, at its first member. */
-static Status choose_roots(Building *building, Candidate *best, Err *err)
+static Status choose_roots(Building *building, LinkCandidate *best, Err *err)
 {
     TreeReading *reading = building->reading;
     const Graph *graph = building->graph;
     for (uint32_t i = 0; i < graph->n_points; i++) {
         if (!is_node(building, i))
             continue;
-        Candidate candidate = judge(building, i), *of = &best[graph_first(building->component, i)];
+        LinkCandidate candidate = judge(building, i),
+                      *of = &best[sets_find(building->component, i)];
         if (is_better(&candidate, of))
             *of = candidate;
     }
@@ -422,13 +422,13 @@ static void direct_from(Building *building, uint32_t root, uint32_t *queue)
     while (done < n) {
         uint32_t point = queue[done++];
         for (uint32_t k = 0; k < building->degree[point]; k++) {
-            const Link *link = link_at(building, point, k);
+            const GraphLink *link = link_at(building, point, k);
             uint32_t other = link->a ^ link->b ^ point;
             if (other + 1 == building->parent[point])
                 continue;
             building->parent[other] = point + 1;
             building->above[other] = (uint32_t)(link - building->link);
-            building->reading->against +=
+            building->reading->network.against +=
                 building->graph->line[link->line].is_directed && link->a == other;
             queue[n++] = other;
         }
@@ -438,7 +438,7 @@ static void direct_from(Building *building, uint32_t root, uint32_t *queue)
 static Status direct_links(Building *building, Err *err)
 {
     size_t n = building->graph->n_points;
-    Candidate *best = NULL;
+    LinkCandidate *best = NULL;
     uint32_t *queue = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&best, n, sizeof *best, "roots", err));
@@ -491,7 +491,7 @@ static size_t distal_point(const Building *building, uint32_t kept)
 {
     if (!building->parent[kept])
         return kept;
-    const Link *link = &building->link[building->above[kept]];
+    const GraphLink *link = &building->link[building->above[kept]];
     const GraphLine *line = &building->graph->line[link->line];
     return link->b == kept ? line->b : line->a;
 }
@@ -517,7 +517,7 @@ static Status radius_of(const Building *building, uint32_t kept, double *radius,
         return STATUS_OK;
     }
     for (uint32_t k = 0; k < building->degree[kept]; k++) {
-        const Link *link = link_at(building, kept, k);
+        const GraphLink *link = link_at(building, kept, k);
         double of_link;
         TRY(radius_of(building, link->a ^ link->b ^ kept, &of_link, err));
         thickest = fmax(thickest, of_link);
@@ -572,18 +572,18 @@ static Status add_columns(const Graph *graph, TreeBuilder *builder, Err *err)
 {
     Text name = TEXT_INIT;
     Status status = STATUS_OK;
-    for (size_t k = 0; k < graph->n_columns && status == STATUS_OK; k++) {
+    for (size_t k = 0; k < graph->n_columns; k++) {
         const GraphColumn *column = &graph->column[k];
         bool twice = column->of == GRAPH_POINTS && has_column(graph, GRAPH_LINES, column->name);
         size_t number;
         text_clear(&name);
         text_printf(&name, twice ? "%s of points" : "%s", column->name);
-        status = text_check(&name, err);
-        if (status == STATUS_OK)
-            status = builder_column(builder, text_chars(&name), column->unit, &number, err);
-        if (status == STATUS_INPUT)
-            err_prefix(err, "%s: ", graph->name);
+        TRY_GOTO(text_check(&name, err));
+        TRY_GOTO(builder_column(builder, text_chars(&name), column->unit, &number, err));
     }
+done:
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", graph->name);
     text_release(&name);
     return status;
 }
@@ -661,9 +661,9 @@ static void count_points(const Building *building)
     const Graph *graph = building->graph;
     for (size_t i = 0; i < graph->n_points; i++)
         if (building->place[i] != i)
-            building->reading->merged++;
+            building->reading->network.merged++;
         else if (!is_node(building, i))
-            building->reading->unused++;
+            building->reading->network.unused++;
 }
 
 static bool looks_like_voxels(const Graph *graph)
@@ -677,7 +677,7 @@ static bool looks_like_voxels(const Graph *graph)
 /* A gap at an end counts as one of rounding if it is below the radius, and below half the last line
  * or, in dense centre lines, a twentieth of the radius: a tolerance as wide as the gap joins little
  * more than the ends. */
-static double reach_of(const Graph *graph, const Link *link)
+static double reach_of(const Graph *graph, const GraphLink *link)
 {
     double length = vec3_distance(graph->point[link->a].position, graph->point[link->b].position);
     return fmin(link->thickness, fmax(length / 2, link->thickness / 20));
@@ -713,7 +713,7 @@ static Status find_near_ends(Building *building, Err *err)
     TRY_GOTO(mem_calloc(&reach, graph->n_points, sizeof *reach, "reaches of ends", err));
     TRY_GOTO(mem_calloc(&part, graph->n_points, sizeof *part, "components", err));
     for (uint32_t i = 0; i < graph->n_points; i++) {
-        part[i] = is_node(building, i) ? graph_first(building->component, i) + 1 : 0;
+        part[i] = is_node(building, i) ? sets_find(building->component, i) + 1 : 0;
         if (part[i] && building->degree[i] == 1)
             reach[i] = fmin(median, reach_of(graph, link_at(building, i, 0)));
     }
@@ -727,9 +727,9 @@ done:
 /* What the reading says before anything is changed. */
 static void describe(const Graph *graph, const ReadOptions *options, TreeReading *reading)
 {
-    reading->is_graph = true;
-    reading->points = graph->n_points;
-    reading->lines = graph->n_lines;
+    reading->is_network = true;
+    reading->network.points = graph->n_points;
+    reading->network.lines = graph->n_lines;
     reading->unit = options->has_unit ? options->unit : graph->unit;
     reading->unit_said = options->has_unit || graph->unit_said;
     reading->voxels = options->has_voxel_size;

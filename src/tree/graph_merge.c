@@ -7,7 +7,6 @@
 #include "tree/tree.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 void graph_scale(Graph *graph)
 {
@@ -20,47 +19,39 @@ void graph_scale(Graph *graph)
         graph->line[i].radius *= scale.radius;
 }
 
-uint32_t graph_first(uint32_t *place, uint32_t i)
-{
-    while (place[i] != i) {
-        place[i] = place[place[i]];
-        i = place[i];
-    }
-    return i;
-}
-
 /* Kept points by the cube they are in. */
 typedef struct Cubes {
     const GraphPoint *point;
     double side;    /* of a cube; 0: a cube is a place */
-    uint32_t *head; /* point + 1 of each slot */
-    uint32_t *next; /* of each point, the next + 1 of its slot */
-    size_t slots;   /* a power of two */
+    KeyMap last;    /* the last point + 1 of each cube, by the cube's key */
+    uint32_t *next; /* per point: the next point + 1 with the same key; owned */
 } Cubes;
 
 static Vec3 cube_of(const Cubes *cubes, Vec3 at)
 {
-    if (cubes->side == 0)
-        return (Vec3){at.x + 0.0, at.y + 0.0, at.z + 0.0}; /* no -0 */
-    return (Vec3){floor(at.x / cubes->side), floor(at.y / cubes->side), floor(at.z / cubes->side)};
+    Vec3 cube = cubes->side == 0 ? at
+                                 : vec3(floor(at.x / cubes->side), floor(at.y / cubes->side),
+                                        floor(at.z / cubes->side));
+    return vec3(cube.x + 0.0, cube.y + 0.0, cube.z + 0.0); /* no -0 */
 }
 
-static size_t slot_of(const Cubes *cubes, Vec3 cube)
+static uint64_t key_of(Vec3 cube)
 {
-    uint64_t bits[3], hash = 0;
-    memcpy(bits, &cube, sizeof bits);
-    for (int k = 0; k < 3; k++) {
-        hash = (hash ^ bits[k]) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 32;
-    }
-    return hash & (cubes->slots - 1);
+    return key_of_numbers((const double[]){cube.x, cube.y, cube.z}, 3);
+}
+
+/* Returns the last point + 1 that was kept in a cube, or 0. */
+static uint32_t last_in(const Cubes *cubes, Vec3 cube)
+{
+    const uint32_t *last = keymap_find(&cubes->last, key_of(cube));
+    return last ? *last : 0;
 }
 
 /* The nearest kept point of a cube that is nearer than *nearest, which becomes its distance, or
  * *found. Of equally near ones the first of the file. */
 static uint32_t nearest_in(const Cubes *cubes, Vec3 cube, Vec3 at, uint32_t found, double *nearest)
 {
-    for (uint32_t i = cubes->head[slot_of(cubes, cube)]; i; i = cubes->next[i - 1]) {
+    for (uint32_t i = last_in(cubes, cube); i; i = cubes->next[i - 1]) {
         double distance = vec3_distance(cubes->point[i - 1].position, at);
         if (distance < *nearest || (distance == *nearest && i - 1 < found)) {
             *nearest = distance;
@@ -85,51 +76,44 @@ static uint32_t find_kept(const Cubes *cubes, uint32_t i)
     return found;
 }
 
-static void keep(Cubes *cubes, uint32_t i)
+static Status keep(Cubes *cubes, uint32_t i, Err *err)
 {
-    size_t slot = slot_of(cubes, cube_of(cubes, cubes->point[i].position));
-    cubes->next[i] = cubes->head[slot];
-    cubes->head[slot] = i + 1;
+    uint32_t *last;
+    bool is_new;
+    uint64_t key = key_of(cube_of(cubes, cubes->point[i].position));
+    TRY(keymap_put(&cubes->last, key, &last, &is_new, err));
+    cubes->next[i] = *last;
+    *last = i + 1;
+    return STATUS_OK;
 }
 
 static void release_cubes(Cubes *cubes)
 {
-    free(cubes->head);
+    keymap_release(&cubes->last);
     free(cubes->next);
-    *cubes = (Cubes){0};
 }
 
-/* Begins with empty cubes; release with release_cubes. */
+/* Begins with empty cubes. The caller releases them, also after an error. */
 static Status begin_cubes(Cubes *cubes, const Graph *graph, double side, Err *err)
 {
-    Cubes made = {.point = graph->point, .side = side, .slots = 64};
-    while (made.slots < graph->n_points)
-        made.slots *= 2;
-    TRY(mem_calloc(&made.head, made.slots, sizeof *made.head, "cubes of points", err));
-    Status status =
-        mem_calloc(&made.next, graph->n_points, sizeof *made.next, "cubes of points", err);
-    if (status == STATUS_OK)
-        *cubes = made;
-    else
-        release_cubes(&made);
-    return status;
+    *cubes = (Cubes){.point = graph->point, .side = side};
+    TRY(mem_calloc(&cubes->next, graph->n_points, sizeof *cubes->next, "cubes of points", err));
+    return keymap_begin(&cubes->last, graph->n_points, "cubes of points", err);
 }
 
 static Status merge_places(const Graph *graph, double tolerance, uint32_t *place, Err *err)
 {
     Cubes cubes;
-    TRY(begin_cubes(&cubes, graph, tolerance, err));
+    Status status = STATUS_OK;
+    TRY_GOTO(begin_cubes(&cubes, graph, tolerance, err));
     for (uint32_t i = 0; i < graph->n_points; i++) {
-        if (place[i] != i) {
-            place[i] = place[place[i]];
-            continue;
-        }
-        place[i] = find_kept(&cubes, i);
+        place[i] = place[i] == i ? find_kept(&cubes, i) : place[place[i]];
         if (place[i] == i)
-            keep(&cubes, i);
+            TRY_GOTO(keep(&cubes, i, err));
     }
+done:
     release_cubes(&cubes);
-    return STATUS_OK;
+    return status;
 }
 
 /* Returns the distance of point `i` to the nearest point of another component that is nearer than
@@ -141,8 +125,7 @@ static double gap_of(const Cubes *cubes, const uint32_t *part, uint32_t i, doubl
     double nearest = reach;
     for (int k = 0; k < 27; k++) {
         Vec3 near = {cube.x + k % 3 - 1, cube.y + k / 3 % 3 - 1, cube.z + k / 9 - 1};
-        for (uint32_t j = cubes->head[slot_of(cubes, near)]; j && *left > 0;
-             j = cubes->next[j - 1], --*left)
+        for (uint32_t j = last_in(cubes, near); j && *left > 0; j = cubes->next[j - 1], --*left)
             if (part[j - 1] != part[i])
                 nearest = fmin(nearest, vec3_distance(cubes->point[j - 1].position, at));
     }
@@ -154,19 +137,21 @@ Status graph_near_ends(const Graph *graph, const uint32_t *part, const double *r
 {
     Cubes cubes;
     int64_t left = 100 * (int64_t)graph->n_points;
-    TRY(begin_cubes(&cubes, graph, most, err));
+    Status status = STATUS_OK;
+    TRY_GOTO(begin_cubes(&cubes, graph, most, err));
     for (uint32_t i = 0; i < graph->n_points; i++)
         if (part[i])
-            keep(&cubes, i);
+            TRY_GOTO(keep(&cubes, i, err));
     for (uint32_t i = 0; i < graph->n_points && left > 0; i++) {
         double gap = reach[i] > 0 ? gap_of(&cubes, part, i, reach[i], &left) : reach[i];
         if (gap < reach[i]) {
-            reading->near_ends++;
-            reading->near_mm = fmax(reading->near_mm, gap);
+            reading->network.near_ends++;
+            reading->network.near_mm = fmax(reading->network.near_mm, gap);
         }
     }
+done:
     release_cubes(&cubes);
-    return STATUS_OK;
+    return status;
 }
 
 static Status join_points(const Graph *graph, uint32_t *place, Err *err)
@@ -176,8 +161,7 @@ static Status join_points(const Graph *graph, uint32_t *place, Err *err)
         if (join.a >= graph->n_points || join.b >= graph->n_points)
             return err_set(err, STATUS_INPUT, "%s: a joint names a point that there is not",
                            graph->name);
-        uint32_t a = graph_first(place, (uint32_t)join.a), b = graph_first(place, (uint32_t)join.b);
-        place[a < b ? b : a] = a < b ? a : b;
+        sets_join(place, (uint32_t)join.a, (uint32_t)join.b);
     }
     return STATUS_OK;
 }
@@ -187,8 +171,7 @@ Status graph_merge(const Graph *graph, bool by_place, uint32_t **place, Err *err
     uint32_t *made = NULL;
     Status status = STATUS_OK;
     TRY(mem_calloc(&made, graph->n_points, sizeof *made, "places of points", err));
-    for (uint32_t i = 0; i < graph->n_points; i++)
-        made[i] = i;
+    sets_begin(made, graph->n_points);
     TRY_GOTO(join_points(graph, made, err));
     for (uint32_t i = 0; i < graph->n_points; i++)
         made[i] = made[made[i]]; /* a chain leads to lower numbers, which are settled */

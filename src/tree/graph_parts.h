@@ -30,8 +30,4 @@ MUST_CHECK Status graph_merge(const Graph *graph, bool by_place, uint32_t **plac
 MUST_CHECK Status graph_near_ends(const Graph *graph, const uint32_t *part, const double *reach,
                                   double most, TreeReading *reading, Err *err);
 
-/* The first of the members of what `i` belongs to, where place[i] is itself or an earlier member;
- * shortens the way there. */
-uint32_t graph_first(uint32_t *place, uint32_t i);
-
 #endif

@@ -57,13 +57,7 @@ size_t idindex_find(const IdIndex *index, int32_t id)
         return 0;
     if (index->table)
         return index->table[id];
-    size_t low = 0, high = index->n; /* the first entry of the id is in [low, high) */
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (index->entry[middle].id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < index->n && index->entry[low].id == id ? index->entry[low].row : 0;
+    const size_t first =
+        sorted_find_row(index->entry, index->n, sizeof *index->entry, (uint32_t)id);
+    return first < index->n ? index->entry[first].row : 0;
 }

@@ -91,12 +91,13 @@ void meta_release(TreeMeta *meta)
 /* Takes over the line's text. */
 static Status add_line(TreeMeta *meta, MetaLine line, Err *err)
 {
-    Status status = mem_reserve(&meta->line, &meta->lines_capacity, meta->n_lines + 1, sizeof line,
-                                "header lines", err);
-    if (status == STATUS_OK)
-        meta->line[meta->n_lines++] = line;
-    else
-        free(line.text);
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_reserve(&meta->line, &meta->lines_capacity, meta->n_lines + 1, sizeof line,
+                         "header lines", err));
+    meta->line[meta->n_lines++] = line;
+    return STATUS_OK;
+done:
+    free(line.text);
     return status;
 }
 

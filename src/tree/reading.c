@@ -56,7 +56,7 @@ void reading_release(TreeReading *reading)
         free(reading->note[i]);
     free(reading->note);
     free(reading->root);
-    free(reading->cut);
+    free(reading->network.cut);
     *reading = (TreeReading){0};
 }
 
@@ -221,7 +221,7 @@ Status reading_measure(TreeReading *reading, const Tree *tree, Err *err)
     TRY_GOTO(measure_roots(reading, tree, err));
     TRY_GOTO(measure_degrees(reading, tree, err));
     measure_radii(reading, tree, radius);
-    if (!reading->is_graph && !reading->unit_said && !reading->voxels)
+    if (!reading->is_network && !reading->unit_said && !reading->voxels)
         reading->looks_like_voxels = looks_like_voxels(tree);
     believe(reading);
 done:

@@ -77,22 +77,26 @@ typedef struct ReadCut {
 
 enum { READ_MAX_DEGREE = 8, READ_MAX_CUTS = 1000, READ_FEW = 20 };
 
+/* The points and lines of a file that need not form a tree, and how a tree was made of them. */
+typedef struct NetworkReading {
+    size_t points, lines;  /* in the file */
+    size_t merged;         /* points at the place of another point */
+    size_t unused;         /* points that no line uses */
+    size_t without_length; /* lines from a point to itself */
+    size_t repeated;       /* lines that repeat another line */
+    size_t against;        /* lines that the file directs towards the root */
+    size_t loops;          /* lines that close a loop, and were cut */
+    size_t near_ends;      /* ends that nearly touch another component */
+    double near_mm;        /* the widest of these gaps */
+    ReadCut *cut;          /* owned; the first READ_MAX_CUTS of the lines that were cut */
+    size_t n_cuts;
+} NetworkReading;
+
 /* Zeroed: nothing is known; reading_release. */
 typedef struct TreeReading {
     const char *format; /* its name, "VTK"; not owned */
-    /* Of formats that are no trees by themselves: what the file has ... */
-    bool is_graph;
-    size_t points, lines;
-    /* ... and what became of it. */
-    size_t merged;                   /* points that lie where another does */
-    size_t unused;                   /* points that no line uses */
-    size_t without_length, repeated; /* lines from a point to itself; given before */
-    size_t against;                  /* lines that the file directs towards the root */
-    size_t loops;                    /* lines beyond those of a tree */
-    size_t near_ends;                /* ends that nearly touch another component ... */
-    double near_mm;                  /* ... and the widest of these gaps */
-    ReadCut *cut;                    /* owned; the first READ_MAX_CUTS that --break-loops cut */
-    size_t n_cuts;
+    bool is_network;    /* the format holds points and lines, not a tree; `network` is filled in */
+    NetworkReading network;
     /* Of every tree. */
     ReadRoot *root; /* owned; each is one component */
     size_t n_roots, roots_capacity;

@@ -249,7 +249,7 @@ Status oracle_run(const OracleParams *params, OracleRun *run, Err *err)
 
 static Status read_deep(Picture *picture, const char *path, Err *err)
 {
-    TRY(picture_read(picture, path, err));
+    TRY(picture_read(picture, path, ALPHA_REFUSED, err));
     if (picture->channels == 3 && picture->bits == 16)
         return STATUS_OK;
     picture_release(picture);
@@ -320,7 +320,7 @@ Status oracle_read_normal(Plane *normal, const char *path, Err *err)
 Status oracle_read_ids(IdPlane *ids, const char *path, Err *err)
 {
     Picture picture;
-    TRY(picture_read(&picture, path, err));
+    TRY(picture_read(&picture, path, ALPHA_REFUSED, err));
     Status status = ids_take_picture(ids, &picture, err);
     picture_release(&picture);
     return status;
@@ -339,7 +339,7 @@ Status picture_take_alpha(Picture *alpha, const Picture *picture, Err *err)
 Status oracle_read_alpha(Picture *alpha, const char *path, Err *err)
 {
     Picture picture;
-    TRY(picture_read_transparent(&picture, path, err));
+    TRY(picture_read(&picture, path, ALPHA_KEPT, err));
     Status status = picture_take_alpha(alpha, &picture, err);
     picture_release(&picture);
     return status;

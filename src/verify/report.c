@@ -74,7 +74,7 @@ Status report_write(const ReportCase *report, const char *templates, const char 
     Status status = STATUS_OK;
     TRY_GOTO(heat_picture(&heat, report->a.picture, report->b.picture, err));
     TRY_GOTO(file_join(folder, "diff.png", &diff, err));
-    TRY_GOTO(picture_write(&heat, diff, ENCODING_SRGB, NULL, err));
+    TRY_GOTO(picture_write(&heat, diff, ENCODING_SRGB, NULL, NULL, err));
     text_json(&json, report_json(report), 2);
     text_puts(&json, "\n");
     TRY_GOTO(write_named(folder, "report.json", &json, err));

@@ -229,7 +229,7 @@ static Status have_same_bytes(const Held *held, bool *same, Err *err)
 static Status read_image(Image *image, Picture *alpha, const char *path, const float background[3],
                          Err *err)
 {
-    TRY(image_read_transparent(image, path, err));
+    TRY(image_read(image, path, ALPHA_KEPT, NULL, err));
     TRY(alpha_take(alpha, image, err));
     TRY(image_lay_on(image, background, err));
     if (!image->plane.values)
@@ -283,7 +283,7 @@ static Status read_pair(const Judging *judging, Held *held, SuiteCase *entry, Er
     if (access(held->mask_path, F_OK) != 0)
         return STATUS_OK;
     TRY(file_check_regular(held->mask_path, err));
-    TRY(picture_read(&held->mask, held->mask_path, err));
+    TRY(picture_read(&held->mask, held->mask_path, ALPHA_REFUSED, err));
     return apply_mask(held, entry, err);
 }
 

@@ -42,7 +42,7 @@ static bool is_whole_picture(const char *path, const WitnessParams *params)
 {
     Picture picture;
     Err ignored;
-    if (picture_read(&picture, path, &ignored) != STATUS_OK)
+    if (picture_read(&picture, path, ALPHA_REFUSED, &ignored) != STATUS_OK)
         return false;
     bool whole = picture.width == params->width && picture.height == params->height &&
                  picture.channels == 3 && picture.bits == (params->plane == WITNESS_ID ? 8 : 16);
@@ -106,7 +106,7 @@ Status witness_run(const WitnessParams *params, double *seconds, char version[16
 Status witness_read_ids(IdPlane *ids, const char *path, Err *err)
 {
     Picture picture;
-    TRY(picture_read(&picture, path, err));
+    TRY(picture_read(&picture, path, ALPHA_REFUSED, err));
     Status status = ids_take_picture(ids, &picture, err);
     picture_release(&picture);
     return status;
@@ -116,7 +116,7 @@ Status witness_read_depth(Plane *depth, const char *path, const IdPlane *ids, do
                           double far_mm, Err *err)
 {
     Picture picture;
-    TRY(picture_read(&picture, path, err));
+    TRY(picture_read(&picture, path, ALPHA_REFUSED, err));
     Status status = plane_init(depth, picture.width, picture.height, 1, err);
     size_t pixels = (size_t)picture.width * (size_t)picture.height;
     for (size_t i = 0; status == STATUS_OK && i < pixels; i++) {

@@ -1,4 +1,5 @@
-/* The convex bodies that vessels are united of, and boxes; private to the room voxel. */
+/* Convex bodies whose union vessels are, and their intersections with boxes. Private to the module
+ * voxel. */
 #ifndef CORCAST_VOXEL_BODY_H
 #define CORCAST_VOXEL_BODY_H
 
@@ -15,7 +16,7 @@ typedef struct Body {
     uint32_t segment;
 } Body;
 
-/* A cylinder from a to b, which are a ball's centre when they are the same. */
+/* Makes a cylinder from a to b; a ball around a if a and b are equal. */
 Body body_make(Vec3 a, Vec3 b, double radius, uint32_t segment);
 
 static inline bool body_is_ball(const Body *body)
@@ -23,9 +24,10 @@ static inline bool body_is_ball(const Body *body)
     return body->length == 0;
 }
 
+/* Returns the box around a body. */
 Box body_box(const Body *body);
 
-/* A box across the axes. */
+/* A box whose sides are parallel to the axes. */
 typedef struct Cell {
     Vec3 center, half;
 } Cell;
@@ -35,20 +37,21 @@ static inline double cell_volume(const Cell *cell)
     return 8 * cell->half.x * cell->half.y * cell->half.z;
 }
 
-/* False only where they have no point in common. */
+/* Returns false only if body and cell have no point in common. */
 bool body_meets(const Body *body, const Cell *cell);
-/* Whether all of the cell lies in the body. */
+/* Returns true if the whole cell lies in the body. */
 bool body_holds(const Body *body, const Cell *cell);
-/* The part of the cell, in [0, 1], that lies in the body, to 1e-7. */
+/* Returns the fraction of the cell, in [0, 1], that lies in the body, with an error of 1e-7. */
 double body_part(const Body *body, const Cell *cell);
 
-/* From where to where a line along axis 0, 1 or 2 is in the body, in mm from `at`, a point of it;
- * false: nowhere. `wider` and `longer` mm are added to the radius and at both ends. */
+/* Intersects a body with the line through `at` parallel to axis 0, 1 or 2. Returns false if they do
+ * not meet. `low` and `high` receive the ends of the chord, in mm from `at`. Before, `wider` mm are
+ * added to the radius, and `longer` mm at both ends. */
 bool body_chord(const Body *body, Vec3 at, int axis, double wider, double longer, double *low,
                 double *high);
 
-/* From where to where, in mm from its start, the axis of a cylinder is in the cell, the sides to
- * high coordinates left out; false: nowhere. */
+/* Finds the part of a cylinder's axis in the cell, as distances from the axis's start in mm.
+ * Returns false if there is none. The cell does not include its sides towards high coordinates. */
 bool body_axis_in(const Body *body, const Cell *cell, double *from, double *to);
 
 #endif

@@ -1,9 +1,8 @@
-/* A label holds a voxel that it fills the most of: the first from the middles of its axes on, or
- * else next to them. Those that fill the most of none are then given one that no label holds, or
- * one whose holder can move on to another: augmenting paths [Kuhn, Naval Research Logistics
- * Quarterly 2 (1955) 83-97], so that a label is refused a voxel only where labels are more than the
- * voxels that they may hold. What is held stands in a table of linear probing, by voxel; a voxel
- * that is held once stays so. */
+/* A label holds a voxel that it fills most of: the first on its axes, from their middles, or else
+ * the first next to them. A label that fills most of no voxel is then given one that no label
+ * holds, or one whose holder can move to another voxel. These are augmenting paths [Kuhn, Naval
+ * Research Logistics Quarterly 2 (1955) 83-97]: a label gets no voxel only if there are more labels
+ * than voxels for them. A voxel that is held stays held. */
 #include "voxel/claims.h"
 
 #include <stdlib.h>
@@ -13,23 +12,21 @@ typedef struct Axis {
     uint32_t label, body;
 } Axis;
 
+/* A voxel that a label holds. */
 typedef struct Held {
     int64_t voxel;
-    size_t label; /* number of its first axis */
-    size_t visit; /* the last that came by; 0: no label holds the voxel */
+    size_t label; /* its first axis */
+    size_t visit; /* the last visit that tried to move the label */
 } Held;
 
-typedef struct VoxelList {
-    int64_t *item; /* owned */
-    size_t n, capacity;
-} VoxelList;
+typedef ARRAY(int64_t) VoxelList;
 
 typedef struct Claimer {
     const RowSource *source;
     Axis *axes; /* by rising label */
     size_t n_axes;
-    Held *held;
-    size_t mask; /* entries less one, which are a power of two */
+    ARRAY(Held) held;
+    KeyMap by_voxel; /* index in `held` */
     size_t visit;
     BodyList near;
     VoxelList path;
@@ -41,9 +38,7 @@ enum { MOST_MOVES = 64 };
 
 static Status push_voxel(const VoxelGrid *grid, const int64_t at[3], VoxelList *list, Err *err)
 {
-    TRY(mem_reserve(&list->item, &list->capacity, list->n + 1, sizeof *list->item, "voxels", err));
-    list->item[list->n++] = (at[2] * grid->n[1] + at[1]) * grid->n[0] + at[0];
-    return STATUS_OK;
+    return ARRAY_PUSH(list, "voxels", err, (at[2] * grid->n[1] + at[1]) * grid->n[0] + at[0]);
 }
 
 /* Lists the voxels that the axis passes, from its start to its end. */
@@ -106,11 +101,12 @@ static Status list_voxels(Claimer *claimer, const Body *body, bool about, VoxelL
     const VoxelGrid *grid = claimer->source->grid;
     VoxelList *path = &claimer->path;
     TRY(list_axis(grid, body, path, err));
-    TRY(mem_reserve(&list->item, &list->capacity, path->n, sizeof *list->item, "voxels", err));
-    for (list->n = 0; list->n < path->n; list->n++)
-        list->item[list->n] = path->item[(path->n / 2 + list->n) % path->n];
+    list->n = 0;
+    TRY(ARRAY_RESERVE(list, path->n, "voxels", err));
+    for (; list->n < path->n; list->n++)
+        list->items[list->n] = path->items[(path->n / 2 + list->n) % path->n];
     for (size_t i = 0; i < path->n && about; i++)
-        TRY(list_about(grid, body, list->item[i], list, err));
+        TRY(list_about(grid, body, list->items[i], list, err));
     return STATUS_OK;
 }
 
@@ -122,19 +118,27 @@ static Status find_owner(Claimer *claimer, int64_t voxel, uint32_t *label, Err *
     Cell cell = numbered_cell(grid, voxel);
     BodyList *near = &claimer->near;
     TRY(bodies_in(source->bodies, cell_box(&cell), near, err));
-    *label = near->n ? source->labels[cell_owner(source->bodies, near->item, near->n, &cell)] : 0;
+    *label = near->n ? source->labels[cell_owner(source->bodies, near->items, near->n, &cell)] : 0;
     return STATUS_OK;
 }
 
 /* ---- the table ------------------------------------------------------------------------------- */
 
-/* The entry of the voxel, or the one where it is to stand. */
+/* Returns the entry of a voxel, or NULL if no label holds it. Borrowed until the next hold. */
 static Held *find_held(const Claimer *claimer, int64_t voxel)
 {
-    size_t at = (size_t)((uint64_t)voxel * 0x9e3779b97f4a7c15u >> 20) & claimer->mask;
-    while (claimer->held[at].visit && claimer->held[at].voxel != voxel)
-        at = (at + 1) & claimer->mask;
-    return &claimer->held[at];
+    const uint32_t *index = keymap_find(&claimer->by_voxel, (uint64_t)voxel);
+    return index ? &claimer->held.items[*index] : NULL;
+}
+
+/* Lets a label, given by its first axis, hold a voxel that no label holds. */
+static Status hold(Claimer *claimer, int64_t voxel, size_t first, Err *err)
+{
+    uint32_t *index;
+    bool is_new;
+    TRY(keymap_put(&claimer->by_voxel, (uint64_t)voxel, &index, &is_new, err));
+    *index = (uint32_t)claimer->held.n;
+    return ARRAY_PUSH(&claimer->held, "labels", err, (Held){voxel, first, claimer->visit});
 }
 
 static int by_label(const void *a, const void *b)
@@ -154,19 +158,16 @@ static Status claimer_init(Claimer *claimer, Err *err)
             claimer->axes[claimer->n_axes++] =
                 (Axis){claimer->source->labels[bodies->body[i].segment], i};
     qsort(claimer->axes, claimer->n_axes, sizeof *claimer->axes, by_label);
-    size_t entries = 16;
-    while (entries < 2 * claimer->n_axes)
-        entries *= 2;
-    claimer->mask = entries - 1;
-    return mem_calloc(&claimer->held, entries, sizeof *claimer->held, "labels", err);
+    return keymap_begin(&claimer->by_voxel, claimer->n_axes, "labels", err);
 }
 
 static void claimer_release(Claimer *claimer)
 {
     free(claimer->axes);
-    free(claimer->held);
-    free(claimer->near.item);
-    free(claimer->path.item);
+    ARRAY_RELEASE(&claimer->held);
+    keymap_release(&claimer->by_voxel);
+    ARRAY_RELEASE(&claimer->near);
+    ARRAY_RELEASE(&claimer->path);
 }
 
 /* ---- who holds what -------------------------------------------------------------------------- */
@@ -191,14 +192,14 @@ static Status hold_own(Claimer *claimer, size_t first, bool about, bool *done, E
         TRY_GOTO(list_voxels(claimer, axis_body(claimer, axis), about, &list, err));
         for (size_t i = 0; i < list.n && !*done; i++) {
             uint32_t owner;
-            TRY_GOTO(find_owner(claimer, list.item[i], &owner, err));
+            TRY_GOTO(find_owner(claimer, list.items[i], &owner, err));
             *done = owner == claimer->axes[first].label;
             if (*done)
-                *find_held(claimer, list.item[i]) = (Held){list.item[i], first, claimer->visit};
+                TRY_GOTO(hold(claimer, list.items[i], first, err));
         }
     }
 done:
-    free(list.item);
+    ARRAY_RELEASE(&list);
     return status;
 }
 
@@ -209,19 +210,18 @@ static Status hold_one_of(Claimer *claimer, const VoxelList *list, size_t first,
                           bool *done, Err *err)
 {
     for (size_t i = 0; i < list->n && !*done; i++) {
-        Held *held = find_held(claimer, list->item[i]);
-        *done = !held->visit;
+        *done = !find_held(claimer, list->items[i]);
         if (*done)
-            *held = (Held){list->item[i], first, claimer->visit};
+            TRY(hold(claimer, list->items[i], first, err));
     }
     for (size_t i = 0; i < list->n && !*done && moves < MOST_MOVES; i++) {
-        Held *held = find_held(claimer, list->item[i]);
+        Held *held = find_held(claimer, list->items[i]);
         if (held->visit == claimer->visit)
             continue;
         held->visit = claimer->visit;
         TRY(hold_any(claimer, held->label, moves + 1, done, err));
         if (*done)
-            held->label = first;
+            find_held(claimer, list->items[i])->label = first;
     }
     return STATUS_OK;
 }
@@ -236,7 +236,7 @@ static Status hold_any(Claimer *claimer, size_t first, int moves, bool *done, Er
         TRY_GOTO(hold_one_of(claimer, &list, first, moves, done, err));
     }
 done:
-    free(list.item);
+    ARRAY_RELEASE(&list);
     return status;
 }
 
@@ -291,10 +291,10 @@ Status claims_make(const RowSource *source, const Geometry *geometry, Claims *ou
     TRY_GOTO(claimer_init(&claimer, err));
     TRY_GOTO(hold_all(&claimer, geometry, &made.taken, err));
     TRY_GOTO(mem_calloc(&made.claim, claimer.n_axes, sizeof *made.claim, "labels", err));
-    for (size_t i = 0; i <= claimer.mask; i++)
-        if (claimer.held[i].visit)
-            made.claim[made.n++] =
-                (Claim){claimer.held[i].voxel, claimer.axes[claimer.held[i].label].label};
+    for (; made.n < claimer.held.n; made.n++) {
+        const Held *held = &claimer.held.items[made.n];
+        made.claim[made.n] = (Claim){held->voxel, claimer.axes[held->label].label};
+    }
     qsort(made.claim, made.n, sizeof *made.claim, by_voxel);
     *out = made;
 done:

@@ -10,19 +10,19 @@
 
 enum { LINES = 89, LATTICE_STEP = 55, DEEPEST = 7 };
 
-Status cover_reserve(CoverRoom *room, size_t n_bodies, Err *err)
+Status cover_reserve(CoverWorkspace *workspace, size_t n_bodies, Err *err)
 {
-    TRY(mem_reserve(&room->lists, &room->n_lists, (DEEPEST + 1) * n_bodies, sizeof *room->lists,
-                    "vessels in a voxel", err));
-    return mem_reserve(&room->chords, &room->n_chords, n_bodies, sizeof *room->chords,
-                       "vessels in a voxel", err);
+    TRY(mem_reserve(&workspace->lists, &workspace->n_lists, (DEEPEST + 1) * n_bodies,
+                    sizeof *workspace->lists, "vessels in a voxel", err));
+    return mem_reserve(&workspace->chords, &workspace->n_chords, n_bodies,
+                       sizeof *workspace->chords, "vessels in a voxel", err);
 }
 
-void cover_release(CoverRoom *room)
+void cover_release(CoverWorkspace *workspace)
 {
-    free(room->lists);
-    free(room->chords);
-    *room = (CoverRoom){0};
+    free(workspace->lists);
+    free(workspace->chords);
+    *workspace = (CoverWorkspace){0};
 }
 
 /* Puts a chord, cut off at both ends of the cell, into its place among those that begin before. */
@@ -52,7 +52,7 @@ static double union_length(double (*chords)[2], size_t n)
 }
 
 static double line_in_union(const Body *bodies, const uint32_t *list, size_t n, Vec3 middle,
-                            int axis, double half, CoverRoom *room)
+                            int axis, double half, CoverWorkspace *workspace)
 {
     size_t n_chords = 0;
     for (size_t i = 0; i < n; i++) {
@@ -62,9 +62,9 @@ static double line_in_union(const Body *bodies, const uint32_t *list, size_t n, 
         low = low > -half ? low : -half;
         high = high < half ? high : half;
         if (low < high)
-            n_chords = insert_chord(room->chords, n_chords, low, high);
+            n_chords = insert_chord(workspace->chords, n_chords, low, high);
     }
-    return union_length(room->chords, n_chords);
+    return union_length(workspace->chords, n_chords);
 }
 
 /* The axis to which the one of the bodies that is most along it is least so. */
@@ -85,7 +85,7 @@ static Vec3 along_axis(int axis, double x)
 }
 
 static double part_by_lines(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
-                            CoverRoom *room)
+                            CoverWorkspace *workspace)
 {
     int axis = axis_across(bodies, list, n), first = (axis + 1) % 3, second = (axis + 2) % 3;
     double half = vec3_component(cell->half, axis), length = 0;
@@ -94,30 +94,30 @@ static double part_by_lines(const Body *bodies, const uint32_t *list, size_t n, 
         double t = (2 * (i * LATTICE_STEP % LINES) + 1.0) / LINES - 1;
         Vec3 at = vec3_add(cell->center, along_axis(first, s * vec3_component(cell->half, first)));
         at = vec3_add(at, along_axis(second, t * vec3_component(cell->half, second)));
-        length += line_in_union(bodies, list, n, at, axis, half, room);
+        length += line_in_union(bodies, list, n, at, axis, half, workspace);
     }
     return length / (LINES * 2 * half);
 }
 
 static double part_of(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
-                      int depth, uint32_t *lists, CoverRoom *room);
+                      int depth, uint32_t *lists, CoverWorkspace *workspace);
 
 static double part_in_eight(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
-                            int depth, uint32_t *lists, CoverRoom *room)
+                            int depth, uint32_t *lists, CoverWorkspace *workspace)
 {
     Vec3 half = vec3_scale(cell->half, 0.5);
     double part = 0;
     for (int i = 0; i < 8; i++) {
         Vec3 move = {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
         Cell eighth = {vec3_add(cell->center, move), half};
-        part += part_of(bodies, list, n, &eighth, depth + 1, lists, room);
+        part += part_of(bodies, list, n, &eighth, depth + 1, lists, workspace);
     }
     return part / 8;
 }
 
 /* `lists` has room for what of the list meets the cell, and for that of its eighths. */
 static double part_of(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
-                      int depth, uint32_t *lists, CoverRoom *room)
+                      int depth, uint32_t *lists, CoverWorkspace *workspace)
 {
     double thinnest = INFINITY;
     size_t met = 0;
@@ -134,12 +134,12 @@ static double part_of(const Body *bodies, const uint32_t *list, size_t n, const 
         return met ? body_part(&bodies[lists[0]], cell) : 0;
     double widest = fmax(cell->half.x, fmax(cell->half.y, cell->half.z));
     if (widest > thinnest && depth < DEEPEST)
-        return part_in_eight(bodies, lists, met, cell, depth, lists + met, room);
-    return part_by_lines(bodies, lists, met, cell, room);
+        return part_in_eight(bodies, lists, met, cell, depth, lists + met, workspace);
+    return part_by_lines(bodies, lists, met, cell, workspace);
 }
 
 double cover_part(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
-                  CoverRoom *room)
+                  CoverWorkspace *workspace)
 {
-    return part_of(bodies, list, n, cell, 0, room->lists, room);
+    return part_of(bodies, list, n, cell, 0, workspace->lists, workspace);
 }

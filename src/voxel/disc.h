@@ -1,7 +1,7 @@
-/* Integrals over what a disc and a polygon have in common, and over the rest of the polygon;
- * private to the room voxel. Each adds what lies between the edge from p to q of a polygon and the
- * origin, signed, above 0 where the edge runs counterclockwise about it: the sum over the edges is
- * the polygon's. */
+/* Integrals over the intersection of a disc and a polygon, and over the rest of the polygon. Each
+ * function integrates over the triangle of the origin and the edge from p to q of the polygon. The
+ * sign is positive if the edge runs counterclockwise around the origin, so that the sum over all
+ * edges is the integral over the polygon. Private to the module voxel. */
 #ifndef CORCAST_VOXEL_DISC_H
 #define CORCAST_VOXEL_DISC_H
 
@@ -14,11 +14,11 @@ typedef struct DiscPart {
     double one, u, v;
 } DiscPart;
 
-/* Over the part of the polygon in the disc of `radius` about the origin. */
+/* Adds the integrals over the part of the triangle in the disc of `radius` around the origin. */
 void discpart_add(DiscPart *part, DiscPoint p, DiscPoint q, double radius);
 
-/* The integral of min(1, (radius / distance)^3), the distance being that from a point `above` the
- * origin, not 0. */
+/* Returns the integral of min(1, (radius / distance)^3), where the distance is measured from a
+ * point at height `above`, not 0, over the origin. */
 double ballshade_edge(DiscPoint p, DiscPoint q, double radius, double above);
 
 #endif

@@ -64,12 +64,9 @@ Status bodies_in(const Bodies *bodies, Box box, BodyList *list, Err *err)
 {
     uint32_t item;
     list->n = 0;
-    for (BoxWalk walk = boxwalk_box(&bodies->tree, box); boxwalk_next(&walk, &item);) {
-        TRY(mem_reserve(&list->item, &list->capacity, list->n + 1, sizeof *list->item, "vessels",
-                        err));
-        list->item[list->n++] = item;
-    }
-    qsort(list->item, list->n, sizeof *list->item, by_number);
+    for (BoxWalk walk = boxwalk_box(&bodies->tree, box); boxwalk_next(&walk, &item);)
+        TRY(ARRAY_PUSH(list, "vessels", err, item));
+    qsort(list->items, list->n, sizeof *list->items, by_number);
     return STATUS_OK;
 }
 

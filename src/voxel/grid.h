@@ -1,4 +1,4 @@
-/* Voxels in space, and the bodies that they are filled by; private to the room voxel. */
+/* The voxels of a grid, and the bodies that fill them. Private to the module voxel. */
 #ifndef CORCAST_VOXEL_GRID_H
 #define CORCAST_VOXEL_GRID_H
 
@@ -6,26 +6,26 @@
 #include "voxel/cover.h"
 #include "voxel/voxel.h"
 
-/* The bodies that a rounded geometry is the union of, and where they are. */
+/* The cylinders and balls whose union a geometry is, and a tree of their boxes. */
 typedef struct Bodies {
     Body *body; /* owned */
     size_t n;
     BoxTree tree;
-    const uint32_t *ids; /* of segments, by number; borrowed from the geometry */
+    const uint32_t *ids; /* per segment index: SWC id; borrowed from the geometry */
 } Bodies;
 
+/* Makes the bodies of a geometry. Release *out with bodies_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status bodies_make(const Geometry *geometry, Bodies *out, Err *err);
 void bodies_release(Bodies *bodies);
 
-/* A list of bodies that grows. */
-typedef struct BodyList {
-    uint32_t *item; /* owned */
-    size_t n, capacity;
-} BodyList;
+/* Indices of bodies. */
+typedef ARRAY(uint32_t) BodyList;
 
-/* The bodies whose boxes meet the box, by rising number. */
+/* Lists the bodies whose boxes meet `box`, by rising index. Replaces what *list held; the caller
+ * releases it with ARRAY_RELEASE, also after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status bodies_in(const Bodies *bodies, Box box, BodyList *list, Err *err);
 
+/* Returns the box of a voxel. */
 static inline Cell grid_cell(const VoxelGrid *grid, int64_t x, int64_t y, int64_t z)
 {
     return (Cell){.center = vec3(grid->first.x + (double)x * grid->step.x,
@@ -39,15 +39,16 @@ static inline Box cell_box(const Cell *cell)
     return (Box){vec3_sub(cell->center, cell->half), vec3_add(cell->center, cell->half)};
 }
 
-/* The voxel that a coordinate is in, along an axis. */
+/* Returns the index of the voxel that holds a coordinate, along an axis. May lie outside the grid.
+ */
 static inline int64_t grid_index(const VoxelGrid *grid, int axis, double x)
 {
     double first = vec3_component(grid->first, axis);
     return (int64_t)floor((x - first) / vec3_component(grid->step, axis) + 0.5);
 }
 
-/* Returns the segment whose body, of the n > 0 in the list, fills the most of the cell; of equals
- * the one with the lowest id. */
+/* Returns the segment index of the body that fills most of the cell, among the n > 0 bodies of
+ * `list`. On a tie, returns the segment with the lowest SWC id. */
 uint32_t cell_owner(const Bodies *bodies, const uint32_t *list, size_t n, const Cell *cell);
 
 #endif

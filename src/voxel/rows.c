@@ -1,21 +1,22 @@
-/* For each row that a body's box meets, the line through the middle of the row, in the body made
- * wider by half the row's diagonal, says which voxels the body may meet, and the lines along the
- * row's four edges which ones it holds: it is convex. A sweep along the row then knows the bodies
- * of each voxel; only those that none holds take work. */
+/* For each row that the box of a body meets, two tests find the voxels of the body. The line
+ * through the middle of the row, intersected with the body widened by half the row's diagonal,
+ * gives the voxels that the body may touch. The lines along the four edges of the row give the
+ * voxels that lie wholly in the body, because it is convex. A sweep along the row then has the list
+ * of bodies of each voxel. Only voxels that lie in no body wholly take work. */
 #include "voxel/rows.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-void rowroom_release(RowRoom *room)
+void rowworkspace_release(RowWorkspace *workspace)
 {
-    free(room->list.item);
-    free(room->met.item);
-    free(room->spans);
-    free(room->active);
-    cover_release(&room->cover);
-    *room = (RowRoom){0};
+    ARRAY_RELEASE(&workspace->candidates);
+    ARRAY_RELEASE(&workspace->touching);
+    ARRAY_RELEASE(&workspace->spans);
+    ARRAY_RELEASE(&workspace->active);
+    cover_release(&workspace->coverage);
+    *workspace = (RowWorkspace){0};
 }
 
 static int64_t clamped(double x, int64_t low, int64_t high)
@@ -57,36 +58,33 @@ static bool find_span(const VoxelGrid *grid, const Body *body, const Cell *cell,
     return span->first < span->end;
 }
 
-static Status add_row(const RowSource *source, uint32_t number, int64_t row, RowRoom *room,
-                      Err *err)
+static Status add_row(const RowSource *source, uint32_t number, int64_t row,
+                      RowWorkspace *workspace, Err *err)
 {
     const VoxelGrid *grid = source->grid;
     Cell cell = grid_cell(grid, 0, row % grid->n[1], row / grid->n[1]);
     Span span = {.row = row, .body = number};
     if (!find_span(grid, &source->bodies->body[number], &cell, &span))
         return STATUS_OK;
-    TRY(mem_reserve(&room->spans, &room->span_capacity, room->n_spans + 1, sizeof *room->spans,
-                    "voxels", err));
-    room->spans[room->n_spans++] = span;
-    return STATUS_OK;
+    return ARRAY_PUSH(&workspace->spans, "voxels", err, span);
 }
 
-static Status add_body(const RowSource *source, const Rows *rows, uint32_t number, RowRoom *room,
-                       Err *err)
+static Status add_body(const RowSource *source, const RowBlock *rows, uint32_t number,
+                       RowWorkspace *workspace, Err *err)
 {
     const VoxelGrid *grid = source->grid;
     Box box = body_box(&source->bodies->body[number]);
-    int64_t end = rows->first + rows->n, n_y = grid->n[1];
+    int64_t end = rows->first_row + rows->n_rows, n_y = grid->n[1];
     int64_t low_z = grid_index(grid, 2, box.low.z), high_z = grid_index(grid, 2, box.high.z);
     int64_t low_y = grid_index(grid, 1, box.low.y), high_y = grid_index(grid, 1, box.high.y);
-    low_z = low_z > rows->first / n_y ? low_z : rows->first / n_y;
+    low_z = low_z > rows->first_row / n_y ? low_z : rows->first_row / n_y;
     high_z = high_z < (end - 1) / n_y ? high_z : (end - 1) / n_y;
     for (int64_t z = low_z; z <= high_z; z++) {
         int64_t from = z * n_y + low_y, to = z * n_y + high_y;
-        from = from > rows->first ? from : rows->first;
+        from = from > rows->first_row ? from : rows->first_row;
         to = to < end - 1 ? to : end - 1;
         for (int64_t row = from; row <= to; row++)
-            TRY(add_row(source, number, row, room, err));
+            TRY(add_row(source, number, row, workspace, err));
     }
     return STATUS_OK;
 }
@@ -101,20 +99,21 @@ static int by_place(const void *a, const void *b)
     return (first->body > second->body) - (first->body < second->body);
 }
 
-static Status find_spans(const RowSource *source, const Rows *rows, RowRoom *room, Err *err)
+static Status find_spans(const RowSource *source, const RowBlock *rows, RowWorkspace *workspace,
+                         Err *err)
 {
     const VoxelGrid *grid = source->grid;
-    int64_t last = rows->first + rows->n - 1, n_y = grid->n[1];
-    bool one_layer = rows->first / n_y == last / n_y;
-    Cell low = grid_cell(grid, 0, one_layer ? rows->first % n_y : 0, rows->first / n_y);
+    int64_t last = rows->first_row + rows->n_rows - 1, n_y = grid->n[1];
+    bool one_layer = rows->first_row / n_y == last / n_y;
+    Cell low = grid_cell(grid, 0, one_layer ? rows->first_row % n_y : 0, rows->first_row / n_y);
     Cell high = grid_cell(grid, grid->n[0] - 1, one_layer ? last % n_y : n_y - 1, last / n_y);
     Box box = box_union(cell_box(&low), cell_box(&high));
-    room->n_spans = 0;
-    TRY(bodies_in(source->bodies, box, &room->list, err));
-    for (size_t i = 0; i < room->list.n; i++)
-        TRY(add_body(source, rows, room->list.item[i], room, err));
-    if (room->n_spans)
-        qsort(room->spans, room->n_spans, sizeof *room->spans, by_place);
+    workspace->spans.n = 0;
+    TRY(bodies_in(source->bodies, box, &workspace->candidates, err));
+    for (size_t i = 0; i < workspace->candidates.n; i++)
+        TRY(add_body(source, rows, workspace->candidates.items[i], workspace, err));
+    if (workspace->spans.n)
+        qsort(workspace->spans.items, workspace->spans.n, sizeof *workspace->spans.items, by_place);
     return STATUS_OK;
 }
 
@@ -123,8 +122,8 @@ static Status find_spans(const RowSource *source, const Rows *rows, RowRoom *roo
 /* The samples of one row. */
 typedef struct Row {
     const RowSource *source;
-    Rows *rows;
-    RowRoom *room;
+    RowBlock *rows;
+    RowWorkspace *workspace;
     uint8_t *values;
     uint32_t *labels;
     int64_t y, z;
@@ -133,11 +132,11 @@ typedef struct Row {
 /* A sample for a part of a voxel; of a voxel that an axis passes, at least 1. */
 static double rounded(const Row *row, double part, const Cell *cell)
 {
-    const BodyList *met = &row->room->met;
+    const BodyList *touching = &row->workspace->touching;
     double sample = floor(part * sample_full(row->source->type) + 0.5);
-    for (size_t i = 0; i < met->n && sample == 0; i++) {
+    for (size_t i = 0; i < touching->n && sample == 0; i++) {
         double from, to;
-        sample = body_axis_in(&row->source->bodies->body[met->item[i]], cell, &from, &to);
+        sample = body_axis_in(&row->source->bodies->body[touching->items[i]], cell, &from, &to);
     }
     return sample;
 }
@@ -152,21 +151,21 @@ static void put_value(const Row *row, int64_t x, double part, const Cell *cell)
         ((uint16_t *)(void *)row->values)[x] = (uint16_t)sample;
     else
         ((float *)(void *)row->values)[x] = (float)sample;
-    row->rows->filled += part;
-    row->rows->said += sample / sample_full(type);
-    row->rows->n_filled += sample > 0;
+    row->rows->covered += part;
+    row->rows->written += sample / sample_full(type);
+    row->rows->n_nonzero += sample > 0;
     if (row->labels && sample > 0)
-        row->labels[x] = row->source->labels[cell_owner(row->source->bodies, row->room->met.item,
-                                                        row->room->met.n, cell)];
+        row->labels[x] = row->source->labels[cell_owner(
+            row->source->bodies, row->workspace->touching.items, row->workspace->touching.n, cell)];
 }
 
 static void fill_voxel(const Row *row, int64_t x)
 {
     const RowSource *source = row->source;
-    RowRoom *room = row->room;
+    RowWorkspace *workspace = row->workspace;
     Cell cell = grid_cell(source->grid, x, row->y, row->z);
-    double part =
-        cover_part(source->bodies->body, room->met.item, room->met.n, &cell, &room->cover);
+    double part = cover_part(source->bodies->body, workspace->touching.items, workspace->touching.n,
+                             &cell, &workspace->coverage);
     if (part > 0)
         put_value(row, x, part, &cell);
 }
@@ -180,21 +179,21 @@ static void fill_run(const Row *row, int64_t x, int64_t end)
     else
         for (int64_t i = x; i < end; i++)
             ((float *)(void *)row->values)[i] = 1;
-    row->rows->filled += (double)(end - x);
-    row->rows->said += (double)(end - x);
-    row->rows->n_filled += end - x;
+    row->rows->covered += (double)(end - x);
+    row->rows->written += (double)(end - x);
+    row->rows->n_nonzero += end - x;
 }
 
 /* Before which voxel a run of those that bodies hold ends that begins at x; x: there is none. Of
  * labels it is one voxel, and *owner the segment of the lowest id that holds it. */
 static int64_t full_end(const Row *row, size_t n_active, int64_t x, uint32_t *owner)
 {
-    const RowRoom *room = row->room;
+    const RowWorkspace *workspace = row->workspace;
     const Bodies *bodies = row->source->bodies;
     int64_t end = x;
     *owner = UINT32_MAX;
     for (size_t i = 0; i < n_active; i++) {
-        const Span *span = &room->spans[room->active[i]];
+        const Span *span = &workspace->spans.items[workspace->active.items[i]];
         uint32_t segment = bodies->body[span->body].segment;
         if (span->full_first > x || span->full_end <= x)
             continue;
@@ -205,34 +204,35 @@ static int64_t full_end(const Row *row, size_t n_active, int64_t x, uint32_t *ow
     return row->labels && end > x ? x + 1 : end;
 }
 
-static void list_active(RowRoom *room, size_t n_active)
+static void list_active(RowWorkspace *workspace, size_t n_active)
 {
-    room->met.n = 0;
+    workspace->touching.n = 0;
     for (size_t i = 0; i < n_active; i++)
-        room->met.item[room->met.n++] = room->spans[room->active[i]].body;
+        workspace->touching.items[workspace->touching.n++] =
+            workspace->spans.items[workspace->active.items[i]].body;
 }
 
-static size_t drop_ended(RowRoom *room, size_t n_active, int64_t x)
+static size_t drop_ended(RowWorkspace *workspace, size_t n_active, int64_t x)
 {
     size_t kept = 0;
     for (size_t i = 0; i < n_active; i++)
-        if (room->spans[room->active[i]].end > x)
-            room->active[kept++] = room->active[i];
+        if (workspace->spans.items[workspace->active.items[i]].end > x)
+            workspace->active.items[kept++] = workspace->active.items[i];
     return kept;
 }
 
 /* Goes along the spans from number `from` to before `to`, those of one row. */
 static void sweep(const Row *row, size_t from, size_t to)
 {
-    RowRoom *room = row->room;
+    RowWorkspace *workspace = row->workspace;
     size_t n_active = 0, next = from;
-    for (int64_t x = room->spans[from].first; next < to || n_active;) {
+    for (int64_t x = workspace->spans.items[from].first; next < to || n_active;) {
         uint32_t owner;
-        if (!n_active && room->spans[next].first > x)
-            x = room->spans[next].first;
-        while (next < to && room->spans[next].first <= x)
-            room->active[n_active++] = next++;
-        n_active = drop_ended(room, n_active, x);
+        if (!n_active && workspace->spans.items[next].first > x)
+            x = workspace->spans.items[next].first;
+        while (next < to && workspace->spans.items[next].first <= x)
+            workspace->active.items[n_active++] = next++;
+        n_active = drop_ended(workspace, n_active, x);
         if (!n_active)
             continue;
         int64_t end = full_end(row, n_active, x, &owner);
@@ -242,7 +242,7 @@ static void sweep(const Row *row, size_t from, size_t to)
                 row->labels[x] = row->source->labels[owner];
             x = end;
         } else {
-            list_active(room, n_active);
+            list_active(workspace, n_active);
             fill_voxel(row, x++);
         }
     }
@@ -265,44 +265,37 @@ static void mark_axis(const RowSource *source, const Body *body, const Cell *fir
     memset(marks + (a < b ? a : b), 1, (size_t)(a < b ? b - a : a - b) + 1);
 }
 
-/* ---------------------------------------------------------------------------------------------- */
-
-static Status reserve(RowRoom *room, size_t n, Err *err)
-{
-    TRY(mem_reserve(&room->active, &room->active_capacity, n, sizeof *room->active, "vessels",
-                    err));
-    TRY(mem_reserve(&room->met.item, &room->met.capacity, n, sizeof *room->met.item, "vessels",
-                    err));
-    return cover_reserve(&room->cover, n, err);
-}
-
-static Status fill_row(const RowSource *source, RowRoom *room, Rows *rows, size_t from, size_t to,
-                       Err *err)
+static Status fill_row(const RowSource *source, RowWorkspace *workspace, RowBlock *rows,
+                       size_t from, size_t to, Err *err)
 {
     const VoxelGrid *grid = source->grid;
-    int64_t number = room->spans[from].row;
-    size_t at = (size_t)(number - rows->first) * (size_t)grid->n[0];
-    Row row = {.source = source, .rows = rows, .room = room};
+    int64_t number = workspace->spans.items[from].row;
+    size_t at = (size_t)(number - rows->first_row) * (size_t)grid->n[0];
+    Row row = {.source = source, .rows = rows, .workspace = workspace};
     row.y = number % grid->n[1];
     row.z = number / grid->n[1];
     row.values = rows->values + at * sample_size(source->type);
     row.labels = rows->labels ? rows->labels + at : NULL;
-    TRY(reserve(room, to - from, err));
+    workspace->touching.n = 0;
+    TRY(ARRAY_RESERVE(&workspace->active, to - from, "vessels", err));
+    TRY(ARRAY_RESERVE(&workspace->touching, to - from, "vessels", err));
+    TRY(cover_reserve(&workspace->coverage, to - from, err));
     sweep(&row, from, to);
     Cell first = grid_cell(grid, 0, row.y, row.z);
     for (size_t i = from; i < to && rows->centreline; i++)
-        mark_axis(source, &source->bodies->body[room->spans[i].body], &first,
+        mark_axis(source, &source->bodies->body[workspace->spans.items[i].body], &first,
                   rows->centreline + at);
     return STATUS_OK;
 }
 
-Status rows_fill(const RowSource *source, RowRoom *room, Rows *rows, Err *err)
+Status rowblock_fill(const RowSource *source, RowWorkspace *workspace, RowBlock *rows, Err *err)
 {
-    TRY(find_spans(source, rows, room, err));
-    for (size_t from = 0, to; from < room->n_spans; from = to) {
-        for (to = from + 1; to < room->n_spans && room->spans[to].row == room->spans[from].row;)
+    TRY(find_spans(source, rows, workspace, err));
+    for (size_t from = 0, to; from < workspace->spans.n; from = to) {
+        for (to = from + 1; to < workspace->spans.n &&
+                            workspace->spans.items[to].row == workspace->spans.items[from].row;)
             to++;
-        TRY(fill_row(source, room, rows, from, to, err));
+        TRY(fill_row(source, workspace, rows, from, to, err));
     }
     return STATUS_OK;
 }

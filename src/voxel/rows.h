@@ -1,49 +1,51 @@
-/* Rows of voxels, filled; private to the room voxel. */
+/* Fills rows of voxels with samples. Private to the module voxel. */
 #ifndef CORCAST_VOXEL_ROWS_H
 #define CORCAST_VOXEL_ROWS_H
 
 #include "voxel/grid.h"
 
-/* What rows are filled from. */
+/* What the rows are filled from. All pointers are borrowed. */
 typedef struct RowSource {
     const Bodies *bodies;
     const VoxelGrid *grid;
-    SampleType type;        /* of values */
-    const uint32_t *labels; /* of segments, or NULL */
-    bool centreline;
+    SampleType type;        /* type of RowBlock.values */
+    const uint32_t *labels; /* per segment index: its label; NULL: no labels */
 } RowSource;
 
-/* The voxels that a body may meet in a row, and those of them that it holds: from the first to
- * before the end. */
+/* The voxels of one row that one body may touch, [first, end), and among these the voxels that lie
+ * wholly in the body, [full_first, full_end). */
 typedef struct Span {
     int64_t row, first, end, full_first, full_end;
     uint32_t body;
 } Span;
 
-/* Room of a thread; zeroed at first, freed with rowroom_release. */
-typedef struct RowRoom {
-    BodyList list, met;
-    Span *spans;
-    size_t n_spans, span_capacity;
-    size_t *active;
-    size_t active_capacity;
-    CoverRoom cover;
-} RowRoom;
+/* Workspace of one thread. Zero it before first use; release it with rowworkspace_release. */
+typedef struct RowWorkspace {
+    BodyList candidates;  /* bodies whose boxes meet the block of rows */
+    BodyList touching;    /* bodies that may touch the current voxel */
+    ARRAY(Span) spans;    /* all spans of the block, sorted by row, then voxel */
+    ARRAY(size_t) active; /* indices of the spans that contain the current voxel */
+    CoverWorkspace coverage;
+} RowWorkspace;
 
-void rowroom_release(RowRoom *room);
+void rowworkspace_release(RowWorkspace *workspace);
 
-/* Consecutive rows, numbered along y and then z, with their samples, zeroed before. */
-typedef struct Rows {
-    int64_t first, n;
-    uint8_t *values;     /* of source->type */
-    uint32_t *labels;    /* or NULL */
-    uint8_t *centreline; /* or NULL */
-    double filled;       /* voxels, as the sum of their parts */
-    double said;         /* likewise of the samples, over sample_full */
-    int64_t n_filled;    /* samples above 0 */
-} Rows;
+/* Consecutive rows of the grid and their samples. The row at (y, z) has the index y + n_y z. The
+ * caller owns the arrays, each with one element per voxel of the rows. */
+typedef struct RowBlock {
+    int64_t first_row, n_rows;
+    uint8_t *values;     /* filled fractions, of RowSource.type */
+    uint32_t *labels;    /* where the value is above 0: label of the segment that fills most of the
+                          * voxel; NULL: not wanted */
+    uint8_t *centreline; /* 1 where a vessel axis passes; NULL: not wanted */
+    double covered;      /* sum of the filled fractions of the voxels, before rounding */
+    double written;      /* sum of the written samples, divided by the value of a full voxel */
+    int64_t n_nonzero;   /* number of samples above 0 */
+} RowBlock;
 
-/* STATUS_MEMORY. */
-MUST_CHECK Status rows_fill(const RowSource *source, RowRoom *room, Rows *rows, Err *err);
+/* Fills the arrays and sums of `rows`, all of which must be zero. An integer sample of a voxel that
+ * a vessel axis passes is never 0. Errors: STATUS_MEMORY. */
+MUST_CHECK Status rowblock_fill(const RowSource *source, RowWorkspace *workspace, RowBlock *rows,
+                                Err *err);
 
 #endif

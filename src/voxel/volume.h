@@ -1,4 +1,4 @@
-/* Volumes in files: a table of formats, and streams that are filled part by part. */
+/* Volume files: a table of formats, and streams that are written part by part. */
 #ifndef CORCAST_VOXEL_VOLUME_H
 #define CORCAST_VOXEL_VOLUME_H
 
@@ -6,72 +6,77 @@
 #include "geom/geom.h"
 #include <stdint.h>
 
-/* Box-shaped voxels across the axes, x fastest. */
+/* A grid of box-shaped voxels, x fastest. Lengths are in mm, coordinates right-handed. */
 typedef struct VoxelGrid {
-    Vec3 first;   /* the middle of the first voxel, mm, right-handed */
-    Vec3 step;    /* > 0 */
-    Vec3 origin;  /* where the origin of `first` lies in the coordinates of the tree */
-    int64_t n[3]; /* >= 1, below 2^31 */
+    Vec3 first;   /* centre of the first voxel */
+    Vec3 step;    /* sides of a voxel, > 0 */
+    Vec3 origin;  /* position of the origin of `first` in the coordinates of the tree */
+    int64_t n[3]; /* number of voxels along each axis, >= 1, below 2^31 */
 } VoxelGrid;
 
 typedef enum SampleType { SAMPLE_8, SAMPLE_16, SAMPLE_FLOAT, SAMPLE_32, SAMPLE_TYPES } SampleType;
 
-/* Bytes of a sample. */
+/* Returns the size of a sample in bytes. */
 size_t sample_size(SampleType type);
-/* What a full voxel is in a volume of how much is filled: 255, 65535 or 1. */
+/* Returns the sample of a full voxel in a volume of filled fractions: 255, 65535 or 1. */
 double sample_full(SampleType type);
 
+/* A file format: one row of `volume_formats`. */
 typedef struct VolumeFormat {
     const char *suffix; /* ".nii.gz" */
     const char *description;
-    int64_t most;   /* voxels along an axis */
-    unsigned types; /* bits 1 << SampleType */
+    int64_t most;   /* maximum number of voxels along an axis */
+    unsigned types; /* sample types that it can hold: bits 1 << SampleType */
     bool deflated, big_endian;
-    bool header_deflated; /* as the samples */
-    bool is_density; /* it is for POV-Ray: it holds how much of voxels is filled, and no labels */
-    /* Appends what stands before the samples; `parts`: full voxels are sample_full, not labels. */
+    bool header_deflated; /* the header is compressed with the samples */
+    bool is_density;      /* for POV-Ray: holds filled fractions, and no labels */
+    /* Appends the header. `parts`: the samples are filled fractions, not labels. `about`: a line
+     * that describes the volume. */
     void (*put_header)(const VoxelGrid *grid, SampleType type, bool parts, const char *about,
                        Text *out);
 } VolumeFormat;
 
-/* A row without a suffix ends them. */
+/* The table of formats. A row without a suffix ends it. */
 extern const VolumeFormat volume_formats[];
-/* The format of a file of this name, or NULL. */
+/* Returns the format of a file by the end of its name, or NULL. */
 const VolumeFormat *volume_format_find(const char *path);
 
-/* STATUS_INFEASIBLE when a format cannot hold the grid's number of voxels along an axis,
- * STATUS_USAGE when it has no samples of this type, or no labels and `parts` is false. */
+/* Checks that a format can hold a volume. Errors: STATUS_INFEASIBLE if there are too many voxels
+ * along an axis; STATUS_USAGE if the format has no samples of this type, or if `parts` is false and
+ * it holds no labels. */
 MUST_CHECK Status volume_check(const VolumeFormat *format, const VoxelGrid *grid, SampleType type,
                                bool parts, Err *err);
 
-/* A file on its way; `to` and `path`, for sentences, are borrowed. */
+/* A file that is being written. The caller sets the first four members; all are borrowed. */
 typedef struct VolumeStream {
     const VolumeFormat *format;
     SampleType type;
     FILE *to;
-    const char *path;
-    uint32_t crc; /* of deflated samples and header, so far */
-    uint64_t plain;
+    const char *path; /* for messages */
+    uint32_t crc;     /* checksum of what was compressed so far */
+    uint64_t plain;   /* its size before compression */
 } VolumeStream;
 
-/* Begins a file with its header; `about` is a line that says what it is. STATUS_MEMORY. */
+/* Writes the header. `parts` and `about` as VolumeFormat.put_header. Errors: STATUS_MEMORY. */
 MUST_CHECK Status volume_begin(VolumeStream *stream, const VoxelGrid *grid, bool parts,
                                const char *about, Err *err);
-/* Behind the last samples. Whether the file took all, its owner asks [base/file.h]. */
+/* Writes what follows the last samples. The owner of the file checks whether all was written
+ * [base/file.h]. */
 void volume_end(VolumeStream *stream);
 
-/* Samples as the file has them. */
+/* Samples in the form in which the file holds them. */
 typedef struct VolumePart {
-    uint8_t *bytes; /* owned */
-    size_t n, plain;
+    uint8_t *bytes;  /* owned */
+    size_t n, plain; /* number of bytes, and of bytes before compression */
     uint32_t crc;
 } VolumePart;
 
-/* Makes a part of `n` bytes of samples in the machine's order, in *out (owned; free its bytes).
- * Threads may make parts of one stream at the same time; the samples are changed. STATUS_MEMORY. */
+/* Converts `n` bytes of samples in the machine's byte order to a part of the file. Changes the
+ * samples. Several threads may convert parts of one stream at the same time. Free out->bytes.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n,
                               VolumePart *out, Err *err);
-/* Appends the next part. STATUS_IO when the file takes no more. */
+/* Appends the next part to the file. Errors: STATUS_IO. */
 MUST_CHECK Status volume_put(VolumeStream *stream, const VolumePart *part, Err *err);
 
 #endif

@@ -11,20 +11,18 @@
 
 enum { CHUNK_VOXELS = 1 << 18, CHUNKS_A_THREAD = 4, VOLUMES = 3 };
 
-typedef struct Chunk {
-    Rows rows;
+typedef struct VoxelChunk {
+    RowBlock rows;
     VolumePart parts[VOLUMES];
-    Status status;
-    Err err;
-} Chunk;
+} VoxelChunk;
 
 typedef struct Work {
     const VoxelParams *params;
     VolumeStream *streams[VOLUMES];
     RowSource source;
     Claims claims;
-    RowRoom *rooms;
-    Chunk *chunks;
+    RowWorkspace *workspaces;
+    VoxelChunk *chunks;
     size_t n_chunks; /* at a time */
     int64_t first_row, rows_a_chunk, n_rows;
     int threads;
@@ -91,7 +89,7 @@ VoxelEstimate voxels_estimate(const Geometry *geometry, const VoxelParams *param
 /* ---- chunks ---------------------------------------------------------------------------------- */
 
 /* Makes a sample that was rounded to 0 the least above it. */
-static void raise_sample(Rows *rows, size_t at, SampleType type)
+static void raise_sample(RowBlock *rows, size_t at, SampleType type)
 {
     uint16_t *wide = (uint16_t *)(void *)rows->values;
     if (type == SAMPLE_FLOAT || (type == SAMPLE_8 ? rows->values[at] : wide[at]))
@@ -100,16 +98,16 @@ static void raise_sample(Rows *rows, size_t at, SampleType type)
         rows->values[at] = 1;
     else
         wide[at] = 1;
-    rows->said += 1 / sample_full(type);
-    rows->n_filled++;
+    rows->written += 1 / sample_full(type);
+    rows->n_nonzero++;
 }
 
 /* Gives claimed voxels their labels, and something to be labelled. */
-static void put_claims(const Work *work, Rows *rows)
+static void put_claims(const Work *work, RowBlock *rows)
 {
     const VoxelGrid *grid = work->source.grid;
     const Claims *claims = &work->claims;
-    int64_t first = rows->first * grid->n[0], end = first + rows->n * grid->n[0];
+    int64_t first = rows->first_row * grid->n[0], end = first + rows->n_rows * grid->n[0];
     for (size_t i = claims_from(claims, first); i < claims->n && claims->claim[i].voxel < end;
          i++) {
         size_t at = (size_t)(claims->claim[i].voxel - first);
@@ -127,10 +125,10 @@ static void narrow(uint32_t *labels, size_t n)
     }
 }
 
-static Status pack_chunk(const Work *work, Chunk *chunk, Err *err)
+static Status pack_chunk(const Work *work, VoxelChunk *chunk, Err *err)
 {
-    const Rows *rows = &chunk->rows;
-    size_t n = (size_t)(rows->n * work->source.grid->n[0]);
+    const RowBlock *rows = &chunk->rows;
+    size_t n = (size_t)(rows->n_rows * work->source.grid->n[0]);
     uint8_t *samples[VOLUMES] = {rows->values, (uint8_t *)rows->labels, rows->centreline};
     if (rows->labels && work->streams[1]->type == SAMPLE_16)
         narrow(rows->labels, n);
@@ -141,9 +139,9 @@ static Status pack_chunk(const Work *work, Chunk *chunk, Err *err)
     return STATUS_OK;
 }
 
-static Status reserve_chunk(const Work *work, Rows *rows, Err *err)
+static Status reserve_chunk(const Work *work, RowBlock *rows, Err *err)
 {
-    size_t n = (size_t)(rows->n * work->source.grid->n[0]);
+    size_t n = (size_t)(rows->n_rows * work->source.grid->n[0]);
     TRY(mem_calloc(&rows->values, n, sample_size(work->source.type), "voxels", err));
     if (work->params->label)
         TRY(mem_calloc(&rows->labels, n, sizeof *rows->labels, "labels", err));
@@ -152,71 +150,67 @@ static Status reserve_chunk(const Work *work, Rows *rows, Err *err)
     return STATUS_OK;
 }
 
-static Status make_chunk(const Work *work, int64_t first, RowRoom *room, Chunk *chunk, Err *err)
+static Status make_chunk(const Work *work, int64_t first, RowWorkspace *workspace,
+                         VoxelChunk *chunk, Err *err)
 {
     int64_t left = work->n_rows - first;
-    chunk->rows = (Rows){.first = first};
-    chunk->rows.n = work->rows_a_chunk < left ? work->rows_a_chunk : left;
+    chunk->rows = (RowBlock){.first_row = first};
+    chunk->rows.n_rows = work->rows_a_chunk < left ? work->rows_a_chunk : left;
     TRY(reserve_chunk(work, &chunk->rows, err));
-    TRY(rows_fill(&work->source, room, &chunk->rows, err));
+    TRY(rowblock_fill(&work->source, workspace, &chunk->rows, err));
     if (chunk->rows.labels)
         put_claims(work, &chunk->rows);
     return pack_chunk(work, chunk, err);
 }
 
-static void release_chunk(Chunk *chunk)
+static void release_chunk(VoxelChunk *chunk)
 {
     free(chunk->rows.values);
     free(chunk->rows.labels);
     free(chunk->rows.centreline);
     for (int i = 0; i < VOLUMES; i++)
         free(chunk->parts[i].bytes);
-    *chunk = (Chunk){0};
+    *chunk = (VoxelChunk){0};
 }
 
-static void work_on_chunk(size_t index, int worker, void *context)
+static Status work_on_chunk(size_t index, int worker, void *context, Err *err)
 {
     const Work *work = context;
-    Chunk *chunk = &work->chunks[index];
     int64_t first = work->first_row + (int64_t)index * work->rows_a_chunk;
-    chunk->status = make_chunk(work, first, &work->rooms[worker], chunk, &chunk->err);
+    return make_chunk(work, first, &work->workspaces[worker], &work->chunks[index], err);
 }
 
 /* Writes a chunk and adds up what it is. */
-static Status put_chunk(const Work *work, const Chunk *chunk, VoxelReport *report, Err *err)
+static Status put_chunk(const Work *work, const VoxelChunk *chunk, VoxelReport *report, Err *err)
 {
     Vec3 step = work->source.grid->step;
     double voxel_mm3 = step.x * step.y * step.z;
-    if (chunk->status != STATUS_OK)
-        return err_set(err, chunk->status, "%s", chunk->err.text);
     for (int i = 0; i < VOLUMES; i++)
         if (work->streams[i])
             TRY(volume_put(work->streams[i], &chunk->parts[i], err));
-    report->union_mm3 += chunk->rows.filled * voxel_mm3;
-    report->volume_mm3 += chunk->rows.said * voxel_mm3;
-    report->filled += chunk->rows.n_filled;
+    report->union_mm3 += chunk->rows.covered * voxel_mm3;
+    report->volume_mm3 += chunk->rows.written * voxel_mm3;
+    report->filled += chunk->rows.n_nonzero;
     return STATUS_OK;
 }
 
 static Status make_chunks(Work *work, VoxelReport *report, Err *err)
 {
     const VoxelParams *params = work->params;
-    Status status = STATUS_OK;
     int64_t step = work->rows_a_chunk * (int64_t)work->n_chunks;
-    for (; work->first_row < work->n_rows && status == STATUS_OK; work->first_row += step) {
+    for (; work->first_row < work->n_rows; work->first_row += step) {
         int64_t left = (work->n_rows - work->first_row - 1) / work->rows_a_chunk + 1;
         size_t n = left < (int64_t)work->n_chunks ? (size_t)left : work->n_chunks;
-        threads_for(n, work->threads, work_on_chunk, work);
+        TRY(threads_try(n, work->threads, work_on_chunk, work, err));
         for (size_t i = 0; i < n; i++) {
-            if (status == STATUS_OK)
-                status = put_chunk(work, &work->chunks[i], report, err);
+            TRY(put_chunk(work, &work->chunks[i], report, err));
             release_chunk(&work->chunks[i]);
         }
         if (params->progress)
             params->progress(fmin(1, (double)(work->first_row + step) / (double)work->n_rows),
                              params->context);
     }
-    return status;
+    return STATUS_OK;
 }
 
 static Status prepare(Work *work, Err *err)
@@ -227,14 +221,17 @@ static Status prepare(Work *work, Err *err)
     work->n_rows = grid->n[1] * grid->n[2];
     work->n_chunks = (size_t)work->threads * CHUNKS_A_THREAD;
     TRY(mem_calloc(&work->chunks, work->n_chunks, sizeof *work->chunks, "voxels", err));
-    return mem_calloc(&work->rooms, (size_t)work->threads, sizeof *work->rooms, "threads", err);
+    return mem_calloc(&work->workspaces, (size_t)work->threads, sizeof *work->workspaces, "threads",
+                      err);
 }
 
 static void release_work(Work *work)
 {
-    for (int i = 0; work->rooms && i < work->threads; i++)
-        rowroom_release(&work->rooms[i]);
-    free(work->rooms);
+    for (int i = 0; work->workspaces && i < work->threads; i++)
+        rowworkspace_release(&work->workspaces[i]);
+    for (size_t i = 0; work->chunks && i < work->n_chunks; i++)
+        release_chunk(&work->chunks[i]);
+    free(work->workspaces);
     free(work->chunks);
     claims_release(&work->claims);
 }

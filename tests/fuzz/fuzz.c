@@ -83,7 +83,7 @@ void fuzz_image(const uint8_t *bytes, size_t size)
     const char *path = fuzz_file("picture", bytes, size);
     Err err = {{0}};
     Image image;
-    Status status = image_read(&image, path, &err);
+    Status status = image_read(&image, path, ALPHA_REFUSED, NULL, &err);
     fuzz_check_refusal(status, &err, path);
     const Picture none = {0};
     read_by_rows(path, status == STATUS_OK ? &image.picture : &none);

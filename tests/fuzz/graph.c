@@ -45,10 +45,10 @@ static void check(const Tree *tree, TreeReading *reading)
     status = tree_check(tree, &err);
     assert(status == STATUS_OK);
     (void)status;
-    assert(tree->n == reading->points - reading->merged - reading->unused);
+    assert(tree->n == reading->network.points - reading->network.merged - reading->network.unused);
     assert(tree->n - reading->n_roots ==
-           reading->lines - reading->without_length - reading->repeated - reading->loops);
-    assert(reading->n_cuts == reading->loops);
+           reading->network.lines - reading->network.without_length - reading->network.repeated - reading->network.loops);
+    assert(reading->network.n_cuts == reading->network.loops);
     for (int i = 0; i <= READ_MAX_DEGREE; i++)
         degrees += reading->degree[i];
     assert(degrees == tree->n && reading->degree[0] == 0);

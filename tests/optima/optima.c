@@ -180,7 +180,7 @@ static Tree tree_of(const Topology *t, double unit2)
     }
     set_radii(&tree, unit2);
     GrowParams params = grow_defaults();
-    params.q_perf_ml_min = flow;
+    params.blood.q_perf_ml_min = flow;
     grow_describe(&params, &tree.meta);
     return tree;
 }
@@ -268,9 +268,9 @@ static double unit2_of(const Points *points)
 {
     const double pi = 3.14159265358979323846;
     const GrowParams params = grow_defaults();
-    double drop = pa_from_mmhg(params.p_perf_mmhg - params.p_term_mmhg);
+    double drop = pa_from_mmhg(params.blood.p_perf_mmhg - params.blood.p_term_mmhg);
     double q = mm3_s_from_ml_min(flow) / points->n;
-    return sqrt(8 * pa_s_from_cp(params.viscosity_cp) / pi * q / drop);
+    return sqrt(8 * pa_s_from_cp(params.blood.viscosity_cp) / pi * q / drop);
 }
 
 /* Adds the next terminal where M then is least. */

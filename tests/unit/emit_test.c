@@ -86,7 +86,8 @@ static Status write_povray(const Scene *scene, const EmitParams *params, Emitted
 {
     EmitParams all = *params;
     all.scene = scene;
-    return emitter_find("pov", false)->write(&all, &out->scene, &out->geometry, &out->report, err);
+    EmitOutput to = {&out->scene, &out->geometry, &out->report};
+    return emitter_find("pov", false)->write(&all, &to, err);
 }
 
 static Emitted emit(const Scene *scene, const EmitParams *params)

@@ -123,7 +123,7 @@ static void the_file_says_the_root_by_an_inlet_or_else_by_directions(void **stat
         must(build(&net, &tree), &net.err);
         assert_int_equal(net.reading.root[0].id, inlet ? 2 : 4);
         assert_int_equal(net.reading.root[0].reason, inlet ? ROOT_SAID : ROOT_DIRECTION);
-        assert_int_equal(net.reading.against, inlet ? 2 : 0);
+        assert_int_equal(net.reading.network.against, inlet ? 2 : 0);
         release(&net, &tree);
     }
 }
@@ -166,10 +166,10 @@ static void merges_points_at_one_place_and_drops_what_is_not_needed(void **state
     net.options.merge_tolerance_mm = 2e-4;
     must(build(&net, &tree), &net.err);
     assert_tree(&tree, "2<-1:1.5 3<2:1.5 5<3:0.75 7<3:0.5");
-    assert_int_equal(net.reading.merged, 2);
-    assert_int_equal(net.reading.unused, 1);
-    assert_int_equal(net.reading.without_length, 1);
-    assert_int_equal(net.reading.repeated, 1);
+    assert_int_equal(net.reading.network.merged, 2);
+    assert_int_equal(net.reading.network.unused, 1);
+    assert_int_equal(net.reading.network.without_length, 1);
+    assert_int_equal(net.reading.network.repeated, 1);
     release(&net, &tree);
 }
 
@@ -219,11 +219,11 @@ static void cuts_a_loop_at_its_thinnest_line(void **state)
     put_square(&net);
     must(build(&net, &tree), &net.err);
     assert_tree(&tree, "1<-1:0.9 2<1:0.9 3<2:0.8 4<3:0.7 5<2:0.6");
-    assert_int_equal(net.reading.loops, 1);
-    assert_int_equal(net.reading.n_cuts, 1);
-    assert_int_equal(net.reading.cut[0].record, 203);
-    assert_float_equal(net.reading.cut[0].radius_mm, 0.2, 0);
-    assert_float_equal(net.reading.cut[0].position.x, 0.75, 0);
+    assert_int_equal(net.reading.network.loops, 1);
+    assert_int_equal(net.reading.network.n_cuts, 1);
+    assert_int_equal(net.reading.network.cut[0].record, 203);
+    assert_float_equal(net.reading.network.cut[0].radius_mm, 0.2, 0);
+    assert_float_equal(net.reading.network.cut[0].position.x, 0.75, 0);
     release(&net, &tree);
 }
 

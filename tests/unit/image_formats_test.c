@@ -35,7 +35,7 @@ static void reads_tiff_codes_however_compressed(void **state)
         char path[128];
         Picture picture;
         path_of(files[i].name, path);
-        assert_int_equal(picture_read(&picture, path, &err), STATUS_OK);
+        assert_int_equal(picture_read(&picture, path, ALPHA_REFUSED, &err), STATUS_OK);
         assert_int_equal(picture.width, W);
         assert_int_equal(picture.height, H);
         assert_int_equal(picture.channels, 3);
@@ -59,7 +59,7 @@ static void reads_floats_of_every_kind(void **state)
         char path[128];
         Plane plane;
         path_of(names[i], path);
-        assert_int_equal(plane_read(&plane, path, &err), STATUS_OK);
+        assert_int_equal(plane_read(&plane, path, ALPHA_REFUSED, &err), STATUS_OK);
         assert_int_equal(plane.width, W);
         assert_int_equal(plane.height, H);
         assert_int_equal(plane.channels, 3);
@@ -78,7 +78,8 @@ static void reads_tiff_floats_of_16_bits(void **state)
 {
     (void)state;
     Plane plane;
-    assert_int_equal(plane_read(&plane, "tests/data/images/half.tif", &err), STATUS_OK);
+    assert_int_equal(plane_read(&plane, "tests/data/images/half.tif", ALPHA_REFUSED, &err),
+                     STATUS_OK);
     size_t at = 0;
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++)
@@ -91,7 +92,8 @@ static void keeps_infinity_and_nan_of_a_single_channel(void **state)
 {
     (void)state;
     Plane plane;
-    assert_int_equal(plane_read(&plane, "tests/data/images/depth.exr", &err), STATUS_OK);
+    assert_int_equal(plane_read(&plane, "tests/data/images/depth.exr", ALPHA_REFUSED, &err),
+                     STATUS_OK);
     assert_int_equal(plane.channels, 1);
     assert_true(isinf(plane.values[0]));
     assert_true(isnan(plane.values[2 * W + 3]));
@@ -104,7 +106,7 @@ static Image read_image(const char *name)
     char path[128];
     Image image;
     path_of(name, path);
-    must(image_read(&image, path, &err), &err);
+    must(image_read(&image, path, ALPHA_REFUSED, NULL, &err), &err);
     return image;
 }
 
@@ -233,7 +235,7 @@ static void says_what_it_does_not_read(void **state)
         char path[128];
         Image image = {.picture = {.width = -7}};
         path_of(files[i].name, path);
-        assert_int_equal(image_read(&image, path, &err), STATUS_INPUT);
+        assert_int_equal(image_read(&image, path, ALPHA_REFUSED, NULL, &err), STATUS_INPUT);
         assert_non_null(strstr(err.text, path));
         if (!strstr(err.text, files[i].sentence))
             fail_msg("\"%s\" lacks \"%s\"", err.text, files[i].sentence);
@@ -241,9 +243,11 @@ static void says_what_it_does_not_read(void **state)
     }
     Picture picture;
     Plane plane;
-    assert_int_equal(picture_read(&picture, "tests/data/images/float.tif", &err), STATUS_INPUT);
+    assert_int_equal(picture_read(&picture, "tests/data/images/float.tif", ALPHA_REFUSED, &err),
+                     STATUS_INPUT);
     assert_non_null(strstr(err.text, "holds floats"));
-    assert_int_equal(plane_read(&plane, "tests/data/images/rgb8-lzw.tif", &err), STATUS_INPUT);
+    assert_int_equal(plane_read(&plane, "tests/data/images/rgb8-lzw.tif", ALPHA_REFUSED, &err),
+                     STATUS_INPUT);
     assert_non_null(strstr(err.text, "holds whole numbers"));
 }
 
@@ -253,7 +257,7 @@ static void keeps_alpha_or_lays_it_on_a_background(void **state)
     (void)state;
     static const float grey[3] = {0.3f, 0.3f, 0.3f};
     Picture picture;
-    assert_int_equal(picture_read_transparent(&picture, "tests/data/images/glassy.tif", &err),
+    assert_int_equal(picture_read(&picture, "tests/data/images/glassy.tif", ALPHA_KEPT, &err),
                      STATUS_OK);
     assert_int_equal(picture.channels, 4);
     for (size_t i = 0; i < 4; i++)
@@ -261,8 +265,8 @@ static void keeps_alpha_or_lays_it_on_a_background(void **state)
     picture_release(&picture);
     Image kept = {0}, laid = {0};
     const char *path = "tests/data/images/glassy.exr";
-    assert_int_equal(image_read_transparent(&kept, path, &err), STATUS_OK);
-    assert_int_equal(image_read_transparent(&laid, path, &err), STATUS_OK);
+    assert_int_equal(image_read(&kept, path, ALPHA_KEPT, NULL, &err), STATUS_OK);
+    assert_int_equal(image_read(&laid, path, ALPHA_KEPT, NULL, &err), STATUS_OK);
     assert_int_equal(image_lay_on(&laid, grey, &err), STATUS_OK);
     assert_int_equal(kept.plane.channels, 4);
     assert_int_equal(laid.plane.channels, 3);
@@ -292,7 +296,8 @@ static void refuses_pixels_that_no_file_of_that_size_holds(void **state)
         snprintf(sentence, sizeof sentence,
                  "%s: its header announces %s pixels, more than its %s bytes can hold",
                  files[i].path, files[i].sides, files[i].size);
-        assert_int_equal(image_read(&image, files[i].path, &err), STATUS_INPUT);
+        assert_int_equal(image_read(&image, files[i].path, ALPHA_REFUSED, NULL, &err),
+                         STATUS_INPUT);
         assert_string_equal(err.text, sentence);
     }
 }
@@ -310,7 +315,7 @@ static Status read_bytes(const char *bytes, size_t size)
     assert_int_equal(write(file, bytes, size), size);
     snprintf(path, sizeof path, "/proc/self/fd/%d", file);
     err.text[0] = '\0';
-    Status status = image_read(&image, path, &err);
+    Status status = image_read(&image, path, ALPHA_REFUSED, NULL, &err);
     if (status != STATUS_OK) {
         assert_true(status == STATUS_INPUT || status == STATUS_MEMORY);
         assert_true(strlen(err.text) > strlen(path));
@@ -340,7 +345,7 @@ static char *sample(size_t i, size_t *size)
         assert_int_equal(picture_init(&picture, W, H, 3, i % 2 ? 8 : 16, &err), STATUS_OK);
         for (size_t k = 0; k < W * H * 3; k++)
             picture_set(&picture, k, (uint16_t)(k * 77 % 256));
-        assert_int_equal(picture_write(&picture, path, ENCODING_SRGB, NULL, &err), STATUS_OK);
+        assert_int_equal(picture_write(&picture, path, ENCODING_SRGB, NULL, NULL, &err), STATUS_OK);
         picture_release(&picture);
     }
     assert_int_equal(file_read(path, &any_file, &bytes, size, &err), STATUS_OK);
@@ -360,7 +365,7 @@ static void names_the_end_that_a_png_lacks(void **state)
         ImageReader *reader;
         Picture rows;
         assert_int_equal(file_write(path, bytes, size - END_CHUNK, &err), STATUS_OK);
-        assert_int_equal(image_read(&image, path, &err), STATUS_INPUT);
+        assert_int_equal(image_read(&image, path, ALPHA_REFUSED, NULL, &err), STATUS_INPUT);
         assert_non_null(strstr(err.text, "ends before its IEND chunk; its pixels are whole"));
         assert_int_equal(imagereader_open(&reader, path, &err), STATUS_OK);
         assert_int_equal(picture_init(&rows, W, H, 3, imagereader_form(reader)->bits, &err),

@@ -68,7 +68,8 @@ static bool read_rows(const char *path, int n, const Picture *expected)
 static void write_file(int i, Picture *picture)
 {
     make(picture, files[i].channels, files[i].bits);
-    assert_int_equal(picture_write(picture, files[i].path, ENCODING_SRGB, &notes, &err), STATUS_OK);
+    assert_int_equal(picture_write(picture, files[i].path, ENCODING_SRGB, &notes, NULL, &err),
+                     STATUS_OK);
 }
 
 static void reads_a_few_rows_at_a_time_what_was_written(void **state)

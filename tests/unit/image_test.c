@@ -32,7 +32,7 @@ static void assert_same(const Picture *a, const Picture *b)
 static Status read_bytes(const void *bytes, size_t size, Picture *picture)
 {
     assert_int_equal(file_write("build/image_test.in", bytes, size, &err), STATUS_OK);
-    Status status = picture_read(picture, "build/image_test.in", &err);
+    Status status = picture_read(picture, "build/image_test.in", ALPHA_REFUSED, &err);
     unlink("build/image_test.in");
     return status;
 }
@@ -78,9 +78,9 @@ static void returns_from_every_file_what_was_written(void **state)
             Picture written, read;
             make(&written, cases[i].width, cases[i].height, cases[i].channels, cases[i].bits);
             assert_int_equal(picture_write(&written, cases[i].path, encoding,
-                                           encoding == ENCODING_SRGB ? &notes : NULL, &err),
+                                           encoding == ENCODING_SRGB ? &notes : NULL, NULL, &err),
                              STATUS_OK);
-            assert_int_equal(picture_read(&read, cases[i].path, &err), STATUS_OK);
+            assert_int_equal(picture_read(&read, cases[i].path, ALPHA_REFUSED, &err), STATUS_OK);
             assert_same(&written, &read);
             unlink(cases[i].path);
             picture_release(&written);
@@ -120,11 +120,11 @@ static void refuses_to_write_what_the_extension_cannot_hold(void **state)
     (void)state;
     Picture picture;
     make(&picture, 2, 2, 3, 8);
-    assert_int_equal(picture_write(&picture, "build/x.webp", ENCODING_SRGB, NULL, &err),
+    assert_int_equal(picture_write(&picture, "build/x.webp", ENCODING_SRGB, NULL, NULL, &err),
                      STATUS_USAGE);
-    assert_int_equal(picture_write(&picture, "build/x.pgm", ENCODING_SRGB, NULL, &err),
+    assert_int_equal(picture_write(&picture, "build/x.pgm", ENCODING_SRGB, NULL, NULL, &err),
                      STATUS_USAGE);
-    assert_int_equal(picture_write(&picture, "build/none/x.png", ENCODING_SRGB, NULL, &err),
+    assert_int_equal(picture_write(&picture, "build/none/x.png", ENCODING_SRGB, NULL, NULL, &err),
                      STATUS_IO);
     assert_int_not_equal(access("build/x.webp", F_OK), 0);
     picture_release(&picture);
@@ -138,8 +138,9 @@ static void reports_a_disk_that_is_full(void **state)
     Picture picture;
     make(&picture, 97, 91, 3, 16);
     assert_int_equal(symlink("/dev/full", "build/image_full.png"), 0);
-    assert_int_equal(picture_write(&picture, "build/image_full.png", ENCODING_SRGB, NULL, &err),
-                     STATUS_IO);
+    assert_int_equal(
+        picture_write(&picture, "build/image_full.png", ENCODING_SRGB, NULL, NULL, &err),
+        STATUS_IO);
     assert_non_null(strstr(err.text, "image_full.png"));
     unlink("build/image_full.png");
     picture_release(&picture);
@@ -218,8 +219,9 @@ static void survives_damage(const char *path, bool is_plane)
                          STATUS_OK);
         bytes[at] = saved;
         err.text[0] = '\0';
-        Status status = is_plane ? plane_read(&plane, "build/image_test.in", &err)
-                                 : picture_read(&picture, "build/image_test.in", &err);
+        Status status = is_plane
+                            ? plane_read(&plane, "build/image_test.in", ALPHA_REFUSED, &err)
+                            : picture_read(&picture, "build/image_test.in", ALPHA_REFUSED, &err);
         if (truncating)
             assert_int_equal(status, STATUS_INPUT);
         if (status != STATUS_OK)
@@ -239,7 +241,7 @@ static void survives_truncated_and_damaged_files(void **state)
         for (int bits = 8; bits <= 16; bits += 8) {
             Picture picture;
             make(&picture, 5, 4, 3, bits);
-            assert_int_equal(picture_write(&picture, paths[i], ENCODING_SRGB, NULL, &err),
+            assert_int_equal(picture_write(&picture, paths[i], ENCODING_SRGB, NULL, NULL, &err),
                              STATUS_OK);
             survives_damage(paths[i], false);
             picture_release(&picture);
@@ -247,7 +249,7 @@ static void survives_truncated_and_damaged_files(void **state)
         }
     Plane plane;
     assert_int_equal(plane_init(&plane, 3, 2, 3, &err), STATUS_OK);
-    assert_int_equal(plane_write(&plane, "build/image_damage.pfm", &err), STATUS_OK);
+    assert_int_equal(plane_write(&plane, "build/image_damage.pfm", NULL, &err), STATUS_OK);
     survives_damage("build/image_damage.pfm", true);
     plane_release(&plane);
     unlink("build/image_damage.pfm");
@@ -479,8 +481,8 @@ static void keeps_infinity_and_nan_in_a_pfm(void **state)
     assert_int_equal(plane_init(&plane, 3, 2, 1, &err), STATUS_OK);
     const float values[] = {2.385f, INFINITY, NAN, -0.0f, 1e-30f, -7};
     memcpy(plane.values, values, sizeof values);
-    assert_int_equal(plane_write(&plane, "build/image_test.pfm", &err), STATUS_OK);
-    assert_int_equal(plane_read(&back, "build/image_test.pfm", &err), STATUS_OK);
+    assert_int_equal(plane_write(&plane, "build/image_test.pfm", NULL, &err), STATUS_OK);
+    assert_int_equal(plane_read(&back, "build/image_test.pfm", ALPHA_REFUSED, &err), STATUS_OK);
     assert_memory_equal(back.values, values, sizeof values);
     assert_int_equal(back.channels, 1);
     unlink("build/image_test.pfm");
@@ -501,7 +503,7 @@ static void reads_a_pfm_of_either_byte_order_from_the_bottom_up(void **state)
         Plane plane;
         assert_int_equal(file_write("build/image_test", files[i].bytes, files[i].size, &err),
                          STATUS_OK);
-        assert_int_equal(plane_read(&plane, "build/image_test", &err), STATUS_OK);
+        assert_int_equal(plane_read(&plane, "build/image_test", ALPHA_REFUSED, &err), STATUS_OK);
         assert_float_equal(plane.values[0], -3, 0);
         assert_float_equal(plane.values[1], 2, 0);
         plane_release(&plane);
@@ -528,7 +530,8 @@ static void says_what_is_wrong_with_a_pfm(void **state)
         assert_int_equal(
             file_write("build/image_test.pfm", cases[i].text, strlen(cases[i].text), &err),
             STATUS_OK);
-        assert_int_equal(plane_read(&plane, "build/image_test.pfm", &err), STATUS_INPUT);
+        assert_int_equal(plane_read(&plane, "build/image_test.pfm", ALPHA_REFUSED, &err),
+                         STATUS_INPUT);
         if (!strstr(err.text, cases[i].sentence))
             fail_msg("\"%s\" lacks \"%s\"", err.text, cases[i].sentence);
     }

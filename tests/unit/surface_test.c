@@ -223,7 +223,8 @@ static void make_groups(const uint32_t *sets, Geometry *geometry)
                 groups[first_of_segment[i + 1]++] = group;
     }
     geometry->n_segments = GROUPED;
-    geometry->blend = (Blend){GROUPS, {first, members}, {first_of_segment, groups}};
+    geometry->blend = (Blend){
+        GROUPS, {.first = first, .items = members}, {.first = first_of_segment, .items = groups}};
 }
 
 /* Whether the set, which is not empty, is part of no other, and the first of its equals. */

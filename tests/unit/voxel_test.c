@@ -127,7 +127,7 @@ static void part_of_a_union_is_that_of_points_in_it(void **state)
     const uint32_t list[BODIES] = {0, 1, 2, 3};
     Random random;
     random_seed(&random, 13);
-    CoverRoom room = {0};
+    CoverWorkspace room = {0};
     double worst = 0, sum2 = 0;
     assert_int_equal(cover_reserve(&room, BODIES, NULL), STATUS_OK);
     for (int i = 0; i < 200; i++) {
@@ -150,7 +150,7 @@ static void part_of_a_union_is_that_of_points_in_it(void **state)
 
 /* The part of a union by eighths of eighths of the cell. */
 static double union_of_eighths(const Body *bodies, const uint32_t *list, size_t n,
-                               const Cell *whole, int depth, CoverRoom *room)
+                               const Cell *whole, int depth, CoverWorkspace *room)
 {
     Vec3 half = vec3_scale(whole->half, 0.5);
     double part = 0;
@@ -186,7 +186,7 @@ static void the_part_of_one_voxel_is_off_by_no_more_than_is_said(void **state)
     const Cell cube = {.center = {0.31, -0.17, 0.43}, .half = {0.5, 0.5, 0.5}};
     Random random;
     random_seed(&random, 17);
-    CoverRoom room = {0};
+    CoverWorkspace room = {0};
     double worst = 0, sum2 = 0;
     assert_int_equal(cover_reserve(&room, BODIES, NULL), STATUS_OK);
     for (int i = 0; i < FORKS; i++) {
@@ -211,7 +211,7 @@ static void thin_vessels_that_meet_in_a_cell_have_their_volume(void **state)
 {
     (void)state;
     const uint32_t list[3] = {0, 1, 2};
-    CoverRoom room = {0};
+    CoverWorkspace room = {0};
     assert_int_equal(cover_reserve(&room, 3, NULL), STATUS_OK);
     for (double radius = 1e-2; radius > 1e-3; radius /= 3) {
         Vec3 node = vec3(0.33, -0.1, 0.47), bend = vec3(0.2, -0.37, 0.29);
@@ -234,7 +234,7 @@ static void thin_vessels_in_a_large_cell_are_found_at_every_depth(void **state)
     const uint32_t list[BODIES] = {0, 1, 2, 3};
     Random random;
     random_seed(&random, 19);
-    CoverRoom room = {0};
+    CoverWorkspace room = {0};
     assert_int_equal(cover_reserve(&room, BODIES, NULL), STATUS_OK);
     for (int i = 0; i < 40; i++) {
         Body bodies[BODIES];

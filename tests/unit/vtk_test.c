@@ -169,7 +169,7 @@ static void pieces_are_put_together(void **state)
     TreeReading reading = {0};
     Tree tree = read_text("vtp", text, &reading);
     assert_int_equal(tree.n, 3);
-    assert_int_equal(reading.merged, 1);
+    assert_int_equal(reading.network.merged, 1);
     assert_float_equal(tree.radius_mm[1], 1.5, 0);
     tree_release(&tree);
     reading_release(&reading);
@@ -250,7 +250,7 @@ static void refuses_legacy_files_that_say_no_network(void **state)
         {POLYDATA POINTS "LINES 2 2\nOFFSETS int\n0 7\nCONNECTIVITY int\n0 1\n",
          ": cell 0 ends at 7 of the numbers of points; ends must rise to at most 2"},
         {POLYDATA POINTS "LINES 1 3\n2 0 7\n" RADII,
-         ": cell 0: it names point 7; there are 4 points, numbered from 0 on"},
+         ": cell 0: it refers to point 7; there are 4 points, numbered from 0 on"},
         {POLYDATA POINTS RADII, ": there are no lines in it"},
         {POLYDATA POINTS "POLYGONS 1 4\n3 0 1 2\n" RADII,
          ": there are no lines in it, only other cells"},
@@ -271,7 +271,7 @@ static void refuses_legacy_files_that_say_no_network(void **state)
 static void refuses_xml_that_says_no_network(void **state)
 {
     (void)state;
-#define ARRAY(attributes, text)                                                                    \
+#define VTK_ARRAY(attributes, text)                                                                    \
     VTP("")                                                                                        \
     "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" " attributes ">" text            \
     "</DataArray></Points>" VTP_END
@@ -287,14 +287,14 @@ static void refuses_xml_that_says_no_network(void **state)
         {VTP(""), ":3: not well-formed XML: no element found"},
         {"<?xml version=\"1.0\"?>\n<!DOCTYPE a [<!ENTITY b \"bb\">]>\n" VTP_END,
          ":2: it declares the entity 'b'; documents with entities of their own are not read"},
-        {ARRAY("", "0 0 zero"), ":3: the array '' of Points: 'zero' is no number"},
-        {ARRAY("", "0 0 0 1"), ":3: the array '' of Points: it has 4 numbers, which are no tuples "
+        {VTK_ARRAY("", "0 0 zero"), ":3: the array '' of Points: 'zero' is no number"},
+        {VTK_ARRAY("", "0 0 0 1"), ":3: the array '' of Points: it has 4 numbers, which are no tuples "
                                "of 3"},
-        {ARRAY("format=\"binary\"", "AQAAA*=="),
+        {VTK_ARRAY("format=\"binary\"", "AQAAA*=="),
          ":3: the array '' of Points: a byte of 42 is no letter of base64"},
-        {ARRAY("format=\"binary\"", "AAAAgA=="),
+        {VTK_ARRAY("format=\"binary\"", "AAAAgA=="),
          ":3: the array '' of Points: it announces 2.1 GB; there are 3 bytes more in the file"},
-        {ARRAY("format=\"appended\"", ""),
+        {VTK_ARRAY("format=\"appended\"", ""),
          ": the array '' of Points: it is said to be at byte 0 of the appended data, which has 0"},
         {VTP("") VTP_POINTS VTP_END, ": there are no lines in it"},
     };

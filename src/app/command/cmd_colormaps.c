@@ -88,7 +88,7 @@ static Status write_plane(const Plane *plane, const Parsed *parsed, Err *err)
     const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", line}};
     const ImageNotes all = {.notes = notes, .count = 2};
     TRY_GOTO(picture_from_plane(&picture, plane, ENCODING_SRGB, 8, err));
-    TRY_GOTO(picture_write(&picture, options->output, ENCODING_SRGB, &all, err));
+    TRY_GOTO(picture_write(&picture, options->output, ENCODING_SRGB, &all, NULL, err));
 done:
     free(line);
     picture_release(&picture);

@@ -18,7 +18,6 @@ typedef struct Sides {
     Image images[2];
     Picture alphas[2]; /* empty where the image is opaque */
     IdPlane ids[2];    /* without ids unless they are given */
-    CallResult results[4];
     const char *id_paths[2];
     const char *layer;   /* or NULL */
     float background[3]; /* linear; what is transparent is laid on it */
@@ -57,7 +56,7 @@ static PlaneKind kind_of(const char *path)
 static Status read_ids(IdPlane *ids, const char *path, Err *err)
 {
     Picture picture;
-    TRY(picture_read(&picture, path, err));
+    TRY(picture_read(&picture, path, ALPHA_REFUSED, err));
     Status status = ids_take_picture(ids, &picture, err);
     picture_release(&picture);
     if (status != STATUS_OK)
@@ -84,7 +83,7 @@ static Status set_bits(Image *image, int bits, Err *err)
 static Status read_side(const Sides *sides, const char *path, Image *image, Picture *alpha,
                         Err *err)
 {
-    TRY(image_read_layer(image, path, sides->layer, sides->color, err));
+    TRY(image_read(image, path, sides->color ? ALPHA_KEPT : ALPHA_REFUSED, sides->layer, err));
     if (!sides->color)
         return STATUS_OK;
     Status status = alpha_take(alpha, image, err);
@@ -98,25 +97,22 @@ static Status read_side(const Sides *sides, const char *path, Image *image, Pict
 }
 
 /* File 0 and 1 are the images, 2 and 3 their ids. */
-static void read_file(size_t index, int worker, void *context)
+static Status read_file(size_t index, int worker, void *context, Err *err)
 {
     (void)worker;
     Sides *sides = context;
     size_t side = index % 2;
     const char *path = index < 2 ? sides->paths[side] : sides->id_paths[side];
     if (!path)
-        return;
-    CallResult *result = &sides->results[index];
-    result->status =
-        index < 2 ? read_side(sides, path, &sides->images[side], &sides->alphas[side], &result->err)
-                  : read_ids(&sides->ids[side], path, &result->err);
+        return STATUS_OK;
+    return index < 2 ? read_side(sides, path, &sides->images[side], &sides->alphas[side], err)
+                     : read_ids(&sides->ids[side], path, err);
 }
 
 /* Reads all files at once; of several errors the first file's is reported. */
 static Status read_files(Sides *sides, int threads, Err *err)
 {
-    threads_for(4, threads, read_file, sides);
-    TRY(calls_status(sides->results, 4, err));
+    TRY(threads_try(4, threads, read_file, sides, err));
     if (!sides->images[0].plane.values != !sides->images[1].plane.values &&
         (sides->paths[0] && sides->paths[1]))
         return err_set(err, STATUS_INPUT,
@@ -154,7 +150,7 @@ static Status write_picture(Status (*make)(Picture *, const Picture *, const Pic
     if (!path)
         return STATUS_OK;
     TRY(make(&picture, a, b, err));
-    Status status = picture_write(&picture, path, ENCODING_SRGB, NULL, err);
+    Status status = picture_write(&picture, path, ENCODING_SRGB, NULL, NULL, err);
     picture_release(&picture);
     return status;
 }

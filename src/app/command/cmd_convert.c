@@ -143,11 +143,11 @@ static Status read_picture(const ConvertOptions *options, const char *from, cons
                            Picture *picture, Err *err)
 {
     Image image = {0};
-    TRY(picture_read_transparent(&image.picture, from, err));
+    TRY(picture_read(&image.picture, from, ALPHA_KEPT, err));
     TRY(lay_down(options, &image, err));
     picture_release(&image.transparent);
     *picture = image.picture;
-    if (picture->channels != 4 || image_keeps_alpha(to))
+    if (picture->channels != 4 || image_traits(to).keeps_alpha)
         return STATUS_OK;
     picture_release(picture);
     return err_set(err, STATUS_USAGE,
@@ -185,7 +185,7 @@ static Status convert_picture(const ConvertOptions *options, const char *from, c
     asked.bits = picture.bits;
     Status status = press_open(&asked, to, threads, &press, err);
     if (status == STATUS_OK)
-        status = picture_write_packed(&picture, to, ENCODING_SRGB, &notes, press.packing, err);
+        status = picture_write(&picture, to, ENCODING_SRGB, &notes, &press.packing, err);
     press_release(&press);
     picture_release(&picture);
     return status;
@@ -196,10 +196,10 @@ static Status convert_plane(const ConvertOptions *options, const char *from, con
 {
     const ImagePacking packing = {.half = options->press.bits == 16};
     Image image = {0};
-    TRY(options->has_background ? plane_read_transparent(&image.plane, from, err)
-                                : plane_read(&image.plane, from, err));
+    TRY(options->has_background ? plane_read(&image.plane, from, ALPHA_KEPT, err)
+                                : plane_read(&image.plane, from, ALPHA_REFUSED, err));
     TRY(lay_down(options, &image, err));
-    Status status = plane_write_packed(&image.plane, to, packing, err);
+    Status status = plane_write(&image.plane, to, &packing, err);
     image_release(&image);
     return status;
 }
@@ -255,8 +255,9 @@ static Status unknown_kind(const char *path, Err *err)
 static Status check_press(const ConvertOptions *options, const char *to, const Parsed *parsed,
                           Err *err)
 {
-    const OptionNeed needs[] = {
-        {"dpi", image_keeps_dpi(to) && !image_is_floats(to), "is for .png, .tif and .jpg"}, {0}};
+    const OptionNeed needs[] = {{"dpi", image_traits(to).keeps_dpi && !image_traits(to).floats,
+                                 "is for .png, .tif and .jpg"},
+                                {0}};
     TRY(options_check_needs(parsed, needs, err));
     return press_check(&options->press, to, parsed, err);
 }

@@ -113,7 +113,7 @@ static Status read_drawn(const PowerOptions *options, const char *path, Picture 
     const Rgb ground = rgb_of_option(options->background);
     const float background[3] = {ground.r, ground.g, ground.b};
     Image image;
-    TRY(image_read_transparent(&image, path, err));
+    TRY(image_read(&image, path, ALPHA_KEPT, NULL, err));
     Status status = image_lay_on(&image, background, err);
     if (status == STATUS_OK && image.plane.values)
         status = picture_from_plane(picture, &image.plane, ENCODING_SRGB, 16, err);
@@ -169,8 +169,8 @@ static Status command_differs(void *context, const Picture *reference, const Pic
 {
     const Verdict *verdict = context;
     int exit_status = 0;
-    TRY(picture_write(reference, verdict->place->files[FILE_A], ENCODING_SRGB, NULL, err));
-    TRY(picture_write(picture, verdict->place->files[FILE_B], ENCODING_SRGB, NULL, err));
+    TRY(picture_write(reference, verdict->place->files[FILE_A], ENCODING_SRGB, NULL, NULL, err));
+    TRY(picture_write(picture, verdict->place->files[FILE_B], ENCODING_SRGB, NULL, NULL, err));
     TRY(shell_run(verdict->command, false, &exit_status, err));
     *differs = exit_status != 0;
     return STATUS_OK;
@@ -203,7 +203,7 @@ static Status keep_missed(void *context, const PowerCase *missed, const Picture 
     for (char *at = name; *at; at++)
         *at = isspace((unsigned char)*at) ? '-' : *at;
     TRY(file_join(folder, name, &path, err));
-    Status status = picture_write(picture, path, ENCODING_SRGB, NULL, err);
+    Status status = picture_write(picture, path, ENCODING_SRGB, NULL, NULL, err);
     free(path);
     return status;
 }

@@ -79,7 +79,7 @@ static Status plan_files(const RenderOptions *options, const Press *press, Rende
                          .id = params->want_id};
     form->alpha = picture_is_transparent(&options->picture);
     params->codes_suffice = form->bits == 8 && !form->color && !form->alpha &&
-                            !is_on_sheet(options) && !image_is_floats(form->path);
+                            !is_on_sheet(options) && !image_traits(form->path).floats;
     params->want_color = true;
     return frames_is_page(options->output)
                ? STATUS_OK

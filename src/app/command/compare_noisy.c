@@ -11,7 +11,7 @@
 static Status read_colors(Plane *plane, const char *path, Err *err)
 {
     Image image = {0};
-    TRY(image_read(&image, path, err));
+    TRY(image_read(&image, path, ALPHA_REFUSED, NULL, err));
     if (image.plane.values) {
         *plane = image.plane;
         return STATUS_OK;
@@ -52,7 +52,7 @@ static Status variance_of_renderings(Plane *variance, const char *names, Err *er
 static Status read_variance(Plane *variance, const char *path, Err *err)
 {
     Image image = {0};
-    TRY(image_read(&image, path, err));
+    TRY(image_read(&image, path, ALPHA_REFUSED, NULL, err));
     if (image.plane.values) {
         *variance = image.plane;
         return STATUS_OK;

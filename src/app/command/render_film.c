@@ -16,7 +16,7 @@ static int shared_bytes(const RenderParams *params, const View *view)
 
 static bool has_floats(const FramesForm *form)
 {
-    return image_is_floats(form->path) || form->color || form->depth || form->normal;
+    return image_traits(form->path).floats || form->color || form->depth || form->normal;
 }
 
 /* The memory of one band serves the next, while that of a whole picture would take longer to be
@@ -30,7 +30,7 @@ int film_band_rows(const FramesForm *form, const RenderParams *params, const Vie
                    double memory_mb)
 {
     int bytes = 12 + form->bits / 8 * 3 + 1 + 4 * form->depth + 12 * form->normal + 7 * form->id;
-    if (image_is_floats(form->path))
+    if (image_traits(form->path).floats)
         bytes += 12 + 4 * form->depth + 12 * form->normal + 4 * form->id;
     int shared = shared_bytes(params, view);
     double rows = memory_mb * 1e6 / ((double)(bytes + shared) * form->width);

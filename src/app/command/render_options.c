@@ -140,7 +140,7 @@ static Status check_file(const RenderOptions *options, const Parsed *parsed, Err
 {
     if (frames_is_page(options->output))
         return press_refuse_packing(parsed, "is for pictures; a page holds one of 8 bits", err);
-    if (image_is_floats(options->output) && annotation_is_any(&options->annotation))
+    if (image_traits(options->output).floats && annotation_is_any(&options->annotation))
         return err_set(err, STATUS_USAGE,
                        "-o: %s holds numbers to measure, and no legend, scale bar or letter",
                        strcmp(file_extension(options->output), "exr") ? "a .pfm" : "an .exr");

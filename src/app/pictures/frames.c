@@ -106,7 +106,7 @@ static Status open_picture(FramesWriter *writer, Err *err)
     ImageForm image = {.width = form->width,
                        .height = form->height,
                        .channels = form->alpha ? 4 : 3,
-                       .bits = image_is_floats(form->path) ? 32 : form->bits,
+                       .bits = image_traits(form->path).floats ? 32 : form->bits,
                        .encoding = form->encoding,
                        .notes = &all,
                        .packing = form->packing};
@@ -229,7 +229,7 @@ static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
     ImageWriter *file = writer->files[FILE_PICTURE];
     if (is_layered(writer->form))
         return write_layers(writer, rows, err);
-    if (image_is_floats(writer->form->path))
+    if (image_traits(writer->form->path).floats)
         return imagewriter_floats(file, &rows->color, err);
     if (rows->codes.codes8)
         return imagewriter_codes(file, &rows->codes, err);

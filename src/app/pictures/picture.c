@@ -285,7 +285,7 @@ Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, 
 Status picture_check_dpi(const PictureSize *size, const char *output, const Parsed *parsed,
                          Err *err)
 {
-    const bool kept = image_keeps_dpi(output) || frames_is_page(output);
+    const bool kept = image_traits(output).keeps_dpi || frames_is_page(output);
     const OptionNeed needs[] = {{"dpi", size_is_on_paper(size) || kept,
                                  NEEDS_PAPER
                                  ", or a file that keeps it (.png, .tif, .jpg, .pdf, .svg)"},

@@ -228,27 +228,20 @@ typedef struct Scenes {
     const Source *source;
     const Tiles *tiles;
     size_t each; /* scenes of a tile */
-    CallResult *results;
 } Scenes;
 
-static void write_one(size_t number, int worker, void *context)
+static Status write_one(size_t number, int worker, void *context, Err *err)
 {
     (void)worker;
     const Scenes *scenes = context;
-    CallResult *result = &scenes->results[number];
-    result->status = write_scene(scenes->source, scenes->tiles, number / scenes->each,
-                                 number % scenes->each == 1, &result->err);
+    return write_scene(scenes->source, scenes->tiles, number / scenes->each,
+                       number % scenes->each == 1, err);
 }
 
 static Status write_scenes(const Source *source, const Tiles *tiles, Err *err)
 {
     Scenes scenes = {.source = source, .tiles = tiles, .each = has_id_scene(source->v) ? 2 : 1};
-    size_t n = scenes.each * tiles->n;
-    TRY(mem_calloc(&scenes.results, n, sizeof *scenes.results, "scenes", err));
-    threads_for(n, source->v->common->threads, write_one, &scenes);
-    Status status = calls_status(scenes.results, n, err);
-    free(scenes.results);
-    return status;
+    return threads_try(scenes.each * tiles->n, source->v->common->threads, write_one, &scenes, err);
 }
 
 /* Finds the tiles and writes their scenes. */
@@ -410,8 +403,8 @@ static Status add_tile(const char *path, const PixelRect *rect, Picture *plane, 
 {
     Picture tile;
     if (!plane->width)
-        return picture_read(plane, path, err);
-    TRY(picture_read(&tile, path, err));
+        return picture_read(plane, path, ALPHA_REFUSED, err);
+    TRY(picture_read(&tile, path, ALPHA_REFUSED, err));
     copy_pixels(&tile, rect, plane);
     picture_release(&tile);
     return STATUS_OK;
@@ -428,7 +421,8 @@ static Status join_plane(const Verification *v, const Tiles *tiles, const Runs *
     for (size_t i = 0; i < tiles->n && status == STATUS_OK; i++)
         status = add_tile(runs->run[i * each + place].output, &tiles->tile[i].rect, &joined, err);
     if (status == STATUS_OK)
-        status = picture_write(&joined, path, srgb ? ENCODING_SRGB : ENCODING_LINEAR, NULL, err);
+        status =
+            picture_write(&joined, path, srgb ? ENCODING_SRGB : ENCODING_LINEAR, NULL, NULL, err);
     for (size_t i = 0; i < tiles->n; i++)
         unlink(runs->run[i * each + place].output);
     picture_release(&joined);
@@ -441,7 +435,7 @@ static Status read_plane(Verification *v, OraclePlane plane, const char *path, E
     camera_depth_range(&v->scene.view.camera, v->scene.geometry.bounds, &near_mm, &far_mm);
     switch (plane) {
     case ORACLE_COLOR:
-        return picture_read(&v->povray_picture, path, err);
+        return picture_read(&v->povray_picture, path, ALPHA_REFUSED, err);
     case ORACLE_DEPTH:
         return oracle_read_depth(&v->povray.depth, path, near_mm, far_mm, err);
     case ORACLE_NORMAL:

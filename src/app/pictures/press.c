@@ -120,7 +120,7 @@ Status press_check(const PressOptions *options, const char *output, const Parsed
         {"column", options->preset != NULL, "needs --preset"},
         {"compression", is_of(output, "tif", "tiff"), "is for .tif"},
         {"quality", is_of(output, "jpg", "jpeg"), "is for .jpg"},
-        {"cmyk-profile", image_keeps_inks(output), "is for .tif and .jpg"},
+        {"cmyk-profile", image_traits(output).has_profile, "is for .tif and .jpg"},
         {"cmyk-intent", options->cmyk_profile != NULL, "needs --cmyk-profile"},
         {0}};
     TRY(options_check_needs(parsed, needs, err));
@@ -151,9 +151,9 @@ Status press_refuse_packing(const Parsed *parsed, const char *sentence, Err *err
 Status press_open(const PressOptions *options, const char *output, int threads, Press *press,
                   Err *err)
 {
-    bool floats = image_is_floats(output);
+    bool floats = image_traits(output).floats;
     Press made = {.bits = floats || options->bits == 0 ? 8 : options->bits};
-    if (options->cmyk_profile && image_keeps_inks(output))
+    if (options->cmyk_profile && image_traits(output).has_profile)
         TRY(inks_read(&made.inks, options->cmyk_profile, (InkIntent)options->intent, made.bits,
                       err));
     made.packing = (ImagePacking){.compression = (ImageCompression)options->compression,

@@ -14,8 +14,6 @@
 enum { MOST_ASKED = 500 };
 
 static const double first_slack_mm = 1e-3, cached_slack_mm = 1e-4;
-/* Of a blob nothing nearer is seen. */
-static const double blob_nearest_mm = 1e-2;
 /* A place so far from a root, in radii of the vessel, is still meant to be that root: where POV-Ray
  * misses one, its precision is gone. */
 static const double same_root_radii = 0.02;
@@ -163,7 +161,7 @@ static Status ask_way(const Asker *asker, Vec3 place, LightWay way, bool *free, 
     *free = !ground_hit(&asker->asked->scene->view.ground, ray, first_slack_mm, far, &t);
     if (!*free)
         return STATUS_OK;
-    TRY(ask_field(asker, ray, blob_nearest_mm, far, &roots, err));
+    TRY(ask_field(asker, ray, render_nearest_mm(&asker->asked->scene->geometry), far, &roots, err));
     *free = roots.n == 0;
     if (*free)
         return STATUS_OK;
@@ -330,7 +328,8 @@ static bool explains(const Asker *asker, const Sample *samples, int changed, Rgb
 
 static Status ask_sample(Asker *asker, Sample *sample, Err *err)
 {
-    TRY(ask_field(asker, sample->ray, blob_nearest_mm, HUGE_VAL, &sample->roots, err));
+    TRY(ask_field(asker, sample->ray, render_nearest_mm(&asker->asked->scene->geometry), HUGE_VAL,
+                  &sample->roots, err));
     return look_to(asker, sample->ray, root_of(&sample->roots, 0), &sample->truth, err);
 }
 

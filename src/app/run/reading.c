@@ -98,13 +98,13 @@ static Status check(const ReadOptions *options, Err *err)
 
 static void say_cuts(const TreeReading *reading)
 {
-    const ReadCut *cut = reading->cut;
-    if (reading->n_cuts == 0)
+    const ReadCut *cut = reading->network.cut;
+    if (reading->network.n_cuts == 0)
         return;
     fprintf(stderr,
             "corcast: %zu loop%s cut, the first at %g, %g, %g mm where the radius is %g mm\n",
-            reading->loops, reading->loops == 1 ? " is" : "s are", cut->position.x, cut->position.y,
-            cut->position.z, cut->radius_mm);
+            reading->network.loops, reading->network.loops == 1 ? " is" : "s are", cut->position.x,
+            cut->position.y, cut->position.z, cut->radius_mm);
 }
 
 /* Reports radii that the options changed. */
@@ -127,11 +127,12 @@ static double rounded_up(double gap)
 
 static void say_near_ends(const char *path, const TreeReading *reading)
 {
-    if (reading->near_ends > 0)
+    if (reading->network.near_ends > 0)
         fprintf(stderr,
                 "corcast: %s: ends that miss another tree by at most %.2g mm: %zu; "
                 "--merge-tolerance %.2g joins them\n",
-                path, reading->near_mm, reading->near_ends, rounded_up(1.001 * reading->near_mm));
+                path, reading->network.near_mm, reading->network.near_ends,
+                rounded_up(1.001 * reading->network.near_mm));
 }
 
 static void say_unit(const char *path, const TreeReading *reading)
@@ -184,13 +185,15 @@ enum { LEFT_OUT = 5 };
 static void list_left_out(const TreeReading *reading, LeftOut list[LEFT_OUT])
 {
     const LeftOut all[LEFT_OUT] = {
-        {reading->merged, "merged_points", "point merged into another",
+        {reading->network.merged, "merged_points", "point merged into another",
          "points merged into others"},
-        {reading->unused, "unused_points", "point that no line uses", "points that no line uses"},
-        {reading->without_length, "lines_without_length", "line without length",
+        {reading->network.unused, "unused_points", "point that no line uses",
+         "points that no line uses"},
+        {reading->network.without_length, "lines_without_length", "line without length",
          "lines without length"},
-        {reading->repeated, "repeated_lines", "line given before", "lines given before"},
-        {reading->loops, "loops", "line cut where a loop closed", "lines cut where loops closed"},
+        {reading->network.repeated, "repeated_lines", "line given before", "lines given before"},
+        {reading->network.loops, "loops", "line cut where a loop closed",
+         "lines cut where loops closed"},
     };
     for (size_t i = 0; i < LEFT_OUT; i++)
         list[i] = all[i];
@@ -206,21 +209,23 @@ static void print_network(const TreeReading *reading)
 {
     LeftOut left[LEFT_OUT];
     list_left_out(reading, left);
-    printf("  read as       %s, %zu point%s and %zu line%s\n", reading->format, reading->points,
-           ending(reading->points), reading->lines, ending(reading->lines));
+    printf("  read as       %s, %zu point%s and %zu line%s\n", reading->format,
+           reading->network.points, ending(reading->network.points), reading->network.lines,
+           ending(reading->network.lines));
     for (size_t i = 0, n = 0; i < LEFT_OUT; i++)
         if (left[i].count > 0)
             printf("  %s %zu %s\n", n++ ? "             " : "left out     ", left[i].count,
                    left[i].count == 1 ? left[i].one : left[i].more);
-    for (size_t i = 0; i < reading->n_cuts && i < 3; i++)
-        printf("  cut at        %g, %g, %g mm, radius %g mm\n", reading->cut[i].position.x,
-               reading->cut[i].position.y, reading->cut[i].position.z, reading->cut[i].radius_mm);
-    if (reading->n_cuts > 3)
-        printf("                and %zu more place%s\n", reading->loops - 3,
-               ending(reading->loops - 3));
-    if (reading->against > 0)
-        printf("  directions    %zu line%s given towards the root\n", reading->against,
-               reading->against == 1 ? " is" : "s are");
+    for (size_t i = 0; i < reading->network.n_cuts && i < 3; i++)
+        printf("  cut at        %g, %g, %g mm, radius %g mm\n", reading->network.cut[i].position.x,
+               reading->network.cut[i].position.y, reading->network.cut[i].position.z,
+               reading->network.cut[i].radius_mm);
+    if (reading->network.n_cuts > 3)
+        printf("                and %zu more place%s\n", reading->network.loops - 3,
+               ending(reading->network.loops - 3));
+    if (reading->network.against > 0)
+        printf("  directions    %zu line%s given towards the root\n", reading->network.against,
+               reading->network.against == 1 ? " is" : "s are");
 }
 
 static void print_roots(const TreeReading *reading)
@@ -264,7 +269,7 @@ static void print_unit(const TreeReading *reading)
 
 void reading_print(const TreeReading *reading)
 {
-    if (reading->is_graph)
+    if (reading->is_network)
         print_network(reading);
     print_roots(reading);
     print_degrees(reading);
@@ -287,8 +292,8 @@ static json_t *roots_json(const TreeReading *reading)
 static json_t *cuts_json(const TreeReading *reading)
 {
     json_t *rows_json = json_array();
-    for (size_t i = 0; i < reading->n_cuts; i++) {
-        const ReadCut *cut = &reading->cut[i];
+    for (size_t i = 0; i < reading->network.n_cuts; i++) {
+        const ReadCut *cut = &reading->network.cut[i];
         rows_json = json_with_item(
             rows_json, json_pack("{s:I, s:[f,f,f], s:o}", "record", (json_int_t)cut->record,
                                  "position_mm", cut->position.x, cut->position.y, cut->position.z,
@@ -317,9 +322,9 @@ static json_t *network_json(const TreeReading *reading)
 {
     LeftOut left[LEFT_OUT];
     list_left_out(reading, left);
-    json_t *json =
-        json_pack("{s:I, s:I, s:I}", "points", (json_int_t)reading->points, "lines",
-                  (json_int_t)reading->lines, "lines_against", (json_int_t)reading->against);
+    json_t *json = json_pack("{s:I, s:I, s:I}", "points", (json_int_t)reading->network.points,
+                             "lines", (json_int_t)reading->network.lines, "lines_against",
+                             (json_int_t)reading->network.against);
     for (size_t i = 0; i < LEFT_OUT; i++)
         json = json_with(json, left[i].key, json_count(left[i].count));
     return json_with(json, "cuts", cuts_json(reading));
@@ -329,7 +334,7 @@ json_t *reading_json(const TreeReading *reading)
 {
     const JsonMember members[] = {
         {"format", json_text(reading->format)},
-        {"network", reading->is_graph ? network_json(reading) : json_null()},
+        {"network", reading->is_network ? network_json(reading) : json_null()},
         {"components", json_count(reading->n_roots)},
         {"roots", roots_json(reading)},
         {"degrees", degrees_json(reading)},
@@ -337,8 +342,8 @@ json_t *reading_json(const TreeReading *reading)
         {"segments_without_radius", json_count(reading->without_radius)},
         {"given_radii", json_count(reading->given_radius)},
         {"repaired_radii", json_count(reading->repaired_radii)},
-        {"near_ends", json_count(reading->near_ends)},
-        {"near_ends_mm", json_number(reading->near_mm)},
+        {"near_ends", json_count(reading->network.near_ends)},
+        {"near_ends_mm", json_number(reading->network.near_mm)},
         {"unit", json_text(length_unit_names[reading->unit])},
         {"unit_said", json_boolean(reading->unit_said)},
         {"believed_unit",

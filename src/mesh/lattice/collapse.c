@@ -42,12 +42,12 @@ void collapser_release(Collapser *collapser)
 /* Finds the ring of a point. Returns false if the point has no triangles, or too many. */
 static bool find_ring(const CollapseWork *work, uint32_t point, Ring *ring)
 {
-    const Triangle *triangles = work->patch->triangles;
+    const PatchTriangle *triangles = work->patch->triangles;
     uint32_t *link = &work->first[point];
     ring->n = 0;
     while (*link != NONE) {
         uint32_t corner = *link;
-        const Triangle *triangle = &triangles[corner / 3];
+        const PatchTriangle *triangle = &triangles[corner / 3];
         if (triangle->at[0] == REMOVED) {
             *link = work->next[corner];
             continue;
@@ -165,7 +165,7 @@ static void collapse_edge(const CollapseWork *work, uint32_t point, const Ring *
                           uint32_t target)
 {
     for (int i = 0; i < ring->n; i++) {
-        Triangle *triangle = &work->patch->triangles[ring->corner[i] / 3];
+        PatchTriangle *triangle = &work->patch->triangles[ring->corner[i] / 3];
         work->settled[ring->from[i]] = work->settled[ring->to[i]] = false;
         if (ring->from[i] == target || ring->to[i] == target) {
             triangle->at[0] = REMOVED;

@@ -101,7 +101,7 @@ static double measure_at(const FaceRefining *refining, Vec3 x, Vec3 normal, doub
     return fmin(one, search_wall(refining, x, inside, down, radius_mm));
 }
 
-static const PatchPoint *corner(const FaceRefining *refining, const Triangle *triangle, int i)
+static const PatchPoint *corner(const FaceRefining *refining, const PatchTriangle *triangle, int i)
 {
     return &refining->patch->points[triangle->at[i % 3]];
 }
@@ -119,7 +119,7 @@ static double length_of(const FaceRefining *refining, uint32_t a, uint32_t b)
 }
 
 /* The longest edge of a triangle, from this corner to the next. */
-static int longest_edge(const FaceRefining *refining, const Triangle *triangle)
+static int longest_edge(const FaceRefining *refining, const PatchTriangle *triangle)
 {
     int longest = 0;
     double length[3];
@@ -184,7 +184,7 @@ static Status mark_edge(const FaceRefining *refining, uint32_t a, uint32_t b, bo
 
 /* How far a place on a triangle is off the wall: no farther than over one of its corners. Where the
  * triangle stops up a tunnel, the wall is not where its normal or the slope leads. */
-static double measure_on(const FaceRefining *refining, const Triangle *triangle, Vec3 x,
+static double measure_on(const FaceRefining *refining, const PatchTriangle *triangle, Vec3 x,
                          Vec3 normal, double radius_mm)
 {
     double off = measure_at(refining, x, normal, radius_mm);
@@ -197,8 +197,8 @@ static double measure_on(const FaceRefining *refining, const Triangle *triangle,
 
 /* How far a triangle is off the wall, mm: at its middle and that of its longest edge, and where
  * that is not a little at those of the others. */
-static double measure_triangle(const FaceRefining *refining, const Triangle *triangle, int longest,
-                               double radius_mm)
+static double measure_triangle(const FaceRefining *refining, const PatchTriangle *triangle,
+                               int longest, double radius_mm)
 {
     const PatchPoint *a = corner(refining, triangle, 0), *b = corner(refining, triangle, 1);
     const PatchPoint *c = corner(refining, triangle, 2);
@@ -216,7 +216,7 @@ static double measure_triangle(const FaceRefining *refining, const Triangle *tri
 /* Looks at a triangle; if it is too far off, has its longest edge split. */
 static Status look_at(const FaceRefining *refining, size_t number)
 {
-    const Triangle triangle = refining->patch->triangles[number];
+    const PatchTriangle triangle = refining->patch->triangles[number];
     uint8_t *state = &refining->refiner->states.items[number];
     int longest = longest_edge(refining, &triangle);
     double radius = HUGE_VAL;
@@ -247,7 +247,7 @@ static bool faces(Vec3 a, Vec3 b, Vec3 c, Vec3 normal)
 }
 
 /* Leaves those edges of a triangle whole whose split would turn it over. */
-static void spare_edges(const FaceRefining *refining, const Triangle *triangle)
+static void spare_edges(const FaceRefining *refining, const PatchTriangle *triangle)
 {
     const PatchPoint *points = refining->patch->points;
     for (int i = 0; i < 3; i++) {
@@ -266,7 +266,7 @@ static void spare_edges(const FaceRefining *refining, const Triangle *triangle)
 static Status split(const FaceRefining *refining, size_t number)
 {
     Patch *patch = refining->patch;
-    const Triangle triangle = patch->triangles[number];
+    const PatchTriangle triangle = patch->triangles[number];
     int best = -1;
     uint32_t at[3];
     double longest = 0;
@@ -283,8 +283,8 @@ static Status split(const FaceRefining *refining, size_t number)
         return STATUS_OK;
     uint32_t a = triangle.at[best], b = triangle.at[(best + 1) % 3],
              c = triangle.at[(best + 2) % 3];
-    patch->triangles[number] = (Triangle){{a, at[best], c}};
-    TRY(patch_add_triangle(patch, (Triangle){{at[best], b, c}}, refining->err));
+    patch->triangles[number] = (PatchTriangle){{a, at[best], c}};
+    TRY(patch_add_triangle(patch, (PatchTriangle){{at[best], b, c}}, refining->err));
     size_t other = patch->n_triangles - 1;
     Refiner *refiner = refining->refiner;
     TRY(ARRAY_RESERVE(&refiner->states, other + 1, "triangles of a junction", refining->err));
@@ -311,10 +311,12 @@ static Status refine_once(const FaceRefining *refining, bool *changed)
     return STATUS_OK;
 }
 
-Status facerefine_apply(Refiner *refiner, const JunctionPlan *plan, const Octree *tree,
-                        double limit, Patch *patch, MeshOff *off, Err *err)
+Status facerefine_apply(Refiner *refiner, const JunctionSurface *surface, double limit,
+                        MeshOff *off, Err *err)
 {
-    FaceRefining refining = {refiner, &plan->field, tree, patch, off, limit, limit, err};
+    Patch *patch = surface->patch;
+    FaceRefining refining = {
+        refiner, &surface->plan->field, surface->tree, patch, off, limit, limit, err};
     size_t n_points = patch->n_points;
     bool changed = true;
     TRY(ARRAY_RESERVE(&refiner->states, patch->n_triangles, "triangles of a junction", err));

@@ -2,7 +2,6 @@
 #ifndef CORCAST_MESH_LATTICE_FACEREFINE_H
 #define CORCAST_MESH_LATTICE_FACEREFINE_H
 
-#include "mesh/lattice/octree.h"
 #include "mesh/lattice/patch.h"
 #include "mesh/meshreport.h"
 
@@ -20,7 +19,7 @@ void refiner_release(Refiner *refiner);
  *
  * off      is raised to the largest distance of a triangle from the surface after the splits,
  * measured at the middles of triangles and of their longest edges. Errors   STATUS_MEMORY. */
-MUST_CHECK Status facerefine_apply(Refiner *refiner, const JunctionPlan *plan, const Octree *tree,
-                                   double limit, Patch *patch, MeshOff *off, Err *err);
+MUST_CHECK Status facerefine_apply(Refiner *refiner, const JunctionSurface *surface, double limit,
+                                   MeshOff *off, Err *err);
 
 #endif

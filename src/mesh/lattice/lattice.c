@@ -25,7 +25,7 @@ enum { MOST_STEPS = 40 };
 /* Away from active cells, up to this many terms are all looked at. */
 enum { FEW_TERMS = 512 };
 
-typedef struct Cutter {
+typedef struct LatticeCutter {
     Lattice *lattice;
     const Octree *tree;
     const JunctionPlan *plan;
@@ -38,20 +38,20 @@ typedef struct Cutter {
     LocalField local;      /* of many terms, those that matter within local_mm of local_at */
     Vec3 local_at;
     double local_mm;
-} Cutter;
+} LatticeCutter;
 
 void lattice_release(Lattice *lattice)
 {
     free(lattice->points);
-    free(lattice->centers);
-    free(lattice->crossings);
+    ARRAY_RELEASE(&lattice->centers);
+    ARRAY_RELEASE(&lattice->crossings);
     keymap_release(&lattice->corners);
     *lattice = (Lattice){0};
 }
 
 /* Moves a point by a vector, unless its height is then less than this. */
-static bool move_point(const Cutter *cutter, const LocalField *part, Vec3 by, double least_height,
-                       LatticePoint *point)
+static bool move_point(const LatticeCutter *cutter, const LocalField *part, Vec3 by,
+                       double least_height, LatticePoint *point)
 {
     Vec3 moved = vec3_add(point->x, by);
     FieldValue value = localfield_value(&cutter->plan->field, &cutter->tree->kept, part, moved);
@@ -64,7 +64,7 @@ static bool move_point(const Cutter *cutter, const LocalField *part, Vec3 by, do
 
 /* Moves a point off the wall, on its own side; to the inside where it would come too near another
  * wall, as outside in a crease. */
-static void clear_wall(const Cutter *cutter, const LocalField *part, double side,
+static void clear_wall(const LatticeCutter *cutter, const LocalField *part, double side,
                        LatticePoint *point)
 {
     Vec3 gradient;
@@ -82,18 +82,20 @@ static void clear_wall(const Cutter *cutter, const LocalField *part, double side
 }
 
 /* Makes cutter->local what matters near x, of few enough terms. */
-static Status find_local(Cutter *cutter, Vec3 x)
+static Status find_local(LatticeCutter *cutter, Vec3 x)
 {
     LocalFieldPool *stack = &cutter->away->stack;
-    FieldBounds bounds;
+    NarrowField narrow;
     const double widest = cutter->away->side / 16;
     double reach = widest;
     do {
         stack->n_terms = cutter->whole.first_term + cutter->whole.n_terms;
         stack->n_groups =
             cutter->whole.first_group + (size_t)cutter->whole.words * cutter->whole.n_groups;
-        TRY(localfield_narrow(&cutter->plan->field, stack, &cutter->whole, x, reach, reach,
-                              &cutter->local, &bounds, cutter->err));
+        const FieldBalls balls = {x, reach, reach};
+        TRY(localfield_narrow(&cutter->plan->field, stack, &cutter->whole, &balls, &narrow,
+                              cutter->err));
+        cutter->local = narrow.local;
         cutter->local_at = x;
         cutter->local_mm = reach;
         reach /= 2;
@@ -103,7 +105,7 @@ static Status find_local(Cutter *cutter, Vec3 x)
 
 /* What matters at a point away from active cells: all terms, or, where those are too many at once,
  * those that matter near by; the points of a walk lie close together. */
-static Status part_away(Cutter *cutter, Vec3 x, const LocalField **part)
+static Status part_away(LatticeCutter *cutter, Vec3 x, const LocalField **part)
 {
     bool few = cutter->whole.n_terms <= FEW_TERMS;
     if (!few && !(vec3_distance(x, cutter->local_at) < cutter->local_mm))
@@ -113,7 +115,7 @@ static Status part_away(Cutter *cutter, Vec3 x, const LocalField **part)
 }
 
 /* A point whose field is that of the cell `from` if that is active. */
-static Status add_point(Cutter *cutter, const OctreeCell *from, Vec3 x, uint32_t *number)
+static Status add_point(LatticeCutter *cutter, const OctreeCell *from, Vec3 x, uint32_t *number)
 {
     Lattice *lattice = cutter->lattice;
     TRY(mem_reserve(&lattice->points, &lattice->capacity, lattice->n_points + 1,
@@ -135,14 +137,14 @@ static Status add_point(Cutter *cutter, const OctreeCell *from, Vec3 x, uint32_t
     return STATUS_OK;
 }
 
-static Status add_center(Cutter *cutter, const OctreeCell *from, uint32_t cell)
+static Status add_center(LatticeCutter *cutter, const OctreeCell *from, uint32_t cell)
 {
     return add_point(cutter, from, octree_center(cutter->tree, &cutter->tree->cells[cell]),
-                     &cutter->lattice->centers[cell]);
+                     &cutter->lattice->centers.items[cell]);
 }
 
 /* `at` in units of the smallest cells. */
-static Status corner_at(Cutter *cutter, const OctreeCell *from, const uint32_t at[3],
+static Status corner_at(LatticeCutter *cutter, const OctreeCell *from, const uint32_t at[3],
                         uint32_t *number)
 {
     const Octree *tree = cutter->tree;
@@ -171,7 +173,7 @@ static double step_to_wall(double phi)
 /* Where the wall crosses the way from a point inside to one outside: Newton's steps from where it
  * would if the height were linear, which it nearly is; a step that would leave what is left of the
  * way halves that. A last step is made without looking where it ends. */
-static PatchPoint find_crossing(const Cutter *cutter, const LocalField *part,
+static PatchPoint find_crossing(const LatticeCutter *cutter, const LocalField *part,
                                 const LatticePoint *inside, const LatticePoint *outside)
 {
     const JunctionField *field = &cutter->plan->field;
@@ -194,7 +196,7 @@ static PatchPoint find_crossing(const Cutter *cutter, const LocalField *part,
 
 /* In place of a crossing, where a point is inside only by decree; away from active cells there is
  * no other. */
-static Status find_middle(Cutter *cutter, const OctreeCell *from, const LatticePoint *inside,
+static Status find_middle(LatticeCutter *cutter, const OctreeCell *from, const LatticePoint *inside,
                           const LatticePoint *outside, PatchPoint *point)
 {
     const JunctionField *field = &cutter->plan->field;
@@ -209,29 +211,29 @@ static Status find_middle(Cutter *cutter, const OctreeCell *from, const LatticeP
 }
 
 /* The point of the wall between two points of the lattice, of which `a` is inside. */
-static Status crossing_of(Cutter *cutter, const OctreeCell *from, uint32_t a, uint32_t b,
+static Status crossing_of(LatticeCutter *cutter, const OctreeCell *from, uint32_t a, uint32_t b,
                           uint32_t *number)
 {
     Lattice *lattice = cutter->lattice;
     LatticePoint *points = lattice->points;
     for (*number = points[a].first; *number != NO_CROSSING;
-         *number = lattice->crossings[*number].next)
-        if (lattice->crossings[*number].outside == b)
+         *number = lattice->crossings.items[*number].next)
+        if (lattice->crossings.items[*number].outside == b)
             return STATUS_OK;
-    TRY(mem_reserve(&lattice->crossings, &lattice->crossing_capacity, cutter->patch->n_points + 1,
-                    sizeof *lattice->crossings, "points of a junction", cutter->err));
+    TRY(ARRAY_RESERVE(&lattice->crossings, cutter->patch->n_points + 1, "points of a junction",
+                      cutter->err));
     PatchPoint point;
     if (points[a].is_repaired || !from)
         TRY(find_middle(cutter, from, &points[a], &points[b], &point));
     else
         point = find_crossing(cutter, &from->part, &points[a], &points[b]);
     TRY(patch_add_point(cutter->patch, point, number, cutter->err));
-    lattice->crossings[*number] = (LatticeCrossing){b, points[a].first};
+    lattice->crossings.items[*number] = (LatticeCrossing){b, points[a].first};
     points[a].first = *number;
     return STATUS_OK;
 }
 
-static bool is_inside(const Cutter *cutter, uint32_t point)
+static bool is_inside(const LatticeCutter *cutter, uint32_t point)
 {
     return cutter->lattice->points[point].height < 0;
 }
@@ -239,7 +241,7 @@ static bool is_inside(const Cutter *cutter, uint32_t point)
 /* Corner `lone` is on its own side, the other three on the other. Their order is that of a
  * tetrahedron turned as all are, so that the triangle of the crossings faces away from the lone
  * corner. */
-static Status cut_corner(Cutter *cutter, const OctreeCell *from, const uint32_t corners[4],
+static Status cut_corner(LatticeCutter *cutter, const OctreeCell *from, const uint32_t corners[4],
                          int lone)
 {
     static const int others[4][3] = {{1, 2, 3}, {0, 3, 2}, {3, 0, 1}, {2, 1, 0}};
@@ -250,13 +252,13 @@ static Status cut_corner(Cutter *cutter, const OctreeCell *from, const uint32_t 
         TRY(crossing_of(cutter, from, inside ? apex : other, inside ? other : apex,
                         &at[inside ? i : 2 - i]));
     }
-    return patch_add_triangle(cutter->patch, (Triangle){{at[0], at[1], at[2]}}, cutter->err);
+    return patch_add_triangle(cutter->patch, (PatchTriangle){{at[0], at[1], at[2]}}, cutter->err);
 }
 
 /* Points a and b are inside, c and d outside, and a, b, c, d are turned as all tetrahedra are: a
  * quadrilateral, cut along its shorter diagonal. */
-static Status cut_middle(Cutter *cutter, const OctreeCell *from, uint32_t a, uint32_t b, uint32_t c,
-                         uint32_t d)
+static Status cut_middle(LatticeCutter *cutter, const OctreeCell *from, uint32_t a, uint32_t b,
+                         uint32_t c, uint32_t d)
 {
     uint32_t ac, ad, bc, bd;
     TRY(crossing_of(cutter, from, a, c, &ac));
@@ -266,14 +268,15 @@ static Status cut_middle(Cutter *cutter, const OctreeCell *from, uint32_t a, uin
     const PatchPoint *points = cutter->patch->points;
     bool first =
         vec3_distance(points[ac].x, points[bd].x) <= vec3_distance(points[ad].x, points[bc].x);
-    TRY(patch_add_triangle(cutter->patch, (Triangle){{ac, ad, first ? bd : bc}}, cutter->err));
-    return patch_add_triangle(cutter->patch, (Triangle){{first ? ac : ad, bd, bc}}, cutter->err);
+    TRY(patch_add_triangle(cutter->patch, (PatchTriangle){{ac, ad, first ? bd : bc}}, cutter->err));
+    return patch_add_triangle(cutter->patch, (PatchTriangle){{first ? ac : ad, bd, bc}},
+                              cutter->err);
 }
 
 /* The corners are turned alike in all tetrahedra: det(at[1] - at[0], at[2] - at[0], at[3] - at[0])
  * is positive. Triangles take their turn from that and not from where the crossings lie: of a
  * triangle that is small beside what the crossings are found to, that would be chance. */
-static Status cut_tetrahedron(Cutter *cutter, const OctreeCell *from, const uint32_t at[4])
+static Status cut_tetrahedron(LatticeCutter *cutter, const OctreeCell *from, const uint32_t at[4])
 {
     int in[4], out[4], n_in = 0, n_out = 0;
     for (int i = 0; i < 4; i++)
@@ -290,8 +293,8 @@ static Status cut_tetrahedron(Cutter *cutter, const OctreeCell *from, const uint
 }
 
 /* The ends of the smallest edge among four leaves about it, along `axis`. */
-static Status edge_ends(Cutter *cutter, const uint32_t around[4], int axis, const OctreeCell *from,
-                        uint32_t ends[2])
+static Status edge_ends(LatticeCutter *cutter, const uint32_t around[4], int axis,
+                        const OctreeCell *from, uint32_t ends[2])
 {
     const OctreeCell *cells = cutter->tree->cells;
     int smallest = 0;
@@ -311,7 +314,7 @@ static Status edge_ends(Cutter *cutter, const uint32_t around[4], int axis, cons
 }
 
 /* Four leaves about a smallest edge; the second and third from the first one across. */
-static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
+static Status cut_about_edge(LatticeCutter *cutter, const uint32_t around[4], int axis)
 {
     static const int turn[5] = {0, 1, 3, 2, 0};
     const OctreeCell *cells = cutter->tree->cells, *active = NULL;
@@ -323,7 +326,7 @@ static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
     }
     if (((!active && !cutter->away) || is_behind) && !cutter->list)
         return STATUS_OK;
-    uint32_t at[4], *centers = cutter->lattice->centers;
+    uint32_t at[4], *centers = cutter->lattice->centers.items;
     TRY(edge_ends(cutter, around, axis, active, at));
     for (int i = 0; i < 4; i++) {
         uint32_t a = around[turn[i]], b = around[turn[i + 1]];
@@ -343,20 +346,20 @@ static Status cut_about_edge(Cutter *cutter, const uint32_t around[4], int axis)
 }
 
 /* The child of a cell at these halves along the axes, the cell itself when it is a leaf. */
-static uint32_t child_of(const Cutter *cutter, uint32_t cell, const int half[3])
+static uint32_t child_of(const LatticeCutter *cutter, uint32_t cell, const int half[3])
 {
     uint32_t children = cutter->tree->cells[cell].children;
     return children ? children + (uint32_t)(half[0] | half[1] << 1 | half[2] << 2) : cell;
 }
 
-static bool is_leaf(const Cutter *cutter, uint32_t cell)
+static bool is_leaf(const LatticeCutter *cutter, uint32_t cell)
 {
     return cutter->tree->cells[cell].children == 0;
 }
 
 /* Whether the wall may pass one of some cells, or leaves below them; a cell that is not active has
  * none below it that is. */
-static bool may_cut(const Cutter *cutter, const uint32_t *cells, int n)
+static bool may_cut(const LatticeCutter *cutter, const uint32_t *cells, int n)
 {
     bool may = cutter->away != NULL;
     for (int i = 0; i < n && !may; i++)
@@ -365,7 +368,7 @@ static bool may_cut(const Cutter *cutter, const uint32_t *cells, int n)
 }
 
 /* around[i + 2 j] stands at the lower or upper side along the next axis but one (i, j). */
-static Status walk_edge(Cutter *cutter, const uint32_t around[4], int axis)
+static Status walk_edge(LatticeCutter *cutter, const uint32_t around[4], int axis)
 {
     if (!may_cut(cutter, around, 4))
         return STATUS_OK;
@@ -387,7 +390,7 @@ static Status walk_edge(Cutter *cutter, const uint32_t around[4], int axis)
 }
 
 /* The edges along `axis` in the face between two cells, whose normal is another axis. */
-static Status walk_face_edges(Cutter *cutter, const uint32_t sides[2], int normal, int axis)
+static Status walk_face_edges(LatticeCutter *cutter, const uint32_t sides[2], int normal, int axis)
 {
     for (int along = 0; along < 2; along++) {
         uint32_t around[4];
@@ -404,7 +407,7 @@ static Status walk_face_edges(Cutter *cutter, const uint32_t sides[2], int norma
     return STATUS_OK;
 }
 
-static Status walk_face(Cutter *cutter, const uint32_t sides[2], int normal)
+static Status walk_face(LatticeCutter *cutter, const uint32_t sides[2], int normal)
 {
     if (!may_cut(cutter, sides, 2) || (is_leaf(cutter, sides[0]) && is_leaf(cutter, sides[1])))
         return STATUS_OK;
@@ -424,7 +427,7 @@ static Status walk_face(Cutter *cutter, const uint32_t sides[2], int normal)
     return STATUS_OK;
 }
 
-static Status walk_inner_edges(Cutter *cutter, uint32_t children, int axis)
+static Status walk_inner_edges(LatticeCutter *cutter, uint32_t children, int axis)
 {
     for (uint32_t along = 0; along < 2; along++) {
         uint32_t around[4];
@@ -436,7 +439,7 @@ static Status walk_inner_edges(Cutter *cutter, uint32_t children, int axis)
     return STATUS_OK;
 }
 
-static Status walk_cell(Cutter *cutter, uint32_t cell)
+static Status walk_cell(LatticeCutter *cutter, uint32_t cell)
 {
     if (is_leaf(cutter, cell) || !may_cut(cutter, &cell, 1))
         return STATUS_OK;
@@ -455,7 +458,7 @@ static Status walk_cell(Cutter *cutter, uint32_t cell)
 }
 
 /* Walks the tree with all that counts away from active cells, too. */
-static Status walk_all(Cutter *cutter)
+static Status walk_all(LatticeCutter *cutter)
 {
     Octree *tree = cutter->away;
     TRY(localfield_all(&cutter->plan->field, &tree->stack, &cutter->whole, cutter->err));
@@ -471,32 +474,33 @@ static void begin_cut(Lattice *lattice, Patch *patch)
         lattice->points[i].first = NO_CROSSING;
 }
 
-Status lattice_make(Lattice *lattice, const Octree *tree, const JunctionPlan *plan, Patch *patch,
-                    Err *err)
+Status lattice_make(Lattice *lattice, const JunctionSurface *surface, Err *err)
 {
-    Cutter cutter = {lattice, tree, plan, patch, err, .list = NULL};
+    const Octree *tree = surface->tree;
+    LatticeCutter cutter = {lattice, tree, surface->plan, surface->patch, err, .list = NULL};
     TRY(keymap_begin(&lattice->corners, tree->n_cells / 2, "points of a junction", err));
-    TRY(mem_reserve(&lattice->centers, &lattice->center_capacity, tree->n_cells,
-                    sizeof *lattice->centers, "points of a junction", err));
+    TRY(ARRAY_RESERVE(&lattice->centers, tree->n_cells, "points of a junction", err));
     for (size_t i = 0; i < tree->n_cells; i++)
-        lattice->centers[i] = 0;
+        lattice->centers.items[i] = 0;
     TRY(mem_reserve(&lattice->points, &lattice->capacity, 1, sizeof *lattice->points,
                     "points of a junction", err));
-    lattice->n_points = 1; /* the first is none, so that 0 says "not yet" */
-    begin_cut(lattice, patch);
+    lattice->n_points = 1; /* the first is not used, so that 0 means "not made yet" */
+    begin_cut(lattice, surface->patch);
     return walk_cell(&cutter, 0);
 }
 
-Status lattice_cut(Lattice *lattice, Octree *tree, const JunctionPlan *plan, Patch *patch, Err *err)
+Status lattice_cut(Lattice *lattice, const JunctionSurface *surface, Err *err)
 {
-    Cutter cutter = {lattice, tree, plan, patch, err, .away = tree};
-    begin_cut(lattice, patch);
+    LatticeCutter cutter = {lattice,        surface->tree, surface->plan,
+                            surface->patch, err,           .away = surface->tree};
+    begin_cut(lattice, surface->patch);
     return walk_all(&cutter);
 }
 
-Status lattice_list(Lattice *lattice, Octree *tree, const JunctionPlan *plan, TetrahedronList *list,
+Status lattice_list(Lattice *lattice, const JunctionSurface *surface, TetrahedronList *list,
                     Err *err)
 {
-    Cutter cutter = {lattice, tree, plan, NULL, err, list, .away = tree};
+    LatticeCutter cutter = {lattice, surface->tree, surface->plan,        NULL,
+                            err,     list,          .away = surface->tree};
     return walk_all(&cutter);
 }

@@ -1,58 +1,55 @@
-/* The wall of a junction junction, from the tetrahedra of an octree. */
+/* Extracts the surface of a junction region from the tetrahedra of an octree. */
 #ifndef CORCAST_MESH_LATTICE_LATTICE_H
 #define CORCAST_MESH_LATTICE_LATTICE_H
 
-#include "base/base.h"
-#include "mesh/lattice/octree.h"
 #include "mesh/lattice/patch.h"
 
 /* A point where the field is known. */
 typedef struct LatticePoint {
     Vec3 x;
-    double height;    /* field_height there: below 0 inside */
-    uint32_t first;   /* of a point inside: crossing on an edge that begins there, or NO_CROSSING */
-    bool is_repaired; /* made inside, though it is not [mend.h] */
+    double height;  /* field_height at x; below 0: inside */
+    uint32_t first; /* of a point inside: a crossing on an edge that begins here, or NO_CROSSING */
+    bool is_repaired; /* counts as inside although the field says outside [repair.h] */
 } LatticePoint;
 
 #define NO_CROSSING UINT32_MAX
 
-/* Where an edge crosses the wall: a point of the patch of the same number. */
+/* The place where an edge crosses the surface: the point of the patch with the same index. */
 typedef struct LatticeCrossing {
-    uint32_t outside; /* where the edge ends */
-    uint32_t next;    /* crossing on an edge that begins at the same point, or NO_CROSSING */
+    uint32_t outside; /* the lattice point where the edge ends */
+    uint32_t next;    /* a crossing on another edge that begins at the same point, or NO_CROSSING */
 } LatticeCrossing;
 
+/* Indices of four lattice points. */
 typedef struct Tetrahedron {
-    uint32_t at[4]; /* points */
+    uint32_t at[4];
 } Tetrahedron;
 
 typedef ARRAY(Tetrahedron) TetrahedronList;
 
-/* What one thread needs; zeroed before the first use, and kept for the next junction. */
+/* Workspace of one thread, used again for the next region. Zero it before first use; release it
+ * with lattice_release. All arrays are owned. */
 typedef struct Lattice {
-    LatticePoint *points; /* owned, as all of it */
+    LatticePoint *points; /* the first is not used */
     size_t n_points, capacity;
-    uint32_t *centers; /* points, one a cell; 0: not yet */
-    size_t center_capacity;
-    LatticeCrossing *crossings;
-    size_t crossing_capacity;
-    KeyMap corners; /* place in the lattice -> point */
+    ARRAY(uint32_t) centers; /* per cell: the lattice point at its centre; 0: not made yet */
+    ARRAY(LatticeCrossing) crossings;
+    KeyMap corners; /* position of a cell's corner -> lattice point */
 } Lattice;
 
 void lattice_release(Lattice *lattice);
 
-/* Puts the wall into *patch, which is emptied first. It is open only behind planes. */
-MUST_CHECK Status lattice_make(Lattice *lattice, const Octree *tree, const JunctionPlan *plan,
-                               Patch *patch, Err *err);
+/* Replaces the patch by the region's surface. It is open only behind the planes of stubs. Errors:
+ * STATUS_INFEASIBLE [localfield_refuse], STATUS_MEMORY. */
+MUST_CHECK Status lattice_make(Lattice *lattice, const JunctionSurface *surface, Err *err);
 
-/* Adds all tetrahedra of the octree to the list, and the points that lattice_make had no need of to
- * the lattice. */
-MUST_CHECK Status lattice_list(Lattice *lattice, Octree *tree, const JunctionPlan *plan,
+/* Appends all tetrahedra of the octree to the list. Adds the lattice points that lattice_make did
+ * not need. Errors: as lattice_make. */
+MUST_CHECK Status lattice_list(Lattice *lattice, const JunctionSurface *surface,
                                TetrahedronList *list, Err *err);
 
-/* The wall again, of the points that lattice_list has left, whatever their heights are now; also
- * away from where the field has it. */
-MUST_CHECK Status lattice_cut(Lattice *lattice, Octree *tree, const JunctionPlan *plan,
-                              Patch *patch, Err *err);
+/* Replaces the patch by the surface that the current heights of the points after lattice_list give,
+ * also away from where the field has a surface. Errors: as lattice_make. */
+MUST_CHECK Status lattice_cut(Lattice *lattice, const JunctionSurface *surface, Err *err);
 
 #endif

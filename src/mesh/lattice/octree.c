@@ -25,11 +25,11 @@ static const double surely = 1e-3;
 /* Where others add less than this, the wall is that of one tube. */
 static const double lone = 0.03;
 
-typedef struct Builder {
+typedef struct OctreeBuilder {
     Octree *tree;
     const JunctionPlan *plan;
     const CellSize *size;
-} Builder;
+} OctreeBuilder;
 
 void octree_release(Octree *tree)
 {
@@ -41,7 +41,8 @@ void octree_release(Octree *tree)
 
 /* Whether the ball lies behind the plane of the stub whose wall is the only one that it may hold.
  */
-static bool is_behind(const Builder *builder, const FieldBounds *bounds, Vec3 center, double ball)
+static bool is_behind(const OctreeBuilder *builder, const FieldBounds *bounds, Vec3 center,
+                      double ball)
 {
     const JunctionPlan *plan = builder->plan;
     if (bounds->sum_upper - bounds->largest_upper > 0.1 * FIELD_LEVEL)
@@ -54,7 +55,7 @@ static bool is_behind(const Builder *builder, const FieldBounds *bounds, Vec3 ce
     return behind - ball > margin_behind * builder->size->ratio * stub->radius_mm;
 }
 
-static Vec3 normal_at(const Builder *builder, const LocalField *part, Vec3 x)
+static Vec3 normal_at(const OctreeBuilder *builder, const LocalField *part, Vec3 x)
 {
     Vec3 gradient;
     localfield_gradient(&builder->plan->field, &builder->tree->stack, part, x, &gradient);
@@ -62,7 +63,7 @@ static Vec3 normal_at(const Builder *builder, const LocalField *part, Vec3 x)
     return vec3_scale(gradient, steepness > 0 ? -1 / steepness : 0);
 }
 
-static Vec3 turn_along(const Builder *builder, const LocalField *part, Vec3 x, Vec3 by)
+static Vec3 turn_along(const OctreeBuilder *builder, const LocalField *part, Vec3 x, Vec3 by)
 {
     return vec3_sub(normal_at(builder, part, vec3_add(x, by)),
                     normal_at(builder, part, vec3_sub(x, by)));
@@ -71,7 +72,8 @@ static Vec3 turn_along(const Builder *builder, const LocalField *part, Vec3 x, V
 /* The most that the normal turns across a cell in any direction, the larger singular value of how
  * it turns along two; measured on the tangent plane of the wall's point nearest to the centre. 0
  * when the wall does not come near. */
-static double turn_across(const Builder *builder, const LocalField *part, Vec3 center, double side)
+static double turn_across(const OctreeBuilder *builder, const LocalField *part, Vec3 center,
+                          double side)
 {
     Vec3 gradient, u, v, x = center;
     FieldValue value =
@@ -89,8 +91,8 @@ static double turn_across(const Builder *builder, const LocalField *part, Vec3 c
     return sqrt(0.5 * (uu + vv) + sqrt(half * half + uv * uv));
 }
 
-static bool must_split(const Builder *builder, const LocalField *part, const FieldBounds *bounds,
-                       Vec3 center, double side)
+static bool must_split(const OctreeBuilder *builder, const LocalField *part,
+                       const FieldBounds *bounds, Vec3 center, double side)
 {
     double usual = builder->size->ratio * bounds->min_radius_mm;
     if (side > usual)
@@ -107,10 +109,10 @@ static bool must_split(const Builder *builder, const LocalField *part, const Fie
            builder->size->bending * bounds->min_radius_mm;
 }
 
-static Status split(Builder *builder, uint32_t cell, const LocalField *part, Err *err);
+static Status split(OctreeBuilder *builder, uint32_t cell, const LocalField *part, Err *err);
 
 /* Finds the state of a cell of which `part` holds all that may matter, and splits it. */
-static Status settle(Builder *builder, uint32_t number, const LocalField *part, Err *err)
+static Status settle(OctreeBuilder *builder, uint32_t number, const LocalField *part, Err *err)
 {
     Octree *tree = builder->tree;
     LocalFieldPool *stack = &tree->stack;
@@ -118,32 +120,32 @@ static Status settle(Builder *builder, uint32_t number, const LocalField *part, 
     const OctreeCell cell = tree->cells[number];
     double side = octree_side(tree, cell.level), ball = half_diagonal * side;
     Vec3 center = octree_center(tree, &cell);
-    LocalField own;
-    FieldBounds bounds;
-    TRY(localfield_narrow(&builder->plan->field, stack, part, center, known_reach * side, ball,
-                          &own, &bounds, err));
+    const FieldBalls balls = {center, known_reach * side, ball};
+    NarrowField own;
+    TRY(localfield_narrow(&builder->plan->field, stack, part, &balls, &own, err));
+    const FieldBounds *bounds = &own.bounds;
     CellState state = CELL_ACTIVE;
-    if (bounds.upper < (1 - surely) * FIELD_LEVEL)
+    if (bounds->upper < (1 - surely) * FIELD_LEVEL)
         state = CELL_OUTSIDE;
-    else if (bounds.lower > (1 + surely) * FIELD_LEVEL)
+    else if (bounds->lower > (1 + surely) * FIELD_LEVEL)
         state = CELL_INSIDE;
-    else if (is_behind(builder, &bounds, center, ball))
+    else if (is_behind(builder, bounds, center, ball))
         state = CELL_BEHIND;
     tree->cells[number].state = (uint8_t)state;
-    if (state == CELL_ACTIVE && side <= builder->size->ratio * bounds.min_radius_mm &&
-        own.n_terms > MAX_LOCAL_TERMS)
+    if (state == CELL_ACTIVE && side <= builder->size->ratio * bounds->min_radius_mm &&
+        own.local.n_terms > MAX_LOCAL_TERMS)
         return localfield_refuse(err);
     if (state == CELL_ACTIVE && cell.level < OCTREE_LEVELS &&
-        must_split(builder, &own, &bounds, center, side))
-        TRY(split(builder, number, &own, err));
+        must_split(builder, &own.local, bounds, center, side))
+        TRY(split(builder, number, &own.local, err));
     else if (state == CELL_ACTIVE)
-        TRY(localfield_copy(stack, &own, &tree->kept, &tree->cells[number].part, err));
+        TRY(localfield_copy(stack, &own.local, &tree->kept, &tree->cells[number].part, err));
     stack->n_terms = n_terms;
     stack->n_groups = n_groups;
     return STATUS_OK;
 }
 
-static Status refuse(const Builder *builder, Err *err)
+static Status refuse(const OctreeBuilder *builder, Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
                    "a chain of junctions, of %u segments, has no free interval to be cut at, and "
@@ -153,7 +155,7 @@ static Status refuse(const Builder *builder, Err *err)
 }
 
 /* Gives a cell children; of an active one they are settled, else they are as it is. */
-static Status split(Builder *builder, uint32_t number, const LocalField *part, Err *err)
+static Status split(OctreeBuilder *builder, uint32_t number, const LocalField *part, Err *err)
 {
     Octree *tree = builder->tree;
     if (tree->n_cells + 8 > builder->size->most)
@@ -200,7 +202,7 @@ const OctreeCell *octree_leaf(const Octree *tree, Vec3 x)
 }
 
 /* Splits a leaf that has only been found too large by its neighbour. */
-static Status split_leaf(Builder *builder, uint32_t number, Err *err)
+static Status split_leaf(OctreeBuilder *builder, uint32_t number, Err *err)
 {
     Octree *tree = builder->tree;
     LocalField part = {0};
@@ -224,7 +226,7 @@ static bool is_sibling(const OctreeCell *cell, const int by[3])
 
 /* Splits the leaves next to a cell that has children, over faces and edges, that are larger than
  * it. */
-static Status grade_about(Builder *builder, uint32_t number, Err *err)
+static Status grade_about(OctreeBuilder *builder, uint32_t number, Err *err)
 {
     Octree *tree = builder->tree;
     const OctreeCell cell = tree->cells[number];
@@ -245,7 +247,7 @@ static Status grade_about(Builder *builder, uint32_t number, Err *err)
 
 /* Cells made by grading stand behind the others, and are looked at in their turn; leaves that it
  * splits are looked at at once. */
-static Status grade(Builder *builder, Err *err)
+static Status grade(OctreeBuilder *builder, Err *err)
 {
     Octree *tree = builder->tree;
     for (uint32_t i = 0; i < tree->n_cells; i++)
@@ -295,7 +297,7 @@ static void place_root(Octree *tree, const JunctionPlan *plan, double ratio)
 
 Status octree_build(Octree *tree, const JunctionPlan *plan, const CellSize *size, Err *err)
 {
-    Builder builder = {tree, plan, size};
+    OctreeBuilder builder = {tree, plan, size};
     tree->n_cells = 0;
     tree->kept.n_terms = tree->kept.n_groups = tree->stack.n_terms = tree->stack.n_groups = 0;
     place_root(tree, plan, size->ratio);

@@ -35,7 +35,7 @@ Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *index, Err *err
     return STATUS_OK;
 }
 
-Status patch_add_triangle(Patch *patch, Triangle triangle, Err *err)
+Status patch_add_triangle(Patch *patch, PatchTriangle triangle, Err *err)
 {
     TRY(mem_reserve(&patch->triangles, &patch->triangle_capacity, patch->n_triangles + 1,
                     sizeof *patch->triangles, what, err));

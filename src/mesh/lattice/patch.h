@@ -4,7 +4,7 @@
 
 #include "base/base.h"
 #include "geom/geom.h"
-#include "mesh/zones/junctionfield.h"
+#include "mesh/lattice/octree.h"
 #include <stdint.h>
 
 typedef struct PatchPoint {
@@ -17,9 +17,9 @@ typedef struct PatchPoint {
 } PatchPoint;
 
 /* Indices of three points, counterclockwise seen from outside. */
-typedef struct Triangle {
+typedef struct PatchTriangle {
     uint32_t at[3];
-} Triangle;
+} PatchTriangle;
 
 /* In place of a triangle's first point: patch_compact removes the triangle. */
 #define REMOVED UINT32_MAX
@@ -28,13 +28,20 @@ typedef struct Triangle {
 typedef struct Patch {
     PatchPoint *points;
     size_t n_points, point_capacity;
-    Triangle *triangles;
+    PatchTriangle *triangles;
     size_t n_triangles, triangle_capacity;
     uint32_t *scratch; /* per point */
     size_t scratch_capacity;
 } Patch;
 
 void patch_release(Patch *patch);
+
+/* One region and its surface, for the steps that make it. All pointers are borrowed. */
+typedef struct JunctionSurface {
+    const JunctionPlan *plan;
+    Octree *tree;
+    Patch *patch;
+} JunctionSurface;
 
 /* Returns the point of the surface at x, where the field has this value and gradient. */
 PatchPoint patch_surface_point(const JunctionField *field, Vec3 x, const FieldValue *value,
@@ -43,13 +50,7 @@ PatchPoint patch_surface_point(const JunctionField *field, Vec3 x, const FieldVa
 /* Appends a point, and sets *index to its index. Errors: STATUS_MEMORY. */
 MUST_CHECK Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *index, Err *err);
 /* Appends a triangle. Errors: STATUS_MEMORY. */
-MUST_CHECK Status patch_add_triangle(Patch *patch, Triangle triangle, Err *err);
-
-/* Returns the multiple of `grid_mm` that is nearest to a coordinate. */
-static inline float patch_rounded(double x_mm, double grid_mm)
-{
-    return (float)(round(x_mm / grid_mm) * grid_mm);
-}
+MUST_CHECK Status patch_add_triangle(Patch *patch, PatchTriangle triangle, Err *err);
 
 /* Removes the triangles whose first point is REMOVED, and the points that no triangle uses. The
  * others stay in order. Errors: STATUS_MEMORY. */

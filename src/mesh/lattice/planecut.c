@@ -170,7 +170,7 @@ static Status rim_point(const PlaneCut *cut, uint32_t before, uint32_t beyond, u
 }
 
 /* Adds the part of a triangle before the plane. Its corner `lone` is alone on its side. */
-static Status add_part(const PlaneCut *cut, Triangle triangle, int lone, bool lone_is_before)
+static Status add_part(const PlaneCut *cut, PatchTriangle triangle, int lone, bool lone_is_before)
 {
     uint32_t a = triangle.at[lone], b = triangle.at[(lone + 1) % 3],
              c = triangle.at[(lone + 2) % 3];
@@ -178,23 +178,24 @@ static Status add_part(const PlaneCut *cut, Triangle triangle, int lone, bool lo
     if (lone_is_before) {
         TRY(rim_point(cut, a, b, &ab));
         TRY(rim_point(cut, a, c, &ac));
-        return patch_add_triangle(cut->patch, (Triangle){{a, ab, ac}}, cut->err);
+        return patch_add_triangle(cut->patch, (PatchTriangle){{a, ab, ac}}, cut->err);
     }
     TRY(rim_point(cut, b, a, &ab));
     TRY(rim_point(cut, c, a, &ac));
     const PatchPoint *points = cut->patch->points;
     bool shorter =
         vec3_distance(points[b].x, points[ac].x) < vec3_distance(points[c].x, points[ab].x);
-    TRY(patch_add_triangle(cut->patch, (Triangle){{b, c, shorter ? ac : ab}}, cut->err));
-    return patch_add_triangle(
-        cut->patch, shorter ? (Triangle){{b, ac, ab}} : (Triangle){{c, ac, ab}}, cut->err);
+    TRY(patch_add_triangle(cut->patch, (PatchTriangle){{b, c, shorter ? ac : ab}}, cut->err));
+    return patch_add_triangle(cut->patch,
+                              shorter ? (PatchTriangle){{b, ac, ab}} : (PatchTriangle){{c, ac, ab}},
+                              cut->err);
 }
 
 /* Removes a triangle if it is beyond a plane, and cuts it if the plane crosses it. */
 static Status cut_triangle(const PlaneCut *cut, size_t i, bool *valid)
 {
     const uint16_t *stub_beyond = cut->cutter->stub_beyond.items;
-    const Triangle triangle = cut->patch->triangles[i];
+    const PatchTriangle triangle = cut->patch->triangles[i];
     int n_beyond = 0, lone = 0;
     uint16_t stub = NO_STUB;
     for (int k = 0; k < 3; k++) {
@@ -214,9 +215,11 @@ static Status cut_triangle(const PlaneCut *cut, size_t i, bool *valid)
     return add_part(cut, triangle, lone, n_beyond == 2);
 }
 
-Status planecut_apply(PlaneCutter *cutter, const JunctionPlan *plan, const Octree *tree,
-                      double ratio, Patch *patch, bool *valid, Err *err)
+Status planecut_apply(PlaneCutter *cutter, const JunctionSurface *surface, double ratio,
+                      bool *valid, Err *err)
 {
+    const JunctionPlan *plan = surface->plan;
+    Patch *patch = surface->patch;
     const size_t n_whole = patch->n_triangles, n_stubs = plan->n_stubs;
     *valid = true;
     TRY(keymap_begin(&cutter->rim_points, 0, "points of a junction", err));
@@ -224,7 +227,8 @@ Status planecut_apply(PlaneCutter *cutter, const JunctionPlan *plan, const Octre
     TRY(ARRAY_RESERVE(&cutter->stubs, n_stubs, "stubs", err));
     for (size_t k = 0; k < n_stubs; k++)
         cutter->stubs.items[k] = plan->stubs[k];
-    const PlaneCut cut = {cutter, tree, &plan->field, patch, cutter->stubs.items, n_stubs, err};
+    const PlaneCut cut = {cutter, surface->tree, &plan->field, patch, cutter->stubs.items, n_stubs,
+                          err};
     TRY(shift_planes(&cut, ratio));
     mark_beyond(&cut);
     for (size_t i = 0; i < n_whole; i++)

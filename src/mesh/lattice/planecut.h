@@ -3,7 +3,6 @@
 #ifndef CORCAST_MESH_LATTICE_PLANECUT_H
 #define CORCAST_MESH_LATTICE_PLANECUT_H
 
-#include "mesh/lattice/octree.h"
 #include "mesh/lattice/patch.h"
 
 /* The position of a point relative to the end plane of its stub. */
@@ -22,7 +21,7 @@ typedef struct PlaneCutter {
 
 void planecutter_release(PlaneCutter *cutter);
 
-/* Cuts `patch` at the end plane of each stub and removes the triangles beyond it.
+/* Cuts the patch at the end plane of each stub and removes the triangles beyond it.
  *
  * First each plane is shifted along its axis into the widest gap between nearby points, so that the
  * cut leaves no slivers. The shift is at most `ratio` / 4 radii, and at most PLANE_MOVE radii
@@ -32,7 +31,7 @@ void planecutter_release(PlaneCutter *cutter);
  *
  * valid    receives false if one triangle has points beyond two different planes, else true.
  * Errors   STATUS_MEMORY. */
-MUST_CHECK Status planecut_apply(PlaneCutter *cutter, const JunctionPlan *plan, const Octree *tree,
-                                 double ratio, Patch *patch, bool *valid, Err *err);
+MUST_CHECK Status planecut_apply(PlaneCutter *cutter, const JunctionSurface *surface, double ratio,
+                                 bool *valid, Err *err);
 
 #endif

@@ -23,10 +23,10 @@ static const char what[] = "points of a junction";
 typedef enum PointState { POINT_INSIDE, POINT_PENDING, POINT_OUTSIDE } PointState;
 
 /* The points about one, and their sets [base/sets.h]. */
-typedef struct Link {
+typedef struct PointLink {
     uint32_t points[MAX_LINK], root[MAX_LINK];
     uint32_t n;
-} Link;
+} PointLink;
 
 void repairer_release(Repairer *repairer)
 {
@@ -39,7 +39,7 @@ void repairer_release(Repairer *repairer)
 
 /* Returns the position of a point in the link, after adding it if it is not there; MAX_LINK if
  * there is no room. */
-static uint32_t place_in_link(const Repairer *repairer, Link *link, uint32_t point)
+static uint32_t place_in_link(const Repairer *repairer, PointLink *link, uint32_t point)
 {
     uint32_t slot = repairer->slots.items[point];
     if (slot < link->n && link->points[slot] == point)
@@ -54,7 +54,8 @@ static uint32_t place_in_link(const Repairer *repairer, Link *link, uint32_t poi
 
 /* Joins the points of a tetrahedron, except `self`, that are on one side. Returns false if there
  * are too many points. */
-static bool join_triangle(const Repairer *repairer, Link *link, const uint32_t at[4], uint32_t self)
+static bool join_triangle(const Repairer *repairer, PointLink *link, const uint32_t at[4],
+                          uint32_t self)
 {
     uint32_t places[3], n = 0;
     for (int i = 0; i < 4; i++)
@@ -72,7 +73,7 @@ static bool join_triangle(const Repairer *repairer, Link *link, const uint32_t a
 
 /* Fills the link of a point. Returns true if its points outside are connected, and those inside,
  * too. */
-static bool is_simple(const Repairer *repairer, uint32_t point, Link *link)
+static bool is_simple(const Repairer *repairer, uint32_t point, PointLink *link)
 {
     const IndexLists *around = &repairer->around;
     int parts[2] = {0};
@@ -112,8 +113,8 @@ static bool seed(Repairer *repairer, const Lattice *lattice, const Octree *tree)
         bool at_face = false;
         for (int axis = 0; axis < 3; axis++)
             at_face = at_face || cell->at[axis] == 0 || cell->at[axis] == last;
-        if (at_face && lattice->centers[i])
-            repairer->states.items[lattice->centers[i]] = POINT_OUTSIDE;
+        if (at_face && lattice->centers.items[i])
+            repairer->states.items[lattice->centers.items[i]] = POINT_OUTSIDE;
     }
     for (size_t i = 1; i < lattice->n_points; i++) {
         Vec3 from = vec3_sub(lattice->points[i].x, tree->corner);
@@ -130,7 +131,7 @@ static bool seed(Repairer *repairer, const Lattice *lattice, const Octree *tree)
 
 static Status grow(Repairer *repairer, const Lattice *lattice, Err *err)
 {
-    Link link;
+    PointLink link;
     repairer->heap.n = 0;
     for (uint32_t i = 0; i < lattice->n_points; i++)
         if (repairer->states.items[i] == POINT_OUTSIDE)
@@ -173,12 +174,12 @@ static void take_in(const Repairer *repairer, Lattice *lattice)
     }
 }
 
-static Status prepare(Repairer *repairer, Lattice *lattice, Octree *tree, const JunctionPlan *plan,
+static Status prepare(Repairer *repairer, Lattice *lattice, const JunctionSurface *surface,
                       Err *err)
 {
     TetrahedronList *all = &repairer->all;
     all->n = 0;
-    TRY(lattice_list(lattice, tree, plan, all, err));
+    TRY(lattice_list(lattice, surface, all, err));
     TRY(indexlists_sort(&repairer->around, lattice->n_points,
                         (ItemKeys){(const uint32_t *)all->items, all->n, 4}, what, err));
     TRY(ARRAY_RESERVE(&repairer->states, lattice->n_points, what, err));
@@ -190,17 +191,17 @@ static Status prepare(Repairer *repairer, Lattice *lattice, Octree *tree, const 
     return STATUS_OK;
 }
 
-Status repair_apply(Repairer *repairer, Lattice *lattice, Octree *tree, const JunctionPlan *plan,
-                    double farthest, Patch *patch, double *width, Err *err)
+Status repair_apply(Repairer *repairer, Lattice *lattice, const JunctionSurface *surface,
+                    double farthest, double *width, Err *err)
 {
     *width = HUGE_VAL;
-    TRY(prepare(repairer, lattice, tree, plan, err));
-    if (!seed(repairer, lattice, tree))
+    TRY(prepare(repairer, lattice, surface, err));
+    if (!seed(repairer, lattice, surface->tree))
         return STATUS_OK;
     TRY(grow(repairer, lattice, err));
     *width = find_width(repairer, lattice);
     if (*width > farthest)
         return STATUS_OK;
     take_in(repairer, lattice);
-    return lattice_cut(lattice, tree, plan, patch, err);
+    return lattice_cut(lattice, surface, err);
 }

@@ -15,17 +15,16 @@ typedef struct Repairer {
 
 void repairer_release(Repairer *repairer);
 
-/* Replaces the surface that lattice_make left in *patch by one that bounds a ball, from which the
- * stubs of the region lead out through their planes. Lattice points in tunnels and hollows become
- * inside for that.
+/* Replaces the surface that lattice_make left in the patch by one that bounds a ball, from which
+ * the stubs of the region lead out through their planes. Lattice points in tunnels and hollows
+ * become inside for that.
  *
  * farthest  in local radii: a wider tunnel is not an artefact of the lattice. If there is one, the
  *           patch stays as it was.
  * width     receives the maximum distance from the surface of the points that became inside, in
  * local radii; HUGE_VAL if the surface meets the faces of the octree's root. Errors STATUS_MEMORY.
  */
-MUST_CHECK Status repair_apply(Repairer *repairer, Lattice *lattice, Octree *tree,
-                               const JunctionPlan *plan, double farthest, Patch *patch,
-                               double *width, Err *err);
+MUST_CHECK Status repair_apply(Repairer *repairer, Lattice *lattice, const JunctionSurface *surface,
+                               double farthest, double *width, Err *err);
 
 #endif

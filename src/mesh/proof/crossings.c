@@ -75,14 +75,14 @@ static int side_of(const CrossSearch *search, const float *a, const float *b, co
 }
 
 /* A triangle, and the plane through it in double precision. */
-typedef struct Face {
+typedef struct CrossFace {
     const float *at[3];
     double normal[3], size; /* not unit; the magnitude of its products */
-} Face;
+} CrossFace;
 
-static Face face_of(const VesselMesh *mesh, uint32_t triangle)
+static CrossFace face_of(const VesselMesh *mesh, uint32_t triangle)
 {
-    Face face;
+    CrossFace face;
     double e[2][3], sum[2] = {0};
     for (int i = 0; i < 3; i++)
         face.at[i] = mesh->points[mesh->triangles[triangle][i]];
@@ -101,7 +101,7 @@ static Face face_of(const VesselMesh *mesh, uint32_t triangle)
 
 /* Returns the side of the face's plane that a point is on: 1 where the normal points, 0 on the
  * plane. */
-static int side_of_face(const CrossSearch *search, const Face *face, const float *p)
+static int side_of_face(const CrossSearch *search, const CrossFace *face, const float *p)
 {
     double height = 0, far = 0;
     for (int axis = 0; axis < 3; axis++) {
@@ -116,7 +116,8 @@ static int side_of_face(const CrossSearch *search, const Face *face, const float
 
 /* Returns true if the edge from p to q meets the face. The ends are not both on one side of its
  * plane. */
-static bool edge_meets(const CrossSearch *search, const float *p, const float *q, const Face *face)
+static bool edge_meets(const CrossSearch *search, const float *p, const float *q,
+                       const CrossFace *face)
 {
     int one = side_of(search, p, q, face->at[0], face->at[1]);
     int other = side_of(search, p, q, face->at[1], face->at[2]);
@@ -135,7 +136,7 @@ static int turn_of(const float *p, const float *q, const float *r, int axis)
 
 /* Returns true if an edge in the face's plane meets the face: the edge is not all beyond one side
  * of the face, and the face is not all on one side of the edge. */
-static bool flat_edge_meets(const float *p, const float *q, const Face *face)
+static bool flat_edge_meets(const float *p, const float *q, const CrossFace *face)
 {
     int axis = 0, beside = 0;
     for (int i = 1; i < 3; i++)
@@ -154,8 +155,8 @@ static bool flat_edge_meets(const float *p, const float *q, const Face *face)
 /* Finds the sides of a face's plane that the corners of another triangle are on. `shared` is the
  * corner that both have, or -1. Returns false if all other corners are on one side: then the
  * triangles do not meet. */
-static bool find_sides(const CrossSearch *search, const float *const corners[3], const Face *face,
-                       int shared, int sides[3])
+static bool find_sides(const CrossSearch *search, const float *const corners[3],
+                       const CrossFace *face, int shared, int sides[3])
 {
     int sum = 0;
     for (int i = 0; i < 3; i++) {
@@ -167,7 +168,7 @@ static bool find_sides(const CrossSearch *search, const float *const corners[3],
 
 /* Returns true if an edge of `a` meets `b`. side[] has the sides of the corners of `a`; `shared` is
  * the corner that both have, or -1. */
-static bool an_edge_meets(const CrossSearch *search, const Face *a, const Face *b,
+static bool an_edge_meets(const CrossSearch *search, const CrossFace *a, const CrossFace *b,
                           const int side[3], int shared)
 {
     for (int i = 0; i < 3; i++) {
@@ -184,7 +185,7 @@ static bool an_edge_meets(const CrossSearch *search, const Face *a, const Face *
 /* Returns true if triangles with a common edge cross: they are in one plane and on the same side of
  * the edge, so that their normals are opposite. `lone` is the corner of `b` that is not on the
  * edge. */
-static bool folds(const CrossSearch *search, const Face *a, const Face *b, int lone)
+static bool folds(const CrossSearch *search, const CrossFace *a, const CrossFace *b, int lone)
 {
     double cosine = 0;
     for (int axis = 0; axis < 3; axis++)
@@ -198,13 +199,13 @@ static bool faces_meet(const CrossSearch *search, uint32_t first, uint32_t secon
                        const int shared[2])
 {
     int of_a[3], of_b[3];
-    Face b = face_of(search->mesh, second);
+    CrossFace b = face_of(search->mesh, second);
     const float *a_at[3];
     for (int i = 0; i < 3; i++)
         a_at[i] = search->mesh->points[search->mesh->triangles[first][i]];
     if (!find_sides(search, a_at, &b, shared[0], of_a))
         return false;
-    Face a = face_of(search->mesh, first);
+    CrossFace a = face_of(search->mesh, first);
     return find_sides(search, b.at, &a, shared[1], of_b) &&
            (an_edge_meets(search, &a, &b, of_a, shared[0]) ||
             an_edge_meets(search, &b, &a, of_b, shared[1]));
@@ -230,7 +231,7 @@ static void test_pair(uint32_t first, uint32_t second, int worker, void *context
     if (n_shared < 2)
         cross = faces_meet(search, first, second, shared);
     else if (n_shared == 2) {
-        Face a = face_of(search->mesh, first), b = face_of(search->mesh, second);
+        CrossFace a = face_of(search->mesh, first), b = face_of(search->mesh, second);
         cross = folds(search, &a, &b, lone);
     }
     if (!cross)

@@ -373,8 +373,7 @@ static void sum_bounds(const JunctionField *field, const LocalFieldPool *pool,
 }
 
 Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool, const LocalField *part,
-                         Vec3 center, double radius_mm, double inner_mm, LocalField *out,
-                         FieldBounds *bounds, Err *err)
+                         const FieldBalls *balls, NarrowField *out, Err *err)
 {
     TRY(reserve_part(pool, part->n_terms, 0, err));
     TRY(mem_reserve(&pool->work, &pool->work_capacity, part->n_terms, sizeof *pool->work, "terms",
@@ -382,20 +381,20 @@ Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool, const
     TermBounds *work = pool->work;
     LocalField narrow = begin_part(pool, 0);
     for (uint32_t i = 0; i < part->n_terms; i++) {
-        uint32_t number = pool->terms[part->first_term + i];
-        const PotentialTerm *term = &field->terms[number];
-        TermPlace place = place_in(term, center);
-        double reach = out_of_reach + term->k * radius_mm, inner = term->k * inner_mm;
+        uint32_t index = pool->terms[part->first_term + i];
+        const PotentialTerm *term = &field->terms[index];
+        TermPlace place = place_in(term, balls->center);
+        double reach = out_of_reach + term->k * balls->radius_mm, inner = term->k * balls->inner_mm;
         if (distance2(&place) > reach * reach)
             continue;
         work[narrow.n_terms++] =
             (TermBounds){i, upper_bound(term, &place, inner), lower_bound(term, &place, inner)};
-        pool->terms[pool->n_terms++] = number;
+        pool->terms[pool->n_terms++] = index;
     }
     narrow.words = (narrow.n_terms + 63) / 64;
     TRY(narrow_groups(pool, part, &narrow, err));
-    sum_bounds(field, pool, &narrow, center, inner_mm, bounds);
-    *out = narrow;
+    sum_bounds(field, pool, &narrow, balls->center, balls->inner_mm, &out->bounds);
+    out->local = narrow;
     return STATUS_OK;
 }
 

@@ -88,13 +88,23 @@ typedef struct FieldBounds {
                                    * surfaces that may meet in the ball; else 0 */
 } FieldBounds;
 
-/* Finds the terms of `local` that may exceed 1e-5 in the ball of radius_mm about `center`, and
- * appends them, with their groups, to the pool as *out. Sets *bounds for the concentric ball of
- * radius inner_mm. */
+/* A ball, and a smaller one about the same centre. */
+typedef struct FieldBalls {
+    Vec3 center;
+    double radius_mm, inner_mm;
+} FieldBalls;
+
+/* The part of a field that matters in the larger ball, with bounds in the smaller one. */
+typedef struct NarrowField {
+    LocalField local;
+    FieldBounds bounds;
+} NarrowField;
+
+/* Finds the terms of `local` that may exceed 1e-5 in the larger ball, and appends them, with their
+ * groups, to the pool. Errors: STATUS_MEMORY. */
 MUST_CHECK Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool,
-                                    const LocalField *local, Vec3 center, double radius_mm,
-                                    double inner_mm, LocalField *out, FieldBounds *bounds,
-                                    Err *err);
+                                    const LocalField *local, const FieldBalls *balls,
+                                    NarrowField *out, Err *err);
 
 /* The field at a point. */
 typedef struct FieldValue {

@@ -7,12 +7,12 @@
 #include "mesh/zones/nearpairs.h"
 #include <stdlib.h>
 
-typedef struct Planner {
+typedef struct JunctionPlanner {
     const VesselTree *tree;
     const Junctions *junctions;
     JunctionPlan plan;
     size_t stub_capacity, term_capacity, member_capacity, n_members;
-} Planner;
+} JunctionPlanner;
 
 void junctionplan_release(JunctionPlan *plan)
 {
@@ -23,7 +23,7 @@ void junctionplan_release(JunctionPlan *plan)
     *plan = (JunctionPlan){0};
 }
 
-static Status add_stub(Planner *planner, uint32_t segment, int end, Err *err)
+static Status add_stub(JunctionPlanner *planner, uint32_t segment, int end, Err *err)
 {
     JunctionPlan *plan = &planner->plan;
     const FieldSegment *self = &planner->tree->segments[segment];
@@ -42,7 +42,7 @@ static Status add_stub(Planner *planner, uint32_t segment, int end, Err *err)
 }
 
 /* Adds the segments at one node. A whole segment is added only at its first end. */
-static Status add_node(Planner *planner, uint32_t node, Err *err)
+static Status add_node(JunctionPlanner *planner, uint32_t node, Err *err)
 {
     JunctionPlan *plan = &planner->plan;
     const uint32_t *first = planner->junctions->incident.first;
@@ -77,7 +77,7 @@ static uint32_t term_index(const JunctionField *field, uint32_t segment)
     return found ? (uint32_t)(found - field->terms) : field->n_terms;
 }
 
-static Status add_group(Planner *planner, uint32_t node, Err *err)
+static Status add_group(JunctionPlanner *planner, uint32_t node, Err *err)
 {
     JunctionField *field = &planner->plan.field;
     const uint32_t *first = planner->junctions->blending.first;
@@ -94,7 +94,7 @@ static Status add_group(Planner *planner, uint32_t node, Err *err)
 }
 
 /* Makes each term a group of its own. */
-static Status add_lone_groups(Planner *planner, Err *err)
+static Status add_lone_groups(JunctionPlanner *planner, Err *err)
 {
     JunctionField *field = &planner->plan.field;
     TRY(mem_calloc(&field->first, field->n_terms + 1, sizeof *field->first, "terms", err));
@@ -106,7 +106,8 @@ static Status add_lone_groups(Planner *planner, Err *err)
     return STATUS_OK;
 }
 
-static Status add_groups(Planner *planner, const uint32_t *nodes, uint32_t n_nodes, Err *err)
+static Status add_groups(JunctionPlanner *planner, const uint32_t *nodes, uint32_t n_nodes,
+                         Err *err)
 {
     JunctionField *field = &planner->plan.field;
     if (planner->tree->body == BODY_ROUND)
@@ -120,7 +121,7 @@ static Status add_groups(Planner *planner, const uint32_t *nodes, uint32_t n_nod
 Status junctionplan_make(const VesselTree *tree, const Junctions *junctions, uint32_t index,
                          JunctionPlan *out, Err *err)
 {
-    Planner planner = {.tree = tree, .junctions = junctions};
+    JunctionPlanner planner = {.tree = tree, .junctions = junctions};
     JunctionPlan *plan = &planner.plan;
     const uint32_t *nodes = &junctions->nodes.items[junctions->nodes.first[index]];
     uint32_t n_nodes = indexlists_length(&junctions->nodes, index);

@@ -37,6 +37,12 @@ static inline Vec3 segment_inward(const FieldSegment *segment, int end)
     return vec3_normalized(vec3_sub(segment_end(segment, !end), segment_end(segment, end)));
 }
 
+/* Returns the direction at an angle from u towards v, which are unit vectors at a right angle. */
+static inline Vec3 direction_at(Vec3 u, Vec3 v, double angle)
+{
+    return vec3_add(vec3_scale(u, elementary_cos(angle)), vec3_scale(v, elementary_sin(angle)));
+}
+
 /* Returns the distance of the point x from a segment, mm. */
 double segment_distance_to(const FieldSegment *segment, Vec3 x);
 /* Returns the distance between two segments, mm. */

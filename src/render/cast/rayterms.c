@@ -15,7 +15,8 @@ Status fieldscratch_new(const Geometry *geometry, size_t n, void **out, Err *err
     FieldScratch *scratch = NULL;
     TRY_GOTO(mem_calloc(&scratch, 1, sizeof *scratch, "field workspaces", err));
     TRY_GOTO(mem_calloc(&scratch->terms, n, sizeof *scratch->terms, "terms of a ray", err));
-    TRY_GOTO(mem_calloc(&scratch->heap, n, sizeof *scratch->heap, "terms of a ray", err));
+    TRY_GOTO(
+        mem_calloc(&scratch->heap.items, n, sizeof *scratch->heap.items, "terms of a ray", err));
     TRY_GOTO(mem_calloc(&scratch->group, n, sizeof *scratch->group, "terms of a ray", err));
     TRY_GOTO(mem_calloc(&scratch->near, n, sizeof *scratch->near, "terms of a ray", err));
     if (geometry->blend.n_groups)
@@ -33,7 +34,7 @@ void fieldscratch_free(void *workspace)
     if (!scratch)
         return;
     free(scratch->terms);
-    free(scratch->heap);
+    ARRAY_RELEASE(&scratch->heap);
     free(scratch->group);
     free(scratch->near);
     localgroups_free(scratch->groups);
@@ -123,24 +124,6 @@ static bool meets_node(const FieldNode *node, const double origin[3], const doub
     return t0 <= t1;
 }
 
-static bool is_before(const RayTerm *a, const RayTerm *b)
-{
-    return a->t0 != b->t0 ? a->t0 < b->t0 : a->segment < b->segment;
-}
-
-static void sift_down(RayTerm **heap, size_t n, size_t hole)
-{
-    RayTerm *item = heap[hole];
-    for (size_t child; (child = 2 * hole + 1) < n; hole = child) {
-        if (child + 1 < n && is_before(heap[child + 1], heap[child]))
-            child++;
-        if (!is_before(heap[child], item))
-            break;
-        heap[hole] = heap[child];
-    }
-    heap[hole] = item;
-}
-
 void rayterms_clear(FieldScratch *scratch)
 {
     scratch->n_terms = 0;
@@ -153,25 +136,27 @@ void rayterms_add(FieldScratch *scratch, const FieldTube *tube, const RayPart *p
         scratch->n_terms++;
 }
 
-static void order_heap(FieldScratch *scratch, size_t n)
+/* Puts term `i` at place `at` of the heap, which is not ordered yet. */
+static void put_term(FieldScratch *scratch, size_t at, uint32_t i)
 {
-    scratch->n_heap = n;
-    for (size_t i = n / 2; i-- > 0;)
-        sift_down(scratch->heap, n, i);
+    const RayTerm *term = &scratch->terms[i];
+    scratch->heap.items[at] = (HeapItem){term->t0, term->segment, i};
 }
 
 void rayterms_choose_all(FieldScratch *scratch)
 {
     for (size_t i = 0; i < scratch->n_terms; i++)
-        scratch->heap[i] = &scratch->terms[i];
-    order_heap(scratch, scratch->n_terms);
+        put_term(scratch, i, (uint32_t)i);
+    scratch->heap.n = scratch->n_terms;
+    heap_order(&scratch->heap);
 }
 
 void rayterms_choose(FieldScratch *scratch, const uint32_t *numbers, size_t n)
 {
     for (size_t i = 0; i < n; i++)
-        scratch->heap[i] = &scratch->terms[numbers[i]];
-    order_heap(scratch, n);
+        put_term(scratch, i, numbers[i]);
+    scratch->heap.n = n;
+    heap_order(&scratch->heap);
 }
 
 void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart *part)
@@ -202,13 +187,10 @@ bool rayterms_next_group(FieldScratch *scratch)
 {
     double end = HUGE_VAL;
     scratch->n_group = 0;
-    while (scratch->n_heap && scratch->heap[0]->t0 <= end) {
-        RayTerm *term = scratch->heap[0];
+    while (scratch->heap.n && scratch->heap.items[0].key <= end) {
+        RayTerm *term = &scratch->terms[heap_pop(&scratch->heap).value];
         end = scratch->n_group ? fmax(end, term->t1) : term->t1;
         scratch->group[scratch->n_group++] = term;
-        scratch->heap[0] = scratch->heap[--scratch->n_heap];
-        if (scratch->n_heap)
-            sift_down(scratch->heap, scratch->n_heap, 0);
     }
     return scratch->n_group > 0;
 }

@@ -24,9 +24,9 @@ typedef struct RayTerm {
  * rays need is ever touched. Nothing is allocated later. */
 typedef struct FieldScratch {
     RayTerm *terms;
-    RayTerm **heap;  /* by t0, then segment */
+    Heap heap;       /* indices of the terms that are in no group yet, by t0, then segment */
     RayTerm **group; /* by t0 */
-    size_t n_terms, n_heap, n_group;
+    size_t n_terms, n_group;
     uint32_t *near;      /* segments of the terms */
     LocalGroups *groups; /* of the terms; NULL where all segments blend */
 } FieldScratch;

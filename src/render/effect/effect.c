@@ -63,15 +63,8 @@ void radiustable_release(RadiusTable *table)
 
 double radiustable_find(const RadiusTable *table, uint32_t id)
 {
-    size_t low = 0, high = table->n;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (table->rows[middle].id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < table->n && table->rows[low].id == id ? (double)table->rows[low].radius_mm : 0;
+    const size_t row = sorted_find_row(table->rows, table->n, sizeof *table->rows, id);
+    return row < table->n ? (double)table->rows[row].radius_mm : 0;
 }
 
 /* ---- edges ----------------------------------------------------------------------------------- */

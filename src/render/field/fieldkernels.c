@@ -1,12 +1,13 @@
-/* The kernels of the potential for any processor, all that there are, and the choice. */
-#define FIELD_KERNEL trace_portable
-#define PLANE_KERNEL trace_plane_portable
-#define SHADOW_KERNEL shadow_portable
+/* The kernels of the potential, and the choice between them and those of the blob. */
+#define FIELD_KERNEL LANES_NAME(trace)
+#define PLANE_KERNEL LANES_NAME(trace_plane)
+#define SHADOW_KERNEL LANES_NAME(shadow)
 #include "render/field/fieldkernels.h"
 #include "render/field/kernel_trace.h"
 
 #include "render/field/kernel_shadow.h"
 
+#ifdef LANES_PORTABLE
 const FieldKernels potentialkernels[] = {
     {trace_portable, shadow_portable},
 #ifdef __x86_64__
@@ -21,3 +22,4 @@ const FieldKernels *fieldkernels_for(const Geometry *geometry, RenderKernels ker
         model_has(geometry->model, MODEL_BLOB) ? blobkernels : potentialkernels;
     return &all[kernels_kind(kernels)];
 }
+#endif

@@ -27,19 +27,25 @@ enum { BLOCK = 64, LEAST_STEPS = 4, HALVINGS = 6, FINE_SAMPLES = 384, RULINGS = 
 /* How far a drawn polygon may be off its circle, mm. */
 #define SAGITTA_MM 0.004
 
-typedef struct Hand {
+/* A line drawing while it is made. */
+typedef struct InkDrawing {
     const Geometry *geometry;
     const Camera *camera;
     Caster *caster;
     double mm_per_pixel, line_mm;
     double paper[2]; /* width and height, mm */
-    Vec3 *joined;    /* owned; ends of joints, sorted */
+    Vec3 *joined;    /* ends of joints, sorted; owned */
     size_t n_joined;
     size_t n_blocks;
-    InkPieces *pieces; /* of each block */
-    Status *status;    /* likewise */
-    Err *errors;       /* likewise */
-} Hand;
+    InkPieces *pieces; /* per block; owned */
+} InkDrawing;
+
+/* What one block of vessels is drawn with. */
+typedef struct InkPen {
+    const InkDrawing *ink;
+    int worker;
+    InkPieces *pieces; /* receives the lines */
+} InkPen;
 
 /* A place on paper; `per_mm` is how many mm of paper a mm across the view takes there. */
 typedef struct OnPaper {
@@ -48,19 +54,19 @@ typedef struct OnPaper {
 
 /* ---- from the world to the paper ------------------------------------------------------------- */
 
-static OnPaper on_paper(const Hand *hand, Vec3 point)
+static OnPaper on_paper(const InkDrawing *ink, Vec3 point)
 {
-    const CameraPoint seen = camera_point(hand->camera, point);
-    return (OnPaper){{seen.x * hand->mm_per_pixel, seen.y * hand->mm_per_pixel},
-                     seen.per_mm * hand->mm_per_pixel};
+    const CameraPoint seen = camera_point(ink->camera, point);
+    return (OnPaper){{seen.x * ink->mm_per_pixel, seen.y * ink->mm_per_pixel},
+                     seen.per_mm * ink->mm_per_pixel};
 }
 
-static bool is_seen(const Hand *hand, int worker, Vec3 point)
+static bool is_seen(const InkPen *pen, Vec3 point)
 {
     static const Ground none;
     double distance;
-    Vec3 towards = towards_viewer(hand->camera, point, &distance);
-    return !caster_shadow(hand->caster, worker, &none, point, towards, distance);
+    Vec3 towards = towards_viewer(pen->ink->camera, point, &distance);
+    return !caster_shadow(pen->ink->caster, pen->worker, &none, point, towards, distance);
 }
 
 /* ---- curves ---------------------------------------------------------------------------------- */
@@ -92,16 +98,16 @@ static Vec3 circle_point(const Curve *curve, double t, double radii)
 }
 
 /* A place of a joint's outline and the normal there. */
-static Vec3 ruled_point(const Hand *hand, const Curve *curve, double t, Vec3 *normal)
+static Vec3 ruled_point(const InkDrawing *ink, const Curve *curve, double t, Vec3 *normal)
 {
     double way = curve->way[0] + t * (curve->way[1] - curve->way[0]);
     double angle = curve->angle[0] + t * (curve->angle[1] - curve->angle[0]);
-    angle = joint_outline_near(hand->camera, curve->joint, angle, way);
+    angle = joint_outline_near(ink->camera, curve->joint, angle, way);
     *normal = joint_normal(curve->joint, angle, way);
     return joint_point(curve->joint, elementary_cos(angle), elementary_sin(angle), way);
 }
 
-static bool curve_is_seen(const Hand *hand, int worker, const Curve *curve, double t)
+static bool curve_is_seen(const InkPen *pen, const Curve *curve, double t)
 {
     Vec3 place, normal;
     if (curve->kind == CURVE_ARC)
@@ -109,55 +115,54 @@ static bool curve_is_seen(const Hand *hand, int worker, const Curve *curve, doub
     else if (curve->kind == CURVE_LINE)
         place = vec3_add(vec3_add_scaled(curve->from, curve->along, t), curve->aside);
     else
-        place = vec3_add_scaled(ruled_point(hand, curve, t, &normal), normal,
+        place = vec3_add_scaled(ruled_point(pen->ink, curve, t, &normal), normal,
                                 BESIDE * curve->joint->radius);
-    return is_seen(hand, worker, place);
+    return is_seen(pen, place);
 }
 
 /* Half a line within the outline. */
-static Status add_ruled(const Hand *hand, const Curve *curve, double t, InkPieces *pieces, Err *err)
+static Status add_ruled(const InkPen *pen, const Curve *curve, double t, Err *err)
 {
-    Vec3 normal, point = ruled_point(hand, curve, t, &normal);
-    OnPaper place = on_paper(hand, point);
-    double inwards = hand->line_mm / 2 / place.per_mm;
-    return inkpieces_add(pieces, on_paper(hand, vec3_add_scaled(point, normal, -inwards)).at, err);
+    Vec3 normal, point = ruled_point(pen->ink, curve, t, &normal);
+    OnPaper place = on_paper(pen->ink, point);
+    double inwards = pen->ink->line_mm / 2 / place.per_mm;
+    return inkpieces_add(pen->pieces,
+                         on_paper(pen->ink, vec3_add_scaled(point, normal, -inwards)).at, err);
 }
 
-static Status add_point(const Hand *hand, const Curve *curve, double t, InkPieces *pieces, Err *err)
+static Status add_point(const InkPen *pen, const Curve *curve, double t, Err *err)
 {
     if (curve->kind == CURVE_RULED)
-        return add_ruled(hand, curve, t, pieces, err);
+        return add_ruled(pen, curve, t, err);
     if (curve->kind == CURVE_ARC)
-        return inkpieces_add(pieces, on_paper(hand, circle_point(curve, t, 1 - curve->shrink)).at,
-                             err);
-    OnPaper place = on_paper(hand, vec3_add_scaled(curve->from, curve->along, t));
+        return inkpieces_add(pen->pieces,
+                             on_paper(pen->ink, circle_point(curve, t, 1 - curve->shrink)).at, err);
+    OnPaper place = on_paper(pen->ink, vec3_add_scaled(curve->from, curve->along, t));
     place.at[0] += curve->shift[0];
     place.at[1] += curve->shift[1];
-    return inkpieces_add(pieces, place.at, err);
+    return inkpieces_add(pen->pieces, place.at, err);
 }
 
 /* Draws the curve from t to end; a circle as a polygon. */
-static Status add_piece(const Hand *hand, const Curve *curve, double t, double end,
-                        InkPieces *pieces, Err *err)
+static Status add_piece(const InkPen *pen, const Curve *curve, double t, double end, Err *err)
 {
     double radius_mm = curve->length_mm / curve->span / FULL_TURN;
     double side =
         fmin(2 * elementary_acos(1 - fmin(SAGITTA_MM / radius_mm, 0.5)) / FULL_TURN, 0.125);
     int sides = curve->kind == CURVE_ARC ? (int)ceil((end - t) * curve->span / side) : 1;
-    TRY(inkpieces_begin(pieces, curve->width_mm, err));
+    TRY(inkpieces_begin(pen->pieces, curve->width_mm, err));
     for (int k = 0; k < sides; k++)
-        TRY(add_point(hand, curve, t + (end - t) * k / sides, pieces, err));
-    return add_point(hand, curve, end, pieces, err);
+        TRY(add_point(pen, curve, t + (end - t) * k / sides, err));
+    return add_point(pen, curve, end, err);
 }
 
 /* The place between a parameter where the curve is seen or not, as `seen` says, and one where it is
  * not so. */
-static double change(const Hand *hand, int worker, const Curve *curve, double same, double other,
-                     bool seen)
+static double change(const InkPen *pen, const Curve *curve, double same, double other, bool seen)
 {
     for (int k = 0; k < HALVINGS; k++) {
         double middle = (same + other) / 2;
-        if (curve_is_seen(hand, worker, curve, middle) == seen)
+        if (curve_is_seen(pen, curve, middle) == seen)
             same = middle;
         else
             other = middle;
@@ -166,24 +171,23 @@ static double change(const Hand *hand, int worker, const Curve *curve, double sa
 }
 
 /* Draws the parts of a curve that are seen. */
-static Status draw_curve(const Hand *hand, int worker, const Curve *curve, InkPieces *pieces,
-                         Err *err)
+static Status draw_curve(const InkPen *pen, const Curve *curve, Err *err)
 {
-    double wanted = ceil(2 * curve->length_mm / hand->line_mm);
+    double wanted = ceil(2 * curve->length_mm / pen->ink->line_mm);
     int steps = (int)fmin(fmax(wanted, LEAST_STEPS * (curve->kind == CURVE_ARC ? 4 : 1)), 1e6);
-    bool seen = curve_is_seen(hand, worker, curve, 0);
+    bool seen = curve_is_seen(pen, curve, 0);
     double begin = 0;
     for (int k = 1; k <= steps; k++) {
         double t = (double)k / steps;
-        if (curve_is_seen(hand, worker, curve, t) == seen)
+        if (curve_is_seen(pen, curve, t) == seen)
             continue;
-        double at = change(hand, worker, curve, (double)(k - 1) / steps, t, seen);
+        double at = change(pen, curve, (double)(k - 1) / steps, t, seen);
         if (seen)
-            TRY(add_piece(hand, curve, begin, at, pieces, err));
+            TRY(add_piece(pen, curve, begin, at, err));
         begin = at;
         seen = !seen;
     }
-    return seen ? add_piece(hand, curve, begin, 1, pieces, err) : STATUS_OK;
+    return seen ? add_piece(pen, curve, begin, 1, err) : STATUS_OK;
 }
 
 /* ---- vessels ---------------------------------------------------------------------------------
@@ -206,33 +210,32 @@ static Vec3 front_normal(const Camera *camera, const Primitive *vessel)
 }
 
 /* A vessel that is one line on paper. */
-static Status draw_thin(const Hand *hand, int worker, const Primitive *vessel,
-                        const OnPaper ends[2], InkPieces *pieces, Err *err)
+static Status draw_thin(const InkPen *pen, const Primitive *vessel, const OnPaper ends[2], Err *err)
 {
-    const Curve axis = {
-        .from = vessel->a,
-        .along = vec3_sub(vessel->b, vessel->a),
-        .aside = vec3_scale(front_normal(hand->camera, vessel), (1 + BESIDE) * vessel->radius_mm),
-        .length_mm = distance_on_paper(&ends[0], &ends[1]),
-        .width_mm = vessel->radius_mm * (ends[0].per_mm + ends[1].per_mm)};
-    return draw_curve(hand, worker, &axis, pieces, err);
+    const Curve axis = {.from = vessel->a,
+                        .along = vec3_sub(vessel->b, vessel->a),
+                        .aside = vec3_scale(front_normal(pen->ink->camera, vessel),
+                                            (1 + BESIDE) * vessel->radius_mm),
+                        .length_mm = distance_on_paper(&ends[0], &ends[1]),
+                        .width_mm = vessel->radius_mm * (ends[0].per_mm + ends[1].per_mm)};
+    return draw_curve(pen, &axis, err);
 }
 
 /* One of the two lines along the wall of a cylinder; `normal` is the wall's there. */
-static Status draw_side(const Hand *hand, int worker, const Primitive *vessel, Vec3 normal,
-                        const OnPaper ends[2], InkPieces *pieces, Err *err)
+static Status draw_side(const InkPen *pen, const Primitive *vessel, Vec3 normal,
+                        const OnPaper ends[2], Err *err)
 {
     Curve side = {.from = vec3_add_scaled(vessel->a, normal, vessel->radius_mm),
                   .along = vec3_sub(vessel->b, vessel->a),
                   .aside = vec3_scale(normal, BESIDE * vessel->radius_mm),
-                  .width_mm = hand->line_mm};
-    const OnPaper from = on_paper(hand, side.from);
-    const OnPaper to = on_paper(hand, vec3_add(side.from, side.along));
+                  .width_mm = pen->ink->line_mm};
+    const OnPaper from = on_paper(pen->ink, side.from);
+    const OnPaper to = on_paper(pen->ink, vec3_add(side.from, side.along));
     side.length_mm = distance_on_paper(&from, &to);
     double apart = distance_on_paper(&from, &ends[0]);
     for (int c = 0; c < 2 && apart > 0; c++)
-        side.shift[c] = (ends[0].at[c] - from.at[c]) / apart * fmin(hand->line_mm / 2, apart);
-    return draw_curve(hand, worker, &side, pieces, err);
+        side.shift[c] = (ends[0].at[c] - from.at[c]) / apart * fmin(pen->ink->line_mm / 2, apart);
+    return draw_curve(pen, &side, err);
 }
 
 /* The unit normals, at most two, where a cylinder's wall is seen edge-on; none where the viewer
@@ -267,53 +270,52 @@ static int order_points(const void *a, const void *b)
 }
 
 /* Whether a cylinder's end is neither in a ball nor a joint's. */
-static bool ends_in_disc(const Hand *hand, Vec3 end)
+static bool ends_in_disc(const InkDrawing *ink, Vec3 end)
 {
-    return !model_has(hand->geometry->model, MODEL_ROUND_ENDS) &&
-           !bsearch(&end, hand->joined, hand->n_joined, sizeof end, order_points);
+    return !model_has(ink->geometry->model, MODEL_ROUND_ENDS) &&
+           !bsearch(&end, ink->joined, ink->n_joined, sizeof end, order_points);
 }
 
-/* The edge of one of the discs that close a cylinder. */
-static Status draw_edge(const Hand *hand, int worker, const Primitive *vessel, Vec3 center,
-                        double per_mm, InkPieces *pieces, Err *err)
+/* Draws a circle about an axis (unit). Its radius on paper is `paper_mm`. */
+static Status draw_circle(const InkPen *pen, Vec3 center, Vec3 axis, double radius, double paper_mm,
+                          Err *err)
 {
-    double radius_mm = vessel->radius_mm * per_mm;
-    Curve edge = {.kind = CURVE_ARC,
-                  .span = 1,
-                  .from = center,
-                  .shrink = hand->line_mm / 2 / radius_mm,
-                  .length_mm = FULL_TURN * radius_mm,
-                  .width_mm = hand->line_mm};
-    vec3_across(vec3_normalized(vec3_sub(vessel->b, vessel->a)), &edge.u, &edge.v);
-    edge.u = vec3_scale(edge.u, vessel->radius_mm);
-    edge.v = vec3_scale(edge.v, vessel->radius_mm);
-    return draw_curve(hand, worker, &edge, pieces, err);
+    Curve circle = {.kind = CURVE_ARC,
+                    .span = 1,
+                    .from = center,
+                    .shrink = pen->ink->line_mm / 2 / paper_mm,
+                    .length_mm = FULL_TURN * paper_mm,
+                    .width_mm = pen->ink->line_mm};
+    vec3_across(axis, &circle.u, &circle.v);
+    circle.u = vec3_scale(circle.u, radius);
+    circle.v = vec3_scale(circle.v, radius);
+    return draw_curve(pen, &circle, err);
 }
 
-static Status draw_cylinder(const Hand *hand, int worker, const Primitive *vessel,
-                            InkPieces *pieces, Err *err)
+static Status draw_cylinder(const InkPen *pen, const Primitive *vessel, Err *err)
 {
-    const OnPaper ends[2] = {on_paper(hand, vessel->a), on_paper(hand, vessel->b)};
+    const OnPaper ends[2] = {on_paper(pen->ink, vessel->a), on_paper(pen->ink, vessel->b)};
     Vec3 normals[2];
-    if (vessel->radius_mm * fmax(ends[0].per_mm, ends[1].per_mm) <= hand->line_mm)
-        return draw_thin(hand, worker, vessel, ends, pieces, err);
-    int n = edge_normals(hand->camera, vessel, normals);
+    if (vessel->radius_mm * fmax(ends[0].per_mm, ends[1].per_mm) <= pen->ink->line_mm)
+        return draw_thin(pen, vessel, ends, err);
+    int n = edge_normals(pen->ink->camera, vessel, normals);
     for (int k = 0; k < n; k++)
-        TRY(draw_side(hand, worker, vessel, normals[k], ends, pieces, err));
+        TRY(draw_side(pen, vessel, normals[k], ends, err));
+    const Vec3 axis = vec3_normalized(vec3_sub(vessel->b, vessel->a));
     for (int k = 0; k < 2; k++)
-        if (ends_in_disc(hand, k ? vessel->b : vessel->a))
-            TRY(draw_edge(hand, worker, vessel, k ? vessel->b : vessel->a, ends[k].per_mm, pieces,
-                          err));
+        if (ends_in_disc(pen->ink, k ? vessel->b : vessel->a))
+            TRY(draw_circle(pen, k ? vessel->b : vessel->a, axis, vessel->radius_mm,
+                            vessel->radius_mm * ends[k].per_mm, err));
     return STATUS_OK;
 }
 
 /* The outline between two ellipses: from each angle of the first to the nearest of the second. */
-static Status draw_rulings(const Hand *hand, int worker, const JointFrame *joint,
-                           const double way[2], double length_mm, InkPieces *pieces, Err *err)
+static Status draw_rulings(const InkPen *pen, const JointFrame *joint, const double way[2],
+                           double length_mm, Err *err)
 {
     double from[JOINT_OUTLINES], to[JOINT_OUTLINES];
-    int n = joint_outline(hand->camera, joint, way[0], from),
-        m = joint_outline(hand->camera, joint, way[1], to);
+    int n = joint_outline(pen->ink->camera, joint, way[0], from),
+        m = joint_outline(pen->ink->camera, joint, way[1], to);
     for (int i = 0; i < n; i++) {
         double turn = 1; /* at most, in radians */
         for (int k = 0; k < m; k++) {
@@ -325,125 +327,110 @@ static Status draw_rulings(const Hand *hand, int worker, const JointFrame *joint
                                .angle = {from[i], from[i] + turn},
                                .way = {way[0], way[1]},
                                .length_mm = length_mm,
-                               .width_mm = hand->line_mm};
+                               .width_mm = pen->ink->line_mm};
         if (turn < 1)
-            TRY(draw_curve(hand, worker, &outline, pieces, err));
+            TRY(draw_curve(pen, &outline, err));
     }
     return STATUS_OK;
 }
 
 /* The parts of the edge between a joint and its cylinder that are part of the outline. */
-static Status draw_creases(const Hand *hand, int worker, const JointFrame *joint, int end,
-                           double per_mm, InkPieces *pieces, Err *err)
+static Status draw_creases(const InkPen *pen, const JointFrame *joint, int end, double per_mm,
+                           Err *err)
 {
     double radius = joint->radius + end * joint->radius_change;
     const Curve circle = {.kind = CURVE_ARC,
                           .from = vec3_add_scaled(joint->base, joint->span, end),
                           .u = vec3_add_scaled(joint->across, joint->across_change, end),
                           .v = vec3_scale(joint->side, radius),
-                          .shrink = hand->line_mm / 2 / (radius * per_mm),
-                          .width_mm = hand->line_mm};
+                          .shrink = pen->ink->line_mm / 2 / (radius * per_mm),
+                          .width_mm = pen->ink->line_mm};
     for (int k = 0, next; k < FINE_SAMPLES; k = next) {
         next = k + 1;
-        if (!joint_edge_is_outline(hand->camera, joint, end, FULL_TURN * (k + 0.5) / FINE_SAMPLES))
+        if (!joint_edge_is_outline(pen->ink->camera, joint, end,
+                                   FULL_TURN * (k + 0.5) / FINE_SAMPLES))
             continue;
         while (next < FINE_SAMPLES &&
-               joint_edge_is_outline(hand->camera, joint, end,
+               joint_edge_is_outline(pen->ink->camera, joint, end,
                                      FULL_TURN * (next + 0.5) / FINE_SAMPLES))
             next++;
         Curve arc = circle;
         arc.begin = (double)k / FINE_SAMPLES;
         arc.span = (double)(next - k) / FINE_SAMPLES;
         arc.length_mm = FULL_TURN * radius * per_mm * arc.span;
-        TRY(draw_curve(hand, worker, &arc, pieces, err));
+        TRY(draw_curve(pen, &arc, err));
     }
     return STATUS_OK;
 }
 
-static Status draw_joint(const Hand *hand, int worker, const Primitive *vessel, InkPieces *pieces,
-                         Err *err)
+static Status draw_joint(const InkPen *pen, const Primitive *vessel, Err *err)
 {
-    const OnPaper ends[2] = {on_paper(hand, vessel->a), on_paper(hand, vessel->b)};
+    const OnPaper ends[2] = {on_paper(pen->ink, vessel->a), on_paper(pen->ink, vessel->b)};
     const JointFrame joint = primitive_joint(vessel);
     const double most = fmax(vessel->radius_mm, vessel->radius_b_mm);
-    if (most * fmax(ends[0].per_mm, ends[1].per_mm) <= hand->line_mm)
-        return draw_thin(hand, worker, vessel, ends, pieces, err);
+    if (most * fmax(ends[0].per_mm, ends[1].per_mm) <= pen->ink->line_mm)
+        return draw_thin(pen, vessel, ends, err);
     double length_mm = 2 * most * ends[0].per_mm / RULINGS;
     for (int k = 0; k < RULINGS; k++)
-        TRY(draw_rulings(hand, worker, &joint,
-                         (const double[]){(double)k / RULINGS, (k + 1.0) / RULINGS}, length_mm,
-                         pieces, err));
+        TRY(draw_rulings(pen, &joint, (const double[]){(double)k / RULINGS, (k + 1.0) / RULINGS},
+                         length_mm, err));
     for (int end = 0; end < 2; end++)
-        TRY(draw_creases(hand, worker, &joint, end, ends[end].per_mm, pieces, err));
+        TRY(draw_creases(pen, &joint, end, ends[end].per_mm, err));
     return STATUS_OK;
 }
 
-static Status draw_ball(const Hand *hand, int worker, const Primitive *ball, InkPieces *pieces,
-                        Err *err)
+static Status draw_ball(const InkPen *pen, const Primitive *ball, Err *err)
 {
-    const OnPaper center = on_paper(hand, ball->a);
+    const OnPaper center = on_paper(pen->ink, ball->a);
     double radius_mm = ball->radius_mm * center.per_mm, distance;
-    if (radius_mm <= hand->line_mm)
+    if (radius_mm <= pen->ink->line_mm)
         return STATUS_OK;
-    Vec3 towards = towards_viewer(hand->camera, ball->a, &distance);
-    bool perspective = hand->camera->projection == PROJECTION_PERSPECTIVE;
+    Vec3 towards = towards_viewer(pen->ink->camera, ball->a, &distance);
+    bool perspective = pen->ink->camera->projection == PROJECTION_PERSPECTIVE;
     double nearer = perspective ? ball->radius_mm / distance : 0; /* in radii */
-    double radius = ball->radius_mm * sqrt(fmax(0, 1 - nearer * nearer));
-    Curve circle = {.kind = CURVE_ARC,
-                    .span = 1,
-                    .from = vec3_add_scaled(ball->a, towards, nearer * ball->radius_mm),
-                    .shrink = hand->line_mm / 2 / radius_mm,
-                    .length_mm = FULL_TURN * radius_mm,
-                    .width_mm = hand->line_mm};
-    vec3_across(towards, &circle.u, &circle.v);
-    circle.u = vec3_scale(circle.u, radius);
-    circle.v = vec3_scale(circle.v, radius);
-    return draw_curve(hand, worker, &circle, pieces, err);
+    return draw_circle(pen, vec3_add_scaled(ball->a, towards, nearer * ball->radius_mm), towards,
+                       ball->radius_mm * sqrt(fmax(0, 1 - nearer * nearer)), radius_mm, err);
 }
 
-static void draw_block(size_t block, int worker, void *context)
+static Status draw_block(size_t block, int worker, void *context, Err *err)
 {
-    const Hand *hand = context;
-    size_t n = hand->geometry->n_primitives, end = (block + 1) * BLOCK;
-    for (size_t i = block * BLOCK; i < n && i < end && hand->status[block] == STATUS_OK; i++) {
-        const Primitive *vessel = &hand->geometry->primitives[i];
-        hand->status[block] = (vessel->kind == PRIMITIVE_SPHERE  ? draw_ball
-                               : vessel->kind == PRIMITIVE_JOINT ? draw_joint
-                                                                 : draw_cylinder)(
-            hand, worker, vessel, &hand->pieces[block], &hand->errors[block]);
+    const InkDrawing *ink = context;
+    const InkPen pen = {ink, worker, &ink->pieces[block]};
+    const size_t n = ink->geometry->n_primitives, end = (block + 1) * BLOCK;
+    for (size_t i = block * BLOCK; i < n && i < end; i++) {
+        const Primitive *vessel = &ink->geometry->primitives[i];
+        TRY((vessel->kind == PRIMITIVE_SPHERE  ? draw_ball
+             : vessel->kind == PRIMITIVE_JOINT ? draw_joint
+                                               : draw_cylinder)(&pen, vessel, err));
     }
+    return STATUS_OK;
 }
 
 /* Puts the pieces of all blocks together. */
-static Status gather(const Hand *hand, Strokes *strokes, Err *err)
+static Status gather(const InkDrawing *ink, Strokes *strokes, Err *err)
 {
     InkPieces all = {0};
     Status status = STATUS_OK;
-    for (size_t b = 0; b < hand->n_blocks && status == STATUS_OK; b++) {
-        status = hand->status[b];
-        if (status != STATUS_OK)
-            *err = hand->errors[b];
-        else
-            status = inkpieces_append(&all, &hand->pieces[b], hand->paper, err);
-    }
-    if (status == STATUS_OK)
-        status = inkpieces_join(&all, strokes, err);
+    for (size_t b = 0; b < ink->n_blocks; b++)
+        TRY_GOTO(inkpieces_append(&all, &ink->pieces[b], ink->paper, err));
+    TRY_GOTO(inkpieces_join(&all, strokes, err));
+done:
     inkpieces_release(&all);
     return status;
 }
 
 /* The ends of all joints. */
-static Status list_joined(Hand *hand, Err *err)
+static Status list_joined(InkDrawing *ink, Err *err)
 {
-    const Geometry *geometry = hand->geometry;
-    TRY(mem_calloc(&hand->joined, 2 * geometry->n_primitives + 1, sizeof *hand->joined, "joints",
+    const Geometry *geometry = ink->geometry;
+    TRY(mem_calloc(&ink->joined, 2 * geometry->n_primitives + 1, sizeof *ink->joined, "joints",
                    err));
     for (size_t i = 0; i < geometry->n_primitives; i++)
         if (geometry->primitives[i].kind == PRIMITIVE_JOINT) {
-            hand->joined[hand->n_joined++] = geometry->primitives[i].a;
-            hand->joined[hand->n_joined++] = geometry->primitives[i].b;
+            ink->joined[ink->n_joined++] = geometry->primitives[i].a;
+            ink->joined[ink->n_joined++] = geometry->primitives[i].b;
         }
-    qsort(hand->joined, hand->n_joined, sizeof *hand->joined, order_points);
+    qsort(ink->joined, ink->n_joined, sizeof *ink->joined, order_points);
     return STATUS_OK;
 }
 
@@ -466,32 +453,28 @@ Status ink_draw(const Geometry *geometry, const View *view, const InkParams *par
 {
     const Camera *camera = &view->camera;
     int threads = params->threads > 0 ? params->threads : threads_available();
-    Hand hand = {.geometry = geometry,
-                 .camera = camera,
-                 .mm_per_pixel = params->width_mm / camera->width,
-                 .line_mm = params->line_mm,
-                 .n_blocks = (geometry->n_primitives + BLOCK - 1) / BLOCK};
+    InkDrawing ink = {.geometry = geometry,
+                      .camera = camera,
+                      .mm_per_pixel = params->width_mm / camera->width,
+                      .line_mm = params->line_mm,
+                      .n_blocks = (geometry->n_primitives + BLOCK - 1) / BLOCK};
     Status status;
-    hand.paper[0] = params->width_mm;
-    hand.paper[1] = camera->height * hand.mm_per_pixel;
+    ink.paper[0] = params->width_mm;
+    ink.paper[1] = camera->height * ink.mm_per_pixel;
     TRY(check_in_front(geometry, camera, err));
-    TRY_GOTO(list_joined(&hand, err));
-    TRY_GOTO(caster_new(geometry, NULL, threads, &hand.caster, err));
-    TRY_GOTO(mem_calloc(&hand.pieces, hand.n_blocks, sizeof *hand.pieces, "strokes", err));
-    TRY_GOTO(mem_calloc(&hand.status, hand.n_blocks, sizeof *hand.status, "strokes", err));
-    TRY_GOTO(mem_calloc(&hand.errors, hand.n_blocks, sizeof *hand.errors, "strokes", err));
-    caster_shadow_from(hand.caster, 1e-9);
-    threads_for(hand.n_blocks, threads, draw_block, &hand);
-    TRY_GOTO(gather(&hand, strokes, err));
-    strokes->width_mm = hand.paper[0];
-    strokes->height_mm = hand.paper[1];
+    TRY_GOTO(list_joined(&ink, err));
+    TRY_GOTO(caster_new(geometry, NULL, threads, &ink.caster, err));
+    TRY_GOTO(mem_calloc(&ink.pieces, ink.n_blocks, sizeof *ink.pieces, "strokes", err));
+    caster_shadow_from(ink.caster, 1e-9);
+    TRY_GOTO(threads_try(ink.n_blocks, threads, draw_block, &ink, err));
+    TRY_GOTO(gather(&ink, strokes, err));
+    strokes->width_mm = ink.paper[0];
+    strokes->height_mm = ink.paper[1];
 done:
-    for (size_t b = 0; hand.pieces && b < hand.n_blocks; b++)
-        inkpieces_release(&hand.pieces[b]);
-    free(hand.joined);
-    free(hand.pieces);
-    free(hand.status);
-    free(hand.errors);
-    caster_free(hand.caster);
+    for (size_t b = 0; ink.pieces && b < ink.n_blocks; b++)
+        inkpieces_release(&ink.pieces[b]);
+    free(ink.joined);
+    free(ink.pieces);
+    caster_free(ink.caster);
     return status;
 }

@@ -1,8 +1,10 @@
 /* The kernels for any processor, and the choice among all. */
-#define OCCLUSION_KERNEL(name) name##_portable
+#define OCCLUSION_KERNEL(name) LANES_NAME(name)
 #include "render/light/kernel_occlusion.h"
 
 #include <stdlib.h>
+
+#ifdef LANES_PORTABLE
 
 const OcclusionKernels *const occlusionkernels[] = {
     &occlusionkernels_portable,
@@ -48,3 +50,5 @@ void conescratch_release(ConeScratch *scratch)
     free(scratch->listed);
     free(scratch->sorted);
 }
+
+#endif

@@ -1,6 +1,8 @@
-/* The kernels for any processor, and the choice among all. */
-#define RASTER_KERNEL(name) name##_portable
+/* The kernels of primitives. */
+#define RASTER_KERNEL(name) LANES_NAME(name)
 #include "render/raster/kernel_light.h"
+
+#ifdef LANES_PORTABLE
 
 const RasterKernels *const rasterkernels[] = {
     &rasterkernels_portable,
@@ -9,3 +11,4 @@ const RasterKernels *const rasterkernels[] = {
     &rasterkernels_avx512,
 #endif
 };
+#endif

@@ -9,7 +9,6 @@
 #include "render/raster/zbuffer.h"
 
 #include "render/light/raycolor.h"
-#include "render/light/shade.h"
 #include "render/planes.h"
 #include "render/raster/rasterbins.h"
 #include <stdlib.h>
@@ -17,29 +16,29 @@
 static const double pixels_apart = 0.25;
 static const double caught = 0.177; /* pixels; just over 0.25 / sqrt 2 */
 
-typedef struct Point {
+typedef struct ZPoint {
     double z; /* depth along the view; infinite: nothing */
     Vec3 normal;
     size_t primitive;
-} Point;
+} ZPoint;
 
-typedef struct Buffers {
+typedef struct ZBuffers {
     const Drawing *drawing;
     Frame *frame;
     const RasterBins *bins;
-    Point **points; /* one buffer a worker */
-} Buffers;
+    ZPoint *points; /* per worker: of the pixels of a row of tiles */
+} ZBuffers;
 
-/* What is being drawn of one primitive in one row of tiles. */
-typedef struct Brush {
+/* One primitive while it is drawn into one row of tiles. */
+typedef struct ZBrush {
     const RasterView *view;
-    Point *points;
-    int row; /* pixels above it in the whole picture */
+    ZPoint *points;
+    int row; /* of pixels: the first one of the row of tiles */
     size_t primitive;
     double apart; /* mm between points */
-} Brush;
+} ZBrush;
 
-static void put_point(const Brush *brush, Vec3 at, Vec3 normal)
+static void put_point(const ZBrush *brush, Vec3 at, Vec3 normal)
 {
     const RasterView *view = brush->view;
     double scale = view->eye.perspective ? 1 / at.z : 1;
@@ -50,20 +49,20 @@ static void put_point(const Brush *brush, Vec3 at, Vec3 normal)
     if (off_x * off_x + off_y * off_y > caught * caught || column < 0 || column >= view->columns ||
         row < brush->row || row >= brush->row + TILE_SIDE)
         return;
-    Point *point =
+    ZPoint *point =
         &brush->points[(size_t)(row - brush->row) * (size_t)view->columns + (size_t)column];
     if (at.z < point->z)
-        *point = (Point){at.z, normal, brush->primitive};
+        *point = (ZPoint){at.z, normal, brush->primitive};
 }
 
-/* How many steps lead through a length. */
-static int steps_through(const Brush *brush, double length)
+/* Returns the number of steps along a length. */
+static int steps_through(const ZBrush *brush, double length)
 {
     return (int)ceil(length / brush->apart) + 1;
 }
 
-/* Whether a ball reaches into the row. */
-static bool touches_row(const Brush *brush, Vec3 center, double radius)
+/* Returns true if a ball reaches into the row. */
+static bool touches_row(const ZBrush *brush, Vec3 center, double radius)
 {
     const RasterView *view = brush->view;
     double low = center.y - radius, high = center.y + radius;
@@ -75,63 +74,65 @@ static bool touches_row(const Brush *brush, Vec3 center, double radius)
     return below >= brush->row - 1 && above <= brush->row + TILE_SIDE;
 }
 
-/* Two directions square to an axis and to each other. */
-static void square_to(Vec3 axis, Vec3 *e, Vec3 *f)
+/* Draws points around a circle in the plane of e and f. Their normals lead away from its centre;
+ * `normal` not NULL: all are that. */
+static void draw_circle(const ZBrush *brush, Vec3 center, const Vec3 plane[2], double radius,
+                        int points, const Vec3 *normal)
 {
-    Vec3 other = fabs(axis.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
-    *e = vec3_normalized(vec3_cross(axis, other));
-    *f = vec3_cross(axis, *e);
+    for (int i = 0; i < points; i++) {
+        double angle = FULL_TURN * i / points;
+        Vec3 out = vec3_add_scaled(vec3_scale(plane[0], elementary_cos(angle)), plane[1],
+                                   elementary_sin(angle));
+        put_point(brush, vec3_add_scaled(center, out, radius), normal ? *normal : out);
+    }
 }
 
-/* Directions around a circle. */
-static Vec3 around(Vec3 e, Vec3 f, int i, int n)
+/* Draws the disc of a cylinder's end, except its rim, which belongs to the wall. */
+static void draw_disc(const ZBrush *brush, Vec3 center, const Vec3 plane[2], double radius,
+                      Vec3 normal)
 {
-    double angle = FULL_TURN * i / n;
-    return vec3_add_scaled(vec3_scale(e, elementary_cos(angle)), f, elementary_sin(angle));
+    int rings = steps_through(brush, radius);
+    for (int ring = 0; ring < rings && touches_row(brush, center, radius); ring++) {
+        double part = radius * ring / rings;
+        draw_circle(brush, center, plane, part, steps_through(brush, FULL_TURN * part), &normal);
+    }
 }
 
-static void draw_cylinder(const Brush *brush, Vec3 a, Vec3 b, double radius)
+static void draw_cylinder(const ZBrush *brush, Vec3 a, Vec3 b, double radius)
 {
-    Vec3 e, f, span = vec3_sub(b, a), axis = vec3_normalized(span);
-    square_to(axis, &e, &f);
+    Vec3 span = vec3_sub(b, a), axis = vec3_normalized(span), plane[2];
+    plane[0] =
+        vec3_normalized(vec3_cross(axis, fabs(axis.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0)));
+    plane[1] = vec3_cross(axis, plane[0]);
     int along = steps_through(brush, vec3_length(span));
     int turn = steps_through(brush, FULL_TURN * radius);
     for (int j = 0; j <= along; j++) {
         Vec3 center = vec3_add_scaled(a, span, (double)j / along);
-        for (int i = 0; i < turn && touches_row(brush, center, radius); i++) {
-            Vec3 out = around(e, f, i, turn);
-            put_point(brush, vec3_add_scaled(center, out, radius), out);
-        }
+        if (touches_row(brush, center, radius))
+            draw_circle(brush, center, plane, radius, turn, NULL);
     }
-    int rings = steps_through(brush, radius); /* the rim is the wall's */
-    for (int end = 0; end < 2; end++) {
-        Vec3 center = end ? b : a, normal = vec3_scale(axis, end ? 1 : -1);
-        for (int ring = 0; ring < rings && touches_row(brush, center, radius); ring++) {
-            double part = radius * ring / rings;
-            int points = steps_through(brush, FULL_TURN * part);
-            for (int i = 0; i < points; i++)
-                put_point(brush, vec3_add_scaled(center, around(e, f, i, points), part), normal);
-        }
-    }
+    draw_disc(brush, a, plane, radius, vec3_scale(axis, -1));
+    draw_disc(brush, b, plane, radius, axis);
 }
 
-static void draw_sphere(const Brush *brush, Vec3 center, double radius)
+static void draw_sphere(const ZBrush *brush, Vec3 center, double radius)
 {
     int rings = steps_through(brush, PI * radius);
     for (int ring = 0; ring <= rings; ring++) {
         double angle = PI * ring / rings, part = elementary_sin(angle);
         int points = steps_through(brush, FULL_TURN * radius * part);
         for (int i = 0; i < points; i++) {
-            Vec3 out = vec3_scale(around(vec3(1, 0, 0), vec3(0, 1, 0), i, points), part);
-            out.z = elementary_cos(angle);
+            double turn = FULL_TURN * i / points;
+            Vec3 out = {elementary_cos(turn) * part, elementary_sin(turn) * part,
+                        elementary_cos(angle)};
             put_point(brush, vec3_add_scaled(center, out, radius), out);
         }
     }
 }
 
-/* The frame of the view is left-handed and so is the joint in it: its normal points inwards,
- * which does not matter as it is turned to face the viewer. */
-static void draw_joint(const Brush *brush, const JointFrame *joint)
+/* Draws a ruled joint by points of its rulings. Its frame is left-handed like that of the view, so
+ * normals point inwards; finish_pixel turns them to the viewer. */
+static void draw_joint(const ZBrush *brush, const JointFrame *joint)
 {
     double larger = fmax(joint->radius, joint->radius + joint->radius_change);
     double length =
@@ -156,7 +157,7 @@ static void draw_joint(const Brush *brush, const JointFrame *joint)
     }
 }
 
-static void draw_primitive(const Buffers *buffers, const RasterItem *item, Brush *brush)
+static void draw_primitive(const ZBuffers *buffers, const RasterItem *item, ZBrush *brush)
 {
     const RasterView *view = brush->view;
     const Primitive *primitive = &buffers->drawing->geometry->primitives[item->primitive];
@@ -186,59 +187,52 @@ static void draw_primitive(const Buffers *buffers, const RasterItem *item, Brush
     }
 }
 
-/* Depth, normal, id and colour of a pixel. */
-static void finish_pixel(const Buffers *buffers, const Point *point, int i, int j)
+/* Stores the planes of a pixel of the band. */
+static void finish_pixel(const ZBuffers *buffers, const ZPoint *point, int i, int j, int worker)
 {
     const Drawing *drawing = buffers->drawing;
-    const Geometry *geometry = drawing->geometry;
-    const Camera *camera = &drawing->view->camera;
     const RasterView *view = &buffers->bins->view;
-    Frame *frame = buffers->frame;
-    size_t pixel = (size_t)j * (size_t)camera->width + (size_t)i;
-    bool seen = point->z < HUGE_VAL;
-    Ray ray = camera_ray(camera, i, drawing->band.first + j);
-    double t = seen ? point->z / vec3_dot(ray.direction, view->eye.axes[2]) : HUGE_VAL;
-    Vec3 normal = seen ? viewpoint_to_world(&view->eye, point->normal) : vec3(0, 0, 0);
-    if (vec3_dot(normal, ray.direction) > 0)
-        normal = vec3_scale(normal, -1);
-    uint32_t segment = seen ? geometry->primitives[point->primitive].segment : 0;
-    planes_store(frame, pixel, t, normal, seen ? geometry->ids[segment] : 0);
-    if (!frame->color.values)
-        return;
-    Rgb color = drawing->view->background;
+    const bool seen = point->z < HUGE_VAL;
+    size_t pixel = (size_t)j * (size_t)view->columns + (size_t)i;
+    Ray ray = camera_ray(&drawing->view->camera, i, drawing->band.first + j);
+    Surfel surfel;
+    planes_store_nothing(buffers->frame, pixel, 1);
     if (seen) {
-        const ShadingInput at = {.finish = &drawing->appearance->finish,
-                                 .pigment = appearance_color(drawing->appearance, segment),
-                                 .point = ray_at(ray, t),
-                                 .normal = normal,
-                                 .direction = ray.direction,
-                                 .open = 1};
-        color = shade(drawing->view, &at, NULL, NULL);
+        Vec3 normal = viewpoint_to_world(&view->eye, point->normal);
+        bool away = vec3_dot(normal, ray.direction) > 0;
+        surfel = (Surfel){.t = point->z / vec3_dot(ray.direction, view->eye.axes[2]),
+                          .normal = away ? vec3_scale(normal, -1) : normal,
+                          .segment = drawing->geometry->primitives[point->primitive].segment};
+        planes_store(buffers->frame, pixel, surfel.t, surfel.normal,
+                     drawing->geometry->ids[surfel.segment]);
     }
-    planes_store_color(frame, pixel, color);
+    if (buffers->frame->color.values)
+        planes_store_color(
+            buffers->frame, pixel,
+            ray_color(drawing, worker, ray, i, drawing->band.first + j, seen ? &surfel : NULL));
 }
 
-static void draw_row(size_t number, int worker, void *context)
+static void draw_zbuffer_row(size_t number, int worker, void *context)
 {
-    const Buffers *buffers = context;
+    const ZBuffers *buffers = context;
     const Drawing *drawing = buffers->drawing;
     const RasterBins *bins = buffers->bins;
     const RasterView *view = &bins->view;
-    Point *points = buffers->points[worker];
-    int first = drawing->band.first + (int)number * TILE_SIDE;
-    size_t row = (size_t)first / TILE_SIDE;
+    const int width = view->columns, first = drawing->band.first + (int)number * TILE_SIDE;
+    const size_t row = (size_t)first / TILE_SIDE;
+    ZPoint *points = buffers->points + (size_t)worker * TILE_SIDE * (size_t)width;
     if (worker == 0)
         band_progress(&drawing->band, drawing->params, view->rows, false,
                       (double)number * TILE_SIDE / drawing->band.rows);
-    for (int i = 0; i < TILE_SIDE * view->columns; i++)
+    for (int i = 0; i < TILE_SIDE * width; i++)
         points[i].z = HUGE_VAL;
-    Brush brush = {.view = view, .points = points, .row = first};
+    ZBrush brush = {.view = view, .points = points, .row = first};
     for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++)
         draw_primitive(buffers, &bins->items[bins->row_items[i]], &brush);
     for (int j = 0; j < tile_extent(view->rows - first); j++)
-        for (int i = 0; i < view->columns; i++)
-            finish_pixel(buffers, &points[j * view->columns + i], i,
-                         first - drawing->band.first + j);
+        for (int i = 0; i < width; i++)
+            finish_pixel(buffers, &points[j * width + i], i, first - drawing->band.first + j,
+                         worker);
 }
 
 static Status check_outside(const RasterBins *bins, Err *err)
@@ -253,58 +247,53 @@ static Status check_outside(const RasterBins *bins, Err *err)
     return STATUS_OK;
 }
 
-static void release_bins(void *prepared)
+static void release_zbuffer(void *prepared)
 {
     rasterbins_free(prepared);
 }
 
-static Status prepare(const Drawing *drawing, void **prepared, Err *err)
-{
-    RasterBins *bins;
-    /* Points up to half a pixel off are caught. */
-    RasterView view = rasterview_of_camera(&drawing->view->camera, drawing->geometry->bounds, 2);
-    TRY(rasterbins_new(drawing->geometry, &view, drawing->params->threads, &bins, err));
-    Status status = check_outside(bins, err);
-    if (status == STATUS_OK)
-        *prepared = bins;
-    else
-        rasterbins_free(bins);
-    return status;
-}
-
-static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Err *err)
+static Status prepare_zbuffer(const Drawing *drawing, void **prepared, Err *err)
 {
     Status status;
-    Buffers buffers = {.drawing = drawing, .frame = frame, .bins = prepared};
-    int workers = drawing->params->threads;
-    size_t n = (size_t)TILE_SIDE * (size_t)drawing->view->camera.width;
-    TRY_GOTO(mem_calloc(&buffers.points, (size_t)workers, sizeof *buffers.points, "rows", err));
-    for (int i = 0; i < workers; i++)
-        TRY_GOTO(mem_calloc(&buffers.points[i], n, sizeof *buffers.points[i], "depths", err));
-    threads_for(((size_t)drawing->band.rows + TILE_SIDE - 1) / TILE_SIDE, workers, draw_row,
-                &buffers);
+    RasterBins *bins = NULL;
+    /* Points up to half a pixel off are caught. */
+    RasterView view = rasterview_of_camera(&drawing->view->camera, drawing->geometry->bounds, 2);
+    TRY_GOTO(rasterbins_new(drawing->geometry, &view, drawing->params->threads, &bins, err));
+    TRY_GOTO(check_outside(bins, err));
+    *prepared = bins;
+    return STATUS_OK;
 done:
-    for (int i = 0; buffers.points && i < workers; i++)
-        free(buffers.points[i]);
-    free(buffers.points);
+    rasterbins_free(bins);
     return status;
 }
 
-static bool can_draw(const Drawing *drawing)
+static Status draw_zbuffer(const Drawing *drawing, void *prepared, Frame *frame, Err *err)
 {
-    return drawing->geometry->n_primitives > 0 && drawing->params->method == RENDER_ZBUFFER &&
-           !raycolor_is_needed(drawing->view, drawing->params);
+    ZBuffers buffers = {.drawing = drawing, .frame = frame, .bins = prepared};
+    size_t workers = (size_t)drawing->params->threads;
+    TRY(mem_calloc(&buffers.points, workers * TILE_SIDE * (size_t)drawing->view->camera.width,
+                   sizeof *buffers.points, "depths", err));
+    threads_for(((size_t)drawing->band.rows + TILE_SIDE - 1) / TILE_SIDE, (int)workers,
+                draw_zbuffer_row, &buffers);
+    free(buffers.points);
+    return STATUS_OK;
 }
 
-static bool never(const Drawing *drawing)
+static bool can_draw_zbuffer(const Drawing *drawing)
+{
+    return drawing->geometry->n_primitives > 0 && drawing->params->method == RENDER_ZBUFFER &&
+           !drawing->params->shadows && !raycolor_is_needed(drawing->view, drawing->params);
+}
+
+static bool zbuffer_needs_rays(const Drawing *drawing)
 {
     (void)drawing;
     return false;
 }
 
 const Engine zbuffer_engine = {.name = "zbuffer",
-                               .can = can_draw,
-                               .needs_rays = never,
-                               .prepare = prepare,
-                               .rows = draw_rows,
-                               .free = release_bins};
+                               .can = can_draw_zbuffer,
+                               .needs_rays = zbuffer_needs_rays,
+                               .prepare = prepare_zbuffer,
+                               .rows = draw_zbuffer,
+                               .free = release_zbuffer};

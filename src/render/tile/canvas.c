@@ -458,7 +458,7 @@ typedef struct Pass {
     void *context;
 } Pass;
 
-static void draw_rows(size_t number, int worker, void *context)
+static Status draw_rows(size_t number, int worker, void *context, Err *err)
 {
     const Pass *pass = context;
     Canvas *canvas = pass->canvas;
@@ -470,13 +470,12 @@ static void draw_rows(size_t number, int worker, void *context)
     if (worker == 0)
         band_progress(band, canvas->drawing->params, camera->height, pass->further,
                       (double)done * TILE_SIDE / band->rows);
-    if (own->status != STATUS_OK)
-        return;
     own->row = row * TILE_SIDE;
     own->column = 0;
-    own->status = pass->draw(pass->context, row, n, worker, &own->err);
-    if (own->status == STATUS_OK && !pass->further)
+    TRY(pass->draw(pass->context, row, n, worker, err));
+    if (!pass->further)
         blank_rows(canvas, own, (row + n) * TILE_SIDE);
+    return STATUS_OK;
 }
 
 Status canvas_pass(Canvas *canvas, bool further, int at_once, CanvasRows *draw, void *context,
@@ -488,12 +487,6 @@ Status canvas_pass(Canvas *canvas, bool further, int at_once, CanvasRows *draw, 
                  .at_once = at_once,
                  .draw = draw,
                  .context = context};
-    threads_for((size_t)((pass.rows + at_once - 1) / at_once), canvas->workers, draw_rows, &pass);
-    for (int i = 0; i < canvas->workers; i++)
-        if (canvas->each[i].status != STATUS_OK) {
-            if (err)
-                *err = canvas->each[i].err;
-            return canvas->each[i].status;
-        }
-    return STATUS_OK;
+    return threads_try((size_t)((pass.rows + at_once - 1) / at_once), canvas->workers, draw_rows,
+                       &pass, err);
 }

@@ -17,11 +17,8 @@ typedef struct CanvasWorker {
     TileSurface surface, ground; /* of vessels and of the ground */
     float open[TILE_SAMPLES];    /* of both, what samples share: */
     float parts[VIEW_MAX_LIGHTS][TILE_SAMPLES];
-    float color[3][TILE_SAMPLES];                    /* of the tile at hand */
-    uint8_t shadowed[VIEW_MAX_LIGHTS][TILE_SAMPLES]; /* likewise, for engines to fill */
-    int row, column; /* the first tile that is not drawn yet, in pixels */
-    Status status;
-    Err err;
+    float color[3][TILE_SAMPLES]; /* of the tile at hand */
+    int row, column;              /* the first tile that is not drawn yet, in pixels */
 } CanvasWorker;
 
 /* Constant while rows are drawn, but for the workers, each its thread's own. */

@@ -1,10 +1,6 @@
 /* shade.c's model for the samples of a tile, their pixels, and the codes of the colours, several at
  * once and in single precision: included by each source that compiles it for its lanes,
- * TILE_KERNEL(name) making the names of its functions. */
-#ifndef TILE_KERNEL
-#error "define TILE_KERNEL(name), the name of a function"
-#endif
-
+ * LANES_NAME(name) making the names of its functions. */
 #include "render/tile/lanes.h"
 #include "render/tile/tilekernels.h"
 #include <endian.h>
@@ -106,8 +102,8 @@ LANE_FN void add_light(Shading *shading, size_t number)
     }
 }
 
-LANE_TARGET static void TILE_KERNEL(shade)(const TileLook *look, const TileSurface *surface,
-                                           float color[3][TILE_SAMPLES])
+LANE_TARGET static void LANES_NAME(shade)(const TileLook *look, const TileSurface *surface,
+                                          float color[3][TILE_SAMPLES])
 {
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
         if (!lanes_any(lanes_of_bytes(&surface->hits->state[first])))
@@ -155,9 +151,9 @@ LANE_FN void store_eight_bytes(uint8_t *to, uint64_t bytes)
     __builtin_memcpy(to, &bytes, sizeof bytes);
 }
 
-LANE_TARGET static void TILE_KERNEL(encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES],
-                                            const uint8_t *state, const uint8_t background[3],
-                                            uint8_t *to, size_t stride)
+LANE_TARGET static void LANES_NAME(encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES],
+                                           const uint8_t *state, const uint8_t background[3],
+                                           uint8_t *to, size_t stride)
 {
     uint32_t pixels[TILE_SAMPLES];
     int32_t other = background[0] | background[1] << 8 | background[2] << 16;
@@ -200,8 +196,8 @@ LANE_FN void store_pixels(float *to, Quad r, Quad g, Quad b)
     __builtin_memcpy(to + 8, &third, sizeof third);
 }
 
-LANE_TARGET static void TILE_KERNEL(paint)(float color[3][TILE_SAMPLES], float *pixels,
-                                           size_t stride)
+LANE_TARGET static void LANES_NAME(paint)(float color[3][TILE_SAMPLES], float *pixels,
+                                          size_t stride)
 {
     for (int block = 0; block < TILE_SAMPLES / 8; block++) {
         Quad upper[3], lower[3];
@@ -219,8 +215,8 @@ LANE_TARGET static void TILE_KERNEL(paint)(float color[3][TILE_SAMPLES], float *
     }
 }
 
-LANE_TARGET static void TILE_KERNEL(clear)(const uint8_t *state, const float background[3],
-                                           float color[3][TILE_SAMPLES])
+LANE_TARGET static void LANES_NAME(clear)(const uint8_t *state, const float background[3],
+                                          float color[3][TILE_SAMPLES])
 {
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
         LaneMask seen = lanes_of_bytes(&state[first]);
@@ -257,9 +253,9 @@ LANE_FN uint64_t face_samples(const SeenTile *seen, const SeenPlaces *places,
     return facing;
 }
 
-LANE_TARGET static uint64_t TILE_KERNEL(face)(const SeenTile *seen, const SeenPlaces *places,
-                                              const float normal[3][TILE_SAMPLES],
-                                              const TileLight *light)
+LANE_TARGET static uint64_t LANES_NAME(face)(const SeenTile *seen, const SeenPlaces *places,
+                                             const float normal[3][TILE_SAMPLES],
+                                             const TileLight *light)
 {
     if (light->parallel && !seen->perspective)
         return face_samples(seen, places, normal, light, false, false);
@@ -273,8 +269,8 @@ LANE_FN int32_t tile_at(double place, double count)
     return (int32_t)(place < count ? place : count - 1);
 }
 
-LANE_TARGET static void TILE_KERNEL(aim)(const LightAim *aim, const SeenPlaces *places,
-                                         AimedPlaces *restrict aimed)
+LANE_TARGET static void LANES_NAME(aim)(const LightAim *aim, const SeenPlaces *places,
+                                        AimedPlaces *restrict aimed)
 {
     const LightAim a = *aim;
     const double width = 1 / a.per_x, height = 1 / a.per_y;
@@ -304,7 +300,7 @@ LANE_TARGET static void TILE_KERNEL(aim)(const LightAim *aim, const SeenPlaces *
     }
 }
 
-LANE_TARGET static uint64_t TILE_KERNEL(within)(const AimedPlaces *aimed, int32_t tile)
+LANE_TARGET static uint64_t LANES_NAME(within)(const AimedPlaces *aimed, int32_t tile)
 {
     uint64_t bits = 0;
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
@@ -315,10 +311,10 @@ LANE_TARGET static uint64_t TILE_KERNEL(within)(const AimedPlaces *aimed, int32_
     return bits;
 }
 
-const TileKernels TILE_KERNEL(tilekernels) = {.shade = TILE_KERNEL(shade),
-                                              .clear = TILE_KERNEL(clear),
-                                              .paint = TILE_KERNEL(paint),
-                                              .encode = TILE_KERNEL(encode),
-                                              .face = TILE_KERNEL(face),
-                                              .aim = TILE_KERNEL(aim),
-                                              .within = TILE_KERNEL(within)};
+const TileKernels LANES_NAME(tilekernels) = {.shade = LANES_NAME(shade),
+                                             .clear = LANES_NAME(clear),
+                                             .paint = LANES_NAME(paint),
+                                             .encode = LANES_NAME(encode),
+                                             .face = LANES_NAME(face),
+                                             .aim = LANES_NAME(aim),
+                                             .within = LANES_NAME(within)};

@@ -1,8 +1,9 @@
-/* Several floats at once. A source that defines LANES_AVX512 gets 16 lanes, one that defines
- * LANES_AVX2 gets 8, both with fused multiply-adds; they must run only where kernels_usable()
- * counts them. Any other gets 4 lanes of plain IEEE arithmetic, which every processor has. Only
- * correctly rounded operations are used, no approximate reciprocals, so that within one of the
- * three the results are the same everywhere.
+/* Several floats at once. The Makefile compiles each *kernels.c of the renderer three times: with
+ * LANES_AVX512 defined there are 16 lanes, with LANES_AVX2 there are 8, both with fused
+ * multiply-adds; they must run only where kernels_usable() counts them. Otherwise (LANES_PORTABLE)
+ * there are 4 lanes of plain IEEE arithmetic, which every processor has. Only correctly rounded
+ * operations are used, no approximate reciprocals, so that within one of the three the results are
+ * the same everywhere. LANES_NAME(name) is the name of what is compiled three times.
  *
  * Masks hold -1 where true and 0 where false. */
 #ifndef CORCAST_RENDER_LANES_H
@@ -15,17 +16,21 @@
 #if defined LANES_AVX512
 #include <immintrin.h>
 #define LANES 16
+#define LANES_NAME(name) name##_avx512
 #define WIDE(operation) _mm512_##operation
 typedef __m512 WideFloats;
 #define LANE_TARGET __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,fma")))
 #elif defined LANES_AVX2
 #include <immintrin.h>
 #define LANES 8
+#define LANES_NAME(name) name##_avx2
 #define WIDE(operation) _mm256_##operation
 typedef __m256 WideFloats;
 #define LANE_TARGET __attribute__((target("avx2,fma")))
 #else
 #define LANES 4
+#define LANES_NAME(name) name##_portable
+#define LANES_PORTABLE
 #define LANE_TARGET
 #endif
 #define LANE_FN LANE_TARGET static inline

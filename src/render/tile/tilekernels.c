@@ -1,6 +1,7 @@
-/* The kernels for any processor, and the choice among all. */
-#define TILE_KERNEL(name) name##_portable
+/* The kernels of tiles, and the choice among the kinds of kernels. */
 #include "render/tile/kernel_shade.h"
+
+#ifdef LANES_PORTABLE
 
 const TileKernels *const tilekernels[] = {
     &tilekernels_portable,
@@ -26,3 +27,5 @@ int kernels_kind(RenderKernels kernels)
 {
     return kernels == KERNELS_FASTEST ? kernels_usable() - 1 : (int)kernels - KERNELS_PORTABLE;
 }
+
+#endif

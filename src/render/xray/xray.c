@@ -12,35 +12,26 @@
 #include <stdlib.h>
 
 /* The hull of two discs in the plane of the band, in pixels, that hides a primitive. */
-typedef struct Shadow {
+typedef struct XrayHull {
     double ax, ay, bx, by, radius;
-} Shadow;
+} XrayHull;
 
-/* A stretch of the ray of a column. */
-typedef struct ColumnStretch {
-    int column;
-    Stretch stretch;
-} ColumnStretch;
+/* What one thread works with: the stretches of a row. */
+typedef struct XrayRow {
+    ARRAY(Stretch) found;   /* primitive by primitive */
+    ARRAY(uint32_t) column; /* per stretch found */
+    IndexLists by_column;   /* indices of the stretches of each column */
+    ARRAY(Stretch) sorted;  /* the stretches of one column */
+} XrayRow;
 
-/* What one thread works with. */
-typedef struct Worker {
-    ColumnStretch *found; /* owned, as all that follows: of a row, primitive by primitive */
-    Stretch *sorted;      /* the same column by column */
-    size_t *first;        /* of each column, and one more */
-    size_t n, found_capacity, sorted_capacity;
-    Status status;
-    Err err;
-} Worker;
-
+/* All arrays are owned. */
 typedef struct XrayBand {
     const Drawing *drawing;
     Frame *frame;
-    Shadow *shadows; /* owned, as all that follows; of each primitive */
-    PrimitiveFrame *frames;
-    /* Of each strip of STRIP rows: its primitives, items[first[strip] .. first[strip + 1]) */
-    size_t *first;
-    uint32_t *items;
-    Worker *workers;
+    XrayHull *hulls;        /* per primitive */
+    PrimitiveFrame *frames; /* per primitive */
+    IndexLists strips;      /* per strip of STRIP rows: the primitives that it may show */
+    XrayRow *rows;          /* per worker */
 } XrayBand;
 
 enum { STRIP = 16 };
@@ -89,52 +80,52 @@ static double disc_about(const Camera *camera, Ball ball, double *x, double *y)
     return radius;
 }
 
-static void find_shadow(size_t i, int worker, void *context)
+static void find_hull(size_t i, int worker, void *context)
 {
     (void)worker;
     XrayBand *band = context;
     const Geometry *geometry = band->drawing->geometry;
     const Camera *camera = &band->drawing->view->camera;
-    Shadow *shadow = &band->shadows[i];
-    double a = disc_about(camera, geometry_ball(geometry, 2 * i), &shadow->ax, &shadow->ay);
-    double b = disc_about(camera, geometry_ball(geometry, 2 * i + 1), &shadow->bx, &shadow->by);
-    shadow->radius = fmax(a, b) + 1e-3;
+    XrayHull *hull = &band->hulls[i];
+    double a = disc_about(camera, geometry_ball(geometry, 2 * i), &hull->ax, &hull->ay);
+    double b = disc_about(camera, geometry_ball(geometry, 2 * i + 1), &hull->bx, &hull->by);
+    hull->radius = fmax(a, b) + 1e-3;
     band->frames[i] = primitive_frame(&geometry->primitives[i]);
 }
 
-/* The columns that the shadow may cover in a row: false if none. */
-static bool columns_in(const Shadow *shadow, double row, int width, int *first, int *last)
+/* The columns that the hull may cover in a row: false if none. */
+static bool columns_in(const XrayHull *hull, double row, int width, int *first, int *last)
 {
     *first = 0;
     *last = width - 1;
-    if (!isfinite(shadow->radius))
+    if (!isfinite(hull->radius))
         return true;
-    double low = 0, high = 1, rise = shadow->by - shadow->ay, run = shadow->bx - shadow->ax;
-    double r = shadow->radius;
+    double low = 0, high = 1, rise = hull->by - hull->ay, run = hull->bx - hull->ax;
+    double r = hull->radius;
     if (rise != 0) {
-        double t0 = (row - r - shadow->ay) / rise, t1 = (row + r - shadow->ay) / rise;
+        double t0 = (row - r - hull->ay) / rise, t1 = (row + r - hull->ay) / rise;
         low = fmax(low, fmin(t0, t1));
         high = fmin(high, fmax(t0, t1));
-    } else if (fabs(row - shadow->ay) > r) {
+    } else if (fabs(row - hull->ay) > r) {
         return false;
     }
     if (!(low <= high))
         return false;
-    double x0 = shadow->ax + low * run, x1 = shadow->ax + high * run;
+    double x0 = hull->ax + low * run, x1 = hull->ax + high * run;
     double left = ceil(fmin(x0, x1) - r), right = floor(fmax(x0, x1) + r);
     *first = (int)fmin(fmax(left, 0), width);
     *last = (int)fmax(fmin(right, width - 1), -1);
     return *first <= *last;
 }
 
-/* The strips of the band that the shadow may cover: false if none. */
+/* The strips of the band that the hull may cover: false if none. */
 static bool strips_of(const XrayBand *band, size_t i, size_t *first, size_t *last)
 {
-    const Shadow *shadow = &band->shadows[i];
+    const XrayHull *hull = &band->hulls[i];
     const Band *rows = &band->drawing->band;
-    double low = fmin(shadow->ay, shadow->by) - shadow->radius - rows->first;
-    double high = fmax(shadow->ay, shadow->by) + shadow->radius - rows->first;
-    bool bounded = isfinite(shadow->radius);
+    double low = fmin(hull->ay, hull->by) - hull->radius - rows->first;
+    double high = fmax(hull->ay, hull->by) + hull->radius - rows->first;
+    bool bounded = isfinite(hull->radius);
     if (bounded && (high < 0 || low > rows->rows - 1))
         return false;
     *first = bounded ? (size_t)fmax(low, 0) / STRIP : 0;
@@ -142,21 +133,19 @@ static bool strips_of(const XrayBand *band, size_t i, size_t *first, size_t *las
     return true;
 }
 
-/* Lists the primitives of each strip: counts them, then places them from the last one on. */
 static Status make_strips(XrayBand *band, Err *err)
 {
-    size_t n = ((size_t)band->drawing->band.rows + STRIP - 1) / STRIP, first, last;
-    size_t n_primitives = band->drawing->geometry->n_primitives;
-    TRY(mem_calloc(&band->first, n + 1, sizeof *band->first, "strips", err));
+    const size_t n = ((size_t)band->drawing->band.rows + STRIP - 1) / STRIP;
+    const size_t n_primitives = band->drawing->geometry->n_primitives;
+    size_t first, last;
+    TRY(indexlists_begin(&band->strips, n, "strips", err));
     for (size_t i = 0; i < n_primitives; i++)
         for (size_t k = strips_of(band, i, &first, &last) ? first : n; k < n && k <= last; k++)
-            band->first[k]++;
-    for (size_t k = 1; k <= n; k++)
-        band->first[k] += band->first[k - 1];
-    TRY(mem_calloc(&band->items, band->first[n], sizeof *band->items, "strips", err));
-    for (size_t i = n_primitives; i-- > 0;)
+            indexlists_count(&band->strips, k);
+    TRY(indexlists_allot(&band->strips, "strips", err));
+    for (size_t i = 0; i < n_primitives; i++)
         for (size_t k = strips_of(band, i, &first, &last) ? first : n; k < n && k <= last; k++)
-            band->items[--band->first[k]] = (uint32_t)i;
+            indexlists_put(&band->strips, k, (uint32_t)i);
     return STATUS_OK;
 }
 
@@ -175,52 +164,50 @@ static void store(const XrayBand *band, size_t pixel, double length_mm)
                              (float)((double)dark.b + (double)(paper.b - dark.b) * through)});
 }
 
-static Status add_primitive(const XrayBand *band, Worker *own, size_t i, int row, Err *err)
+static Status add_primitive(const XrayBand *band, XrayRow *own, size_t i, int row, Err *err)
 {
     const Drawing *drawing = band->drawing;
     int first, last;
-    if (!columns_in(&band->shadows[i], row, drawing->view->camera.width, &first, &last))
+    if (!columns_in(&band->hulls[i], row, drawing->view->camera.width, &first, &last))
         return STATUS_OK;
-    TRY(mem_reserve(&own->found, &own->found_capacity, own->n + 3 * (size_t)(last - first + 1),
-                    sizeof *own->found, "stretches", err));
+    TRY(ARRAY_RESERVE(&own->found, 3 * (size_t)(last - first + 1), "stretches", err));
+    TRY(ARRAY_RESERVE(&own->column, 3 * (size_t)(last - first + 1), "stretches", err));
     for (int column = first; column <= last; column++) {
-        Stretch stretches[3];
         int n = primitive_stretches(&drawing->geometry->primitives[i], &band->frames[i],
-                                    camera_ray(&drawing->view->camera, column, row), stretches);
+                                    camera_ray(&drawing->view->camera, column, row),
+                                    own->found.items + own->found.n);
+        own->found.n += (size_t)n;
         for (int k = 0; k < n; k++)
-            own->found[own->n++] = (ColumnStretch){column, stretches[k]};
+            own->column.items[own->column.n++] = (uint32_t)column;
     }
     return STATUS_OK;
 }
 
-/* Sorts what was found by columns. */
-static Status sort_columns(Worker *own, int width, Err *err)
+static Status store_columns(const XrayBand *band, XrayRow *own, size_t row, Err *err)
 {
-    TRY(mem_reserve(&own->sorted, &own->sorted_capacity, own->n + 1, sizeof *own->sorted,
-                    "stretches", err));
-    for (int x = 0; x <= width; x++)
-        own->first[x] = 0;
-    for (size_t i = 0; i < own->n; i++)
-        own->first[own->found[i].column]++;
-    for (int x = 1; x <= width; x++)
-        own->first[x] += own->first[x - 1];
-    for (size_t i = own->n; i-- > 0;)
-        own->sorted[--own->first[own->found[i].column]] = own->found[i].stretch;
+    const size_t width = (size_t)band->drawing->view->camera.width;
+    const ItemKeys columns = {own->column.items, own->column.n, 1};
+    TRY(indexlists_sort(&own->by_column, width, columns, "stretches", err));
+    own->sorted.n = 0;
+    TRY(ARRAY_RESERVE(&own->sorted, own->found.n, "stretches", err));
+    for (size_t x = 0; x < width; x++) {
+        const uint32_t *list = own->by_column.items + own->by_column.first[x];
+        const size_t n = indexlists_length(&own->by_column, x);
+        for (size_t k = 0; k < n; k++)
+            own->sorted.items[k] = own->found.items[list[k]];
+        store(band, row * width + x, stretches_length(own->sorted.items, n));
+    }
     return STATUS_OK;
 }
 
-static Status draw_primitives(const XrayBand *band, Worker *own, size_t row, Err *err)
+static Status draw_primitives(const XrayBand *band, XrayRow *own, size_t row, Err *err)
 {
-    const Drawing *drawing = band->drawing;
-    int width = drawing->view->camera.width;
-    own->n = 0;
-    for (size_t i = band->first[row / STRIP]; i < band->first[row / STRIP + 1]; i++)
-        TRY(add_primitive(band, own, band->items[i], drawing->band.first + (int)row, err));
-    TRY(sort_columns(own, width, err));
-    for (int x = 0; x < width; x++)
-        store(band, row * (size_t)width + (size_t)x,
-              stretches_length(own->sorted + own->first[x], own->first[x + 1] - own->first[x]));
-    return STATUS_OK;
+    const uint32_t *range = &band->strips.first[row / STRIP];
+    own->found.n = own->column.n = 0;
+    for (uint32_t i = range[0]; i < range[1]; i++)
+        TRY(add_primitive(band, own, band->strips.items[i], band->drawing->band.first + (int)row,
+                          err));
+    return store_columns(band, own, row, err);
 }
 
 /* How much of the ray lies inside surfaces, by their crossings. A first one from inside tells that
@@ -241,73 +228,52 @@ static double length_by_hits(Caster *caster, int worker, Ray ray)
     return length;
 }
 
-static void draw_row(size_t row, int number, void *context)
+static Status draw_row(size_t row, int worker, void *context, Err *err)
 {
     const XrayBand *band = context;
     const Drawing *drawing = band->drawing;
     const Camera *camera = &drawing->view->camera;
-    Worker *own = &band->workers[number];
-    if (number == 0)
+    if (worker == 0)
         band_progress(&drawing->band, drawing->params, camera->height, false,
                       (double)row / drawing->band.rows);
-    if (own->status != STATUS_OK)
-        return;
-    if (model_has(drawing->geometry->model, MODEL_PRIMITIVES)) {
-        own->status = draw_primitives(band, own, row, &own->err);
-        return;
-    }
+    if (model_has(drawing->geometry->model, MODEL_PRIMITIVES))
+        return draw_primitives(band, &band->rows[worker], row, err);
     for (int x = 0; x < camera->width; x++)
         store(band, row * (size_t)camera->width + (size_t)x,
-              length_by_hits(drawing->caster, number,
+              length_by_hits(drawing->caster, worker,
                              camera_ray(camera, x, drawing->band.first + (int)row)));
-}
-
-/* ---- bands ----------------------------------------------------------------------------------- */
-
-static Status make_workers(XrayBand *band, Err *err)
-{
-    int n = band->drawing->params->threads;
-    TRY(mem_calloc(&band->workers, (size_t)n, sizeof *band->workers, "workers", err));
-    for (int i = 0; i < n; i++)
-        TRY(mem_calloc(&band->workers[i].first, (size_t)band->drawing->view->camera.width + 1,
-                       sizeof(size_t), "columns", err));
     return STATUS_OK;
 }
 
-static void free_band(XrayBand *band)
+static void release_band(XrayBand *band)
 {
-    for (int i = 0; band->workers && i < band->drawing->params->threads; i++) {
-        free(band->workers[i].found);
-        free(band->workers[i].sorted);
-        free(band->workers[i].first);
+    for (int i = 0; band->rows && i < band->drawing->params->threads; i++) {
+        ARRAY_RELEASE(&band->rows[i].found);
+        ARRAY_RELEASE(&band->rows[i].column);
+        ARRAY_RELEASE(&band->rows[i].sorted);
+        indexlists_release(&band->rows[i].by_column);
     }
-    free(band->workers);
-    free(band->shadows);
+    free(band->rows);
+    free(band->hulls);
     free(band->frames);
-    free(band->first);
-    free(band->items);
+    indexlists_release(&band->strips);
 }
 
 static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Err *err)
 {
     (void)prepared;
     const int threads = drawing->params->threads;
-    size_t n = drawing->geometry->n_primitives;
+    const size_t n = drawing->geometry->n_primitives;
     XrayBand band = {.drawing = drawing, .frame = frame};
     Status status;
-    TRY_GOTO(mem_calloc(&band.shadows, n, sizeof *band.shadows, "primitives", err));
+    TRY_GOTO(mem_calloc(&band.hulls, n, sizeof *band.hulls, "primitives", err));
     TRY_GOTO(mem_calloc(&band.frames, n, sizeof *band.frames, "primitives", err));
-    TRY_GOTO(make_workers(&band, err));
-    threads_for(n, threads, find_shadow, &band);
+    TRY_GOTO(mem_calloc(&band.rows, (size_t)threads, sizeof *band.rows, "workers", err));
+    threads_for(n, threads, find_hull, &band);
     TRY_GOTO(make_strips(&band, err));
-    threads_for((size_t)drawing->band.rows, threads, draw_row, &band);
-    for (int i = 0; i < threads && status == STATUS_OK; i++) {
-        status = band.workers[i].status;
-        if (status != STATUS_OK && err)
-            *err = band.workers[i].err;
-    }
+    TRY_GOTO(threads_try((size_t)drawing->band.rows, threads, draw_row, &band, err));
 done:
-    free_band(&band);
+    release_band(&band);
     return status;
 }
 

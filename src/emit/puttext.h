@@ -1,0 +1,23 @@
+/* Formatted text with vectors, colours and exact numbers. Private to the module emit. */
+#ifndef CORCAST_EMIT_PUTTEXT_H
+#define CORCAST_EMIT_PUTTEXT_H
+
+#include "base/base.h"
+#include "geom/geom.h"
+
+/* Appends `format`, in which each conversion stands for the next argument:
+ *
+ *     %s  const char *       %n  double, in the fewest digits that read back to the same double
+ *     %d  int                %f  double, as %n for a float; -0 becomes 0
+ *     %u  uint32_t           %v  Vec3, as x,y,z in the digits of %n; -0 becomes 0
+ *     %z  size_t             %c  Rgb, as r,g,b in the digits of %f
+ *
+ * There are no flags or widths, and no other conversions. */
+void put_text(Text *text, const char *format, ...);
+
+/* Appends `before`, three numbers with `between` between them, and `after`. Each number has the
+ * fewest digits that read back to the same float; -0 becomes 0. */
+void put_triple(Text *out, const char *before, const float values[3], const char *between,
+                const char *after);
+
+#endif
