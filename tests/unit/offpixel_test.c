@@ -81,8 +81,8 @@ static void see(SceneModel model, Projection projection, Sight *sight)
     *sight = (Sight){.scene = staged(model, projection)};
     sight->params = (RenderParams){.method = RENDER_FASTEST, .threads = 2, .shadows = true};
     sight->frame = viewpoint_of_camera(&sight->scene.view.camera);
-    assert_int_equal(thinvessels_find(&sight->scene.geometry, &sight->scene.view.camera, 1, 0, 2,
-                                      &sight->thin, &err),
+    assert_int_equal(thinvessels_find(&sight->scene.geometry, &sight->scene.view.camera,
+                                      (ThinWidths){1, 0}, 2, &sight->thin, &err),
                      STATUS_OK);
     thinvessels_place(&sight->thin);
     assert_int_equal(caster_new(&sight->scene.geometry, NULL, 2, &sight->drawing.caster, &err),

@@ -83,7 +83,7 @@ typedef ARRAY(ThinStrip) ThinStrips;
 typedef struct ThinSearch {
     ThinVessels *thin;
     const Camera *camera;
-    double below_px, least_px;
+    ThinWidths widths;
     size_t n, n_chunks; /* numbers of vessels and of chunks */
     ThinStrips *found;  /* per chunk; owned */
 } ThinSearch;
@@ -125,7 +125,7 @@ static bool make_strip(const ThinSearch *search, uint32_t number, ThinStrip *str
     const ThinVessel vessel = vessel_part(&whole, near, far);
     const CameraPoint a = camera_point(camera, vessel.a), b = camera_point(camera, vessel.b);
     const double width =
-        fmax(vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm, search->least_px);
+        fmax(vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm, search->widths.least_px);
     const double margin = width + 1; /* so that clipped ends are in no cell */
     const double z[2] = {depth_along_view(camera, vessel.a) - vessel.radius_a,
                          depth_along_view(camera, vessel.b) - vessel.radius_b};
@@ -166,7 +166,8 @@ static Status search_chunk(size_t chunk, int worker, void *context, Err *err)
     for (size_t i = chunk * CHUNK; i < search->n && i < (chunk + 1) * CHUNK; i++) {
         const ThinVessel vessel = vessel_at(search->thin->whole, i);
         ThinStrip strip;
-        is_thin[i] = widest(&vessel, search->camera) < fmax(search->below_px, search->least_px);
+        is_thin[i] = widest(&vessel, search->camera) <
+                     fmax(search->widths.below_px, search->widths.least_px);
         if (is_thin[i] && vessel.has_length && make_strip(search, (uint32_t)i, &strip))
             TRY(ARRAY_PUSH(&search->found[chunk], "thin vessels", err, strip));
     }
@@ -279,15 +280,14 @@ void thinvessels_release(ThinVessels *thin)
     *thin = (ThinVessels){0};
 }
 
-Status thinvessels_find(const Geometry *whole, const Camera *camera, double below_px,
-                        double least_px, int threads, ThinVessels *thin, Err *err)
+Status thinvessels_find(const Geometry *whole, const Camera *camera, ThinWidths widths, int threads,
+                        ThinVessels *thin, Err *err)
 {
     *thin = (ThinVessels){.whole = whole};
     size_t n = model_has(whole->model, MODEL_TRIANGLES) ? 0 : count_vessels(whole);
     ThinSearch search = {.thin = thin,
                          .camera = camera,
-                         .below_px = below_px,
-                         .least_px = least_px,
+                         .widths = widths,
                          .n = n,
                          .n_chunks = (n + CHUNK - 1) / CHUNK};
     Status status = find(&search, threads, err);
@@ -523,8 +523,8 @@ static Status draw_rows(size_t index, int worker, void *context, Err *err)
     const int first = (int)index * ROWS,
               rows = band->rows - first < ROWS ? band->rows - first : ROWS;
     ThinCells *cells = &job->cells[worker];
-    TRY(thincells_fill(&job->thin->layer, 1, 0, band->first + first, camera->width, rows, cells,
-                       err));
+    const CellBlock block = {0, band->first + first, camera->width, rows, 1};
+    TRY(thincells_fill(&job->thin->layer, block, cells, err));
     for (int row = 0; row < rows && cells->n > 0; row++)
         for (int column = 0; column < camera->width; column++) {
             size_t pixel = (size_t)(first + row) * (size_t)camera->width + (size_t)column;

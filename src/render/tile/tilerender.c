@@ -384,12 +384,12 @@ static Status find_thin(const TilePicture *picture, BatchTile *tile, Err *err)
     const int fine = side * TILE_SIDE;
     if (per_pixel == 1 && thinlayer_misses(thin, seen->column / TILE_SIDE, seen->row / TILE_SIDE))
         thin = NULL;
-    TRY(thincells_fill(thin, per_pixel, seen->column, seen->row, TILE_SIDE, TILE_SIDE, &tile->cells,
-                       err));
+    const CellBlock center = {seen->column, seen->row, TILE_SIDE, TILE_SIDE, per_pixel};
+    const CellBlock further = {seen->column * side, seen->row * side, fine, fine, side};
+    TRY(thincells_fill(thin, center, &tile->cells, err));
     if (!picture->shifts || tile->cells.n == 0)
         thin = NULL;
-    return thincells_fill(thin, side, seen->column * side, seen->row * side, fine, fine,
-                          &tile->further, err);
+    return thincells_fill(thin, further, &tile->further, err);
 }
 
 /* Traces the next tile of the batch. Sets *shown to false if it shows nothing but background. */
