@@ -539,8 +539,8 @@ static double erf_near_0(double x)
 }
 
 /* Returns erfc(x) for x >= 1/2: exp(-x^2) / (1 + 2 x) times a function of x that lies between 1.1
- * and 1.3 and is approximated by a polynomial [Shepherd & Laframboise, Math. Comp. 36 (1981) 249].
- */
+ * and 1.3 and is approximated by a polynomial [Shepherd & Laframboise, Math. Comp. 36 (1981)
+ * 249]. */
 static double erfc_of_large(double x)
 {
     if (x > 28)

@@ -18,8 +18,7 @@
  *     pow, exp2             0.518     cos          0.65    erf          5
  *     cbrt, log1p, hypot    0.51      tan          4       erfc         9
  *
- * A subnormal result of hypot, tan, atan2 or erfc may be off by one more unit.
- */
+ * A subnormal result of hypot, tan, atan2 or erfc may be off by one more unit. */
 #ifndef CORCAST_BASE_ELEMENTARY_H
 #define CORCAST_BASE_ELEMENTARY_H
 

@@ -6,8 +6,8 @@
  * pointer and given up by storing NULL, each one atomic store.
  *
  * Of a large file the bytes that its size promises are read in slices side by side, as far as they
- * come and have no fault; block by block, the only code that refuses anything goes on from there.
- */
+ * come and have no fault; block by block, the only code that refuses anything goes on from
+ * there. */
 #include "base/file.h"
 
 #include "base/memory.h"

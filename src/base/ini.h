@@ -5,8 +5,8 @@
 #include "base/status.h"
 
 /* Called for each line: a pair in `section` ("" above the first one), or the head of a section,
- * with `name` and `value` NULL. Its error sentence need not name file and line: ini_read adds them.
- */
+ * with `name` and `value` NULL. Its error sentence need not name file and line: ini_read adds
+ * them. */
 typedef Status IniTake(void *user, const char *section, const char *name, const char *value,
                        Err *err);
 

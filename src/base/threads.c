@@ -32,8 +32,8 @@ typedef struct Loop {
     size_t count;
     void (*body)(size_t index, int worker, void *context);
     void *context;
-    bool spread; /* whether threads start on processors of their own; then they may run on `allowed`
-                  */
+    bool spread; /* whether threads start on processors of their own; then they may run on
+                  * `allowed` */
     cpu_set_t allowed;
 } Loop;
 
@@ -109,12 +109,4 @@ void threads_for(size_t count, int threads, void (*body)(size_t index, int worke
     run(&workers[0]);
     for (int i = 1; i < started; i++)
         pthread_join(handles[i], NULL);
-}
-
-Status calls_status(const CallResult *results, size_t count, Err *err)
-{
-    for (size_t i = 0; i < count; i++)
-        if (results[i].status != STATUS_OK)
-            return err_set(err, results[i].status, "%s", results[i].err.text);
-    return STATUS_OK;
 }

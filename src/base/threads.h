@@ -1,5 +1,6 @@
-/* Data-parallel loops. Results must not depend on the number of threads: the call for an index may
- * write only what no other call reads or writes, or what belongs to its worker. */
+/* Data-parallel loops. Results must not depend on the number of threads: the call for an index
+ * writes only what no other call reads or writes, or what belongs to its worker. Loops whose calls
+ * can fail are in base/firstfail.h. */
 #ifndef CORCAST_BASE_THREADS_H
 #define CORCAST_BASE_THREADS_H
 
@@ -7,24 +8,16 @@
 
 #include <stddef.h>
 
-/* The number of processors this process may run on, at least 1. */
+/* Returns the number of processors that this process may run on, at least 1. */
 int threads_available(void);
 
-/* Calls body(index, worker, context) for every index below `count`, in any order, on at most
- * `threads` threads (0: all processors), the calling one among them. `worker` in [0, threads) tells
- * the threads apart, for workspaces. Uses fewer threads when the system refuses to start one;
- * cannot fail. Returns when all calls have returned. */
+/* Calls body(index, worker, context) for every index below `count`, in any order, and returns when
+ * all calls have returned. Indices are handed out in rising order.
+ *
+ * threads  maximum number of threads, the calling thread included; 0: all processors. There are
+ *          fewer if the system refuses to start one.
+ * worker   in [0, threads): tells the threads apart, for workspaces. */
 void threads_for(size_t count, int threads, void (*body)(size_t index, int worker, void *context),
                  void *context);
-
-/* What a call of such a loop ended with, where calls can fail. */
-typedef struct CallResult {
-    Status status;
-    Err err; /* of a call that failed */
-} CallResult;
-
-/* Fails as the call of the lowest index did that failed, with its sentence in *err; STATUS_OK when
- * all `count` calls did their work. `err` may be NULL. */
-MUST_CHECK Status calls_status(const CallResult *results, size_t count, Err *err);
 
 #endif

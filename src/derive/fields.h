@@ -24,7 +24,7 @@ static inline const TreeMeta *who_says(const Tree *tree, const TreeMeta *said, M
     return said->known[key] ? said : &tree->meta;
 }
 
-/* Whether field_pressure has all it needs. */
+/* Returns true if field_pressure has all it needs. */
 bool pressure_is_known(const Tree *tree, const TreeMeta *said);
 
 #endif

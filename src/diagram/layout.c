@@ -1,16 +1,16 @@
-/* Branches are placed from the last to the first, which are their ancestors: when a branch's turn
- * comes, the branches that leave it are laid out with all that hangs on them, each between two
- * contours, how far it reaches up and down from its row as a function of the path from the root.
- * They are set onto the branch's own contours from the last to leave it to the first, each as near
- * as the contours allow and on the side where that is nearer [as Reingold & Tilford, IEEE Trans.
- * Softw. Eng. 7 (1981) 223-228, do level by level]. What leaves later begins farther right, so that
- * a link to a branch farther out crosses none farther in. A last pass from the roots on adds the
- * rows up.
+/* Branches are laid out from the last to the first, so that a branch comes after all branches that
+ * descend from it. A laid out branch, with its descendants, is bounded by two contours: how far it
+ * reaches above and below its row, as functions of the path length from the root. The daughters of
+ * a branch are attached to the branch's own contours, beginning with the one that leaves last, each
+ * as close as the contours allow, on the side where that is closer. Reingold & Tilford, IEEE Trans.
+ * Softw. Eng. 7 (1981) 223-228, do this level by level. A daughter that leaves later begins farther
+ * right, so the link to a daughter farther out crosses none farther in. A last pass from the roots
+ * on adds up the rows.
  *
- * A contour is a list of steps from left to right whose heights are kept as differences, so that it
- * is raised at its first step alone. Of a branch that is set onto another the inner contour is
- * walked along once and dropped, and the outer one covers what it was walked along, so that all
- * contours together take O(n). */
+ * A contour is a list of steps from left to right. Heights are stored as
+ * differences, so that raising a contour changes only its first step. When a branch is attached,
+ * its inner contour is traversed once and dropped, and its outer contour replaces what was
+ * traversed. All contours together therefore take O(n). */
 #include "diagram/diagram.h"
 
 #include "derive/derive.h"
@@ -22,11 +22,11 @@ static const char branch_field[] = "branch";
 
 enum { NONE = -1, UP = 0, DOWN = 1 };
 
-/* From the end of the step before, or where the branch begins, on. */
+/* A step of a contour, from the end of the previous step, or from the beginning of the branch. */
 typedef struct ContourStep {
     double to_mm;
-    double rise_mm; /* over the step before; of the first over the branch's row */
-    int32_t next;   /* NONE: it is the last */
+    double rise_mm; /* height over the previous step, or over the row */
+    int32_t next;   /* index of the next step; NONE: this is the last */
 } ContourStep;
 
 typedef struct Contour {
@@ -35,30 +35,31 @@ typedef struct Contour {
 } Contour;
 
 typedef struct LayoutBranch {
-    int32_t number;        /* the branch, from 0 on: what it leaves has a lower number */
-    int32_t parent;        /* the branch that it leaves; NONE of a root */
-    int32_t first;         /* node: its first segment */
-    double from_mm, to_mm; /* paths from the root */
-    double radius_mm;      /* of its thickest segment */
-    Contour contour[2];    /* of all that hangs on it, both to the same end */
-    double reach_mm[2];    /* their largest heights */
-    double offset_mm;      /* of its row, down from the row it leaves */
-    int side;              /* of that row */
-    double row_mm;         /* from the top */
+    int32_t number;        /* index of the branch; its parent has a lower index */
+    int32_t parent;        /* index of the parent branch; NONE: a root */
+    int32_t first;         /* node at the end of the first segment */
+    double from_mm, to_mm; /* path lengths from the root of its ends */
+    double radius_mm;      /* largest radius of its segments */
+    Contour contour[2];    /* upper and lower contour of the branch and its descendants; both end at
+                              the same path length */
+    double reach_mm[2];    /* largest heights of the contours */
+    double offset_mm;      /* vertical distance of its row below the parent's row */
+    int side;              /* UP or DOWN: where the row is relative to the parent's row */
+    double row_mm;         /* distance of the row from the top */
 } LayoutBranch;
 
 typedef struct TreeLayout {
     const Tree *tree;
-    double *path_mm;  /* from the root to each node */
-    int32_t *of_node; /* the branch of each segment, NONE at roots */
+    double *path_mm;  /* per node: path length from the root */
+    int32_t *of_node; /* per node: branch of its segment; NONE at roots */
     LayoutBranch *branch;
     size_t n;
-    /* The branches that leave branch b are leaving[begin[b + 1]] up to leaving[begin[b + 2] - 1],
-     * the last to leave first; those of roots begin with 0. */
+    /* The daughters of branch b are leaving[begin[b + 1]] to leaving[begin[b + 2] - 1], the last to
+     * leave first. The roots begin at index 0. */
     int32_t *leaving;
     size_t *begin;
     ContourStep
-        *step; /* at most 4 a branch: two of its own, one where it is set on, one at its end */
+        *step; /* at most 4 per branch: two of its own, one where it is attached, one at its end */
     size_t n_steps;
 } TreeLayout;
 
@@ -121,7 +122,7 @@ static Status find_branches(TreeLayout *layout, Err *err)
     return STATUS_OK;
 }
 
-/* By what they leave; of those the last to leave first. */
+/* Orders branches by parent; those of the same parent by where they leave, the last first. */
 static int compare_branches(const void *a, const void *b)
 {
     const LayoutBranch *p = a, *q = b;
@@ -159,55 +160,55 @@ static int32_t add_step(TreeLayout *layout, ContourStep step)
     return (int32_t)layout->n_steps++;
 }
 
-/* A place on a contour. */
+/* A position on a contour. */
 typedef struct ContourWalk {
-    int32_t step; /* NONE behind the end */
+    int32_t step; /* NONE: after the end */
     double height_mm;
 } ContourWalk;
 
-static ContourWalk walk_from(const TreeLayout *layout, const Contour *contour)
+static ContourWalk contourwalk_start(const TreeLayout *layout, const Contour *contour)
 {
     return (ContourWalk){contour->first, layout->step[contour->first].rise_mm};
 }
 
-static void walk_on(const TreeLayout *layout, ContourWalk *walk)
+static void contourwalk_advance(const TreeLayout *layout, ContourWalk *walk)
 {
     walk->step = layout->step[walk->step].next;
     if (walk->step != NONE)
         walk->height_mm += layout->step[walk->step].rise_mm;
 }
 
-/* Where the step ends; infinity behind the end. */
-static double walk_to(const TreeLayout *layout, const ContourWalk *walk)
+/* Returns the end of the step; infinity after the end of the contour. */
+static double contourwalk_end(const TreeLayout *layout, const ContourWalk *walk)
 {
     return walk->step == NONE ? HUGE_VAL : layout->step[walk->step].to_mm;
 }
 
-/* How far from the row of `contour` a row has to be whose contour towards it is `inner`, so that
- * they are `gap_mm` apart, and so that nothing crosses the row where `contour` has ended; in
- * *behind where `contour` goes on behind the end of `inner`. */
-static double distance(const TreeLayout *layout, const Contour *contour, const Contour *inner,
-                       double gap_mm, ContourWalk *behind)
+/* Returns the distance between two rows. `contour` belongs to one row, `inner` to the other and
+ * points towards it. The contours must be `gap_mm` apart, and nothing may cross the first row where
+ * `contour` has ended. *behind becomes the position on `contour` at the end of `inner`. */
+static double row_distance(const TreeLayout *layout, const Contour *contour, const Contour *inner,
+                           double gap_mm, ContourWalk *behind)
 {
     double least = 0;
-    ContourWalk outer = walk_from(layout, contour), own = walk_from(layout, inner);
+    ContourWalk outer = contourwalk_start(layout, contour), own = contourwalk_start(layout, inner);
     while (own.step != NONE) {
         double height = outer.step == NONE ? 0 : outer.height_mm;
         least = fmax(least, height + gap_mm + own.height_mm);
-        double outer_to = walk_to(layout, &outer), own_to = walk_to(layout, &own);
+        double outer_to = contourwalk_end(layout, &outer), own_to = contourwalk_end(layout, &own);
         if (outer_to <= own_to)
-            walk_on(layout, &outer);
+            contourwalk_advance(layout, &outer);
         if (own_to <= outer_to)
-            walk_on(layout, &own);
+            contourwalk_advance(layout, &own);
     }
     *behind = outer;
     return least;
 }
 
-/* Puts the contour of a branch, `height_mm` above the row, over the beginning of `contour` from the
- * place where the branch leaves to its end, behind which `contour` goes on at `behind`. */
-static void cover(TreeLayout *layout, Contour *contour, const LayoutBranch *branch,
-                  double height_mm, ContourWalk behind)
+/* Replaces `contour`, from where the branch leaves to where the branch ends, by the outer contour
+ * of the branch, whose row is `height_mm` away. After it `contour` continues at `behind`. */
+static void replace_contour(TreeLayout *layout, Contour *contour, const LayoutBranch *branch,
+                            double height_mm, ContourWalk behind)
 {
     const Contour *over = &branch->contour[branch->side];
     double row_mm = layout->step[contour->first].rise_mm;
@@ -225,22 +226,22 @@ static void cover(TreeLayout *layout, Contour *contour, const LayoutBranch *bran
     }
 }
 
-/* Sets a branch beside the row that it leaves. */
-static void set_on(TreeLayout *layout, LayoutBranch *row, LayoutBranch *branch, double gap_mm)
+/* Attaches a branch to the row that it leaves. */
+static void attach(TreeLayout *layout, LayoutBranch *row, LayoutBranch *branch, double gap_mm)
 {
     ContourWalk behind[2];
     double height[2];
     for (int side = UP; side <= DOWN; side++)
-        height[side] =
-            distance(layout, &row->contour[side], &branch->contour[!side], gap_mm, &behind[side]);
+        height[side] = row_distance(layout, &row->contour[side], &branch->contour[!side], gap_mm,
+                                    &behind[side]);
     int side = height[DOWN] < height[UP] ? DOWN : UP;
     branch->side = side;
     branch->offset_mm = side == DOWN ? height[side] : -height[side];
     row->reach_mm[side] = fmax(row->reach_mm[side], height[side] + branch->reach_mm[side]);
-    cover(layout, &row->contour[side], branch, height[side], behind[side]);
+    replace_contour(layout, &row->contour[side], branch, height[side], behind[side]);
 }
 
-/* The contours of the branch's own bars. */
+/* Makes the contours of the branch without its daughters. */
 static void begin_contours(TreeLayout *layout, LayoutBranch *branch)
 {
     for (int side = UP; side <= DOWN; side++) {
@@ -252,8 +253,8 @@ static void begin_contours(TreeLayout *layout, LayoutBranch *branch)
     }
 }
 
-/* Leads the shorter contour on, at the height of the row, which all on its other side keeps below.
- */
+/* Extends the shorter contour at the height of the row, below which everything on its other side
+ * stays. */
 static void end_contours(TreeLayout *layout, LayoutBranch *branch)
 {
     double to[2];
@@ -270,8 +271,8 @@ static void end_contours(TreeLayout *layout, LayoutBranch *branch)
     contour->last_mm = 0;
 }
 
-/* The height of the diagram whose rows are `gap_mm` apart. */
-static double place(TreeLayout *layout, double gap_mm)
+/* Lays out all rows and returns the height of the diagram. */
+static double lay_out_rows(TreeLayout *layout, double gap_mm)
 {
     double height = 0;
     layout->n_steps = 0;
@@ -279,7 +280,7 @@ static double place(TreeLayout *layout, double gap_mm)
         LayoutBranch *own = &layout->branch[b];
         begin_contours(layout, own);
         for (size_t k = layout->begin[b + 1]; k < layout->begin[b + 2]; k++)
-            set_on(layout, own, &layout->branch[layout->leaving[k]], gap_mm);
+            attach(layout, own, &layout->branch[layout->leaving[k]], gap_mm);
         end_contours(layout, own);
     }
     for (size_t b = 0; b < layout->n; b++) {
@@ -303,8 +304,8 @@ static double widest_mm(const TreeLayout *layout)
     return width;
 }
 
-/* The median diameter of the terminals, which are the last segments of branches. */
-static Status least_gap_mm(const TreeLayout *layout, double *gap_mm, Err *err)
+/* Computes the median diameter of the terminals, which are the last segments of branches. */
+static Status default_gap_mm(const TreeLayout *layout, double *gap_mm, Err *err)
 {
     const Tree *tree = layout->tree;
     double *diameter;
@@ -318,20 +319,21 @@ static Status least_gap_mm(const TreeLayout *layout, double *gap_mm, Err *err)
     return STATUS_OK;
 }
 
-/* The gap of the wanted height, as far as the height grows with the gap as it does at first. */
+/* Chooses the gap for which the diagram would have the wanted height, if its height grew linearly
+ * with the gap. */
 static Status choose_gap(TreeLayout *layout, double *gap_mm, Err *err)
 {
     double least, wanted = DIAGRAM_ASPECT * widest_mm(layout);
-    TRY(least_gap_mm(layout, &least, err));
-    double height = place(layout, least), growth = place(layout, 2 * least) - height;
+    TRY(default_gap_mm(layout, &least, err));
+    double height = lay_out_rows(layout, least), growth = lay_out_rows(layout, 2 * least) - height;
     *gap_mm = least;
     if (growth > 0 && wanted > height)
         *gap_mm += (wanted - height) / growth * least;
     return STATUS_OK;
 }
 
-/* From the edge of the bar that the branch leaves to that of its own first one; a link has a
- * quarter of the width of what it leads to. */
+/* Returns the link from the edge of the parent's bar to the edge of the first bar of the branch. A
+ * link is a quarter as wide as that bar. */
 static FigureBar link_to(const TreeLayout *layout, const LayoutBranch *branch)
 {
     const Tree *tree = layout->tree;
@@ -386,7 +388,7 @@ Status diagram_lay_out(const Tree *tree, double gap_mm, Diagram *diagram, Err *e
         mem_calloc(&layout.step, STEPS_A_BRANCH * layout.n, sizeof *layout.step, "steps", err));
     if (!(gap_mm > 0))
         TRY_GOTO(choose_gap(&layout, &gap_mm, err));
-    made.height_mm = place(&layout, gap_mm);
+    made.height_mm = lay_out_rows(&layout, gap_mm);
     TRY_GOTO(make_bars(&layout, &made, err));
     *diagram = made;
 done:

@@ -17,7 +17,7 @@
 
 enum { REGULAR, BOLD, FACES };
 
-/* What is drawn to: the context's unit is the mm. */
+/* The page that is being written. The unit of the cairo context is the mm. */
 typedef struct PdfPage {
     cairo_t *cairo;
     cairo_font_face_t *face[FACES];
@@ -94,11 +94,11 @@ static Status put_ramp(void *context, const FigureItem *item, Err *err)
     return check(cairo_status(pdf->cairo), err);
 }
 
-/* Glyphs of one size, which cairo draws at once. */
+/* Glyphs of one size, which cairo draws in one call. */
 typedef struct GlyphRun {
     const Glyph *glyph;
     size_t n;
-    const char *text; /* that the glyphs stand for */
+    const char *text; /* the text of the glyphs */
     int bytes;        /* of the text */
 } GlyphRun;
 
@@ -111,7 +111,8 @@ static GlyphRun first_run(const Glyph *glyph, size_t n, const char *text)
     return run;
 }
 
-/* A cluster says which bytes of the text a glyph stands for, so that it can be searched. */
+/* A cluster states which bytes of the text a glyph stands for, so that viewers can search the
+ * text. */
 static Status show_run(const PdfPage *pdf, const FigureItem *item, const GlyphRun *run, Err *err)
 {
     const double size = item->size_pt * MM_PER_POINT;
@@ -181,7 +182,7 @@ static Status put_strokes(void *context, const FigureItem *item, Err *err)
     return check(cairo_status(pdf->cairo), err);
 }
 
-/* Letters as they are: neither hinted nor moved. */
+/* Glyphs are neither hinted nor moved. */
 static Status set_fonts(PdfPage *pdf, Err *err)
 {
     cairo_font_options_t *options = cairo_font_options_create();
@@ -199,7 +200,7 @@ static Status set_fonts(PdfPage *pdf, Err *err)
     return check(failed, err);
 }
 
-/* The picture in cairo's form. */
+/* Copies a picture to a surface of cairo. */
 static Status make_surface(const Picture *picture, cairo_surface_t **out, Err *err)
 {
     if (picture->width > FIGURE_PDF_SIDE || picture->height > FIGURE_PDF_SIDE)
@@ -224,7 +225,7 @@ static Status make_surface(const Picture *picture, cairo_surface_t **out, Err *e
     return STATUS_OK;
 }
 
-/* Nearest: a viewer is not asked to smooth it. */
+/* Viewers are asked not to smooth the picture. */
 static Status put_picture(void *context, const FigureItem *item, Err *err)
 {
     const PdfPage *pdf = context;
@@ -259,7 +260,7 @@ static cairo_status_t take_bytes(void *bytes, const unsigned char *from, unsigne
     return text_chars(bytes) ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
 }
 
-/* cairo would write today's. */
+/* cairo would write the current date. */
 static void set_notes(cairo_surface_t *pdf, const FigureNotes *notes)
 {
     static const char date[] = "2000-01-01T00:00:00Z";

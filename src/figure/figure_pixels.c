@@ -1,7 +1,8 @@
-/* FreeType's rasterizer fills letters, polygons and lines alike: outlines in, spans of exact
- * coverage out, which are blended into the rows at once, whatever part of the page these are. Boxes
- * and lines along the grid keep to whole pixels, so that they are sharp; a ramp has the colour of
- * each pixel's middle. Lines are polygons themselves, one for each of their parts. */
+/* The rasterizer of FreeType fills glyphs, polygons and lines: it converts outlines to spans of
+ * exact coverage, which are blended into the rows. The result does not depend on the band that the
+ * rows are. Boxes and lines along the pixel grid are rounded to whole pixels, so that they are
+ * sharp. A ramp has the colour at the centre of each pixel. Each part of a polyline is a polygon of
+ * its own. */
 #include "figure/fonts.h"
 #include "figure/items.h"
 
@@ -10,12 +11,12 @@
 #include FT_OUTLINE_H
 #include FT_STROKER_H
 
-/* Rows of the page that are drawn on. Outlines are in 1/64 pixels, x to the right and y up from the
- * upper left corner of `left`, `top`, as spans have short places. */
+/* The rows of the page that are drawn. Outlines are in 1/64 pixels, x to the right and y up,
+ * relative to (`left`, `top`), because spans have 16-bit coordinates. */
 typedef struct PixelRows {
     const FigurePage *page;
     Picture *rows;
-    int first; /* row of the page */
+    int first; /* index in the page of the first row */
     int left, top;
     const uint8_t *color;
 } PixelRows;
@@ -25,7 +26,7 @@ static double pixels_of(const PixelRows *target, double mm)
     return mm / MM_PER_INCH * target->page->dpi;
 }
 
-/* Lays a colour of 8 bits over a pixel that it covers by `alpha` of 255. */
+/* Blends an 8-bit colour over a pixel that it covers by `alpha` / 255. */
 static void blend(Picture *rows, size_t pixel, const uint8_t color[3], unsigned alpha)
 {
     const unsigned scale = rows->bits == 8 ? 1 : 257;
@@ -64,7 +65,7 @@ static Status fill(PixelRows *target, FT_Outline *outline, Err *err)
     return STATUS_OK;
 }
 
-/* In pixels of the page. */
+/* Converts pixels of the page to an outline's units. */
 static FT_Vector vector_of(const PixelRows *target, double x, double y)
 {
     return (FT_Vector){lround(64 * (x - target->left)), lround(64 * (target->top - y))};
@@ -102,7 +103,7 @@ static Status draw_shape(PixelRows *target, const FigureItem *item, Err *err)
     return fill_polygon(target, corner, item->n, err);
 }
 
-/* A part of a line with square ends. */
+/* Draws a part of a line, with square ends. */
 static Status draw_stroke(PixelRows *target, FigurePoint from, FigurePoint to, double width,
                           Err *err)
 {
@@ -118,8 +119,8 @@ static Status draw_stroke(PixelRows *target, FigurePoint from, FigurePoint to, d
     return fill_polygon(target, corner, 4, err);
 }
 
-/* A line of a whole number of pixels, at least one; along the grid its edges are those of pixels.
- */
+/* Draws a line that is an integer number of pixels wide, at least one. The edges of a line along
+ * the pixel grid are those of pixels. */
 static Status draw_line(PixelRows *target, const FigureItem *item, Err *err)
 {
     const double width = fmax(1, round(pixels_of(target, item->width_mm)));
@@ -164,8 +165,8 @@ static Status draw_ramp(PixelRows *target, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
-/* The glyph's outline is FreeType's own, until the next one is loaded: its points are moved to
- * their places. */
+/* The outline belongs to FreeType until the next glyph is loaded. Its points are moved to their
+ * positions in place. */
 static Status draw_glyph(PixelRows *target, FT_Face face, const Glyph *glyph, FigurePoint at,
                          double size, Err *err)
 {
@@ -197,9 +198,9 @@ static Status draw_text(PixelRows *target, const FigureItem *item, Err *err)
 
 /* ---- strokes --------------------------------------------------------------------------------- */
 
-enum { STROKE_POINTS = 256 }; /* at once: an outline has a short number of points */
+enum { STROKE_POINTS = 256 }; /* per outline: an outline has a 16-bit number of points */
 
-/* The outline of a part of a stroke, whose points are mm on its paper. */
+/* Makes the outline of a part of a stroke, whose points are mm on its paper. */
 static FT_Error stroke_outline(PixelRows *target, FT_Stroker stroker, FigurePoint at,
                                const double (*point)[2], size_t n, FT_Outline *outline)
 {

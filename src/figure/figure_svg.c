@@ -1,5 +1,6 @@
-/* A template for the page, and one for each kind of item. Text stays text, in a family whose
- * letters are as wide as Arial's and Helvetica's, which stand in where it is not installed. */
+/* There is one template for the page, and one for each kind of item. Text stays text, in a font
+ * family whose letters are as wide as those of Arial and Helvetica, which replace it where it is
+ * not installed. */
 #include "figure/items.h"
 #include "tmpl/tmpl.h"
 
@@ -15,7 +16,7 @@ typedef struct SvgPage {
     Text *out;             /* borrowed */
 } SvgPage;
 
-/* A number of mm, to a thousandth. */
+/* Appends mm with up to three decimals. */
 static void put_mm(double mm, Text *text)
 {
     char digits[32];

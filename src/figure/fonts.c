@@ -1,8 +1,8 @@
-/* FreeType reads the two files, and no other font is looked for: Pango and fontconfig would choose
- * by what is installed. A line is its letters one after another, moved together as the font's table
- * of pairs says; sizes are those of the design, unhinted, so that a line has the same form at every
- * resolution. That is all that Latin, Greek and Cyrillic need; the fonts have no other scripts that
- * need more. */
+/* FreeType reads the two font files. No other font is used: Pango and fontconfig would choose by
+ * what is installed. A line is a sequence of glyphs, moved together by the font's table of kerning
+ * pairs. Sizes are those of the design, unhinted, so that a line has the same shape at every
+ * resolution. That suffices for Latin, Greek and Cyrillic; the fonts have no scripts that need
+ * more. */
 #include "figure/fonts.h"
 
 #include <stdlib.h>
@@ -83,7 +83,7 @@ void glyphs_release(Glyphs *glyphs)
     *glyphs = (Glyphs){0};
 }
 
-/* The character at the start of well-formed UTF-8, or the one that stands for what is none. */
+/* Returns the character at the start of well-formed UTF-8; U+FFFD for other bytes. */
 static uint32_t character(const char *at, size_t length)
 {
     static const unsigned char firsts[] = {0, 0x7f, 0x1f, 0x0f, 0x07};
@@ -99,7 +99,7 @@ static uint32_t character(const char *at, size_t length)
 
 typedef enum SubstituteForm { SAME_SIZE, RAISED, LOWERED } SubstituteForm;
 
-/* How a letter that the font lacks is drawn by one that it has. */
+/* How a character that the font lacks is drawn as one that it has. */
 typedef struct FontSubstitute {
     uint32_t letter, drawn;
     SubstituteForm form;
@@ -116,9 +116,9 @@ static const FontSubstitute substitutes[] = {
     {0x2c7c, 'j', LOWERED},
 };
 
-/* Size and baseline of Liberation Sans's own superscript and subscript digits, so that both kinds
- * stand side by side: U+2074 is 812 units high beside 1409 of a 4 and stands 525 of 2048 units
- * above the line, U+2084 175 below. */
+/* Size and baseline of the superscript and subscript digits of Liberation Sans, so that both kinds
+ * match: U+2074 is 812 units high, a 4 is 1409, and U+2074 is 525 of 2048 units above the line,
+ * U+2084 175 below. */
 static const double small_scale = 0.576, raised_by = 0.256, lowered_by = -0.085;
 
 static void list_letter(uint32_t *list, int *n, uint32_t letter)
@@ -138,7 +138,7 @@ void letters_add(FigureLetters *to, const FigureLetters *from)
         list_letter(to->boxed, &to->n_boxed, from->boxed[i]);
 }
 
-/* Returns the glyph of a letter with its form, and lists the letter if the font lacks it. */
+/* Returns the glyph of a character, and lists the character if the font lacks it. */
 static Glyph find_glyph(FT_Face face, uint32_t letter, FigureLetters *replaced)
 {
     Glyph glyph = {.index = FT_Get_Char_Index(face, letter), .scale = 1};
@@ -160,7 +160,7 @@ static Glyph find_glyph(FT_Face face, uint32_t letter, FigureLetters *replaced)
 
 /* ---- lines ----------------------------------------------------------------------------------- */
 
-/* FreeType fails here only where memory does. */
+/* FreeType fails here only if memory runs out. */
 static Status add_letter(FT_Face face, uint32_t letter, int bytes, Glyphs *glyphs, Err *err)
 {
     const double em = face->units_per_EM;

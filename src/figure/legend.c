@@ -1,5 +1,5 @@
-/* The bar is laid out along and across itself, and turned upwards or to the right at the end, so
- * that both forms are one. All its measures are in sizes of its text. */
+/* The bar is laid out in coordinates along and across itself, and turned upwards or to the right at
+ * the end, so that both directions share their code. All lengths are multiples of the text size. */
 #include "figure/fonts.h"
 #include "figure/items.h"
 
@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A legend being built: mm. */
+/* The legend that is being built; mm. */
 typedef struct LegendLayout {
     FigurePage *page;
     const FigureLegend *legend;
@@ -17,7 +17,7 @@ typedef struct LegendLayout {
 
 static const double bar_ems = 1.1, tick_ems = 0.25, gap_ems = 0.3, point_ems = 0.9, line_mm = 0.18;
 
-/* A place on the page: upwards the bar begins at its lower end. */
+/* Returns a position on the page. A bar that points upwards begins at its lower end. */
 static FigurePoint place(const LegendLayout *layout, double along, double across)
 {
     return layout->legend->across ? (FigurePoint){along, across} : (FigurePoint){across, -along};
@@ -41,7 +41,7 @@ static void put_text(const LegendLayout *layout, const char *text, double x, dou
     figure_add_text(layout->page, &line);
 }
 
-/* A label beside the bar, or below it, whose middle is at a place along it. */
+/* Adds a label beside or below the bar, centred on a position along it. */
 static void put_label(const LegendLayout *layout, double along, double across, const char *text)
 {
     FigurePoint at = place(layout, along, across);
@@ -52,7 +52,7 @@ static void put_label(const LegendLayout *layout, double along, double across, c
         put_text(layout, text, at.x, at.y + capitals / 2, ALIGN_LEFT);
 }
 
-/* The number as people write it, with `decimals`; large and small ones with their power of ten. */
+/* Appends a number with `decimals` decimals, or, if it is large or small, with its power of ten. */
 static void put_number(double value, int decimals, Text *text)
 {
     char digits[64];
@@ -65,8 +65,8 @@ static void put_number(double value, int decimals, Text *text)
     text_puts(text, digits);
 }
 
-/* Decimals with which ascending numbers are off by at most a hundredth of what lies between two, or
- * one of its own value. */
+/* Returns the number of decimals with which ascending numbers are off by at most a hundredth of the
+ * smallest gap, or a single number by a hundredth of its value. */
 static int decimals_of(const double *values, int n)
 {
     double gap = n > 1 ? HUGE_VAL : fabs(values[0]) / 100;
@@ -91,8 +91,7 @@ static void put_tick(const LegendLayout *layout, double along, const char *label
     put_label(layout, along, end + gap_ems * layout->em, label);
 }
 
-/* Numbers with a tick each, at their places along the bar; each with its own decimals on a
- * logarithmic scale. */
+/* Adds a tick for each value. On a logarithmic scale each number has decimals of its own. */
 static void put_ticks(const LegendLayout *layout, const double *values, const double *along, int n)
 {
     int decimals = decimals_of(values, n);
@@ -108,7 +107,7 @@ static void put_ticks(const LegendLayout *layout, const double *values, const do
     }
 }
 
-/* The pointed end beyond the bar for values outside the range. */
+/* Adds the pointed end beyond the bar for values outside the range. */
 static void put_point(const LegendLayout *layout, double from, double to, const float linear[3])
 {
     double width = bar_ems * layout->em;
@@ -151,7 +150,7 @@ static void put_ramp(const LegendLayout *layout)
     put_points(layout);
 }
 
-/* The number at the lower bound of an inner class. */
+/* Returns the value at the lower bound of an inner class. */
 static double bound_of(const ColorScale *scale, int step)
 {
     if (scale->n_bounds)
@@ -160,8 +159,8 @@ static double bound_of(const ColorScale *scale, int step)
     return scale->log ? low * elementary_pow(high / low, part) : low + part * (high - low);
 }
 
-/* Classes of one height each; the numbers between them, as far as there is room for them, and of a
- * range also at its ends. */
+/* Adds classes of equal length, and numbers at the bounds between them as far as there is space; a
+ * range also has numbers at its ends. */
 static void put_classes(const LegendLayout *layout)
 {
     const ColorScale *scale = layout->legend->scale;
@@ -195,7 +194,8 @@ static void put_swatch(const LegendLayout *layout, double from, const float line
     put_label(layout, from + side / 2, side + gap_ems * layout->em, label);
 }
 
-/* A swatch for each whole number of the range, from above, or as many as there are colours. */
+/* Adds a swatch for each integer of the range, the highest first, or as many as there are colours.
+ * Returns the length of the bar. */
 static double put_counts(const LegendLayout *layout)
 {
     const ColorScale *scale = layout->legend->scale;
@@ -224,8 +224,8 @@ static void put_none(const LegendLayout *layout)
     put_swatch(layout, legend->across ? layout->length + beyond : -beyond, color, "no value");
 }
 
-/* The title above all that is there: one line, or the unit on a line of its own where that is
- * narrower than twice the rest. */
+/* Adds the title above everything else: one line, or the unit on a second line if the title is
+ * wide. */
 static void put_title(const LegendLayout *layout, size_t first)
 {
     const FigureLegend *legend = layout->legend;

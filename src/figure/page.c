@@ -1,5 +1,6 @@
-/* An array of items in the order in which they are drawn, each with the box that it covers, so that
- * what is built up anywhere can be measured, moved to its place, and skipped where it is not. */
+/* The items are an array in the order in which they are drawn. Each has the box that it covers. A
+ * group of items can therefore be built anywhere, measured and moved, and items outside of a band
+ * are skipped. */
 #include "figure/fonts.h"
 #include "figure/items.h"
 
@@ -33,7 +34,7 @@ int figure_pixels(const FigurePage *page, double mm)
     return (int)lround(mm / MM_PER_INCH * page->dpi);
 }
 
-/* Where the next item goes; NULL when there is no room. */
+/* Appends an item. Returns NULL if memory runs out. */
 static FigureItem *add(FigurePage *page, FigureItem item)
 {
     if (mem_reserve(&page->items, &page->capacity, page->n + 1, sizeof item, "items", NULL) !=
@@ -125,7 +126,7 @@ void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, d
                            .bars = bars});
 }
 
-/* Appends the item of a line of these glyphs; takes `chars`, also on failure. */
+/* Appends the item of a line with these glyphs. Takes `chars`, also on failure. */
 static void add_line_of_text(FigurePage *page, const FigureText *text, char *chars,
                              const Glyphs *glyphs)
 {

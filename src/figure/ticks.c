@@ -1,11 +1,11 @@
-/* Round numbers are 1, 2 and 5 times powers of ten. On a logarithmic scale of two powers of ten or
- * more they are these powers, or each second, third, ... of them; of less, 1, 2 and 5 times them;
- * where that leaves fewer than two, they are as far apart as on a linear scale. */
+/* Round numbers are 1, 2 and 5 times powers of ten. A logarithmic scale of two or more powers of
+ * ten has these powers, or every second, third, ... of them. One of less has 1, 2 and 5 times the
+ * powers. Where that leaves fewer than two ticks, they are equidistant as on a linear scale. */
 #include "figure/figure.h"
 
 #include <math.h>
 
-/* The least of 1, 2, 5, 10, 20, ... times a power of ten that is not below `least`. */
+/* Returns the smallest of 1, 2, 5, 10, 20, ... times a power of ten that is not below `least`. */
 static double round_step(double least)
 {
     double power = elementary_pow(10, floor(elementary_log10(least)));
@@ -28,7 +28,7 @@ static int even(const double range[2], int wanted, bool whole, double ticks[FIGU
     return n;
 }
 
-/* `digits` of them: 1 of each `apart` powers of ten, or 1, 2, 5 of each. */
+/* Stores `digits` ticks per power of ten: 1 in every `apart`-th power, or 1, 2, 5 in each. */
 static int powers(const double range[2], int apart, int digits, double ticks[FIGURE_TICKS])
 {
     static const double digit[] = {1, 2, 5};

@@ -5,16 +5,14 @@
  * are in the domain (connection_is_inside), and clear of all others (connection_clearance). */
 #include "grow/connection.h"
 
-#include "grow/trunk.h"
-
 #include <string.h>
 
 /* Vessels widen as the tree below them grows: the rules hold for radii this much greater, and so at
  * the end of growth for nearly all vessels at their final radii. For length, and for keeping clear
  * of others. */
 static const double length_reserve = 1.15, clearance_reserve = 1.1;
-/* Bifurcations keep this many times the least length from the ends, as radii change a little too.
- */
+/* Bifurcations keep this many times the least length from the ends, as radii change a little
+ * too. */
 static const double margin = 1.02;
 /* How often the place of the connection that is made is found anew. */
 enum { ROUNDS = 2 };

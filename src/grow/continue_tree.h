@@ -1,33 +1,37 @@
-/* Growing on from a given tree. */
+/* Continues the growth of a given tree. */
 #ifndef CORCAST_GROW_CONTINUE_TREE_H
 #define CORCAST_GROW_CONTINUE_TREE_H
 
 #include "grow/grow.h"
 #include "grow/network.h"
 
-/* The number of roots of a tree. */
+/* Returns the number of roots of a tree. */
 size_t continue_inlets(const Tree *from);
 
-/* Whether growth can go on from params->from with these parameters. STATUS_USAGE and STATUS_INPUT,
- * as grow_tree says. */
+/* Checks whether growth can continue params->from with these parameters. Errors: STATUS_USAGE and
+ * STATUS_INPUT, as grow_tree; STATUS_MEMORY. */
 MUST_CHECK Status continue_check(const GrowParams *params, const Domain *domain, Err *err);
 
-/* Copies the tree, which continue_check accepts, into `net`, which is empty and has traits; node i
- * becomes node i; if `net` has a trunk, all segments keep their radii. Leaves right sums, and no
- * other radii. O(n). */
+/* Copies a tree that continue_check accepts into `net`, which is empty and has traits. Node i of
+ * the tree becomes node i. If `net` has a trunk, all segments keep their radii. Leaves right sums,
+ * and no other radii. Cost: O(n). */
 void continue_from(const Tree *from, Network *net);
 
-/* `out` has the nodes of `net`, in its order. Gives those that were in `from` their ids, types and
- * columns back, if `net` has a trunk their radii, inlets' too, and the others the smallest ids that
- * are free; and appends the remarks and command lines of `from`. STATUS_MEMORY. */
+/* Restores in `out` what `from` states of its nodes. `out` has the nodes of `net`, in the same
+ * order. Nodes of `from` get their ids, types and columns; if `net` has a trunk, also their radii,
+ * those of inlets included. New nodes get the smallest free ids. The remarks and command lines of
+ * `from` are appended. Errors: STATUS_MEMORY. */
 MUST_CHECK Status continue_restore(const Tree *from, const Network *net, Tree *out, Err *err);
 
-/* Compares the radii of the segments of `from` with those of the same ids in `out`: sets in *report
- * the median, least and greatest factor by which they changed, 0 when none had a radius. */
+/* Compares the radii of the segments of `from` with those of the same ids in `out`. Sets in *report
+ * the median, least and greatest factor by which they changed; 0 if no segment had a radius.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err);
 
-/* How many nodes of the tree are outside the domain; if any, *farthest is that of them which is the
- * farthest from its bounds, and *mm how far from the domain it is. */
+/* Returns how many nodes of the tree are outside the domain.
+ *
+ * farthest   receives, if there are any, the node that is farthest from the domain's bounds.
+ * mm         receives the distance of that node from the domain, mm; 0 if there are none. */
 size_t continue_outside(const Tree *from, const Domain *domain, size_t *farthest, double *mm);
 
 #endif

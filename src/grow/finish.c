@@ -12,7 +12,6 @@
 #include "grow/continue_tree.h"
 #include "grow/mates.h"
 #include "grow/segment_weights.h"
-#include "grow/trunk.h"
 #include <assert.h>
 #include <float.h>
 #include <stdlib.h>

@@ -10,8 +10,8 @@
  * `notch`; after MAX_TRIES there is no root segment. */
 enum { TRIES_PER_NOTCH = 3, MAX_TRIES = 20000 };
 static const double notch = 0.1;
-/* Root segments keep clear of each other at this many times their radii: they widen as trees grow.
- */
+/* Root segments keep clear of each other at this many times their radii: they widen as trees
+ * grow. */
 static const double reserve = 1.3;
 
 /* A root segment, or a candidate for one. */

@@ -1,29 +1,31 @@
-/* How the terminals are shared among trees that grow side by side. */
+/* A forest: how the terminals are shared among trees that grow side by side. */
 #ifndef CORCAST_GROW_FOREST_H
 #define CORCAST_GROW_FOREST_H
 
 #include "base/base.h"
 
+/* The arrays have one number per tree and are owned. */
 typedef struct Forest {
     size_t trees, terminals;
-    /* By tree: */
-    size_t *quota; /* terminals at the end of growth */
-    size_t *has;   /* terminals at the beginning of this round */
-    size_t *limit; /* terminals that it may still get in this round, which counts it down */
-    size_t *grant; /* the limit that this round began with */
+    size_t *quota; /* number of terminals at the end of growth */
+    size_t *has;   /* number of terminals at the beginning of this round */
+    size_t *limit; /* how many terminals the tree may still get in this round; counted down by the
+                    * round */
+    size_t *grant; /* the limit at the beginning of this round */
 } Forest;
 
-/* `terminals`, not fewer than trees, go to the trees in proportion to `share`, rounded by largest
- * remainders, at least one to each. */
+/* Shares `terminals` among the trees in proportion to `share`, rounded by largest remainders. Every
+ * tree gets at least one terminal, so there must be as many terminals as trees. Release *forest
+ * with forest_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status forest_init(Forest *forest, size_t trees, const double *share, size_t terminals,
                               Err *err);
 void forest_release(Forest *forest);
 
-/* Sets the limits of the next round, before which the forest has `terminals` terminals, so that no
- * tree gets far ahead of its share of them. At least one tree that lacks terminals may get more. */
+/* Sets the limits of the next round, so that no tree gets far ahead of its share. `terminals` is
+ * the forest's present number of terminals. At least one tree that lacks terminals may get more. */
 void forest_limit(Forest *forest, size_t terminals);
 
-/* To be called after a round: adds to `has` what the round counted down from `limit`. */
+/* Adds to `has` what the last round counted down from `limit`. */
 void forest_count(Forest *forest);
 
 #endif

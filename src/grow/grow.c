@@ -49,8 +49,8 @@ static const double least_length_share = 0.1;
  * mean that a cell is full. */
 enum { LEAST_WITH_FULL_CELLS = 1000 };
 /* After PATIENCE points in crowded places without a connection, vessels count as half as thick, and
- * below the least thickness as lines; after LAST_PATIENCE points without one, the domain is full.
- */
+ * below the least thickness as lines; after LAST_PATIENCE points without one, the domain is
+ * full. */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
 /* Growth ends after so many rounds in a row that added nothing, whatever the reasons were. */
 enum { IDLE_ROUNDS = 5000 };

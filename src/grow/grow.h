@@ -1,7 +1,8 @@
-/* The door of the room grow: constrained constructive optimization (CCO), which grows an arterial
- * tree terminal by terminal, each connected where the target sum of l r^lambda grows least
- * [Schreiner & Buxbaum, IEEE Trans. Biomed. Eng. 40 (1993) 482-491; in space: Karch et al., Comput.
- * Biol. Med. 29 (1999) 19-38]. */
+/* Grows arterial trees by constrained constructive optimization (CCO), and refines them. Terminals
+ * are added one by one, each connected where the target sum of l r^lambda increases least.
+ *
+ * Source: Schreiner & Buxbaum, IEEE Trans. Biomed. Eng. 40 (1993) 482-491; in space: Karch et al.,
+ * Comput. Biol. Med. 29 (1999) 19-38. */
 #ifndef CORCAST_GROW_GROW_H
 #define CORCAST_GROW_GROW_H
 
@@ -43,8 +44,8 @@ typedef struct GrowParams {
     uint64_t seed;  /* of the random points */
     /* A tree that growth continues, from its own inlets; NULL: none. Its nodes keep their
      * positions, ids and types, and its segments stay straight. An inlet has one or two children,
-     * any other node at most two. Growth does not read the tree's radii, flow shares and metadata.
-     */
+     * any other node at most two. Growth does not read the tree's radii, flow shares and
+     * metadata. */
     const Tree *from;
     bool keep_radii; /* the segments of `from` keep their radii, which growth then reads */
     size_t inlets;   /* number of inlets, at most GROW_MAX_INLETS; one tree grows from each. 0: the
@@ -62,8 +63,7 @@ typedef struct GrowParams {
     double clearance_mm;  /* minimum distance of the walls of vessels of different trees, >= 0 */
     double pair_mm; /* distance of the ends of paired terminals, one of each of two trees; at least
                      * the clearance; 0: terminals are not paired */
-    int candidates; /* number of nearest segments tried for a terminal, in [1, GROW_MAX_CANDIDATES]
-                     */
+    int candidates; /* nearest segments tried for a terminal, in [1, GROW_MAX_CANDIDATES] */
     /* While there are at most this many terminals, all bifurcations move to better positions each
      * time the number of terminals has doubled, and at the end. 0, or with keep_radii: bifurcations
      * never move. */
@@ -75,99 +75,112 @@ typedef struct GrowParams {
     void *progress_context;
 } GrowParams;
 
-/* 1,000 terminals of equal flow, gamma 3, lambda 2, seed 1, 100 to 60 mmHg, 500 ml/min, constant
- * viscosity, 3.6 cP (of plasma 1.2, hematocrit 0.45), 8 candidates, relaxed up to 300 terminals,
- * tossed by segment. */
+/* Returns these parameters: 1,000 terminals of equal flow, gamma 3, lambda 2, seed 1, 100 to 60
+ * mmHg, 500 ml/min, constant viscosity 3.6 cP (plasma 1.2 cP, hematocrit 0.45), 8 candidates,
+ * relaxed up to 300 terminals, GROW_TOSS_SEGMENT. All else is 0. */
 GrowParams grow_defaults(void);
 
 typedef struct GrowReport {
     double seconds; /* wall clock */
     size_t terminals;
     double target;         /* sum of l r^lambda, mm^(1 + lambda) */
-    double root_radius_mm; /* the largest */
+    double root_radius_mm; /* the largest root radius */
     uint64_t tosses;       /* random points drawn */
     uint64_t rejected;     /* points in vessels, in full cells, or without room for a connection */
-    /* With all radii multiplied by this factor, segments are at least as long as wide and overlap
-     * none but those they share a node with: 1, or less where the domain was too full for that (0:
-     * only the centrelines do not cross). */
+    /* With all radii multiplied by this factor, segments are at least as long as wide, and overlap
+     * only segments they share a node with. 1, or less if the domain was too full; 0: only the
+     * centrelines do not cross. */
     double thickness;
-    size_t broken; /* segments for which that does not hold, because they widened later on */
-    /* The factors by which the radii of the segments of `from` changed; 0 where there are none. */
+    size_t broken; /* number of segments that break these rules, because they widened later */
+    /* Factors by which the radii of the segments of `from` changed; 0 if there are none. */
     double median_change, least_change, greatest_change;
     /* The least distance of the walls of vessels of different trees, mm, by trees_apart; INFINITY
-     * where it is at least twice `clearance_mm` and at least `pair_mm`. */
+     * if it is at least twice `clearance_mm` and at least `pair_mm`. */
     double apart_mm;
-    bool complete; /* false: a partial tree; err holds the sentence that says why */
+    bool complete; /* false: a partial tree; err has the sentence that states why */
 } GrowReport;
 
 /* Sets in *meta the keys that describe a tree grown with these parameters. */
 void grow_describe(const GrowParams *params, TreeMeta *meta);
-/* The reverse: sets each parameter whose key is in *meta, but for the keys that are `given`.
- * Without a law of viscosity in *meta, viscosity is constant; without a law of the terminals' flow,
- * all terminals have the same flow. */
+
+/* Sets the parameters whose keys are in *meta, except the keys that are `given`. Without a
+ * viscosity law in *meta, viscosity is constant; without a rule of the terminals' flow, all
+ * terminals have the same flow. */
 void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_KEYS]);
 
-/* Whether growth can begin with these parameters in this domain: STATUS_USAGE, and STATUS_INPUT for
- * `from`, with a sentence that names the parameter at fault in backquotes. */
+/* Checks whether growth can begin with these parameters in this domain. Errors: STATUS_USAGE, and
+ * STATUS_INPUT for `from`, with a sentence that names the wrong parameter in backquotes;
+ * STATUS_MEMORY. */
 MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err);
 
-/* Grows a tree, or a forest whose trees share all flow, into *out (release with tree_release). Node
- * 0 is the inlet; nodes are in depth-first order, tree after tree in the order of the inlets, ids
- * 1 .. 2 N in that order, and its meta says how it was made. Murray's law and the pressures hold
- * to rounding for the coordinates and radii in *out, by Pries's law with the viscosity, and where
- * gamma follows the radius with gamma, at those very radii. By territory, the flow share of a
- * terminal is the number of points of a fine lattice over the domain that are nearer to it than to
- * any other; by demand, what these ask for. Centrelines do not cross. The same parameters give the
- * same tree, bit for bit. `report` may be NULL.
+/* Grows a tree, or a forest whose trees share all flow. The same parameters give the same tree, to
+ * the last bit.
  *
- * With `pair_mm`, every terminal of the first tree is paired with one of the second at that
+ * Nodes are in depth-first order, tree after tree in the order of the inlets, with ids 1 .. n; node
+ * 0 is the first inlet. Murray's law and the pressures hold to rounding for the positions and radii
+ * in *out. If viscosity or gamma depend on the radius, they are those at these radii. Centrelines
+ * do not cross. With TERMINAL_FLOW_TERRITORY, a terminal's flow share is the number of points of a
+ * fine lattice over the domain that are nearer to it than to any other terminal; with
+ * TERMINAL_FLOW_DEMAND, the sum of what these points ask for. The metadata describes how the tree
+ * was made.
+ *
+ * With `pair_mm`, every terminal of the first tree is paired with one of the second tree at that
  * distance, and *out names the pairs [tree/pairs.h]. With `pair_mm` or `clearance_mm`, the distance
- * of the vessels of different trees is proved before *out is returned.
+ * of the vessels of different trees is proved before the function returns.
  *
- * If a tree is continued (`from`), all its nodes are in *out with their ids, types and columns, and
- * so are its remarks; new nodes take the smallest ids that are free. New segments are in the domain
- * and keep clear of each other and of the given segments; of a given vessel of several segments
- * they only keep off the centrelines. Given segments may be anywhere. If they keep their radii
- * (`keep_radii`), what flows through them drops pressure by Poiseuille's law, and what leaves them
- * has radii by Murray's law, down to p_term; Murray's law does not hold where it leaves them, and
- * terminals that `from` had end at the pressure there.
+ * If a tree is continued (`from`), *out has all its nodes with their ids, types and columns, and
+ * its remarks. New nodes get the smallest free ids. New segments are in the domain, and keep clear
+ * of each other and of the given segments; of a given vessel of several segments, they only keep
+ * off the centrelines. Given segments may be anywhere. With `keep_radii`, pressure drops along
+ * given segments by Poiseuille's law. Vessels that leave them have radii by Murray's law, down to
+ * p_term, but Murray's law does not hold where they leave. The terminals of `from` end at the
+ * pressure there.
  *
- * Fails with STATUS_USAGE as grow_params_check does, STATUS_INPUT when `from` is not as above or
- * leaves the plane of a domain of two dimensions, STATUS_INFEASIBLE when there is no room for all
- * terminals, when the radii span more than a double can hold, when vessels are too thin for blood
- * to pass by Pries's law, when gamma changes too fast with the radius for both to agree, or when
- * those that keep their radii are too narrow for their flow, and STATUS_MEMORY. */
+ * out      receives the tree; release it with tree_release.
+ * report   may be NULL.
+ * Errors   STATUS_USAGE as grow_params_check. STATUS_INPUT if `from` is not as described, or leaves
+ *          the plane of a domain of two dimensions. STATUS_INFEASIBLE if there is no room for all
+ *          terminals, if the radii span more than a double can hold, if vessels are too thin for
+ *          blood to pass by Pries's law, if gamma changes too fast with the radius, or if segments
+ *          that keep their radii are too narrow for their flow. STATUS_MEMORY. */
 MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,
                             GrowReport *report, Err *err);
 
-/* The least distance of the walls of vessels of different trees of a forest, mm, below 0 where they
- * overlap, in *apart, and two such segments' nodes in pair[2]; INFINITY when there is none below
- * `within`. Shares no code with growth. O(n log n) for vessels that are not crowded. STATUS_MEMORY.
- */
+/* Computes the least distance of the walls of vessels of different trees of a forest. Shares no
+ * code with growth, so that it can prove its result.
+ *
+ * within   larger distances are not looked for, mm.
+ * apart    receives the distance, mm, below 0 if vessels overlap; INFINITY if there is none below
+ *          `within`.
+ * pair     receives the distal nodes of the two segments, if there are any.
+ * Errors   STATUS_MEMORY.
+ * Cost     O(n log n) for vessels that are not crowded. */
 MUST_CHECK Status trees_apart(const Tree *tree, double within, double *apart, size_t pair[2],
                               Err *err);
 
-/* Proves that vessels of different trees are at least `clearance` mm apart: *apart as above.
- * STATUS_INFEASIBLE when they are nearer, with a sentence that says where and ends with `advice`.
- */
+/* Proves that vessels of different trees are at least `clearance` mm apart. `within` and *apart are
+ * those of trees_apart. Errors: STATUS_INFEASIBLE if they are nearer, with a sentence that states
+ * where and ends with `advice`; STATUS_MEMORY. */
 MUST_CHECK Status trees_prove_apart(const Tree *tree, double clearance, double within,
                                     const char *advice, double *apart, Err *err);
 
-/* How a whole tree is optimised after growth. */
+/* How a whole tree is refined after growth. */
 typedef enum GrowRefine {
     GROW_REFINE_NONE,
-    GROW_REFINE_GEOMETRY, /* every bifurcation moves to where it is best */
-    GROW_REFINE_TOPOLOGY, /* subtrees are also connected elsewhere when that is better */
-    GROW_REFINE_ANNEAL,   /* and first, less and less often, when it is worse */
+    GROW_REFINE_GEOMETRY, /* every bifurcation moves to its best position */
+    GROW_REFINE_TOPOLOGY, /* subtrees are also connected elsewhere if that lowers the target */
+    GROW_REFINE_ANNEAL    /* as topology; before, at falling temperatures, also if it raises it */
 } GrowRefine;
 
 typedef struct RefineParams {
     GrowRefine level;
-    double seconds; /* at most; 0: any. What a time allows differs from run to run */
-    uint64_t moves; /* tried at most; 0: no limit with `seconds`, else the level's own limit */
+    double seconds; /* maximum time; 0: no limit. With a limit, results differ from run to run */
+    uint64_t moves; /* maximum number of moves; 0: no limit if `seconds` is set, otherwise the
+                     * level's own limit */
     uint64_t seed;  /* of the order of moves */
     int threads;    /* 0: all processors */
-    bool (*stop)(void *context); /* asked after every move, by any thread; NULL: never */
+    bool (*stop)(
+        void *context); /* called after every move, by any thread; true stops; NULL: none */
     void *stop_context;
     void (*progress)(double fraction, void *context); /* NULL: none */
     void *progress_context;
@@ -178,30 +191,35 @@ typedef struct RefineReport {
     double target_before, target_after; /* sum of l r^lambda, mm^(1 + lambda) */
     uint64_t moves_tried, moves_kept;
     double thickness; /* the share of their radii at which vessels that moved were kept clear */
-    size_t broken;    /* segments that are shorter than wide, or too near to others, at that */
-    double apart_mm;  /* as in a GrowReport, by what the tree's meta says, and its pairs */
-    bool stopped;     /* by the callback */
+    size_t broken; /* number of segments that, at this thickness, are shorter than wide or too near
+                    * to others */
+    double apart_mm; /* as in a GrowReport, by the clearance in the tree's metadata and its pairs */
+    bool stopped;    /* by the callback */
 } RefineReport;
 
-/* Lowers the target of a tree, grown or read, by moving bifurcations and by connecting subtrees
- * elsewhere. No node has more than two children, and the meta has all that meta_check_cco asks for;
- * flows may be unequal, and there may be several roots: subtrees stay in their trees. A vessel of
- * several segments is first made one straight segment. `domain` then holds all of it; NULL: it may
- * be anywhere.
+/* Lowers the target of a tree by moving bifurcations and by connecting subtrees elsewhere.
  *
- * Inlets, terminals, their pairs, node types, flow shares and meta stay, other columns go.
- * Afterwards nodes are in depth-first order with ids 1 .. n, and radii follow from the nodes'
- * places by Murray's law and the pressures, which hold to rounding. All segments that change stay
- * in the domain. A segment that was longer than wide and clear of those it shares no node with
- * stays so; one that was not does not get worse, and the levels above geometry try to mend it. If
- * more than one in ten segments were not, these rules are kept with vessels counted at a smaller
- * part of their radii, report->thickness. Trees whose meta says a clearance keep it, which is
- * proved at the end; they have to keep it before, too, at the real thickness of their vessels.
+ * The tree was grown or read. No node has more than two children, and the metadata has all keys
+ * that meta_check_cco requires. Flows may be unequal. There may be several roots; subtrees stay in
+ * their trees. A vessel of several segments is first made one straight segment, and `domain` must
+ * hold all of it; NULL: it may be anywhere.
  *
- * With a budget of moves alone, the same tree and parameters give the same bits, whatever the
- * threads. `report` may be NULL. Fails, *tree unchanged, with STATUS_USAGE for wrong parameters,
- * STATUS_INPUT for a tree that cannot be refined, STATUS_INFEASIBLE when the radii span more than a
- * double can hold, and STATUS_MEMORY. */
+ * Inlets, terminals, their pairs, node types, flow shares and metadata stay; other columns are
+ * dropped. Afterwards nodes are in depth-first order with ids 1 .. n, and radii follow from the
+ * positions by Murray's law and the pressures, which hold to rounding. All segments that change
+ * stay in the domain.
+ *
+ * A segment that was longer than wide and clear of segments it shares no node with stays so. A
+ * segment that was not does not get worse, and the levels above geometry try to repair it. If more
+ * than one in ten segments were not, these rules are kept with vessels counted at a smaller part of
+ * their radii, report->thickness. Trees with a clearance in their metadata keep it, which is proved
+ * at the end; they must also keep it before, at the real thickness of their vessels.
+ *
+ * report   may be NULL.
+ * Errors   *tree is unchanged. STATUS_USAGE for wrong parameters, STATUS_INPUT for a tree that
+ * cannot be refined, STATUS_INFEASIBLE if the radii span more than a double can hold,
+ *          STATUS_MEMORY.
+ * Threads  Without a limit of time, the result does not depend on the number of threads. */
 MUST_CHECK Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
                               RefineReport *report, Err *err);
 

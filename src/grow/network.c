@@ -17,7 +17,6 @@
  * between candidates, never the tree's own figures. */
 #include "grow/network.h"
 
-#include "grow/trunk.h"
 #include <float.h>
 #include <stdlib.h>
 
@@ -211,7 +210,7 @@ static void tell_ancestors(Network *net, int32_t i, const Reduced *reduced, Box 
     }
 }
 
-void network_split(Network *net, const Split *split, Box zone)
+void network_split(Network *net, const NetworkSplit *split, Box zone)
 {
     int32_t segment = split->segment, proximal = split->made[0], fresh = split->made[1];
     Segment *distal = &net->segment[segment];

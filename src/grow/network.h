@@ -1,16 +1,17 @@
-/* The growing tree, or forest: binary trees of segments, each with the sums over its subtree from
- * which its radius follows [law.h].
+/* The growing network: one binary tree of segments, or several trees (a forest). Each segment has
+ * the sums over its subtree from which its radius follows [law.h].
  *
- * Every node but an inlet is the distal end of the segment of the same index. The children of an
- * inlet are root segments: one for a tree that is grown, one or two for a tree that is continued. A
- * segment that is split keeps its index as the distal part.
+ * Every node except an inlet is the distal end of the segment with the same index. The children of
+ * an inlet are root segments: one for a tree that is grown, one or two for a tree that is
+ * continued. When a segment is split, its distal part keeps its index.
  *
- * Functions change three kinds of values, and say which they need and which they leave:
- * - the structure (positions, parents, children, tree, origin, given, piece) is always right;
- * - the sums (length, terminals, rho_gamma, cost) are exact after network_resum, which computes all
- *   of them, and after network_refresh, which computes all but the lengths. network_append leaves
- *   them out of date, network_split updates some of them, and so do changes of weights;
- * - the radii (radius, gauge, sensitivity) are those of the last network_refresh, or of when the
+ * Functions change three kinds of values, and state which values they need and leave:
+ * - The structure (positions, parents, children, tree, origin, given, piece) is always right.
+ * - The sums (length, terminals, rho_gamma, cost) are exact after network_resum, which computes all
+ *   of them, and after network_refresh, which computes all except the lengths. network_append
+ *   leaves them out of date, and network_split updates some of them. A change of weights puts them
+ *   out of date.
+ * - The radii (radius, gauge, sensitivity) are those of the last network_refresh, or of when the
  *   segment was made. They age while terminals are added, until the next refresh. */
 #ifndef CORCAST_GROW_NETWORK_H
 #define CORCAST_GROW_NETWORK_H
@@ -23,48 +24,52 @@
 /* What the walk towards the root reads of one segment, in one cache line of 64 bytes. */
 typedef struct Segment {
     double length;       /* mm */
-    double rho_gamma[2]; /* of the daughters [law.h]; 0 where there is none */
-    double cost[2];      /* likewise */
+    double rho_gamma[2]; /* of the daughters [law.h]; 0 where there is no daughter */
+    double cost[2];      /* of the daughters; 0 where there is no daughter */
     int32_t child[2];    /* -1: none */
     int32_t parent;      /* -1 at the inlet */
-    int32_t terminals;
-    float radius; /* mm */
-    float gauge;  /* [law.h] */
+    int32_t terminals;   /* at and below the segment's end */
+    float radius;        /* mm */
+    float gauge;         /* [law.h] */
 } Segment;
 
 /* The derivatives that price a change of one segment without a walk to the root. */
 typedef struct Sensitivity {
     double load;  /* dS_root / d load of the segment, its own cost held fixed */
-    double extra; /* the increase of S_root if every segment above this one had one more terminal */
+    double extra; /* increase of S_root if every segment above this one had one more terminal */
 } Sensitivity;
 
 /* What segments need in addition where terminals are unequal, viscosities or exponents differ,
  * several trees grow, or a tree is continued. */
 typedef struct Trait {
-    /* The flow through the segment relative to that of as many mean terminals, times its viscosity
-     * relative to that in radius_scale; of the last weights_update, or of when it was made. */
-    double weight;
-    double gamma;   /* of the fork at the distal end, likewise */
-    double share;   /* of a terminal: its flow relative to the other terminals'; 0 elsewhere */
-    int32_t mate;   /* of a terminal: the one it is paired with; -1: none */
-    int32_t tree;   /* the index of the inlet that it hangs on */
-    int32_t origin; /* the node's index in the tree that is continued; -1: a new node */
-    bool given;     /* a segment of that tree, which stays straight */
-    bool piece;     /* a given one that makes up a vessel together with others */
+    double weight; /* flow through the segment relative to that of as many mean terminals, times its
+                    * viscosity relative to that in radius_scale; of the last weights_update, or of
+                    * when the segment was made */
+    double gamma;  /* exponent of the fork at the distal end; as old as the weight */
+    double share;  /* of a terminal: its flow relative to the other terminals'; 0 elsewhere */
+    int32_t mate;  /* of a terminal: the terminal it is paired with; -1: none */
+    int32_t tree;  /* index of the inlet that the segment hangs on */
+    int32_t origin; /* index of the node in the tree that is continued; -1: a new node */
+    bool given;     /* a segment of the tree that is continued, which stays straight */
+    bool piece;     /* a given segment that makes up a vessel together with others */
 } Trait;
 
-/* Segments that keep the radius they had, whatever flows through them [trunk.h]. */
+/* A trunk: segments that keep the radii they had. What flows through them drops pressure by
+ * Poiseuille's law. A subtree that leaves the trunk has the rest of the drop, so its gauge [law.h]
+ * is (share of the drop that is left)^(-1/4). A trunk begins at an inlet and is connected. Arrays
+ * are owned. */
 typedef struct Trunk {
-    double *radius; /* by segment, mm; 0: it follows the law */
-    double *stake;  /* by kept segment: dS_root / d share of the drop of pressure spent on it */
+    double *radius; /* per segment, mm; 0: the radius follows the law */
+    double *stake;  /* per kept segment: dS_root / d share of the drop of pressure spent on it */
     int32_t *order; /* workspace of trunk_refresh */
 } Trunk;
 
+/* All arrays are owned. */
 typedef struct Network {
     Law law;             /* where segments have no Trait */
     double radius_scale; /* q N^(1/4), mm^(3/4), the same for any number N of terminals */
     double radius_unit;  /* q, mm^(3/4), for the present number: r = q * gauge * rho [law.h] */
-    size_t n, capacity;  /* nodes, spare ones included; and how many there is room for */
+    size_t n, capacity;  /* nodes, spare nodes included */
     size_t terminals;
     int32_t *inlet; /* nodes */
     size_t inlets;
@@ -72,9 +77,9 @@ typedef struct Network {
     Sensitivity *sensitivity;
     Trait *trait;        /* NULL: all weights are 1, there is one tree, and no segment is given */
     Trunk *trunk;        /* NULL: every radius follows the law */
-    double fresh_weight; /* the weight that a new terminal's segment gets */
+    double fresh_weight; /* weight of a new terminal's segment */
     Vec3 *position;      /* mm */
-    int32_t *spare;      /* nodes that are part of no tree, to be used by network_split */
+    int32_t *spare;      /* nodes that are part of no tree, for network_split to use */
     size_t spares;
     int32_t *tops; /* workspace of network_refresh */
 } Network;
@@ -89,65 +94,65 @@ typedef struct NetworkSize {
 MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, NetworkSize size,
                                Err *err);
 void network_release(Network *net);
-/* Has segments keep radii, which the caller then sets: all are 0. STATUS_MEMORY. */
+/* Adds a trunk whose radii are all 0; the caller sets them. Errors: STATUS_MEMORY. */
 MUST_CHECK Status network_add_trunk(Network *net, Err *err);
 
-/* The index of the tree that segment i belongs to. */
+/* Returns the index of the tree that segment i belongs to. */
 static inline int32_t network_tree(const Network *net, int32_t i)
 {
     return net->trait ? net->trait[i].tree : 0;
 }
 
-/* Whether segment i must stay straight. */
+/* Returns true if segment i must stay straight. */
 static inline bool network_is_given(const Network *net, int32_t i)
 {
     return net->trait && net->trait[i].given;
 }
 
-/* Whether segment i is a piece of a vessel, which may be shorter than wide. */
+/* Returns true if segment i is a piece of a vessel. A piece may be shorter than wide. */
 static inline bool network_is_piece(const Network *net, int32_t i)
 {
     return net->trait && net->trait[i].piece;
 }
 
-/* The radius, mm, that segment i keeps; 0: it has the one that follows. */
+/* Returns the radius, mm, that segment i keeps; 0: its radius follows the law. */
 static inline double network_kept_radius(const Network *net, int32_t i)
 {
     return net->trunk ? net->trunk->radius[i] : 0;
 }
 
-/* The terminal that terminal i is paired with; -1: none. */
+/* Returns the terminal that terminal i is paired with; -1: none. */
 static inline int32_t network_mate(const Network *net, int32_t i)
 {
     return net->trait ? net->trait[i].mate : -1;
 }
 
-/* Makes a pair of two terminals of a network with traits. */
+/* Pairs two terminals of a network with traits. */
 static inline void network_pair(Network *net, int32_t i, int32_t j)
 {
     net->trait[i].mate = j;
     net->trait[j].mate = i;
 }
 
-/* Whether node i is a terminal. */
+/* Returns true if node i is a terminal. */
 static inline bool network_is_end(const Network *net, int32_t i)
 {
     return net->segment[i].child[0] < 0 && net->segment[i].parent >= 0;
 }
 
-/* The burden of segment i [law.h] if it carried the flow of `terminals` terminals. */
+/* Returns the burden of segment i [law.h] if it carried the flow of `terminals` terminals. */
 static inline double network_burden(const Network *net, int32_t i, int32_t terminals)
 {
     return net->trait ? terminals * net->trait[i].weight : terminals;
 }
 
-/* The law at node i. */
+/* Returns the law at node i. */
 static inline Law network_law(const Network *net, int32_t i)
 {
     return net->trait ? (Law){net->trait[i].gamma, net->law.lambda} : net->law;
 }
 
-/* What hangs on the distal end of segment i. Needs its sums. */
+/* Returns what hangs on the distal end of segment i. Needs its sums. */
 static inline Below network_below(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
@@ -156,7 +161,7 @@ static inline Below network_below(const Network *net, int32_t i)
                       segment->cost[0] + segment->cost[1]);
 }
 
-/* Segment i together with what hangs on it. Needs its sums. */
+/* Returns segment i together with what hangs on it. Needs its sums. */
 static inline Reduced network_reduce(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
@@ -165,14 +170,14 @@ static inline Reduced network_reduce(const Network *net, int32_t i)
     return law_extend(&law, network_burden(net, i, segment->terminals), segment->length, &below);
 }
 
-/* Segment i as a solid. Needs its radius. */
+/* Returns segment i as a solid. Needs its radius. */
 static inline Capsule network_capsule(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
     return (Capsule){net->position[segment->parent], net->position[i], (double)segment->radius};
 }
 
-/* Appends a node that hangs on `parent`, or an inlet if that is -1, and returns its index. Sums are
+/* Appends a node that hangs on `parent`, or an inlet if `parent` is -1. Returns its index. Sums are
  * out of date until network_resum. */
 int32_t network_append(Network *net, int32_t parent, Vec3 position);
 
@@ -181,12 +186,12 @@ void network_spare(Network *net, size_t nodes);
 
 /* The connection of a new terminal: `segment` is split at `bifurcation`, and a new segment leads
  * from there to `terminal`. Positions are in mm. */
-typedef struct Split {
+typedef struct NetworkSplit {
     int32_t segment;
     Vec3 bifurcation, terminal;
     int32_t made[2]; /* two spare nodes: the proximal part becomes segment made[0], the new segment
                       * made[1] */
-} Split;
+} NetworkSplit;
 
 /* Splits a segment. Then the caller must remove the two nodes from the list of spare nodes, and
  * call network_grown.
@@ -199,41 +204,73 @@ typedef struct Split {
  * Threads  Threads may split at the same time if their zones have no point in common and both ends
  *          of each one's segment are in its own zone.
  * Cost     O(1). */
-void network_split(Network *net, const Split *split, Box zone);
+void network_split(Network *net, const NetworkSplit *split, Box zone);
 
-/* Adds to the number of terminals, which share the same flow: changes radius_unit. */
+/* Adds to the number of terminals. They share the same flow, so radius_unit changes. */
 void network_grown(Network *net, size_t terminals);
 
-/* Moves the bifurcation `node`, and brings the sums of the three segments that meet there and of
- * all above up to date, exactly. Needs right sums; leaves radii as they are. O(depth). */
+/* Moves the bifurcation `node`. Updates the sums of the three segments that meet there and of all
+ * segments above, exactly. Needs right sums; leaves radii as they are. Cost: O(depth). */
 void network_move(Network *net, int32_t node, Vec3 place);
 
-/* S_root [law.h], the sum over all trees. Not finite, or 0, when radii span more than a double can
- * hold. Needs right sums, or is of the last refresh. */
+/* Returns S_root [law.h], the sum over all trees; 0 or not finite if the radii span more than a
+ * double can hold. Needs right sums, or is that of the last refresh. */
 double network_cost(const Network *net);
 
-/* Brings the sums of all segments but lengths up to date, then their radii, gauges and
- * sensitivities. O(n). The result is the same for any number of threads. */
+/* Updates the sums of all segments, except lengths; then their radii, gauges and sensitivities. The
+ * result does not depend on the number of threads. Cost: O(n). */
 void network_refresh(Network *net, int threads);
 
-/* Frees what only growth needs: network_split, network_spare and network_refresh must not be called
- * from here on. */
+/* Frees what only growth needs. From here on, network_split, network_spare and network_refresh must
+ * not be called. */
 void network_retire(Network *net);
 
-/* The node after `i` in post-order (daughters before their mother), which begins with
+/* Returns the node after `i` in post-order (daughters before their mother). The order begins with
  * network_first_upward of an inlet and ends with that inlet. */
 int32_t network_next_upward(const Network *net, int32_t i);
-/* The first of `i` and all below it in post-order. O(depth). */
+/* Returns the first node in post-order of `i` and all nodes below it. Cost: O(depth). */
 int32_t network_first_upward(const Network *net, int32_t i);
 
-/* Computes all sums anew, lengths included, from positions and weights; counts the terminals.
- * Leaves radii as they are. O(n). */
+/* Computes all sums, lengths included, from positions and weights, and counts the terminals. Leaves
+ * radii as they are. Cost: O(n). */
 void network_resum(Network *net);
 
-/* Renumbers the nodes depth first, tree after tree, so that parents come before children and
- * neighbours in the tree are neighbours in memory; drops the spare nodes. Keeps sums and radii;
- * what holds indices of nodes (a grid) must be made anew. O(n). On failure, STATUS_MEMORY, `net` is
- * only fit for network_release. */
+/* Renumbers the nodes depth first, tree after tree: parents come before children, and neighbours in
+ * the tree are neighbours in memory. Drops the spare nodes. Keeps sums and radii. What holds
+ * indices of nodes, such as a grid, must be made again.
+ *
+ * Errors   STATUS_MEMORY; `net` is then only fit for network_release.
+ * Cost     O(n). */
 MUST_CHECK Status network_reorder(Network *net, Err *err);
+
+/* ---- the trunk
+ * -------------------------------------------------------------------------------- */
+
+/* The greatest share of the drop of pressure that may be spent along a trunk. */
+#define TRUNK_MOST_SPENT 0.999
+
+/* Returns the share of the whole drop of pressure that is spent along the first `part`, in [0, 1],
+ * of the kept segment i if it carries the flow of `terminals` terminals. Needs its length. */
+static inline double trunk_spent(const Network *net, int32_t i, int32_t terminals, double part)
+{
+    double unit = net->radius_unit / net->trunk->radius[i], unit2 = unit * unit;
+    return unit2 * unit2 * network_burden(net, i, terminals) * net->segment[i].length * part;
+}
+
+/* Returns the gauge below a segment of gauge `gauge` on which a share `spent` of the drop is spent.
+ * While a tree grows, what is spent counts as TRUNK_MOST_SPENT at most. */
+double trunk_gauge(double gauge, double spent);
+
+/* Computes gauge, radius and sensitivity of segment i, which sums up to `reduced`, from those of
+ * the kept segment `parent`. Part of network_refresh and network_split. */
+void trunk_set_daughter(Network *net, int32_t i, const Reduced *reduced, int32_t parent);
+
+/* Updates gauges and stakes of all kept segments. Part of network_refresh. Needs right sums. Cost:
+ * O(kept segments). */
+void trunk_refresh(Network *net);
+
+/* Returns the largest share of the drop that is spent up to the end of a kept segment, which is
+ * *where. `spent` is a workspace of one number per node. Nodes are in depth-first order. */
+double trunk_most_spent(const Network *net, double *spent, size_t *where);
 
 #endif

@@ -122,12 +122,29 @@ static Status check_shares(const GrowParams *params, size_t trees, Err *err)
     return STATUS_OK;
 }
 
+/* Numbers of mm that must not be below 0. */
+static const struct {
+    const char *name;
+    size_t offset;
+} lengths[] = {{"clearance_mm", offsetof(GrowParams, clearance_mm)},
+               {"min_radius_mm", offsetof(GrowParams, min_radius_mm)},
+               {"pair_mm", offsetof(GrowParams, pair_mm)}};
+
+static Status check_lengths(const GrowParams *params, Err *err)
+{
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        double mm = *(const double *)((const char *)params + lengths[i].offset);
+        if (!(mm >= 0) || !isfinite(mm))
+            return err_set(err, STATUS_USAGE, "`%s` %g: must be a number of mm not below 0",
+                           lengths[i].name, mm);
+    }
+    return STATUS_OK;
+}
+
 static Status check_pairs(const GrowParams *params, const Domain *domain, Err *err)
 {
     double mm = params->pair_mm;
     double across = vec3_distance(domain->bounds.low, domain->bounds.high);
-    if (!(mm >= 0) || !isfinite(mm))
-        return err_set(err, STATUS_USAGE, "`pair_mm` %g: must be a number of mm not below 0", mm);
     if (mm == 0)
         return STATUS_OK;
     if (params->from)
@@ -158,17 +175,12 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
         return err_set(err, STATUS_USAGE, "`terminals` %zu: must be from 1 to %d",
                        params->terminals, GROW_MAX_TERMINALS);
     TRY(check_physics(params, err));
-    if (!(params->clearance_mm >= 0) || !isfinite(params->clearance_mm))
-        return err_set(err, STATUS_USAGE, "`clearance_mm` %g: must be a number of mm not below 0",
-                       params->clearance_mm);
+    TRY(check_lengths(params, err));
     if (params->clearance_mm > 0 && !params->from && params->inlets <= 1)
         return err_set(err, STATUS_USAGE,
                        "`clearance_mm` %g: is between trees, and there is one; several of `inlet` "
                        "grow several",
                        params->clearance_mm);
-    if (!(params->min_radius_mm >= 0) || !isfinite(params->min_radius_mm))
-        return err_set(err, STATUS_USAGE, "`min_radius_mm` %g: must be a number of mm not below 0",
-                       params->min_radius_mm);
     if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
         return err_set(err, STATUS_USAGE, "`candidates` %d: must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);

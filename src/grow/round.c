@@ -22,8 +22,8 @@
 enum { EDGE_2D = 34, EDGE_3D = 10 };
 /* With fewer tiles, or fewer points in a tile, one thread connects all points. */
 enum { LEAST_TILES = 4, LEAST_POINTS = 16 };
-/* In a tile, at most one point in POINTS_PER_CONNECTED may be connected; one in three is expected.
- */
+/* In a tile, at most one point in POINTS_PER_CONNECTED may be connected; one in three is
+ * expected. */
 enum { POINTS_PER_CONNECTED = 2 };
 /* How many points ahead memory is asked for. */
 enum { AHEAD = 2 };
@@ -133,17 +133,15 @@ static Status connect(const Running *running, int worker, Tile *tile, const Conn
 {
     Site *site = running->common->site;
     const int32_t *made = tile->spare + 2 * tile->made++;
-    const int32_t segment[ENDS] = {made[0], connection->segment, made[1]};
+    const int32_t host = connection->segment, segment[ENDS] = {made[0], host, made[1]};
+    const NetworkSplit split = {
+        host, connection->bifurcation, connection->terminal, {made[0], made[1]}};
     GridItem item[ENDS];
-    tile->left[network_tree(&site->net, connection->segment)]--;
+    tile->left[network_tree(&site->net, host)]--;
     for (int i = 0; i < ENDS; i++)
         item[i] = connection_item(site, connection, i);
-    grid_remove(&site->grid, connection->segment);
-    network_split(
-        &site->net,
-        &(Split){
-            connection->segment, connection->bifurcation, connection->terminal, {made[0], made[1]}},
-        tile->zone);
+    grid_remove(&site->grid, host);
+    network_split(&site->net, &split, tile->zone);
     for (int i = 0; i < ENDS; i++) {
         bool is_end = site->net.segment[segment[i]].child[0] < 0;
         TRY(grid_add(&site->grid, worker, segment[i], is_end, item[i], err));

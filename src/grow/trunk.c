@@ -6,7 +6,7 @@
  *
  * Sums of kept segments are as if their radii followed; nothing but the check of the range of
  * doubles looks at them. */
-#include "grow/trunk.h"
+#include "grow/network.h"
 
 #include <float.h>
 

@@ -1,6 +1,6 @@
-/* Decoders hand over what a file holds, alpha as the last channel; what becomes of it is decided
- * here, for all formats. Codes are not multiplied by alpha, floats are, as PNG and OpenEXR have
- * them; light adds up, so that colours are laid on a background linear. */
+/* Decoders leave alpha as the last channel. This file handles it for all formats. As in PNG and
+ * OpenEXR, codes are not multiplied by alpha and floats are. Images are composited over a
+ * background in linear light, since light adds up. */
 #include "image/formats.h"
 
 static int channels_of(const Image *image)
@@ -20,7 +20,7 @@ static bool has_alpha(const Image *image)
     return channels == 2 || channels == 4;
 }
 
-/* From 0 to 1 */
+/* Returns the alpha of a pixel, from 0 to 1. */
 static float alpha_at(const Image *image, size_t pixel)
 {
     size_t at = (pixel + 1) * (size_t)channels_of(image) - 1;
@@ -67,7 +67,7 @@ static void take_opacity(Image *image)
     drop_alpha(image);
 }
 
-/* Grey and alpha become red, green, blue and alpha. */
+/* Makes grey and alpha red, green, blue and alpha. */
 static Status widen_grey(Picture *picture, Err *err)
 {
     Picture wide;
@@ -120,7 +120,7 @@ static Status lay_plane(const Plane *plane, const float background[3], Plane *la
     return STATUS_OK;
 }
 
-/* The linear colours, multiplied by alpha. */
+/* Makes a plane of linear colours, multiplied by alpha. */
 static Status multiply(const Image *image, Plane *plane, Err *err)
 {
     TRY(plane_from_picture(plane, &image->picture, err));

@@ -1,5 +1,6 @@
-/* Colour maps are text, a colour a line, which stand at equal distances from 0 to 1; between them
- * the encoded values are interpolated, as the makers of the maps meant, and then decoded. */
+/* A colour map is a text file with one colour per line. The colours are equidistant from 0 to 1.
+ * Between them the encoded values are interpolated, as the authors of the maps intended, and then
+ * decoded. */
 #include "image/image.h"
 
 #include <math.h>
@@ -14,7 +15,7 @@ static bool is_separate(const char *line)
            line[length + strspn(line + length, " \t\r")] == '\0';
 }
 
-/* Takes one line, which is a colour, blank, a comment or what kind of map it is. */
+/* Reads one line: a colour, a blank line, a comment, or the kind of the map. */
 static Status take_line(Colormap *map, size_t *capacity, const char *line, Err *err)
 {
     double c[3];

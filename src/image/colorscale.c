@@ -1,18 +1,18 @@
-/* A value's place on the map is linear between the ends of the range, of values or of their
- * logarithms. Where colours do not run on, the value chooses one of a few steps instead. */
+/* The position of a value on the map is linear between the ends of the range, in values or in their
+ * logarithms. On a scale that is not continuous, the value selects one of a few steps instead. */
 #include "image/colorscale.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* NAN where the scale cannot show the value. */
+/* Returns the value or its logarithm; NAN if the scale cannot show it. */
 static double scaled(const ColorScale *scale, double value)
 {
     return scale->log ? (value > 0 ? elementary_log(value) : (double)NAN) : value;
 }
 
-/* Whether the value may set the ends of the range. */
+/* Returns true if the value may set the ends of the range. */
 static bool counts(const ColorScale *scale, double value)
 {
     return isfinite(scaled(scale, value));
@@ -66,8 +66,8 @@ double colorscale_place(const ColorScale *scale, double value)
     return width > 0 ? above / width : above + 0.5;
 }
 
-/* Large beside the rounding of a mean of places, which is about 1e-15, and too small to be seen. A
- * range without width has places in units of the value. */
+/* Large compared with the rounding of a mean of positions, about 1e-15, and too small to be
+ * visible. Positions in a range without width have the unit of the value. */
 double colorscale_slack(const ColorScale *scale)
 {
     const double part = 1e-6;
@@ -149,7 +149,7 @@ static int step_at(const ColorScale *scale, double place)
     return step;
 }
 
-/* The colour of its own that the place has, or NULL. */
+/* Returns the special colour of a position; NULL if it has none. */
 static const ScaleColor *own_color(const ColorScale *scale, double place)
 {
     const ScaleColor *own = isnan(place)             ? &scale->none
@@ -159,7 +159,7 @@ static const ScaleColor *own_color(const ColorScale *scale, double place)
     return own && own->given ? own : NULL;
 }
 
-/* Whether the place has a colour of its own or is on a step, and that colour. */
+/* Returns true, and stores the colour, if the position has a special colour or is on a step. */
 static bool take_step(const ColorScale *scale, double place, float rgb[3])
 {
     const ScaleColor *own = own_color(scale, place);
@@ -207,7 +207,7 @@ void colorscale_on_ramp(const ColorScale *scale, const ColorRamp *ramp, double p
     }
 }
 
-/* The step of a value on a separate map. */
+/* Returns the step of a value on a separate map. */
 static size_t number_of(const ColorScale *scale, double value)
 {
     double n = (double)scale->map.n, number = fmod(floor(value) - 1, n);
@@ -223,7 +223,7 @@ void colorscale_linear(const ColorScale *scale, double value, float rgb[3])
         colorscale_at(scale, place, rgb);
 }
 
-/* In three digits, or as the whole number that it is. */
+/* Appends a value with three digits, or as an integer if it is one. */
 static void put_short(Text *text, double value)
 {
     char digits[32];

@@ -1,6 +1,6 @@
-/* Everything is float, powf included: POV-Ray's colours are float32 and its pow is the float
- * overload, so that the same float gives the same code. With the power taken in double, about one
- * 16-bit code in a thousand comes out different. */
+/* All computations are in float, powf included: the colours of POV-Ray are float32, and its pow is
+ * the float overload. Equal floats then give equal codes. With the power in double, about one
+ * 16-bit code in a thousand differs. */
 #include "image/image.h"
 
 #include <assert.h>
@@ -42,8 +42,8 @@ static int code_of_bits(int32_t bits)
     return image_code(value, ENCODING_SRGB, 8);
 }
 
-/* The bits of the least float of a code, by bisection about where decoding says it is: floats are
- * in the order of their bits, and image_code never falls. */
+/* Returns the bits of the smallest float that has a code, by bisection around the decoded value.
+ * This works because floats have the order of their bits, and image_code is monotonic. */
 static int32_t first_of_code(int code)
 {
     int32_t low = bits_of(srgb_decode(((float)code - 0.5f) / 255)) - 256, high = low + 512;
@@ -92,7 +92,7 @@ Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encodin
         return STATUS_OK;
     }
     for (size_t i = 0; i < n; i++) {
-        /* Most pixels are like the one before. */
+        /* Most pixels are equal to the previous one. */
         bool again = i >= channels && plane->values[i] == plane->values[i - channels];
         picture_set(picture, i,
                     again ? picture_code(picture, i - channels)
@@ -141,7 +141,7 @@ Status plane_from_picture(Plane *plane, const Picture *picture, Err *err)
     return status;
 }
 
-/* Alpha is no colour: it has no gamma. */
+/* Copies alpha, which has no gamma. */
 static void copy_alpha(Picture *to, const Picture *from)
 {
     const uint32_t most = (1u << to->bits) - 1, most_before = (1u << from->bits) - 1;
@@ -192,8 +192,8 @@ Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err)
     return STATUS_OK;
 }
 
-/* The ids take the picture's memory, made larger by a third: each is written at or behind the place
- * of its bytes, so from the last on. */
+/* The ids take over the memory of the picture, enlarged by a third. The loop runs from the last id
+ * to the first, since each id is stored at or after its bytes. */
 Status ids_take_picture(IdPlane *ids, Picture *picture, Err *err)
 {
     if (picture->channels != 3 || picture->bits != 8)

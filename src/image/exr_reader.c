@@ -1,9 +1,8 @@
-/* OpenEXR through the C library OpenEXRCore: one flat image in scan lines or tiles, its channels R
- * G B, whatever there is besides, X Y Z or a single one, as 32-bit floats whatever they are in the
- * file. Where a layer is asked for, these are the channels of the part of that name, or of any part
- * with the layer's name and a dot before them. Chunks are decoded one after the other straight into
- * a plane of the data window, from the file in memory; what the display window shows of it is the
- * image. */
+/* OpenEXR through the C library OpenEXRCore: one flat image in scan lines or tiles. The channels
+ * are R G B, even if there are others, X Y Z, or a single one, converted to 32-bit floats. A
+ * requested layer consists of the channels of the part with its name, or of those channels of any
+ * part whose names begin with the layer's name and a dot. Chunks are decoded one by one from memory
+ * into a plane of the data window. The image is the part of it in the display window. */
 #include "image/formats.h"
 
 #define IMATH_HALF_NO_LOOKUP_TABLE /* whose table is in a library of its own */
@@ -18,15 +17,16 @@ typedef struct ExrReader {
     ImageInput input;
     exr_context_t context;
     int part;
-    const char *prefix; /* of the channels' names: "", or the layer's name */
+    const char *prefix; /* of the names of channels: "", or the name of the layer */
     bool is_tiled;
-    exr_attr_box2i_t window, display; /* of the data; what is shown */
-    const char *names[MAX_CHANNELS];  /* of the channels of the plane, the last one perhaps "A" */
-    int channels;                     /* alpha not counted */
-    bool has_alpha, is_colored;       /* its channels are R G B */
+    exr_attr_box2i_t window, display; /* data window; display window */
+    const char *names[MAX_CHANNELS];  /* of the plane's channels; alpha is the last */
+    int channels;                     /* number of channels without alpha */
+    bool has_alpha, is_colored;       /* there is an A channel; the others are R G B */
     Plane plane;                      /* owned; of the data window; alpha last */
-    exr_result_t (*decompress)(exr_decode_pipeline_t *decoder); /* the library's */
-    int x, y; /* pixel of the plane at which the chunk being decoded begins */
+    exr_result_t (*decompress)(
+        exr_decode_pipeline_t *decoder); /* the routine that the library chose */
+    int x, y; /* position in the plane of the chunk that is being decoded */
 } ExrReader;
 
 static bool exr_is(const ImageBytes *file)
@@ -34,7 +34,7 @@ static bool exr_is(const ImageBytes *file)
     return file->size >= 4 && memcmp(file->bytes, "\x76\x2f\x31\x01", 4) == 0;
 }
 
-/* The message names the file first, which the sentence does already. */
+/* The message begins with the name of the file, which the sentence states already. */
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message)
 {
     (void)context;
@@ -50,7 +50,7 @@ static int64_t on_size(exr_const_context_t context, void *user)
     return (int64_t)self->input.file.size;
 }
 
-/* As pread: at the end fewer bytes than asked for. */
+/* Reads like pread: fewer bytes than requested at the end. */
 static int64_t on_read(exr_const_context_t context, void *user, void *out, uint64_t size,
                        uint64_t offset, exr_stream_error_func_ptr_t complain)
 {
@@ -63,8 +63,8 @@ static int64_t on_read(exr_const_context_t context, void *user, void *out, uint6
     return (int64_t)count;
 }
 
-/* The name of a channel behind the prefix and its dot; NULL when the channel is of no such layer.
- */
+/* Returns the name of a channel after the prefix and a dot; NULL if the channel is not in that
+ * layer. */
 static const char *name_in_layer(const char *channel, const char *prefix)
 {
     size_t length = strlen(prefix);
@@ -74,7 +74,7 @@ static const char *name_in_layer(const char *channel, const char *prefix)
     return within && !strchr(channel + length + 1, '.') ? channel + length + 1 : NULL;
 }
 
-/* The full name of the layer's channel; NULL when there is none. */
+/* Returns the full name of a channel of the layer; NULL if there is none. */
 static const char *find_channel(const exr_attr_chlist_t *list, const char *prefix, const char *name)
 {
     for (int i = 0; i < list->num_channels; i++) {
@@ -85,7 +85,7 @@ static const char *find_channel(const exr_attr_chlist_t *list, const char *prefi
     return NULL;
 }
 
-/* How many channels the layer has, alpha not counted; the last of them in *last. */
+/* Returns the number of channels of the layer without alpha. *last becomes the last of them. */
 static int count_channels(const exr_attr_chlist_t *list, const char *prefix, const char **last)
 {
     int n = 0;
@@ -116,7 +116,7 @@ static Status no_channels(const ExrReader *self, const exr_attr_chlist_t *list, 
                    strchr(names, '.') ? ", or those of one layer" : "");
 }
 
-/* Which channels make the plane. */
+/* Chooses the channels of the plane. */
 static Status choose_channels(ExrReader *self, Err *err)
 {
     static const char *const triples[2][3] = {{"R", "G", "B"}, {"X", "Y", "Z"}};
@@ -149,7 +149,7 @@ static Status choose_channels(ExrReader *self, Err *err)
     return STATUS_OK;
 }
 
-/* Colours have the primaries of Rec. 709, which are sRGB's, where no chromaticities are given. */
+/* Without chromaticities, colours have the primaries of Rec. 709, which are those of sRGB. */
 static Status check_colors(ExrReader *self, Err *err)
 {
     exr_attr_chromaticities_t given;
@@ -159,7 +159,7 @@ static Status check_colors(ExrReader *self, Err *err)
         return STATUS_OK;
     exr_result_t found =
         exr_attr_get_chromaticities(self->context, self->part, "chromaticities", &given);
-    guard_forget(); /* that there are none */
+    guard_forget(); /* a missing attribute is no error */
     if (found != EXR_ERR_SUCCESS)
         return STATUS_OK;
     memcpy(values, &given, sizeof values);
@@ -176,7 +176,7 @@ static const char *part_name(const ExrReader *self, int part)
     return named && name ? name : "";
 }
 
-/* Whether the part has channels of the layer. */
+/* Returns true if the part has channels of the layer. */
 static bool has_layer(const ExrReader *self, int part, const char *layer)
 {
     const exr_attr_chlist_t *list;
@@ -204,8 +204,8 @@ static Status no_layer(const ExrReader *self, int parts, Err *err)
     return status;
 }
 
-/* The part of the layer's name, whose channels may have that name before them or not, or else the
- * first part with channels of the layer. */
+/* Chooses the part with the name of the layer; else the first part that has channels of the layer.
+ * In a part with that name, the channels may have the name as a prefix or not. */
 static Status choose_part(ExrReader *self, int parts, Err *err)
 {
     const char *layer = self->input.file.layer;
@@ -218,7 +218,7 @@ static Status choose_part(ExrReader *self, int parts, Err *err)
             if (pass == 0 ? strcmp(part_name(self, self->part), layer) != 0 : !inside)
                 continue;
             self->prefix = inside ? layer : "";
-            guard_forget(); /* that a part has no name */
+            guard_forget(); /* a part without a name is no error */
             return STATUS_OK;
         }
     return no_layer(self, parts, err);
@@ -255,8 +255,7 @@ static Status open_file(ExrReader *self, Err *err)
     return STATUS_OK;
 }
 
-/* One number of a file, little-endian as all of OpenEXR, as a float. Integers above 2^24 are
- * rounded. */
+/* Converts a little-endian number of the file to a float. Integers above 2^24 are rounded. */
 static float number_at(const uint8_t *at, int type)
 {
     uint32_t bits;
@@ -302,7 +301,7 @@ static exr_result_t unpack(exr_decode_pipeline_t *decoder)
     return EXR_ERR_SUCCESS;
 }
 
-/* How wide and high the chunks are, but for the last ones: tiles, or rows side by side. */
+/* Finds the size of a full chunk: a tile, or a block of scan lines. */
 static bool measure_chunks(ExrReader *self, uint32_t *width, uint32_t *height)
 {
     exr_tile_level_mode_t levels;
@@ -338,8 +337,8 @@ static bool decode_chunk(ExrReader *self, exr_decode_pipeline_t *decoder,
         result = exr_decoding_choose_default_routines(self->context, self->part, decoder);
         self->decompress = decoder->decompress_fn;
     }
-    /* A chunk that compression does not shorten is stored as it is. OpenEXRCore 3.1.5 knows this of
-     * all compressions except B44 and B44A, where it makes other numbers of such a chunk. */
+    /* A chunk that compression does not shorten is stored uncompressed. OpenEXRCore 3.1.5 handles
+     * this for all compressions except B44 and B44A, where it decodes wrong numbers. */
     decoder->decompress_fn = chunk->packed_size < chunk->unpacked_size ? self->decompress : NULL;
     decoder->unpack_and_convert_fn = unpack;
     decoder->decoding_user_data = self;
@@ -377,22 +376,21 @@ static long long height_of(const exr_attr_box2i_t *window)
     return (long long)window->max.y - window->min.y + 1;
 }
 
-/* The bytes of floats that a file of this size can hold, with much to spare. Blank pictures shrink
+/* Returns an upper bound of the bytes of floats in a file of this size. Blank pictures shrink
  * 1032-fold by ZIP and ZIPS, 1376-fold by PXR24, 410-fold by PIZ, 64-fold by RLE and 11-fold by
- * B44A; halves become floats of twice their size. */
+ * B44A. Halves become floats of twice their size. */
 static size_t max_bytes(const ExrReader *self)
 {
     enum { RATIO = 10000 };
     return self->input.file.size * RATIO;
 }
 
-/* Planes of more than `most` bytes are refused. */
+/* Refuses planes of more than `most` bytes. */
 static Status make_plane(const ExrReader *self, Plane *plane, const exr_attr_box2i_t *window,
                          size_t most, Err *err)
 {
     long long width = width_of(window), height = height_of(window);
     int channels = self->channels + self->has_alpha;
-    TRY(image_check_sides(self->input.file.name, width, height, err));
     size_t bytes = (size_t)width * (size_t)height * (size_t)channels * sizeof *plane->values;
     TRY(image_check_claim(&self->input.file, width, height, bytes, most, err));
     return plane_init(plane, (int)width, (int)height, channels, err);

@@ -102,7 +102,7 @@ static Status begin(void *work, Err *err)
     return write_header(self) ? STATUS_OK : guard_failure(err);
 }
 
-/* Points the encoder's channels at their numbers in the chunk. */
+/* Points the channels of the encoder at their values in the chunk. */
 static void set_channel_pointers(ExrWriter *self)
 {
     const ImageChannel *channels = channels_of(&self->output.form);

@@ -22,8 +22,9 @@ typedef struct ImageBytes {
 /* Errors: STATUS_INPUT unless both sides, as a header states them, are in [1, IMAGE_MAX_SIDE]. */
 MUST_CHECK Status image_check_sides(const char *name, long long width, long long height, Err *err);
 
-/* Errors: STATUS_INPUT, naming the file, its size and the sides, if `bytes` of pixels exceed
- * `maximum`, the bytes that a file of this size can hold at the best compression. */
+/* Errors: those of image_check_sides; STATUS_INPUT, naming the file, its size and the sides, if
+ * `bytes` of pixels exceed `maximum`, the bytes that a file of this size can hold at the best
+ * compression. */
 MUST_CHECK Status image_check_claim(const ImageBytes *file, long long width, long long height,
                                     size_t bytes, size_t maximum, Err *err);
 

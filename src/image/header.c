@@ -1,5 +1,5 @@
-/* The header that PNM and PFM share: words between blanks. The cursor never passes the end of the
- * file, so that a truncated header ends in an empty word and that in a sentence. */
+/* The header of PNM and PFM files: words between blanks. The cursor never passes the end of the
+ * file. A truncated header therefore gives an empty word, and that an error. */
 #include "image/formats.h"
 
 #include <ctype.h>

@@ -1,5 +1,5 @@
-/* Allocation is refused by arithmetic before it is tried: an image larger than the machine's memory
- * would otherwise be granted page by page and end the program in the middle of a run. */
+/* An image larger than the machine's memory is refused before it is allocated. Linux would
+ * otherwise grant the memory and end the program when it is used. */
 #include "image/image.h"
 
 #include "image/formats.h"
@@ -16,9 +16,10 @@ Status image_check_sides(const char *name, long long width, long long height, Er
 }
 
 Status image_check_claim(const ImageBytes *file, long long width, long long height, size_t bytes,
-                         size_t most, Err *err)
+                         size_t maximum, Err *err)
 {
-    if (bytes <= most)
+    TRY(image_check_sides(file->name, width, height, err));
+    if (bytes <= maximum)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
                    "%s: its header announces %lld x %lld pixels, more than its %zu bytes can hold",
@@ -36,10 +37,10 @@ Status image_check_memory(int width, int height, size_t bytes, Err *err)
     return STATUS_OK;
 }
 
-/* Hands out zeroed or unset memory: mem_calloc or mem_alloc. */
+/* mem_calloc or mem_alloc. */
 typedef Status Allocator(void *out, size_t count, size_t size, const char *what, Err *err);
 
-/* width * height * channels items in *out. */
+/* Allocates width * height * channels items. */
 static Status allocate(Allocator *allocator, void *out, int width, int height, int channels,
                        size_t item, Err *err)
 {

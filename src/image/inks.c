@@ -1,7 +1,7 @@
-/* ICC profiles through lcms2: the one of sRGB that files carry, and the way from sRGB to the inks
- * of a press. lcms writes the time into a profile that it makes; a fixed one takes its place, so
- * that equal pictures are equal files. With the relative intent, the black of the screen becomes
- * the black of the press (black point compensation), as layout programs do. */
+/* ICC profiles through lcms2: the one of sRGB that files carry, and the conversion from sRGB to the
+ * inks of an output profile. lcms writes the time into a profile that it makes. A fixed time
+ * replaces it, so that equal pictures are equal files. With the relative intent, the black of the
+ * screen becomes the black of the inks (black point compensation), as in layout programs. */
 #include "image/formats.h"
 
 #include <lcms2_plugin.h>

@@ -134,7 +134,6 @@ static Status make_picture(JpegReader *self, Err *err)
     enum { MAX_RATIO = 4000 };
     const ImageBytes *file = &self->input.file;
     const struct jpeg_decompress_struct *jpeg = &self->jpeg;
-    TRY(image_check_sides(file->name, jpeg->image_width, jpeg->image_height, err));
     size_t pixels = (size_t)jpeg->image_width * jpeg->image_height;
     TRY(image_check_claim(file, jpeg->image_width, jpeg->image_height, 3 * pixels,
                           file->size * MAX_RATIO, err));

@@ -1,5 +1,5 @@
-/* Asked of the libraries themselves, as they are loaded; libdeflate and libjpeg tell their versions
- * only when they are compiled against. */
+/* Versions are those of the loaded libraries; libdeflate and libjpeg state only the version that
+ * the program was compiled with. */
 #include "image/image.h"
 
 #include <jpeglib.h>

@@ -1,4 +1,4 @@
-/* PFM: a three-line header and floats, rows from the bottom up; a negative scale says
+/* PFM: a three-line header and floats, rows from the bottom up. A negative scale means
  * little-endian. */
 #include "image/formats.h"
 

@@ -26,10 +26,10 @@ enum { CHUNK_FRAME = 12, IHDR_SIZE = 13, SIGNATURE_SIZE = 8 };
 
 typedef struct PlainPng {
     uint32_t width, height;
-    int bits, samples;   /* of the file; samples 1 to 4 */
-    size_t pixel, row;   /* bytes, the row without its filter byte */
+    int bits, samples;   /* bits per sample; samples per pixel, 1 to 4 */
+    size_t pixel, row;   /* bytes of a pixel; of a row without its filter byte */
     uint8_t *compressed; /* owned */
-    size_t size;         /* of compressed */
+    size_t size;         /* bytes in `compressed` */
 } PlainPng;
 
 static bool read_header(PlainPng *plain, const uint8_t *data, size_t file_size)
@@ -61,11 +61,13 @@ static bool is_one_of(const uint8_t *type, const char *types)
     return false;
 }
 
-/* Walks the chunks; `compressed` has room for the whole file. False on what is not plain. */
+/* Reads the header and collects the compressed data. `compressed` must have space for the whole
+ * file. Returns false for a file that is not plain. */
 static bool read_chunks(PlainPng *plain, const ImageBytes *file)
 {
     size_t at = SIGNATURE_SIZE;
-    bool is_srgb = false, may_differ = false; /* the colours */
+    bool is_srgb = false,
+         may_differ = false; /* there is an sRGB chunk; a chunk may state other colours */
     for (bool first = true;; first = false) {
         if (file->size - at < CHUNK_FRAME)
             return false;
@@ -103,9 +105,9 @@ static inline uint8_t paeth(int left, int up, int corner)
     return (uint8_t)(to_left <= to_up && to_left <= to_corner ? left : nearest);
 }
 
-/* `in` lies above `out` in one buffer or in another one; `up` is the row before, all 0 for the
- * first. `pixel` is a constant where this is inlined, so that the samples of a pixel are undone
- * side by side. */
+/* Undoes a filter. `in` is at or above `out` in one buffer, or in another buffer. `up` is the row
+ * before, all 0 for the first. `pixel` is a constant where this is inlined, so that the samples of
+ * a pixel are computed in parallel. */
 static inline void unfilter(int filter, const uint8_t *in, const uint8_t *up, uint8_t *out,
                             size_t n, size_t pixel)
 {
@@ -158,8 +160,8 @@ static bool unfilter_row(const PlainPng *plain, const uint8_t *in, const uint8_t
 #undef UNFILTER
 }
 
-/* Inflates into `rows`, which has room for the rows with their filter bytes, and undoes the
- * filters; what remains begins at `rows`, without them. */
+/* Inflates into `rows`, which must have space for the rows with their filter bytes, and undoes the
+ * filters. The rows without filter bytes then begin at `rows`. */
 static bool inflate_rows(const PlainPng *plain, uint8_t *rows, const uint8_t *zeros)
 {
     struct libdeflate_decompressor *inflater = libdeflate_alloc_decompressor();

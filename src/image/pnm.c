@@ -1,6 +1,7 @@
-/* PBM, PGM, PPM and PAM, binary and plain (netpbm's pbm(5), pgm(5), ppm(5) and pam(5)). Of binary
- * files the size must agree to the byte. Of plain ones every sample takes two characters at least,
- * of a plain PBM one, which bounds what a header may claim before anything is allocated. */
+/* PBM, PGM, PPM and PAM, binary and plain (netpbm's pbm(5), pgm(5), ppm(5) and pam(5)). The size of
+ * a binary file must match its header exactly. In a plain file every sample takes at least two
+ * characters, in a plain PBM one. That bounds what a header may claim before anything is
+ * allocated. */
 #include "image/formats.h"
 
 #include <ctype.h>
@@ -38,7 +39,7 @@ static Status read_header(HeaderCursor *cursor, PnmHeader *header, Err *err)
     return STATUS_OK;
 }
 
-/* Takes the number of a line of a PAM's header. */
+/* Reads the number in a line of a PAM header. */
 static Status read_key(HeaderCursor *cursor, const char *key, PnmHeader *header, Err *err)
 {
     static const char *const keys[] = {"WIDTH", "HEIGHT", "DEPTH", "MAXVAL"};
@@ -120,7 +121,7 @@ static Status read_binary(HeaderCursor *cursor, const PnmHeader *header, Picture
     return STATUS_OK;
 }
 
-/* The next digit of a plain PBM, which needs no blank before it. */
+/* Reads the next digit of a plain PBM, which needs no blank before it. */
 static Status read_digit(HeaderCursor *cursor, long long *code, Err *err)
 {
     const ImageBytes *file = &cursor->file;
@@ -153,7 +154,7 @@ static Status read_plain(HeaderCursor *cursor, const PnmHeader *header, Picture 
     return STATUS_OK;
 }
 
-/* Codes of 0 to `maximum` become codes of the picture's bits. */
+/* Rescales codes of 0 to `maximum` to the bits of the picture. */
 static void rescale(Picture *picture, unsigned maximum)
 {
     unsigned wanted = picture->bits == 8 ? 255 : 65535;

@@ -1,6 +1,6 @@
-/* Which colours are sRGB's. An ICC profile is not applied, only recognised: by its description, in
- * which every profile of sRGB that is around says "sRGB", but for those of its primaries with
- * linear codes, which say so. */
+/* Recognises colours of sRGB. An ICC profile is not applied. It is recognised by its description:
+ * every common profile of sRGB has "sRGB" in it. Profiles with the primaries of sRGB and linear
+ * codes have "linear" in it, too, and are refused. */
 #include "image/formats.h"
 
 #include <math.h>
@@ -24,8 +24,8 @@ Status image_other_colors(const char *name, const char *where, Err *err)
 
 enum { TAGS = 128, TAG = 12 };
 
-/* Where the text of a tag begins and ends: ASCII in a "desc", the first translation, of 16-bit
- * letters, in a "mluc". */
+/* Finds the text of a tag: ASCII in a "desc"; the first translation, of 16-bit characters, in a
+ * "mluc". */
 static void find_text(const uint8_t *tag, size_t size, size_t *begin, size_t *end)
 {
     *begin = *end = 0;

@@ -1,7 +1,12 @@
-/* TIFF through libtiff, from the file in memory: a single page in strips or tiles, its samples
- * interleaved or in planes, however it is compressed. Grey codes and palettes of 1, 2 and 4 bits
- * become codes of 8 bits, floats of 16 and 64 bits floats of 32. The Orientation is undone on the
- * way: the position of a pixel is a linear function of its column and row in the file. */
+/* TIFF through libtiff.
+ *
+ * A whole file is read from memory: a single page in strips or tiles, its
+ * samples interleaved or in planes, in any compression. Grey codes and palettes of 1, 2 and 4 bits
+ * become 8-bit codes; floats of 16 and 64 bits become 32-bit floats. The Orientation is undone
+ * while pixels are copied: the position of a pixel is a linear function of its column and row in
+ * the file.
+ *
+ * Rows are read from a stream, if they are already those of the image. */
 #define IMATH_HALF_NO_LOOKUP_TABLE /* whose table is in a library of its own */
 #include "image/tiff_stream.h"
 
@@ -16,15 +21,16 @@ typedef struct TiffReader {
     ImageInput input;
     TiffStream tiff;
     uint32_t width, height; /* in the file */
-    int samples, bits;      /* per pixel, per sample, in the file */
-    int planes;             /* 1: samples are interleaved; else as many as samples */
+    int samples, bits;      /* samples per pixel; bits per sample; in the file */
+    int planes;             /* 1: samples are interleaved; else the number of samples */
     int channels;           /* of the image */
     bool floats, min_is_white;
-    const uint16_t *palette[3];       /* borrowed; NULL: none. Red, green, blue of 2^bits codes */
-    int palette_shift;                /* to make 8 bits of its numbers */
-    bool swapped;                     /* its rows are columns */
-    int64_t origin, across, down;     /* the pixel of column 0, row 0; how far the next ones are */
-    uint32_t part_width, part_height; /* of a tile, or of a row */
+    const uint16_t *palette[3]; /* borrowed; NULL: none. Red, green, blue of 2^bits codes */
+    int palette_shift;          /* right shift that makes 8-bit codes of the palette's numbers */
+    bool swapped;               /* rows of the file are columns of the image */
+    int64_t origin, across,
+        down; /* index of the pixel of column 0, row 0; steps to the next column and row */
+    uint32_t part_width, part_height; /* pixels of a tile, or of a row */
     size_t part_bytes;
     void *part; /* owned */
     ImageNotes notes;
@@ -39,7 +45,7 @@ static bool tiff_is(const ImageBytes *file)
             memcmp(file->bytes, "II+\0", 4) == 0 || memcmp(file->bytes, "MM\0+", 4) == 0);
 }
 
-/* Where pixels go. The orientations are counted as TIFF does: from 5 on rows are columns. */
+/* Sets the positions of pixels. Orientations from 5 on swap rows and columns. */
 static void set_places(TiffReader *self, int orientation)
 {
     bool mirrored = orientation == ORIENTATION_TOPRIGHT || orientation == ORIENTATION_BOTRIGHT ||
@@ -60,7 +66,7 @@ static void set_places(TiffReader *self, int orientation)
     }
 }
 
-/* What a file has that cannot be read is named. */
+/* Returns the error for a property of a file that cannot be read. */
 static Status refuse(const TiffReader *self, const char *what, Err *err)
 {
     return err_set(err, STATUS_INPUT,
@@ -109,7 +115,7 @@ static Status check_samples(TiffReader *self, uint16_t format, Err *err)
     return refuse(self, what, err);
 }
 
-/* Palettes hold numbers of 16 bits; those of some old programs hold numbers of 8 bits. */
+/* A palette has 16-bit numbers. Some old programs write 8-bit numbers. */
 static Status take_palette(TiffReader *self, Err *err)
 {
     uint16_t *red, *green, *blue;
@@ -125,7 +131,7 @@ static Status take_palette(TiffReader *self, Err *err)
     return STATUS_OK;
 }
 
-/* Only grey and RGB have alpha; libtiff makes JPEG's YCbCr colours RGB. */
+/* Only grey and RGB have alpha. libtiff converts YCbCr colours of JPEG to RGB. */
 static Status check_colors_of_samples(TiffReader *self, uint16_t photometric, Err *err)
 {
     const int samples = self->samples;
@@ -169,15 +175,15 @@ static Status check_form(TiffReader *self, Err *err)
     return check_colors_of_samples(self, photometric, err);
 }
 
-/* Bits of a sample of the image that is made. */
+/* Returns the bits per sample of the image. */
 static int image_bits(const TiffReader *self)
 {
     return self->floats ? 32 : self->bits <= 8 ? 8 : 16;
 }
 
-/* The bytes that a file of this size can hold, with much to spare. Blank pictures shrink 1400-fold
- * by LZW, 1032-fold by deflate and 64-fold by PackBits; of the others ZSTD reaches 32768-fold, and
- * WebP and LERC take a few bytes for a blank strip of any size. */
+/* Returns an upper bound of the bytes of pixels in a file of this size. Blank pictures shrink
+ * 1400-fold by LZW, 1032-fold by deflate and 64-fold by PackBits. Among the other compressions,
+ * ZSTD reaches 32768-fold, and WebP and LERC take a few bytes for a blank strip of any size. */
 static size_t most_bytes(const TiffReader *self)
 {
     enum { COMMON_RATIO = 10000, RATIO = 100000, BLANK_STRIP = 64 << 20 };
@@ -191,16 +197,15 @@ static size_t most_bytes(const TiffReader *self)
                   : self->input.file.size * RATIO * unpacked + BLANK_STRIP;
 }
 
-/* `width` x `height` pixels, of the whole or of a tile. */
+/* Checks `width` x `height` pixels of the image, or of a tile. */
 static Status check_claim(const TiffReader *self, uint32_t width, uint32_t height, Err *err)
 {
-    TRY(image_check_sides(self->input.file.name, width, height, err));
     size_t pixel = (size_t)self->channels * (size_t)(image_bits(self) / 8);
     return image_check_claim(&self->input.file, width, height, pixel * width * height,
                              most_bytes(self), err);
 }
 
-/* Strips are read row by row, tiles whole. */
+/* Chooses what is read at a time: a row of a strip, or a tile. */
 static Status set_parts(TiffReader *self, Err *err)
 {
     self->part_width = self->width;
@@ -220,7 +225,7 @@ static Status set_parts(TiffReader *self, Err *err)
     return mem_calloc(&self->part, self->part_bytes, 1, "bytes of a part of a TIFF", err);
 }
 
-/* What is not said is sRGB's. */
+/* Chromaticities that are not stated are those of sRGB. */
 static Status check_colors(TiffReader *self, Err *err)
 {
     double xy[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
@@ -280,7 +285,7 @@ static float float_at(const uint8_t *row, size_t i, int bits)
     return bits == 64 ? (float)value : single;
 }
 
-/* Sets the codes of the pixel of index `pixel`: those of a palette, or one from channel `c` on. */
+/* Sets the codes of a pixel: all three of a palette's colour, or one of channel `c`. */
 static void set_code(const TiffReader *self, unsigned value, size_t pixel, int c, Picture *picture)
 {
     const size_t first = pixel * (size_t)self->channels;
@@ -297,8 +302,8 @@ static void set_code(const TiffReader *self, unsigned value, size_t pixel, int c
                 (uint16_t)(self->bits < 8 ? value * 255 / most : value));
 }
 
-/* Takes `n` pixels of row `y` of the file, from column `x` on, whose samples are at `row`: all
- * samples, or those of one plane. */
+/* Copies `n` pixels of row `y` of the file, from column `x` on. `row` has all their samples, or
+ * those of one plane. */
 static void take_row(const TiffReader *self, const uint8_t *row, uint32_t x, uint32_t y, uint32_t n,
                      int plane, Image *image)
 {
@@ -315,7 +320,7 @@ static void take_row(const TiffReader *self, const uint8_t *row, uint32_t x, uin
     }
 }
 
-/* Reads the part of the file, or of one plane, that begins at column `x`, row `y`. */
+/* Reads the tile, or the row, that begins at column `x`, row `y`. */
 static Status read_part(TiffReader *self, uint32_t x, uint32_t y, int plane, Image *image, Err *err)
 {
     TIFF *handle = self->tiff.handle;
@@ -331,7 +336,7 @@ static Status read_part(TiffReader *self, uint32_t x, uint32_t y, int plane, Ima
     return STATUS_OK;
 }
 
-/* Divides a pixel's codes by its alpha, the last of them. */
+/* Divides the codes of a pixel by its alpha, which is the last of them. */
 static void divide_codes(Picture *picture, size_t first, int colors)
 {
     uint32_t alpha = picture_code(picture, first + (size_t)colors);
@@ -342,7 +347,7 @@ static void divide_codes(Picture *picture, size_t first, int colors)
     }
 }
 
-/* Codes are to be without alpha, floats multiplied by it. */
+/* Makes codes independent of alpha, and multiplies floats by alpha. */
 static void settle_colors(const TiffReader *self, Image *image)
 {
     uint16_t extra, *kinds;
@@ -368,7 +373,7 @@ static Status read_parts(TiffReader *self, Image *image, Err *err)
     return STATUS_OK;
 }
 
-/* Smaller versions of the page and masks are no pages. */
+/* Thumbnails and masks do not count as pages. */
 static Status check_single(TiffReader *self, Err *err)
 {
     while (!TIFFLastDirectory(self->tiff.handle)) {

@@ -1,12 +1,12 @@
-/* TIFF through libtiff, strip by strip: little-endian whatever the machine, compressed with the
- * horizontal predictor, no date, so that equal pictures are equal files. The usual compression is
- * LZW, which every journal takes and some ask for, though deflate is smaller. BigTIFF where offsets
- * could need more than 32 bits. libtiff goes back to the header at the end, so it needs a file with
- * places. */
+/* TIFF through libtiff, strip by strip: little-endian on every machine, compressed with the
+ * horizontal predictor, without a date, so that equal pictures are equal files. The default
+ * compression is LZW, which every journal accepts and some require, though deflate is smaller.
+ * BigTIFF is used where offsets could need more than 32 bits. libtiff returns to the header at the
+ * end, so the file must be seekable. */
 #include "image/tiff_stream.h"
 
 enum { STRIP_BYTES = 1 << 18 };
-static const double classic_bytes = 4.0e9; /* a little may be added to 4 GB less that */
+static const double classic_bytes = 4.0e9; /* 4 GB less what may be added */
 static const double worst_growth = 1.5;    /* of LZW, which writes 8 bits as up to 12 */
 
 typedef struct TiffWriter {

@@ -1,5 +1,5 @@
-/* WebP through libwebp, from the file in memory: a single picture of 8 bits, in colours, with alpha
- * where it has some. Only what VP8 compressed is lossy; VP8L keeps every code. */
+/* WebP through libwebp, from the file in memory: a single picture of 8 bits, in colours, perhaps
+ * with alpha. VP8 compression is lossy, VP8L is lossless. */
 #include "image/formats.h"
 
 #include <string.h>
@@ -11,7 +11,8 @@ static bool webp_is(const ImageBytes *file)
            memcmp(file->bytes + 8, "WEBP", 4) == 0;
 }
 
-/* The bytes of a chunk of the container [WebP Container Specification], NULL when there is none. */
+/* Returns the bytes of a chunk of the container [WebP Container Specification]; NULL if there is
+ * none. */
 static const uint8_t *find_chunk(const ImageBytes *file, const char *name, size_t *size)
 {
     for (size_t at = 12; at + 8 <= file->size; at += 8 + *size + *size % 2) {
@@ -36,7 +37,6 @@ static Status check_features(const ImageBytes *file, const WebPBitstreamFeatures
                        file->name);
     if (profile)
         TRY(image_check_profile(file->name, profile, size, err));
-    TRY(image_check_sides(file->name, features->width, features->height, err));
     return image_check_claim(file, features->width, features->height, 4 * pixels,
                              file->size * 10000 + BLANK, err);
 }

@@ -1,15 +1,14 @@
-/* Arrays of little-endian numbers, each in a script element that no browser runs:
+/* Arrays of little-endian numbers, each in a script element that no browser executes:
  *
- *     position  float x 3 of each node, less the origin, mm
- *     radius    float of each node, mm
- *     parent    uint32 of each node: its parent's number; of a root its own
- *     id        uint32 of each node
- *     field-K   float, or uint16 of whole numbers with 65535 for none, of each node, moment after
- *               moment
- *     map-K     uint8 x 3 of each colour, sRGB
+ *     position  float x 3 per node, relative to the origin, mm
+ *     radius    float per node, mm
+ *     parent    uint32 per node: index of its parent; a root's own index
+ *     id        uint32 per node
+ *     field-K   per node, frame after frame: float, or uint16 if all values are integers, with
+ * 65535 for no value map-K     uint8 x 3 per colour, sRGB
  *
- * A value takes 4 characters for 3 bytes; numbers are packed into a piece of whole triples that
- * goes to the text at once. */
+ * Base64 takes 4 characters for 3 bytes. Numbers are therefore collected in pieces of whole
+ * triples, each of which is appended to the text at once. */
 #include "page/blocks.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
-/* Three parts fill the template: what is to be said of the tree, as JSON; its numbers, as blocks of
- * base64, a fifth of their size as JSON and read at once; and the viewer, whose text stands in the
- * page as it is. The JSON's '<' are escaped, so that no name of a file or column ends the element
- * that holds it. */
+/* The template is filled with three parts: the properties of the tree as JSON; its numbers as
+ * blocks of base64, which are a fifth of their size as JSON and faster to read; and the text of the
+ * viewer. In the JSON every '<' is escaped, so that no name of a file or column can end the script
+ * element. */
 #include "page/page.h"
 
 #include "page/blocks.h"
@@ -92,7 +92,7 @@ static json_t *start_json(const PageParams *params)
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-static json_t *told_json(const PageParams *params)
+static json_t *properties_json(const PageParams *params)
 {
     const JsonMember members[] = {
         {"name", json_text(params->title)},
@@ -107,10 +107,10 @@ static json_t *told_json(const PageParams *params)
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-static void put_told(const PageParams *params, Text *out)
+static void put_properties(const PageParams *params, Text *out)
 {
     Text json = TEXT_INIT;
-    text_json(&json, told_json(params), 0);
+    text_json(&json, properties_json(params), 0);
     const char *chars = text_chars(&json);
     if (!chars)
         text_puts(out, NULL);
@@ -129,7 +129,7 @@ static Status put_data(Text *out, void *context, Err *err)
     return text_check(out, err);
 }
 
-/* What a page is made of besides: the template, the viewer, and whose colours the maps are. */
+/* The files that a page is made of besides its parameters. */
 typedef struct PageTexts {
     Tmpl page;
     char *viewer, *notices; /* owned */
@@ -137,24 +137,24 @@ typedef struct PageTexts {
 
 static Status put_page(const PageParams *params, const PageTexts *from, Text *out, Err *err)
 {
-    Text told = TEXT_INIT, title = TEXT_INIT, notices = TEXT_INIT;
-    put_told(params, &told);
+    Text properties = TEXT_INIT, title = TEXT_INIT, notices = TEXT_INIT;
+    put_properties(params, &properties);
     text_escaped(&title, params->title);
     text_escaped(&notices, from->notices);
     Status status;
-    TRY_GOTO(text_check(&told, err));
+    TRY_GOTO(text_check(&properties, err));
     TRY_GOTO(text_check(&title, err));
     TRY_GOTO(text_check(&notices, err));
     const TmplValue values[] = {{"title", text_chars(&title)},
                                 {"generator", params->generator},
                                 {"notices", text_chars(&notices)},
-                                {"told", text_chars(&told)},
+                                {"told", text_chars(&properties)},
                                 {"viewer", from->viewer}};
     PageParams given = *params;
     const TmplPart parts[] = {{"data", put_data, &given}};
     status = tmpl_stream(&from->page, values, sizeof values / sizeof *values, parts, 1, out, err);
 done:
-    text_release(&told);
+    text_release(&properties);
     text_release(&title);
     text_release(&notices);
     return status;

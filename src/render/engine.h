@@ -21,11 +21,11 @@ typedef struct Engine {
     Status (*rows)(const Drawing *drawing, void *prepared, Frame *frame, Err *err);
     /* Frees what was prepared; NULL where nothing is. */
     void (*free)(void *prepared);
-    /* How it looks from lights; NULL: by rays alone. */
-    const struct LightViews *lights;
-    /* What was prepared of a light by these, for places in the frame of the camera; NULL: nothing,
-     * rays are to be asked. NULL where `lights` is. */
-    const void *(*shadow)(const void *prepared, size_t light);
+    /* Answers shadow queries [render/light/shadowengine.h]; NULL: shadow rays are traced. */
+    const struct ShadowEngine *shadows;
+    /* Returns the light bins that were prepared for light `light` of the view and for points in the
+     * frame of the camera; NULL: there are none. The function is NULL if `shadows` is. */
+    struct LightBins *(*light_bins)(const void *prepared, size_t light);
 } Engine;
 
 #endif

@@ -1,4 +1,4 @@
-/* What is asked of a renderer, and which rows of the picture it draws at a time. */
+/* The parameters of a renderer, and the drawing that it passes to an engine. */
 #ifndef CORCAST_RENDER_JOB_H
 #define CORCAST_RENDER_JOB_H
 
@@ -10,106 +10,105 @@
 /* How primitives and blobs are drawn. */
 typedef enum RenderMethod {
     RENDER_TRACE,   /* ray by ray in double precision, as POV-Ray does */
-    RENDER_RASTER,  /* tile by tile in single precision: the same picture but for rounding */
-    RENDER_ZBUFFER, /* by points of the surfaces of primitives and a depth buffer, as the paper does
-                     */
-    RENDER_FASTEST  /* the fastest within the bounds of tier B [verify.h], but for what samples
-                     * share: RENDER_RASTER of what it takes, rays of the rest */
+    RENDER_RASTER,  /* tile by tile in single precision: the same picture except for rounding */
+    RENDER_ZBUFFER, /* points on the surfaces of primitives and a depth buffer, as in the paper */
+    RENDER_FASTEST  /* RENDER_RASTER where it supports the scene, else rays. Within the bounds of
+                     * tier B [verify.h], except for the visibility that samples share */
 } RenderMethod;
 
-/* The instructions that a tile's samples are drawn with, several at once: those of any processor,
- * AVX2 with FMA, AVX-512. Other pictures than RENDER_TRACE's of primitives and blobs may differ in
- * the last digits of single precision from one to the next. */
+/* The instruction set that draws several samples of a tile at once. Pictures differ between
+ * instruction sets in the last digits of single precision. Pictures of primitives and blobs by
+ * RENDER_TRACE do not differ. */
 typedef enum RenderKernels {
-    KERNELS_FASTEST, /* of those that this processor has */
-    KERNELS_PORTABLE,
-    KERNELS_AVX2,
+    KERNELS_FASTEST,  /* the fastest that this processor has */
+    KERNELS_PORTABLE, /* any processor */
+    KERNELS_AVX2,     /* AVX2 with FMA */
     KERNELS_AVX512
 } RenderKernels;
 
-/* Their names, in order; NULL ends them. */
+/* The names of RenderKernels, in order; NULL ends the list. */
 extern const char *const render_kernel_names[];
 
 enum { RENDER_MOST_ANTIALIAS = 9 };
 
 typedef struct RenderParams {
-    /* Of primitives and blobs; an isosurface has an engine of its own. For all of them RENDER_TRACE
-     * says that shadows and occlusion are found for every sample, by rays; else soft shadows and
-     * occlusion are shared by the samples of a pixel [render/light/visibility.h], and hard shadows
-     * are those of the lights' views. */
+    /* How primitives and blobs are drawn; an isosurface has an engine of its own. For every
+     * geometry, RENDER_TRACE traces the rays of shadows and occlusion for each sample. The other
+     * methods share soft shadows and occlusion among the samples of a pixel
+     * [render/light/visibility.h], and find hard shadows by light views. */
     RenderMethod method;
     RenderKernels kernels;
     int threads;                /* 0: all processors */
-    int antialias;              /* 1: one ray through each pixel's centre; N > 1, at most
-                                 * RENDER_MOST_ANTIALIAS: that ray and N x N more, the
-                                 * places and weights of POV-Ray's +A0.0 +AM1 +RN -J */
-    double antialias_threshold; /* 0: every pixel gets the N x N more, as in POV-Ray; else, in
-                                 * (0, 1], those only that differ from a neighbour by so much in
-                                 * the square root of a channel, which no POV-Ray picture repeats */
+    int antialias;              /* 1: one ray through each pixel's centre. N in
+                                 * 2..RENDER_MOST_ANTIALIAS: that ray and N x N more, with the
+                                 * positions and weights of POV-Ray's +A0.0 +AM1 +RN -J */
+    double antialias_threshold; /* 0: every pixel gets the N x N more rays, as in POV-Ray. In (0,
+                                 * 1]: only pixels that differ from a neighbour by this much in the
+                                 * square root of a channel; POV-Ray has no such mode */
     bool shadows;
-    double shadow_from_mm; /* what is nearer to a lit place casts no shadow on it; 0: POV-Ray's
+    double shadow_from_mm; /* blockers nearer to a lit point cast no shadow on it; 0: POV-Ray's
                             * limit, 0.001 mm */
-    int occlusion;   /* 0: ambient light is the same everywhere; N: the part of it that reaches a
-                      * point is found by N rays, or N beams a pixel, which no POV-Ray picture
-                      * repeats */
-    bool cover_thin; /* vessels narrower than a pixel, and than three sample distances, are drawn by
-                      * the area that they cover of it, which no POV-Ray picture repeats; else
-                      * samples hit or miss them. Planes of geometry have what samples hit in any
-                      * case */
-    double least_px; /* minimum width that such vessels are drawn with, pixels, from 0 to 64; what
-                      * is narrower is drawn by area; 0 draws true widths */
-    const CellParams *povray_cells; /* an isosurface is drawn where POV-Ray's root finder sees it in
-                                     * these cells; NULL: where it is, by proof */
-    bool codes_suffice; /* the frame may have 8-bit codes instead of colours, where that is faster,
-                         * and of transparent views the background */
+    int occlusion; /* 0: ambient light is the same everywhere. N: ambient visibility by N rays, or N
+                    * occlusion directions per pixel; POV-Ray has no such mode */
+    /* Vessels narrower than a pixel, and than three sample distances, are drawn by the area that
+     * they cover; POV-Ray has no such mode. False: samples hit or miss these vessels, too. Planes
+     * of geometry have what samples hit in either case. */
+    bool cover_thin;
+    double least_px; /* minimum drawn width of such vessels, pixels, 0..64; 0 draws true widths */
+    const CellParams *povray_cells; /* an isosurface is drawn where POV-Ray's root finder finds it
+                                     * in these cells; NULL: where it is, by proof */
+    bool codes_suffice; /* the frame may have 8-bit codes instead of float colours, if that is
+                         * faster; a transparent view may have its background and no alpha */
     bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */
     void (*progress)(double fraction, void *context);  /* called by one thread; may be NULL */
     void *progress_context;
 } RenderParams;
 
+/* What a renderer has done. */
 typedef struct RenderStats {
-    double prepare_s;   /* search structures: of the geometry, and what views need besides */
-    double trace_s;     /* pixels */
-    double cpu_s;       /* of all threads, for both: trace_s when nothing else runs is about cpu_s /
-                           threads */
-    size_t rays;        /* primary */
-    const char *engine; /* that drew the last rows: "field", "raster", "zbuffer" or "trace" */
-    size_t preparations; /* how often something was prepared anew for a view: for another camera,
-                            lights, ground plane or antialiasing, or for colours after planes */
+    double prepare_s;    /* wall time for search structures and for what views need */
+    double trace_s;      /* wall time for pixels */
+    double cpu_s;        /* time of all threads for both */
+    size_t rays;         /* number of primary rays */
+    const char *engine;  /* the engine that drew the last rows, such as "field" or "raster" */
+    size_t preparations; /* how often an engine was prepared for a view: for another camera, lights,
+                          * ground plane or antialiasing, or for colours after planes */
 } RenderStats;
 
-/* Adds what another renderer has done, whose engine drew last; preparations stay those of *all. */
+/* Adds the statistics of another renderer, whose engine drew last. `preparations` is not added. */
 void renderstats_add(RenderStats *all, const RenderStats *more);
 
-/* Rows first .. first + rows of the picture. The first `above` and the last `below` of them are
- * drawn only because adaptive antialiasing compares pixels with their neighbours: they get no
+/* The rows [first, first + rows) of a picture. The first `above` and the last `below` of them are
+ * drawn only because adaptive antialiasing compares pixels with their neighbours. They get no
  * further samples and are cut off at the end. */
 typedef struct Band {
     int first, rows;
     int above, below;
 } Band;
 
-/* What an engine draws: a band of a picture of one geometry. */
+/* A band of a picture of one geometry, for an engine. All pointers are borrowed. */
 typedef struct Drawing {
     const Geometry *geometry;
     const View *view;
     const Appearance *appearance;
     const RenderParams *params;
-    struct Caster *caster; /* for the rays that the engine asks for; NULL where it asks for none */
-    const TermMean *mean;  /* of colours that blend; else NULL */
-    const struct PixelVisibility *visibility; /* what samples of a pixel share; NULL: nothing */
-    const bool *hidden; /* per primitive, or per segment of a field: the camera does not see it,
-                         * lights do; NULL: none is hidden */
+    struct Caster *caster; /* casts the engine's rays; NULL: the engine casts none */
+    const TermMean *mean;  /* blends the colours of segments; NULL: colours do not blend */
+    const struct PixelVisibility *visibility; /* shared by the samples of a pixel; NULL: none is */
+    const bool *hidden; /* per primitive, or per segment of a field: not visible to the camera, but
+                         * casts shadows; NULL: none is hidden */
     const struct ThinLayer *thin; /* thin vessels that are drawn over each sample; NULL: none */
     Band band;
 } Drawing;
 
-/* The linear colour of the segment of this number at a point of its surface. */
+/* Returns the linear colour of a segment at a point of its surface. */
 Rgb drawing_color(const Drawing *drawing, uint32_t segment, Vec3 point);
 
-/* Reports progress of the whole picture by params->progress, if there is one. `part`, from 0 to 1,
- * is of the present pass over the band: that of the centre samples, or, if `further`, of the
- * further samples of antialiasing. */
+/* Reports progress of the whole picture by params->progress, unless it is NULL.
+ *
+ * height   of the picture, pixels.
+ * further  the pass draws the further samples of antialiasing; else the centre samples.
+ * part     finished part of this pass over the band, 0..1. */
 void band_progress(const Band *band, const RenderParams *params, int height, bool further,
                    double part);
 

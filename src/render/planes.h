@@ -1,4 +1,4 @@
-/* The planes of a picture, or of a band of it. */
+/* Stores pixels in the planes of a frame. */
 #ifndef CORCAST_RENDER_PLANES_H
 #define CORCAST_RENDER_PLANES_H
 
@@ -7,14 +7,18 @@
 #include <math.h>
 #include <string.h>
 
+/* Returns true if the frame has a plane of depth, normals or ids. */
 static inline bool planes_want_geometry(const Frame *frame)
 {
     return frame->depth.values || frame->normal.values || frame->id.ids;
 }
 
-/* Stores what is seen at a pixel in those planes of geometry that there are: the depth along the
- * ray in mm, infinite where nothing is seen; the unit normal, facing the viewer, or 0; the id of
- * the segment, or 0. */
+/* Stores the hit of a pixel in those planes of geometry that the frame has.
+ *
+ * pixel    index of the pixel, row by row.
+ * depth    along the ray, mm.
+ * normal   unit, facing the viewer.
+ * id       of the segment. */
 static inline void planes_store(const Frame *frame, size_t pixel, double depth, Vec3 normal,
                                 uint32_t id)
 {
@@ -29,7 +33,8 @@ static inline void planes_store(const Frame *frame, size_t pixel, double depth, 
         frame->id.ids[pixel] = id;
 }
 
-/* Nothing is seen at `n` pixels from `first` on. */
+/* Stores that the rays of `n` pixels from `first` on hit nothing: depth infinity, normal 0, id 0.
+ */
 static inline void planes_store_nothing(const Frame *frame, size_t first, size_t n)
 {
     for (size_t i = 0; i < n && frame->depth.values; i++)
@@ -40,6 +45,7 @@ static inline void planes_store_nothing(const Frame *frame, size_t first, size_t
         memset(frame->id.ids + first, 0, n * sizeof *frame->id.ids);
 }
 
+/* Stores the linear colour of a pixel. The frame has a float colour plane. */
 static inline void planes_store_color(const Frame *frame, size_t pixel, Rgb color)
 {
     frame->color.values[3 * pixel] = color.r;

@@ -38,8 +38,9 @@
 static const Engine *const engines[] = {&xray_engine, &field_engine, &raster_engine,
                                         &zbuffer_engine, &ray_engine};
 
-/* Everything that decides what is prepared for a view. Keys are equal if all their bytes are:
- * unused members and padding are zero. */
+/* Everything that decides what is prepared for a view. Keys are compared by their bytes: unused
+ * members and padding are zero. has_color is last and is compared apart: what was prepared for
+ * colours, which need shadows, also serves planes of geometry. */
 typedef struct ViewKey {
     const Engine *engine; /* NULL: no engine is prepared */
     Camera camera;
@@ -71,11 +72,10 @@ struct Renderer {
     OffPixelPoints *unlit; /* those of `thin` until its visibility is known; borrowed */
 };
 
-/* ---- planes ------------------------------------------------------------------------------------
- */
+/* ---- planes ---------------------------------------------------------------------------------- */
 
-/* Makes the planes that are wanted, to be drawn all over, in *frame (owned by the caller even when
- * this fails): of colour 8-bit codes if `codes`, else floats. */
+/* Allocates the planes that `params` asks for. Their pixels are undefined. Colours are 8-bit codes
+ * if `codes`, else floats. The caller releases *frame, even after an error. */
 static Status make_planes(int width, int height, const RenderParams *params, bool codes,
                           Frame *frame, Err *err)
 {
@@ -102,8 +102,7 @@ static void cut_plane(Plane *plane, const Band *band)
             (size_t)plane->height * row * sizeof *plane->values);
 }
 
-/* Cuts off the rows of the band that are there for their neighbours alone; those of codes have
- * none. */
+/* Cuts off the rows above and below the band. A frame with 8-bit codes has no such rows. */
 static void cut_planes(Frame *frame, const Band *band)
 {
     cut_plane(&frame->color, band);
@@ -117,7 +116,7 @@ static void cut_planes(Frame *frame, const Band *band)
             (size_t)frame->id.height * width * sizeof *frame->id.ids);
 }
 
-/* ---- what is prepared ------------------------------------------------------------------------ */
+/* ---- preparation ----------------------------------------------------------------------------- */
 
 static const Engine *engine_for(const Drawing *drawing)
 {
@@ -127,7 +126,7 @@ static const Engine *engine_for(const Drawing *drawing)
     return engines[i];
 }
 
-/* Makes the caster if there is none yet. */
+/* Makes the caster unless there is one. */
 static Status make_caster(Renderer *renderer, Err *err)
 {
     const RenderParams *params = &renderer->params;
@@ -142,7 +141,7 @@ static Status make_caster(Renderer *renderer, Err *err)
     return STATUS_OK;
 }
 
-/* Likewise if the drawing needs it. */
+/* Makes the caster if the drawing's engine casts rays, and sets drawing->caster. */
 static Status prepare_caster(Renderer *renderer, Drawing *drawing, Err *err)
 {
     if (engine_for(drawing)->needs_rays(drawing))
@@ -151,7 +150,7 @@ static Status prepare_caster(Renderer *renderer, Drawing *drawing, Err *err)
     return STATUS_OK;
 }
 
-/* Makes what blends colours if the drawing needs it and none before did. */
+/* Makes the term mean if the drawing blends colours, and sets drawing->mean. */
 static Status prepare_mean(Renderer *renderer, Drawing *drawing, Err *err)
 {
     if (!drawing->appearance->places || !model_has(renderer->geometry->model, MODEL_FIELD))
@@ -185,7 +184,7 @@ static Status check_kernels(RenderKernels kernels, Err *err)
 
 Status renderer_new(const Geometry *geometry, const RenderParams *params, Renderer **out, Err *err)
 {
-    static const View plain; /* no lights, no ground: what it needs, all views need */
+    static const View plain; /* has no lights and no ground: all views need what it needs */
     Renderer *renderer;
     double start_cpu_s = clock_cpu_seconds();
     TRY(check_kernels(params->kernels, err));
@@ -285,7 +284,8 @@ RenderStats renderer_stats(const Renderer *renderer)
     return stats;
 }
 
-/* Rows of a picture of `height` rows, with up to `margin` more above and below for their sake. */
+/* Returns the band of the rows [first, first + rows) of a picture, with up to `margin` more rows
+ * above and below. */
 static Band band_between(int first, int rows, int margin, int height)
 {
     int left = height - first - rows;
@@ -294,16 +294,15 @@ static Band band_between(int first, int rows, int margin, int height)
         .first = first - above, .rows = rows + above + below, .above = above, .below = below};
 }
 
-/* ---- light that samples share -----------------------------------------------------------------
- */
+/* ---- shared visibility ----------------------------------------------------------------------- */
 
-/* DrawVesselPlanes of a renderer. */
-static Status see_vessels(const Drawing *drawing, void *context, Frame *planes, Err *err)
+/* A DrawVesselPlanes whose context is a renderer. */
+static Status draw_vessel_planes(const Drawing *drawing, void *context, Frame *planes, Err *err)
 {
     const Renderer *renderer = context;
     RenderParams params = *drawing->params;
     View vessels = *drawing->view;
-    vessels.ground.present = false; /* which no plane shows */
+    vessels.ground.present = false; /* the planes show vessels only */
     params.want_color = params.want_id = false;
     params.want_depth = params.want_normal = true;
     params.antialias = 1;
@@ -321,8 +320,8 @@ static int rounded_up(int rows, int step)
     return (rows + step - 1) / step * step;
 }
 
-/* The drawing of a band with the rows that its shared light depends on, and that its samples look
- * at, in whole blocks of `block` rows of the picture: all of them count. */
+/* Returns the drawing with a wider band: `margin` rows more above and below, and whole blocks of
+ * `block` rows of the picture. None of its rows is cut off. */
 static Drawing widened(const Drawing *drawing, int margin, int block)
 {
     const Band *band = &drawing->band;
@@ -334,8 +333,8 @@ static Drawing widened(const Drawing *drawing, int margin, int block)
     return all;
 }
 
-/* Finds what samples share, if they share anything, in the drawing's band and `margin` rows about
- * it at least. */
+/* Computes the visibility that the samples of a pixel share, in the drawing's band and at least
+ * `margin` rows above and below. *out stays unset if samples share none. */
 static Status share(Renderer *renderer, const Drawing *drawing, int margin, PixelVisibility **out,
                     Err *err)
 {
@@ -344,27 +343,28 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Pixe
         return STATUS_OK;
     if (params->occlusion > 0 && !renderer->occluders.capsules)
         TRY(occluderset_new(renderer->geometry, &renderer->occluders, err));
-    const bool soft = params->shadows && view_has_soft_shadows(drawing->view);
+    const bool soft = softshadows_are_on(drawing->view, params);
     const Drawing wide = widened(drawing, margin, soft ? VISIBILITY_BLOCK : 1);
-    const VisibilitySources from = {.draw_planes = see_vessels,
+    const VisibilitySources from = {.draw_planes = draw_vessel_planes,
                                     .context = renderer,
-                                    .light_views = renderer->key.engine->lights,
+                                    .engine = renderer->key.engine->shadows,
                                     .occluders = &renderer->occluders,
                                     .off_pixel = renderer->unlit};
     return pixelvisibility_compute(&wide, &from, out, err);
 }
 
-/* ---- light of thin vessels --------------------------------------------------------------------
- */
+/* ---- visibility at thin vessels -------------------------------------------------------------- */
 
-/* Asks a light for the thin vessels as rows do, or by rays. */
-static Status ask_light(Renderer *renderer, const Drawing *drawing, size_t light, Err *err)
+/* Computes the visibility of one light at the thin vessels: by the engine's light view of it, or by
+ * rays if there is none. */
+static Status find_light(Renderer *renderer, const Drawing *drawing, size_t light, Err *err)
 {
     const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
     const Engine *engine = renderer->key.engine;
-    const void *shadow = engine->shadow ? engine->shadow(renderer->prepared, light) : NULL;
-    if (shadow)
-        return offpixel_query(drawing, engine->lights, shadow, &eye, light, renderer->unlit, err);
+    LightBins *bins = engine->light_bins ? engine->light_bins(renderer->prepared, light) : NULL;
+    if (bins)
+        return offpixel_query(drawing, &(OffPixelViews){&bins, 1, &eye}, light, renderer->unlit,
+                              err);
     Drawing casting = *drawing;
     TRY(make_caster(renderer, err));
     casting.caster = renderer->caster;
@@ -372,9 +372,9 @@ static Status ask_light(Renderer *renderer, const Drawing *drawing, size_t light
     return STATUS_OK;
 }
 
-/* Finds what is not known yet of the light that reaches thin vessels, after area lights were asked.
- */
-static Status end_light(Renderer *renderer, const Drawing *drawing, Err *err)
+/* Computes the visibility at the thin vessels, unless it is known: of hard lights and ambient
+ * light. That of area lights with soft shadows was computed by `share`. */
+static Status find_lights(Renderer *renderer, const Drawing *drawing, Err *err)
 {
     const View *view = drawing->view;
     const RenderParams *params = drawing->params;
@@ -383,7 +383,7 @@ static Status end_light(Renderer *renderer, const Drawing *drawing, Err *err)
     const bool shared = pixelvisibility_is_needed(view, params);
     for (size_t i = 0; i < view->n_lights && params->shadows; i++)
         if (view->lights[i].casts_shadows && !(shared && light_is_soft(&view->lights[i])))
-            TRY(ask_light(renderer, drawing, i, err));
+            TRY(find_light(renderer, drawing, i, err));
     if (params->occlusion > 0 && shared)
         TRY(thinvessels_find_open(drawing, &renderer->occluders, &renderer->thin, err));
     renderer->unlit = NULL;
@@ -393,7 +393,7 @@ static Status end_light(Renderer *renderer, const Drawing *drawing, Err *err)
 /* Sets the colours of the thin vessels of a band. */
 static Status light_thin(Renderer *renderer, const Drawing *drawing, Err *err)
 {
-    TRY(end_light(renderer, drawing, err));
+    TRY(find_lights(renderer, drawing, err));
     thinvessels_color(drawing, &renderer->thin);
     return STATUS_OK;
 }
@@ -407,7 +407,7 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
     Drawing lit = *drawing;
     PixelVisibility *visibility = NULL;
     Status status;
-    /* Planes alone may have another engine than colours, one that casts rays. */
+    /* The engine of planes may cast rays where that of colours casts none. */
     TRY_GOTO(prepare_caster(renderer, &lit, err));
     TRY_GOTO(prepare_view(renderer, drawing, err));
     const Engine *engine = renderer->key.engine;
@@ -432,31 +432,33 @@ done:
 /* About how many samples are drawn at a time, of some fifty bytes each. */
 static const double samples_at_once = 2e6;
 
-/* The rows of samples of the pixels' rows first .. first + rows, with those that decide them. */
+/* Returns the rows of samples of the pixel rows [first, first + rows), and the rows of samples that
+ * change them. */
 static Band band_of_samples(const View *fine, int side, int first, int rows)
 {
     const int reach = rounded_up(effects_reach(&fine->effects, side), RENDER_BAND_STEP);
     return band_between(first * side, rows * side, reach, fine->camera.height);
 }
 
-/* Draws rows of pixels, counted in the picture, into the rows of `color` from `row` on. */
-static Status draw_samples(Renderer *renderer, const Drawing *fine, int first, int rows,
-                           Plane *color, int row, Err *err)
+/* Draws `rows` rows of pixels, from row `row` of the drawing's band on, into the same rows of
+ * `color`. */
+static Status draw_samples(Renderer *renderer, const Drawing *fine, int row, int rows, Plane *color,
+                           Err *err)
 {
     const View *view = fine->view;
     Frame frame = {0};
     Drawing drawing = *fine;
     Status status;
-    drawing.band = band_of_samples(view, renderer->params.antialias, first, rows);
+    drawing.band = band_of_samples(view, renderer->params.antialias, fine->band.first + row, rows);
     TRY_GOTO(draw(renderer, &drawing, &frame, err));
-    const Samples samples = {.effects = &view->effects,
-                             .camera = &view->camera,
-                             .radii = &renderer->radii,
-                             .paper = view->background,
-                             .side = renderer->params.antialias,
-                             .threads = fine->params->threads,
-                             .band = drawing.band,
-                             .frame = &frame};
+    const EffectSamples samples = {.effects = &view->effects,
+                                   .camera = &view->camera,
+                                   .radii = &renderer->radii,
+                                   .paper = view->background,
+                                   .side = renderer->params.antialias,
+                                   .threads = fine->params->threads,
+                                   .band = drawing.band,
+                                   .frame = &frame};
     if (frame.id.ids)
         TRY_GOTO(effects_draw(&samples, err));
     if (drawing.hidden)
@@ -467,7 +469,7 @@ done:
     return status;
 }
 
-/* What the samples of pixels share where each is a pixel of a finer drawing. */
+/* Computes the shared visibility for a drawing whose pixels are samples. */
 static Status share_for_effects(Renderer *renderer, const Drawing *drawing, PixelVisibility **out,
                                 Err *err)
 {
@@ -484,7 +486,7 @@ static Status share_for_effects(Renderer *renderer, const Drawing *drawing, Pixe
     return STATUS_OK;
 }
 
-/* Rows of samples that are drawn at a time: whole rows of pixels, in steps of bands. */
+/* Returns the number of rows of pixels that are drawn at a time, a multiple of RENDER_BAND_STEP. */
 static int rows_at_once(const Camera *fine, int antialias)
 {
     const int rows = (int)fmin(samples_at_once / fine->width / antialias, 1e6);
@@ -516,8 +518,8 @@ static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *fr
     of_samples.visibility = visibility;
     const int step = rows_at_once(&fine.camera, params->antialias);
     for (int row = 0; row < band->rows; row += step)
-        TRY_GOTO(draw_samples(renderer, &of_samples, band->first + row,
-                              step < band->rows - row ? step : band->rows - row, &frame->color, row,
+        TRY_GOTO(draw_samples(renderer, &of_samples, row,
+                              step < band->rows - row ? step : band->rows - row, &frame->color,
                               err));
 done:
     pixelvisibility_free(visibility);
@@ -573,8 +575,8 @@ done:
  */
 static const double most_samples = 3;
 
-/* The camera of the samples that thin vessels are drawn over: with effects samples are pixels of a
- * finer picture. */
+/* Returns the camera of the samples that thin vessels are drawn over. With effects, samples are the
+ * pixels of a finer picture. */
 static Camera camera_of_samples(const View *view, const RenderParams *params)
 {
     Camera camera;
@@ -586,14 +588,16 @@ static Camera camera_of_samples(const View *view, const RenderParams *params)
     return camera;
 }
 
-/* Finds the thin vessels of a view, unless they are those of the rows before. Their visibility is
- * found with the next rows. */
+/* Finds the thin vessels of a view, unless they are known. Their visibility is computed with the
+ * next rows. */
 static Status find_thin(Renderer *covering, const View *view, Err *err)
 {
     const RenderParams *params = &covering->params;
     ThinVessels *thin = &covering->thin;
     const int pixel = effects_present(&view->effects) ? params->antialias : 1;
     const Camera camera = camera_of_samples(view, params);
+    const ThinWidths widths = {pixel * fmin(1, most_samples / params->antialias),
+                               pixel * params->least_px};
     const double start_s = clock_seconds();
     ViewKey key;
     key_make(&key, NULL, &camera, view, params);
@@ -602,9 +606,7 @@ static Status find_thin(Renderer *covering, const View *view, Err *err)
     forget_view(covering);
     thinvessels_release(thin);
     memset(&covering->thin_key, 0, sizeof covering->thin_key);
-    TRY(thinvessels_find(covering->geometry, &camera,
-                         pixel * fmin(1, most_samples / params->antialias),
-                         pixel * params->least_px, params->threads, thin, err));
+    TRY(thinvessels_find(covering->geometry, &camera, widths, params->threads, thin, err));
     thinvessels_place(thin);
     covering->unlit = &thin->lights;
     if (params->shadows)
@@ -614,7 +616,7 @@ static Status find_thin(Renderer *covering, const View *view, Err *err)
     return STATUS_OK;
 }
 
-/* Whether vessels that are thin in this view, if there are any, are drawn by coverage. */
+/* Returns true if thin vessels are drawn by coverage in this view, should there be any. */
 static bool may_cover(const Renderer *renderer, const View *view)
 {
     const RenderParams *params = &renderer->params;
@@ -668,7 +670,7 @@ done:
     return status;
 }
 
-/* ---- what is transparent --------------------------------------------------------------------- */
+/* ---- transparency ---------------------------------------------------------------------------- */
 
 /* Returns alpha of a pixel from the share of it that shows the background.
  *

@@ -1,5 +1,5 @@
-/* Two passes from '$' to '$', the first of which writes nothing and finds all that is wrong, so
- * that a failing template leaves the caller's text alone. Values are few, so a linear search finds
+/* The template is expanded twice. The first pass writes nothing and finds all errors, so that a
+ * wrong template leaves the caller's text unchanged. There are few values, so a linear search finds
  * them. */
 #include "tmpl/tmpl.h"
 
@@ -22,7 +22,7 @@ static bool is_name_char(char c, bool first)
            (!first && c >= '0' && c <= '9');
 }
 
-/* The length of the name at the start of `chars`, 0 when none stands there. */
+/* Returns the length of the name at the start of `chars`; 0 if there is none. */
 static size_t name_length(const char *chars)
 {
     size_t length = 0;
@@ -36,7 +36,7 @@ static bool is_name(const char *name, const char *chars, size_t length)
     return strlen(name) == length && memcmp(name, chars, length) == 0;
 }
 
-/* Appends the value or part of this name; *found says whether there is one. */
+/* Appends the value or part with this name. *found becomes false if there is none. */
 static Status put_named(TmplExpansion *self, const char *name, size_t length, bool *found, Err *err)
 {
     *found = true;
@@ -59,7 +59,7 @@ static Status put_named(TmplExpansion *self, const char *name, size_t length, bo
     return STATUS_OK;
 }
 
-/* Appends what the '$' at `dollar` stands for; *next is the first character after it. */
+/* Appends the replacement of the '$' at `dollar`. *next becomes the first character after it. */
 static Status expand_one(TmplExpansion *self, const char *dollar, int line, const char **next,
                          Err *err)
 {

@@ -125,15 +125,13 @@ enum { SHOWN = 4 };
 typedef struct Shown {
     const Picture *pictures[SHOWN];
     Text *parts[SHOWN];
-    CallResult results[SHOWN];
 } Shown;
 
-static void put_shown(size_t i, int worker, void *context)
+static Status put_shown(size_t i, int worker, void *context, Err *err)
 {
     (void)worker;
     Shown *shown = context;
-    CallResult *result = &shown->results[i];
-    result->status = picture_put_uri(shown->pictures[i], shown->parts[i], &result->err);
+    return picture_put_uri(shown->pictures[i], shown->parts[i], err);
 }
 
 static Status picture_parts(const ReportCase *report, const Picture *heat, Markup *parts, Err *err)
@@ -143,9 +141,9 @@ static Status picture_parts(const ReportCase *report, const Picture *heat, Marku
                    .parts = {markup_raw(parts, "image_a"), markup_raw(parts, "image_b"),
                              markup_raw(parts, "image_heat"), markup_raw(parts, "classes")}};
     TRY(class_map(report, &classes, err));
-    threads_for(SHOWN, 0, put_shown, &shown);
+    Status status = threads_try(SHOWN, 0, put_shown, &shown, err);
     picture_release(&classes);
-    return calls_status(shown.results, SHOWN, err);
+    return status;
 }
 
 static Status plane_parts(const ReportCase *report, Markup *parts, Err *err)

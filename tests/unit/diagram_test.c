@@ -151,6 +151,41 @@ static void pixels_add_up_to_the_area_of_the_bars(void **state)
     tree_release(&tree);
 }
 
+/* The page covers as much as the bars, at its own resolution. */
+static void a_page_shows_the_bars(void **state)
+{
+    (void)state;
+    Tree tree = fork_tree();
+    Diagram diagram;
+    FigurePage page;
+    FigureFonts *fonts;
+    Picture picture;
+    Err err;
+    static const float black[4][3];
+    must(diagram_lay_out(&tree, 2.5, &diagram, &err), &err);
+    const DiagramStyle style = {
+        .diagram = &diagram, .tree = &tree, .color = black, .background = {1, 1, 1}, .margin = 0.1};
+    const FigureBars bars = diagram_bars(&style);
+    diagram_make_page(&style, &bars, &page);
+    must(figure_check(&page, &err), &err);
+    assert_true(fabs(page.width_mm - 25) < 1e-12 && page.exact);
+    page.dpi = 10 * MM_PER_INCH;
+    must(figurefonts_load("templates", &fonts, &err), &err);
+    page.fonts = fonts;
+    must(picture_init(&picture, 250, figure_pixels(&page, page.height_mm), 3, 8, &err), &err);
+    memset(picture.codes8, 255, picture_stride(&picture) * (size_t)picture.height);
+    must(figure_draw(&page, 0, &picture, &err), &err);
+    size_t covered = 0;
+    for (size_t i = 0; i < (size_t)picture.width * (size_t)picture.height; i++)
+        covered += picture.codes8[3 * i] < 128;
+    assert_in_range(covered, 100 * (30 + 11 + 14 - 1), 100 * (30 + 11 + 14 + 2));
+    picture_release(&picture);
+    figure_release(&page);
+    figurefonts_free(fonts);
+    diagram_release(&diagram);
+    tree_release(&tree);
+}
+
 static void rejects_a_tree_without_any_length(void **state)
 {
     (void)state;
@@ -170,6 +205,7 @@ int main(void)
         cmocka_unit_test(bars_are_true_to_size_and_none_lies_on_another),
         cmocka_unit_test(the_thickest_daughter_continues_the_row),
         cmocka_unit_test(pixels_add_up_to_the_area_of_the_bars),
+        cmocka_unit_test(a_page_shows_the_bars),
         cmocka_unit_test(rejects_a_tree_without_any_length),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

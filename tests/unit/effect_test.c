@@ -271,7 +271,7 @@ static void bands_and_threads_change_no_byte(void **state)
 
 /* ---- numbers that METHODS 3.5 states --------------------------------------------------------- */
 
-/* Samples per millimetre of a picture of coins. */
+/* EffectSamples per millimetre of a picture of coins. */
 enum { COIN_SIDE = 240, COIN_PX_PER_MM = COIN_SIDE / 40 };
 static const double coin_mm = 2.385;
 

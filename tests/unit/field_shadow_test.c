@@ -5,6 +5,7 @@
  * and before did not reach 1.002 C + e; of others, which are counted, nothing is said. e is what
  * single precision and the terms left out amount to. */
 #include "render/field/fieldshadow.h"
+#include "render/light/shadowqueue.h"
 #include "unit.h"
 
 #include "render/cast/caster.h"
@@ -87,16 +88,18 @@ static void ask(const Geometry *geometry, const Light *light, const Viewpoint *e
     const View view = {.camera = {.width = 8, .height = 8}};
     const RenderParams params = {.threads = 1, .shadow_from_mm = from_mm};
     const Drawing drawing = {.geometry = geometry, .view = &view, .params = &params};
-    void *shadow, *queue;
-    assert_true(field_lights.can(geometry, &view, light));
-    assert_int_equal(field_lights.look(&drawing, light, eye, NULL, &shadow, NULL), STATUS_OK);
-    assert_int_equal(field_lights.queue_new(shadow, NULL, &queue, NULL), STATUS_OK);
-    memset(sight->shadowed, 0, sizeof sight->shadowed);
-    field_lights.ask(queue, tilekernels[kind], &sight->places, wanted, 0);
+    const LightBinsParams of = {.engine = &field_shadows, .drawing = &drawing, .frame = *eye};
+    LightBins *bins;
+    ShadowQueue *queue;
+    assert_true(field_shadows.can(geometry, &view, light));
+    assert_int_equal(lightbins_new(&of, light, 1, &bins, NULL), STATUS_OK);
     RenderKernels kernels = (RenderKernels)(KERNELS_PORTABLE + kind);
-    assert_int_equal(field_lights.answer(queue, kernels, sight->shadowed, NULL), STATUS_OK);
-    field_lights.queue_free(queue);
-    field_lights.free(shadow);
+    assert_int_equal(shadowqueue_new(bins, kernels, NULL, &queue, NULL), STATUS_OK);
+    memset(sight->shadowed, 0, sizeof sight->shadowed);
+    shadowqueue_add(queue, &sight->places, NULL, wanted, 0);
+    assert_int_equal(shadowqueue_answer(queue, sight->shadowed, NULL), STATUS_OK);
+    shadowqueue_free(queue);
+    lightbins_free(bins);
 }
 
 /* The potential at t. */

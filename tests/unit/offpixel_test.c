@@ -81,8 +81,8 @@ static void see(SceneModel model, Projection projection, Sight *sight)
     *sight = (Sight){.scene = staged(model, projection)};
     sight->params = (RenderParams){.method = RENDER_FASTEST, .threads = 2, .shadows = true};
     sight->frame = viewpoint_of_camera(&sight->scene.view.camera);
-    assert_int_equal(thinvessels_find(&sight->scene.geometry, &sight->scene.view.camera, 1, 0, 2,
-                                      &sight->thin, &err),
+    assert_int_equal(thinvessels_find(&sight->scene.geometry, &sight->scene.view.camera,
+                                      (ThinWidths){1, 0}, 2, &sight->thin, &err),
                      STATUS_OK);
     thinvessels_place(&sight->thin);
     assert_int_equal(caster_new(&sight->scene.geometry, NULL, 2, &sight->drawing.caster, &err),
@@ -99,24 +99,26 @@ static void forget_sight(Sight *sight)
     scene_release(&sight->scene);
 }
 
-static void look_from(Sight *sight, const LightViews *views, size_t number, OffPixelPoints *places)
+static void look_from(Sight *sight, const ShadowEngine *engine, size_t number,
+                      OffPixelPoints *places)
 {
     const Light *light = &sight->scene.view.lights[number];
+    const LightBinsParams params = {
+        .engine = engine, .drawing = &sight->drawing, .frame = sight->frame};
     for (int k = 0; k < light_points(light); k++) {
         const Light point = light_at_point(light, k);
-        void *shadow;
-        assert_int_equal(views->look(&sight->drawing, &point, &sight->frame, NULL, &shadow, &err),
+        LightBins *bins;
+        assert_int_equal(lightbins_new(&params, &point, 1, &bins, &err), STATUS_OK);
+        assert_int_equal(offpixel_query(&sight->drawing, &(OffPixelViews){&bins, 1, &sight->frame},
+                                        number, places, &err),
                          STATUS_OK);
-        assert_int_equal(
-            offpixel_query(&sight->drawing, views, shadow, &sight->frame, number, places, &err),
-            STATUS_OK);
-        views->free(shadow);
+        lightbins_free(bins);
     }
 }
 
 /* All answers but `most` of a million are those of rays. */
 static void have_the_shadows_of_rays(SceneModel model, Projection projection,
-                                     const LightViews *views, size_t most)
+                                     const ShadowEngine *engine, size_t most)
 {
     Sight sight;
     see(model, projection, &sight);
@@ -126,12 +128,12 @@ static void have_the_shadows_of_rays(SceneModel model, Projection projection,
     size_t asked = 0, dark = 0, off = 0;
     for (size_t k = 0; k < sight.scene.view.n_lights; k++) {
         size_t points = (size_t)light_points(&sight.scene.view.lights[k]);
-        look_from(&sight, views, k, &seen);
+        look_from(&sight, engine, k, &seen);
         offpixel_trace(&sight.drawing, k, &cast);
         for (size_t i = 0; i < seen.n; i++) {
             asked += points;
-            dark += points - cast.reach[k][i];
-            off += (size_t)abs(seen.reach[k][i] - cast.reach[k][i]);
+            dark += points - cast.n_visible[k][i];
+            off += (size_t)abs(seen.n_visible[k][i] - cast.n_visible[k][i]);
         }
     }
     print_message("%zu of %zu dark, %zu off\n", dark, asked, off);
@@ -145,18 +147,18 @@ static void have_the_shadows_of_rays(SceneModel model, Projection projection,
 static void those_of_primitives_have_the_shadows_of_rays(void **state)
 {
     (void)state;
-    have_the_shadows_of_rays(SCENE_ROUNDED, PROJECTION_ORTHOGRAPHIC, &raster_lights, 100);
-    have_the_shadows_of_rays(SCENE_ROUNDED, PROJECTION_PERSPECTIVE, &raster_lights, 100);
-    have_the_shadows_of_rays(SCENE_CYLINDERS, PROJECTION_PERSPECTIVE, &raster_lights, 100);
-    have_the_shadows_of_rays(SCENE_JOINED, PROJECTION_PERSPECTIVE, &raster_lights, 100);
+    have_the_shadows_of_rays(SCENE_ROUNDED, PROJECTION_ORTHOGRAPHIC, &raster_shadows, 100);
+    have_the_shadows_of_rays(SCENE_ROUNDED, PROJECTION_PERSPECTIVE, &raster_shadows, 100);
+    have_the_shadows_of_rays(SCENE_CYLINDERS, PROJECTION_PERSPECTIVE, &raster_shadows, 100);
+    have_the_shadows_of_rays(SCENE_JOINED, PROJECTION_PERSPECTIVE, &raster_shadows, 100);
 }
 
 static void those_of_fields_have_the_shadows_of_rays(void **state)
 {
     (void)state;
-    have_the_shadows_of_rays(SCENE_ISOSURFACE, PROJECTION_ORTHOGRAPHIC, &field_lights, 100);
-    have_the_shadows_of_rays(SCENE_ISOSURFACE, PROJECTION_PERSPECTIVE, &field_lights, 100);
-    have_the_shadows_of_rays(SCENE_BLOB, PROJECTION_ORTHOGRAPHIC, &field_lights, 100);
+    have_the_shadows_of_rays(SCENE_ISOSURFACE, PROJECTION_ORTHOGRAPHIC, &field_shadows, 100);
+    have_the_shadows_of_rays(SCENE_ISOSURFACE, PROJECTION_PERSPECTIVE, &field_shadows, 100);
+    have_the_shadows_of_rays(SCENE_BLOB, PROJECTION_ORTHOGRAPHIC, &field_shadows, 100);
 }
 
 /* ---- pictures -------------------------------------------------------------------------------- */

@@ -124,9 +124,9 @@ static void vessels_end_to_end_are_one_run_however_many_they_are(void **state)
     look_at_paper(&scene, vessels, N, SIDE);
     for (int threads = 1; threads <= 3; threads += 2) {
         ThinVessels thin;
-        assert_int_equal(
-            thinvessels_find(&scene.geometry, &scene.view.camera, 1, 0, threads, &thin, &err),
-            STATUS_OK);
+        assert_int_equal(thinvessels_find(&scene.geometry, &scene.view.camera, (ThinWidths){1, 0},
+                                          threads, &thin, &err),
+                         STATUS_OK);
         const ThinStrip *strips = thin.layer.strips;
         assert_int_equal(thin.layer.n, PIECES + 1);
         for (size_t i = 0; i < PIECES; i++) {
@@ -215,9 +215,9 @@ static void has_a_colour_of_its_own_each_pixel_and_a_half(void **state)
             Scene scene;
             ThinVessels thin;
             look_at_paper(&scene, &one, 1, SIDE);
-            assert_int_equal(
-                thinvessels_find(&scene.geometry, &scene.view.camera, 1, 0, 1, &thin, &err),
-                STATUS_OK);
+            assert_int_equal(thinvessels_find(&scene.geometry, &scene.view.camera,
+                                              (ThinWidths){1, 0}, 1, &thin, &err),
+                             STATUS_OK);
             assert_int_equal(thin.layer.n, 1);
             assert_int_equal(thin.layer.strips[0].n_pieces, pieces + more);
             thinvessels_release(&thin);

@@ -189,7 +189,7 @@ static void a_straight_joint_is_a_cone(void **state)
     double volume = 0, step = 0.02;
     for (double y = -3 + step / 2; y < 3; y += step)
         for (double z = -1 + step / 2; z < 4; z += step) {
-            Stretch stretches[3];
+            RayStretch stretches[3];
             int n = primitive_stretches(&cone, &frame, (Ray){{-9, y, z}, {1, 0, 0}}, stretches);
             volume += stretches_length(stretches, (size_t)n) * step * step;
         }
@@ -201,7 +201,7 @@ static void a_straight_joint_is_a_cone(void **state)
 static void stretches_that_overlap_count_once(void **state)
 {
     (void)state;
-    Stretch stretches[] = {{5, 6.5}, {1, 2}, {1.5, 3.25}, {2, 2.5}, {6.5, 7}};
+    RayStretch stretches[] = {{5, 6.5}, {1, 2}, {1.5, 3.25}, {2, 2.5}, {6.5, 7}};
     assert_true(stretches_length(stretches, 5) == 2.25 + 2);
     assert_true(stretches_length(stretches, 0) == 0);
 }

@@ -18,7 +18,6 @@ typedef struct Sides {
     Image images[2];
     Picture alphas[2]; /* empty where the image is opaque */
     IdPlane ids[2];    /* without ids unless they are given */
-    CallResult results[4];
     const char *id_paths[2];
     const char *layer;   /* or NULL */
     float background[3]; /* linear; what is transparent is laid on it */
@@ -98,25 +97,22 @@ static Status read_side(const Sides *sides, const char *path, Image *image, Pict
 }
 
 /* File 0 and 1 are the images, 2 and 3 their ids. */
-static void read_file(size_t index, int worker, void *context)
+static Status read_file(size_t index, int worker, void *context, Err *err)
 {
     (void)worker;
     Sides *sides = context;
     size_t side = index % 2;
     const char *path = index < 2 ? sides->paths[side] : sides->id_paths[side];
     if (!path)
-        return;
-    CallResult *result = &sides->results[index];
-    result->status =
-        index < 2 ? read_side(sides, path, &sides->images[side], &sides->alphas[side], &result->err)
-                  : read_ids(&sides->ids[side], path, &result->err);
+        return STATUS_OK;
+    return index < 2 ? read_side(sides, path, &sides->images[side], &sides->alphas[side], err)
+                     : read_ids(&sides->ids[side], path, err);
 }
 
 /* Reads all files at once; of several errors the first file's is reported. */
 static Status read_files(Sides *sides, int threads, Err *err)
 {
-    threads_for(4, threads, read_file, sides);
-    TRY(calls_status(sides->results, 4, err));
+    TRY(threads_try(4, threads, read_file, sides, err));
     if (!sides->images[0].plane.values != !sides->images[1].plane.values &&
         (sides->paths[0] && sides->paths[1]))
         return err_set(err, STATUS_INPUT,

@@ -228,27 +228,20 @@ typedef struct Scenes {
     const Source *source;
     const Tiles *tiles;
     size_t each; /* scenes of a tile */
-    CallResult *results;
 } Scenes;
 
-static void write_one(size_t number, int worker, void *context)
+static Status write_one(size_t number, int worker, void *context, Err *err)
 {
     (void)worker;
     const Scenes *scenes = context;
-    CallResult *result = &scenes->results[number];
-    result->status = write_scene(scenes->source, scenes->tiles, number / scenes->each,
-                                 number % scenes->each == 1, &result->err);
+    return write_scene(scenes->source, scenes->tiles, number / scenes->each,
+                       number % scenes->each == 1, err);
 }
 
 static Status write_scenes(const Source *source, const Tiles *tiles, Err *err)
 {
     Scenes scenes = {.source = source, .tiles = tiles, .each = has_id_scene(source->v) ? 2 : 1};
-    size_t n = scenes.each * tiles->n;
-    TRY(mem_calloc(&scenes.results, n, sizeof *scenes.results, "scenes", err));
-    threads_for(n, source->v->common->threads, write_one, &scenes);
-    Status status = calls_status(scenes.results, n, err);
-    free(scenes.results);
-    return status;
+    return threads_try(scenes.each * tiles->n, source->v->common->threads, write_one, &scenes, err);
 }
 
 /* Finds the tiles and writes their scenes. */

@@ -214,16 +214,13 @@ typedef enum Side { SIDE_POVRAY, SIDE_NATIVE, SIDES } Side;
 typedef struct BothSides {
     Verification *v;
     PovraySide *povray;
-    CallResult results[SIDES];
 } BothSides;
 
-static void draw_side(size_t side, int worker, void *context)
+static Status draw_side(size_t side, int worker, void *context, Err *err)
 {
     (void)worker;
     BothSides *both = context;
-    CallResult *result = &both->results[side];
-    result->status = side == SIDE_POVRAY ? povray_side_draw(both->povray, &result->err)
-                                         : render_native(both->v, &result->err);
+    return side == SIDE_POVRAY ? povray_side_draw(both->povray, err) : render_native(both->v, err);
 }
 
 /* Fails as POV-Ray's side did, where both did. */
@@ -231,9 +228,9 @@ static Status draw_sides(Verification *v, Err *err)
 {
     BothSides both = {.v = v};
     TRY(povray_side_prepare(v, &both.povray, err));
-    threads_for(SIDES, v->common->threads, draw_side, &both);
+    Status status = threads_try(SIDES, v->common->threads, draw_side, &both, err);
     povray_side_free(both.povray);
-    return calls_status(both.results, SIDES, err);
+    return status;
 }
 
 Status verification_draw(Verification *v, Err *err)

@@ -12,8 +12,8 @@
 #include "grow/cco/law.h"
 #include <stdlib.h>
 
-/* The share of the bound within which the best target is to be; the next smoothing over the last.
- */
+/* The share of the bound within which the best target is to be; the next smoothing over the
+ * last. */
 static const double wanted = 2e-4;
 static const double next_smoothing = 0.3;
 /* Less smoothing that does not lessen the gap by this share is the last. */

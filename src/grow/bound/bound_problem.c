@@ -6,8 +6,7 @@
  * all outlets have one drop D: all below and including a segment costs W^(1 + a) D^-a at the least,
  * W = w + (sum of W^(1 + a) over its daughters)^(1 / (1 + a)), w = flow^(a / (1 + a)) length, and
  * the segment's part of D is w / W. Lengths are smoothed, as at the first step. Of the drops of all
- * outlets below the least is parted, so that drops rise along every way.
- */
+ * outlets below the least is parted, so that drops rise along every way. */
 #include "grow/bound/bound_problem.h"
 
 #include "grow/bound/bound.h"

@@ -1,4 +1,5 @@
-/* A tree as a convex optimisation problem: outlets and inlets are fixed, all else is free. */
+/* A tree as a convex optimisation problem. Outlets and inlets are fixed; all other joints are
+ * free. */
 #ifndef CORCAST_GROW_BOUND_PROBLEM_H
 #define CORCAST_GROW_BOUND_PROBLEM_H
 
@@ -6,19 +7,20 @@
 #include "tree/tree.h"
 #include <stdbool.h>
 
-/* x, y, z in mm, and the drop of pressure from the inlet in the unit of Outlet. */
+/* The state of a joint: x, y, z in mm, and the drop of pressure from the inlet in the unit of
+ * Outlet. */
 enum { PLACE_AXES = 3, DROP = 3, STATE = 4 };
 
-/* By how much lengths are smoothed at first, relative to the mean length. */
+/* The first smoothing of lengths, relative to the mean length. */
 #define FIRST_SMOOTHING 0.3
 
 /* A node and the segment that leads to it. */
 typedef struct Joint {
     double at[STATE];
-    double flow;    /* the outlets' shares at and below it */
+    double flow;    /* sum of the shares of the outlets at and below the joint */
     double factor;  /* flow^a */
-    int32_t parent; /* below the own index; -1 at an inlet */
-    int32_t outlet; /* its number; -1: none */
+    int32_t parent; /* lower than the joint's own index; -1 at an inlet */
+    int32_t outlet; /* index of the outlet; -1: the joint is none */
     bool is_free;
 } Joint;
 
@@ -26,16 +28,16 @@ typedef struct Problem {
     double a; /* lambda / 4 */
     Joint *joint;
     size_t n;
-    int32_t *node; /* of each outlet, in the tree */
+    int32_t *node; /* per outlet: its node in the tree */
     size_t outlets;
-    double target;      /* of the tree */
+    double target;      /* of the tree as it is */
     double mean_length; /* of the segments, mm; above 0 */
 } Problem;
 
-/* Makes *problem (owned; problem_release) of a tree. Nodes that blood only passes, and segments
- * that have no flow, are left out. An outlet that is no terminal becomes a free joint and an outlet
- * that hangs on it. Free joints begin where the tree has them, with drops that rise along every way
- * to an outlet. Errors as bound_tree. */
+/* Makes the problem of a tree. Nodes with one child that are no outlets, and segments without flow,
+ * are left out. An outlet that is not a terminal becomes a free joint and an outlet that hangs on
+ * it. Free joints begin at their positions in the tree, with pressure drops that rise along every
+ * path to an outlet. Release *problem with problem_release. Errors: as bound_tree. */
 MUST_CHECK Status problem_init(Problem *problem, const Tree *tree, double lambda, Err *err);
 void problem_release(Problem *problem);
 
@@ -44,8 +46,8 @@ static inline bool joint_is_inlet(const Joint *joint)
     return joint->parent < 0;
 }
 
-/* The segment to a joint as a difference of states, its length smoothed: sqrt(l^2 + smoothing^2).
- */
+/* The segment to a joint as a difference of states. Its length l is smoothed: sqrt(l^2 +
+ * smoothing^2). */
 typedef struct Reach {
     double by[STATE];
     double length2; /* mm^2 */
@@ -63,7 +65,8 @@ static inline Reach problem_reach(const Problem *problem, size_t i, double smoot
     return reach;
 }
 
-/* What the segment costs: factor l^(1 + a) d^-a. */
+/* Returns the cost of the segment to joint i: factor l^(1 + a) d^-a, with its length l and pressure
+ * drop d. */
 static inline double problem_cost(const Problem *problem, size_t i, const Reach *reach)
 {
     if (reach->length2 == 0)

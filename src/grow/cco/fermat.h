@@ -1,23 +1,23 @@
-/* The weighted Fermat point: where three weighted lengths that meet are shortest; in space, and on
- * a straight line. */
+/* The weighted Fermat point: where the weighted sum of three distances is least. */
 #ifndef CORCAST_GROW_FERMAT_H
 #define CORCAST_GROW_FERMAT_H
 
 #include "geom/geom.h"
 
-/* The outcome of fermat_point. */
+/* The result of fermat_point. */
 typedef struct Fermat {
     Vec3 place;  /* the minimiser */
-    int corner;  /* the corner it coincides with, -1 when it lies off all three */
-    Vec3 inward; /* at a corner: the direction (not unit) in which leaving it costs least */
+    int corner;  /* the corner that the minimiser coincides with; -1: none */
+    Vec3 inward; /* at a corner: the direction, of any length, in which leaving it costs least */
 } Fermat;
 
-/* The point that minimises sum_i weight[i] |x - corner[i]|. The corners differ; weights are
- * positive. In space it lies in the plane of the corners, always in their triangle. */
+/* Finds the point that minimises sum_i weight[i] |x - corner[i]|. The corners differ, and the
+ * weights are positive. The point lies in the triangle of the corners. */
 Fermat fermat_point(const Vec3 corner[3], const double weight[3]);
 
-/* The point between corner[0] and corner[1], margin[0] and margin[1] or more away from them, that
- * minimises the same sum; midway between the margins when these are wider than the distance. */
+/* Returns the point that minimises the same sum on the straight line from corner[0] to corner[1],
+ * at least margin[0] and margin[1] away from them. If the margins do not fit, returns the middle
+ * between them. */
 Vec3 fermat_point_between(const Vec3 corner[3], const double weight[3], const double margin[2]);
 
 #endif

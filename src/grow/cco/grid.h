@@ -1,5 +1,5 @@
-/* A uniform grid of cells over the domain that answers which segments are near a point or a
- * segment. It knows nothing of trees: segments are numbers that the caller gives. */
+/* A uniform grid of cells over the domain, which finds the segments near a point or near a segment.
+ * It does not depend on trees: segments are indices that the caller chooses. */
 #ifndef CORCAST_GROW_GRID_H
 #define CORCAST_GROW_GRID_H
 
@@ -15,17 +15,17 @@ typedef struct Capsule {
     double radius;
 } Capsule;
 
-/* A segment as the grid knows it, in half a cache line of 64 bytes. */
+/* A segment in the grid, in half a cache line of 64 bytes. */
 typedef struct GridItem {
     float proximal[3], distal[3]; /* mm, from the grid's low corner */
     float radius;                 /* of the vessel, mm; the caller may bring it up to date */
-    float reach;                  /* mm; it is entered where the capsule of this radius may be */
+    float reach;                  /* mm; radius of the capsule in whose cells it is entered */
 } GridItem;
 
-/* The segments entered in one cell, each as a tag: 2 * segment, + 1 for a terminal. */
+/* The segments entered in one cell. The tag of a segment is 2 * segment, + 1 for a terminal. */
 typedef struct GridCell {
     int32_t *tag;
-    uint32_t count, size; /* `size`: of the block that holds them, 0: none */
+    uint32_t count, size; /* `size`: size class of the block that holds the tags; 0: no block */
 } GridCell;
 
 typedef struct GridArena GridArena;
@@ -34,11 +34,11 @@ typedef struct Grid {
     Vec3 low;
     double edge;      /* of a cell, mm */
     double inverse;   /* 1 / edge */
-    double rounding;  /* mm; more than the rounding of coordinates to floats */
+    double rounding;  /* mm; bounds the rounding of coordinates to floats */
     int count[3];     /* cells along each axis */
     GridCell *cell;   /* x fastest */
-    GridItem *item;   /* by segment */
-    GridArena *arena; /* by worker: memory for tags */
+    GridItem *item;   /* per segment */
+    GridArena *arena; /* per worker: memory for tags */
     int workers;
 } Grid;
 
@@ -60,23 +60,27 @@ typedef enum GridVicinity {
     GRID_TOO_NEAR, /* to the tree */
 } GridVicinity;
 
-/* Makes an empty grid over `box` with about `cells` cells, for segments numbered below `segments`;
- * a flat box gives one layer. Releases what `grid` held before, so start from (Grid){0}; ends with
- * grid_release. Up to `workers` threads may enter and take out segments at the same time, as long
- * as no two of them touch the same cell. STATUS_MEMORY. */
+/* Makes an empty grid over `box` with about `cells` cells, for segments with indices below
+ * `segments`. A flat box gives one layer of cells.
+ *
+ * grid     is released first, so it must be zeroed before the first call. Release it with
+ *          grid_release.
+ * Errors   STATUS_MEMORY.
+ * Threads  Up to `workers` threads may add and remove segments at the same time if no two of them
+ *          touch the same cell. */
 MUST_CHECK Status grid_reset(Grid *grid, Box box, double cells, size_t segments, int workers,
                              Err *err);
 void grid_release(Grid *grid);
 
-/* The number of cells. */
+/* Returns the number of cells. */
 size_t grid_cells(const Grid *grid);
 
-/* The index of the cell that holds `point`, or is nearest to it. */
+/* Returns the index of the cell that holds `point`, or of the nearest cell. */
 size_t grid_cell_at(const Grid *grid, Vec3 point);
 
-/* Prefetch memory for a query at `point`, step after step: its cell, the cell's tags, the items of
- * these. Without, queries at points far apart in a large tree wait for one cache miss after
- * another. */
+/* Prefetch memory for a query at `point`, step by step: its cell, the cell's tags, the items of the
+ * tags. Without prefetching, queries at points far apart in a large tree wait for one cache miss
+ * after another. */
 static inline void grid_fetch_cell(const Grid *grid, Vec3 point)
 {
     __builtin_prefetch(&grid->cell[grid_cell_at(grid, point)]);
@@ -94,83 +98,82 @@ static inline void grid_fetch_items(const Grid *grid, Vec3 point)
         __builtin_prefetch(&grid->item[cell->tag[i] >> 1]);
 }
 
-/* The zone of a box of cells: the part of space, mm, whose points are in these cells in spite of
- * rounding. Without bound where the cells are the grid's first or last. */
+/* Returns the zone of a box of cells: the part of space, mm, whose points are in these cells in
+ * spite of rounding. It is unbounded where the cells are the grid's first or last. */
 Box grid_zone(const Grid *grid, GridBox box);
-/* The distance, mm, of `point`, which lies in the zone, from the nearest of its bounds. */
+/* Returns the distance, mm, of `point`, which is in the zone, from the zone's nearest bound. */
 double grid_clearance(Box zone, Vec3 point);
-/* Whether all cells that the item's capsule may meet lie in the zone. */
+/* Returns true if all cells that the item's capsule may meet are in the zone. */
 bool grid_zone_holds(const Grid *grid, Box zone, const GridItem *item);
 
-/* The item of a vessel of `radius` mm from capsule.a (proximal) to capsule.b, which is entered
- * wherever the capsule may be: capsule.radius is its reach. */
+/* Returns the item of a vessel of `radius` mm from capsule.a (proximal) to capsule.b. Its reach is
+ * capsule.radius. */
 GridItem grid_item(const Grid *grid, Capsule capsule, double radius);
 
-/* Enters a segment, which is not in the grid, in every cell that may meet its item's capsule.
- * `worker` is below the number of workers; threads that do this at the same time have different
- * ones. STATUS_MEMORY. */
+/* Adds a segment, which is not in the grid, to every cell that may meet its item's capsule.
+ * `worker` is below the number of workers, and differs between threads that add segments at the
+ * same time. Errors: STATUS_MEMORY. */
 MUST_CHECK Status grid_add(Grid *grid, int worker, int32_t segment, bool terminal, GridItem item,
                            Err *err);
-/* Takes a segment, which is in the grid, out. */
+/* Removes a segment, which is in the grid. */
 void grid_remove(Grid *grid, int32_t segment);
 
-/* GRID_TOO_NEAR if some segment's centreline, or with `terminals_only` some terminal's distal end,
- * is nearer to `point` than `distance`, both in mm. Else GRID_IN_VESSEL if the point is nearer to
- * some centreline than that vessel's radius times `thickness`. */
+/* Returns GRID_TOO_NEAR if a segment's centreline, or with `terminals_only` a terminal's distal
+ * end, is nearer to `point` than `distance`, both in mm. Otherwise returns GRID_IN_VESSEL if the
+ * point is nearer to a centreline than that vessel's radius times `thickness`. */
 GridVicinity grid_vicinity(const Grid *grid, Vec3 point, double distance, bool terminals_only,
                            double thickness);
 
-/* Finds the segments whose centrelines are nearest to `point`, nearest first, equal distances by
- * number; `limit` of them, or all if there are fewer. Returns how many; -1 when it would have to
- * look at cells that reach beyond `within` mm from the point along some axis. */
+/* Finds the `limit` segments whose centrelines are nearest to `point`, or all if there are fewer.
+ * They are sorted by distance, and by index on a tie. Returns their number; -1 if the search needs
+ * cells that reach beyond `within` mm from the point along some axis. */
 int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *out);
 
 /* As grid_nearest, but faster. Returns false, with *out undefined, if there are fewer than `limit`
  * segments within `reach` mm, or very many more. */
 bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, Near *out);
 
-/* As grid_nearest, but faster from point to point: searches first within *reach mm, which was
- * enough for the last points, and adapts *reach. Start with a guess, or 0. Also returns -1 if
- * `limit` segments were found that are not well within `within`. */
+/* As grid_nearest, but faster for one point after another: searches first within *reach mm, which
+ * was sufficient for the last points, and adapts *reach. Start with a guess, or 0. Also returns -1
+ * if the last of `limit` segments is less than two cells nearer than `within`. */
 int grid_nearest_guessed(const Grid *grid, Vec3 point, double within, int limit, double *reach,
                          Near *out);
 
-/* Where two segments are nearest to each other: at the parts s of the first and t of the second, in
- * [0, 1], from where they begin; and the way there from the second to the first, mm. */
+/* The nearest points of two segments. */
 typedef struct SegmentGap {
-    double s, t;
-    Vec3 apart;
+    double s, t; /* where the points are on the first and on the second segment, in [0, 1] */
+    Vec3 apart;  /* mm; vector from the point on the second segment to that on the first */
 } SegmentGap;
 
-/* Of straight segments of positive length [Ericson, Real-Time Collision Detection, 2005, sec.
- * 5.1.9]. */
+/* Finds the nearest points of two straight segments of positive length. Source: Ericson, Real-Time
+ * Collision Detection, 2005, section 5.1.9. */
 SegmentGap segment_gap(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
-/* Their squared distance, mm^2. */
+/* Returns the squared distance of two such segments, mm^2. */
 double segment_distance2(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
 
-/* Squared distance of two items' centrelines, and squared length of one's, mm^2. */
+/* Return the squared distance of two items' centrelines, and the squared length of one, mm^2. */
 double grid_distance2(const GridItem *a, const GridItem *b);
 double grid_length2(const GridItem *item);
 
-/* A query for segments near a box. Near means: their bounding boxes are no further apart, along
- * each axis, than `apart` mm plus `per_radius` times the radius of the segment found. */
+/* A query for segments near a box. A segment is near if the distance of its bounding box from the
+ * box, along each axis, is at most `apart` mm plus `per_radius` times the segment's radius. */
 typedef struct GridBoxQuery {
     float low[3], high[3], apart, per_radius;
 } GridBoxQuery;
 
-/* The query about the bounding box of an item's centreline. */
+/* Returns the query for the bounding box of an item's centreline. */
 GridBoxQuery grid_box_query(const GridItem *item, double apart, double per_radius);
 
-/* Which of the segments k to k + GRID_LANES - 1 of a cell are near by the query, as bits from the
- * lowest on; with a little more than asked for, for rounding. */
+/* Returns which of the segments k to k + GRID_LANES - 1 of a cell are near by the query, as bits
+ * from the lowest on. Distances are a little larger than asked for, because of rounding. */
 enum { GRID_LANES = 4 };
 unsigned grid_boxes_near(const Grid *grid, const GridCell *cell, uint32_t k,
                          const GridBoxQuery *probe);
 
-/* The cells that meet the cube of twice `distance` about `point`. */
+/* Returns the cells that meet the cube with edges of twice `distance` centred at `point`. */
 GridBox grid_box(const Grid *grid, Vec3 point, double distance);
 
-/* The coordinates of a point as items have them. */
+/* Stores the coordinates of a point as items have them: in mm from the grid's low corner. */
 static inline void grid_store(const Grid *grid, Vec3 v, float out[3])
 {
     out[0] = (float)(v.x - grid->low.x);

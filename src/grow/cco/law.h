@@ -1,28 +1,27 @@
-/* How a segment and the subtree below it add up: Murray's law, Poiseuille's law and the target, in
- * reduced quantities that make one step up the tree a few multiplications.
+/* The law of a tree: how a segment and the subtree below it add up by Murray's law, Poiseuille's
+ * law and the target. Reduced quantities make one step up the tree a few multiplications.
  *
- * Of a segment, l is the length, N the flow over a terminal's mean, m the viscosity over a
- * reference mu; N m is its burden. R* (in units of 8 mu / pi) and V* are the reduced resistance and
- * target of METHODS 1.1. The reduced quantities are
+ * A segment has the length l, the flow N relative to a terminal's mean flow, and the viscosity m
+ * relative to a reference mu. N m is its burden. R* (in units of 8 mu / pi) and V* are the reduced
+ * resistance and target of METHODS 1.1. The reduced quantities of a segment are:
  *
- * - load W = N R*, and rho = W^(1/4), which is the radius but for the factors q and g below;
+ * - Load W = N R*, and rho = W^(1/4), which is the radius without the factors q and g below.
  *
- * - rho_gamma X = rho^gamma, what Murray's law adds up: for the subtrees on the distal end of a
- * segment, G is the sum of X over the daughters and P = G^(1/gamma);
+ * - rho_gamma X = rho^gamma, which Murray's law adds up. For the subtrees on the distal end of a
+ *   segment, G is the sum of X over the daughters, and P = G^(1/gamma).
  *
- * - cost S = rho^lambda V*, the target but for q^lambda g^lambda.
+ * - Cost S = rho^lambda V*, which is the target without the factor q^lambda g^lambda.
  *
- * Where gamma follows the radius of the parent, each fork has its own: that of G and P is the
- * fork's at the distal end, that of X the fork's that the segment leaves. The functions are given
- * the law at that fork; only law_gather and the rho_gamma of law_extend depend on gamma.
+ * W = N m l + P^4, and S = rho^lambda l + (rho / P)^lambda times the sum of the daughters' S.
  *
- * They follow from the daughters' by W = N m l + P^4 and S = rho^lambda l + (rho / P)^lambda times
- * the sum of the daughters' S.
+ * If gamma depends on the radius of the parent, each fork has its own gamma. G and P use that of
+ * the fork at the distal end, X that of the fork at the proximal end. The functions receive the law
+ * at the fork. Only law_gather, and rho_gamma of law_extend, depend on gamma.
  *
- * The radius is r = q g rho. Here q = (8 mu / pi Q_term / (p_perf - p_term))^(1/4) is the radius
- * unit of the tree, and g is the gauge of the segment: 1 at the root, and from a segment to its
- * daughters multiplied by its rho / P (widening). The target is T = q^lambda S_root, so for one
- * number of terminals the least S_root is the least T. */
+ * The radius is r = q g rho. q = (8 mu / pi Q_term / (p_perf - p_term))^(1/4) is the radius unit of
+ * the tree. g is the gauge of the segment: 1 at the root, and from a segment to its daughters
+ * multiplied by the segment's widening, rho / P. The target is T = q^lambda S_root, so for a fixed
+ * number of terminals the least S_root gives the least T. */
 #ifndef CORCAST_GROW_LAW_H
 #define CORCAST_GROW_LAW_H
 
@@ -38,14 +37,14 @@ typedef struct Law {
     double lambda; /* >= 0 */
 } Law;
 
-/* What hangs on the distal end of a segment, all daughters together; all 0 at a terminal. */
+/* What hangs on the distal end of a segment: all daughters together. All 0 at a terminal. */
 typedef struct Below {
     double rho_gamma, cost; /* G, and the sum of S */
     double inverse;         /* 1 / P */
     double load;            /* P^4 */
 } Below;
 
-/* A segment together with all that hangs on it. */
+/* A segment together with all that hangs on its distal end. */
 typedef struct Reduced {
     double load;            /* W, mm */
     double rho_gamma;       /* X */
@@ -81,15 +80,15 @@ static inline double inverse_cube_root(double x)
     return y + y * error * (1.0 / 3);
 }
 
-/* The radius unit q, mm^(3/4), of a tree whose terminals carry `flow` mm^3/s each at a pressure
- * `drop` Pa below the inlet's, for blood of `viscosity` Pa s; with the flow of all terminals, q
- * N^(1/4). */
+/* Returns the radius unit q, mm^(3/4), of a tree whose terminals carry `flow` mm^3/s each at a
+ * pressure `drop` Pa below the inlet's, for blood of `viscosity` Pa s. With the flow of all N
+ * terminals together, returns q N^(1/4). */
 static inline double law_radius_unit(double viscosity, double flow, double drop)
 {
     return sqrt(sqrt(8 * viscosity / PI * flow / drop));
 }
 
-/* x^lambda; 0, 1 and 2 need no function. */
+/* Returns x^lambda. The exponents 0, 1 and 2 need no function call. */
 static inline double law_lambda_power(const Law *law, double x)
 {
     if (law->lambda == 2)
@@ -101,8 +100,8 @@ static inline double law_lambda_power(const Law *law, double x)
     return elementary_pow(x, law->lambda);
 }
 
-/* What hangs on the distal end, where the law is this, if the daughters' rho_gamma and cost add up
- * to these, both 0 at a terminal. */
+/* Returns what hangs on a distal end at which `law` holds, from the sums of the daughters'
+ * rho_gamma and cost; both sums are 0 at a terminal. */
 static inline Below law_gather(const Law *law, double rho_gamma, double cost)
 {
     Below out = {.rho_gamma = rho_gamma, .cost = cost};
@@ -118,8 +117,8 @@ static inline Below law_gather(const Law *law, double rho_gamma, double cost)
     return out;
 }
 
-/* The segment of `length` mm with this `burden`, together with what hangs on its distal end; the
- * law is that of its proximal end. */
+/* Returns the segment of `length` mm with this `burden`, together with what hangs on its distal
+ * end. The law is that at its proximal end. */
 static inline Reduced law_extend(const Law *law, double burden, double length, const Below *below)
 {
     Reduced out = {.below = *below};
@@ -145,13 +144,13 @@ static inline Reduced law_extend(const Law *law, double burden, double length, c
     return out;
 }
 
-/* dS_root / d load of `at`, its own cost changing with the load. */
+/* Returns dS_root / d load of `at`, whose own cost changes with the load. */
 static inline double law_total(const Law *law, const Reduced *at, Adjoint adjoint)
 {
     return adjoint.load + adjoint.cost * law->lambda / 4 * at->cost / at->load;
 }
 
-/* The adjoint of a daughter of the segment `parent` whose adjoint is known. */
+/* Returns the adjoint of a daughter of the segment `parent`, whose adjoint is `adjoint`. */
 static inline Adjoint law_descend(const Law *law, const Reduced *parent, Adjoint adjoint,
                                   const Reduced *daughter)
 {
@@ -162,7 +161,7 @@ static inline Adjoint law_descend(const Law *law, const Reduced *parent, Adjoint
                      cost};
 }
 
-/* dS_root / d length of the segment `at`, which carries `burden`. */
+/* Returns dS_root / d length of the segment `at`, which carries `burden`. */
 static inline double law_length_weight(const Law *law, const Reduced *at, Adjoint adjoint,
                                        double burden)
 {

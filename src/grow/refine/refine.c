@@ -34,8 +34,8 @@
 
 /* Temperatures over S_root a segment: of annealing at first and at last, and of repairs. */
 static const double hot = 1, cold = 0.02, warm = 0.05;
-/* The penalty for a mm meanwhile, relative to S_root for each mm of vessels, at first and at last.
- */
+/* The penalty for a mm meanwhile, relative to S_root for each mm of vessels, at first and at
+ * last. */
 static const double first_rate = 0.1, last_rate = 2;
 /* The share of the budget that is left then: what so many moves a terminal take, within limits. */
 static const double last_moves = 40, least_left = 0.1, most_left = 0.5;
@@ -283,8 +283,8 @@ static Status repair(Refinement *refinement, bool *over, Err *err)
 }
 
 /* The moves of a cycle: of annealing, mending and the descent after it. Several cycles find more in
- * a small tree than one long one: where bifurcations would merge, T is right only after a descent.
- */
+ * a small tree than one long one: where bifurcations would merge, T is right only after a
+ * descent. */
 static double cycle_moves(const Refinement *refinement)
 {
     double terminals = (double)refinement->search.arbor.terminals;
@@ -484,8 +484,6 @@ static void release(Refinement *refinement)
 
 /* What a worker's cycles have found. */
 typedef struct Found {
-    Status status; /* of the last cycle: after one that fails there is no other */
-    Err err;
     double cost;     /* of the best tree */
     size_t cycle;    /* that found it */
     int32_t *parent; /* of its nodes; owned, as is place; NULL: no cycle has ended */
@@ -554,24 +552,25 @@ done:
 static bool has_time(const Refinement *from, const Found *found)
 {
     double end = clock_seconds() - from->begun + found->seconds;
-    if (found->stopped || found->status != STATUS_OK)
+    if (found->stopped)
         return false;
     return !found->place || !(from->params->seconds > 0) || end <= from->params->seconds;
 }
 
-static void run_in_turn(size_t number, int worker, void *context)
+static Status run_in_turn(size_t number, int worker, void *context, Err *err)
 {
     const Cycles *cycles = context;
     Found *found = &cycles->found[worker];
     RefineParams params = *cycles->from->params;
     double begun = clock_seconds();
     if (!has_time(cycles->from, found))
-        return;
+        return STATUS_OK;
     params.seed ^= number * UINT64_C(0x9e3779b97f4a7c15);
     if (worker != 0)
         params.progress = NULL;
-    found->status = run_cycle(cycles, number, &params, found, &found->err);
+    TRY(run_cycle(cycles, number, &params, found, err));
     found->seconds = fmax(found->seconds, clock_seconds() - begun);
+    return STATUS_OK;
 }
 
 /* Goes on to the best tree that was found. */
@@ -580,10 +579,6 @@ static Status take_best(Refinement *refinement, const Found *found, int workers,
     LocalSearch *search = &refinement->search;
     const Found *best = NULL;
     for (int i = 0; i < workers; i++) {
-        if (found[i].status != STATUS_OK) {
-            *err = found[i].err;
-            return found[i].status;
-        }
         search->tried += found[i].tried;
         search->kept += found[i].kept;
         refinement->stopped = refinement->stopped || found[i].stopped;
@@ -607,8 +602,10 @@ static Status refine_in_cycles(Refinement *refinement, const Domain *domain, con
     Cycles cycles = {
         .from = refinement, .domain = domain, .tree = tree, .count = count, .moves = moves};
     TRY(mem_calloc(&cycles.found, (size_t)workers, sizeof *cycles.found, "cycles", err));
-    threads_for(count, workers, run_in_turn, &cycles);
-    Status status = take_best(refinement, cycles.found, workers, err);
+    Status status;
+    TRY_GOTO(threads_try(count, workers, run_in_turn, &cycles, err));
+    TRY_GOTO(take_best(refinement, cycles.found, workers, err));
+done:
     for (int i = 0; i < workers; i++) {
         free(cycles.found[i].parent);
         free(cycles.found[i].place);

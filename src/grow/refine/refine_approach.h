@@ -1,12 +1,16 @@
-/* The way of all bifurcations to their goals. */
+/* Moves all bifurcations towards their goals [refine_joint.h]. */
 #ifndef CORCAST_GROW_REFINE_APPROACH_H
 #define CORCAST_GROW_REFINE_APPROACH_H
 
 #include "grow/refine/refine_joint.h"
 
-/* Goes from the starts the share `whole` of the way to the goals, or as near to there as domain and
- * rules of clearance let it: *arrived, and no segment that kept the rules breaks one. Otherwise the
- * tree is not to be kept. Makes reservations anew. O(n). STATUS_MEMORY. */
+/* Moves every node from its start the share `whole` of the path to its goal, or as near to that
+ * point as the domain and the rules of clearance allow. Makes reservations again.
+ *
+ * arrived  receives true if no segment that kept the rules breaks a rule. Otherwise the caller must
+ *          restore the tree.
+ * Errors   STATUS_MEMORY.
+ * Cost     O(n). */
 MUST_CHECK Status approach_goals(Joints *joints, Arbor *arbor, Clearance *clearance, double whole,
                                  bool *arrived, Err *err);
 

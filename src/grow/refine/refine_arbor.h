@@ -1,17 +1,16 @@
-/* The arbor: a tree under refinement. Its segments know what hangs on them; it is changed one move
- * at a time, and a move can be undone.
+/* The arbor: a tree during refinement. Each segment has the sums over its subtree. The tree is
+ * changed one move at a time, and a move can be undone.
  *
- * An arbor is no Network [network.h], though both sum up the same law. A Network grows: it adds
- * terminals in O(1) and lets sums far up go out of date, for a forest, with a Segment that holds
- * the sums of its daughters. An arbor keeps its segments and has exact sums after every move, all
- * the way to the root, with a Branch that holds its own sums and the clearance of its subtree. Each
- * fills the one cache line that a step of its walk to the root may cost; a common struct would take
- * two.
+ * An arbor is not a Network [network.h], although both sum up the same law. A Network adds
+ * terminals in O(1) and lets sums far up go out of date; its Segment holds the sums of its
+ * daughters. An arbor keeps its segments and has exact sums up to the root after every move; its
+ * Branch holds its own sums and the clearance of its subtree. Both structs fill one cache line,
+ * which is what a step of the walk to the root may cost. A common struct would take two.
  *
- * The first nodes are the inlets, each with one root segment or two; every other is the distal end
- * of the segment of its index. Nodes that blood only passes are left out, so that a vessel of
- * several segments is one straight segment. Indices stay: a bifurcation that moves, or that moves
- * elsewhere with a subtree, is the same node. */
+ * The first nodes are the inlets, each with one or two root segments. Every other node is the
+ * distal end of the segment with the same index. Nodes with one child are left out, so that a
+ * vessel of several segments is one straight segment. Indices stay: a bifurcation that moves, also
+ * with a subtree to another segment, is the same node. */
 #ifndef CORCAST_GROW_REFINE_ARBOR_H
 #define CORCAST_GROW_REFINE_ARBOR_H
 
@@ -22,38 +21,37 @@
 
 /* What the walk to the root reads of one segment, in one cache line of 64 bytes.
  *
- * Clearance: a segment keeps to its room if radius times `inverse_limit` is at most 1, which is 1 /
- * (the largest radius, mm, that it may have), 0 for any radius. `utilisation` is the greatest
- * radius times inverse_limit of the segment and all below it, with radii in units of the segment's
- * own q times gauge [law.h]. So one comparison at the root, utilisation times q with 1, tests all
- * segments. */
+ * A segment has room for its radius if radius * inverse_limit is at most 1. `utilisation` is the
+ * greatest value of radius * inverse_limit of the segment and all segments below it, with radii in
+ * units of the segment's own q times gauge [law.h]. Therefore one comparison at the root, of
+ * utilisation times q with 1, tests all segments. */
 typedef struct Branch {
     double length;          /* mm */
     double flow;            /* relative to the terminals' mean */
     double rho_gamma, cost; /* [law.h] */
-    double inverse_limit;   /* 1/mm */
+    double inverse_limit;   /* 1 / (largest radius, mm, that the segment may have); 0: any radius */
     double utilisation;     /* mm^(-3/4) */
     int32_t parent;         /* -1 at the inlet */
     int32_t child[2];       /* -1: none */
-    uint32_t saved;         /* the number of the last move that saved it */
+    uint32_t saved;         /* number of the last move that saved the branch */
 } Branch;
 
 /* A segment as a solid, in one cache line. */
 typedef struct Shape {
     Vec3 from, to;          /* mm */
-    double reserved_radius; /* mm; to which it may widen without meeting another
-                               [refine_clearance.h] */
-    uint32_t saved;         /* the number of the last move that saved it */
+    double reserved_radius; /* mm; to which the segment may widen without meeting another segment
+                             * [refine_clearance.h] */
+    uint32_t saved;         /* number of the last move that saved the shape */
 } Shape;
 
-/* How S_root depends, to first order, on a segment: prices a change without a walk to the root. */
+/* The derivatives of S_root that price a change of a segment without a walk to the root. */
 typedef struct Marginal {
     Adjoint adjoint;
     double gauge; /* [law.h] */
-    double extra; /* the increase of S_root if all segments above carried one more unit of flow */
+    double extra; /* increase of S_root if all segments above carried one more unit of flow */
 } Marginal;
 
-/* What of a segment follows its radius. */
+/* Properties of a segment that depend on its radius. */
 typedef struct Local {
     double viscosity; /* over the reference */
     double gamma;     /* of the fork at its end */
@@ -95,22 +93,22 @@ typedef struct Arbor {
     Local saved_local;
 } Arbor;
 
-/* Makes *arbor (owned; arbor_release) from a tree that refine_check accepts, with right sums, and
- * what follows the radii in agreement with them. STATUS_INFEASIBLE as arbor_agree, STATUS_MEMORY.
- */
+/* Makes an arbor from a tree that refine_check accepts. Its sums are right, and viscosities and
+ * exponents agree with the radii. Release *arbor with arbor_release. Errors: STATUS_INFEASIBLE as
+ * arbor_agree; STATUS_MEMORY. */
 MUST_CHECK Status arbor_init(Arbor *arbor, const Tree *tree, Err *err);
 void arbor_release(Arbor *arbor);
 
-/* Connects and places all nodes anew, parent[i] and place[i] (mm) of each, and sums up;
- * reservations stay and have to be made anew. O(n). */
+/* Sets the parent and the position, mm, of all nodes, and sums up. Reservations stay; the caller
+ * must make them again. Cost: O(n). */
 void arbor_arrange(Arbor *arbor, const int32_t *parent, const Vec3 *place);
-/* Computes the sums of all segments anew, lengths included. O(n). */
+/* Computes the sums of all segments, lengths included. Cost: O(n). */
 void arbor_sum(Arbor *arbor);
-/* Where viscosity or gamma follow the radius, computes them and the radii in turn until they agree
- * to 1e-13, and sums up anew. STATUS_INFEASIBLE where vessels are too narrow for that, or gamma
- * changes too fast. */
+/* If viscosity or gamma depend on the radius: computes them and the radii in turn until they agree
+ * to 1e-13, and sums up again. Errors: STATUS_INFEASIBLE if vessels are too narrow for that, or
+ * gamma changes too fast with the radius. */
 MUST_CHECK Status arbor_agree(Arbor *arbor, Err *err);
-/* Brings the marginals of all segments up to date. Needs right sums. O(n). */
+/* Updates the marginals of all segments. Needs right sums. Cost: O(n). */
 void arbor_refresh(Arbor *arbor);
 
 static inline bool arbor_is_inlet(const Arbor *arbor, int32_t i)
@@ -118,31 +116,31 @@ static inline bool arbor_is_inlet(const Arbor *arbor, int32_t i)
     return (size_t)i < arbor->inlets;
 }
 
-/* The first segment in depth-first order. */
+/* Returns the first segment in depth-first order. */
 static inline int32_t arbor_first(const Arbor *arbor)
 {
     return arbor->branch[0].child[0];
 }
 
-/* Whether segments i and j are of one tree. */
+/* Returns true if segments i and j are of the same tree. */
 static inline bool arbor_is_same_tree(const Arbor *arbor, int32_t i, int32_t j)
 {
     return !arbor->tree || arbor->tree[i] == arbor->tree[j];
 }
 
-/* The viscosity in segment i relative to the reference. */
+/* Returns the viscosity in segment i relative to the reference. */
 static inline double arbor_viscosity(const Arbor *arbor, int32_t i)
 {
     return arbor->local ? arbor->local[i].viscosity : 1;
 }
 
-/* The law at node i. */
+/* Returns the law at node i. */
 static inline Law arbor_law(const Arbor *arbor, int32_t i)
 {
     return arbor->local ? (Law){arbor->local[i].gamma, arbor->law.lambda} : arbor->law;
 }
 
-/* S_root; not finite, or 0, when the radii span more than a double can hold. */
+/* Returns S_root; 0 or not finite if the radii span more than a double can hold. */
 static inline double arbor_cost(const Arbor *arbor)
 {
     double cost = 0;
@@ -155,10 +153,10 @@ static inline double arbor_cost(const Arbor *arbor)
     return cost;
 }
 
-/* The segment after `i` in depth-first order, tree after tree; 0 after the last. */
+/* Returns the segment after `i` in depth-first order, tree after tree; 0 after the last. */
 int32_t arbor_next(const Arbor *arbor, int32_t i);
 
-/* What hangs on the distal end of segment i. */
+/* Returns what hangs on the distal end of segment i. */
 static inline Below arbor_below(const Arbor *arbor, int32_t i)
 {
     const int32_t *child = arbor->branch[i].child;
@@ -169,17 +167,18 @@ static inline Below arbor_below(const Arbor *arbor, int32_t i)
     return law_gather(&law, left->rho_gamma + right->rho_gamma, left->cost + right->cost);
 }
 
-/* Segment i together with what hangs on it. */
+/* Returns segment i together with what hangs on it. */
 Reduced arbor_reduce(const Arbor *arbor, int32_t i);
-/* The marginal of segment i, from its parent's present sums and stored marginal. O(1). */
+/* Returns the marginal of segment i, from its parent's present sums and stored marginal. Cost:
+ * O(1). */
 Marginal arbor_marginal(const Arbor *arbor, int32_t i);
 
-/* The radius of segment i, mm, with its gauge of the last arbor_refresh. O(1). */
+/* Returns the radius of segment i, mm, with its gauge of the last arbor_refresh. Cost: O(1). */
 double arbor_radius_seen(const Arbor *arbor, int32_t i);
-/* The present radius of segment i, mm. O(depth). */
+/* Returns the present radius of segment i, mm. Cost: O(depth). */
 double arbor_radius(const Arbor *arbor, int32_t i);
-/* Finds a segment that is wider than it may be, and its present radius, mm, in *radius; 0 when
- * there is none. O(depth). */
+/* Returns a segment that is wider than it may be, and sets *radius to its present radius, mm.
+ * Returns 0 if there is none. Cost: O(depth). */
 int32_t arbor_find_overuse(const Arbor *arbor, double *radius);
 
 static inline int32_t arbor_sibling(const Arbor *arbor, int32_t i)
@@ -188,37 +187,38 @@ static inline int32_t arbor_sibling(const Arbor *arbor, int32_t i)
     return parent->child[parent->child[0] == i];
 }
 
-/* Whether segment i is `top` or below it. */
+/* Returns true if segment i is `top` or below it. */
 bool arbor_is_below(const Arbor *arbor, int32_t i, int32_t top);
-/* Whether the segment is part of the tree: not one that is pruned, nor the bifurcation that it came
- * from. */
+/* Returns true if segment i is part of the tree. The segment that is pruned and the segment to the
+ * bifurcation that it came from are not. */
 static inline bool arbor_has(const Arbor *arbor, int32_t i)
 {
     return arbor->pruned == 0 || (i != arbor->pruned && i != arbor->branch[arbor->pruned].parent);
 }
 
-/* Whether two different segments have a node in common. */
+/* Returns true if two different segments have a common node. */
 bool arbor_are_joined(const Arbor *arbor, int32_t i, int32_t j);
 
-/* Begins a move; whatever the next functions change can be undone until the next one begins. */
+/* Begins a move. All that the functions below change can be undone until the next move begins. */
 void arbor_begin(Arbor *arbor);
-/* Restores the arbor, bit by bit, as it was at arbor_begin. */
+/* Restores the arbor as it was at arbor_begin, to the last bit. */
 void arbor_undo(Arbor *arbor);
 
-/* Moves the bifurcation at the end of segment i to `place`, mm, and sums up to the root. O(depth).
- */
+/* Moves the bifurcation at the end of segment i to `place`, mm, and sums up to the root. Cost:
+ * O(depth). */
 void arbor_shift(Arbor *arbor, int32_t i, Vec3 place);
-/* Cuts segment i off with all below it, together with the bifurcation it comes from: its sibling
- * then begins where the parent did. Neither that bifurcation nor the segment is part of the tree
- * until arbor_graft. O(depth). */
+/* Cuts segment i off with all below it, together with the bifurcation that it comes from. Its
+ * sibling then begins where the parent segment began. Neither the bifurcation nor the segment is
+ * part of the tree until arbor_graft. Cost: O(1); sums further up still include the segment. */
 void arbor_prune(Arbor *arbor, int32_t i);
-/* Splits segment `host` at `place`, mm, and hangs segment i, which was pruned, there. O(depth). */
+/* Splits segment `host` at `place`, mm, and connects segment i, which is pruned, there. Cost:
+ * O(depth). */
 void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place);
 
-/* Gives segment i `reserved_radius` and `inverse_limit` [refine_clearance.h]. The caller
- * then has to call arbor_sum_from for it. */
+/* Sets reserved_radius and inverse_limit of segment i. Then the caller must call arbor_sum_from for
+ * it. */
 void arbor_reserve(Arbor *arbor, int32_t i, double reserved_radius, double inverse_limit);
-/* Computes the sums of segment i and of all above it anew. O(depth). */
+/* Computes the sums of segment i and of all segments above it. Cost: O(depth). */
 void arbor_sum_from(Arbor *arbor, int32_t i);
 
 #endif

@@ -149,8 +149,8 @@ static void share_out(size_t batch, int worker, void *context)
             clearance->share[i] = fair_share(clearance, sharing->arbor, (int32_t)i);
 }
 
-/* Reserves radii for all segments at the level; *clear: the share of segments that keep the rules.
- */
+/* Reserves radii for all segments at the level; *clear: the share of segments that keep the
+ * rules. */
 static Status reserve_all(Clearance *clearance, Arbor *arbor, double *clear, Err *err)
 {
     TRY(measure(clearance, arbor, err));

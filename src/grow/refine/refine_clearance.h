@@ -1,11 +1,13 @@
-/* Clearance: vessels stay inside the domain, longer than wide, and clear of each other, whatever
- * moves.
+/* Clearance: the rules that vessels keep while they move. Vessels stay inside the domain, longer
+ * than wide, and clear of each other.
  *
- * Vessels count at their radius times the `level`, in [0, 1]. A segment has to be longer than wide,
- * and two segments without a common node further apart than their radii. Where the tree that came
- * in broke these rules it may stay so, but no vessel gets deeper into another than it was.
+ * Vessels count at their radius times the `level`, in [0, 1]. A segment must be longer than wide,
+ * and two segments without a common node must be further apart than the sum of their radii. Where
+ * the tree broke these rules before refinement it may still break them, but no vessel gets deeper
+ * into another than it was.
  *
- * Every segment has a reserved radius [refine_arbor.h] that no other's reserved radius meets. */
+ * Every segment has a reserved radius [refine_arbor.h], which no other segment's reserved radius
+ * meets. */
 #ifndef CORCAST_GROW_REFINE_CLEARANCE_H
 #define CORCAST_GROW_REFINE_CLEARANCE_H
 
@@ -19,28 +21,32 @@ typedef struct Clearance {
     Box box;
     double level;        /* vessels count at their radii times this */
     double least_length; /* mm; no segment is made shorter */
-    double gap;          /* mm; least distance beyond the radii */
-    double apart;        /* mm; as much more between vessels of different trees; level is 1 then */
+    double gap;          /* mm; minimum distance beyond the radii */
+    double apart; /* mm; further distance between vessels of different trees; if it is above 0,
+                   * `level` is 1 */
     Grid grid;
-    double *radius; /* of each segment, mm, as of the last clearance_reserve or clearance_waive */
-    double *share;  /* workspace of clearance_reserve */
+    double *radius; /* per segment, mm, of the last clearance_reserve or clearance_waive; owned */
+    double *share;  /* workspace of clearance_reserve; owned */
 } Clearance;
 
 /* Finds the greatest level (1, 1/2, ... 1/64, 0) at which nine in ten segments of the tree keep the
- * rules, and reserves radii at it; `apart` mm is as above. `domain` is borrowed; NULL: anywhere.
- * Start from (Clearance){0}; ends with clearance_release, also on failure: STATUS_INFEASIBLE when
- * the level is below 1 and `apart` above 0, and STATUS_MEMORY. */
+ * rules, and reserves radii at this level.
+ *
+ * clearance  must be zeroed. Release it with clearance_release, also after an error.
+ * domain     is borrowed; NULL: vessels may be anywhere.
+ * apart      is the member `apart`, in mm.
+ * Errors     STATUS_INFEASIBLE if the level is below 1 and `apart` above 0; STATUS_MEMORY. */
 MUST_CHECK Status clearance_init(Clearance *clearance, const Domain *domain, double apart,
                                  Arbor *arbor, Err *err);
 void clearance_release(Clearance *clearance);
 
-/* Reserves radii for all segments anew, a tenth above the present ones where there is room, and
- * sums up the arbor. O(n). STATUS_MEMORY. */
+/* Reserves radii for all segments again, a tenth above the present radii where there is room, and
+ * sums up the arbor. Errors: STATUS_MEMORY. Cost: O(n). */
 MUST_CHECK Status clearance_reserve(Clearance *clearance, Arbor *arbor, Err *err);
 
-/* The least distance between what segments i and j reserve. Between different trees it holds the
- * clearance of the trees, and besides by how much each segment is wider than what it reserves: the
- * clearance is one of walls. */
+/* Returns the minimum distance, mm, between the reserved capsules of segments i and j. Between
+ * different trees it includes the clearance of the trees, which is measured between walls, and
+ * therefore also how much wider each segment is than its reservation. */
 static inline double clearance_between(const Clearance *clearance, const Arbor *arbor, int32_t i,
                                        int32_t j)
 {
@@ -51,36 +57,37 @@ static inline double clearance_between(const Clearance *clearance, const Arbor *
     return clearance->gap + clearance->apart + spare;
 }
 
-/* How far from its axis segment i, when it reserves that radius, mm, looks for segments too near.
- */
+/* Returns the distance, mm, from the axis of segment i within which segments may be too near, if
+ * segment i reserves `reserved_radius`, mm. */
 double clearance_reach(const Clearance *clearance, int32_t i, double reserved_radius);
-/* The least distance of the centrelines of segments i and j at which both keep the rules, by the
- * radii of the last clearance_reserve. */
+/* Returns the minimum distance, mm, of the centrelines of segments i and j at which both keep the
+ * rules, by the radii of the last clearance_reserve. */
 double clearance_due(const Clearance *clearance, const Arbor *arbor, int32_t i, int32_t j);
 
-/* Whether segment i keeps the rules, as of the last clearance_reserve. */
+/* Returns true if segment i kept the rules at the last clearance_reserve. */
 static inline bool clearance_is_kept(const Clearance *clearance, const Arbor *arbor, int32_t i)
 {
     return arbor->shape[i].reserved_radius >= clearance->level * clearance->radius[i];
 }
 
 /* Suspends the rules: reserves `reserved` times its radius for every segment, whether there is room
- * or not, and sets no limit to radii. O(n). STATUS_MEMORY. */
+ * or not, and sets no limit to radii. Errors: STATUS_MEMORY. Cost: O(n). */
 MUST_CHECK Status clearance_waive(Clearance *clearance, Arbor *arbor, double reserved, Err *err);
 
-/* Whether segment i is inside the domain and no shorter than least_length. */
+/* Returns true if segment i is inside the domain and not shorter than least_length. */
 bool clearance_is_held(const Clearance *clearance, const Arbor *arbor, int32_t i);
 
-/* Whether the segments that the present move has placed are inside the domain and no shorter than
- * least_length. */
+/* Returns true if the segments that the present move has placed are inside the domain and not
+ * shorter than least_length. */
 bool clearance_is_inside(const Clearance *clearance, const Arbor *arbor);
 
-/* Whether the present move keeps the rules. If so, radii are reserved in the arbor: for the
- * segments that moved, 1.04 to 1.1 times their radius, and as much for those that have outgrown
- * their reservation because of the move. If not, the move has to be undone. */
+/* Returns true if the present move keeps the rules, and then reserves radii in the arbor: 1.04
+ * to 1.1 times the radius for segments that moved, and enough for segments that have outgrown their
+ * reservation because of the move. If it returns false, the caller must undo the move. */
 bool clearance_allows(const Clearance *clearance, Arbor *arbor);
 
-/* To be called for a move that is kept: enters what it changed in the grid. STATUS_MEMORY. */
+/* Enters in the grid what a move changed. Call it for every move that is kept. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status clearance_follow(Clearance *clearance, const Arbor *arbor, Err *err);
 
 #endif

@@ -1,34 +1,39 @@
-/* All bifurcations moved at once. */
+/* Moves all bifurcations at once. */
 #ifndef CORCAST_GROW_REFINE_JOINT_H
 #define CORCAST_GROW_REFINE_JOINT_H
 
 #include "grow/refine/refine_arbor.h"
 #include "grow/refine/refine_clearance.h"
 
-/* Workspace of joint_move, by node. */
+/* The workspace of joint_move. Arrays have one entry per node, unless stated, and are owned. */
 typedef struct Joints {
-    int32_t *order, *parent; /* the segments, mothers first; and the parents of all nodes */
-    Vec3 *start, *goal, *place;
+    int32_t *order; /* the segments, mothers first */
+    int32_t *parent;
+    Vec3 *start, *goal, *place; /* mm */
     Vec3 *load, *step;
     double (*spring)[6]; /* a symmetric matrix: 00, 10, 11, 20, 21, 22 */
-    bool *was_clear;     /* of the segment */
-    bool *fixed;         /* whether the node has to stay */
-    uint32_t *returns;   /* how often the node went half of the way back to its start */
-    size_t n;            /* segments in `order` */
-    double promise;      /* what the step would gain of S_root by its first derivatives */
+    bool *was_clear;     /* the segment kept the rules at the start */
+    bool *fixed;         /* the node must stay */
+    uint32_t *returns;   /* how often the node went half of the path back to its start */
+    size_t n;            /* number of segments in `order` */
+    double promise;      /* gain of S_root that the step's first derivatives promise */
     double smoothing;    /* mm, of lengths */
     double level;        /* of the clearance */
-    double margin;       /* of pushes, over what the rules ask */
+    double margin;       /* by which pushes exceed what the rules require, as a fraction */
 } Joints;
 
-/* Ends with joints_release, also on failure, STATUS_MEMORY. */
+/* Allocates the workspace. Release it with joints_release, also after an error. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status joints_init(Joints *joints, size_t nodes, Err *err);
 void joints_release(Joints *joints);
 
-/* Moves all bifurcations jointly towards where S_root is least for this topology, each as far as
- * domain and rules of clearance let it: no segment that kept the rules breaks one. *kept: false,
- * and all as it was, when that does not lower S_root. Needs right sums and fresh reservations, and
- * leaves them. O(n). */
+/* Moves all bifurcations together towards the positions where S_root is least for this topology.
+ * Each moves as far as the domain and the rules of clearance allow: no segment that kept the rules
+ * breaks a rule. Needs right sums and fresh reservations, and leaves them.
+ *
+ * kept     receives false if the move does not lower S_root. The arbor is then as before.
+ * Errors   STATUS_MEMORY.
+ * Cost     O(n). */
 MUST_CHECK Status joint_move(Joints *joints, Arbor *arbor, Clearance *clearance, bool *kept,
                              Err *err);
 

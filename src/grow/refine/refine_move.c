@@ -175,8 +175,8 @@ typedef struct MoveCandidate {
     BifurcationState state;
 } MoveCandidate;
 
-/* The marginal of a segment: the stored one where the present move has changed nothing beside it.
- */
+/* The marginal of a segment: the stored one where the present move has changed nothing beside
+ * it. */
 static Marginal marginal_of(const Arbor *arbor, int32_t i)
 {
     const Branch *branch = &arbor->branch[i];

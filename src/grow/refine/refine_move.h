@@ -1,4 +1,4 @@
-/* The two kinds of moves that refinement consists of. */
+/* The two kinds of moves of the local search that refines a tree. */
 #ifndef CORCAST_GROW_REFINE_MOVE_H
 #define CORCAST_GROW_REFINE_MOVE_H
 
@@ -12,18 +12,21 @@ typedef struct LocalSearch {
     Clearance clearance;
     Penalties penalties; /* while they are not active, no move breaks a rule of clearance */
     Random random;
-    double reach;         /* mm; within which the nearest segments were found */
-    uint64_t tried, kept; /* moves */
+    double reach;         /* mm; distance within which the last nearest segments were found */
+    uint64_t tried, kept; /* numbers of moves */
 } LocalSearch;
 
-/* Moves the bifurcation at the end of segment i to where S_root and penalties are less, if that is
- * allowed. Not for terminals. */
+/* Moves the bifurcation at the end of segment i, which is not a terminal, to where S_root and
+ * penalties are lower, if the rules allow it. Errors: STATUS_MEMORY. */
 MUST_CHECK Status move_bifurcation(LocalSearch *search, int32_t i, Err *err);
 
-/* Cuts segment i off, with all below it, and connects it where S_root and penalties are least among
- * the nearest segments, or where it was. With a `temperature` above 0, in units of S_root,
- * connections that cost more by that much are chosen with probability 1 / e relative to the best.
- * Root segments stay, and every subtree in its tree. */
+/* Cuts segment i off, with all below it, and connects it to one of the nearest segments, or where
+ * it was. Root segments stay, and every subtree stays in its tree.
+ *
+ * temperature   0 chooses the connection with the lowest S_root and penalties. Above 0, in units of
+ *               S_root: a connection that costs that much more than the best has 1 / e of the best
+ *               connection's probability.
+ * Errors        STATUS_MEMORY. */
 MUST_CHECK Status move_subtree(LocalSearch *search, int32_t i, double temperature, Err *err);
 
 #endif

@@ -1,13 +1,15 @@
-/* A refined arbor becomes a Tree again. */
+/* Turns a refined arbor back into a Tree. */
 #ifndef CORCAST_GROW_REFINE_RESULT_H
 #define CORCAST_GROW_REFINE_RESULT_H
 
 #include "grow/refine/refine_arbor.h"
 #include "tree/tree.h"
 
-/* Makes *tree (owned) of the arbor, with all that stays of the tree `was` from which the arbor was
- * made, but the meta, and with the radii that follow. STATUS_INFEASIBLE when a radius is beyond the
- * range of a double. */
+/* Makes a tree of the arbor, with the radii that follow from the law. It has all that stays of
+ * `was`, the tree that the arbor was made of, except the metadata.
+ *
+ * tree     receives the tree; release it with tree_release.
+ * Errors   STATUS_INFEASIBLE if a radius is beyond the range of a double; STATUS_MEMORY. */
 MUST_CHECK Status result_make(const Arbor *arbor, const Tree *was, Tree *tree, Err *err);
 
 #endif

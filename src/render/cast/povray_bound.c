@@ -9,15 +9,15 @@ static const double ahead = 1e-10, endless = 2e10;
 static const float nearest = 1e-4F;
 
 /* A bounding box: its least corner and its size. */
-typedef struct Bound {
+typedef struct PovrayBox {
     float low[3], size[3];
-} Bound;
+} PovrayBox;
 
-static Bound bound_of(Box box)
+static PovrayBox bound_of(Box box)
 {
-    return (Bound){{(float)box.low.x, (float)box.low.y, (float)box.low.z},
-                   {(float)(box.high.x - box.low.x), (float)(box.high.y - box.low.y),
-                    (float)(box.high.z - box.low.z)}};
+    return (PovrayBox){{(float)box.low.x, (float)box.low.y, (float)box.low.z},
+                       {(float)(box.high.x - box.low.x), (float)(box.high.y - box.low.y),
+                        (float)(box.high.z - box.low.z)}};
 }
 
 BoundRay bound_ray(Ray ray)
@@ -28,7 +28,7 @@ BoundRay bound_ray(Ray ray)
 }
 
 /* The leaf's test; *first is where the ray enters the box. */
-static bool meets_leaf(const BoundRay *ray, const Bound *bound, double *first)
+static bool meets_leaf(const BoundRay *ray, const PovrayBox *bound, double *first)
 {
     double last = endless;
     *first = -endless;
@@ -51,7 +51,7 @@ static bool meets_leaf(const BoundRay *ray, const Bound *bound, double *first)
 /* The object's test. A start in the plane of a side that the ray is parallel to gives 0 times
  * infinity, no number: every comparison with it is false, so that from x it stays and fails the
  * last one, and from y or z is passed over. */
-static bool meets_object(const BoundRay *ray, const Bound *bound)
+static bool meets_object(const BoundRay *ray, const PovrayBox *bound)
 {
     float near[3], far[3];
     for (int axis = 0; axis < 3; axis++) {
@@ -72,6 +72,6 @@ static bool meets_object(const BoundRay *ray, const Bound *bound)
 
 bool povray_looks_into(const BoundRay *ray, Box box, double *order)
 {
-    Bound bound = bound_of(box);
+    PovrayBox bound = bound_of(box);
     return meets_leaf(ray, &bound, order) && meets_object(ray, &bound);
 }

@@ -1,4 +1,4 @@
-/* Edges are found first: samples of a vessel beside paper, or beside another vessel that lies
+/* EffectEdges are found first: samples of a vessel beside paper, or beside another vessel that lies
  * deeper by a number of radii of the first [scene/effects.h]; what lies at about the same depth is
  * joined to it, and no line parts the two. Then each row gathers what the edges near it spread: a
  * line on the samples at the edge's own depth, which are of the same wall, and a gap on those that
@@ -17,13 +17,13 @@
 /* How many radii the wall that ends at an edge reaches from it towards the viewer. */
 static const double wall_radii = 3;
 
-typedef struct Edges {
-    const Samples *samples;
+typedef struct EffectEdges {
+    const EffectSamples *samples;
     float *line, *gap; /* of each sample, how far they reach from it, in samples; 0: no edge */
     float *radius_mm;  /* of its vessel */
     float *cover;      /* of each worker two rows: what lines and gaps cover of a sample */
     int reach;
-} Edges;
+} EffectEdges;
 
 /* ---- radii ----------------------------------------------------------------------------------- */
 
@@ -80,7 +80,7 @@ static double cosine_of(const float *a, const float *b)
 }
 
 /* Whether the vessel of sample `at` ends between it and its neighbour. */
-static bool ends_before(const Samples *samples, size_t at, size_t beside, double radius_mm,
+static bool ends_before(const EffectSamples *samples, size_t at, size_t beside, double radius_mm,
                         double deeper)
 {
     const Frame *frame = samples->frame;
@@ -88,7 +88,7 @@ static bool ends_before(const Samples *samples, size_t at, size_t beside, double
     return !frame->id.ids[beside] || jump > deeper * radius_mm;
 }
 
-static bool is_crease(const Samples *samples, size_t at, size_t beside)
+static bool is_crease(const EffectSamples *samples, size_t at, size_t beside)
 {
     const float *normals = samples->frame->normal.values;
     return normals && samples->frame->id.ids[beside] &&
@@ -97,9 +97,9 @@ static bool is_crease(const Samples *samples, size_t at, size_t beside)
 }
 
 /* Marks the sample if an edge lies between it and a neighbour of another id. */
-static void mark(Edges *edges, size_t at, const size_t *beside, int n)
+static void mark(EffectEdges *edges, size_t at, const size_t *beside, int n)
 {
-    const Samples *samples = edges->samples;
+    const EffectSamples *samples = edges->samples;
     const Effects *effects = samples->effects;
     const Frame *frame = samples->frame;
     const Camera *camera = samples->camera;
@@ -125,7 +125,7 @@ static void mark(Edges *edges, size_t at, const size_t *beside, int n)
 static void find_in_row(size_t row, int worker, void *context)
 {
     (void)worker;
-    Edges *edges = context;
+    EffectEdges *edges = context;
     const uint32_t *ids = edges->samples->frame->id.ids;
     size_t width = (size_t)edges->samples->camera->width;
     size_t rows = (size_t)edges->samples->band.rows;
@@ -158,10 +158,10 @@ static float raised(float cover, double by)
 }
 
 /* Spreads an edge over the samples of a row `down` rows from it. */
-static void spread(const Edges *edges, size_t edge, int column, size_t row, int down, float *line,
-                   float *gap)
+static void spread(const EffectEdges *edges, size_t edge, int column, size_t row, int down,
+                   float *line, float *gap)
 {
-    const Samples *samples = edges->samples;
+    const EffectSamples *samples = edges->samples;
     const float *depths = samples->frame->depth.values;
     int width = samples->camera->width;
     double reach = fmax((double)edges->line[edge], (double)edges->gap[edge] + 1);
@@ -184,9 +184,9 @@ static void spread(const Edges *edges, size_t edge, int column, size_t row, int 
     }
 }
 
-static void gather(const Edges *edges, size_t row, float *line, float *gap)
+static void gather(const EffectEdges *edges, size_t row, float *line, float *gap)
 {
-    const Samples *samples = edges->samples;
+    const EffectSamples *samples = edges->samples;
     int width = samples->camera->width, rows = samples->band.rows, at = (int)row;
     for (int x = 0; x < width; x++)
         line[x] = gap[x] = 0;
@@ -205,8 +205,8 @@ static void gather(const Edges *edges, size_t row, float *line, float *gap)
 
 static void draw_row(size_t number, int worker, void *context)
 {
-    const Edges *edges = context;
-    const Samples *samples = edges->samples;
+    const EffectEdges *edges = context;
+    const EffectSamples *samples = edges->samples;
     const Effects *effects = samples->effects;
     Frame *frame = samples->frame;
     size_t width = (size_t)samples->camera->width;
@@ -229,11 +229,12 @@ static void draw_row(size_t number, int worker, void *context)
     }
 }
 
-Status effects_draw(const Samples *samples, Err *err)
+Status effects_draw(const EffectSamples *samples, Err *err)
 {
     const Band *band = &samples->band;
     size_t width = (size_t)samples->camera->width, n = width * (size_t)band->rows;
-    Edges edges = {.samples = samples, .reach = effects_reach(samples->effects, samples->side)};
+    EffectEdges edges = {.samples = samples,
+                         .reach = effects_reach(samples->effects, samples->side)};
     Status status;
     TRY_GOTO(mem_calloc(&edges.line, n, sizeof *edges.line, "edges", err));
     TRY_GOTO(mem_calloc(&edges.gap, n, sizeof *edges.gap, "edges", err));
@@ -253,7 +254,7 @@ done:
 
 /* ---- pixels ---------------------------------------------------------------------------------- */
 
-void effects_reduce(const Samples *samples, Plane *color, int row)
+void effects_reduce(const EffectSamples *samples, Plane *color, int row)
 {
     const int side = samples->side;
     const Band *band = &samples->band;

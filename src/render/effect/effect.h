@@ -1,4 +1,4 @@
-/* Fading, outlines and halos: what neighbouring samples of a shaded picture add to it. */
+/* Fading, outlines and halos, drawn over the samples of a shaded picture. */
 #ifndef CORCAST_RENDER_EFFECT_H
 #define CORCAST_RENDER_EFFECT_H
 
@@ -7,46 +7,48 @@
 #include "render/job.h"
 #include "scene/scene.h"
 
+/* The radius of one vessel. */
 typedef struct IdRadius {
     uint32_t id;
-    float radius_mm; /* the largest of that id */
+    float radius_mm; /* the largest radius of this id */
 } IdRadius;
 
-/* The radius of each vessel, by rising id. */
+/* The radii of all vessels, by rising id. */
 typedef struct RadiusTable {
     IdRadius *rows; /* owned */
     size_t n;
 } RadiusTable;
 
-/* STATUS_MEMORY. O(n log n). */
+/* Makes the table of a geometry; release it with radiustable_release. Errors: STATUS_MEMORY.
+ * O(n log n). */
 MUST_CHECK Status radiustable_make(const Geometry *geometry, RadiusTable *table, Err *err);
 void radiustable_release(RadiusTable *table);
-/* 0 where the id is not in the table. O(log n). */
+/* Returns the radius of a vessel, mm; 0 if the id is not in the table. O(log n). */
 double radiustable_find(const RadiusTable *table, uint32_t id);
 
-/* How many samples from a sample what it becomes is decided, if `side` samples make a pixel's
- * width. */
+/* Returns the distance, in samples, up to which other samples change a sample. A pixel is `side`
+ * samples wide. */
 int effects_reach(const Effects *effects, int side);
 
-/* What effects are drawn on: a band of samples, `side` x `side` to a pixel, the camera being that
- * of the samples. The frame has colour, depth, ids, and normals where there are creases. */
-typedef struct Samples {
+/* The band of samples that effects are drawn on. All pointers are borrowed. */
+typedef struct EffectSamples {
     const Effects *effects;
-    const Camera *camera;
+    const Camera *camera; /* of the samples: its pixels are samples */
     const RadiusTable *radii;
-    Rgb paper;
-    int side, threads;
-    Band band;
-    Frame *frame;
-} Samples;
+    Rgb paper; /* background */
+    int side;  /* samples per pixel width */
+    int threads;
+    Band band;    /* rows of samples */
+    Frame *frame; /* colour, depth and ids; normals if outlines follow creases */
+} EffectSamples;
 
-/* Draws the effects into the colours of the band's rows, but for those above and below, which have
- * to be effects_reach() or reach the edge of the picture: the same bytes whatever the band and the
- * number of threads. STATUS_MEMORY. */
-MUST_CHECK Status effects_draw(const Samples *samples, Err *err);
+/* Draws the effects into the colours of the band's rows, except the rows above and below. Those are
+ * effects_reach() rows, or all rows up to the edge of the picture; then the result depends neither
+ * on the band nor on the number of threads. Errors: STATUS_MEMORY. */
+MUST_CHECK Status effects_draw(const EffectSamples *samples, Err *err);
 
-/* The colours of `side` x `side` samples become their mean, that of one pixel: rows of the frame,
- * those above and below left out, into the rows of `color` from `row` on. */
-void effects_reduce(const Samples *samples, Plane *color, int row);
+/* Averages the colours of side x side samples to pixels. Leaves out the rows above and below the
+ * band. Writes the pixels to the rows of `color` from `row` on. */
+void effects_reduce(const EffectSamples *samples, Plane *color, int row);
 
 #endif

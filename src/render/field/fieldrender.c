@@ -45,34 +45,15 @@ static Status trace_field(void *bins, int worker, int shift, BatchTile *tile, Er
     return fieldtiles_trace(bins, worker, &tile->seen, &tile->hits, err);
 }
 
-static Status look_at_field(const Drawing *drawing, const Viewpoint *eye, void **shadows, Err *err)
-{
-    for (size_t i = 0; i < drawing->view->n_lights; i++) {
-        const Light *light = &drawing->view->lights[i];
-        if (tilerender_uses_view(drawing, &field_lights, light))
-            TRY(field_lights.look(drawing, light, eye, NULL, &shadows[i], err));
-    }
-    return STATUS_OK;
-}
-
-static void shadow_field(void *queue, const TileKernels *kernels, const BatchTile *tile,
-                         const SeenPlaces *places, uint64_t wanted, uint32_t answer)
-{
-    (void)tile;
-    field_lights.ask(queue, kernels, places, wanted, answer);
-}
-
 static const TileEngine field_tiles = {.fine_grid = true,
                                        .batch_tiles = SHADOW_BATCH,
                                        .rows_at_once = 8,
-                                       .lights = &field_lights,
+                                       .shadows = &field_shadows,
                                        .bin = bin_field,
                                        .release = release_field,
                                        .list = list_field,
                                        .is_listed = is_field_listed,
-                                       .trace = trace_field,
-                                       .look = look_at_field,
-                                       .shadow = shadow_field};
+                                       .trace = trace_field};
 
 static bool can_draw_field(const Drawing *drawing)
 {
@@ -84,7 +65,7 @@ static bool can_draw_field(const Drawing *drawing)
 
 static bool field_needs_rays(const Drawing *drawing)
 {
-    return tilerender_needs_rays(drawing, &field_lights);
+    return shadowengine_needs_rays(&field_shadows, drawing);
 }
 
 static Status prepare_field(const Drawing *drawing, void **prepared, Err *err)
@@ -100,5 +81,5 @@ const Engine field_engine = {.name = "field",
                              .prepare = prepare_field,
                              .rows = tilerender_rows,
                              .free = tilerender_free,
-                             .lights = &field_lights,
-                             .shadow = tilerender_shadow};
+                             .shadows = &field_shadows,
+                             .light_bins = tilerender_light_bins};

@@ -307,7 +307,7 @@ LANE_FN LaneMask load_places(const float *x, const float *y, const double *z, in
 
 /* Decides what is decided fast of the places from `first` on, and returns the lanes that are left.
  */
-LANE_FN LaneMask decide_at_once(FieldPlaces *places, int first, Departures *way)
+LANE_FN LaneMask decide_at_once(ShadowPoints *places, int first, Departures *way)
 {
     LaneMask open = load_places(&places->x[first], &places->y[first], &places->z[first],
                                 places->n - first, way);
@@ -315,15 +315,15 @@ LANE_FN LaneMask decide_at_once(FieldPlaces *places, int first, Departures *way)
     Lanes margin;
     LaneMask dark = open & depart(way, open, &at, &margin);
     for (uint32_t left = lanes_bits(dark); left; left &= left - 1)
-        places->state[first + __builtin_ctz(left)] = PLACE_DARK;
+        places->state[first + __builtin_ctz(left)] = SHADOW_DARK;
     open &= ~dark;
     if (lanes_any(open))
         open &= ~lit_at_once(way, open, &at, margin);
     return open;
 }
 
-LANE_FN void set_states(FieldPlaces *places, const uint16_t *numbers, LaneMask which,
-                        PlaceState state)
+LANE_FN void set_states(ShadowPoints *places, const uint16_t *numbers, LaneMask which,
+                        ShadowState state)
 {
     for (uint32_t left = lanes_bits(which); left; left &= left - 1)
         places->state[numbers[__builtin_ctz(left)]] = (uint8_t)state;
@@ -340,7 +340,7 @@ LANE_FN void place_terms(Departures *way)
 }
 
 /* Decides the places that have been put off, and forgets them. */
-LANE_FN void decide_by_march(FieldPlaces *places, Places *later, Departures *way)
+LANE_FN void decide_by_march(ShadowPoints *places, Places *later, Departures *way)
 {
     for (int lane = later->n; lane < LANES; lane++) {
         later->x[lane] = later->x[later->n - 1];
@@ -358,12 +358,12 @@ LANE_FN void decide_by_march(FieldPlaces *places, Places *later, Departures *way
             way->packet.sum[i] = &way->packet.terms[i];
         look_through_sum(way, &open, &dark, &unsure);
     }
-    set_states(places, later->numbers, unsure, PLACE_UNSURE);
-    set_states(places, later->numbers, dark, PLACE_DARK);
+    set_states(places, later->numbers, unsure, SHADOW_UNSURE);
+    set_states(places, later->numbers, dark, SHADOW_DARK);
     later->n = 0;
 }
 
-LANE_FN void put_off(const FieldPlaces *places, int number, Places *later)
+LANE_FN void put_off(const ShadowPoints *places, int number, Places *later)
 {
     int n = later->n++;
     later->x[n] = places->x[number];
@@ -372,13 +372,13 @@ LANE_FN void put_off(const FieldPlaces *places, int number, Places *later)
     later->numbers[n] = (uint16_t)number;
 }
 
-LANE_TARGET void SHADOW_KERNEL(const FieldTile *tile, TileWork *work, FieldPlaces *places)
+LANE_TARGET void SHADOW_KERNEL(const FieldTile *tile, TileWork *work, ShadowPoints *places)
 {
     Places later = {.n = 0};
     assert(tile->n_terms <= work->capacity);
     Departures way = {.packet = {.tile = tile, .terms = work->memory}, .blockers = work->memory};
     share_memory(&way.packet);
-    __builtin_memset(places->state, PLACE_LIT, (size_t)places->n);
+    __builtin_memset(places->state, SHADOW_LIT, (size_t)places->n);
     for (int first = 0; first < places->n; first += LANES)
         for (uint32_t open = lanes_bits(decide_at_once(places, first, &way)); open;
              open &= open - 1) {

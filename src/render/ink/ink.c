@@ -75,7 +75,7 @@ typedef enum CurveKind { CURVE_LINE, CURVE_ARC, CURVE_RULED } CurveKind;
 
 /* A line from `from` to `from` + `along`; a part of a circle about `from` through the ends of `u`
  * and `v`; or the outline of a joint between two of its ellipses. The parameter is from 0 to 1. */
-typedef struct Curve {
+typedef struct InkCurve {
     CurveKind kind;
     Vec3 from, along, u, v;
     double begin, span;      /* of an arc, in turns */
@@ -86,10 +86,10 @@ typedef struct Curve {
     double shrink;           /* of a circle: how much smaller it is drawn, in radii */
     double length_mm;        /* on paper */
     double width_mm;
-} Curve;
+} InkCurve;
 
 /* Where a point of the curve is looked at, and, times 1 - `inwards` of its radius, drawn. */
-static Vec3 circle_point(const Curve *curve, double t, double radii)
+static Vec3 circle_point(const InkCurve *curve, double t, double radii)
 {
     double angle = FULL_TURN * (curve->begin + t * curve->span);
     Vec3 out = vec3_add_scaled(vec3_scale(curve->u, elementary_cos(angle)), curve->v,
@@ -98,7 +98,7 @@ static Vec3 circle_point(const Curve *curve, double t, double radii)
 }
 
 /* A place of a joint's outline and the normal there. */
-static Vec3 ruled_point(const InkDrawing *ink, const Curve *curve, double t, Vec3 *normal)
+static Vec3 ruled_point(const InkDrawing *ink, const InkCurve *curve, double t, Vec3 *normal)
 {
     double way = curve->way[0] + t * (curve->way[1] - curve->way[0]);
     double angle = curve->angle[0] + t * (curve->angle[1] - curve->angle[0]);
@@ -107,7 +107,7 @@ static Vec3 ruled_point(const InkDrawing *ink, const Curve *curve, double t, Vec
     return joint_point(curve->joint, elementary_cos(angle), elementary_sin(angle), way);
 }
 
-static bool curve_is_seen(const InkPen *pen, const Curve *curve, double t)
+static bool curve_is_seen(const InkPen *pen, const InkCurve *curve, double t)
 {
     Vec3 place, normal;
     if (curve->kind == CURVE_ARC)
@@ -121,7 +121,7 @@ static bool curve_is_seen(const InkPen *pen, const Curve *curve, double t)
 }
 
 /* Half a line within the outline. */
-static Status add_ruled(const InkPen *pen, const Curve *curve, double t, Err *err)
+static Status add_ruled(const InkPen *pen, const InkCurve *curve, double t, Err *err)
 {
     Vec3 normal, point = ruled_point(pen->ink, curve, t, &normal);
     OnPaper place = on_paper(pen->ink, point);
@@ -130,7 +130,7 @@ static Status add_ruled(const InkPen *pen, const Curve *curve, double t, Err *er
                          on_paper(pen->ink, vec3_add_scaled(point, normal, -inwards)).at, err);
 }
 
-static Status add_point(const InkPen *pen, const Curve *curve, double t, Err *err)
+static Status add_point(const InkPen *pen, const InkCurve *curve, double t, Err *err)
 {
     if (curve->kind == CURVE_RULED)
         return add_ruled(pen, curve, t, err);
@@ -144,7 +144,7 @@ static Status add_point(const InkPen *pen, const Curve *curve, double t, Err *er
 }
 
 /* Draws the curve from t to end; a circle as a polygon. */
-static Status add_piece(const InkPen *pen, const Curve *curve, double t, double end, Err *err)
+static Status add_piece(const InkPen *pen, const InkCurve *curve, double t, double end, Err *err)
 {
     double radius_mm = curve->length_mm / curve->span / FULL_TURN;
     double side =
@@ -158,7 +158,7 @@ static Status add_piece(const InkPen *pen, const Curve *curve, double t, double 
 
 /* The place between a parameter where the curve is seen or not, as `seen` says, and one where it is
  * not so. */
-static double change(const InkPen *pen, const Curve *curve, double same, double other, bool seen)
+static double change(const InkPen *pen, const InkCurve *curve, double same, double other, bool seen)
 {
     for (int k = 0; k < HALVINGS; k++) {
         double middle = (same + other) / 2;
@@ -171,7 +171,7 @@ static double change(const InkPen *pen, const Curve *curve, double same, double 
 }
 
 /* Draws the parts of a curve that are seen. */
-static Status draw_curve(const InkPen *pen, const Curve *curve, Err *err)
+static Status draw_curve(const InkPen *pen, const InkCurve *curve, Err *err)
 {
     double wanted = ceil(2 * curve->length_mm / pen->ink->line_mm);
     int steps = (int)fmin(fmax(wanted, LEAST_STEPS * (curve->kind == CURVE_ARC ? 4 : 1)), 1e6);
@@ -212,12 +212,12 @@ static Vec3 front_normal(const Camera *camera, const Primitive *vessel)
 /* A vessel that is one line on paper. */
 static Status draw_thin(const InkPen *pen, const Primitive *vessel, const OnPaper ends[2], Err *err)
 {
-    const Curve axis = {.from = vessel->a,
-                        .along = vec3_sub(vessel->b, vessel->a),
-                        .aside = vec3_scale(front_normal(pen->ink->camera, vessel),
-                                            (1 + BESIDE) * vessel->radius_mm),
-                        .length_mm = distance_on_paper(&ends[0], &ends[1]),
-                        .width_mm = vessel->radius_mm * (ends[0].per_mm + ends[1].per_mm)};
+    const InkCurve axis = {.from = vessel->a,
+                           .along = vec3_sub(vessel->b, vessel->a),
+                           .aside = vec3_scale(front_normal(pen->ink->camera, vessel),
+                                               (1 + BESIDE) * vessel->radius_mm),
+                           .length_mm = distance_on_paper(&ends[0], &ends[1]),
+                           .width_mm = vessel->radius_mm * (ends[0].per_mm + ends[1].per_mm)};
     return draw_curve(pen, &axis, err);
 }
 
@@ -225,10 +225,10 @@ static Status draw_thin(const InkPen *pen, const Primitive *vessel, const OnPape
 static Status draw_side(const InkPen *pen, const Primitive *vessel, Vec3 normal,
                         const OnPaper ends[2], Err *err)
 {
-    Curve side = {.from = vec3_add_scaled(vessel->a, normal, vessel->radius_mm),
-                  .along = vec3_sub(vessel->b, vessel->a),
-                  .aside = vec3_scale(normal, BESIDE * vessel->radius_mm),
-                  .width_mm = pen->ink->line_mm};
+    InkCurve side = {.from = vec3_add_scaled(vessel->a, normal, vessel->radius_mm),
+                     .along = vec3_sub(vessel->b, vessel->a),
+                     .aside = vec3_scale(normal, BESIDE * vessel->radius_mm),
+                     .width_mm = pen->ink->line_mm};
     const OnPaper from = on_paper(pen->ink, side.from);
     const OnPaper to = on_paper(pen->ink, vec3_add(side.from, side.along));
     side.length_mm = distance_on_paper(&from, &to);
@@ -280,12 +280,12 @@ static bool ends_in_disc(const InkDrawing *ink, Vec3 end)
 static Status draw_circle(const InkPen *pen, Vec3 center, Vec3 axis, double radius, double paper_mm,
                           Err *err)
 {
-    Curve circle = {.kind = CURVE_ARC,
-                    .span = 1,
-                    .from = center,
-                    .shrink = pen->ink->line_mm / 2 / paper_mm,
-                    .length_mm = FULL_TURN * paper_mm,
-                    .width_mm = pen->ink->line_mm};
+    InkCurve circle = {.kind = CURVE_ARC,
+                       .span = 1,
+                       .from = center,
+                       .shrink = pen->ink->line_mm / 2 / paper_mm,
+                       .length_mm = FULL_TURN * paper_mm,
+                       .width_mm = pen->ink->line_mm};
     vec3_across(axis, &circle.u, &circle.v);
     circle.u = vec3_scale(circle.u, radius);
     circle.v = vec3_scale(circle.v, radius);
@@ -322,12 +322,12 @@ static Status draw_rulings(const InkPen *pen, const JointFrame *joint, const dou
             double apart = remainder(to[k] - from[i], FULL_TURN);
             turn = fabs(apart) < fabs(turn) ? apart : turn;
         }
-        const Curve outline = {.kind = CURVE_RULED,
-                               .joint = joint,
-                               .angle = {from[i], from[i] + turn},
-                               .way = {way[0], way[1]},
-                               .length_mm = length_mm,
-                               .width_mm = pen->ink->line_mm};
+        const InkCurve outline = {.kind = CURVE_RULED,
+                                  .joint = joint,
+                                  .angle = {from[i], from[i] + turn},
+                                  .way = {way[0], way[1]},
+                                  .length_mm = length_mm,
+                                  .width_mm = pen->ink->line_mm};
         if (turn < 1)
             TRY(draw_curve(pen, &outline, err));
     }
@@ -339,12 +339,12 @@ static Status draw_creases(const InkPen *pen, const JointFrame *joint, int end, 
                            Err *err)
 {
     double radius = joint->radius + end * joint->radius_change;
-    const Curve circle = {.kind = CURVE_ARC,
-                          .from = vec3_add_scaled(joint->base, joint->span, end),
-                          .u = vec3_add_scaled(joint->across, joint->across_change, end),
-                          .v = vec3_scale(joint->side, radius),
-                          .shrink = pen->ink->line_mm / 2 / (radius * per_mm),
-                          .width_mm = pen->ink->line_mm};
+    const InkCurve circle = {.kind = CURVE_ARC,
+                             .from = vec3_add_scaled(joint->base, joint->span, end),
+                             .u = vec3_add_scaled(joint->across, joint->across_change, end),
+                             .v = vec3_scale(joint->side, radius),
+                             .shrink = pen->ink->line_mm / 2 / (radius * per_mm),
+                             .width_mm = pen->ink->line_mm};
     for (int k = 0, next; k < FINE_SAMPLES; k = next) {
         next = k + 1;
         if (!joint_edge_is_outline(pen->ink->camera, joint, end,
@@ -354,7 +354,7 @@ static Status draw_creases(const InkPen *pen, const JointFrame *joint, int end, 
                joint_edge_is_outline(pen->ink->camera, joint, end,
                                      FULL_TURN * (next + 0.5) / FINE_SAMPLES))
             next++;
-        Curve arc = circle;
+        InkCurve arc = circle;
         arc.begin = (double)k / FINE_SAMPLES;
         arc.span = (double)(next - k) / FINE_SAMPLES;
         arc.length_mm = FULL_TURN * radius * per_mm * arc.span;

@@ -1,4 +1,4 @@
-/* Vessels as a line drawing: the outlines that are seen, as lines on paper. */
+/* Line drawings of vessels: the visible outlines, as lines on paper. */
 #ifndef CORCAST_RENDER_INK_H
 #define CORCAST_RENDER_INK_H
 
@@ -6,19 +6,21 @@
 #include "scene/scene.h"
 
 typedef struct InkParams {
-    double width_mm; /* of the paper; its height follows from the camera */
+    double width_mm; /* width of the paper; its height follows from the camera */
     double line_mm;  /* width of a line, > 0 */
     int threads;     /* 0: all processors */
 } InkParams;
 
-/* Draws the models of cylinders, joints and balls (MODEL_PRIMITIVES) in
- * *strokes (owned). A vessel wider on paper than two lines is drawn by its outlines, inside it, so
- * that their outer edges are the vessel's true edges; a thinner one by one line as wide as the
- * vessel. What lies behind or inside a vessel is left out, to a hundredth of a line; hidden parts
- * shorter than half a line may be drawn. Strokes that meet end to end are one. The same strokes for
- * any number of threads. STATUS_MEMORY; STATUS_USAGE when a vessel is not in front of the camera.
- * O(n log n) of n vessels and of the length of their lines.
- */
+/* Draws a geometry of primitives as lines.
+ *
+ * A vessel that is wider on paper than a line is drawn by its outlines. They lie inside the vessel:
+ * their outer edges are the vessel's true edges. A thinner vessel is drawn by one line, as wide as
+ * the vessel. What is behind or inside a vessel is left out, to a hundredth of a line; hidden parts
+ * shorter than half a line may be drawn. Strokes that meet end to end are joined.
+ *
+ * strokes   receives the lines; owned by the caller. They do not depend on the number of threads.
+ * Errors    STATUS_MEMORY; STATUS_USAGE if a vessel is not in front of the camera.
+ * Cost      O(n log n) for n vessels and the lengths of their lines. */
 MUST_CHECK Status ink_draw(const Geometry *geometry, const View *view, const InkParams *params,
                            Strokes *strokes, Err *err);
 

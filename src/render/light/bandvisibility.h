@@ -3,15 +3,13 @@
 #ifndef CORCAST_RENDER_BANDVISIBILITY_H
 #define CORCAST_RENDER_BANDVISIBILITY_H
 
-#include "render/light/lightview.h"
 #include "render/light/occluders.h"
 #include "render/light/offpixel.h"
-#include "render/light/shadowqueue.h"
 #include "render/light/visibility.h"
 
 /* Returns true if samples share visibility. Four conditions must hold: colours are wanted, the
- * method is not RENDER_TRACE, the view is not an x-ray, and either ambient occlusion is on or
- * shadows are on and an area light of the view casts soft shadows. */
+ * method is not RENDER_TRACE, the view is not an x-ray, and ambient occlusion or soft
+ * shadows are on. */
 bool pixelvisibility_is_needed(const View *view, const RenderParams *params);
 
 /* Number of rows above and below a band on which the band's visibility depends. Ambient occlusion
@@ -31,12 +29,12 @@ typedef Status DrawVesselPlanes(const Drawing *drawing, void *context, Frame *pl
 /* The inputs of pixelvisibility_compute. All are borrowed. */
 typedef struct VisibilitySources {
     DrawVesselPlanes *draw_planes;
-    void *context;                 /* passed to draw_planes */
-    const LightViews *light_views; /* queries area lights; where it is NULL or does not support a
-                                    * light, the drawing's caster traces shadow rays instead */
-    const OccluderSet *occluders;  /* block ambient light; read only if occlusion is on */
-    OffPixelPoints *off_pixel;     /* also receives its visibility of the area lights; NULL: there
-                                    * are no off-pixel shading points */
+    void *context;                /* passed to draw_planes */
+    const ShadowEngine *engine;   /* answers queries to area lights; if it is NULL or does not
+                                   * support a light, the drawing's caster traces shadow rays */
+    const OccluderSet *occluders; /* block ambient light; read only if occlusion is on */
+    OffPixelPoints *off_pixel;    /* also receives its visibility of the area lights; NULL: there
+                                   * are no off-pixel shading points */
 } VisibilitySources;
 
 /* Computes the visibility of all pixels of the drawing's band.

@@ -110,14 +110,3 @@ LightAim lightview_aim(const LightView *view, const Viewpoint *camera, double sl
         aim.axes[i] = viewpoint_to_frame(camera, view->eye.axes[i]);
     return aim;
 }
-
-bool lightviews_can(const LightViews *views, const Geometry *geometry, const View *view,
-                    const Light *light)
-{
-    bool can = true;
-    for (int k = 0; k < light_points(light); k++) {
-        Light point = light_at_point(light, k);
-        can = can && views->can(geometry, view, &point);
-    }
-    return can;
-}

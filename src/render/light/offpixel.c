@@ -1,135 +1,101 @@
-/* Places are asked about in runs of the order that they have, whoever asks: an answer depends
- * neither on the number of threads nor on the band that is drawn. */
+/* Points query in runs of the order that they have. So an answer depends neither on the number of
+ * threads nor on the band that is drawn. */
 #include "render/light/offpixel.h"
 
-#include "render/cast/caster.h"
-#include "render/light/shadowqueue.h"
+#include "render/light/shadowpass.h"
 #include <stdlib.h>
-#include <string.h>
 
 enum { RUN = 4096 };
 
-typedef struct Asking {
-    const Drawing *drawing;
-    const OffPixelPoints *places;
-    size_t light;
-    /* Of what is seen from the light: */
-    const LightViews *views;
-    const Viewpoint *frame;
-    void **queues;  /* owned, as all that follows; one a worker */
-    Status *status; /* likewise */
-} Asking;
-
-Status offpixel_init(const View *view, OffPixelPoints *places, Err *err)
+Status offpixel_init(const View *view, OffPixelPoints *points, Err *err)
 {
     for (size_t i = 0; i < view->n_lights; i++)
         if (view->lights[i].casts_shadows)
-            TRY(mem_calloc(&places->reach[i], places->n, sizeof *places->reach[i], "lights", err));
+            TRY(mem_calloc(&points->n_visible[i], points->n, sizeof *points->n_visible[i], "lights",
+                           err));
     return STATUS_OK;
 }
 
-void offpixel_release(OffPixelPoints *places)
+void offpixel_release(OffPixelPoints *points)
 {
     for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
-        free(places->reach[i]);
-    *places = (OffPixelPoints){0};
+        free(points->n_visible[i]);
+    *points = (OffPixelPoints){0};
 }
 
-static size_t runs_of(const OffPixelPoints *places)
+typedef struct OffPixelJob {
+    const Drawing *drawing;
+    const OffPixelPoints *points;
+    const Viewpoint *frame; /* of the light views */
+    size_t light;
+    ShadowPass pass;
+} OffPixelJob;
+
+static size_t run_count(const OffPixelPoints *points)
 {
-    return (places->n + RUN - 1) / RUN;
+    return (points->n + RUN - 1) / RUN;
 }
 
-static size_t end_of(const OffPixelPoints *places, size_t run)
+static size_t run_end(const OffPixelPoints *points, size_t run)
 {
-    return (run + 1) * RUN < places->n ? (run + 1) * RUN : places->n;
+    return (run + 1) * RUN < points->n ? (run + 1) * RUN : points->n;
 }
 
-/* ---- looking --------------------------------------------------------------------------------- */
-
-/* Asks about the places from a number on, at most TILE_SAMPLES of them. */
-static void ask_places(const Asking *asking, size_t from, size_t to, void *queue, uint32_t answer)
+/* ShadowPoser.place: all points query. */
+static uint64_t place_points(const void *context, size_t first, size_t n, SeenPlaces *places)
 {
-    const OffPixelPoints *places = asking->places;
-    const TileKernels *kernels = tilekernels[kernels_kind(asking->drawing->params->kernels)];
-    const Light *light = &asking->drawing->view->lights[asking->light];
-    SeenPlaces seen = {.x = {0}};
-    uint64_t wanted = 0;
-    for (size_t i = 0; i < TILE_SAMPLES && from + i < to; i++) {
-        Vec3 at = viewpoint_place(asking->frame, places->at(places->context, light, from + i));
-        seen.x[i] = at.x;
-        seen.y[i] = at.y;
-        seen.z[i] = at.z;
-        wanted |= (uint64_t)1 << i;
+    const OffPixelJob *job = context;
+    const OffPixelPoints *points = job->points;
+    const Light *light = &job->drawing->view->lights[job->light];
+    for (size_t i = 0; i < n; i++) {
+        Vec3 at = viewpoint_place(job->frame, points->at(points->context, light, first + i));
+        places->x[i] = at.x;
+        places->y[i] = at.y;
+        places->z[i] = at.z;
     }
-    asking->views->ask(queue, kernels, &seen, wanted, answer);
+    return UINT64_MAX >> (TILE_SAMPLES - n);
 }
 
-static void look_at_run(size_t run, int worker, void *context)
+static void add_visible(const void *context, size_t index, int n_lit)
 {
-    const Asking *asking = context;
-    uint16_t *reach = asking->places->reach[asking->light];
-    uint8_t shadowed[RUN] = {0};
-    size_t from = run * RUN, to = end_of(asking->places, run);
-    for (size_t i = from; i < to; i += TILE_SAMPLES)
-        ask_places(asking, i, to, asking->queues[worker], (uint32_t)(i - from));
-    Status status = asking->views->answer(asking->queues[worker], asking->drawing->params->kernels,
-                                          shadowed, NULL);
-    if (status != STATUS_OK)
-        asking->status[worker] = status;
-    for (size_t i = from; i < to; i++)
-        reach[i] = (uint16_t)(reach[i] + !shadowed[i - from]);
+    const OffPixelJob *job = context;
+    uint16_t *n_visible = &job->points->n_visible[job->light][index];
+    *n_visible = (uint16_t)(*n_visible + n_lit);
 }
 
-static Status look(Asking *asking, const void *shadow, Err *err)
+static Status query_run(size_t run, int worker, void *context, Err *err)
 {
-    size_t workers = (size_t)asking->drawing->params->threads;
-    TRY(mem_calloc(&asking->queues, workers, sizeof *asking->queues, "lights", err));
-    TRY(mem_calloc(&asking->status, workers, sizeof *asking->status, "lights", err));
-    for (size_t i = 0; i < workers; i++)
-        TRY(asking->views->queue_new(shadow, NULL, &asking->queues[i], err));
-    threads_for(runs_of(asking->places), (int)workers, look_at_run, asking);
-    for (size_t i = 0; i < workers; i++)
-        if (asking->status[i] != STATUS_OK)
-            return err_set(err, asking->status[i], "out of memory: no room for shadows");
-    return STATUS_OK;
+    const OffPixelJob *job = context;
+    return shadowpass_run(&job->pass, run * RUN, run_end(job->points, run), worker, err);
 }
 
-Status offpixel_query(const Drawing *drawing, const LightViews *views, const void *shadow,
-                      const Viewpoint *frame, size_t light, OffPixelPoints *places, Err *err)
+Status offpixel_query(const Drawing *drawing, const OffPixelViews *views, size_t light,
+                      OffPixelPoints *points, Err *err)
 {
-    Asking asking = {
-        .drawing = drawing, .places = places, .light = light, .views = views, .frame = frame};
-    Status status = look(&asking, shadow, err);
-    for (int i = 0; asking.queues && i < drawing->params->threads; i++)
-        views->queue_free(asking.queues[i]);
-    free(asking.queues);
-    free(asking.status);
+    OffPixelJob job = {.drawing = drawing, .points = points, .frame = views->frame, .light = light};
+    Status status;
+    job.pass.poser = (ShadowPoser){place_points, add_visible, &job};
+    TRY_GOTO(shadowpass_init(drawing, views->bins, views->n_views, NULL, &job.pass, err));
+    TRY_GOTO(threads_try(run_count(points), drawing->params->threads, query_run, &job, err));
+done:
+    shadowpass_release(&job.pass, drawing);
     return status;
 }
 
-/* ---- rays ------------------------------------------------------------------------------------ */
-
-static void cast_run(size_t run, int worker, void *context)
+static void trace_run(size_t run, int worker, void *context)
 {
-    const Asking *asking = context;
-    const Drawing *drawing = asking->drawing;
-    const OffPixelPoints *places = asking->places;
-    const Light *light = &drawing->view->lights[asking->light];
-    for (size_t i = run * RUN; i < end_of(places, run); i++) {
-        Vec3 point = places->at(places->context, light, i);
-        uint16_t seen = 0;
-        for (int k = 0; k < light_points(light); k++) {
-            LightWay way = light_way_to_point(light, k, point);
-            seen = (uint16_t)(seen + !caster_shadow(drawing->caster, worker, &drawing->view->ground,
-                                                    point, way.towards, way.distance));
-        }
-        places->reach[asking->light][i] = seen;
+    const OffPixelJob *job = context;
+    const OffPixelPoints *points = job->points;
+    const Light *light = &job->drawing->view->lights[job->light];
+    for (size_t i = run * RUN; i < run_end(points, run); i++) {
+        Vec3 point = points->at(points->context, light, i);
+        points->n_visible[job->light][i] =
+            (uint16_t)shadowrays_count(job->drawing, worker, light, ALL_SETS, point);
     }
 }
 
-void offpixel_trace(const Drawing *drawing, size_t light, OffPixelPoints *places)
+void offpixel_trace(const Drawing *drawing, size_t light, OffPixelPoints *points)
 {
-    Asking asking = {.drawing = drawing, .places = places, .light = light};
-    threads_for(runs_of(places), drawing->params->threads, cast_run, &asking);
+    OffPixelJob job = {.drawing = drawing, .points = points, .light = light};
+    threads_for(run_count(points), drawing->params->threads, trace_run, &job);
 }

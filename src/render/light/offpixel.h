@@ -1,34 +1,41 @@
-/* How much of each light reaches places that belong to no pixel, as those that stand for vessels
- * thinner than a pixel. */
+/* Visibility of lights at shading points that belong to no pixel, such as the sample points of
+ * vessels thinner than a pixel. */
 #ifndef CORCAST_RENDER_OFFPIXEL_H
 #define CORCAST_RENDER_OFFPIXEL_H
 
-#include "render/job.h"
-#include "render/light/lightview.h"
+#include "render/light/shadowengine.h"
 
-/* Places of the world, and how many points of each light reach them. */
+/* Shading points, and the visibility of each light at them. */
 typedef struct OffPixelPoints {
     size_t n;
-    /* Returns place `number` < n, as this light is asked from it. Called by several threads. */
-    Vec3 (*at)(const void *context, const Light *light, size_t number);
-    const void *context;              /* borrowed */
-    uint16_t *reach[VIEW_MAX_LIGHTS]; /* owned; of each place; NULL: the light casts no shadows */
+    /* Returns the position of point `index` < n in world coordinates, for queries to this light.
+     * Called by several threads. */
+    Vec3 (*at)(const void *context, const Light *light, size_t index);
+    const void *context;                  /* passed to `at`; borrowed */
+    uint16_t *n_visible[VIEW_MAX_LIGHTS]; /* per point: how many points of the light are visible so
+                                           * far; NULL: the light casts no shadows. Owned. */
 } OffPixelPoints;
 
-/* Make room for the lights of a view, all of whose points reach no place yet; *places is the
- * caller's even when this fails. STATUS_MEMORY. */
-MUST_CHECK Status offpixel_init(const View *view, OffPixelPoints *places, Err *err);
-void offpixel_release(OffPixelPoints *places);
+/* Allocates `n_visible` for the lights of a view, all 0. Release the points with offpixel_release,
+ * even after an error. Errors: STATUS_MEMORY. */
+MUST_CHECK Status offpixel_init(const View *view, OffPixelPoints *points, Err *err);
+void offpixel_release(OffPixelPoints *points);
 
-/* Looks at all places from a light, or from one point of an area light, and adds 1 to reach[light]
- * of each place that nothing hides from there. `shadow` is what views->look prepared of that point
- * for places in `frame`. STATUS_MEMORY. */
-MUST_CHECK Status offpixel_query(const Drawing *drawing, const LightViews *views,
-                                 const void *shadow, const Viewpoint *frame, size_t light,
-                                 OffPixelPoints *places, Err *err);
+/* Queries light views of a light, or of some of the points of an area light, for all shading
+ * points. Adds to n_visible[light] of each point the number of views from which it is lit.
+ *
+ * bins     n_views light bins, made for points in `frame`.
+ * Errors   STATUS_MEMORY. */
+typedef struct OffPixelViews {
+    LightBins *const *bins;
+    int n_views;
+    const Viewpoint *frame;
+} OffPixelViews;
+MUST_CHECK Status offpixel_query(const Drawing *drawing, const OffPixelViews *views, size_t light,
+                                 OffPixelPoints *points, Err *err);
 
-/* Sets reach[light] of all places by rays to all points of the light, cast by the drawing's
- * caster. */
-void offpixel_trace(const Drawing *drawing, size_t light, OffPixelPoints *places);
+/* Sets n_visible[light] of all points by shadow rays of the drawing's caster to all points of the
+ * light. */
+void offpixel_trace(const Drawing *drawing, size_t light, OffPixelPoints *points);
 
 #endif

@@ -37,8 +37,7 @@ static void add_shared(const Drawing *drawing, double i, double j, double t, boo
 
 bool raycolor_is_needed(const View *view, const RenderParams *params)
 {
-    return params->occlusion > 0 || view->ground.present ||
-           (params->shadows && view_has_soft_shadows(view));
+    return params->occlusion > 0 || view->ground.present || softshadows_are_on(view, params);
 }
 
 static Rgb pigment_of(const Drawing *drawing, const Surfel *surfel, Vec3 point)

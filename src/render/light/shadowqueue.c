@@ -1,121 +1,150 @@
-/* Each tile of the light has a chain of requests, each for those places of one tile of the picture
- * that lie in it: few, as neighbours in the picture mostly are neighbours in the light's view. The
- * places of a request lie side by side in memory, and nothing else is kept of the picture's tile:
- * a batch stays in the cache. */
+/* Neighbours in the image mostly are neighbours in the light view. So the points of one call lie in
+ * few tiles of the light view. Each tile of the light view has a chain of runs: a run holds the
+ * points of one call that lie in that tile. Points of a run are consecutive in memory. Nothing else
+ * of the image's tile is stored, so that a batch stays in the cache. */
 #include "render/light/shadowqueue.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Places of one tile of the picture that lie in one tile of the light. */
-typedef struct Request {
-    int first, n; /* of those asked */
-    int before;   /* the request before it in the tile of the light, or -1 */
-} Request;
+/* Points of one call that lie in one tile of the light view. */
+typedef struct QueuedRun {
+    int first, n; /* of ShadowQueue.queued */
+    int before;   /* index of the run before it in the same tile, or -1 */
+} QueuedRun;
 
 struct ShadowQueue {
-    LightAim aim;
-    int n_calls, n_requests, n_tiles, n_asked;
-    Request requests[SHADOW_MAX_POINTS];
-    int tiles[SHADOW_MAX_POINTS]; /* of the light, that are asked, in the order of their first
-                                   * request */
-    QueuedPoints asked;
-    QueuedPoints taken; /* of the tile that is shown */
-    int *last;          /* of each tile of the light, the last request there, or -1 */
+    const LightBins *bins;
+    void *workspace; /* the engine's */
+    RenderKernels kernels;
+    bool has_items;
+    int n_calls, n_runs, n_tiles;
+    uint32_t answer[SHADOW_BATCH]; /* per call */
+    QueuedRun runs[SHADOW_MAX_POINTS];
+    int tiles[SHADOW_MAX_POINTS]; /* tiles of the light view that have runs, in the order of their
+                                   * first runs */
+    ShadowPoints queued, taken;   /* all points, and those of the tile being answered */
+    int *last;                    /* per tile of the light view: its last run, or -1; owned */
 };
 
-Status shadowqueue_new(const LightAim *aim, ShadowQueue **out, Err *err)
+Status shadowqueue_new(const LightBins *bins, RenderKernels kernels, const bool *hidden,
+                       ShadowQueue **out, Err *err)
 {
     ShadowQueue *queue;
-    size_t n = (size_t)aim->columns * (size_t)aim->rows;
+    size_t n = (size_t)bins->view.tiles * (size_t)bins->view.tiles;
     TRY(mem_alloc(&queue, 1, sizeof *queue, "shadows", err));
     *out = queue;
-    queue->aim = *aim;
-    queue->n_calls = queue->n_requests = queue->n_tiles = queue->n_asked = 0;
+    queue->bins = bins;
+    queue->kernels = kernels;
+    queue->n_calls = queue->n_runs = queue->n_tiles = queue->queued.n = 0;
+    queue->workspace = NULL;
     queue->last = NULL;
     TRY(mem_calloc(&queue->last, n, sizeof *queue->last, "shadows", err));
     memset(queue->last, -1, n * sizeof *queue->last);
-    return STATUS_OK;
+    return bins->engine->begin ? bins->engine->begin(bins, hidden, &queue->workspace, err)
+                               : STATUS_OK;
 }
 
 void shadowqueue_free(ShadowQueue *queue)
 {
     if (!queue)
         return;
+    if (queue->bins->engine->end)
+        queue->bins->engine->end(queue->workspace);
     free(queue->last);
     free(queue);
 }
 
-/* Asks about the places whose bits are set, and returns how many they are. */
-static int append_places(ShadowQueue *queue, const AimedPlaces *aimed, int call, uint64_t places)
+/* Appends the points whose bits are set, and returns their number. */
+static int append_points(ShadowQueue *queue, const AimedPlaces *aimed, const uint32_t *items,
+                         uint64_t which)
 {
-    QueuedPoints *asked = &queue->asked;
-    int first = queue->n_asked, n = first;
-    for (; places; places &= places - 1, n++) {
-        int sample = __builtin_ctzll(places);
-        asked->x[n] = aimed->x[sample];
-        asked->y[n] = aimed->y[sample];
-        asked->z[n] = aimed->z[sample];
-        asked->from[n] = (uint32_t)(TILE_SAMPLES * call + sample);
+    ShadowPoints *queued = &queue->queued;
+    const uint32_t call = (uint32_t)queue->n_calls;
+    int first = queued->n, n = first;
+    for (; which; which &= which - 1, n++) {
+        uint32_t sample = (uint32_t)__builtin_ctzll(which);
+        queued->x[n] = aimed->x[sample];
+        queued->y[n] = aimed->y[sample];
+        queued->z[n] = aimed->z[sample];
+        queued->query[n] = TILE_SAMPLES * call + sample;
+        if (items)
+            queued->item[n] = items[sample];
     }
-    queue->n_asked = n;
+    queued->n = n;
     return n - first;
 }
 
-int shadowqueue_ask(ShadowQueue *queue, const TileKernels *kernels, const SeenPlaces *places,
-                    uint64_t wanted)
+void shadowqueue_add(ShadowQueue *queue, const SeenPlaces *points,
+                     const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer)
 {
-    int call = queue->n_calls++;
+    const TileKernels *kernels = tilekernels[kernels_kind(queue->kernels)];
     AimedPlaces aimed;
-    kernels->aim(&queue->aim, places, &aimed);
+    if (!wanted)
+        return;
+    kernels->aim(&queue->bins->aim, points, &aimed);
     while (wanted) {
-        int tile = aimed.tile[__builtin_ctzll(wanted)], n = queue->n_requests++;
+        int tile = aimed.tile[__builtin_ctzll(wanted)], n = queue->n_runs++;
         uint64_t within = wanted & kernels->within(&aimed, tile);
         if (queue->last[tile] < 0)
             queue->tiles[queue->n_tiles++] = tile;
-        Request *request = &queue->requests[n];
-        *request = (Request){.first = queue->n_asked, .before = queue->last[tile]};
-        request->n = append_places(queue, &aimed, call, within);
+        QueuedRun *run = &queue->runs[n];
+        *run = (QueuedRun){.first = queue->queued.n, .before = queue->last[tile]};
+        run->n = append_points(queue, &aimed, items, within);
         queue->last[tile] = n;
         wanted &= ~within;
     }
-    return call;
+    queue->has_items = items != NULL;
+    queue->answer[queue->n_calls++] = answer;
 }
 
-/* Copies n places, and up to POINT_PADDING more: in blocks of one size, which compilers copy
- * without a call, as requests are small. */
-static void copy_places(const QueuedPoints *from, int first, int n, QueuedPoints *to, int at)
+/* Copies n points, and up to POINT_PADDING more: in blocks of one size, which compilers copy
+ * without a call, because runs are short. */
+static void copy_points(const ShadowPoints *from, int first, int n, bool has_items,
+                        ShadowPoints *to)
 {
     enum { BLOCK = POINT_PADDING + 1 };
+    const int at = to->n;
     for (int i = 0; i < n; i += BLOCK) {
         memcpy(&to->x[at + i], &from->x[first + i], BLOCK * sizeof *to->x);
         memcpy(&to->y[at + i], &from->y[first + i], BLOCK * sizeof *to->y);
         memcpy(&to->z[at + i], &from->z[first + i], BLOCK * sizeof *to->z);
-        memcpy(&to->from[at + i], &from->from[first + i], BLOCK * sizeof *to->from);
+        memcpy(&to->query[at + i], &from->query[first + i], BLOCK * sizeof *to->query);
+        if (has_items)
+            memcpy(&to->item[at + i], &from->item[first + i], BLOCK * sizeof *to->item);
     }
+    to->n = at + n;
 }
 
-/* Collects what a tile is asked, and forgets it. */
-static int take_places(ShadowQueue *queue, int tile)
+/* Moves the queries of a tile to queue->taken. */
+static void take_points(ShadowQueue *queue, int tile)
 {
-    int n = 0;
-    for (int i = queue->last[tile]; i >= 0; i = queue->requests[i].before) {
-        const Request *request = &queue->requests[i];
-        copy_places(&queue->asked, request->first, request->n, &queue->taken, n);
-        n += request->n;
-    }
+    ShadowPoints *taken = &queue->taken;
+    taken->n = 0;
+    for (int i = queue->last[tile]; i >= 0; i = queue->runs[i].before)
+        copy_points(&queue->queued, queue->runs[i].first, queue->runs[i].n, queue->has_items,
+                    taken);
+    if (!queue->has_items)
+        memset(taken->item, 0xff, (size_t)taken->n * sizeof *taken->item); /* NO_ITEM */
     queue->last[tile] = -1;
-    return n;
 }
 
-void shadowqueue_visit(ShadowQueue *queue, LightVisitor *visit, void *context)
+Status shadowqueue_answer(ShadowQueue *queue, uint8_t *shadowed, Err *err)
 {
+    const ShadowPoints *points = &queue->taken;
+    Status status = STATUS_OK;
     for (int i = 0; i < queue->n_tiles; i++) {
-        TileQueries request = {.tile = queue->tiles[i],
-                               .next = i + 1 < queue->n_tiles ? queue->tiles[i + 1] : -1,
-                               .places = &queue->taken,
-                               .n = take_places(queue, queue->tiles[i])};
-        visit(&request, context);
+        const TileQueries queries = {.tile = queue->tiles[i],
+                                     .next = i + 1 < queue->n_tiles ? queue->tiles[i + 1] : -1,
+                                     .kernels = queue->kernels,
+                                     .points = &queue->taken};
+        take_points(queue, queries.tile);
+        if (status == STATUS_OK)
+            status = queue->bins->engine->test(queue->bins, queue->workspace, &queries, err);
+        for (int k = 0; k < points->n && status == STATUS_OK; k++)
+            shadowed[queue->answer[points->query[k] / TILE_SAMPLES] +
+                     points->query[k] % TILE_SAMPLES] = points->state[k];
     }
-    queue->n_calls = queue->n_requests = queue->n_tiles = queue->n_asked = 0;
+    queue->n_calls = queue->n_runs = queue->n_tiles = queue->queued.n = 0;
+    return status;
 }

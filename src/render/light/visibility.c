@@ -6,6 +6,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+bool softshadows_are_on(const View *view, const RenderParams *params)
+{
+    return params->shadows && view_has_soft_shadows(view);
+}
+
 enum { SEARCH_PIXELS = 2 }; /* pixels to each side */
 
 static float distance2(const ShadingPoint *a, const ShadingPoint *b)

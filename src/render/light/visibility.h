@@ -8,6 +8,9 @@
 #include "scene/scene.h"
 #include <math.h>
 
+/* Returns true if shadows are on and an area light of the view casts soft ones. */
+bool softshadows_are_on(const View *view, const RenderParams *params);
+
 typedef enum SurfaceKind { SURFACE_VESSEL, SURFACE_GROUND } SurfaceKind;
 
 /* The point at which a ray hits a surface. */

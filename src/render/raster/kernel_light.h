@@ -40,11 +40,11 @@ typedef struct QueryBlock {
 
 /* As item_covers() of one query, in double precision. */
 LANE_TARGET static bool decide_query(const NearItem *near, const RasterTile *tile,
-                                     const ShadowQueries *queries, int query)
+                                     const ShadowPoints *points, int query)
 {
-    double z = raster_decide(tile->bins, near->number, tile->x + (double)queries->x[query],
-                             tile->y + (double)queries->y[query], NULL);
-    return z - tile->z_middle < (double)queries->z[query];
+    double z = raster_decide(tile->bins, near->number, tile->x + (double)points->x[query],
+                             tile->y + (double)points->y[query], NULL);
+    return z - tile->z_middle < (double)(float)points->z[query];
 }
 
 /* Lines that may enter the item before depths z from its middle, by its capsule and without a root.
@@ -132,7 +132,7 @@ RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const NearItem *near,
 
 /* Whether the item is seen before the queries' depths. */
 RASTER_FN LaneMask item_covers(const NearItem *near, const RasterTile *tile,
-                               const ShadowQueries *queries, int first, const QueryBlock *block,
+                               const ShadowPoints *points, int first, const QueryBlock *block,
                                LaneMask among)
 {
     const Lanes z = block->z;
@@ -165,7 +165,7 @@ RASTER_FN LaneMask item_covers(const NearItem *near, const RasterTile *tile,
     unsure &= ~covered;
     for (uint32_t left = lanes_bits(unsure); left; left &= left - 1) {
         int lane = __builtin_ctz(left);
-        covered[lane] = -decide_query(near, tile, queries, first + lane);
+        covered[lane] = -decide_query(near, tile, points, first + lane);
     }
     return covered;
 }
@@ -179,13 +179,13 @@ RASTER_FN uint32_t parts_of(Lanes at, double per)
     return (uint32_t)lanes_least(part) | (RASTERBOX_PARTS - 1 - (uint32_t)lanes_largest(part)) << 8;
 }
 
-RASTER_FN QueryBlock load_queries(const RasterTile *tile, const ShadowQueries *queries, int first)
+RASTER_FN QueryBlock load_queries(const RasterTile *tile, const ShadowPoints *points, int first)
 {
     const RasterView *view = &tile->bins->view;
-    QueryBlock block = {.x = lanes_load(&queries->x[first]),
-                        .y = lanes_load(&queries->y[first]),
-                        .z = lanes_load(&queries->z[first]),
-                        .item = load_items(&queries->item[first])};
+    QueryBlock block = {.x = lanes_load(&points->x[first]),
+                        .y = lanes_load(&points->y[first]),
+                        .z = lanes_of_doubles(&points->z[first], 0),
+                        .item = load_items(&points->item[first])};
     block.deepest = lanes_largest(block.z);
     block.box = parts_of(block.x, view->per_x) | parts_of(block.y, view->per_y) << 16;
     return block;
@@ -203,11 +203,11 @@ RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const Quer
     return left < LANES ? bits & ((1u << left) - 1) : bits;
 }
 
-RASTER_FN void cover_block(const RasterTile *tile, ShadowQueries *queries, int first,
+RASTER_FN void cover_block(const RasterTile *tile, ShadowPoints *points, int first,
                            bool perspective)
 {
-    const QueryBlock block = load_queries(tile, queries, first);
-    LaneMask open = lanes_of_bytes(&queries->covered[first]);
+    const QueryBlock block = load_queries(tile, points, first);
+    LaneMask open = lanes_of_bytes(&points->state[first]);
     for (size_t i = 0; i < tile->n && lanes_any(open); i += LANES) {
         uint32_t bits = items_before(tile, i, &block);
         for (uint32_t left = bits; left; left &= left - 1)
@@ -217,29 +217,29 @@ RASTER_FN void cover_block(const RasterTile *tile, ShadowQueries *queries, int f
                 approach(tile, tile->list[i + (size_t)__builtin_ctz(bits)], perspective);
             LaneMask among = open & (block.z > near.z_near) & (block.item != (int32_t)near.number);
             if (lanes_any(among))
-                open &= ~item_covers(&near, tile, queries, first, &block, among);
+                open &= ~item_covers(&near, tile, points, first, &block, among);
         }
     }
     for (int lane = 0; lane < LANES; lane++)
-        queries->covered[first + lane] = !open[lane];
+        points->state[first + lane] = !open[lane];
 }
 
-LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, ShadowQueries *queries)
+LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, ShadowPoints *points)
 {
-    __builtin_memset(queries->covered, 1, (size_t)queries->n);
+    __builtin_memset(points->state, 1, (size_t)points->n);
     /* The last block is filled up with queries that are like the first and not asked for. */
-    for (int i = queries->n; i % LANES; i++) {
-        queries->x[i] = queries->x[0];
-        queries->y[i] = queries->y[0];
-        queries->z[i] = queries->z[0];
-        queries->item[i] = queries->item[0];
-        queries->covered[i] = 0;
+    for (int i = points->n; i % LANES; i++) {
+        points->x[i] = points->x[0];
+        points->y[i] = points->y[0];
+        points->z[i] = points->z[0];
+        points->item[i] = points->item[0];
+        points->state[i] = 0;
     }
-    for (int first = 0; first < queries->n; first += LANES)
+    for (int first = 0; first < points->n; first += LANES)
         if (tile->perspective)
-            cover_block(tile, queries, first, true);
+            cover_block(tile, points, first, true);
         else
-            cover_block(tile, queries, first, false);
+            cover_block(tile, points, first, false);
 }
 
 const RasterKernels RASTER_KERNEL(rasterkernels) = {.trace = RASTER_KERNEL(trace),

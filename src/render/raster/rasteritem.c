@@ -10,7 +10,7 @@ static const double most_pixels = 16384; /* 2^-24 of it are a thousandth of a pi
 static const double least_sine =
     0.02; /* of the angle at which a wall is looked at along its axis */
 
-static void store_vec3(float to[3], Vec3 v)
+static void store_floats(float to[3], Vec3 v)
 {
     to[0] = (float)v.x;
     to[1] = (float)v.y;
@@ -51,23 +51,23 @@ RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive,
     joint.across_change = viewpoint_to_frame(&view->eye, joint.across_change);
     face_sight(&joint, view->eye.perspective ? middle : vec3(0, 0, 1), part);
     Vec3 base = part[0], span = part[1], a = part[2], b = part[3], da = part[4], db = part[5];
-    store_vec3(made.base, base);
-    store_vec3(made.span, span);
-    store_vec3(made.a, a);
-    store_vec3(made.b, b);
-    store_vec3(made.da, da);
-    store_vec3(made.db, db);
-    store_vec3(made.by[0], vec3_add(vec3_cross(base, span), vec3_cross(b, db)));
-    store_vec3(made.by[1], vec3_add(vec3_cross(base, da), vec3_cross(a, span)));
-    store_vec3(made.by[2], vec3_add(vec3_cross(base, db), vec3_cross(b, span)));
-    store_vec3(made.by[3], vec3_sub(vec3_cross(a, da), vec3_cross(b, db)));
-    store_vec3(made.by[4], vec3_add(vec3_cross(a, db), vec3_cross(b, da)));
+    store_floats(made.base, base);
+    store_floats(made.span, span);
+    store_floats(made.a, a);
+    store_floats(made.b, b);
+    store_floats(made.da, da);
+    store_floats(made.db, db);
+    store_floats(made.by[0], vec3_add(vec3_cross(base, span), vec3_cross(b, db)));
+    store_floats(made.by[1], vec3_add(vec3_cross(base, da), vec3_cross(a, span)));
+    store_floats(made.by[2], vec3_add(vec3_cross(base, db), vec3_cross(b, span)));
+    store_floats(made.by[3], vec3_sub(vec3_cross(a, da), vec3_cross(b, db)));
+    store_floats(made.by[4], vec3_add(vec3_cross(a, db), vec3_cross(b, da)));
     return made;
 }
 
 static void store_plane(float to[4], Vec3 inward, Vec3 center, double radius)
 {
-    store_vec3(to, inward);
+    store_floats(to, inward);
     to[3] = (float)(1e-3 * radius - vec3_dot(inward, center));
 }
 
@@ -87,8 +87,50 @@ static RasterHull make_hull(const RasterView *view, const Primitive *primitive, 
     return hull;
 }
 
+/* The axis of a capsule in a view. */
+typedef struct ItemAxis {
+    double length;
+    double sine, cosine; /* of the angle to the view direction; cosine >= 0 */
+    double ex, ey;       /* unit vector across the view */
+    double turn;         /* 1 if the axis leads from a to b, -1 if it leads from b to a */
+} ItemAxis;
+
+static ItemAxis axis_of(Vec3 span)
+{
+    ItemAxis axis = {.length = vec3_length(span), .sine = 1, .ex = 1, .turn = span.z < 0 ? -1 : 1};
+    if (axis.length > 0) {
+        double across = sqrt(span.x * span.x + span.y * span.y);
+        axis.cosine = axis.turn * span.z / axis.length;
+        axis.sine = across / axis.length;
+        axis.ex = across > 0 ? axis.turn * span.x / across : 1;
+        axis.ey = across > 0 ? axis.turn * span.y / across : 0;
+    }
+    return axis;
+}
+
+/* Returns the kind of a primitive that is neither close to the eye nor too long. */
+static RasterKind kind_of(const Geometry *geometry, const RasterView *view,
+                          const Primitive *primitive, const ItemAxis *axis)
+{
+    if (primitive->kind == PRIMITIVE_CYLINDER)
+        return !view->eye.perspective && axis->sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
+    if (primitive->kind == PRIMITIVE_JOINT)
+        return !geometry->open_joints && primitive_joint_is_solid(primitive) ? RASTER_JOINT
+                                                                             : RASTER_EXACT;
+    return RASTER_SPHERE;
+}
+
+/* Returns true if an item is close to the eye, or longer than single precision can draw. */
+static bool is_odd(const RasterView *view, const RasterItem *item, const ItemAxis *axis, double z,
+                   double radius)
+{
+    double near = z - axis->cosine * axis->length / 2 - radius;
+    double pixel = min_of(view->step_x, -view->step_y) * (view->eye.perspective ? near : 1);
+    return item_is_close(item) || axis->length / 2 + radius > most_pixels * pixel;
+}
+
 void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t number,
-                     uint32_t joint, RasterItem *item, RasterJoint *made, RasterHull *hull)
+                     RasterItem *item, RasterJoint *joint, RasterHull *hull)
 {
     const Primitive *primitive = &geometry->primitives[number];
     Vec3 middle = vec3_scale(vec3_add(primitive->a, primitive->b), 0.5);
@@ -99,41 +141,24 @@ void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t 
         item->rows = item->columns = rastertiles_of(NOWHERE);
         return;
     }
-    double length = vec3_length(span), cosine = 0, sine = 1;
-    double ex = 1, ey = 0, turn = span.z < 0 ? -1 : 1;
-    if (length > 0) {
-        double across = sqrt(span.x * span.x + span.y * span.y);
-        cosine = turn * span.z / length;
-        sine = across / length;
-        ex = across > 0 ? turn * span.x / across : 1;
-        ey = across > 0 ? turn * span.y / across : 0;
-    }
-    RasterKind kind = RASTER_SPHERE;
-    if (primitive->kind == PRIMITIVE_CYLINDER)
-        kind = !view->eye.perspective && sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
-    if (primitive->kind == PRIMITIVE_JOINT) {
-        bool solid = !geometry->open_joints && primitive_joint_is_solid(primitive);
-        kind = solid ? RASTER_JOINT : RASTER_EXACT;
-        if (solid && view->light)
-            *hull = make_hull(view, primitive, span, length, turn);
-        else if (solid)
-            *made = rasterjoint_make(view, primitive, middle);
-    }
+    const ItemAxis axis = axis_of(span);
+    RasterKind kind = kind_of(geometry, view, primitive, &axis);
+    if (kind == RASTER_JOINT && view->light)
+        *hull = make_hull(view, primitive, span, axis.length, axis.turn);
+    else if (kind == RASTER_JOINT)
+        *joint = rasterjoint_make(view, primitive, middle);
     item->x = middle.x;
     item->y = middle.y;
     item->z = middle.z;
-    item->ex = (float)ex;
-    item->ey = (float)ey;
-    item->sine = (float)sine;
-    item->cosine = (float)cosine;
+    item->ex = (float)axis.ex;
+    item->ey = (float)axis.ey;
+    item->sine = (float)axis.sine;
+    item->cosine = (float)axis.cosine;
     item->radius = (float)radius;
-    item->half = (float)(length / 2);
-    item->round_low = turn > 0 ? primitive->round_a : primitive->round_b;
-    item->round_high = turn > 0 ? primitive->round_b : primitive->round_a;
-    item->joint = joint & (MOST_ITEMS - 1);
-    double near = middle.z - cosine * length / 2 - radius;
-    double pixel = min_of(view->step_x, -view->step_y) * (view->eye.perspective ? near : 1);
-    bool odd = item_is_close(item) || length / 2 + radius > most_pixels * pixel;
+    item->half = (float)(axis.length / 2);
+    item->round_low = axis.turn > 0 ? primitive->round_a : primitive->round_b;
+    item->round_high = axis.turn > 0 ? primitive->round_b : primitive->round_a;
+    bool odd = is_odd(view, item, &axis, middle.z, radius);
     item->kind = (unsigned)(odd ? RASTER_EXACT : kind) & 3;
     rasterreach_set(view, item);
 }

@@ -4,15 +4,14 @@
 
 #include "render/raster/rasterview.h"
 
-/* Makes the item of the primitive numbered `number`, but for RasterItem.primitive; of one that
- * touches no tiles, sets these alone. `joint` is the index that the item keeps of its joint. If the
- * item is a RASTER_JOINT, sets *hull in the view of a light, *made in any other; each may be NULL
- * where it is not set. */
+/* Sets the item of primitive `number`, except RasterItem.joint and RasterItem.primitive. Sets only
+ * `rows` and `columns` of an item that touches no tile. If the item is a RASTER_JOINT, sets *hull
+ * in the view of a light and *joint in any other view; the other one may be NULL. */
 void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t number,
-                     uint32_t joint, RasterItem *item, RasterJoint *made, RasterHull *hull);
+                     RasterItem *item, RasterJoint *joint, RasterHull *hull);
 
-/* The joint of a primitive that is one, in the frame of the view, relative to `middle`, the middle
- * of its item. */
+/* Returns the joint of a primitive in the frame of the view, relative to `middle`, the middle of
+ * its item. */
 RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive, Vec3 middle);
 
 /* A box in a tile, packed into 32 bits so that one subtraction tells whether two boxes overlap.

@@ -15,7 +15,7 @@ typedef struct RasterScene {
     const RasterKernels *kernels;
     RasterGrid center;
     RasterGrid *shifted; /* n x n, row by row */
-    RasterRow *rows;     /* per worker: the lists of a row */
+    IndexLists *rows;    /* per worker: the items of each tile of a row */
     int workers;
 } RasterScene;
 
@@ -31,7 +31,7 @@ static void release_raster(void *bins)
     if (!scene)
         return;
     for (int i = 0; scene->rows && i < scene->workers; i++)
-        rasterrow_release(&scene->rows[i]);
+        indexlists_release(&scene->rows[i]);
     free(scene->rows);
     free(scene->shifted);
     rasterbins_free(scene->bins);
@@ -81,19 +81,18 @@ static Status list_raster(void *bins, int row, int worker, Err *err)
 static bool is_raster_listed(const void *bins, int column, int worker)
 {
     const RasterScene *scene = bins;
-    const uint32_t *list = &scene->rows[worker].offsets[column];
-    return list[0] < list[1];
+    return indexlists_length(&scene->rows[worker], (size_t)column) > 0;
 }
 
 /* Sets the tile of an image and its list. */
 static void place_tile(const RasterScene *scene, int worker, BatchTile *tile)
 {
     RasterOwn *own = tile->own;
-    const RasterRow *lists = &scene->rows[worker];
+    const IndexLists *lists = &scene->rows[worker];
     const int column = tile->seen.column / TILE_SIDE, row = tile->seen.row / TILE_SIDE;
-    const uint32_t *list = &lists->offsets[column];
-    own->tile = rasterbins_tile(scene->bins, column, row, lists->lists + list[0], list[1] - list[0],
-                                &scene->center);
+    const uint32_t first = lists->first[column];
+    own->tile = rasterbins_tile(scene->bins, column, row, lists->items + first,
+                                lists->first[column + 1] - first, &scene->center);
     tile->seen.middle_x = own->tile.x;
     tile->seen.middle_y = own->tile.y;
     tile->depth_base = own->tile.z_middle;
@@ -110,6 +109,7 @@ static Status trace_raster(void *bins, int worker, int shift, BatchTile *tile, E
     tile->seen.x = own->tile.grid->x;
     tile->seen.y = own->tile.grid->y;
     tile->seen.hits = NULL;
+    tile->items = own->hits.item;
     if (!scene->kernels->trace(&own->tile, &own->hits, &tile->hits))
         return STATUS_OK;
     scene->kernels->resolve(&own->tile, &own->hits, &tile->hits);
@@ -117,39 +117,17 @@ static Status trace_raster(void *bins, int worker, int shift, BatchTile *tile, E
     return STATUS_OK;
 }
 
-static Status look_at_raster(const Drawing *drawing, const Viewpoint *eye, void **shadows, Err *err)
-{
-    RasterShadow *made[VIEW_MAX_LIGHTS] = {NULL};
-    Status status = rastershadows_new(drawing->geometry, drawing->view, eye,
-                                      drawing->params->threads, made, err);
-    for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
-        shadows[i] = made[i];
-    return status;
-}
-
-/* A sample on a primitive is not shadowed by that primitive. The ground has none. */
-static void shadow_raster(void *queue, const TileKernels *kernels, const BatchTile *tile,
-                          const SeenPlaces *places, uint64_t wanted, uint32_t answer)
-{
-    RasterOwn *own = tile->own;
-    for (uint64_t left = tile->seen.ground; left; left &= left - 1)
-        own->hits.item[__builtin_ctzll(left)] = RASTER_NOTHING;
-    rasterqueue_ask(queue, kernels, places, own->hits.item, wanted, answer);
-}
-
 static const TileEngine raster_tiles = {.either_side = true,
                                         .single_depths = true,
                                         .batch_tiles = 64,
                                         .rows_at_once = 1,
                                         .tile_bytes = sizeof(RasterOwn),
-                                        .lights = &raster_lights,
+                                        .shadows = &raster_shadows,
                                         .bin = bin_raster,
                                         .release = release_raster,
                                         .list = list_raster,
                                         .is_listed = is_raster_listed,
-                                        .trace = trace_raster,
-                                        .look = look_at_raster,
-                                        .shadow = shadow_raster};
+                                        .trace = trace_raster};
 
 static bool can_draw_raster(const Drawing *drawing)
 {
@@ -163,7 +141,7 @@ static bool can_draw_raster(const Drawing *drawing)
 
 static bool raster_needs_rays(const Drawing *drawing)
 {
-    return tilerender_needs_rays(drawing, &raster_lights);
+    return shadowengine_needs_rays(&raster_shadows, drawing);
 }
 
 static Status prepare_raster(const Drawing *drawing, void **prepared, Err *err)
@@ -179,5 +157,5 @@ const Engine raster_engine = {.name = "raster",
                               .prepare = prepare_raster,
                               .rows = tilerender_rows,
                               .free = tilerender_free,
-                              .lights = &raster_lights,
-                              .shadow = tilerender_shadow};
+                              .shadows = &raster_shadows,
+                              .light_bins = tilerender_light_bins};

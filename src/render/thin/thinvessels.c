@@ -27,36 +27,36 @@ static const double lift = 0.25;
 /* ---- which are thin -------------------------------------------------------------------------- */
 
 /* A vessel of a geometry: a primitive, or a segment of a field. */
-typedef struct Vessel {
+typedef struct ThinVessel {
     Vec3 a, b;
     double radius_a, radius_b;
     uint32_t segment;
     bool has_length;
-} Vessel;
+} ThinVessel;
 
 static size_t count_vessels(const Geometry *geometry)
 {
     return geometry->n_primitives ? geometry->n_primitives : geometry->n_segments;
 }
 
-static Vessel vessel_at(const Geometry *geometry, size_t i)
+static ThinVessel vessel_at(const Geometry *geometry, size_t i)
 {
     if (geometry->n_primitives) {
         const Primitive *p = &geometry->primitives[i];
-        return (Vessel){p->a,         p->b,
-                        p->radius_mm, primitive_radius_b(p),
-                        p->segment,   p->kind != PRIMITIVE_SPHERE};
+        return (ThinVessel){p->a,         p->b,
+                            p->radius_mm, primitive_radius_b(p),
+                            p->segment,   p->kind != PRIMITIVE_SPHERE};
     }
     const FieldSegment *s = &geometry->segments[i];
-    return (Vessel){s->a, s->b, s->radius_mm, s->radius_mm, s->segment, true};
+    return (ThinVessel){s->a, s->b, s->radius_mm, s->radius_mm, s->segment, true};
 }
 
 /* The part of a vessel between two places, 0..1 from its first end. */
-static Vessel vessel_part(const Vessel *vessel, double from, double to)
+static ThinVessel vessel_part(const ThinVessel *vessel, double from, double to)
 {
     Vec3 span = vec3_sub(vessel->b, vessel->a);
     double widening = vessel->radius_b - vessel->radius_a;
-    Vessel part = *vessel;
+    ThinVessel part = *vessel;
     part.a = vec3_add_scaled(vessel->a, span, from);
     part.b = vec3_add_scaled(vessel->a, span, to);
     part.radius_a = vessel->radius_a + from * widening;
@@ -66,7 +66,7 @@ static Vessel vessel_part(const Vessel *vessel, double from, double to)
 
 /* The greater width of the vessel in pixels; infinite if an end is not in front of a perspective
  * camera. */
-static double widest(const Vessel *vessel, const Camera *camera)
+static double widest(const ThinVessel *vessel, const Camera *camera)
 {
     const CameraPoint a = camera_point(camera, vessel->a), b = camera_point(camera, vessel->b);
     if (!(a.per_mm > 0) || !(b.per_mm > 0))
@@ -74,21 +74,19 @@ static double widest(const Vessel *vessel, const Camera *camera)
     return 2 * fmax(vessel->radius_a * a.per_mm, vessel->radius_b * b.per_mm);
 }
 
-/* Vessels in chunks, which threads work on side by side. */
+/* Vessels per chunk. Threads work on chunks side by side. */
 enum { CHUNK = 1 << 14 };
 
-typedef struct Search {
+typedef ARRAY(ThinStrip) ThinStrips;
+
+/* The search for the thin vessels of a view. */
+typedef struct ThinSearch {
     ThinVessels *thin;
     const Camera *camera;
-    double below_px, least_px;
-    size_t n, n_chunks; /* vessels */
-    size_t *first; /* per chunk: its number of strips, then the index of its first strip; owned */
-} Search;
-
-static size_t chunk_end(const Search *search, size_t chunk)
-{
-    return (chunk + 1) * CHUNK < search->n ? (chunk + 1) * CHUNK : search->n;
-}
+    ThinWidths widths;
+    size_t n, n_chunks; /* numbers of vessels and of chunks */
+    ThinStrips *found;  /* per chunk; owned */
+} ThinSearch;
 
 /* Cuts [*from, *to] down to where a value that is `a` at 0 and `b` at 1 is not below 0. */
 static void clip_above(double a, double b, double *from, double *to)
@@ -102,7 +100,7 @@ static void clip_above(double a, double b, double *from, double *to)
 }
 
 /* Cuts [*from, *to] of a vessel down to what lies in front of an orthographic camera. */
-static void clip_at_camera(const Vessel *vessel, const Camera *camera, double *from, double *to)
+static void clip_at_camera(const ThinVessel *vessel, const Camera *camera, double *from, double *to)
 {
     if (camera->projection == PROJECTION_ORTHOGRAPHIC)
         clip_above(camera_point(camera, vessel->a).depth_mm - NEAREST_SEEN_MM,
@@ -116,18 +114,18 @@ static double depth_along_view(const Camera *camera, Vec3 point)
 
 /* Makes the strip of a vessel, clipped to the camera's plane and to the picture with a margin of
  * the strip's width. Returns false if nothing is left. */
-static bool make_strip(const Search *search, uint32_t number, ThinStrip *strip)
+static bool make_strip(const ThinSearch *search, uint32_t number, ThinStrip *strip)
 {
     const Camera *camera = search->camera;
-    const Vessel whole = vessel_at(search->thin->whole, number);
+    const ThinVessel whole = vessel_at(search->thin->whole, number);
     double near = 0, far = 1, from = 0, to = 1;
     clip_at_camera(&whole, camera, &near, &far);
     if (!(near < far))
         return false;
-    const Vessel vessel = vessel_part(&whole, near, far);
+    const ThinVessel vessel = vessel_part(&whole, near, far);
     const CameraPoint a = camera_point(camera, vessel.a), b = camera_point(camera, vessel.b);
     const double width =
-        fmax(vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm, search->least_px);
+        fmax(vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm, search->widths.least_px);
     const double margin = width + 1; /* so that clipped ends are in no cell */
     const double z[2] = {depth_along_view(camera, vessel.a) - vessel.radius_a,
                          depth_along_view(camera, vessel.b) - vessel.radius_b};
@@ -160,30 +158,25 @@ static bool make_strip(const Search *search, uint32_t number, ThinStrip *strip)
     return true;
 }
 
-static bool has_strip(const Search *search, size_t i, ThinStrip *strip)
-{
-    return search->thin->layer.is_thin[i] && vessel_at(search->thin->whole, i).has_length &&
-           make_strip(search, (uint32_t)i, strip);
-}
-
-static void mark_chunk(size_t chunk, int worker, void *context)
+static Status search_chunk(size_t chunk, int worker, void *context, Err *err)
 {
     (void)worker;
-    const Search *search = context;
-    size_t count = 0;
-    for (size_t i = chunk * CHUNK; i < chunk_end(search, chunk); i++) {
-        const Vessel vessel = vessel_at(search->thin->whole, i);
+    const ThinSearch *search = context;
+    bool *is_thin = search->thin->layer.is_thin;
+    for (size_t i = chunk * CHUNK; i < search->n && i < (chunk + 1) * CHUNK; i++) {
+        const ThinVessel vessel = vessel_at(search->thin->whole, i);
         ThinStrip strip;
-        search->thin->layer.is_thin[i] =
-            widest(&vessel, search->camera) < fmax(search->below_px, search->least_px);
-        count += has_strip(search, i, &strip);
+        is_thin[i] = widest(&vessel, search->camera) <
+                     fmax(search->widths.below_px, search->widths.least_px);
+        if (is_thin[i] && vessel.has_length && make_strip(search, (uint32_t)i, &strip))
+            TRY(ARRAY_PUSH(&search->found[chunk], "thin vessels", err, strip));
     }
-    search->first[chunk] = count;
+    return STATUS_OK;
 }
 
 /* Returns true if a strip adds its area to that of the strip before it: its vessel begins where the
  * other vessel ends, and does not lead back over it in the picture. */
-static bool continues(const Search *search, const ThinStrip *before, const ThinStrip *strip)
+static bool continues(const ThinSearch *search, const ThinStrip *before, const ThinStrip *strip)
 {
     const Geometry *whole = search->thin->whole;
     const Vec3 end = vessel_at(whole, before->vessel).b, start = vessel_at(whole, strip->vessel).a;
@@ -193,46 +186,33 @@ static bool continues(const Search *search, const ThinStrip *before, const ThinS
                0;
 }
 
-static void take_chunk(size_t chunk, int worker, void *context)
+/* Puts the strips of all chunks together. */
+static Status gather_strips(const ThinSearch *search, Err *err)
 {
-    (void)worker;
-    const Search *search = context;
-    ThinStrip *first = search->thin->layer.strips + search->first[chunk], *strip = first, made;
-    for (size_t i = chunk * CHUNK; i < chunk_end(search, chunk); i++) {
-        if (!has_strip(search, i, &made))
-            continue;
-        *strip = made;
-        if (strip > first && continues(search, strip - 1, strip))
-            strip->run = strip[-1].run;
-        strip++;
-    }
-}
-
-/* Runs that go on in the next chunk are one. */
-static void join_runs(const Search *search)
-{
-    const ThinLayer *layer = &search->thin->layer;
-    for (size_t chunk = 1; chunk < search->n_chunks; chunk++) {
-        size_t at = search->first[chunk];
-        if (at == 0 || at == layer->n)
-            continue;
-        const ThinStrip *before = &layer->strips[at - 1], first = layer->strips[at];
-        if (!continues(search, before, &first))
-            continue;
-        for (; at < layer->n && layer->strips[at].run == first.run; at++)
-            layer->strips[at].run = before->run;
-    }
+    ThinLayer *layer = &search->thin->layer;
+    size_t n = 0;
+    for (size_t chunk = 0; chunk < search->n_chunks; chunk++)
+        n += search->found[chunk].n;
+    TRY(mem_alloc(&layer->strips, n, sizeof *layer->strips, "thin vessels", err));
+    for (size_t chunk = 0; chunk < search->n_chunks; chunk++)
+        for (size_t i = 0; i < search->found[chunk].n; i++) {
+            ThinStrip *strip = &layer->strips[layer->n++];
+            *strip = search->found[chunk].items[i];
+            if (layer->n > 1 && continues(search, strip - 1, strip))
+                strip->run = strip[-1].run;
+        }
+    return STATUS_OK;
 }
 
 /* Returns by how much of its radius the end of a run is moved outwards, for what the vessel's end
  * adds to the area of its strip: half a disc if the end is round, the visible half of an ellipse if
  * it is flat. A run begins within another vessel unless its first cylinder has an end of its own.
  */
-static double end_in_radii(const Search *search, const ThinStrip *strip, int end)
+static double end_in_radii(const ThinSearch *search, const ThinStrip *strip, int end)
 {
     const double quarter_turn = 0.78539816339744831;
     const Geometry *whole = search->thin->whole;
-    const Vessel vessel = vessel_at(whole, strip->vessel);
+    const ThinVessel vessel = vessel_at(whole, strip->vessel);
     const Primitive *one = whole->n_primitives ? &whole->primitives[strip->vessel] : NULL;
     const bool is_round = one && (end ? one->round_b : one->round_a);
     if (end == 0 && !is_round && !(one && one->free_a))
@@ -244,7 +224,7 @@ static double end_in_radii(const Search *search, const ThinStrip *strip, int end
     return quarter_turn * (is_round ? 1 : fabs(vec3_dot(axis, sight)));
 }
 
-static void extend_strip(const Search *search, ThinStrip *strip, bool is_first, bool is_last)
+static void extend_strip(const ThinSearch *search, ThinStrip *strip, bool is_first, bool is_last)
 {
     const float x = strip->x[1] - strip->x[0], y = strip->y[1] - strip->y[0];
     const float length = sqrtf(x * x + y * y), radius = strip->width / 2;
@@ -257,24 +237,10 @@ static void extend_strip(const Search *search, ThinStrip *strip, bool is_first, 
     strip->y[1] += behind * toward[1];
 }
 
-/* Makes strips of what is marked, and numbers their pieces. */
-static Status take(Search *search, int threads, Err *err)
+/* Numbers the pieces of all strips. */
+static Status number_pieces(ThinVessels *thin, Err *err)
 {
-    ThinVessels *thin = search->thin;
     ThinLayer *layer = &thin->layer;
-    for (size_t chunk = 0; chunk < search->n_chunks; chunk++) {
-        size_t count = search->first[chunk];
-        search->first[chunk] = layer->n;
-        layer->n += count;
-    }
-    TRY(mem_calloc(&layer->strips, layer->n, sizeof *layer->strips, "thin vessels", err));
-    threads_for(search->n_chunks, threads, take_chunk, search);
-    join_runs(search);
-    for (size_t i = 0; i < layer->n; i++) {
-        const ThinStrip *strip = &layer->strips[i];
-        extend_strip(search, &layer->strips[i], i == 0 || strip[-1].run != strip->run,
-                     i + 1 == layer->n || strip[1].run != strip->run);
-    }
     for (size_t i = 0; i < layer->n; i++) {
         layer->strips[i].first_piece = (uint32_t)layer->n_pieces;
         layer->n_pieces += layer->strips[i].n_pieces;
@@ -285,17 +251,24 @@ static Status take(Search *search, int threads, Err *err)
     for (size_t i = 0; i < layer->n; i++)
         for (uint32_t k = 0; k < layer->strips[i].n_pieces; k++)
             thin->piece_strips[layer->strips[i].first_piece + k] = (uint32_t)i;
-    return thinlayer_sort(layer, search->camera, err);
+    return STATUS_OK;
 }
 
-static Status find(Search *search, int threads, Err *err)
+static Status find(ThinSearch *search, int threads, Err *err)
 {
-    ThinVessels *thin = search->thin;
-    thin->layer.perspective = search->camera->projection == PROJECTION_PERSPECTIVE;
-    TRY(mem_calloc(&search->first, search->n_chunks, sizeof *search->first, "vessels", err));
-    TRY(mem_calloc(&thin->layer.is_thin, search->n, sizeof *thin->layer.is_thin, "vessels", err));
-    threads_for(search->n_chunks, threads, mark_chunk, search);
-    return take(search, threads, err);
+    ThinLayer *layer = &search->thin->layer;
+    layer->perspective = search->camera->projection == PROJECTION_PERSPECTIVE;
+    TRY(mem_calloc(&search->found, search->n_chunks, sizeof *search->found, "vessels", err));
+    TRY(mem_calloc(&layer->is_thin, search->n, sizeof *layer->is_thin, "vessels", err));
+    TRY(threads_try(search->n_chunks, threads, search_chunk, search, err));
+    TRY(gather_strips(search, err));
+    for (size_t i = 0; i < layer->n; i++) {
+        const ThinStrip *strip = &layer->strips[i];
+        extend_strip(search, &layer->strips[i], i == 0 || strip[-1].run != strip->run,
+                     i + 1 == layer->n || strip[1].run != strip->run);
+    }
+    TRY(number_pieces(search->thin, err));
+    return thinlayer_sort(layer, search->camera, err);
 }
 
 void thinvessels_release(ThinVessels *thin)
@@ -307,19 +280,20 @@ void thinvessels_release(ThinVessels *thin)
     *thin = (ThinVessels){0};
 }
 
-Status thinvessels_find(const Geometry *whole, const Camera *camera, double below_px,
-                        double least_px, int threads, ThinVessels *thin, Err *err)
+Status thinvessels_find(const Geometry *whole, const Camera *camera, ThinWidths widths, int threads,
+                        ThinVessels *thin, Err *err)
 {
     *thin = (ThinVessels){.whole = whole};
     size_t n = model_has(whole->model, MODEL_TRIANGLES) ? 0 : count_vessels(whole);
-    Search search = {.thin = thin,
-                     .camera = camera,
-                     .below_px = below_px,
-                     .least_px = least_px,
-                     .n = n,
-                     .n_chunks = (n + CHUNK - 1) / CHUNK};
+    ThinSearch search = {.thin = thin,
+                         .camera = camera,
+                         .widths = widths,
+                         .n = n,
+                         .n_chunks = (n + CHUNK - 1) / CHUNK};
     Status status = find(&search, threads, err);
-    free(search.first);
+    for (size_t chunk = 0; search.found && chunk < search.n_chunks; chunk++)
+        ARRAY_RELEASE(&search.found[chunk]);
+    free(search.found);
     memcpy(&thin->camera, camera, sizeof thin->camera);
     if (status != STATUS_OK)
         thinvessels_release(thin);
@@ -329,28 +303,28 @@ Status thinvessels_find(const Geometry *whole, const Camera *camera, double belo
 /* ---- their walls ----------------------------------------------------------------------------- */
 
 /* The middle of a piece. */
-typedef struct Wall {
+typedef struct ThinWall {
     Vec3 middle;      /* of its axis */
     Vec3 axis;        /* unit */
     Vec3 direction;   /* of the line of sight there */
     Vec3 front, side; /* unit, square to the axis: towards the viewer, and across the view */
     double radius;
     uint32_t segment;
-} Wall;
+} ThinWall;
 
-static Wall wall_of(const ThinVessels *thin, size_t piece)
+static ThinWall wall_of(const ThinVessels *thin, size_t piece)
 {
     const Camera *camera = &thin->camera;
     const ThinStrip *strip = &thin->layer.strips[thin->piece_strips[piece]];
-    const Vessel whole = vessel_at(thin->whole, strip->vessel);
+    const ThinVessel whole = vessel_at(thin->whole, strip->vessel);
     const double s = ((double)(piece - strip->first_piece) + 0.5) / strip->n_pieces;
     const double part = thinstrip_part(&thin->layer, strip, s);
-    const Vessel at = vessel_part(&whole, part, part);
-    Wall wall = {.middle = at.a,
-                 .axis = vec3_normalized(vec3_sub(whole.b, whole.a)),
-                 .direction = camera->direction,
-                 .radius = at.radius_a,
-                 .segment = whole.segment};
+    const ThinVessel at = vessel_part(&whole, part, part);
+    ThinWall wall = {.middle = at.a,
+                     .axis = vec3_normalized(vec3_sub(whole.b, whole.a)),
+                     .direction = camera->direction,
+                     .radius = at.radius_a,
+                     .segment = whole.segment};
     if (camera->projection == PROJECTION_PERSPECTIVE)
         wall.direction = vec3_normalized(vec3_sub(wall.middle, camera->location));
     Vec3 side = vec3_cross(wall.axis, wall.direction), other;
@@ -364,7 +338,7 @@ static Wall wall_of(const ThinVessels *thin, size_t piece)
     return wall;
 }
 
-static Vec3 above_wall(const Wall *wall, Vec3 normal)
+static Vec3 above_wall(const ThinWall *wall, Vec3 normal)
 {
     return vec3_add_scaled(wall->middle, normal, (1 + lift) * wall->radius);
 }
@@ -372,7 +346,7 @@ static Vec3 above_wall(const Wall *wall, Vec3 normal)
 /* OffPixelPoints.at: the point of a piece that faces the light. */
 static Vec3 lit_point(const void *context, const Light *light, size_t piece)
 {
-    const Wall wall = wall_of(context, piece);
+    const ThinWall wall = wall_of(context, piece);
     Vec3 towards = light_way(light, wall.middle).towards;
     Vec3 across = vec3_add_scaled(towards, wall.axis, -vec3_dot(towards, wall.axis));
     return above_wall(&wall, vec3_length(across) > 1e-6 ? vec3_normalized(across) : wall.front);
@@ -416,7 +390,7 @@ static Status make_picture(const Drawing *drawing, const ThinVessels *thin, cons
     memset(light->point_index, 0xff,
            (size_t)light->width * sizeof *light->point_index); /* NO_HIT */
     for (size_t piece = 0; piece < n; piece++) {
-        const Wall wall = wall_of(thin, piece);
+        const ThinWall wall = wall_of(thin, piece);
         double t = vec3_distance(wall.middle, drawing->view->camera.location);
         light->point_index[columns[piece]] = (uint32_t)piece;
         light->points[piece] =
@@ -457,13 +431,13 @@ static void find_parts(const ThinVessels *thin, const View *view, size_t piece,
                        float parts[VIEW_MAX_LIGHTS])
 {
     for (size_t i = 0; i < view->n_lights; i++)
-        parts[i] = thin->lights.reach[i]
-                       ? (float)thin->lights.reach[i][piece] / (float)light_points(&view->lights[i])
-                       : -1;
+        parts[i] = thin->lights.n_visible[i] ? (float)thin->lights.n_visible[i][piece] /
+                                                   (float)light_points(&view->lights[i])
+                                             : -1;
 }
 
 /* The mean colour of the visible half of a piece's wall. */
-static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const Wall *wall,
+static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const ThinWall *wall,
                       size_t piece)
 {
     float parts[VIEW_MAX_LIGHTS];
@@ -489,7 +463,7 @@ static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const Wal
 static Rgb piece_color(const Drawing *drawing, const ThinVessels *thin, size_t piece)
 {
     const View *view = drawing->view;
-    const Wall wall = wall_of(thin, piece);
+    const ThinWall wall = wall_of(thin, piece);
     Rgb color = wall_color(drawing, thin, &wall, piece);
     if (!effects_present(&view->effects))
         return color;
@@ -501,8 +475,7 @@ typedef struct ThinJob {
     const Drawing *drawing;
     const ThinVessels *thin;
     Frame *frame;
-    ThinCells *cells; /* one a worker; owned, as is `status` */
-    Status *status;
+    ThinCells *cells; /* per worker; owned */
 } ThinJob;
 
 /* Whether the strip may touch the rows of a band. */
@@ -542,7 +515,7 @@ void thinvessels_color(const Drawing *drawing, const ThinVessels *thin)
 
 /* ---- over samples ---------------------------------------------------------------------------- */
 
-static void draw_rows(size_t index, int worker, void *context)
+static Status draw_rows(size_t index, int worker, void *context, Err *err)
 {
     const ThinJob *job = context;
     const Band *band = &job->drawing->band;
@@ -550,11 +523,9 @@ static void draw_rows(size_t index, int worker, void *context)
     const int first = (int)index * ROWS,
               rows = band->rows - first < ROWS ? band->rows - first : ROWS;
     ThinCells *cells = &job->cells[worker];
-    Status status = thincells_fill(&job->thin->layer, 1, 0, band->first + first, camera->width,
-                                   rows, cells, NULL);
-    if (status != STATUS_OK)
-        job->status[worker] = status;
-    for (int row = 0; row < rows && cells->n > 0 && status == STATUS_OK; row++)
+    const CellBlock block = {0, band->first + first, camera->width, rows, 1};
+    TRY(thincells_fill(&job->thin->layer, block, cells, err));
+    for (int row = 0; row < rows && cells->n > 0; row++)
         for (int column = 0; column < camera->width; column++) {
             size_t pixel = (size_t)(first + row) * (size_t)camera->width + (size_t)column;
             if (thincells_are_empty(cells, column, row))
@@ -565,6 +536,7 @@ static void draw_rows(size_t index, int worker, void *context)
             thincells_over(cells, column, row, (float)(depth * along),
                            &job->frame->color.values[3 * pixel]);
         }
+    return STATUS_OK;
 }
 
 Status thinvessels_draw(const Drawing *drawing, const ThinVessels *thin, Frame *frame, Err *err)
@@ -573,15 +545,11 @@ Status thinvessels_draw(const Drawing *drawing, const ThinVessels *thin, Frame *
     ThinJob job = {.drawing = drawing, .thin = thin, .frame = frame};
     Status status;
     TRY_GOTO(mem_calloc(&job.cells, (size_t)workers, sizeof *job.cells, "thin vessels", err));
-    TRY_GOTO(mem_calloc(&job.status, (size_t)workers, sizeof *job.status, "thin vessels", err));
-    threads_for(((size_t)drawing->band.rows + ROWS - 1) / ROWS, workers, draw_rows, &job);
-    for (int i = 0; i < workers; i++)
-        if (job.status[i] != STATUS_OK)
-            TRY_GOTO(err_set(err, job.status[i], "out of memory: no room for thin vessels"));
+    TRY_GOTO(
+        threads_try(((size_t)drawing->band.rows + ROWS - 1) / ROWS, workers, draw_rows, &job, err));
 done:
     for (int i = 0; job.cells && i < workers; i++)
         thincells_release(&job.cells[i]);
     free(job.cells);
-    free(job.status);
     return status;
 }

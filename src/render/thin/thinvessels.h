@@ -19,17 +19,21 @@ typedef struct ThinVessels {
     float *open;            /* per piece: ambient visibility; NULL: 1. Owned. */
 } ThinVessels;
 
-/* Finds the vessels that are narrower than max(below_px, least_px) pixels in this view. Triangles
- * are never thin, and neither is a vessel with an end behind a perspective camera. Other vessels do
- * not matter.
+/* Widths on the picture, pixels. */
+typedef struct ThinWidths {
+    double below_px; /* narrower vessels are thin */
+    double least_px; /* so are these, and are drawn this wide; 0: at their true widths */
+} ThinWidths;
+
+/* Finds the vessels that are narrower than one of the two widths in this view. Triangles are never
+ * thin, and neither is a vessel with an end behind a perspective camera.
  *
  * whole     borrowed.
- * least_px  minimum drawn width, pixels; 0 draws true widths.
  * thin      receives the vessels; release it with thinvessels_release.
  * Errors    STATUS_MEMORY.
  * Cost      O(n); the result does not depend on `threads`. */
-MUST_CHECK Status thinvessels_find(const Geometry *whole, const Camera *camera, double below_px,
-                                   double least_px, int threads, ThinVessels *thin, Err *err);
+MUST_CHECK Status thinvessels_find(const Geometry *whole, const Camera *camera, ThinWidths widths,
+                                   int threads, ThinVessels *thin, Err *err);
 void thinvessels_release(ThinVessels *thin);
 
 /* Finds the ambient visibility of the pieces, by `drawing->params->occlusion` occlusion directions.

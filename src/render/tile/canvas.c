@@ -327,7 +327,7 @@ float (*canvas_cover(const Canvas *canvas, int worker, const SeenTile *seen, Thi
                      int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES]
 {
     CanvasWorker *own = &canvas->each[worker];
-    const int step = cells->columns / TILE_SIDE;
+    const int step = cells->block.columns / TILE_SIDE;
     if (cells->n == 0)
         return color;
     for (int c = 0; c < 3 && !color; c++)

@@ -69,9 +69,8 @@ static TileSpan tiles_in_row(const ThinLayer *layer, const ThinStrip *strip, int
     return tiles_between(least(a, b) - reach, greatest(a, b) + reach, layer->tile_columns);
 }
 
-/* Appends the numbers of the strips to the lists of their tiles; ends[i] is where the list of tile
- * i ends. Only counts them if there are no items yet. */
-static void list_strips(ThinLayer *layer, uint32_t *ends)
+/* Lists the strips of each tile. Only counts them unless `puts`. */
+static void list_strips(ThinLayer *layer, bool puts)
 {
     for (size_t i = 0; i < layer->n; i++) {
         const ThinStrip *strip = &layer->strips[i];
@@ -82,9 +81,10 @@ static void list_strips(ThinLayer *layer, uint32_t *ends)
             TileSpan columns = tiles_in_row(layer, strip, row);
             for (int column = columns.first; column <= columns.last; column++) {
                 size_t tile = (size_t)row * (size_t)layer->tile_columns + (size_t)column;
-                if (layer->tiles.items)
-                    layer->tiles.items[ends[tile]] = (uint32_t)i;
-                ends[tile]++;
+                if (puts)
+                    indexlists_put(&layer->tiles, tile, (uint32_t)i);
+                else
+                    indexlists_count(&layer->tiles, tile);
             }
         }
     }
@@ -92,16 +92,13 @@ static void list_strips(ThinLayer *layer, uint32_t *ends)
 
 Status thinlayer_sort(ThinLayer *layer, const Camera *camera, Err *err)
 {
-    IndexLists *lists = &layer->tiles;
     layer->tile_columns = (camera->width + TILE_SIDE - 1) / TILE_SIDE;
     layer->tile_rows = (camera->height + TILE_SIDE - 1) / TILE_SIDE;
-    size_t n = (size_t)layer->tile_columns * (size_t)layer->tile_rows;
-    TRY(mem_calloc(&lists->first, n + 2, sizeof *lists->first, "thin vessels", err));
-    list_strips(layer, lists->first + 2);
-    for (size_t tile = 2; tile < n + 2; tile++)
-        lists->first[tile] += lists->first[tile - 1];
-    TRY(mem_calloc(&lists->items, lists->first[n + 1], sizeof *lists->items, "thin vessels", err));
-    list_strips(layer, lists->first + 1);
+    const size_t n = (size_t)layer->tile_columns * (size_t)layer->tile_rows;
+    TRY(indexlists_begin(&layer->tiles, n, "thin vessels", err));
+    list_strips(layer, false);
+    TRY(indexlists_allot(&layer->tiles, "thin vessels", err));
+    list_strips(layer, true);
     return STATUS_OK;
 }
 
@@ -209,7 +206,7 @@ static void cover(Brush *brush, int column, int row)
                                     part_below(brush, across - brush->half_width);
     if (!(area > 0))
         return;
-    ThinFragment *fragment = fragment_at(brush, &cells->first[row * cells->columns + column]);
+    ThinFragment *fragment = fragment_at(brush, &cells->first[row * cells->block.columns + column]);
     if (!fragment)
         return;
     const float t = least(greatest(at / brush->length, 0), 1);
@@ -249,7 +246,7 @@ void thincells_clear(ThinCells *cells)
 
 static Status make_room(ThinCells *cells, Err *err)
 {
-    size_t n = (size_t)cells->columns * (size_t)cells->rows;
+    size_t n = (size_t)cells->block.columns * (size_t)cells->block.rows;
     if (n <= cells->n_cells)
         return STATUS_OK;
     free(cells->first);
@@ -259,13 +256,14 @@ static Status make_room(ThinCells *cells, Err *err)
     return STATUS_OK;
 }
 
-/* Draws the strips of one tile of the picture into the cells of the block that lie in the tile. The
- * block begins at cell (column, row). */
-static Status fill_tile(const ThinLayer *layer, int tile_column, int tile_row, int column, int row,
-                        ThinCells *cells, Err *err)
+/* Draws the strips of one tile of the picture into the cells of the block that lie in the tile. */
+static Status fill_tile(const ThinLayer *layer, int tile_column, int tile_row, ThinCells *cells,
+                        Err *err)
 {
-    const int side = cells->per_pixel, tile_side = side * TILE_SIDE;
-    const int left = tile_column * tile_side - column, top = tile_row * tile_side - row;
+    const CellBlock *block = &cells->block;
+    const int side = block->per_pixel, tile_side = side * TILE_SIDE;
+    const int left = tile_column * tile_side - block->column;
+    const int top = tile_row * tile_side - block->row;
     const uint32_t *list =
         &layer->tiles.first[(size_t)tile_row * (size_t)layer->tile_columns + (size_t)tile_column];
     for (uint32_t i = list[0]; i < list[1]; i++) {
@@ -292,29 +290,28 @@ static Status fill_tile(const ThinLayer *layer, int tile_column, int tile_row, i
             .slope = narrow,
             .err = err};
         draw_strip(&brush, left > 0 ? left : 0,
-                   left + tile_side < cells->columns ? left + tile_side : cells->columns,
+                   left + tile_side < cells->block.columns ? left + tile_side
+                                                           : cells->block.columns,
                    top > 0 ? top : 0,
-                   top + tile_side < cells->rows ? top + tile_side : cells->rows);
+                   top + tile_side < cells->block.rows ? top + tile_side : cells->block.rows);
         TRY(brush.status);
     }
     return STATUS_OK;
 }
 
-Status thincells_fill(const ThinLayer *layer, int per_pixel, int column, int row, int columns,
-                      int rows, ThinCells *cells, Err *err)
+Status thincells_fill(const ThinLayer *layer, CellBlock block, ThinCells *cells, Err *err)
 {
-    const int tile_side = per_pixel * TILE_SIDE;
     thincells_clear(cells);
     if (!layer)
         return STATUS_OK;
-    cells->columns = columns;
-    cells->rows = rows;
-    cells->per_pixel = per_pixel;
+    const int tile_side = block.per_pixel * TILE_SIDE;
+    const int last_column = (block.column + block.columns - 1) / tile_side;
+    const int last_row = (block.row + block.rows - 1) / tile_side;
+    cells->block = block;
     TRY(make_room(cells, err));
-    for (int y = row / tile_side; y <= (row + rows - 1) / tile_side && y < layer->tile_rows; y++)
-        for (int x = column / tile_side;
-             x <= (column + columns - 1) / tile_side && x < layer->tile_columns; x++)
-            TRY(fill_tile(layer, x, y, column, row, cells, err));
+    for (int y = block.row / tile_side; y <= last_row && y < layer->tile_rows; y++)
+        for (int x = block.column / tile_side; x <= last_column && x < layer->tile_columns; x++)
+            TRY(fill_tile(layer, x, y, cells, err));
     return STATUS_OK;
 }
 
@@ -349,7 +346,7 @@ static size_t sort_fragments(ThinCells *cells, uint32_t first, float z)
 
 void thincells_over(ThinCells *cells, int column, int row, float z, float color[3])
 {
-    const size_t n = sort_fragments(cells, cells->first[row * cells->columns + column], z);
+    const size_t n = sort_fragments(cells, cells->first[row * cells->block.columns + column], z);
     float clear = 1, sum[3] = {0};
     for (size_t i = 0; i < n && clear > 0; i++) {
         const ThinFragment *at = &cells->fragments[cells->order[i].index];

@@ -45,17 +45,25 @@ typedef struct ThinDepth {
     uint32_t index;
 } ThinDepth;
 
+/* A block of cells of the picture. */
+typedef struct CellBlock {
+    int column, row;   /* its first cell */
+    int columns, rows; /* its size, cells */
+    int per_pixel;     /* cells across a pixel */
+} CellBlock;
+
 /* The fragments of a block of cells. */
 typedef struct ThinCells {
-    int columns, rows, per_pixel; /* cells; cells per pixel across */
-    uint32_t *first;              /* per cell: index + 1 of its latest fragment; 0: none. Owned. */
-    ThinFragment *fragments;      /* owned */
-    ThinDepth *order;             /* workspace of thincells_over, as long as `fragments`; owned */
+    CellBlock block;
+    uint32_t *first;         /* per cell: index + 1 of its latest fragment; 0: none. Owned. */
+    ThinFragment *fragments; /* owned */
+    ThinDepth *order;        /* workspace of thincells_over, as long as `fragments`; owned */
     size_t n, capacity, order_capacity, n_cells;
 } ThinCells;
 
-/* Lists the strips of each tile. Cost O(strips and the tiles that they touch).
- * Errors   STATUS_MEMORY. */
+/* Lists the strips of each tile.
+ * Errors   STATUS_MEMORY.
+ * Cost     O(strips and the tiles that they touch). */
 MUST_CHECK Status thinlayer_sort(ThinLayer *layer, const Camera *camera, Err *err);
 void thinlayer_release(ThinLayer *layer);
 
@@ -67,25 +75,27 @@ bool thinlayer_misses(const ThinLayer *layer, int column, int row);
  * is 0..1 on the picture. */
 double thinstrip_part(const ThinLayer *layer, const ThinStrip *strip, double s);
 
-/* Finds the fragments of columns x rows cells from (column, row) on; there are `per_pixel` cells
- * across a pixel. layer    NULL: there are no fragments. cells    zeroed, or used before; release
- * it with thincells_release even after an error. Errors   STATUS_MEMORY. */
-MUST_CHECK Status thincells_fill(const ThinLayer *layer, int per_pixel, int column, int row,
-                                 int columns, int rows, ThinCells *cells, Err *err);
+/* Finds the fragments of a block of cells.
+ *
+ * layer    NULL: there are no fragments.
+ * cells    zeroed, or used before; release it with thincells_release even after an error.
+ * Errors   STATUS_MEMORY. */
+MUST_CHECK Status thincells_fill(const ThinLayer *layer, CellBlock block, ThinCells *cells,
+                                 Err *err);
 void thincells_release(ThinCells *cells);
 
 /* Drops all fragments. */
 void thincells_clear(ThinCells *cells);
 
-/* Returns true if a cell of the block has no fragment. */
+/* Returns true if cell (column, row) of the block has no fragment. */
 static inline bool thincells_are_empty(const ThinCells *cells, int column, int row)
 {
-    return cells->first[row * cells->columns + column] == 0;
+    return cells->first[row * cells->block.columns + column] == 0;
 }
 
-/* Draws the fragments of cell (column, row) of the block over `color`, the linear colour that a
- * sample sees at the depth z along the view, mm. Fragments behind z are hidden. Runs are drawn from
- * front to back, each as if its area lay anyhow in the cell. */
+/* Draws the fragments of cell (column, row) of the block over the linear colour of a sample, whose
+ * hit has the depth z along the view, mm. Fragments behind z are hidden. Runs are drawn from front
+ * to back. Each is taken to cover a random part of the cell: transparencies multiply. */
 void thincells_over(ThinCells *cells, int column, int row, float z, float color[3]);
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef CORCAST_RENDER_TILEENGINE_H
 #define CORCAST_RENDER_TILEENGINE_H
 
-#include "render/light/lightview.h"
+#include "render/light/shadowengine.h"
 #include "render/tile/samplegrid.h"
 #include "render/tile/thincells.h"
 
@@ -13,6 +13,8 @@ typedef struct BatchTile {
     TileHits hits;
     double depth_base;                 /* mm; TileEngine.single_depths */
     void *own;                         /* TileEngine.tile_bytes for the engine, zeroed at first */
+    uint32_t *items;                   /* per hit: ShadowPoints.item, set by TileEngine.trace; NULL:
+                                        * the engine's shadows do not need it */
     uint8_t (*shadowed)[TILE_SAMPLES]; /* per light; 1: the light is hidden from the sample */
     float (*sum)[TILE_SAMPLES];        /* per channel: sum of a pixel's samples; shifted passes */
     ThinCells cells, further;          /* thin vessels over the samples, and over shifted samples */
@@ -28,7 +30,7 @@ typedef struct TileEngine {
     int batch_tiles;    /* tiles that are shaded together if there are shadows, else 1 */
     int rows_at_once;   /* rows of tiles that share batches if there are shadows, else 1 */
     size_t tile_bytes;  /* size of BatchTile.own */
-    const LightViews *lights;
+    const ShadowEngine *shadows;
 
     /* Sorts the drawing's geometry into the tiles of `grid` in *bins, which the caller releases.
      * Sets *bins on success only. Errors: STATUS_MEMORY; STATUS_USAGE for a view that the engine
@@ -43,12 +45,6 @@ typedef struct TileEngine {
     /* Sets the sample positions of `tile`, a tile of that row, and its hits. `shift` is the index
      * of a shifted pass, row by row, or -1 for the positions of the grid. Errors: STATUS_MEMORY. */
     Status (*trace)(void *bins, int worker, int shift, BatchTile *tile, Err *err);
-    /* Makes shadows[i], which the caller releases, for each light i that light views serve
-     * [tilerender_uses_view]. Errors: STATUS_MEMORY. */
-    Status (*look)(const Drawing *drawing, const Viewpoint *eye, void **shadows, Err *err);
-    /* Queues a shadow query for each sample whose bit is set in `wanted`; see LightViews.ask. */
-    void (*shadow)(void *queue, const TileKernels *kernels, const BatchTile *tile,
-                   const SeenPlaces *places, uint64_t wanted, uint32_t answer);
 } TileEngine;
 
 #endif

@@ -13,6 +13,7 @@
 #include "render/cast/caster.h"
 #include "render/light/raycolor.h"
 #include "render/light/shade.h"
+#include "render/light/shadowpass.h"
 #include "render/tile/canvas.h"
 #include <stdlib.h>
 #include <string.h>
@@ -27,20 +28,20 @@ typedef struct TilePass {
 typedef struct TilePrepared {
     const TileEngine *engine;
     TilePass center, further;
-    void *shadows[VIEW_MAX_LIGHTS]; /* NULL: the light casts none, or rays find them */
+    LightBins *shadows[VIEW_MAX_LIGHTS]; /* NULL: the light casts none, or rays find them */
 } TilePrepared;
 
 /* The tiles that one worker draws together, and its workspaces. All arrays are owned. */
 typedef struct TileBatch {
     BatchTile *tiles;
     int n_tiles;
-    uint8_t *own;                      /* per tile: BatchTile.own */
-    uint8_t (*shadowed)[TILE_SAMPLES]; /* per tile and light */
-    float (*sums)[TILE_SAMPLES];       /* per tile and channel; shifted passes */
-    void *queues[VIEW_MAX_LIGHTS];     /* of prepared shadows */
-    uint8_t *wanted;                   /* per tile of a row: has pixels that want further samples */
-    float *fine_colors;                /* of the samples of a row of pixel tiles; fine grid */
-    int fine_row;                      /* first row of samples in fine_colors */
+    uint8_t *own;                         /* per tile: BatchTile.own */
+    uint8_t (*shadowed)[TILE_SAMPLES];    /* per tile and light */
+    float (*sums)[TILE_SAMPLES];          /* per tile and channel; shifted passes */
+    ShadowQueue *queues[VIEW_MAX_LIGHTS]; /* of prepared shadows */
+    uint8_t *wanted;    /* per tile of a row: has pixels that want further samples */
+    float *fine_colors; /* of the samples of a row of pixel tiles; fine grid */
+    int fine_row;       /* first row of samples in fine_colors */
 } TileBatch;
 
 /* A band while it is drawn. */
@@ -111,9 +112,7 @@ static void cast_shadows(const TilePicture *picture, int worker, const Light *li
         int sample = __builtin_ctzll(wanted);
         Vec3 at = {places->x[sample], places->y[sample], places->z[sample]};
         Vec3 point = viewpoint_point(&picture->canvas.eye, at);
-        LightWay way = light_way(light, point);
-        shadowed[sample] = caster_shadow(drawing->caster, worker, &drawing->view->ground, point,
-                                         way.towards, way.distance);
+        shadowed[sample] = !shadowrays_count(drawing, worker, light, ALL_SETS, point);
     }
 }
 
@@ -125,6 +124,8 @@ static void query_lights(const TilePicture *picture, int worker, const BatchTile
     const uint64_t hits = find_hits(&tile->seen);
     SeenPlaces places;
     locate(picture->engine, tile, &places);
+    for (uint64_t left = tile->items ? tile->seen.ground : 0; left; left &= left - 1)
+        tile->items[__builtin_ctzll(left)] = NO_ITEM;
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
         if (!light->casts_shadows || light->samples > 1)
@@ -133,8 +134,7 @@ static void query_lights(const TilePicture *picture, int worker, const BatchTile
                                                &picture->canvas.look.lights[i]);
         size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
         if (batch->queues[i])
-            picture->engine->shadow(batch->queues[i], kernels, tile, &places, wanted,
-                                    (uint32_t)answer);
+            shadowqueue_add(batch->queues[i], &places, tile->items, wanted, (uint32_t)answer);
         else
             cast_shadows(picture, worker, light, &places, wanted, tile->shadowed[i]);
     }
@@ -154,8 +154,7 @@ static Status find_shadows(const TilePicture *picture, int worker, Err *err)
             query_lights(picture, worker, &batch->tiles[i]);
     for (size_t i = 0; i < n_lights; i++)
         if (batch->queues[i])
-            TRY(picture->engine->lights->answer(batch->queues[i], drawing->params->kernels,
-                                                batch->shadowed[0], err));
+            TRY(shadowqueue_answer(batch->queues[i], batch->shadowed[0], err));
     return STATUS_OK;
 }
 
@@ -385,12 +384,12 @@ static Status find_thin(const TilePicture *picture, BatchTile *tile, Err *err)
     const int fine = side * TILE_SIDE;
     if (per_pixel == 1 && thinlayer_misses(thin, seen->column / TILE_SIDE, seen->row / TILE_SIDE))
         thin = NULL;
-    TRY(thincells_fill(thin, per_pixel, seen->column, seen->row, TILE_SIDE, TILE_SIDE, &tile->cells,
-                       err));
+    const CellBlock center = {seen->column, seen->row, TILE_SIDE, TILE_SIDE, per_pixel};
+    const CellBlock further = {seen->column * side, seen->row * side, fine, fine, side};
+    TRY(thincells_fill(thin, center, &tile->cells, err));
     if (!picture->shifts || tile->cells.n == 0)
         thin = NULL;
-    return thincells_fill(thin, side, seen->column * side, seen->row * side, fine, fine,
-                          &tile->further, err);
+    return thincells_fill(thin, further, &tile->further, err);
 }
 
 /* Traces the next tile of the batch. Sets *shown to false if it shows nothing but background. */
@@ -491,36 +490,17 @@ static Status draw_further(void *context, int row, int rows, int worker, Err *er
 
 /* ---- what all bands share -------------------------------------------------------------------- */
 
-bool tilerender_uses_view(const Drawing *drawing, const LightViews *lights, const Light *light)
-{
-    return light->casts_shadows && light->samples <= 1 && drawing->params->method != RENDER_TRACE &&
-           lights->can(drawing->geometry, drawing->view, light);
-}
-
-bool tilerender_needs_rays(const Drawing *drawing, const LightViews *lights)
-{
-    const RenderParams *params = drawing->params;
-    bool rays = params->occlusion > 0 && params->method == RENDER_TRACE;
-    for (size_t i = 0; i < drawing->view->n_lights && params->shadows; i++) {
-        const Light *light = &drawing->view->lights[i];
-        rays |= light->casts_shadows &&
-                (params->method == RENDER_TRACE ||
-                 !lightviews_can(lights, drawing->geometry, drawing->view, light));
-    }
-    return rays;
-}
-
 void tilerender_free(void *prepared)
 {
     TilePrepared *tiles = prepared;
     tiles->engine->release(tiles->center.bins);
     tiles->engine->release(tiles->further.bins);
     for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
-        tiles->engine->lights->free(tiles->shadows[i]);
+        lightbins_free(tiles->shadows[i]);
     free(tiles);
 }
 
-const void *tilerender_shadow(const void *prepared, size_t light)
+LightBins *tilerender_light_bins(const void *prepared, size_t light)
 {
     const TilePrepared *tiles = prepared;
     return tiles->shadows[light];
@@ -552,7 +532,7 @@ Status tilerender_prepare(const TileEngine *engine, const Drawing *drawing, void
     if (more.side > 0 && engine->fine_grid)
         TRY_GOTO(prepare_pass(engine, drawing, more.side, more.offsets, &tiles->further, err));
     if (params->shadows && params->want_color)
-        TRY_GOTO(engine->look(drawing, &eye, tiles->shadows, err));
+        TRY_GOTO(lightbins_new_hard(engine->shadows, drawing, &eye, tiles->shadows, err));
     *prepared = tiles;
 done:
     if (status != STATUS_OK)
@@ -579,8 +559,8 @@ static Status make_batch(const TilePicture *picture, TileBatch *batch, Err *err)
     }
     for (size_t i = 0; i < n_lights; i++)
         if (picture->has_shadows && picture->prepared->shadows[i])
-            TRY(engine->lights->queue_new(picture->prepared->shadows[i], drawing->hidden,
-                                          &batch->queues[i], err));
+            TRY(shadowqueue_new(picture->prepared->shadows[i], drawing->params->kernels,
+                                drawing->hidden, &batch->queues[i], err));
     return STATUS_OK;
 }
 
@@ -600,7 +580,7 @@ static void release_batch(const TilePicture *picture, TileBatch *batch)
         thincells_release(&batch->tiles[i].further);
     }
     for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
-        picture->engine->lights->queue_free(batch->queues[i]);
+        shadowqueue_free(batch->queues[i]);
     free(batch->tiles);
     free(batch->own);
     free(batch->shadowed);

@@ -5,16 +5,11 @@
 #include "render/tile/tileengine.h"
 
 /* The functions of an Engine [render/engine.h], given the engine of the tiles. The drawing must
- * have a caster if tilerender_needs_rays returns true. */
-bool tilerender_needs_rays(const Drawing *drawing, const LightViews *lights);
+ * have a caster if shadowengine_needs_rays returns true. */
 MUST_CHECK Status tilerender_prepare(const TileEngine *engine, const Drawing *drawing,
                                      void **prepared, Err *err);
 MUST_CHECK Status tilerender_rows(const Drawing *drawing, void *prepared, Frame *frame, Err *err);
 void tilerender_free(void *prepared);
-const void *tilerender_shadow(const void *prepared, size_t light);
-
-/* Returns true if hard shadows of the light come from a light view, not from rays. False for lights
- * that cast no shadows and for area lights. */
-bool tilerender_uses_view(const Drawing *drawing, const LightViews *lights, const Light *light);
+LightBins *tilerender_light_bins(const void *prepared, size_t light);
 
 #endif

@@ -29,7 +29,7 @@ static void sort_few(double *t, int n)
 }
 
 int primitive_stretches(const Primitive *primitive, const PrimitiveFrame *frame, Ray ray,
-                        Stretch stretches[3])
+                        RayStretch stretches[3])
 {
     enum { MOST = 6 };
     Hit hits[4];
@@ -48,17 +48,17 @@ int primitive_stretches(const Primitive *primitive, const PrimitiveFrame *frame,
     }
     for (int i = 0; i + 1 < n; i += 2)
         if (t[i + 1] > 0)
-            stretches[made++] = (Stretch){fmax(t[i], 0), t[i + 1]};
+            stretches[made++] = (RayStretch){fmax(t[i], 0), t[i + 1]};
     return made;
 }
 
 static int by_from(const void *a, const void *b)
 {
-    const Stretch *x = a, *y = b;
+    const RayStretch *x = a, *y = b;
     return (x->from > y->from) - (x->from < y->from);
 }
 
-double stretches_length(Stretch *stretches, size_t n)
+double stretches_length(RayStretch *stretches, size_t n)
 {
     double length = 0, reached = -HUGE_VAL;
     for (size_t i = 1; i < n; i++)

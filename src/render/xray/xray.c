@@ -18,10 +18,10 @@ typedef struct XrayHull {
 
 /* What one thread works with: the stretches of a row. */
 typedef struct XrayRow {
-    ARRAY(Stretch) found;   /* primitive by primitive */
-    ARRAY(uint32_t) column; /* per stretch found */
-    IndexLists by_column;   /* indices of the stretches of each column */
-    ARRAY(Stretch) sorted;  /* the stretches of one column */
+    ARRAY(RayStretch) found;  /* primitive by primitive */
+    ARRAY(uint32_t) column;   /* per stretch found */
+    IndexLists by_column;     /* indices of the stretches of each column */
+    ARRAY(RayStretch) sorted; /* the stretches of one column */
 } XrayRow;
 
 /* All arrays are owned. */

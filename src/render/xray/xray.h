@@ -1,23 +1,24 @@
-/* Pictures of the length of vessel along each ray. */
+/* The x-ray view: colours by the length of vessel along each ray. */
 #ifndef CORCAST_RENDER_XRAY_H
 #define CORCAST_RENDER_XRAY_H
 
 #include "render/engine.h"
 
-/* Draws colours alone, one sample a pixel. */
+/* Draws colours only, one sample per pixel. */
 extern const Engine xray_engine;
 
-/* How much of the ray, mm, from its origin on, lies inside a primitive, as stretches of it: at most
- * 3, in *stretches, rising and apart; returns how many. Exact but for rounding: a cylinder with its
- * end discs, a sphere, a joint with its discs. */
-typedef struct Stretch {
+/* The part of a ray inside a vessel, mm from the ray's origin. */
+typedef struct RayStretch {
     double from, to;
-} Stretch;
+} RayStretch;
 
+/* Finds the parts of a ray, from its origin on, that lie inside a primitive: a sphere, a cylinder
+ * with its end discs, or a joint with its discs. Exact except for rounding. Sets stretches[] in
+ * rising order, apart from one another, and returns their number. */
 int primitive_stretches(const Primitive *primitive, const PrimitiveFrame *frame, Ray ray,
-                        Stretch stretches[3]);
+                        RayStretch stretches[3]);
 
-/* The length of the union of stretches, mm, which it sorts. O(n log n), or O(n) where they rise. */
-double stretches_length(Stretch *stretches, size_t n);
+/* Sorts stretches and returns the length of their union, mm. O(n log n), or O(n) if they rise. */
+double stretches_length(RayStretch *stretches, size_t n);
 
 #endif

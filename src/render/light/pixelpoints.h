@@ -1,0 +1,75 @@
+/* The shading points of a band of pixels, sorted so that consecutive points query the same few
+ * tiles of a light view. */
+#ifndef CORCAST_RENDER_PIXELPOINTS_H
+#define CORCAST_RENDER_PIXELPOINTS_H
+
+#include "render/light/bandvisibility.h"
+
+/* Columns and rows of a block of pixels. */
+enum { PIXEL_BLOCK = VISIBILITY_BLOCK };
+
+/* The pixels of a block, in the band: columns [first_column, end_column), rows likewise. */
+typedef struct PixelBlock {
+    int first_column, end_column, first_row, end_row;
+} PixelBlock;
+
+/* Returns the number of blocks that cover a side of `pixels` pixels. */
+static inline size_t blocks_across(int pixels)
+{
+    return ((size_t)pixels + PIXEL_BLOCK - 1) / PIXEL_BLOCK;
+}
+
+/* Returns block `index`, row by row, of the band's rows [first, first + rows). */
+static inline PixelBlock pixelblock_at(const PixelVisibility *visibility, size_t index, int first,
+                                       int rows)
+{
+    size_t across = blocks_across(visibility->width);
+    int column = (int)(index % across) * PIXEL_BLOCK;
+    int row = first + (int)(index / across) * PIXEL_BLOCK;
+    int end_column = column + PIXEL_BLOCK, end_row = row + PIXEL_BLOCK;
+    return (PixelBlock){column, end_column < visibility->width ? end_column : visibility->width,
+                        row, end_row < first + rows ? end_row : first + rows};
+}
+
+/* Returns the pixel at (column, row) of the band. */
+static inline size_t pixel_at(const PixelVisibility *visibility, int column, int row)
+{
+    return (size_t)row * (size_t)visibility->width + (size_t)column;
+}
+
+/* The shading points with the indices [begin, end). All belong to one sample set. */
+typedef struct PointRun {
+    size_t begin, end;
+    int sample_set;
+} PointRun;
+
+/* PixelPoints.n_visible combines a flag and a count: the pixel shows the ground plane, and the
+ * number of visible points of a light. */
+enum { GROUND_FLAG = 1 << 15, VISIBLE_COUNT = GROUND_FLAG - 1 };
+
+/* What a band knows of its shading points beside PixelVisibility.points. All arrays are owned.
+ *
+ * Points are sorted by scanline block, then by sample set [shadowpass.h], then by pixel block. If
+ * no area lights query, all points belong to set 0, so that neighbouring pixels are consecutive. */
+typedef struct PixelPoints {
+    bool has_sets; /* area lights query; if false, pixel_of_point and n_visible are NULL */
+    size_t n;      /* number of points */
+    PointRun *runs;
+    size_t n_runs;
+    Box bounds;               /* of the points, relative to PixelVisibility.origin; if has_sets */
+    uint32_t *pixel_of_point; /* per point: its pixel */
+    uint16_t *n_visible;      /* per pixel: GROUND_FLAG if it shows the ground, else 0. The counts
+                               * are 0. */
+} PixelPoints;
+
+/* Finds the shading points of the band: sets visibility->point_index and visibility->points, whose
+ * other fields are set, and *points, whose has_sets is set. Draws the vessels by
+ * sources->draw_planes and adds the view's ground plane.
+ *
+ * points   release it with pixelpoints_release, even after an error.
+ * Errors   STATUS_MEMORY. */
+MUST_CHECK Status pixelpoints_find(const Drawing *drawing, const VisibilitySources *sources,
+                                   PixelVisibility *visibility, PixelPoints *points, Err *err);
+void pixelpoints_release(PixelPoints *points);
+
+#endif

@@ -1,0 +1,63 @@
+/* How many points of a light are visible from shading points: by queries to several light views at
+ * once, or by shadow rays. */
+#ifndef CORCAST_RENDER_SHADOWPASS_H
+#define CORCAST_RENDER_SHADOWPASS_H
+
+#include "render/light/shadowqueue.h"
+
+/* The most points that one call of shadowpass_run takes. */
+enum { SHADOW_RUN = 8192 };
+
+/* The points that query, and where the answers go. */
+typedef struct ShadowPoser {
+    /* Sets points[k] to point first + k for k < n <= TILE_SAMPLES, in the frame for which the light
+     * bins were made. Returns as bits the points that query; the others count as dark. */
+    uint64_t (*place)(const void *context, size_t first, size_t n, SeenPlaces *points);
+    /* Receives from how many of the light views point `index` is lit. Calls for different points
+     * may come from different threads. */
+    void (*store)(const void *context, size_t index, int n_lit);
+    const void *context; /* passed to both; borrowed */
+} ShadowPoser;
+
+/* Light views, and a queue to each of them for each worker. */
+typedef struct ShadowPass {
+    ShadowPoser poser;
+    int n_views;
+    ShadowQueue **queues; /* n_views for each worker; owned */
+} ShadowPass;
+
+/* Makes the queues to n_views light bins, which are borrowed.
+ *
+ * hidden   as in shadowqueue_new.
+ * pass     release it with shadowpass_release, even after an error.
+ * Errors   STATUS_MEMORY. */
+MUST_CHECK Status shadowpass_init(const Drawing *drawing, LightBins *const *bins, int n_views,
+                                  const bool *hidden, ShadowPass *pass, Err *err);
+void shadowpass_release(ShadowPass *pass, const Drawing *drawing);
+
+/* Finds for the points [begin, end), at most SHADOW_RUN, from how many views they are lit. Rounding
+ * in kernels depends on which points are in one call. Errors: STATUS_MEMORY. */
+MUST_CHECK Status shadowpass_run(const ShadowPass *pass, size_t begin, size_t end, int worker,
+                                 Err *err);
+
+/* Sample sets: the points of an area light, row by row, in blocks of 2 x 2. A point's set is its
+ * position in its block. Pixels of the image have the same sets [arealights.c]. */
+enum { SAMPLE_SETS = 4, ALL_SETS = -1 };
+
+/* Returns the sample set at a position in the pattern. */
+static inline int sampleset_at(int column, int row)
+{
+    return (row & 1) * 2 + (column & 1);
+}
+
+/* Returns true if point k of a light belongs to the set, or if `set` is ALL_SETS. */
+static inline bool sampleset_has(int set, const Light *light, int k)
+{
+    return set == ALL_SETS || sampleset_at(k % light->samples, k / light->samples) == set;
+}
+
+/* Returns the number of points of a light's sample set that are visible from `point` (world
+ * coordinates), by shadow rays of the drawing's caster. */
+int shadowrays_count(const Drawing *drawing, int worker, const Light *light, int set, Vec3 point);
+
+#endif
