@@ -692,7 +692,7 @@ Status tree_write(const Tree *tree, const char *path, Err *err)
         status = text_flush(&text, err);
     text_release(&text);
     if (status == STATUS_IO)
-        err_prefix(err, "%s: ", path);
+        err_prefix(err, "%s: ", is_standard(path) ? "standard output" : path);
     if (status == STATUS_OK)
         return outfile_commit(&file, err);
     outfile_discard(&file);
