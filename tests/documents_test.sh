@@ -72,9 +72,9 @@ END
 
 test_the_numbers_of_the_potential_are_those_of_the_source() {
     agree METHODS.md <<'END'
-With eps = 10⁻⁶ (`CELL_TERM_CUTOFF`) that is 1.85 · 10⁻⁶ n r @ surface.h @ #define CELL_TERM_CUTOFF 1e-6
-with Phi clamped to [10⁻⁵, 0.2] @ surface.h @ #define LOG_FORM_FLOOR 1e-5
-with Phi clamped to [10⁻⁵, 0.2] @ surface.h @ #define LOG_FORM_CEILING 0.2
+With eps = 10⁻⁶ (`CELL_TERM_CUTOFF`) that is 1.85 · 10⁻⁶ n r @ field.h @ #define CELL_TERM_CUTOFF 1e-6
+with Phi clamped to [10⁻⁵, 0.2] @ field.h @ #define LOG_FORM_FLOOR 1e-5
+with Phi clamped to [10⁻⁵, 0.2] @ field.h @ #define LOG_FORM_CEILING 0.2
 `Phi'^2 >= 4.6 M lack` @ kernel_potential.h @ #define SURE 4.6f
 Within 2 % of C and with ten times that certainty @ kernel_trace.h @ #define NEAR_ENOUGH (2e-2f * LEVEL)
 or within 0.1 %, Newton's method closes it @ kernel_trace_common.h @ #define CLOSE_ENOUGH (1e-3f * LEVEL)
@@ -82,7 +82,7 @@ come to where the margin exceeds 10⁻³ C @ kernel_trace.h @ near = margin <= C
 does not count where Phi is within 1 % of C and falls @ fieldcast.c @ sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0
 lie in one plane (to 10⁻⁷ / k) @ fieldterms.c @ <= 1e-7;
 to within 4 · 10⁻⁶ of ln C @ kernel_trace_flat.h @ #define PLANE_CLOSE 3e-6f
-10⁻⁶ each: `exp(-d^2)` times the term's peak is below it @ surface.h @ #define TILE_TERM_CUTOFF 1e-6
+10⁻⁶ each: `exp(-d^2)` times the term's peak is below it @ field.h @ #define TILE_TERM_CUTOFF 1e-6
 20 terms being allowed to be left out @ kernel_trace_common.h @ #define MARGIN_DROPPED 2e-5f
 6 · 10⁻⁷ for each term @ kernel_trace_common.h @ #define MARGIN_TERM 6e-7f
 1.2 · 10⁻⁷ e k B for each term @ kernel_trace_common.h @ #define MARGIN_PLACE 1.2e-7f
@@ -253,11 +253,11 @@ POV-Ray holds at most 1,048,575 functions @ povray_joint.c @ POV-Ray holds 1,048
 more than 349,000 joints @ povray_joint.c @ MOST_EXACT = 349000,
 where there are more than 8,000 @ povray_joint.c @ MANY = 8000,
 scenes of more than 3,000 segments the twelve @ povray_text.h @ MOST_INLINE_TERMS = 3000
-- `f(x) <= M d(x) / 2`, because a ray that missed @ povray_joint.c @ 2 * steepest};
+- `f(x) <= M d(x) / 2`, because a ray that missed @ povray_joint.c @ 2 * steepest, folded
 Its hits are within 2 · 10⁻⁹ radii @ joints.inc @ accuracy 2e-9 open
-no tile has more than 400,000 cylinders @ povray.c @ {MODEL_CYLINDERS, put_primitive_macros, put_primitives, 400000},
-200,000 pieces of a joined tree, 32,768 segments of a blob @ povray.c @ {MODEL_BLOB, put_blob_macros, put_blob, 32768},
-of a mesh, or 100,000 cells @ povray.c @ {MODEL_POTENTIAL, put_cell_macros, put_cells, 100000},
+no tile has more than 400,000 cylinders @ povray.c @ {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
+200,000 pieces of a joined tree, 32,768 segments of a blob @ povray.c @ {MODEL_BLOB, find_painted, put_blob_macros, put_blob, 32768},
+of a mesh, or 100,000 cells @ povray.c @ {MODEL_POTENTIAL, find_cells, put_cell_macros, put_cells, 100000},
 tile is narrower than 8 pixels @ povray_side.c @ LEAST_SIDE = 8 };
 for at most 65,536 segments @ povray_blob.c @ GROUP = 256, MAX_PAINTED = GROUP * GROUP,
 END

@@ -1,6 +1,5 @@
-/* One table row a field; a column of the tree's file takes precedence over what would be derived.
- * The functions write every node, roots with whatever suits their sweep; here the roots become NAN.
- */
+/* A field is a row of a table. A column of the tree takes precedence over a computed field. The
+ * functions of the rows write every node, with any value at roots; here the roots become NAN. */
 #include "derive/derive.h"
 
 #include "derive/fields.h"
@@ -25,7 +24,7 @@ static Status field_length(const Tree *tree, const TreeMeta *said, double *value
 
 typedef struct FieldRule {
     const char *name, *unit;
-    Status (*fill)(const Tree *tree, const TreeMeta *said, double *value, Err *err);
+    FieldFunction *fill;
 } FieldRule;
 
 static const FieldRule rules[] = {

@@ -16,17 +16,17 @@
 enum { MAX_ROUNDS = 100 };
 
 /* Of one order. */
-typedef struct Bin {
+typedef struct OrderBin {
     size_t count;
     double mean, sd; /* of the diameters, mm; sd 0 for a single vessel */
     double bound;    /* between this order and the next; infinite for the last */
-} Bin;
+} OrderBin;
 
 /* Two passes, so that the spread of nearly equal diameters is not lost in their squares. */
-static void measure_bins(const Vessels *vessels, const int32_t *order, Bin *bin, int n_bins)
+static void measure_bins(const Vessels *vessels, const int32_t *order, OrderBin *bin, int n_bins)
 {
     for (int b = 0; b < n_bins; b++)
-        bin[b] = (Bin){.bound = HUGE_VAL};
+        bin[b] = (OrderBin){.bound = HUGE_VAL};
     for (size_t v = 0; v < vessels->n; v++) {
         bin[order[v] - 1].count++;
         bin[order[v] - 1].mean += 2 * vessels->vessel[v].radius_mm;
@@ -45,7 +45,7 @@ static void measure_bins(const Vessels *vessels, const int32_t *order, Bin *bin,
 
 /* Orders every vessel anew; returns how many changed. `largest`, zeroed here, holds the largest
  * order among the daughters of each. */
-static size_t assign(const Vessels *vessels, const Bin *bin, int32_t *largest, int32_t *order)
+static size_t assign(const Vessels *vessels, const OrderBin *bin, int32_t *largest, int32_t *order)
 {
     size_t changed = 0;
     memset(largest, 0, vessels->n * sizeof *largest);
@@ -76,7 +76,7 @@ Status vessels_diameter_orders(const Vessels *vessels, int32_t **order, Diameter
 {
     int n_bins = largest_strahler(vessels);
     int32_t *made = NULL, *largest = NULL;
-    Bin *bin = NULL;
+    OrderBin *bin = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&made, vessels->n, sizeof *made, "orders", err));
     TRY_GOTO(mem_calloc(&largest, vessels->n, sizeof *largest, "orders", err));

@@ -1,30 +1,24 @@
-/* The fields, each written to value[n], which is given zeroed; derive.h says what they are. What
- * stands at roots afterwards is the caller's to replace. */
+/* The functions that compute fields [derive.h]. Private to the module derive. */
 #ifndef CORCAST_DERIVE_FIELDS_H
 #define CORCAST_DERIVE_FIELDS_H
 
 #include "derive/derive.h"
 
-MUST_CHECK Status field_flow(const Tree *tree, const TreeMeta *said, double *value, Err *err);
-MUST_CHECK Status field_velocity(const Tree *tree, const TreeMeta *said, double *value, Err *err);
-MUST_CHECK Status field_pressure(const Tree *tree, const TreeMeta *said, double *value, Err *err);
-MUST_CHECK Status field_wss(const Tree *tree, const TreeMeta *said, double *value, Err *err);
-MUST_CHECK Status field_reynolds(const Tree *tree, const TreeMeta *said, double *value, Err *err);
+/* Computes a field in `value`, an entry per node, which the caller zeroes before. The caller
+ * replaces the values at roots. `said` has the values that the user specified. Errors: STATUS_INPUT
+ * if a value is missing, with a sentence that continues the field's name; STATUS_MEMORY. */
+typedef Status FieldFunction(const Tree *tree, const TreeMeta *said, double *value, Err *err);
 
-MUST_CHECK Status field_level(const Tree *tree, const TreeMeta *said, double *value, Err *err);
-MUST_CHECK Status field_strahler(const Tree *tree, const TreeMeta *said, double *value, Err *err);
-MUST_CHECK Status field_diameter_strahler(const Tree *tree, const TreeMeta *said, double *value,
-                                          Err *err);
-MUST_CHECK Status field_tree(const Tree *tree, const TreeMeta *said, double *value, Err *err);
-MUST_CHECK Status field_branch(const Tree *tree, const TreeMeta *said, double *value, Err *err);
+FieldFunction field_flow, field_velocity, field_pressure, field_wss, field_reynolds;
+FieldFunction field_level, field_strahler, field_diameter_strahler, field_tree, field_branch;
 
-/* Who says the key, if anybody does: the user before the tree. */
+/* Returns the source of a value: the user, if specified, else the tree. Either may lack it. */
 static inline const TreeMeta *who_says(const Tree *tree, const TreeMeta *said, MetaKey key)
 {
     return said->known[key] ? said : &tree->meta;
 }
 
-/* Whether field_pressure has all it needs. */
+/* Returns true if no input of field_pressure is missing. */
 bool pressure_is_known(const Tree *tree, const TreeMeta *said);
 
 #endif

@@ -60,7 +60,7 @@ static Status take_row(Morphometry *table, size_t *capacity, const char *line, E
     return STATUS_OK;
 }
 
-/* Whether the text is an order for each ratio, which are then the table's. */
+/* Returns true if the text is an order for each ratio, which are then the table's. */
 static bool take_fitted_from(Morphometry *table, const char *text)
 {
     double order[RATIO_NUMBERS];

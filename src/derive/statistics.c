@@ -8,23 +8,23 @@
 #include <stdlib.h>
 
 /* Vessels of the same group in series; at levels, single vessels. */
-typedef struct Element {
+typedef struct VesselElement {
     int32_t group;
     size_t vessels;
     double radius_mm, length_mm; /* mean and sum */
-} Element;
+} VesselElement;
 
 /* `element` has room for as many as there are vessels. `heir` tells which vessel continues which;
  * NULL when none does. */
 static size_t merge_vessels(const Vessels *vessels, const int32_t *group, const int32_t *heir,
-                            int32_t *element_of, Element *element)
+                            int32_t *element_of, VesselElement *element)
 {
     size_t n = 0;
     for (size_t v = 0; v < vessels->n; v++) {
         const Vessel *vessel = &vessels->vessel[v];
         bool continues = heir && vessel->parent != NO_VESSEL && heir[vessel->parent] == (int32_t)v;
         element_of[v] = continues ? element_of[vessel->parent] : (int32_t)n++;
-        Element *own = &element[element_of[v]];
+        VesselElement *own = &element[element_of[v]];
         own->group = group[v];
         own->vessels++;
         own->radius_mm += (vessel->radius_mm - own->radius_mm) / (double)own->vessels;
@@ -34,7 +34,7 @@ static size_t merge_vessels(const Vessels *vessels, const int32_t *group, const 
 }
 
 /* Rows for the groups 0 .. n_groups - 1, empty ones included, from `n` elements. */
-static void fill_rows(const Element *element, size_t n, StatisticsRow *row, int n_groups)
+static void fill_rows(const VesselElement *element, size_t n, StatisticsRow *row, int n_groups)
 {
     for (size_t e = 0; e < n; e++) {
         StatisticsRow *own = &row[element[e].group];
@@ -65,7 +65,7 @@ static void fill_rows(const Element *element, size_t n, StatisticsRow *row, int 
 /* The mean number of elements of order k that spring from an element of order m in entry
  * (m - 1) n + k - 1; `row` has one for each order and for 0. */
 static void count_daughters(const Vessels *vessels, const int32_t *element_of,
-                            const Element *element, const StatisticsRow *row, int n,
+                            const VesselElement *element, const StatisticsRow *row, int n,
                             double *daughters)
 {
     for (size_t v = 0; v < vessels->n; v++) {
@@ -86,7 +86,7 @@ static Status make_table(const Vessels *vessels, const int32_t *group, const int
         if (group[v] >= n_groups)
             n_groups = group[v] + 1;
     int32_t *element_of = NULL;
-    Element *element = NULL;
+    VesselElement *element = NULL;
     StatisticsRow *row = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&element_of, vessels->n, sizeof *element_of, "elements", err));
@@ -184,16 +184,16 @@ static BifurcationSpread spread_of(double *value, size_t n)
 }
 
 /* What the vessels that start at a node have in common. */
-typedef struct Fork {
+typedef struct VesselFork {
     int32_t daughters, parent; /* vessels; parent NO_VESSEL at a root */
     double thinnest, thickest, squares;
-} Fork;
+} VesselFork;
 
-static void find_forks(const Vessels *vessels, Fork *fork)
+static void find_forks(const Vessels *vessels, VesselFork *fork)
 {
     for (size_t v = 0; v < vessels->n; v++) {
         const Vessel *vessel = &vessels->vessel[v];
-        Fork *own = &fork[vessel->start];
+        VesselFork *own = &fork[vessel->start];
         double radius = vessel->radius_mm;
         own->parent = vessel->parent;
         own->thinnest = own->daughters ? fmin(own->thinnest, radius) : radius;
@@ -206,7 +206,7 @@ static void find_forks(const Vessels *vessels, Fork *fork)
 static Status measure_forks(const Tree *tree, const Vessels *vessels, TreeStatistics *statistics,
                             Err *err)
 {
-    Fork *fork = NULL;
+    VesselFork *fork = NULL;
     double *symmetry = NULL, *area = NULL;
     size_t n_symmetry = 0, n_area = 0;
     Status status = STATUS_OK;

@@ -58,25 +58,25 @@ static void chain_segments(const Curves *curves, uint32_t *into, uint32_t *next,
 }
 
 /* The first segment of a curve, with its kind, to sort by. */
-typedef struct Head {
+typedef struct CurveHead {
     CurveKind kind;
     uint32_t segment;
-} Head;
+} CurveHead;
 
 static int compare_heads(const void *a, const void *b)
 {
-    const Head *one = a, *other = b;
+    const CurveHead *one = a, *other = b;
     int order = compare_kinds(&one->kind, &other->kind);
     return order ? order : (one->segment > other->segment) - (one->segment < other->segment);
 }
 
-static Status sort_heads(const Curves *curves, const bool *heads, Head **sorted, Err *err)
+static Status sort_heads(const Curves *curves, const bool *heads, CurveHead **sorted, Err *err)
 {
     size_t n = 0;
     TRY(mem_calloc(sorted, curves->n, sizeof **sorted, "curves", err));
     for (uint32_t i = 0; i < curves->vessels->n_segments; i++)
         if (heads[i])
-            (*sorted)[n++] = (Head){curves->kinds[i], i};
+            (*sorted)[n++] = (CurveHead){curves->kinds[i], i};
     qsort(*sorted, n, sizeof **sorted, compare_heads);
     return STATUS_OK;
 }
@@ -85,7 +85,7 @@ static Status sort_heads(const Curves *curves, const bool *heads, Head **sorted,
 static Status list_curves(Curves *curves, const uint32_t *next, const bool *heads, Err *err)
 {
     size_t n = curves->vessels->n_segments, at = 0;
-    Head *sorted = NULL;
+    CurveHead *sorted = NULL;
     for (size_t i = 0; i < n; i++)
         curves->n += heads[i];
     TRY(mem_calloc(&curves->segments, n, sizeof *curves->segments, "curves", err));

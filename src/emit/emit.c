@@ -1,115 +1,50 @@
-/* A format is a row: what it is called, what it can hold, and a function that appends it to texts.
- * The texts flow into temporary files that take their names together once all is written, so that a
- * failure half way leaves what the user had. What goes to standard output is held until then, so
- * that who reads it gets all or nothing. */
+/* A format is a row: its name, what it can hold, and a function that appends it to texts. The texts
+ * are written to temporary files, which get their final names together when all is written. After a
+ * failure the user's files are therefore unchanged. Text for standard output is held back until
+ * then, so that its reader gets all or nothing. */
 #include "emit/rows.h"
 
 #include <string.h>
 
+#define FORMAT(named, ending, holds, writer, ...)                                                  \
+    {                                                                                              \
+        .name = named, .extension = ending, .description = holds, .write = writer, __VA_ARGS__     \
+    }
+#define OF_MESHES(named, ending, holds, writer, ...)                                               \
+    FORMAT(named, ending, holds, writer, .of_meshes = true, __VA_ARGS__)
+#define OF_LINES(named, ending, holds, writer, ...)                                                \
+    FORMAT(named, ending, holds, writer, .of_lines = true, .has_colors = true, __VA_ARGS__)
+
 const Emitter emitters[] = {
-    {.name = "povray",
-     .extension = "pov",
-     .second_extension = "inc",
-     .second_holds = "the geometry",
-     .settings_extension = "ini",
-     .description = "a scene for POV-Ray 3.7",
-     .has_view = true,
-     .elements = MODEL_PRIMITIVES | MODEL_FIELD | MODEL_TRIANGLES,
-     .check_name = povray_check_name,
-     .write = povray_write,
-     .write_settings = povray_write_settings},
-    {.name = "openscad",
-     .extension = "scad",
-     .description = "a parametric model for OpenSCAD",
-     .elements = MODEL_CYLINDERS | MODEL_BALLS,
-     .write = openscad_write},
-    {.name = "tachyon",
-     .extension = "tachyon",
-     .description = "a scene for Tachyon 0.99",
-     .has_view = true,
-     .elements = MODEL_CYLINDERS | MODEL_BALLS | MODEL_TRIANGLES,
-     .write = tachyon_write},
-    {.name = "polyhedron",
-     .extension = "scad",
-     .description = "one closed surface for OpenSCAD",
-     .of_meshes = true,
-     .write = openscad_write_mesh},
-    {.name = "stl",
-     .extension = "stl",
-     .description = "triangles for printers and CAD",
-     .binary = true,
-     .of_meshes = true,
-     .write = stl_write},
-    {.name = "stl-parts",
-     .extension = "stl",
-     .description = "triangles of named parts for solvers",
-     .of_meshes = true,
-     .has_parts = true,
-     .option = "parts",
-     .write = stl_write_parts},
-    {.name = "vtp",
-     .extension = "vtp",
-     .description = "triangles of named parts for VTK and SimVascular",
-     .binary = true,
-     .of_meshes = true,
-     .has_parts = true,
-     .write = vtp_write_mesh},
-    {.name = "ply",
-     .extension = "ply",
-     .description = "triangles with normals and the segment of each",
-     .binary = true,
-     .of_meshes = true,
-     .has_colors = true,
-     .write = ply_write},
-    {.name = "glb",
-     .extension = "glb",
-     .description = "binary glTF 2.0",
-     .binary = true,
-     .of_meshes = true,
-     .has_colors = true,
-     .write = glb_write},
-    {.name = "obj",
-     .extension = "obj",
-     .second_extension = "mtl",
-     .second_holds = "the materials",
-     .description = "triangles in groups, and their materials",
-     .of_meshes = true,
-     .has_colors = true,
-     .check_name = obj_check_name,
-     .write = obj_write},
-    {.name = "3mf",
-     .extension = "3mf",
-     .description = "triangles and their colours for printers",
-     .binary = true,
-     .of_meshes = true,
-     .has_colors = true,
-     .write = threemf_write},
-    {.name = "blender",
-     .extension = "py",
-     .description = "a script that makes curves in Blender",
-     .of_lines = true,
-     .has_colors = true,
-     .write = blender_write},
-    {.name = "usd",
-     .extension = "usda",
-     .description = "curves as Universal Scene Description",
-     .of_lines = true,
-     .has_colors = true,
-     .write = usd_write},
-    {.name = "lattice",
-     .extension = "3mf",
-     .description = "a lattice of beams for printers",
-     .binary = true,
-     .of_lines = true,
-     .has_colors = true,
-     .option = "lattice",
-     .write = lattice_write},
-    {.name = "mesh2",
-     .extension = "inc",
-     .description = "a mesh2 for POV-Ray 3.7",
-     .of_meshes = true,
-     .has_colors = true,
-     .write = povray_write_mesh},
+    FORMAT("povray", "pov", "a scene for POV-Ray 3.7", povray_write, .has_view = true,
+           .elements = MODEL_ELEMENTS, .second_extension = "inc", .second_holds = "the geometry",
+           .settings_extension = "ini", .check_name = povray_check_name,
+           .write_settings = povray_write_settings),
+    FORMAT("openscad", "scad", "a parametric model for OpenSCAD", openscad_write,
+           .elements = MODEL_CYLINDERS | MODEL_BALLS),
+    FORMAT("tachyon", "tachyon", "a scene for Tachyon 0.99", tachyon_write, .has_view = true,
+           .elements = MODEL_CYLINDERS | MODEL_BALLS | MODEL_TRIANGLES),
+    OF_MESHES("polyhedron", "scad", "one closed surface for OpenSCAD", openscad_write_mesh,
+              .binary = false),
+    OF_MESHES("stl", "stl", "triangles for printers and CAD", stl_write, .binary = true),
+    OF_MESHES("stl-parts", "stl", "triangles of named parts for solvers", stl_write_parts,
+              .has_parts = true, .option = "parts"),
+    OF_MESHES("vtp", "vtp", "triangles of named parts for VTK and SimVascular", vtp_write_mesh,
+              .binary = true, .has_parts = true),
+    OF_MESHES("ply", "ply", "triangles with normals and the segment of each", ply_write,
+              .binary = true, .has_colors = true),
+    OF_MESHES("glb", "glb", "binary glTF 2.0", glb_write, .binary = true, .has_colors = true),
+    OF_MESHES("obj", "obj", "triangles in groups, and their materials", obj_write,
+              .has_colors = true, .second_extension = "mtl", .second_holds = "the materials",
+              .check_name = obj_check_name),
+    OF_MESHES("3mf", "3mf", "triangles and their colours for printers", threemf_write,
+              .binary = true, .has_colors = true),
+    OF_LINES("blender", "py", "a script that makes curves in Blender", blender_write,
+             .binary = false),
+    OF_LINES("usd", "usda", "curves as Universal Scene Description", usd_write, .binary = false),
+    OF_LINES("lattice", "3mf", "a lattice of beams for printers", lattice_write, .binary = true,
+             .option = "lattice"),
+    OF_MESHES("mesh2", "inc", "a mesh2 for POV-Ray 3.7", povray_write_mesh, .has_colors = true),
     {0},
 };
 
@@ -118,7 +53,7 @@ static bool is_of_scenes(const Emitter *emitter)
     return !emitter->of_meshes && !emitter->of_lines;
 }
 
-/* Whether its extension stands for it among those of scenes, or of meshes and lines. */
+/* Returns true if its extension stands for it among those of scenes, or of meshes and lines. */
 static bool is_listed(const Emitter *emitter, bool of_meshes)
 {
     return is_of_scenes(emitter) != of_meshes && !emitter->option;

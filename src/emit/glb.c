@@ -16,27 +16,18 @@ enum { COMPONENT_UINT = 5125, COMPONENT_FLOAT = 5126, ARRAY_BUFFER = 34962, INDE
 enum { VIEW_POSITIONS, VIEW_NORMALS, VIEW_COLORS, VIEW_CORNERS, VIEWS };
 
 /* A point and the first triangle of its order that it is a corner of. */
-typedef struct Vertex {
+typedef struct GlbVertex {
     uint32_t point, triangle;
-} Vertex;
+} GlbVertex;
 
 typedef struct Glb {
     const EmitParams *params;
-    IndexLists parts; /* triangles by order */
-    Vertex *vertices; /* owned; order by order */
-    size_t n_vertices, capacity;
+    IndexLists parts;              /* triangles by order */
+    ARRAY(GlbVertex) vertices;     /* order by order */
     size_t first[MOST_ORDERS + 2]; /* vertex of each order, as in parts */
     uint32_t (*corners)[3];        /* owned; of parts.items: numbers within the order */
     uint32_t *slots; /* owned; of each point, of the wall and of a cap: 1 + its last vertex */
 } Glb;
-
-static void release(Glb *glb)
-{
-    indexlists_release(&glb->parts);
-    free(glb->vertices);
-    free(glb->corners);
-    free(glb->slots);
-}
 
 /* The vertex of a corner, which is new when the slot's is of an earlier order. */
 static Status find_vertex(Glb *glb, uint32_t triangle, uint32_t point, size_t first, uint32_t *out,
@@ -44,10 +35,8 @@ static Status find_vertex(Glb *glb, uint32_t triangle, uint32_t point, size_t fi
 {
     uint32_t *slot = &glb->slots[2 * (size_t)point + mesh_is_cap(glb->params->mesh, triangle)];
     if (*slot <= first) {
-        TRY(mem_reserve(&glb->vertices, &glb->capacity, glb->n_vertices + 1, sizeof *glb->vertices,
-                        "vertices", err));
-        glb->vertices[glb->n_vertices++] = (Vertex){point, triangle};
-        *slot = (uint32_t)glb->n_vertices;
+        TRY(ARRAY_PUSH(&glb->vertices, "vertices", err, (GlbVertex){point, triangle}));
+        *slot = (uint32_t)glb->vertices.n;
     }
     *out = *slot - 1 - (uint32_t)first;
     return STATUS_OK;
@@ -57,7 +46,7 @@ static Status find_vertices(Glb *glb, Err *err)
 {
     const VesselMesh *mesh = glb->params->mesh;
     for (size_t order = 0; order <= MOST_ORDERS; order++) {
-        glb->first[order] = glb->n_vertices;
+        glb->first[order] = glb->vertices.n;
         for (size_t i = glb->parts.first[order]; i < glb->parts.first[order + 1]; i++)
             for (int k = 0; k < 3; k++) {
                 uint32_t triangle = glb->parts.items[i];
@@ -65,7 +54,7 @@ static Status find_vertices(Glb *glb, Err *err)
                                 &glb->corners[i][k], err));
             }
     }
-    glb->first[MOST_ORDERS + 1] = glb->n_vertices;
+    glb->first[MOST_ORDERS + 1] = glb->vertices.n;
     return STATUS_OK;
 }
 
@@ -83,7 +72,7 @@ static Status prepare(Glb *glb, Err *err)
 /* How many bytes of the buffer each view takes; all vertices take the same in the first three. */
 static size_t view_bytes(const Glb *glb, int view)
 {
-    return 12 * (view == VIEW_CORNERS ? glb->params->mesh->n_triangles : glb->n_vertices);
+    return 12 * (view == VIEW_CORNERS ? glb->params->mesh->n_triangles : glb->vertices.n);
 }
 
 static json_t *buffer_views(const Glb *glb)
@@ -117,7 +106,7 @@ static json_t *position_accessor(const Glb *glb, size_t first, size_t n)
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = first; i < first + n; i++)
         for (int axis = 0; axis < 3; axis++) {
-            float x = glb->params->mesh->points[glb->vertices[i].point][axis];
+            float x = glb->params->mesh->points[glb->vertices.items[i].point][axis];
             low[axis] = fminf(low[axis], x);
             high[axis] = fmaxf(high[axis], x);
         }
@@ -128,12 +117,12 @@ static json_t *position_accessor(const Glb *glb, size_t first, size_t n)
 }
 
 /* The four accessors of each order that there is, and its mesh and node. */
-typedef struct Lists {
+typedef struct GlbLists {
     json_t *accessors, *meshes, *nodes;
     size_t n;
-} Lists;
+} GlbLists;
 
-static void add_order(const Glb *glb, size_t order, Lists *lists)
+static void add_order(const Glb *glb, size_t order, GlbLists *lists)
 {
     size_t first = glb->first[order], n = glb->first[order + 1] - first;
     size_t triangle = glb->parts.first[order], triangles = glb->parts.first[order + 1] - triangle;
@@ -203,7 +192,7 @@ static json_t *document(const Glb *glb, size_t buffer_bytes)
     size_t orders = 0;
     for (size_t order = 0; order <= MOST_ORDERS; order++)
         orders += glb->first[order] < glb->first[order + 1];
-    Lists lists = {json_array(), json_array(), json_pack("[o]", root_node(glb, orders)), 0};
+    GlbLists lists = {json_array(), json_array(), json_pack("[o]", root_node(glb, orders)), 0};
     for (size_t order = 0; order <= MOST_ORDERS; order++)
         if (glb->first[order] < glb->first[order + 1])
             add_order(glb, order, &lists);
@@ -217,7 +206,7 @@ static json_t *document(const Glb *glb, size_t buffer_bytes)
 
 /* ---- the file -------------------------------------------------------------------------------- */
 
-static void vertex_value(const Glb *glb, const Vertex *vertex, int view, float value[3])
+static void vertex_value(const Glb *glb, const GlbVertex *vertex, int view, float value[3])
 {
     const VesselMesh *mesh = glb->params->mesh;
     const float *from =
@@ -235,9 +224,9 @@ static void put_buffer(const Glb *glb, Text *out)
 {
     Record record = {.length = 0};
     for (int view = 0; view < VIEW_CORNERS; view++)
-        for (size_t i = 0; i < glb->n_vertices; i++) {
+        for (size_t i = 0; i < glb->vertices.n; i++) {
             float value[3];
-            vertex_value(glb, &glb->vertices[i], view, value);
+            vertex_value(glb, &glb->vertices.items[i], view, value);
             put_floats(&record, value);
             flush_record(&record, out);
         }
@@ -256,34 +245,33 @@ static void put_chunk_head(size_t bytes, const char *kind, Text *out)
     text_append(out, kind, 4);
 }
 
-/* The header, and the chunks of the JSON, filled up with blanks, and of the buffer. */
+/* Appends the header, and the chunks of the JSON, padded with blanks, and of the buffer. */
 static Status put_file(const Glb *glb, Text *out, Err *err)
 {
     enum { HEADER_BYTES = 12, CHUNK_HEAD_BYTES = 8 };
     Text json = TEXT_INIT;
     size_t buffer = 0;
+    Status status = STATUS_OK;
     for (int view = 0; view < VIEWS; view++)
         buffer += view_bytes(glb, view);
     text_json(&json, document(glb, buffer), 0);
     const char *chars = text_chars(&json);
     size_t length = chars ? strlen(chars) : 0, blanks = (4 - length % 4) % 4;
     size_t all = HEADER_BYTES + 2 * CHUNK_HEAD_BYTES + length + blanks + buffer;
-    Status status = STATUS_OK;
     if (all > UINT32_MAX)
-        status = err_set(err, STATUS_INFEASIBLE, "a GLB holds 4 GB; this one would have %.1f",
-                         (double)all * 1e-9);
-    else {
-        Record record = {.length = 0};
-        text_append(out, "glTF", 4);
-        put_word(&record, 2, 4);
-        put_word(&record, (uint32_t)all, 4);
-        flush_record(&record, out);
-        put_chunk_head(length + blanks, "JSON", out);
-        text_add(out, &json);
-        text_append(out, "   ", blanks);
-        put_chunk_head(buffer, "BIN\0", out);
-        put_buffer(glb, out);
-    }
+        TRY_GOTO(err_set(err, STATUS_INFEASIBLE, "a GLB holds 4 GB; this one would have %.1f",
+                         (double)all * 1e-9));
+    Record version = {.length = 0};
+    text_append(out, "glTF", 4);
+    put_word(&version, 2, 4);
+    put_word(&version, (uint32_t)all, 4);
+    flush_record(&version, out);
+    put_chunk_head(length + blanks, "JSON", out);
+    text_add(out, &json);
+    text_append(out, "   ", blanks);
+    put_chunk_head(buffer, "BIN\0", out);
+    put_buffer(glb, out);
+done:
     text_release(&json);
     return status;
 }
@@ -296,6 +284,9 @@ Status glb_write(const EmitParams *params, EmitOutput *to, Err *err)
     TRY_GOTO(put_file(&glb, to->file, err));
     TRY_GOTO(text_check(to->file, err));
 done:
-    release(&glb);
+    indexlists_release(&glb.parts);
+    ARRAY_RELEASE(&glb.vertices);
+    free(glb.corners);
+    free(glb.slots);
     return status;
 }

@@ -82,14 +82,10 @@ static Status put_materials(const EmitParams *params, Text *out, Err *err)
     return STATUS_OK;
 }
 
-/* The names of the files stand in it in one line of printable ASCII: blanks end a name for some
- * readers, and so may any other byte. */
+/* A name must be printable ASCII. A blank, and any other byte, ends it for some readers. */
 Status obj_check_name(const char *second_file, Err *err)
 {
-    const char *at = second_file;
-    while (*at > ' ' && *at <= '~')
-        at++;
-    if (*at == '\0')
+    if (is_ascii_name(second_file, " "))
         return STATUS_OK;
     return err_set(err, STATUS_USAGE,
                    "an OBJ cannot name '%s' as the file of its materials: it takes only printable "

@@ -46,10 +46,7 @@ static Status find_geometry(PovrayGeometry *geometry, Err *err)
 
 Status povray_check_name(const char *geometry_file, Err *err)
 {
-    const char *at = geometry_file;
-    while (*at >= ' ' && *at <= '~' && *at != '"')
-        at++;
-    if (*at == '\0')
+    if (is_ascii_name(geometry_file, "\""))
         return STATUS_OK;
     return err_set(err, STATUS_USAGE,
                    "POV-Ray cannot include a file named '%s': it takes only printable ASCII, "
@@ -93,7 +90,7 @@ static void put_vectors(Text *text, const Vec3 *v, size_t n)
         put_text(text, i ? ",<%v>" : "<%v>", v[i]);
 }
 
-/* Where the tree lies; without an anatomy its root is the middle of its extent. */
+/* Adds the position of the tree. Without an anatomy its root is the middle of its extent. */
 static void add_places(Values *values, const EmitParams *params)
 {
     const Geometry *geometry = &params->scene->geometry;
@@ -131,7 +128,7 @@ static void put_color_map(Text *text, const Appearance *appearance)
     }
 }
 
-/* A name within quotes: POV-Ray takes printable ASCII there. */
+/* Appends a name for a string of POV-Ray, which may hold printable ASCII. */
 static void put_quoted(Text *text, const char *name)
 {
     for (; name && *name; name++)
@@ -248,7 +245,7 @@ static Status put_lights(Text *out, void *context, Err *err)
     return put_ground(out, &scene->view.ground, geometry->params, err);
 }
 
-/* The geometry itself, or the line that includes it. */
+/* Appends the geometry, or the line that includes it. */
 static Status put_vessels(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
@@ -283,7 +280,7 @@ static Status put_camera(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/camera.inc", out, err);
 }
 
-/* What render adds to the picture and POV-Ray does not, as a line of the header. */
+/* Appends a line of the header that names the effects of `render`, which POV-Ray does not draw. */
 static void put_effects(Text *text, const Effects *effects)
 {
     Text names = TEXT_INIT;
@@ -377,7 +374,7 @@ static Status take_surface(const EmitParams *params, Geometry *geometry, Err *er
     return STATUS_OK;
 }
 
-/* The second file of a scene of triangles, without the first. */
+/* Writes the second file of a scene of triangles, without the first. */
 Status povray_write_mesh(const EmitParams *params, EmitOutput *to, Err *err)
 {
     Scene scene = {.appearance = *params->appearance};

@@ -49,9 +49,9 @@ typedef struct BlobCells {
 } BlobCells;
 
 /* A list of segments on the stack of cells. */
-typedef struct List {
+typedef struct CellList {
     size_t first, n;
-} List;
+} CellList;
 
 /* How many segments of a list are felt at x. */
 static size_t count_felt(const BlobCells *cells, const uint32_t *list, size_t n, Vec3 x)
@@ -82,7 +82,7 @@ static Status check_crowd(const BlobCells *cells, const uint32_t *list, size_t n
 }
 
 /* Writes the blob of the segments of a list, clipped to a box or whole. */
-static Status put_cell(BlobCells *cells, List from, const Box *clip, Err *err)
+static Status put_cell(BlobCells *cells, CellList from, const Box *clip, Err *err)
 {
     Text *text = cells->text;
     const uint32_t *list = cells->lists + from.first;
@@ -111,11 +111,11 @@ static Status put_cell(BlobCells *cells, List from, const Box *clip, Err *err)
 }
 
 /* The segments of a list that reach into the box, put on the stack at `top`. */
-static List take_those_in(const BlobCells *cells, List from, size_t top, Box box)
+static CellList take_those_in(const BlobCells *cells, CellList from, size_t top, Box box)
 {
     const FieldSegment *segments = cells->scene->geometry.segments;
     const uint32_t *list = cells->lists + from.first;
-    List taken = {top, 0};
+    CellList taken = {top, 0};
     for (size_t i = 0; i < from.n; i++)
         if (box_meets(reach_of(&segments[list[i]], cells->reach), box))
             cells->lists[top + taken.n++] = list[i];
@@ -123,17 +123,17 @@ static List take_those_in(const BlobCells *cells, List from, size_t top, Box box
 }
 
 /* The two halves of a cell. */
-typedef struct Halves {
+typedef struct CellHalves {
     Box box[2];
-    List list[2];
+    CellList list[2];
     bool is_cut; /* whether they are cells */
-} Halves;
+} CellHalves;
 
-/* Halves a box into which the segments of a list reach, with the stack's end at `top`, unless few
- * do or most would reach into both halves. */
-static Status halve(BlobCells *cells, List list, size_t top, Box box, Halves *out, Err *err)
+/* Halves a box into which the segments of a list reach, with the stack's end at `top`, unless
+ * few do or most would reach into both halves. */
+static Status halve(BlobCells *cells, CellList list, size_t top, Box box, CellHalves *out, Err *err)
 {
-    *out = (Halves){.box = {box, box}};
+    *out = (CellHalves){.box = {box, box}};
     if (list.n <= CELL)
         return STATUS_OK;
     TRY(mem_reserve(&cells->lists, &cells->room, top + 2 * list.n, sizeof *cells->lists, "cells",
@@ -155,9 +155,10 @@ static Status halve(BlobCells *cells, List list, size_t top, Box box, Halves *ou
 
 /* Writes the cells of a box into which the segments of a list reach, with the stack's end at
  * `top`. */
-static Status put_cells_of(BlobCells *cells, List list, size_t top, Box box, bool whole, Err *err)
+static Status put_cells_of(BlobCells *cells, CellList list, size_t top, Box box, bool whole,
+                           Err *err)
 {
-    Halves halves;
+    CellHalves halves;
     if (!whole && !sight_meets(cells->sight, box_padded(box, overlap_mm)))
         return STATUS_OK;
     TRY(halve(cells, list, top, box, &halves, err));
@@ -173,9 +174,9 @@ static Status put_cells_of(BlobCells *cells, List list, size_t top, Box box, boo
 }
 
 /* All of the object's segments. */
-static List all_of(const PovrayGeometry *geometry)
+static CellList all_of(const PovrayGeometry *geometry)
 {
-    return (List){0, geometry->objects[geometry->object].n};
+    return (CellList){0, geometry->objects[geometry->object].n};
 }
 
 /* The segments of the object, and the box that they reach into. */
@@ -203,8 +204,8 @@ static Status blob_is_whole(const PovrayGeometry *geometry, bool *whole, Err *er
 {
     BlobCells cells = {0};
     Box box;
-    Halves halves;
-    const List all = all_of(geometry);
+    CellHalves halves;
+    const CellList all = all_of(geometry);
     Status status;
     TRY_GOTO(cells_begin(geometry, NULL, &cells, &box, err));
     TRY_GOTO(halve(&cells, all, all.n, box, &halves, err));
@@ -219,7 +220,7 @@ static Status put_blobs(Text *out, void *context, Err *err)
     const PovrayGeometry *geometry = context;
     BlobCells cells = {0};
     Box box;
-    const List all = all_of(geometry);
+    const CellList all = all_of(geometry);
     Status status;
     TRY_GOTO(cells_begin(geometry, out, &cells, &box, err));
     TRY_GOTO(put_cells_of(&cells, all, all.n, box, true, err));
@@ -266,10 +267,10 @@ done:
 
 /* ---- which term is largest ------------------------------------------------------------------- */
 
-typedef struct Item {
+typedef struct PaintItem {
     double key;
     uint32_t segment; /* by its number among those that are painted */
-} Item;
+} PaintItem;
 
 typedef struct Paints {
     const Scene *scene;
@@ -278,7 +279,7 @@ typedef struct Paints {
     const Tmpl *node;     /* the function of a box */
     bool in_matrices;     /* as put_matrices says */
     double grid_mm;       /* boxes are rounded to */
-    Item *items;
+    PaintItem *items;
     Text *text;
     unsigned nodes;
 } Paints;
@@ -290,7 +291,7 @@ static const FieldSegment *painted_segment(const Paints *paints, uint32_t number
 
 static int by_key(const void *a, const void *b)
 {
-    const Item *x = a, *y = b;
+    const PaintItem *x = a, *y = b;
     if (x->key != y->key)
         return x->key < y->key ? -1 : 1;
     return x->segment < y->segment ? -1 : x->segment > y->segment;
@@ -402,7 +403,7 @@ static Status put_function(Paints *paints, Box box, const Text *list, Err *err)
     return tmpl_apply(paints->node, values, sizeof values / sizeof *values, paints->text, err);
 }
 
-static void sort_along(Paints *paints, Item *items, size_t n, int axis)
+static void sort_along(Paints *paints, PaintItem *items, size_t n, int axis)
 {
     for (size_t i = 0; i < n; i++) {
         const FieldSegment *segment = painted_segment(paints, items[i].segment);
@@ -424,7 +425,7 @@ static Box box_of_items(const Paints *paints, size_t first, size_t n)
 /* Declares the function of items[first .. first + n), after those of its halves. */
 static Status put_node(Paints *paints, size_t first, size_t n, Err *err)
 {
-    Item *items = paints->items + first;
+    PaintItem *items = paints->items + first;
     Text list = TEXT_INIT;
     const Box box = box_of_items(paints, first, n);
     if (n > LEAF) {

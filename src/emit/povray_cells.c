@@ -162,7 +162,7 @@ static void put_arrays(Text *out, size_t n, bool in_matrices)
         put_matrix_arrays(out, n);
 }
 
-/* Whether segments differ in what they are painted with. */
+/* Returns true if segments differ in what they are painted with. */
 static bool is_painted(const PovrayGeometry *geometry)
 {
     return geometry->params->ids || geometry->scene->appearance.colors;
@@ -268,9 +268,9 @@ static const char *cell_chars(const CellWriter *writer, CellTextPart part)
     return text_chars(&writer->text[part]);
 }
 
-static void put_term(Text *text, const CellTerm *term)
+static void put_term(Text *text, const char *before, const CellTerm *term, const char *after)
 {
-    put_text(text, "%s[%u](x,y,z)", function_names[term->part], term->segment);
+    put_text(text, "%s%s[%u](x,y,z)%s", before, function_names[term->part], term->segment, after);
 }
 
 /* Terms of a cell: those at `n` places, or, without any given, the first n. */
@@ -299,10 +299,8 @@ static const CellTerm *chosen_term(const TermChoice *choice, uint32_t k)
 
 static void put_sum(Text *text, TermChoice choice)
 {
-    for (uint32_t k = 0; k < choice.n; k++) {
-        text_puts(text, k ? "+" : "");
-        put_term(text, chosen_term(&choice, k));
-    }
+    for (uint32_t k = 0; k < choice.n; k++)
+        put_term(text, k ? "+" : "", chosen_term(&choice, k), "");
 }
 
 static void close_calls(Text *text, uint32_t n)
@@ -342,12 +340,9 @@ static void put_cell_function(Text *text, const CellTree *cells, const Cell *cel
 /* Fn_Max(T1,Fn_Max(T2,...)): the largest term. */
 static void put_largest(Text *text, TermChoice choice)
 {
-    for (uint32_t k = 0; k + 1 < choice.n; k++) {
-        text_puts(text, "Fn_Max(");
-        put_term(text, chosen_term(&choice, k));
-        text_puts(text, ",");
-    }
-    put_term(text, chosen_term(&choice, choice.n - 1));
+    for (uint32_t k = 0; k + 1 < choice.n; k++)
+        put_term(text, "Fn_Max(", chosen_term(&choice, k), ",");
+    put_term(text, "", chosen_term(&choice, choice.n - 1), "");
     close_calls(text, choice.n - 1);
 }
 
@@ -381,9 +376,7 @@ static void put_pick(Text *text, const CellTree *cells, const Cell *cell)
     TermChoice rest = all_terms(cells, cell);
     uint32_t k = 0;
     for (; k + 1 < cell->count; k++) {
-        text_puts(text, "Fn_Choose(");
-        put_term(text, rest.terms);
-        text_puts(text, "-");
+        put_term(text, "Fn_Choose(", rest.terms, "-");
         rest.terms++;
         rest.n--;
         put_largest(text, rest);
@@ -403,9 +396,8 @@ static void put_pick_of_many(Text *text, const CellTree *cells, const Cell *cell
     bool grouped = cell->n_groups > 0;
     uint32_t k = 0;
     for (; k + 1 < cell->count; k++) {
-        text_puts(text, grouped ? "Fn_Choose(-abs(" : "Fn_Choose(");
-        put_term(text, &terms[k]);
-        text_puts(text, grouped ? "-Fn_Top(x,y,z))," : "-Fn_Top(x,y,z),");
+        put_term(text, grouped ? "Fn_Choose(-abs(" : "Fn_Choose(", &terms[k],
+                 grouped ? "-Fn_Top(x,y,z))," : "-Fn_Top(x,y,z),");
         put_place(text, cell, k);
         text_puts(text, ",");
     }
@@ -483,8 +475,7 @@ static void put_known_sum(Text *text, const EmitParams *params, TermChoice choic
         double place = place_of(params, term);
         if (isnan(place))
             continue;
-        text_puts(text, "+");
-        put_term(text, term);
+        put_term(text, "+", term, "");
         if (placed)
             put_text(text, "*(%n)", place);
     }
@@ -521,8 +512,7 @@ static void put_cell_ratio(Text *text, const EmitParams *params, const CellTree 
         put_ratio(text, params, choice, of_known);
         text_puts(text, last ? "" : ",");
     }
-    for (uint32_t group = 1; group < cell->n_groups; group++)
-        text_puts(text, ")");
+    close_calls(text, cell->n_groups > 0 ? cell->n_groups - 1 : 0);
 }
 
 /* Appends the paint of a cell in which colours may blend. It contains the paint by segment. */

@@ -76,3 +76,10 @@ void put_triple(Text *out, const char *before, const float values[3], const char
                 number_text_float(values[1] + 0, text[1]), between,
                 number_text_float(values[2] + 0, text[2]), after);
 }
+
+bool is_ascii_name(const char *name, const char *without)
+{
+    while (*name >= ' ' && *name <= '~' && !strchr(without, *name))
+        name++;
+    return *name == '\0';
+}

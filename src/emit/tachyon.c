@@ -30,7 +30,7 @@ static void put_named(Text *text, const char *name, Vec3 v)
 
 /* ---- textures -------------------------------------------------------------------------------- */
 
-/* Whether segments have textures of their own. */
+/* Returns true if segments have textures of their own. */
 static bool has_textures(const EmitParams *params)
 {
     return params->planes || params->scene->appearance.colors;

@@ -8,15 +8,15 @@
 #include "emit/values.h"
 
 /* The curves of one primitive. */
-typedef struct Group {
+typedef struct CurveGroup {
     const EmitParams *params;
     const Curves *curves;
     size_t first, end;
-} Group;
+} CurveGroup;
 
 /* Calls `put` for each point, with commas between. */
-static Status put_each(const Group *group, void (*put)(const Group *, size_t, size_t, Text *),
-                       Text *out, Err *err)
+static Status put_each(const CurveGroup *group,
+                       void (*put)(const CurveGroup *, size_t, size_t, Text *), Text *out, Err *err)
 {
     for (size_t curve = group->first; curve < group->end; curve++)
         for (size_t i = 0; i < curve_points(group->curves, curve); i++) {
@@ -27,24 +27,24 @@ static Status put_each(const Group *group, void (*put)(const Group *, size_t, si
     return text_check(out, err);
 }
 
-static void put_position(const Group *group, size_t curve, size_t i, Text *out)
+static void put_position(const CurveGroup *group, size_t curve, size_t i, Text *out)
 {
     Vec3 at = curve_point(group->curves, curve, i);
     put_text(out, "(%f, %f, %f)", at.x, at.y, at.z);
 }
 
-static void put_width(const Group *group, size_t curve, size_t i, Text *out)
+static void put_width(const CurveGroup *group, size_t curve, size_t i, Text *out)
 {
     put_text(out, "%f", 2 * curve_radius(group->curves, curve, i));
 }
 
-static void put_color(const Group *group, size_t curve, size_t i, Text *out)
+static void put_color(const CurveGroup *group, size_t curve, size_t i, Text *out)
 {
     Rgb color = vessel_color(group->params, curve_segment(group->curves, curve, i));
     put_triple(out, "(", (const float[3]){color.r, color.g, color.b}, ", ", ")");
 }
 
-static void put_id(const Group *group, size_t curve, size_t i, Text *out)
+static void put_id(const CurveGroup *group, size_t curve, size_t i, Text *out)
 {
     put_text(out, "%u", group->params->vessels->ids[curve_segment(group->curves, curve, i)]);
 }
@@ -62,7 +62,7 @@ static Status put_widths(Text *out, void *context, Err *err)
 /* One for all where the look has one. */
 static Status put_colors(Text *out, void *context, Err *err)
 {
-    const Group *group = context;
+    const CurveGroup *group = context;
     if (group->params->appearance->colors)
         return put_each(group, put_color, out, err);
     put_color(group, group->first, 0, out);
@@ -74,7 +74,7 @@ static Status put_segments(Text *out, void *context, Err *err)
     return put_each(context, put_id, out, err);
 }
 
-static Box group_box(const Group *group)
+static Box group_box(const CurveGroup *group)
 {
     const VesselTree *vessels = group->params->vessels;
     Box box = box_empty();
@@ -83,7 +83,7 @@ static Box group_box(const Group *group)
     return box;
 }
 
-static Status put_group(Group *group, Text *out, Err *err)
+static Status put_group(CurveGroup *group, Text *out, Err *err)
 {
     const CurveKind *kind = curve_kind(group->curves, group->first);
     Box box = group_box(group);
@@ -107,7 +107,7 @@ static Status put_group(Group *group, Text *out, Err *err)
 
 static Status put_groups(Text *out, void *context, Err *err)
 {
-    Group *group = context;
+    CurveGroup *group = context;
     for (; group->first < group->curves->n; group->first = group->end) {
         group->end = curves_group_end(group->curves, group->first);
         TRY(put_group(group, out, err));
@@ -119,7 +119,7 @@ Status usd_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
     Curves curves;
     TRY(curves_find(params, NULL, &curves, err));
-    Group group = {.params = params, .curves = &curves};
+    CurveGroup group = {.params = params, .curves = &curves};
     Values values = {0};
     add_quoted(&values, "command", params->command);
     add_quoted(&values, "generator", params->generator);

@@ -31,19 +31,28 @@ typedef struct Stored {
     uint32_t crc, packed, plain, offset;
 } Stored;
 
-/* From the version on to the lengths of the name and of what is extra. */
+/* A number of a header and its size in bytes. */
+typedef struct ZipWord {
+    uint32_t value;
+    int bytes;
+} ZipWord;
+
+static void put_words(Record *record, const ZipWord *words, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        put_word(record, words[i].value, words[i].bytes);
+}
+#define PUT_WORDS(record, ...)                                                                     \
+    put_words(record, (const ZipWord[]){__VA_ARGS__},                                              \
+              sizeof((const ZipWord[]){__VA_ARGS__}) / sizeof(ZipWord))
+
+/* Adds the numbers that both headers have: from the version to the lengths of the name and of the
+ * extra field. */
 static void put_common(Record *record, const Stored *stored)
 {
-    put_word(record, VERSION, 2);
-    put_word(record, DESCRIBED_BEHIND, 2);
-    put_word(record, METHOD_DEFLATE, 2);
-    put_word(record, 0, 2); /* time */
-    put_word(record, DATE_1980, 2);
-    put_word(record, stored->crc, 4);
-    put_word(record, stored->packed, 4);
-    put_word(record, stored->plain, 4);
-    put_word(record, (uint32_t)strlen(stored->name), 2);
-    put_word(record, 0, 2);
+    PUT_WORDS(record, {VERSION, 2}, {DESCRIBED_BEHIND, 2}, {METHOD_DEFLATE, 2}, {0, 2} /* time */,
+              {DATE_1980, 2}, {stored->crc, 4}, {stored->packed, 4}, {stored->plain, 4},
+              {(uint32_t)strlen(stored->name), 2}, {0, 2});
 }
 
 static void put_local(const char *name, Text *out)
@@ -59,24 +68,17 @@ static void put_local(const char *name, Text *out)
 static void put_descriptor(const Stored *stored, Text *out)
 {
     Record record = {.length = 0};
-    put_word(&record, DESCRIPTOR, 4);
-    put_word(&record, stored->crc, 4);
-    put_word(&record, stored->packed, 4);
-    put_word(&record, stored->plain, 4);
+    PUT_WORDS(&record, {DESCRIPTOR, 4}, {stored->crc, 4}, {stored->packed, 4}, {stored->plain, 4});
     flush_record(&record, out);
 }
 
 static void put_central(const Stored *stored, Text *out)
 {
     Record record = {.length = 0};
-    put_word(&record, CENTRAL_HEADER, 4);
-    put_word(&record, VERSION, 2);
+    PUT_WORDS(&record, {CENTRAL_HEADER, 4}, {VERSION, 2});
     put_common(&record, stored);
-    put_word(&record, 0, 2); /* length of the comment */
-    put_word(&record, 0, 2); /* number of the disk */
-    put_word(&record, 0, 2); /* attributes, internal */
-    put_word(&record, 0, 4); /* and external */
-    put_word(&record, stored->offset, 4);
+    /* Length of the comment, number of the disk, internal and external attributes. */
+    PUT_WORDS(&record, {0, 2}, {0, 2}, {0, 2}, {0, 4}, {stored->offset, 4});
     flush_record(&record, out);
     text_puts(out, stored->name);
 }
@@ -84,13 +86,9 @@ static void put_central(const Stored *stored, Text *out)
 static void put_end(size_t n, uint32_t bytes, uint32_t offset, Text *out)
 {
     Record record = {.length = 0};
-    put_word(&record, CENTRAL_END, 4);
-    put_word(&record, 0, 4); /* disks */
-    put_word(&record, (uint32_t)n, 2);
-    put_word(&record, (uint32_t)n, 2);
-    put_word(&record, bytes, 4);
-    put_word(&record, offset, 4);
-    put_word(&record, 0, 2); /* length of the comment */
+    /* The numbers of disks, and the length of the comment, are 0. */
+    PUT_WORDS(&record, {CENTRAL_END, 4}, {0, 4}, {(uint32_t)n, 2}, {(uint32_t)n, 2}, {bytes, 4},
+              {offset, 4}, {0, 2});
     flush_record(&record, out);
 }
 

@@ -113,7 +113,7 @@ typedef struct FigurePage {
     double width_mm, height_mm, dpi; /* 0 < dpi */
     bool exact;                      /* an SVG states the size with all digits, else to 0.001 mm */
     FigureColor background;
-    const FigureFonts *fonts; /* borrowed; NULL: the page has no text */
+    const FigureFonts *fonts; /* borrowed; NULL: the page has no text and becomes an SVG only */
     FigureItem *items;        /* owned */
     size_t n, capacity;
     bool failed;            /* memory ran out while an item was added */

@@ -133,17 +133,15 @@ static Status connect(const Running *running, int worker, Tile *tile, const Conn
 {
     Site *site = running->common->site;
     const int32_t *made = tile->spare + 2 * tile->made++;
-    const int32_t segment[ENDS] = {made[0], connection->segment, made[1]};
+    const int32_t host = connection->segment, segment[ENDS] = {made[0], host, made[1]};
+    const NetworkSplit split = {
+        host, connection->bifurcation, connection->terminal, {made[0], made[1]}};
     GridItem item[ENDS];
-    tile->left[network_tree(&site->net, connection->segment)]--;
+    tile->left[network_tree(&site->net, host)]--;
     for (int i = 0; i < ENDS; i++)
         item[i] = connection_item(site, connection, i);
-    grid_remove(&site->grid, connection->segment);
-    network_split(
-        &site->net,
-        &(NetworkSplit){
-            connection->segment, connection->bifurcation, connection->terminal, {made[0], made[1]}},
-        tile->zone);
+    grid_remove(&site->grid, host);
+    network_split(&site->net, &split, tile->zone);
     for (int i = 0; i < ENDS; i++) {
         bool is_end = site->net.segment[segment[i]].child[0] < 0;
         TRY(grid_add(&site->grid, worker, segment[i], is_end, item[i], err));

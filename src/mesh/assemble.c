@@ -136,7 +136,8 @@ static double turned_angle(const double *angles, uint32_t n, uint32_t i)
     return angles[i % n] + FULL_TURN * (i / n);
 }
 
-/* A chord is farthest off its circle half way; and that from the wall, where others move it. */
+/* Measures a rim. A chord is farthest from its circle half way; other vessels move the circle from
+ * the surface. */
 static void measure_rim(const Assembly *assembly, const double *angles, uint32_t n, double radius)
 {
     double widest = 0;
@@ -190,7 +191,7 @@ static double rim_along(const Assembly *assembly, const FieldSegment *self, RimR
     return sum / rim.n;
 }
 
-/* The wall between a tube's rims, by strips between others, each turned by half a side. */
+/* Adds the strips of a tube between its rims and those in between, each turned by half a side. */
 static Status add_tube(Assembly *assembly, uint32_t segment, Err *err)
 {
     const FieldSegment *self = &assembly->tree->segments[segment];

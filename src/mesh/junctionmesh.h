@@ -4,8 +4,8 @@
 
 #include "mesh/lattice/collapse.h"
 #include "mesh/lattice/facerefine.h"
+#include "mesh/lattice/latticerepair.h"
 #include "mesh/lattice/planecut.h"
-#include "mesh/lattice/repair.h"
 
 /* The rim of a branch stub: the points rim_points[first .. first + n), by rising angle about the
  * axis that leads from the segment's first end to its second. */

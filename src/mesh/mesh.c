@@ -1,13 +1,14 @@
-/* The tree is cut into junction junctions and tubes (junctions.c); each junction's wall is made by
- * a lattice of its own (zonetree.c, lattice.c), cut at the planes of its stubs (planecut.c),
- * thinned out (collapse.c) and proved to be a sphere with holes (zonepiece.c); strips and caps join
- * them (assemble.c). Over a tree that gives a sphere for each: junctions are spheres with k holes,
- * strips rings, caps discs. What can go wrong beyond that, vessels that meet though they do not
- * blend, and roundings, is found on the finished triangles (meshtopology.c, crossings.c). If some
- * cross, all is made again, of finer cells in the junctions about them.
+/* The tree is cut into junction regions and tubes (junctions.c). The surface of each region is made
+ * by a lattice of its own (octree.c, lattice.c), cut at the planes of its stubs (planecut.c),
+ * simplified (collapse.c), and proved to be a sphere with holes (junctionmesh.c). Strips and caps
+ * join the regions (assemble.c). Over a whole tree that gives one sphere: regions are spheres with
+ * k holes, strips are rings, caps are discs. Two things can still go wrong: vessels that meet
+ * although they do not blend, and rounding. They are found on the finished triangles (topology.c,
+ * crossings.c). If triangles cross, all is made again, with finer cells in the regions about them.
  *
- * One octree for all was tried, and was not sound: cells join vessels whose gap is below a cell.
- * Swept rings alone cannot be: two junctions of five lie in junctions of several nodes. */
+ * One octree for all regions was tried, and its mesh was not valid: cells join vessels whose gap is
+ * narrower than a cell. Swept rings alone cannot be used, because two junctions of five are in
+ * regions of several nodes. */
 #include "mesh/mesh.h"
 
 #include "mesh/assemble.h"
@@ -183,7 +184,7 @@ static Status build_junctions(MeshBuild *build, Err *err)
     return status;
 }
 
-/* Finds the segments that have a wall and yet no triangle of the mesh. */
+/* Finds the segments that have a surface but no triangle of the mesh. */
 static Status find_slivers(MeshBuild *build, const VesselMesh *mesh, Err *err)
 {
     bool *has_triangle = NULL;

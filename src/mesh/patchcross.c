@@ -1,7 +1,7 @@
-/* What is split stays on the wall, and yet may run into the other side of a groove whose triangles
- * are not split. Of a junction few triangles are new as a rule, and those lie together in a crotch:
- * the triangles that reach into the box of the new ones are made a mesh of their own, and tested as
- * the finished mesh is. */
+/* Points of split triangles are on the surface, but the triangles may run into the other side of a
+ * groove whose triangles are not split. Usually few triangles of a region are new, and they are
+ * together in a crotch. The triangles that reach into the box of the new ones are made a mesh of
+ * their own, which is tested as the finished mesh is. */
 #include "mesh/patchcross.h"
 
 #include "mesh/precision.h"

@@ -1,24 +1,30 @@
-/* A port goes on along the vessel's axis as a cone, which a face cuts off. A fitting must leave its
- * face at a right angle, and so does a port whose straight way is not free: it bends along a cubic
- * curve, then is a straight cone, through circles that turn with the way and no more than it. Faces
- * are tried from the nearest on along the axis; a way that comes near a vessel, another port
- * or the edge of its face, or that bends too sharply for its width, is none. */
+/* A straight port continues the vessel's axis as a cone, which the face cuts off. A bent port
+ * follows a cubic Bezier curve and ends as a straight cone, perpendicular to the face. Its circles
+ * turn with the curve and have no twist of their own. A port is bent if its straight path is
+ * blocked, and always if it ends in a Luer fitting, which must leave its face at a right angle.
+ *
+ * Faces are tried in order of their distance along the vessel's axis. A path is rejected if it
+ * comes too close to a vessel, another port or the edge of its face, or if it bends too sharply for
+ * its width. */
 #include "print/ports.h"
 
 #include "mesh/mesh.h"
 #include <stdlib.h>
 
-/* Of the female half of a conical fitting [ISO 80369-7]: its diameter at the face, its depth, and
- * how much narrower it gets for each mm. */
+/* The female half of a conical Luer fitting [ISO 80369-7]: diameter at the face, depth, and the
+ * decrease of the diameter per mm of depth. */
 static const double luer_mm = 4.3, luer_depth_mm = 7.5, luer_taper = 0.06;
-/* Over the radii: what is left free between ports and others; over the way: how far the ends of the
- * curve pull. */
+/* In units of the smaller of two radii: minimum clearance between a port and a vessel or another
+ * port. In units of the distance between the ends of the curve: distance of the Bezier control
+ * points from the ends. */
 static const double free_part = 0.4, pull = 0.4;
-/* Over the radius: how far back a vessel belongs to its port. */
+/* In units of the rim's radius: vessels within this path length behind the rim belong to the port,
+ * and are no obstacles. */
 static const double own_radii = 3;
-/* Of a plain port: the part of its way that is straight in the end. */
+/* Depth of the straight end of a bent port without a fitting, as a fraction of the rim's depth
+ * below the face. */
 static const double straight_part = 0.25;
-/* Of the angle at which a straight way may meet a face. */
+/* Minimum cosine between the vessel's axis and the face normal for a straight port: 60 degrees. */
 static const double least_cosine = 0.5;
 
 typedef struct PortSearch {
@@ -38,7 +44,7 @@ void ports_release(Ports *ports)
     *ports = (Ports){0};
 }
 
-/* Where the end of a vessel is, and which way leads out of it. */
+/* Returns the rim of a vessel end: its centre, its radius, and the direction out of the vessel. */
 static PortRing rim_of(const VesselTree *tree, const CutEnd *end)
 {
     const FieldSegment *segment = &tree->segments[end->segment];
@@ -46,21 +52,21 @@ static PortRing rim_of(const VesselTree *tree, const CutEnd *end)
     return (PortRing){at, vec3_normalized(vec3_sub(at, other)), segment->radius_mm};
 }
 
-/* How far the rim's middle lies below a face. */
+/* Returns the distance of the rim's centre below a face, mm. It is negative outside the casing. */
 static double depth_of(const PortRing *rim, const Casing *casing, int face)
 {
     double off = face_coordinate(casing, face) - vec3_component(rim->center, face_axis(face));
     return face_is_low(face) ? -off : off;
 }
 
-/* What is left free between an opening and the edge of its face. */
+/* Returns the minimum distance between an opening and the edge of its face, mm. */
 static double edge_room(double radius_mm)
 {
     return fmin(1, 0.5 * radius_mm);
 }
 
-/* The place on a face that a way of this width ends at: half as far aside as the axis leads, which
- * takes one bend, or as near to it as the edges leave room. */
+/* Returns the position on a face where a port of this width ends: half as far aside as the axis
+ * leads, which takes one bend, or as near to that as the edges allow. */
 static Vec3 place_on_face(const PortRing *rim, const Casing *casing, int face, double radius_mm)
 {
     double along = fmax(vec3_dot(rim->direction, face_normal(face)), 0.7), at[3];
@@ -76,7 +82,7 @@ static Vec3 place_on_face(const PortRing *rim, const Casing *casing, int face, d
     return vec3(at[0], at[1], at[2]);
 }
 
-/* Whether a circle lies below the faces. */
+/* Returns true if a circle is below the faces. */
 static bool is_within(const Casing *casing, const PortRing *ring)
 {
     for (int face = 0; face < CASING_FACES; face++) {
@@ -88,7 +94,7 @@ static bool is_within(const Casing *casing, const PortRing *ring)
     return true;
 }
 
-/* Whether circles that follow each other do not meet, and lie in the block. */
+/* Returns true if consecutive circles do not meet, and are inside the block. */
 static bool is_smooth(const Casing *casing, const PortRing *rim, const Port *port)
 {
     for (int i = 0; i < port->n_rings; i++) {
@@ -102,8 +108,8 @@ static bool is_smooth(const Casing *casing, const PortRing *rim, const Port *por
     return true;
 }
 
-/* Lays a straight way to a face. False when the axis leads past it, or meets it at a small angle.
- */
+/* Makes a straight port to a face. Returns false if the axis leads past the face, or meets it at a
+ * small angle. */
 static bool lay_straight(const PortSearch *search, const PortRing *rim, int face, Port *port)
 {
     Vec3 normal = face_normal(face);
@@ -123,7 +129,7 @@ static bool lay_straight(const PortSearch *search, const PortRing *rim, int face
                              1.1 * reach + edge_room(radius));
 }
 
-/* Lays the rings of a way that bends to a face. False when there is no room for it. */
+/* Makes the rings of a bent port to a face. Returns false if there is no room for it. */
 static bool lay_bent(const PortSearch *search, const PortRing *rim, int face, Port *port)
 {
     const PrintBlock *block = search->block;
@@ -158,7 +164,8 @@ static bool lay_bent(const PortSearch *search, const PortRing *rim, int face, Po
            casing_holds_disc(search->casing, face, out, last_mm + edge_room(last_mm));
 }
 
-/* What a port fills between two rings; a straight one, as far as its ellipse reaches. */
+/* Returns the part of a port between two rings. That of a straight port reaches as far as its
+ * ellipse. */
 static FieldSegment stretch_of(const PortRing *rim, const Port *port, int i)
 {
     const PortRing *from = i ? &port->rings[i - 1] : rim, *to = &port->rings[i];
@@ -179,7 +186,7 @@ static bool is_apart(const FieldSegment *one, const FieldSegment *other)
 
 enum { MOST_OWN = 64 };
 
-/* The vessels that a port goes on from: those within a few of its radii behind the rim. */
+/* The vessels that belong to a port: those within own_radii behind the rim. */
 typedef struct OwnVessels {
     uint32_t segments[MOST_OWN];
     size_t n;
@@ -208,8 +215,8 @@ static bool is_own(const OwnVessels *own, uint32_t segment)
     return false;
 }
 
-/* Whether a stretch of a way keeps off all vessels but its own. A vessel whose box it does not
- * meet, widened by what is left free, is apart. */
+/* Returns true if a part of a port keeps clear of all vessels except its own. A vessel is clear if
+ * its box does not meet that of the part, padded by the clearance. */
 static bool is_off_vessels(const PortSearch *search, const FieldSegment *stretch,
                            const OwnVessels *own)
 {
@@ -221,7 +228,7 @@ static bool is_off_vessels(const PortSearch *search, const FieldSegment *stretch
     return true;
 }
 
-/* Whether a stretch of a way keeps off a port. */
+/* Returns true if a part of a port keeps clear of another port. */
 static bool is_off_port(const PortSearch *search, const FieldSegment *stretch, const Port *other)
 {
     PortRing its_rim = rim_of(search->tree, other->end);
@@ -233,7 +240,7 @@ static bool is_off_port(const PortSearch *search, const FieldSegment *stretch, c
     return true;
 }
 
-/* Sets the box of a way and what is to be left free about it. */
+/* Sets the box of a port, with the clearance about it. */
 static void set_box(const PortRing *rim, Port *port)
 {
     port->box = box_empty();
@@ -243,7 +250,8 @@ static void set_box(const PortRing *rim, Port *port)
     }
 }
 
-/* Whether a way, whose box is set, keeps off all vessels but its own, and all ports. */
+/* Returns true if a port, whose box is set, keeps clear of all vessels except its own, and of all
+ * ports. */
 static bool is_free(const PortSearch *search, const PortRing *rim, const Port *port)
 {
     OwnVessels vessels = {.n = 0};
@@ -267,7 +275,7 @@ static bool is_free(const PortSearch *search, const PortRing *rim, const Port *p
     return true;
 }
 
-/* Whether there is a free way to the face, straight or bent. */
+/* Returns true if there is a clear port to the face, straight or bent. */
 static bool lay_way(const PortSearch *search, const PortRing *rim, int face, bool bent, Port *port)
 {
     if (!(bent ? lay_bent : lay_straight)(search, rim, face, port))
@@ -276,7 +284,8 @@ static bool lay_way(const PortSearch *search, const PortRing *rim, int face, boo
     return is_free(search, rim, port);
 }
 
-/* How far the axis leads until it is as far as the face; beyond a right angle, far. */
+/* Returns the path along the axis to the plane of a face, mm; beyond a right angle, a large number.
+ */
 static double distance_to(const PortRing *rim, const Casing *casing, int face)
 {
     double depth = depth_of(rim, casing, face);
@@ -328,7 +337,7 @@ done:
     return status;
 }
 
-/* A vector that is across `from`, turned as much as that is to lie along `to`. */
+/* Turns a vector that is across `from` by the rotation that takes `from` to `to`. */
 static Vec3 turned_with(Vec3 across, Vec3 from, Vec3 to)
 {
     Vec3 axis = vec3_cross(from, to);
@@ -339,7 +348,8 @@ static Vec3 turned_with(Vec3 across, Vec3 from, Vec3 to)
     return vec3_normalized(vec3_add_scaled(across, to, -vec3_dot(across, to)));
 }
 
-/* Where the cone about a straight way, `across` its axis, meets the face. */
+/* Returns the point where the line of a straight port's cone in the direction `across` meets the
+ * face. */
 static Vec3 cut_of(const PortRing *rim, const Port *port, Vec3 across)
 {
     const PortRing *last = &port->rings[0];

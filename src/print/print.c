@@ -1,7 +1,8 @@
-/* The two sides of a wall are surfaces of one machinery: of the vessels, and of the vessels with
- * radii larger by the wall. Their flat ends lie in the same planes with rims of as many points, and
- * a flat ring joins them. No boolean is needed, and what is proved of both is true of the wall but
- * for crossings, for which it is searched as a whole. */
+/* The two sides of a wall are surfaces that the same mesher makes: of the vessels, and of the
+ * vessels with radii that are larger by the wall. Their flat ends are in the same planes and have
+ * rims of equally many points, and a flat ring joins them. No boolean operation is needed. What is
+ * proved of both surfaces is true of the wall, except that the two may cross. The wall is searched
+ * for crossings as a whole. */
 #include "print/print.h"
 
 #include "mesh/mesh.h"
@@ -81,7 +82,7 @@ static Status take_outer(PrintMaking *making, Err *err)
     return STATUS_OK;
 }
 
-/* What was changed on the outer side is changed in the tree, which keeps its wall. */
+/* Applies the changes of the outer side to the tree. */
 static Status take_changes(PrintMaking *making, Err *err)
 {
     const PrintParams *params = &making->params;
@@ -184,11 +185,6 @@ static Status build_sides(PrintMaking *making, Err *err)
     return status;
 }
 
-static bool is_pin(const SupportPins *pins, const CutEnd *end)
-{
-    return end->segment >= pins->n_original && pins->is_pin[end->segment - pins->n_original];
-}
-
 /* Opens the ends of pins, and those that both sides are cut off flat at. */
 static void open_ends(PrintMaking *making)
 {
@@ -196,7 +192,7 @@ static void open_ends(PrintMaking *making)
     for (size_t i = 0; i < ends->n; i++) {
         CutEnd *end = &ends->items[i];
         if (making->pins.n_pins)
-            end->opened = is_pin(&making->pins, end);
+            end->opened = supportpins_is_pin(&making->pins, end->segment);
         CutEnd *other = cutends_at(&making->sides[1].ends, end->segment, end->end);
         if (other)
             end->opened = other->opened = true;
@@ -285,9 +281,9 @@ static void name_owners(PrintMaking *making, MeshReport *report)
         return;
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         uint32_t segment = mesh_segment(mesh, i);
-        bool is_own = segment < pins->n_original || !pins->is_pin[segment - pins->n_original];
         mesh->labels[i] = (mesh->labels[i] & MESH_FLAGS) |
-                          supportpins_original_segment(pins, segment) | (is_own ? 0 : MESH_FRAME);
+                          supportpins_original_segment(pins, segment) |
+                          (supportpins_is_pin(pins, segment) ? MESH_FRAME : 0);
     }
     for (int k = 0; k < LISTS; k++)
         for (size_t i = 0; i < counts[k]; i++)

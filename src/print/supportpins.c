@@ -1,22 +1,24 @@
-/* A pin is a vessel more, so that it blends with what it holds; it is upright, so that it is cut
- * off flat in the plane of the plate, whose face has a hole there. */
+/* A pin is added to the tree as a vessel, so that it blends with what it holds. It is vertical, so
+ * that it is cut off flat in the plane of the plate, whose face has a hole there. */
 #include "print/supportpins.h"
 
 #include "mesh/mesh.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* Over the radius of the vessel: that of its pin; what is left free about pins; how far a pin
- * begins from an open end. Over the thickest pin: how high the lowest vessel stands. */
+/* In units of the radius of the vessel: that of its pin; the clearance about pins; the distance of
+ * a pin from an open end. In units of the thickest pin's radius: height of the lowest vessel above
+ * the plate. */
 static const double pin_part = 0.8, free_part = 0.4, from_end = 3, lift_part = 3.5;
-/* How high the lowest vessel stands at the least, and how far the plate reaches beyond, mm. */
+/* Minimum height of the lowest vessel above the plate, and how far the plate reaches beyond the
+ * vessels, mm. */
 static const double least_lift_mm = 2, edge_mm = 2;
-/* Over the way to it: how much higher than an open end a pin may begin. */
+/* In units of the path to it: how much higher than an open end a pin may begin. */
 static const double most_rise = 0.5;
-/* Over the radius: what is no lower than a node. */
+/* In units of the radius: a point this much lower than a node still counts as level with it. */
 static const double level_part = 0.25;
 
-/* A place that a pin is to begin at. */
+/* A point where a pin is to begin. */
 typedef struct PinFoot {
     uint32_t node, segment; /* one that ended there before any was cut */
     Vec3 at;
@@ -48,7 +50,7 @@ static Vec3 end_of(const VesselTree *tree, uint32_t segment, int end)
     return segment_end(&tree->segments[segment], end);
 }
 
-/* Whether a node is lower than all that leads away from it. */
+/* Returns true if no segment descends from the node. */
 static bool is_lowest(const Standing *standing, uint32_t node, PinFoot *foot)
 {
     const VesselTree *tree = standing->tree;
@@ -115,7 +117,7 @@ static Status add_segment(Standing *standing, FieldSegment segment, uint32_t fro
     return STATUS_OK;
 }
 
-/* Whether a pin keeps off a vessel, unless that ends where the pin begins. */
+/* Returns true if a pin keeps clear of a vessel, or if the vessel ends where the pin begins. */
 static bool is_off(const Standing *standing, const FieldSegment *pin, uint32_t node, size_t i)
 {
     const VesselTree *tree = standing->tree;
@@ -125,8 +127,8 @@ static bool is_off(const Standing *standing, const FieldSegment *pin, uint32_t n
            gap >= free_part * fmin(pin->radius_mm, other->radius_mm);
 }
 
-/* Whether a pin keeps off all that does not end where it begins. Vessels of the tree are found by
- * their boxes as they were before any was cut, which only made them shorter. */
+/* Returns true if a pin keeps clear of all vessels that do not end where it begins. Vessels of the
+ * tree are found by their boxes before any was split, which only made them shorter. */
 static bool is_free(const Standing *standing, const FieldSegment *pin, uint32_t node)
 {
     const VesselTree *tree = standing->tree;
@@ -151,7 +153,8 @@ typedef struct Spot {
     double mm;
 } Spot;
 
-/* Goes from an open end so far along the vessel. False where it ends or branches before. */
+/* Goes a distance along the vessel from an open end. Returns false if the vessel ends or branches
+ * before. */
 static bool walk_from(const Standing *standing, const PinFoot *foot, double mm, Spot *spot)
 {
     const VesselTree *tree = standing->tree;
@@ -175,7 +178,7 @@ static bool walk_from(const Standing *standing, const PinFoot *foot, double mm, 
     }
 }
 
-/* Cuts a vessel in two; what lies towards the end keeps its number. */
+/* Splits a vessel in two. The part towards the end keeps its index. */
 static Status cut_at(Standing *standing, const Spot *spot, uint32_t *node)
 {
     VesselTree *tree = standing->tree;
@@ -195,8 +198,8 @@ static Status cut_at(Standing *standing, const Spot *spot, uint32_t *node)
     return STATUS_OK;
 }
 
-/* Moves a foot from an open end to a place beside it. False when there is none, or when the end
- * would be much lower. */
+/* Moves a foot from an open end to a point beside it. *done receives false if there is none, or if
+ * the end would be much lower. */
 static Status move_foot(Standing *standing, PinFoot *foot, bool *done)
 {
     VesselTree *tree = standing->tree;
@@ -237,7 +240,7 @@ static Status add_pin(Standing *standing, PinFoot foot, bool open_ends)
                        supportpins_original_segment(&standing->pins, foot.segment), true);
 }
 
-/* Whether a pin is not cut off flat at the plate, or overlaps a vessel. */
+/* Returns true if a pin is not cut off flat at the plate, or overlaps a vessel. */
 static bool is_spoilt(const Standing *standing, const Junctions *junctions, uint32_t segment)
 {
     for (size_t i = 0; i < junctions->n_overlapping; i++)
@@ -247,7 +250,7 @@ static bool is_spoilt(const Standing *standing, const Junctions *junctions, uint
     return junctions->of_node[standing->tree->nodes[segment][1]] != NO_JUNCTION;
 }
 
-/* Takes away what is spoilt, and tells how many pins that were. */
+/* Removes the pins that are spoilt. Returns their number. */
 static size_t take_spoilt(Standing *standing, const Junctions *junctions)
 {
     VesselTree *tree = standing->tree;
@@ -330,7 +333,7 @@ Status supportpins_join(Solid *solid, const Casing *plate, const CutEnds *ends,
     seams_add(seams, MESH_FRAME);
     for (size_t i = 0; i < ends->n; i++) {
         const CutEnd *end = &ends->items[i];
-        if (end->segment < pins->n_original || !pins->is_pin[end->segment - pins->n_original])
+        if (!supportpins_is_pin(pins, end->segment))
             continue;
         holes[n++] = (CasingHole){5, false, end->rim, end->n};
         seams_ring(seams, end->segment, MESH_FRAME);

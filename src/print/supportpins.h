@@ -49,4 +49,10 @@ static inline uint32_t supportpins_original_segment(const SupportPins *pins, uin
     return segment < pins->n_original ? segment : pins->owner[segment - pins->n_original];
 }
 
+/* Returns true if a segment of the extended tree is a pin. */
+static inline bool supportpins_is_pin(const SupportPins *pins, uint32_t segment)
+{
+    return segment >= pins->n_original && pins->is_pin[segment - pins->n_original];
+}
+
 #endif

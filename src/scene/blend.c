@@ -21,7 +21,7 @@ static Status turn_over(const IndexLists *lists, size_t n_items, IndexLists *out
     return STATUS_OK;
 }
 
-/* Whether list b holds all of list a, which is not empty. */
+/* Returns true if list b holds all of list a, which is not empty. */
 static bool is_part(const IndexLists *lists, uint32_t a, uint32_t b)
 {
     const uint32_t *of_a = lists->items + lists->first[a],
@@ -39,8 +39,8 @@ static bool is_part(const IndexLists *lists, uint32_t a, uint32_t b)
     return true;
 }
 
-/* Whether the list is empty, part of another, or the same as an earlier one; `holders` are the
- * lists that hold each number. */
+/* Returns true if the list is empty, part of another, or the same as an earlier one; `holders` are
+ * the lists that hold each number. */
 static bool is_idle(const IndexLists *lists, const IndexLists *holders, uint32_t self)
 {
     uint32_t rarest = 0, fewest = UINT32_MAX;

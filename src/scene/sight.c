@@ -19,22 +19,23 @@ enum { MOST_POINTS = 2 * CORNERS, MOST_PLANES = 2 * (3 + FACES + 12 * LIGHT_CORN
 /* How far half-spaces are moved outwards, of the largest coordinate, for rounding. */
 static const double slack = 1e-9;
 
-typedef struct Hull {
+typedef struct SightHull {
     Vec3 point[MOST_POINTS]; /* it is their convex hull */
     int n_points;
     Vec3 normal[MOST_PLANES]; /* unit; all points have normal . x <= end */
     double end[MOST_PLANES];
     int n_planes;
-} Hull;
+} SightHull;
 
 struct Sight {
     size_t n;
-    Hull hulls[]; /* of the pixels' rays; of the rays from vessels to each light, and from ground */
+    SightHull
+        hulls[]; /* of the pixels' rays; of the rays from vessels to each light, and from ground */
 };
 
 /* ---- half-spaces ----------------------------------------------------------------------------- */
 
-static double largest_coordinate(const Hull *hull)
+static double largest_coordinate(const SightHull *hull)
 {
     double largest = 0;
     for (int i = 0; i < hull->n_points; i++)
@@ -44,7 +45,7 @@ static double largest_coordinate(const Hull *hull)
 }
 
 /* The two half-spaces square to a direction; none where it is 0. */
-static void add_slab(Hull *hull, Vec3 across)
+static void add_slab(SightHull *hull, Vec3 across)
 {
     double length = vec3_length(across), room = slack * largest_coordinate(hull);
     for (int sign = -1; length > 0 && sign <= 1; sign += 2) {
@@ -58,7 +59,7 @@ static void add_slab(Hull *hull, Vec3 across)
 }
 
 /* Those along the axes and of the faces of the frustum whose corners the first points are. */
-static void add_faces(Hull *hull)
+static void add_faces(SightHull *hull)
 {
     add_slab(hull, vec3(1, 0, 0));
     add_slab(hull, vec3(0, 1, 0));
@@ -73,12 +74,12 @@ static void add_faces(Hull *hull)
 }
 
 /* Those of the planes through an edge of the frustum and along a way from there. */
-static void add_edge(Hull *hull, int from, int to, Vec3 way)
+static void add_edge(SightHull *hull, int from, int to, Vec3 way)
 {
     add_slab(hull, vec3_cross(vec3_sub(hull->point[to], hull->point[from]), way));
 }
 
-static void add_edges(Hull *hull, Vec3 light, bool parallel)
+static void add_edges(SightHull *hull, Vec3 light, bool parallel)
 {
     for (int from = 0; from < CORNERS; from++)
         for (int axis = 0; axis < 3; axis++)
@@ -87,7 +88,7 @@ static void add_edges(Hull *hull, Vec3 light, bool parallel)
                          parallel ? light : vec3_sub(light, hull->point[from]));
 }
 
-static bool hull_meets(const Hull *hull, Box box)
+static bool hull_meets(const SightHull *hull, Box box)
 {
     for (int i = 0; i < hull->n_planes; i++) {
         Vec3 n = hull->normal[i];
@@ -112,9 +113,10 @@ static void corner_rays(const Camera *camera, PixelRect part, Ray rays[4])
 }
 
 /* The part of the rays between two depths along the direction of view. */
-static Hull frustum_between(const Camera *camera, const Ray rays[4], double near_mm, double far_mm)
+static SightHull frustum_between(const Camera *camera, const Ray rays[4], double near_mm,
+                                 double far_mm)
 {
-    Hull frustum = {.n_points = CORNERS};
+    SightHull frustum = {.n_points = CORNERS};
     for (int i = 0; i < CORNERS; i++) {
         const Ray *ray = &rays[i & 3];
         double along = vec3_dot(ray->direction, camera->direction);
@@ -124,7 +126,7 @@ static Hull frustum_between(const Camera *camera, const Ray rays[4], double near
 }
 
 /* The part of the rays that lies within the depths of the box. */
-static Hull frustum_of_box(const Camera *camera, const Ray rays[4], Box box)
+static SightHull frustum_of_box(const Camera *camera, const Ray rays[4], Box box)
 {
     double near_mm = HUGE_VAL, far_mm = 0;
     for (int i = 0; i < CORNERS; i++) {
@@ -138,9 +140,9 @@ static Hull frustum_of_box(const Camera *camera, const Ray rays[4], Box box)
 }
 
 /* What the rays see of the ground. */
-static Hull frustum_of_ground(const Camera *camera, const Ray rays[4], const Ground *ground)
+static SightHull frustum_of_ground(const Camera *camera, const Ray rays[4], const Ground *ground)
 {
-    Hull quadrangle = {.n_points = CORNERS};
+    SightHull quadrangle = {.n_points = CORNERS};
     for (int i = 0; i < CORNERS; i++) {
         double t;
         if (!ground_hit(ground, rays[i & 3], 0, SCENE_FARTHEST_MM, &t))
@@ -152,7 +154,7 @@ static Hull frustum_of_ground(const Camera *camera, const Ray rays[4], const Gro
 
 /* The hull of a frustum and a light: of parallel light, of the frustum and itself, moved towards
  * the light beyond the bounds. */
-static void reach_to_light(Hull *hull, const Light *light, Box bounds)
+static void reach_to_light(SightHull *hull, const Light *light, Box bounds)
 {
     Vec3 towards = vec3_normalized(vec3_sub(light->location, light->target));
     double beyond = largest_coordinate(hull) + vec3_length(bounds.low) + vec3_length(bounds.high);
@@ -183,7 +185,7 @@ Status sight_new(const View *view, Box bounds, PixelRect part, bool shadows, Sig
     Sight *made;
     TRY(mem_calloc(&made, 1, sizeof *made + most * sizeof *made->hulls, "part", err));
     corner_rays(&view->camera, part, rays);
-    Hull seen = frustum_of_box(&view->camera, rays, bounds);
+    SightHull seen = frustum_of_box(&view->camera, rays, bounds);
     for (size_t i = 0; shadows && i < view->n_lights; i++) {
         made->hulls[made->n] = seen;
         reach_to_light(&made->hulls[made->n++], &view->lights[i], bounds);

@@ -20,40 +20,40 @@ static const double tolerance =
     1e-13; /* of the largest radius or, where that is longer, of the cut */
 
 /* What pushes an end: t = slope * t[mover] + offset; without a mover t = 0. */
-typedef struct Push {
+typedef struct CutPush {
     ptrdiff_t mover; /* -1: none */
     double slope, offset;
     double pushed; /* the t that it asks for */
-} Push;
+} CutPush;
 
 enum { LEAF_SIZE = 8 };
 
 /* Some ends near to each other. The first child of an inner node is the next one. */
-typedef struct Node {
+typedef struct CutNode {
     size_t first, n;     /* of the places in `order` */
     size_t second;       /* child; 0 for a leaf */
     Vec3 axis;           /* of one of them */
     double cosine, sine; /* the least and the greatest of the angles that the others make with it */
     double least_cut, largest_cut, radius; /* the largest */
-} Node;
+} CutNode;
 
-typedef struct Item {
+typedef struct CutItem {
     double key; /* to sort by */
     size_t end;
-} Item;
+} CutItem;
 
-typedef struct Work {
+typedef struct CutWork {
     const VesselEnd *ends;
     double *cut;
-    Push *pushes;
+    CutPush *pushes;
     double *next;  /* the right-hand side */
     size_t *path;  /* ends on the way to one that is solved */
     bool *visited; /* they, and those solved */
-    Item *order;
-    Node *nodes;
+    CutItem *order;
+    CutNode *nodes;
     size_t n_nodes;
     uint64_t steps; /* that are left */
-} Work;
+} CutWork;
 
 static double sine_of(Vec3 a, Vec3 b)
 {
@@ -62,19 +62,19 @@ static double sine_of(Vec3 a, Vec3 b)
 
 static int by_key(const void *a, const void *b)
 {
-    double one = ((const Item *)a)->key, other = ((const Item *)b)->key;
+    double one = ((const CutItem *)a)->key, other = ((const CutItem *)b)->key;
     return (one > other) - (one < other);
 }
 
 /* Makes the node of the ends `first` to first + n - 1 in `order`, and those below it. */
-static size_t build_node(Work *work, size_t first, size_t n)
+static size_t build_node(CutWork *work, size_t first, size_t n)
 {
     size_t index = work->n_nodes++;
-    Node *node = &work->nodes[index];
-    *node = (Node){.first = first,
-                   .n = n,
-                   .axis = work->ends[work->order[first + n / 2].end].axis,
-                   .cosine = 1};
+    CutNode *node = &work->nodes[index];
+    *node = (CutNode){.first = first,
+                      .n = n,
+                      .axis = work->ends[work->order[first + n / 2].end].axis,
+                      .cosine = 1};
     Box axes = box_empty();
     for (size_t k = first; k < first + n; k++) {
         Vec3 axis = work->ends[work->order[k].end].axis;
@@ -95,12 +95,12 @@ static size_t build_node(Work *work, size_t first, size_t n)
 }
 
 /* Brings the nodes up to date with the cuts; a lone one needs it not. */
-static void fit_nodes(Work *work)
+static void fit_nodes(CutWork *work)
 {
     for (size_t index = work->n_nodes; index-- > 1;) {
-        Node *node = &work->nodes[index];
+        CutNode *node = &work->nodes[index];
         if (node->second) {
-            const Node *a = node + 1, *b = &work->nodes[node->second];
+            const CutNode *a = node + 1, *b = &work->nodes[node->second];
             node->least_cut = fmin(a->least_cut, b->least_cut);
             node->largest_cut = fmax(a->largest_cut, b->largest_cut);
             node->radius = fmax(a->radius, b->radius);
@@ -119,7 +119,7 @@ static void fit_nodes(Work *work)
 
 /* No end of a node pushes one along an axis further than this; below 0 when all are parallel to
  * it. */
-static double furthest_push(const Node *node, Vec3 axis)
+static double furthest_push(const CutNode *node, Vec3 axis)
 {
     double cosine = vec3_dot(axis, node->axis), sine = sine_of(axis, node->axis);
     double c = node->cosine, s = node->sine;
@@ -140,23 +140,23 @@ static double furthest_push(const Node *node, Vec3 axis)
 }
 
 /* Makes *best the push of end j on end i if it is stronger, or as strong and j comes first. */
-static void try_push(Work *work, size_t i, size_t j, Push *best)
+static void try_push(CutWork *work, size_t i, size_t j, CutPush *best)
 {
     const VesselEnd *ends = work->ends;
     work->steps -= work->steps > 0;
     double sine = sine_of(ends[i].axis, ends[j].axis);
     if (j == i || sine < parallel)
         return;
-    Push push = {(ptrdiff_t)j, vec3_dot(ends[i].axis, ends[j].axis), ends[j].radius * sine, 0};
+    CutPush push = {(ptrdiff_t)j, vec3_dot(ends[i].axis, ends[j].axis), ends[j].radius * sine, 0};
     push.pushed = push.slope * work->cut[j] + push.offset;
     if (push.pushed > best->pushed || (push.pushed == best->pushed && push.mover < best->mover))
         *best = push;
 }
 
 /* Tries those ends of a node that may push end i further than *best. */
-static void try_node(Work *work, size_t index, size_t i, Push *best)
+static void try_node(CutWork *work, size_t index, size_t i, CutPush *best)
 {
-    const Node *node = &work->nodes[index];
+    const CutNode *node = &work->nodes[index];
     if (!node->second) {
         for (size_t k = node->first; k < node->first + node->n; k++)
             try_push(work, i, work->order[k].end, best);
@@ -175,9 +175,9 @@ static void try_node(Work *work, size_t index, size_t i, Push *best)
     }
 }
 
-static Push strongest_push(Work *work, size_t i)
+static CutPush strongest_push(CutWork *work, size_t i)
 {
-    Push best = {.mover = -1};
+    CutPush best = {.mover = -1};
     if (work->pushes[i].mover >= 0)
         try_push(work, i, (size_t)work->pushes[i].mover, &best);
     try_node(work, 0, i, &best);
@@ -185,7 +185,7 @@ static Push strongest_push(Work *work, size_t i)
 }
 
 /* Finds all pushes and right-hand sides; whether the cuts are the fixed point. */
-static bool find_pushes(size_t n, Work *work)
+static bool find_pushes(size_t n, CutWork *work)
 {
     double largest = 0;
     bool settled = true;
@@ -202,7 +202,7 @@ static bool find_pushes(size_t n, Work *work)
 }
 
 /* Follows the movers from `first` around their circle back to it: t = slope t + offset. */
-static double solve_circle(const Push *pushes, size_t first)
+static double solve_circle(const CutPush *pushes, size_t first)
 {
     double slope = 1, offset = 0;
     size_t i = first;
@@ -216,10 +216,10 @@ static double solve_circle(const Push *pushes, size_t first)
 
 /* Solves t_i = slope_i t[mover_i] + offset_i for all ends. Movers lead to an end that nothing
  * pushes, to one solved before, or around a circle. */
-static void solve_pushes(size_t n, Work *work)
+static void solve_pushes(size_t n, CutWork *work)
 {
     double *cut = work->cut;
-    const Push *pushes = work->pushes;
+    const CutPush *pushes = work->pushes;
     memset(work->visited, 0, n * sizeof *work->visited);
     for (size_t start = 0; start < n; start++) {
         size_t length = 0, end = start;
@@ -245,7 +245,7 @@ static void solve_pushes(size_t n, Work *work)
 
 Status cuts_compute(const VesselEnd *ends, size_t n, double *cut, uint64_t *steps, Err *err)
 {
-    Work work = {.ends = ends, .cut = cut, .steps = *steps};
+    CutWork work = {.ends = ends, .cut = cut, .steps = *steps};
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&work.pushes, n, sizeof *work.pushes, "vessel ends", err));
     TRY_GOTO(mem_calloc(&work.next, n, sizeof *work.next, "vessel ends", err));

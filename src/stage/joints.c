@@ -39,10 +39,10 @@ typedef struct JointBuilder {
     uint64_t steps;   /* left of most_steps */
 } JointBuilder;
 
-typedef struct Demand {
+typedef struct CutDemand {
     double part; /* the largest part of a vessel that a cut at the place takes */
     size_t place;
-} Demand;
+} CutDemand;
 
 static size_t place_of(const JointBuilder *builder, size_t end)
 {
@@ -133,13 +133,14 @@ static Status cut_place(JointBuilder *builder, size_t place, VesselEnd *ends, do
 
 static int by_demand(const void *a, const void *b)
 {
-    const Demand *first = a, *second = b;
+    const CutDemand *first = a, *second = b;
     if (first->part != second->part)
         return first->part < second->part ? -1 : 1;
     return first->place < second->place ? -1 : 1;
 }
 
-/* Whether the cuts of a place fit beside those already made at the other ends of its vessels. */
+/* Returns true if the cuts of a place fit beside those already made at the other ends of its
+ * vessels. */
 static bool cuts_fit(const JointBuilder *builder, size_t place, const bool *made)
 {
     for (size_t k = builder->ends.first[place]; k < builder->ends.first[place + 1]; k++) {
@@ -152,7 +153,7 @@ static bool cuts_fit(const JointBuilder *builder, size_t place, const bool *made
 }
 
 /* Decides the places whose cuts are known, in the order of their demands. */
-static Status settle_places(JointBuilder *builder, Demand *demands, size_t n, Err *err)
+static Status settle_places(JointBuilder *builder, CutDemand *demands, size_t n, Err *err)
 {
     bool *made = NULL; /* one an end */
     TRY(mem_calloc(&made, 2 * builder->tree->n, sizeof *made, "vessel ends", err));
@@ -175,7 +176,7 @@ static Status cut_places(JointBuilder *builder, Err *err)
     size_t n = builder->tree->n, n_demands = 0, most = 0;
     VesselEnd *ends = NULL;
     double *cut = NULL;
-    Demand *demands = NULL;
+    CutDemand *demands = NULL;
     Status status = STATUS_OK;
     for (size_t place = 0; place < n; place++) {
         size_t count = indexlists_length(&builder->ends, place);
@@ -187,7 +188,7 @@ static Status cut_places(JointBuilder *builder, Err *err)
     for (size_t place = 0; place < n; place++) {
         if (indexlists_length(&builder->ends, place) < 2)
             continue;
-        Demand *demand = &demands[n_demands++];
+        CutDemand *demand = &demands[n_demands++];
         demand->place = place;
         TRY_GOTO(cut_place(builder, place, ends, cut, &demand->part, err));
     }
@@ -219,7 +220,7 @@ static void trim_cuts(JointBuilder *builder, JointForm form)
     }
 }
 
-/* Whether no other vessel ends where this one does. */
+/* Returns true if no other vessel ends where this one does. */
 static bool end_is_free(const JointBuilder *builder, size_t end)
 {
     size_t place = place_of(builder, end);

@@ -5,22 +5,22 @@
 
 static const double least_angle = 0.01, largest_height_mm = 1e7, least_height_mm = 1e-6;
 
-typedef struct Axes {
+typedef struct OrbitAxes {
     Vec3 right, up, back; /* unit; back leads from what is looked at to the camera */
     double distance;
-} Axes;
+} OrbitAxes;
 
-static Axes axes_of(const ViewParams *params)
+static OrbitAxes axes_of(const ViewParams *params)
 {
     Vec3 back = vec3_sub(params->location, params->look_at);
-    Axes axes = {.distance = vec3_length(back)};
+    OrbitAxes axes = {.distance = vec3_length(back)};
     axes.back = vec3_scale(back, 1 / axes.distance);
     axes.right = vec3_normalized(vec3_cross(params->up, axes.back));
     axes.up = vec3_cross(axes.back, axes.right);
     return axes;
 }
 
-static void set_axes(ViewParams *params, Axes axes)
+static void set_axes(ViewParams *params, OrbitAxes axes)
 {
     params->location = vec3_add_scaled(params->look_at, axes.back, axes.distance);
     params->up = axes.up;
@@ -57,7 +57,7 @@ void orbit_begin(ViewParams *params, const Camera *camera, const Geometry *geome
 
 void orbit_turn(ViewParams *params, double right, double up)
 {
-    Axes axes = axes_of(params);
+    OrbitAxes axes = axes_of(params);
     axes.back = vec3_turned(axes.back, axes.up, -right);
     axes.right = vec3_turned(axes.right, axes.up, -right);
     axes.back = vec3_normalized(vec3_turned(axes.back, axes.right, up));
@@ -72,14 +72,14 @@ void orbit_zoom(ViewParams *params, double factor)
             fmin(fmax(params->height_mm / factor, least_height_mm), largest_height_mm);
         return;
     }
-    Axes axes = axes_of(params);
+    OrbitAxes axes = axes_of(params);
     axes.distance = fmin(fmax(axes.distance / factor, least_height_mm), largest_height_mm / 2);
     set_axes(params, axes);
 }
 
 void orbit_pan(ViewParams *params, double right, double up)
 {
-    Axes axes = axes_of(params);
+    OrbitAxes axes = axes_of(params);
     double height = height_mm(params, axes.distance);
     Vec3 move = vec3_scale(axes.right, -right * height);
     move = vec3_add_scaled(move, axes.up, -up * height);
@@ -91,7 +91,7 @@ void orbit_project(ViewParams *params, Projection projection, const Geometry *ge
 {
     if (params->projection == projection)
         return;
-    Axes axes = axes_of(params);
+    OrbitAxes axes = axes_of(params);
     double height = height_mm(params, axes.distance);
     if (projection == PROJECTION_PERSPECTIVE) {
         params->angle_deg = fmax(params->angle_deg, least_angle);

@@ -20,7 +20,7 @@ bool segment_can_be_drawn(const Tree *tree, size_t i)
 /* Uncovered segments in lists, each the latest first: those that begin at one place together, or
  * where they are more than FEW also by the cell of space they end in, so that a place may have any
  * number of daughters. All arrays are owned. */
-typedef struct Bins {
+typedef struct SisterBins {
     int32_t *start;     /* by segment: the first of the nodes, joined by segments of no length, that
                          * the segment begins at */
     int32_t *daughters; /* by such first node: the segments that begin there, drawn or not */
@@ -28,7 +28,7 @@ typedef struct Bins {
     int32_t *next;      /* one a node */
     size_t n;           /* nodes */
     size_t mask;        /* the number of bins of cells, a power of 2, less 1 */
-} Bins;
+} SisterBins;
 
 enum { FEW = 8 };
 
@@ -36,7 +36,7 @@ enum { FEW = 8 };
  * one. */
 static const double cell_mm = 16e-9;
 
-static size_t bin_of(const Bins *bins, int32_t start, const double cell[3])
+static size_t bin_of(const SisterBins *bins, int32_t start, const double cell[3])
 {
     uint64_t hash = (uint64_t)start;
     for (int axis = 0; axis < 3; axis++) {
@@ -57,7 +57,8 @@ static void find_cell(Vec3 point, double by, double cell[3])
 
 /* What leads to the latest of the sisters in the list of a bin that end where segment i does, if
  * that is later than what `found` leads to; else `found`. NULL: none. */
-static int32_t *find_in(const Tree *tree, const Bins *bins, size_t bin, size_t i, int32_t *found)
+static int32_t *find_in(const Tree *tree, const SisterBins *bins, size_t bin, size_t i,
+                        int32_t *found)
 {
     for (int32_t *link = &bins->first[bin]; *link >= 0; link = &bins->next[*link])
         if (bins->start[*link] == bins->start[i] && (!found || *link > *found) &&
@@ -66,14 +67,14 @@ static int32_t *find_in(const Tree *tree, const Bins *bins, size_t bin, size_t i
     return found;
 }
 
-static bool has_few_sisters(const Bins *bins, size_t i)
+static bool has_few_sisters(const SisterBins *bins, size_t i)
 {
     return bins->daughters[bins->start[i]] <= FEW;
 }
 
 /* What leads to the latest of the sisters in the lists that end where segment i does; NULL:
  * none. */
-static int32_t *find_sister(const Tree *tree, const Bins *bins, size_t i)
+static int32_t *find_sister(const Tree *tree, const SisterBins *bins, size_t i)
 {
     if (has_few_sisters(bins, i))
         return find_in(tree, bins, (size_t)bins->start[i], i, NULL);
@@ -95,7 +96,7 @@ static int32_t *find_sister(const Tree *tree, const Bins *bins, size_t i)
 }
 
 /* Puts segment i into its list. */
-static void put(const Tree *tree, Bins *bins, size_t i)
+static void put(const Tree *tree, SisterBins *bins, size_t i)
 {
     size_t bin = (size_t)bins->start[i];
     if (!has_few_sisters(bins, i)) {
@@ -108,7 +109,7 @@ static void put(const Tree *tree, Bins *bins, size_t i)
 }
 
 /* Compares each segment with its elder sisters. */
-static void find_covers(const Tree *tree, Bins *bins, int32_t *cover)
+static void find_covers(const Tree *tree, SisterBins *bins, int32_t *cover)
 {
     for (size_t i = 0; i < tree->n; i++) {
         cover[i] = segment_can_be_drawn(tree, i) ? PLACES_UNCOVERED : PLACES_CANNOT_DRAW;
@@ -127,7 +128,8 @@ static void find_covers(const Tree *tree, Bins *bins, int32_t *cover)
     }
 }
 
-/* Whether segment i leads from the end of its parent's segment back to where that one begins. */
+/* Returns true if segment i leads from the end of its parent's segment back to where that one
+ * begins. */
 static bool returns(const Tree *tree, const int32_t *cover, size_t i)
 {
     const int32_t parent = tree->parent[i];
@@ -168,7 +170,7 @@ static int32_t place_of(const Tree *tree, const Places *found, size_t i)
 }
 
 /* Finds where each segment begins, and counts those that begin together. */
-static void find_starts(const Tree *tree, Bins *bins)
+static void find_starts(const Tree *tree, SisterBins *bins)
 {
     for (size_t i = 0; i < tree->n; i++) {
         const int32_t parent = tree->parent[i];
@@ -182,7 +184,7 @@ static void find_starts(const Tree *tree, Bins *bins)
     }
 }
 
-static Status init_bins(const Tree *tree, Bins *bins, Err *err)
+static Status init_bins(const Tree *tree, SisterBins *bins, Err *err)
 {
     size_t many = 0, count = 1;
     TRY(mem_calloc(&bins->start, tree->n, sizeof *bins->start, "nodes", err));
@@ -201,7 +203,7 @@ static Status init_bins(const Tree *tree, Bins *bins, Err *err)
 
 Status places_find(const Tree *tree, Places *places, Err *err)
 {
-    Bins bins = {0};
+    SisterBins bins = {0};
     Places found = {0};
     Status status = STATUS_OK;
     TRY_GOTO(init_bins(tree, &bins, err));

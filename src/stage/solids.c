@@ -100,8 +100,8 @@ static Status flag_free_ends(const Solids *solids, Err *err)
     return STATUS_OK;
 }
 
-/* Whether segment i, rather than another, has the ball at a node that both meet: the thicker one,
- * of equals the one with the lower id, so that the order of rows does not matter. */
+/* Returns true if segment i, rather than another, has the ball at a node that both meet: the
+ * thicker one, of equals the one with the lower id, so that the order of rows does not matter. */
 static bool is_before(const Tree *tree, size_t i, int32_t other)
 {
     double own = tree->radius_mm[i], its = tree->radius_mm[other];
@@ -127,8 +127,8 @@ static void find_thickest(const Solids *solids)
             thickest[i] = -1;
 }
 
-/* Whether the place of node i is an end of the cylinder of its thickest segment, which becomes
- * round there. */
+/* Returns true if the place of node i is an end of the cylinder of its thickest segment, which
+ * becomes round there. */
 static bool round_end(const Solids *solids, size_t i)
 {
     int32_t number = solids->cylinder[solids->thickest[i]];

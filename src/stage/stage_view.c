@@ -89,9 +89,9 @@ static Status aim_camera(const ViewParams *params, Vec3 center, Camera *camera, 
     return STATUS_OK;
 }
 
-typedef struct Extent {
+typedef struct ViewExtent {
     double low_x, high_x, low_y, high_y;
-} Extent;
+} ViewExtent;
 
 /* Of a box along an axis of the coordinates, either way; false along another direction. */
 static bool extent_of_box(Box box, Vec3 along, double *low, double *high)
@@ -110,13 +110,13 @@ static bool extent_of_box(Box box, Vec3 along, double *low, double *high)
 
 /* Most cameras look along an axis of the coordinates, where the box of a tree has the very numbers;
  * that of a geometry may hold less than its balls. */
-static Extent extent_along(const Framed *framed, Vec3 right, Vec3 up)
+static ViewExtent extent_along(const Framed *framed, Vec3 right, Vec3 up)
 {
-    Extent extent;
+    ViewExtent extent;
     if (framed->subject->tree && extent_of_box(framed->box, right, &extent.low_x, &extent.high_x) &&
         extent_of_box(framed->box, up, &extent.low_y, &extent.high_y))
         return extent;
-    extent = (Extent){INFINITY, -INFINITY, INFINITY, -INFINITY};
+    extent = (ViewExtent){INFINITY, -INFINITY, INFINITY, -INFINITY};
     for (size_t i = 0; i < framed_segments(framed); i++) {
         Ball ends[2];
         for (int k = framed_ends(framed, i, ends); k-- > 0;) {
@@ -151,7 +151,6 @@ static double framing_distance(const Framed *framed, const Camera *camera, doubl
     return distance;
 }
 
-/* Where an aimed orthographic camera stands and how much it shows. */
 /* An orthographic camera may stand anywhere before the vessels. It stands at least this far from
  * their middle, as POV-Ray does not see what is nearer to a camera than 0.01 mm [docs/POVRAY.md,
  * sections 4 and 6]. */
@@ -164,7 +163,7 @@ static void place_orthographic(const ViewParams *params, const Framed *framed, C
     Vec3 center = box_center(framed->box);
     Box all = box_union(framed->box, framed->subject->box);
     bool placed = params->has_look_at && params->height_mm > 0; /* without framing anything */
-    Extent extent = placed ? (Extent){0} : extent_along(framed, right, up);
+    ViewExtent extent = placed ? (ViewExtent){0} : extent_along(framed, right, up);
     double wide = extent.high_x - extent.low_x, high = extent.high_y - extent.low_y;
     double room_x = (double)params->room[0] / params->width;
     double room_y = (double)params->room[1] / params->height;

@@ -1,5 +1,5 @@
-/* Children are counted, and each only child noted at its parent; a branch is then walked down from
- * each segment that is no only child of a segment. */
+/* Counts children, and stores each only child at its parent. A branch then follows only children
+ * from each segment that is not the only child of a segment. */
 #include "treeio/branches.h"
 
 #include <stdlib.h>

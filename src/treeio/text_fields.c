@@ -1,5 +1,4 @@
-/* What text formats have in common: the text is cut in place into lines, and fields of a line are
- * numbers. */
+/* Fields of text formats: numbers, decimal commas, and fields of CSV, which are cut in place. */
 #include "treeio/formats.h"
 
 #include <ctype.h>

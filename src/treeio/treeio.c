@@ -1,6 +1,7 @@
-/* One table row a format. What a path's extension names is read as that; standard input, and what
- * several formats share an extension of, as what its first bytes tell, and else as the first row of
- * the table. Files are opened, built into trees, checked and committed here alone. */
+/* The table of formats, one row each. The extension of a path decides its format. On standard
+ * input, and if several formats share an extension, the first bytes decide; if no format recognises
+ * them, the first row of the table is used. Only this file opens files, builds trees of them,
+ * checks and commits them. */
 #include "treeio/treeio.h"
 
 #include "treeio/cursor.h"

@@ -2,10 +2,10 @@
  * divergence is 1 in the body and 0 elsewhere they are the flow through the box's faces.
  *
  * In the infinite cylinder, take the field that points along the axis and is the height along it,
- * cut off at the two ends: none of it flows through the wall. Seen along the axis the faces are
- * parallelograms in a disc, and the height is linear on each, or constant where it is cut off. Of a
- * ball, take x / 3 within, and x / 3 (r / |x|)^3 beyond, which has no divergence. See disc.h for
- * both integrals. */
+ * cut off at the two ends: none of it flows through the wall. AxisPoint along the axis the faces
+ * are parallelograms in a disc, and the height is linear on each, or constant where it is cut off.
+ * Of a ball, take x / 3 within, and x / 3 (r / |x|)^3 beyond, which has no divergence. See disc.h
+ * for both integrals. */
 #include "voxel/body.h"
 
 #include "voxel/disc.h"
@@ -38,7 +38,7 @@ Box body_box(const Body *body)
 }
 
 /* How far the cell reaches from its middle along a direction. */
-static double support(const Cell *cell, Vec3 direction)
+static double support(const VoxelCell *cell, Vec3 direction)
 {
     return cell->half.x * fabs(direction.x) + cell->half.y * fabs(direction.y) +
            cell->half.z * fabs(direction.z);
@@ -54,7 +54,7 @@ static double square(double x)
     return x * x;
 }
 
-bool body_meets(const Body *body, const Cell *cell)
+bool body_meets(const Body *body, const VoxelCell *cell)
 {
     Vec3 from = vec3_sub(cell->center, body->start);
     if (body_is_ball(body))
@@ -71,14 +71,14 @@ bool body_meets(const Body *body, const Cell *cell)
            distance < body->radius;
 }
 
-static Vec3 cell_corner(const Cell *cell, int corner)
+static Vec3 cell_corner(const VoxelCell *cell, int corner)
 {
     return vec3(cell->center.x + (corner & 1 ? cell->half.x : -cell->half.x),
                 cell->center.y + (corner & 2 ? cell->half.y : -cell->half.y),
                 cell->center.z + (corner & 4 ? cell->half.z : -cell->half.z));
 }
 
-static bool ball_holds(const Body *ball, const Cell *cell)
+static bool ball_holds(const Body *ball, const VoxelCell *cell)
 {
     Vec3 from = vec3_sub(cell->center, ball->start);
     return square(fabs(from.x) + cell->half.x) + square(fabs(from.y) + cell->half.y) +
@@ -86,7 +86,7 @@ static bool ball_holds(const Body *ball, const Cell *cell)
            square(ball->radius);
 }
 
-bool body_holds(const Body *body, const Cell *cell)
+bool body_holds(const Body *body, const VoxelCell *cell)
 {
     if (body_is_ball(body))
         return ball_holds(body, cell);
@@ -103,35 +103,35 @@ bool body_holds(const Body *body, const Cell *cell)
 /* ---- a cylinder in a box --------------------------------------------------------------------- */
 
 /* A point as the axis sees it: across it, and along it from the point nearest to the cell. */
-typedef struct Seen {
+typedef struct AxisPoint {
     DiscPoint at;
     double height;
-} Seen;
+} AxisPoint;
 
 /* The height is level + slope_u u + slope_v v in the plane of a face. */
-typedef struct Plane {
+typedef struct FacePlane {
     double level, slope_u, slope_v;
-} Plane;
+} FacePlane;
 
 enum { MOST_CORNERS = 6 }; /* of a face from which two planes cut */
 
-typedef struct Face {
-    Seen corner[MOST_CORNERS];
+typedef struct CellFace {
+    AxisPoint corner[MOST_CORNERS];
     int n;
-} Face;
+} CellFace;
 
-static Seen between(Seen p, Seen q, double height)
+static AxisPoint between(AxisPoint p, AxisPoint q, double height)
 {
     double t = (height - p.height) / (q.height - p.height);
-    return (Seen){{p.at.u + t * (q.at.u - p.at.u), p.at.v + t * (q.at.v - p.at.v)}, height};
+    return (AxisPoint){{p.at.u + t * (q.at.u - p.at.u), p.at.v + t * (q.at.v - p.at.v)}, height};
 }
 
 /* The part of the face on one side of a height: above it if `side` is 1, below if -1. */
-static Face cut_face(const Face *face, double height, int side)
+static CellFace cut_face(const CellFace *face, double height, int side)
 {
-    Face out = {.n = 0};
+    CellFace out = {.n = 0};
     for (int i = 0; i < face->n; i++) {
-        Seen p = face->corner[i], q = face->corner[(i + 1) % face->n];
+        AxisPoint p = face->corner[i], q = face->corner[(i + 1) % face->n];
         bool has_p = side * (p.height - height) >= 0, has_q = side * (q.height - height) >= 0;
         if (has_p)
             out.corner[out.n++] = p;
@@ -141,7 +141,7 @@ static Face cut_face(const Face *face, double height, int side)
     return out;
 }
 
-static double flow(const Face *face, double radius, Plane plane)
+static double flow(const CellFace *face, double radius, FacePlane plane)
 {
     DiscPart part = {0};
     for (int i = 0; i < face->n; i++)
@@ -150,7 +150,8 @@ static double flow(const Face *face, double radius, Plane plane)
 }
 
 /* The flow through a face of the height, cut off at low and high. */
-static double cut_flow(const Face *face, double radius, Plane plane, double low, double high)
+static double cut_flow(const CellFace *face, double radius, FacePlane plane, double low,
+                       double high)
 {
     double least = face->corner[0].height, most = least;
     for (int i = 1; i < face->n; i++) {
@@ -159,11 +160,11 @@ static double cut_flow(const Face *face, double radius, Plane plane, double low,
     }
     if (low <= least && most <= high)
         return flow(face, radius, plane);
-    Face below = cut_face(face, low, -1), above = cut_face(face, high, 1);
-    Face middle = cut_face(face, low, 1);
+    CellFace below = cut_face(face, low, -1), above = cut_face(face, high, 1);
+    CellFace middle = cut_face(face, low, 1);
     middle = cut_face(&middle, high, -1);
-    return flow(&below, radius, (Plane){low, 0, 0}) + flow(&middle, radius, plane) +
-           flow(&above, radius, (Plane){high, 0, 0});
+    return flow(&below, radius, (FacePlane){low, 0, 0}) + flow(&middle, radius, plane) +
+           flow(&above, radius, (FacePlane){high, 0, 0});
 }
 
 /* Corners of the faces across an axis towards high coordinates, counterclockwise from outside; bits
@@ -173,24 +174,25 @@ static const uint8_t face_corners[3][4] = {{1, 3, 7, 5}, {2, 6, 7, 3}, {4, 5, 7,
 /* A face less steep to the axis than this is left out: less than so much of the cell is lost. */
 static const double least_slope = 1e-7;
 
-static double cylinder_volume(const Body *body, const Cell *cell)
+static double cylinder_volume(const Body *body, const VoxelCell *cell)
 {
     Vec3 from = vec3_sub(cell->center, body->start);
     double along = vec3_dot(from, body->axis), volume = 0;
     Vec3 base = vec3_add_scaled(body->start, body->axis, along);
-    Seen seen[8];
+    AxisPoint seen[8];
     for (int i = 0; i < 8; i++) {
         Vec3 p = vec3_sub(cell_corner(cell, i), base);
-        seen[i] = (Seen){{vec3_dot(p, body->u), vec3_dot(p, body->v)}, vec3_dot(p, body->axis)};
+        seen[i] =
+            (AxisPoint){{vec3_dot(p, body->u), vec3_dot(p, body->v)}, vec3_dot(p, body->axis)};
     }
     for (int axis = 0; axis < 3; axis++) {
         double rise = vec3_component(body->axis, axis);
-        Plane plane = {.slope_u = -vec3_component(body->u, axis) / rise,
-                       .slope_v = -vec3_component(body->v, axis) / rise};
+        FacePlane plane = {.slope_u = -vec3_component(body->u, axis) / rise,
+                           .slope_v = -vec3_component(body->v, axis) / rise};
         for (int side = -1; side <= 1 && fabs(rise) > least_slope; side += 2) {
             double place = vec3_component(vec3_sub(cell->center, base), axis) +
                            side * vec3_component(cell->half, axis);
-            Face face = {.n = 4};
+            CellFace face = {.n = 4};
             plane.level = place / rise;
             for (int i = 0; i < 4; i++)
                 face.corner[i] = seen[face_corners[axis][i] ^ (side < 0 ? 1 << axis : 0)];
@@ -202,7 +204,7 @@ static double cylinder_volume(const Body *body, const Cell *cell)
 
 /* ---- a ball in a box ------------------------------------------------------------------------- */
 
-static double ball_volume(const Body *ball, const Cell *cell)
+static double ball_volume(const Body *ball, const VoxelCell *cell)
 {
     Vec3 from = vec3_sub(cell->center, ball->start);
     double volume = 0;
@@ -224,7 +226,7 @@ static double ball_volume(const Body *ball, const Cell *cell)
     return volume;
 }
 
-double body_part(const Body *body, const Cell *cell)
+double body_part(const Body *body, const VoxelCell *cell)
 {
     if (!body_meets(body, cell))
         return 0;
@@ -273,7 +275,7 @@ bool body_chord(const Body *body, Vec3 at, int axis, double wider, double longer
     return *low < *high;
 }
 
-bool body_axis_in(const Body *body, const Cell *cell, double *from, double *to)
+bool body_axis_in(const Body *body, const VoxelCell *cell, double *from, double *to)
 {
     *from = 0;
     *to = body->length;

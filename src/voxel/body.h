@@ -28,21 +28,21 @@ static inline bool body_is_ball(const Body *body)
 Box body_box(const Body *body);
 
 /* A box whose sides are parallel to the axes. */
-typedef struct Cell {
+typedef struct VoxelCell {
     Vec3 center, half;
-} Cell;
+} VoxelCell;
 
-static inline double cell_volume(const Cell *cell)
+static inline double cell_volume(const VoxelCell *cell)
 {
     return 8 * cell->half.x * cell->half.y * cell->half.z;
 }
 
 /* Returns false only if body and cell have no point in common. */
-bool body_meets(const Body *body, const Cell *cell);
+bool body_meets(const Body *body, const VoxelCell *cell);
 /* Returns true if the whole cell lies in the body. */
-bool body_holds(const Body *body, const Cell *cell);
+bool body_holds(const Body *body, const VoxelCell *cell);
 /* Returns the fraction of the cell, in [0, 1], that lies in the body, with an error of 1e-7. */
-double body_part(const Body *body, const Cell *cell);
+double body_part(const Body *body, const VoxelCell *cell);
 
 /* Intersects a body with the line through `at` parallel to axis 0, 1 or 2. Returns false if they do
  * not meet. `low` and `high` receive the ends of the chord, in mm from `at`. Before, `wider` mm are
@@ -52,6 +52,6 @@ bool body_chord(const Body *body, Vec3 at, int axis, double wider, double longer
 
 /* Finds the part of a cylinder's axis in the cell, as distances from the axis's start in mm.
  * Returns false if there is none. The cell does not include its sides towards high coordinates. */
-bool body_axis_in(const Body *body, const Cell *cell, double *from, double *to);
+bool body_axis_in(const Body *body, const VoxelCell *cell, double *from, double *to);
 
 #endif

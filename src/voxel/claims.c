@@ -8,9 +8,9 @@
 #include <stdlib.h>
 
 /* The axis of a vessel, and the label that it has. */
-typedef struct Axis {
+typedef struct ClaimAxis {
     uint32_t label, body;
-} Axis;
+} ClaimAxis;
 
 /* A voxel that a label holds. */
 typedef struct Held {
@@ -23,7 +23,7 @@ typedef ARRAY(int64_t) VoxelList;
 
 typedef struct Claimer {
     const RowSource *source;
-    Axis *axes; /* by rising label */
+    ClaimAxis *axes; /* by rising label */
     size_t n_axes;
     ARRAY(Held) held;
     KeyMap by_voxel; /* index in `held` */
@@ -72,7 +72,7 @@ static Status list_axis(const VoxelGrid *grid, const Body *body, VoxelList *list
     return STATUS_OK;
 }
 
-static Cell numbered_cell(const VoxelGrid *grid, int64_t voxel)
+static VoxelCell numbered_cell(const VoxelGrid *grid, int64_t voxel)
 {
     int64_t row = voxel / grid->n[0];
     return grid_cell(grid, voxel % grid->n[0], row % grid->n[1], row / grid->n[1]);
@@ -87,7 +87,7 @@ static Status list_about(const VoxelGrid *grid, const Body *body, int64_t voxel,
         int64_t row = voxel / grid->n[0];
         const int64_t at[3] = {voxel % grid->n[0] + i % 3 - 1, row % grid->n[1] + i / 3 % 3 - 1,
                                row / grid->n[1] + i / 9 - 1};
-        Cell cell = grid_cell(grid, at[0], at[1], at[2]);
+        VoxelCell cell = grid_cell(grid, at[0], at[1], at[2]);
         if (i != 13 && body_meets(body, &cell) && body_part(body, &cell) > 0)
             TRY(push_voxel(grid, at, list, err));
     }
@@ -115,7 +115,7 @@ static Status find_owner(Claimer *claimer, int64_t voxel, uint32_t *label, Err *
 {
     const RowSource *source = claimer->source;
     const VoxelGrid *grid = source->grid;
-    Cell cell = numbered_cell(grid, voxel);
+    VoxelCell cell = numbered_cell(grid, voxel);
     BodyList *near = &claimer->near;
     TRY(bodies_in(source->bodies, cell_box(&cell), near, err));
     *label = near->n ? source->labels[cell_owner(source->bodies, near->items, near->n, &cell)] : 0;
@@ -143,7 +143,7 @@ static Status hold(Claimer *claimer, int64_t voxel, size_t first, Err *err)
 
 static int by_label(const void *a, const void *b)
 {
-    const Axis *first = a, *second = b;
+    const ClaimAxis *first = a, *second = b;
     if (first->label != second->label)
         return first->label < second->label ? -1 : 1;
     return (first->body > second->body) - (first->body < second->body);
@@ -156,7 +156,7 @@ static Status claimer_init(Claimer *claimer, Err *err)
     for (uint32_t i = 0; i < bodies->n; i++)
         if (!body_is_ball(&bodies->body[i]))
             claimer->axes[claimer->n_axes++] =
-                (Axis){claimer->source->labels[bodies->body[i].segment], i};
+                (ClaimAxis){claimer->source->labels[bodies->body[i].segment], i};
     qsort(claimer->axes, claimer->n_axes, sizeof *claimer->axes, by_label);
     return keymap_begin(&claimer->by_voxel, claimer->n_axes, "labels", err);
 }

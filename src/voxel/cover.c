@@ -84,8 +84,8 @@ static Vec3 along_axis(int axis, double x)
     return vec3(axis == 0 ? x : 0, axis == 1 ? x : 0, axis == 2 ? x : 0);
 }
 
-static double part_by_lines(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
-                            CoverWorkspace *workspace)
+static double part_by_lines(const Body *bodies, const uint32_t *list, size_t n,
+                            const VoxelCell *cell, CoverWorkspace *workspace)
 {
     int axis = axis_across(bodies, list, n), first = (axis + 1) % 3, second = (axis + 2) % 3;
     double half = vec3_component(cell->half, axis), length = 0;
@@ -99,24 +99,25 @@ static double part_by_lines(const Body *bodies, const uint32_t *list, size_t n, 
     return length / (LINES * 2 * half);
 }
 
-static double part_of(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
+static double part_of(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
                       int depth, uint32_t *lists, CoverWorkspace *workspace);
 
-static double part_in_eight(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
-                            int depth, uint32_t *lists, CoverWorkspace *workspace)
+static double part_in_eight(const Body *bodies, const uint32_t *list, size_t n,
+                            const VoxelCell *cell, int depth, uint32_t *lists,
+                            CoverWorkspace *workspace)
 {
     Vec3 half = vec3_scale(cell->half, 0.5);
     double part = 0;
     for (int i = 0; i < 8; i++) {
         Vec3 move = {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
-        Cell eighth = {vec3_add(cell->center, move), half};
+        VoxelCell eighth = {vec3_add(cell->center, move), half};
         part += part_of(bodies, list, n, &eighth, depth + 1, lists, workspace);
     }
     return part / 8;
 }
 
 /* `lists` has room for what of the list meets the cell, and for that of its eighths. */
-static double part_of(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
+static double part_of(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
                       int depth, uint32_t *lists, CoverWorkspace *workspace)
 {
     double thinnest = INFINITY;
@@ -138,7 +139,7 @@ static double part_of(const Body *bodies, const uint32_t *list, size_t n, const 
     return part_by_lines(bodies, lists, met, cell, workspace);
 }
 
-double cover_part(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
+double cover_part(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
                   CoverWorkspace *workspace)
 {
     return part_of(bodies, list, n, cell, 0, workspace->lists, workspace);

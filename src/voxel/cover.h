@@ -20,7 +20,7 @@ void cover_release(CoverWorkspace *workspace);
  * The workspace must be reserved for n bodies. If one body meets the cell, the result is that of
  * body_part. Otherwise its error is at most 0.01, and 0.0014 in the root mean square. The order of
  * the list does not matter. */
-double cover_part(const Body *bodies, const uint32_t *list, size_t n, const Cell *cell,
+double cover_part(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
                   CoverWorkspace *workspace);
 
 #endif

@@ -70,7 +70,7 @@ Status bodies_in(const Bodies *bodies, Box box, BodyList *list, Err *err)
     return STATUS_OK;
 }
 
-uint32_t cell_owner(const Bodies *bodies, const uint32_t *list, size_t n, const Cell *cell)
+uint32_t cell_owner(const Bodies *bodies, const uint32_t *list, size_t n, const VoxelCell *cell)
 {
     double most = -1;
     uint32_t owner = 0;

@@ -26,15 +26,15 @@ typedef ARRAY(uint32_t) BodyList;
 MUST_CHECK Status bodies_in(const Bodies *bodies, Box box, BodyList *list, Err *err);
 
 /* Returns the box of a voxel. */
-static inline Cell grid_cell(const VoxelGrid *grid, int64_t x, int64_t y, int64_t z)
+static inline VoxelCell grid_cell(const VoxelGrid *grid, int64_t x, int64_t y, int64_t z)
 {
-    return (Cell){.center = vec3(grid->first.x + (double)x * grid->step.x,
-                                 grid->first.y + (double)y * grid->step.y,
-                                 grid->first.z + (double)z * grid->step.z),
-                  .half = vec3_scale(grid->step, 0.5)};
+    return (VoxelCell){.center = vec3(grid->first.x + (double)x * grid->step.x,
+                                      grid->first.y + (double)y * grid->step.y,
+                                      grid->first.z + (double)z * grid->step.z),
+                       .half = vec3_scale(grid->step, 0.5)};
 }
 
-static inline Box cell_box(const Cell *cell)
+static inline Box cell_box(const VoxelCell *cell)
 {
     return (Box){vec3_sub(cell->center, cell->half), vec3_add(cell->center, cell->half)};
 }
@@ -49,6 +49,6 @@ static inline int64_t grid_index(const VoxelGrid *grid, int axis, double x)
 
 /* Returns the segment index of the body that fills most of the cell, among the n > 0 bodies of
  * `list`. On a tie, returns the segment with the lowest SWC id. */
-uint32_t cell_owner(const Bodies *bodies, const uint32_t *list, size_t n, const Cell *cell);
+uint32_t cell_owner(const Bodies *bodies, const uint32_t *list, size_t n, const VoxelCell *cell);
 
 #endif

@@ -27,7 +27,7 @@ static int64_t clamped(double x, int64_t low, int64_t high)
 /* ---- spans ----------------------------------------------------------------------------------- */
 
 /* Where the lines along the four edges of the row are all in the body, as indices. */
-static void find_full(const VoxelGrid *grid, const Body *body, const Cell *cell, Span *span)
+static void find_full(const VoxelGrid *grid, const Body *body, const VoxelCell *cell, Span *span)
 {
     double low = -INFINITY, high = INFINITY;
     for (int edge = 0; edge < 4 && low < high; edge++) {
@@ -45,7 +45,7 @@ static void find_full(const VoxelGrid *grid, const Body *body, const Cell *cell,
 }
 
 /* False when the body meets nothing of the row, whose first voxel is given. */
-static bool find_span(const VoxelGrid *grid, const Body *body, const Cell *cell, Span *span)
+static bool find_span(const VoxelGrid *grid, const Body *body, const VoxelCell *cell, Span *span)
 {
     double low, high, diagonal = elementary_hypot(cell->half.y, cell->half.z);
     double longer = cell->half.y * fabs(body->axis.y) + cell->half.z * fabs(body->axis.z);
@@ -62,7 +62,7 @@ static Status add_row(const RowSource *source, uint32_t number, int64_t row,
                       RowWorkspace *workspace, Err *err)
 {
     const VoxelGrid *grid = source->grid;
-    Cell cell = grid_cell(grid, 0, row % grid->n[1], row / grid->n[1]);
+    VoxelCell cell = grid_cell(grid, 0, row % grid->n[1], row / grid->n[1]);
     Span span = {.row = row, .body = number};
     if (!find_span(grid, &source->bodies->body[number], &cell, &span))
         return STATUS_OK;
@@ -105,8 +105,9 @@ static Status find_spans(const RowSource *source, const RowBlock *rows, RowWorks
     const VoxelGrid *grid = source->grid;
     int64_t last = rows->first_row + rows->n_rows - 1, n_y = grid->n[1];
     bool one_layer = rows->first_row / n_y == last / n_y;
-    Cell low = grid_cell(grid, 0, one_layer ? rows->first_row % n_y : 0, rows->first_row / n_y);
-    Cell high = grid_cell(grid, grid->n[0] - 1, one_layer ? last % n_y : n_y - 1, last / n_y);
+    VoxelCell low =
+        grid_cell(grid, 0, one_layer ? rows->first_row % n_y : 0, rows->first_row / n_y);
+    VoxelCell high = grid_cell(grid, grid->n[0] - 1, one_layer ? last % n_y : n_y - 1, last / n_y);
     Box box = box_union(cell_box(&low), cell_box(&high));
     workspace->spans.n = 0;
     TRY(bodies_in(source->bodies, box, &workspace->candidates, err));
@@ -130,7 +131,7 @@ typedef struct Row {
 } Row;
 
 /* A sample for a part of a voxel; of a voxel that an axis passes, at least 1. */
-static double rounded(const Row *row, double part, const Cell *cell)
+static double rounded(const Row *row, double part, const VoxelCell *cell)
 {
     const BodyList *touching = &row->workspace->touching;
     double sample = floor(part * sample_full(row->source->type) + 0.5);
@@ -141,7 +142,7 @@ static double rounded(const Row *row, double part, const Cell *cell)
     return sample;
 }
 
-static void put_value(const Row *row, int64_t x, double part, const Cell *cell)
+static void put_value(const Row *row, int64_t x, double part, const VoxelCell *cell)
 {
     SampleType type = row->source->type;
     double sample = type == SAMPLE_FLOAT ? part : rounded(row, part, cell);
@@ -163,7 +164,7 @@ static void fill_voxel(const Row *row, int64_t x)
 {
     const RowSource *source = row->source;
     RowWorkspace *workspace = row->workspace;
-    Cell cell = grid_cell(source->grid, x, row->y, row->z);
+    VoxelCell cell = grid_cell(source->grid, x, row->y, row->z);
     double part = cover_part(source->bodies->body, workspace->touching.items, workspace->touching.n,
                              &cell, &workspace->coverage);
     if (part > 0)
@@ -251,11 +252,12 @@ static void sweep(const Row *row, size_t from, size_t to)
 /* ---- centrelines ----------------------------------------------------------------------------- */
 
 /* Marks the voxels of a row that the axis of a body passes. */
-static void mark_axis(const RowSource *source, const Body *body, const Cell *first, uint8_t *marks)
+static void mark_axis(const RowSource *source, const Body *body, const VoxelCell *first,
+                      uint8_t *marks)
 {
     const VoxelGrid *grid = source->grid;
     double from, to, half = (double)grid->n[0] * first->half.x;
-    Cell row = *first;
+    VoxelCell row = *first;
     row.center.x += half - row.half.x;
     row.half.x = half;
     if (!body_axis_in(body, &row, &from, &to))
@@ -281,7 +283,7 @@ static Status fill_row(const RowSource *source, RowWorkspace *workspace, RowBloc
     TRY(ARRAY_RESERVE(&workspace->touching, to - from, "vessels", err));
     TRY(cover_reserve(&workspace->coverage, to - from, err));
     sweep(&row, from, to);
-    Cell first = grid_cell(grid, 0, row.y, row.z);
+    VoxelCell first = grid_cell(grid, 0, row.y, row.z);
     for (size_t i = from; i < to && rows->centreline; i++)
         mark_axis(source, &source->bodies->body[workspace->spans.items[i].body], &first,
                   rows->centreline + at);

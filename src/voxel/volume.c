@@ -164,37 +164,20 @@ enum {
     DENSITIES = 1 << SAMPLE_8 | 1 << SAMPLE_16
 };
 
+#define FORMAT(ending, holds, limit, samples, put, ...)                                            \
+    {                                                                                              \
+        .suffix = ending, .description = holds, .most = limit, .types = samples,                   \
+        .put_header = put, __VA_ARGS__                                                             \
+    }
+
 const VolumeFormat volume_formats[] = {
-    {.suffix = ".nii.gz",
-     .description = "NIfTI-1, deflated",
-     .most = INT16_MAX,
-     .types = ANY_SAMPLE,
-     .deflated = true,
-     .header_deflated = true,
-     .put_header = put_nifti},
-    {.suffix = ".nii",
-     .description = "NIfTI-1",
-     .most = INT16_MAX,
-     .types = ANY_SAMPLE,
-     .put_header = put_nifti},
-    {.suffix = ".nrrd",
-     .description = "NRRD, deflated",
-     .most = MOST_IN_A_ROW,
-     .types = ANY_SAMPLE,
-     .deflated = true,
-     .put_header = put_nrrd},
-    {.suffix = ".mha",
-     .description = "MetaImage",
-     .most = MOST_IN_A_ROW,
-     .types = ANY_SAMPLE,
-     .put_header = put_meta},
-    {.suffix = ".df3",
-     .description = "a density file for POV-Ray",
-     .most = UINT16_MAX,
-     .types = DENSITIES,
-     .big_endian = true,
-     .is_density = true,
-     .put_header = put_df3},
+    FORMAT(".nii.gz", "NIfTI-1, deflated", INT16_MAX, ANY_SAMPLE, put_nifti, .deflated = true,
+           .header_deflated = true),
+    FORMAT(".nii", "NIfTI-1", INT16_MAX, ANY_SAMPLE, put_nifti, .deflated = false),
+    FORMAT(".nrrd", "NRRD, deflated", MOST_IN_A_ROW, ANY_SAMPLE, put_nrrd, .deflated = true),
+    FORMAT(".mha", "MetaImage", MOST_IN_A_ROW, ANY_SAMPLE, put_meta, .deflated = false),
+    FORMAT(".df3", "a density file for POV-Ray", UINT16_MAX, DENSITIES, put_df3, .big_endian = true,
+           .is_density = true),
     {0},
 };
 
@@ -309,17 +292,17 @@ static Status deflate_part(const uint8_t *samples, size_t n, VolumePart *out, Er
     z_stream zlib = {0};
     if (deflateInit2(&zlib, LEVEL, Z_DEFLATED, RAW, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)
         return mem_out_of("to compress", "voxels", err);
-    size_t room = deflateBound(&zlib, n) + 16;
-    Status status = mem_calloc(&out->bytes, room, 1, "compressed voxels", err);
-    if (status == STATUS_OK) {
-        zlib.next_in = samples;
-        zlib.avail_in = (uInt)n;
-        zlib.next_out = out->bytes;
-        zlib.avail_out = (uInt)room;
-        (void)deflate(&zlib, Z_FULL_FLUSH);
-        out->n = room - zlib.avail_out;
-        out->crc = (uint32_t)crc32(crc32(0, NULL, 0), samples, (uInt)n);
-    }
+    size_t bound = deflateBound(&zlib, n) + 16;
+    Status status;
+    TRY_GOTO(mem_calloc(&out->bytes, bound, 1, "compressed voxels", err));
+    zlib.next_in = samples;
+    zlib.avail_in = (uInt)n;
+    zlib.next_out = out->bytes;
+    zlib.avail_out = (uInt)bound;
+    (void)deflate(&zlib, Z_FULL_FLUSH);
+    out->n = bound - zlib.avail_out;
+    out->crc = (uint32_t)crc32(crc32(0, NULL, 0), samples, (uInt)n);
+done:
     deflateEnd(&zlib);
     return status;
 }

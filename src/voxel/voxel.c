@@ -16,7 +16,7 @@ typedef struct VoxelChunk {
     VolumePart parts[VOLUMES];
 } VoxelChunk;
 
-typedef struct Work {
+typedef struct VoxelWork {
     const VoxelParams *params;
     VolumeStream *streams[VOLUMES];
     RowSource source;
@@ -26,7 +26,7 @@ typedef struct Work {
     size_t n_chunks; /* at a time */
     int64_t first_row, rows_a_chunk, n_rows;
     int threads;
-} Work;
+} VoxelWork;
 
 static size_t sample_bytes(const VoxelParams *params)
 {
@@ -103,7 +103,7 @@ static void raise_sample(RowBlock *rows, size_t at, SampleType type)
 }
 
 /* Gives claimed voxels their labels, and something to be labelled. */
-static void put_claims(const Work *work, RowBlock *rows)
+static void put_claims(const VoxelWork *work, RowBlock *rows)
 {
     const VoxelGrid *grid = work->source.grid;
     const Claims *claims = &work->claims;
@@ -125,7 +125,7 @@ static void narrow(uint32_t *labels, size_t n)
     }
 }
 
-static Status pack_chunk(const Work *work, VoxelChunk *chunk, Err *err)
+static Status pack_chunk(const VoxelWork *work, VoxelChunk *chunk, Err *err)
 {
     const RowBlock *rows = &chunk->rows;
     size_t n = (size_t)(rows->n_rows * work->source.grid->n[0]);
@@ -139,7 +139,7 @@ static Status pack_chunk(const Work *work, VoxelChunk *chunk, Err *err)
     return STATUS_OK;
 }
 
-static Status reserve_chunk(const Work *work, RowBlock *rows, Err *err)
+static Status reserve_chunk(const VoxelWork *work, RowBlock *rows, Err *err)
 {
     size_t n = (size_t)(rows->n_rows * work->source.grid->n[0]);
     TRY(mem_calloc(&rows->values, n, sample_size(work->source.type), "voxels", err));
@@ -150,7 +150,7 @@ static Status reserve_chunk(const Work *work, RowBlock *rows, Err *err)
     return STATUS_OK;
 }
 
-static Status make_chunk(const Work *work, int64_t first, RowWorkspace *workspace,
+static Status make_chunk(const VoxelWork *work, int64_t first, RowWorkspace *workspace,
                          VoxelChunk *chunk, Err *err)
 {
     int64_t left = work->n_rows - first;
@@ -175,13 +175,14 @@ static void release_chunk(VoxelChunk *chunk)
 
 static Status work_on_chunk(size_t index, int worker, void *context, Err *err)
 {
-    const Work *work = context;
+    const VoxelWork *work = context;
     int64_t first = work->first_row + (int64_t)index * work->rows_a_chunk;
     return make_chunk(work, first, &work->workspaces[worker], &work->chunks[index], err);
 }
 
 /* Writes a chunk and adds up what it is. */
-static Status put_chunk(const Work *work, const VoxelChunk *chunk, VoxelReport *report, Err *err)
+static Status put_chunk(const VoxelWork *work, const VoxelChunk *chunk, VoxelReport *report,
+                        Err *err)
 {
     Vec3 step = work->source.grid->step;
     double voxel_mm3 = step.x * step.y * step.z;
@@ -194,7 +195,7 @@ static Status put_chunk(const Work *work, const VoxelChunk *chunk, VoxelReport *
     return STATUS_OK;
 }
 
-static Status make_chunks(Work *work, VoxelReport *report, Err *err)
+static Status make_chunks(VoxelWork *work, VoxelReport *report, Err *err)
 {
     const VoxelParams *params = work->params;
     int64_t step = work->rows_a_chunk * (int64_t)work->n_chunks;
@@ -213,7 +214,7 @@ static Status make_chunks(Work *work, VoxelReport *report, Err *err)
     return STATUS_OK;
 }
 
-static Status prepare(Work *work, Err *err)
+static Status prepare(VoxelWork *work, Err *err)
 {
     const VoxelGrid *grid = &work->params->grid;
     work->threads = work->params->threads > 0 ? work->params->threads : threads_available();
@@ -225,7 +226,7 @@ static Status prepare(Work *work, Err *err)
                       err);
 }
 
-static void release_work(Work *work)
+static void release_work(VoxelWork *work)
 {
     for (int i = 0; work->workspaces && i < work->threads; i++)
         rowworkspace_release(&work->workspaces[i]);
@@ -240,7 +241,8 @@ Status voxels_write(const Geometry *geometry, const VoxelParams *params, VoxelRe
                     Err *err)
 {
     Bodies bodies = {0};
-    Work work = {.params = params, .streams = {params->values, params->label, params->centreline}};
+    VoxelWork work = {.params = params,
+                      .streams = {params->values, params->label, params->centreline}};
     VoxelReport made = {0};
     Status status;
     TRY_GOTO(bodies_make(geometry, &bodies, err));

@@ -158,24 +158,30 @@ static void a_page_shows_the_bars(void **state)
     Tree tree = fork_tree();
     Diagram diagram;
     FigurePage page;
+    FigureFonts *fonts;
     Picture picture;
     Err err;
-    static const float color[4][3] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
+    static const float black[4][3];
     must(diagram_lay_out(&tree, 2.5, &diagram, &err), &err);
-    const DiagramStyle style = {.diagram = &diagram, .tree = &tree, .color = color, .margin = 0.1};
+    const DiagramStyle style = {
+        .diagram = &diagram, .tree = &tree, .color = black, .background = {1, 1, 1}, .margin = 0.1};
     const FigureBars bars = diagram_bars(&style);
     diagram_make_page(&style, &bars, &page);
     must(figure_check(&page, &err), &err);
     assert_true(fabs(page.width_mm - 25) < 1e-12 && page.exact);
     page.dpi = 10 * MM_PER_INCH;
+    must(figurefonts_load("templates", &fonts, &err), &err);
+    page.fonts = fonts;
     must(picture_init(&picture, 250, figure_pixels(&page, page.height_mm), 3, 8, &err), &err);
+    memset(picture.codes8, 255, picture_stride(&picture) * (size_t)picture.height);
     must(figure_draw(&page, 0, &picture, &err), &err);
     size_t covered = 0;
     for (size_t i = 0; i < (size_t)picture.width * (size_t)picture.height; i++)
-        covered += picture.codes8[3 * i] > 127;
+        covered += picture.codes8[3 * i] < 128;
     assert_in_range(covered, 100 * (30 + 11 + 14 - 1), 100 * (30 + 11 + 14 + 2));
     picture_release(&picture);
     figure_release(&page);
+    figurefonts_free(fonts);
     diagram_release(&diagram);
     tree_release(&tree);
 }

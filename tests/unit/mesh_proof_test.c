@@ -1,9 +1,9 @@
 /* The proofs of meshes and prints, shown false cases made by hand: for each condition one that no
  * other condition refuses. */
 #include "grow/cco/grid.h"
-#include "mesh/zones/nearpairs.h"
 #include "mesh/precision.h"
 #include "mesh/proof/meshcheck.h"
+#include "mesh/zones/nearpairs.h"
 #include "print/seams.h"
 #include "unit.h"
 

@@ -183,27 +183,27 @@ static void only_ambient_light_is_held_back(void **state)
 
 /* Returns the part of an upward beam that a bar of radius 1 leaves free, `height` above its place.
  * The bar is as long as any beam is wide. */
-static double free_under_a_bar(const BeamKernels *kernels, double height, float widening,
+static double free_under_a_bar(const OcclusionKernels *kernels, double height, float widening,
                                double facing)
 {
     FieldSegment bar = {.a = {-100, 0, 0}, .b = {100, 0, 0}, .radius_mm = 1};
     const Geometry geometry = {.model = SCENE_ISOSURFACE, .segments = &bar, .n_segments = 1};
-    const BeamDirection up = {.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .widening = widening};
+    const OcclusionDirection up = {.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .widening = widening};
     OccluderSet beams;
-    BeamPlaces places = {0};
-    BeamWork work = {0};
+    OcclusionPoints places = {0};
+    ConeScratch work = {0};
     uint8_t answer;
     assert_int_equal(occluderset_new(&geometry, &beams, &err), STATUS_OK);
-    assert_int_equal(beamplaces_new(1, &places, &err), STATUS_OK);
-    assert_int_equal(beamwork_new(1, &work, &err), STATUS_OK);
+    assert_int_equal(occlusionpoints_new(1, &places, &err), STATUS_OK);
+    assert_int_equal(conescratch_new(1, &work, &err), STATUS_OK);
     places.at[2][0] = (float)-height;
     places.normal[0][0] = (float)sqrt(1 - facing * facing);
     places.normal[2][0] = (float)facing;
-    kernels->ask(&beams, &up, &places, &work, &answer);
-    beamwork_release(&work);
-    beamplaces_release(&places);
+    kernels->trace(&beams, &up, &places, &work, &answer);
+    conescratch_release(&work);
+    occlusionpoints_release(&places);
     occluderset_release(&beams);
-    return (double)answer / BEAM_FREE;
+    return (double)answer / CONE_CLEAR;
 }
 
 /* The bar covers 1 / w of a beam whose half width is w. */
@@ -211,14 +211,14 @@ static void a_beam_widens_to_three_and_a_half_radii(void **state)
 {
     (void)state;
     for (RenderKernels kind = KERNELS_PORTABLE; kind <= render_fastest_kernels(); kind++) {
-        const BeamKernels *kernels = beamkernels[kind - KERNELS_PORTABLE];
+        const OcclusionKernels *kernels = occlusionkernels[kind - KERNELS_PORTABLE];
         assert_true(free_under_a_bar(kernels, 8, 0.1F, 1) == 0);
         for (double height = 15; height < 100; height += 10) {
             double wide = fmin(0.1 * height, 3.5), low = fmin(0.04 * height, 3.5);
             double all = free_under_a_bar(kernels, height, 0.1F, 1);
             double near_horizon = free_under_a_bar(kernels, height, 0.1F, 0.04);
-            assert_true(fabs(all - (1 - 1 / wide)) <= 0.5 / BEAM_FREE + 1e-5);
-            assert_true(fabs(near_horizon - fmax(0, 1 - 1 / low)) <= 0.5 / BEAM_FREE + 1e-5);
+            assert_true(fabs(all - (1 - 1 / wide)) <= 0.5 / CONE_CLEAR + 1e-5);
+            assert_true(fabs(near_horizon - fmax(0, 1 - 1 / low)) <= 0.5 / CONE_CLEAR + 1e-5);
         }
     }
 }
@@ -286,11 +286,11 @@ static void quads_weigh_by_their_distance_from_the_pixel(void **state)
 {
     (void)state;
     static const double parts[2][3] = {{3, 4, 1}, {1, 4, 3}};
-    float towards[3][SUMMED] = {{0}, {0}, {1}};
-    const BeamLines lines = {.towards = {towards[0], towards[1], towards[2]}, .n = SUMMED};
+    float towards[3][ANSWER_STEP] = {{0}, {0}, {1}};
+    const OcclusionLines lines = {.towards = {towards[0], towards[1], towards[2]}, .n = ANSWER_STEP};
     const float normal[3] = {0, 0, 1};
-    uint8_t bytes[QUADS_ABOUT][SUMMED] = {{0}};
-    BeamAnswers answers = {.n = QUADS_ABOUT};
+    uint8_t bytes[QUADS_ABOUT][ANSWER_STEP] = {{0}};
+    QuadAnswers answers = {.n = QUADS_ABOUT};
     for (int quad = 0; quad < QUADS_ABOUT; quad++) {
         answers.of[quad] = bytes[quad];
         answers.quad[quad] = (uint8_t)quad;
@@ -299,8 +299,8 @@ static void quads_weigh_by_their_distance_from_the_pixel(void **state)
         for (int pixel = 0; pixel < QUAD; pixel++)
             for (int quad = 0; quad < QUADS_ABOUT; quad++) {
                 double weight = parts[pixel % 2][quad % 3] * parts[pixel / 2][quad / 3];
-                bytes[quad][0] = BEAM_FREE;
-                double open = (double)beamkernels[kind - KERNELS_PORTABLE]->open(&lines, &answers,
+                bytes[quad][0] = CONE_CLEAR;
+                double open = (double)occlusionkernels[kind - KERNELS_PORTABLE]->ambient(&lines, &answers,
                                                                                  1, pixel, normal);
                 bytes[quad][0] = 0;
                 assert_true(fabs(open - weight / 64) < 1e-6);

@@ -20,7 +20,7 @@ static Vec3 point(Random *random, double size)
     return vec3(x, y, number(random, -size, size));
 }
 
-static const Cell cell = {.center = {0.31, -0.17, 0.43}, .half = {0.41, 0.53, 0.47}};
+static const VoxelCell cell = {.center = {0.31, -0.17, 0.43}, .half = {0.41, 0.53, 0.47}};
 
 /* About the cell, from far thinner to far thicker than it. */
 static Body random_body(Random *random)
@@ -39,7 +39,7 @@ static Body random_body(Random *random)
                      vec3_add_scaled(near, along, exp(number(random, -3, 4))), radius, 1);
 }
 
-static double part_of_eighths(const Body *body, const Cell *whole, int depth)
+static double part_of_eighths(const Body *body, const VoxelCell *whole, int depth)
 {
     Vec3 half = vec3_scale(whole->half, 0.5);
     double part = 0;
@@ -47,7 +47,7 @@ static double part_of_eighths(const Body *body, const Cell *whole, int depth)
         return body_part(body, whole);
     for (int i = 0; i < 8; i++) {
         Vec3 move = {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
-        Cell eighth = {vec3_add(whole->center, move), half};
+        VoxelCell eighth = {vec3_add(whole->center, move), half};
         part += part_of_eighths(body, &eighth, depth - 1);
     }
     return part / 8;
@@ -150,7 +150,7 @@ static void part_of_a_union_is_that_of_points_in_it(void **state)
 
 /* The part of a union by eighths of eighths of the cell. */
 static double union_of_eighths(const Body *bodies, const uint32_t *list, size_t n,
-                               const Cell *whole, int depth, CoverWorkspace *room)
+                               const VoxelCell *whole, int depth, CoverWorkspace *room)
 {
     Vec3 half = vec3_scale(whole->half, 0.5);
     double part = 0;
@@ -158,7 +158,7 @@ static double union_of_eighths(const Body *bodies, const uint32_t *list, size_t 
         return cover_part(bodies, list, n, whole, room);
     for (int i = 0; i < 8; i++) {
         Vec3 move = {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
-        Cell eighth = {vec3_add(whole->center, move), half};
+        VoxelCell eighth = {vec3_add(whole->center, move), half};
         part += union_of_eighths(bodies, list, n, &eighth, depth - 1, room);
     }
     return part / 8;
@@ -183,7 +183,7 @@ static void the_part_of_one_voxel_is_off_by_no_more_than_is_said(void **state)
     (void)state;
     enum { BODIES = 4, FORKS = 400 };
     const uint32_t list[BODIES] = {0, 1, 2, 3};
-    const Cell cube = {.center = {0.31, -0.17, 0.43}, .half = {0.5, 0.5, 0.5}};
+    const VoxelCell cube = {.center = {0.31, -0.17, 0.43}, .half = {0.5, 0.5, 0.5}};
     Random random;
     random_seed(&random, 17);
     CoverWorkspace room = {0};

@@ -45,7 +45,8 @@ void refiner_release(Refiner *refiner)
     ARRAY_RELEASE(&refiner->states);
 }
 
-/* Whether a place is inside the wall, as far as is known: behind a plane it is as `otherwise`. */
+/* Returns true if a place is inside the surface; `otherwise` behind a plane, where that is not
+ * known. */
 static bool is_inside(const FaceRefining *refining, Vec3 x, bool otherwise)
 {
     const Octree *tree = refining->tree;
@@ -57,8 +58,8 @@ static bool is_inside(const FaceRefining *refining, Vec3 x, bool otherwise)
     return cell->state == CELL_INSIDE || otherwise;
 }
 
-/* How far x, which is inside or not, is from the wall along `outward` or against it, up to a
- * radius. */
+/* Returns the distance of x from the surface along `outward` or against it, at most radius_mm.
+ * `inside` is the side that x is on. */
 static double search_wall(const FaceRefining *refining, Vec3 x, bool inside, Vec3 outward,
                           double radius_mm)
 {
@@ -76,9 +77,10 @@ static double search_wall(const FaceRefining *refining, Vec3 x, bool inside, Vec
     return fmin(high, radius_mm);
 }
 
-/* How far a point of a triangle is off the wall: by the field's value and slope if it is near and
- * the field about as steep as at a vessel's wall, where its slope is 4 FIELD_LEVEL / r; else
- * searched for along the field's slope and the triangle's normal. */
+/* Returns the distance of a point of a triangle from the surface. If the point is near and the
+ * field is about as steep as at a vessel's surface, where its slope is 4 FIELD_LEVEL / r, the
+ * field's value and slope give the distance. Else the surface is searched for along the field's
+ * slope and the triangle's normal. */
 static double measure_at(const FaceRefining *refining, Vec3 x, Vec3 normal, double radius_mm)
 {
     static const double near = 0.02, steep = FIELD_LEVEL;
@@ -118,7 +120,7 @@ static double length_of(const FaceRefining *refining, uint32_t a, uint32_t b)
     return vec3_distance(points[a].x, points[b].x);
 }
 
-/* The longest edge of a triangle, from this corner to the next. */
+/* Returns the first corner of the longest edge of a triangle. */
 static int longest_edge(const FaceRefining *refining, const PatchTriangle *triangle)
 {
     int longest = 0;
@@ -130,14 +132,14 @@ static int longest_edge(const FaceRefining *refining, const PatchTriangle *trian
     return longest;
 }
 
-/* Twice the area times the normal. */
+/* Returns the normal of a triangle, of a length of twice its area. */
 static Vec3 normal_of(Vec3 a, Vec3 b, Vec3 c)
 {
     return vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
 }
 
-/* The point of the wall near the middle of an edge. False when there is none that the edge may be
- * split at. */
+/* Finds the point of the surface near the middle of an edge. Returns false if there is no point
+ * that may split the edge. */
 static bool find_point(const FaceRefining *refining, uint32_t a, uint32_t b, PatchPoint *point)
 {
     const PatchPoint *one = &refining->patch->points[a], *other = &refining->patch->points[b];
@@ -162,7 +164,7 @@ static bool find_point(const FaceRefining *refining, uint32_t a, uint32_t b, Pat
     return false;
 }
 
-/* Has an edge split, if it can be. */
+/* Marks an edge to be split, if it can be. */
 static Status mark_edge(const FaceRefining *refining, uint32_t a, uint32_t b, bool *marked)
 {
     const PatchPoint *points = refining->patch->points;
@@ -182,8 +184,9 @@ static Status mark_edge(const FaceRefining *refining, uint32_t a, uint32_t b, bo
     return STATUS_OK;
 }
 
-/* How far a place on a triangle is off the wall: no farther than over one of its corners. Where the
- * triangle stops up a tunnel, the wall is not where its normal or the slope leads. */
+/* Returns the distance of a place on a triangle from the surface, which is no longer than the path
+ * over one of the corners. Where a triangle closes a tunnel, neither its normal nor the slope leads
+ * to the surface. */
 static double measure_on(const FaceRefining *refining, const PatchTriangle *triangle, Vec3 x,
                          Vec3 normal, double radius_mm)
 {
@@ -195,8 +198,8 @@ static double measure_on(const FaceRefining *refining, const PatchTriangle *tria
     return off;
 }
 
-/* How far a triangle is off the wall, mm: at its middle and that of its longest edge, and where
- * that is not a little at those of the others. */
+/* Returns the distance of a triangle from the surface, mm, at its middle and at the middle of its
+ * longest edge. If that is not small, the middles of the other edges are measured, too. */
 static double measure_triangle(const FaceRefining *refining, const PatchTriangle *triangle,
                                int longest, double radius_mm)
 {
@@ -213,7 +216,7 @@ static double measure_triangle(const FaceRefining *refining, const PatchTriangle
     return off;
 }
 
-/* Looks at a triangle; if it is too far off, has its longest edge split. */
+/* Measures a triangle. If it is too far from the surface, marks its longest edge. */
 static Status look_at(const FaceRefining *refining, size_t number)
 {
     const PatchTriangle triangle = refining->patch->triangles[number];
@@ -232,21 +235,21 @@ static Status look_at(const FaceRefining *refining, size_t number)
     return STATUS_OK;
 }
 
-/* The point that an edge is to be split at, or NONE. */
+/* Returns the point that splits an edge, or NONE. */
 static uint32_t point_on(const FaceRefining *refining, uint32_t a, uint32_t b)
 {
     const uint32_t *place = keymap_find(&refining->refiner->edges, key_of_pair(a, b));
     return place ? *place : NONE;
 }
 
-/* Whether a triangle faces the way of a normal, more or less. */
+/* Returns true if a triangle faces roughly in the direction of a normal. */
 static bool faces(Vec3 a, Vec3 b, Vec3 c, Vec3 normal)
 {
     Vec3 own = normal_of(a, b, c);
     return vec3_dot(own, normal) >= least_facing * vec3_length(own);
 }
 
-/* Leaves those edges of a triangle whole whose split would turn it over. */
+/* Unmarks the edges of a triangle whose split would turn it over. */
 static void spare_edges(const FaceRefining *refining, const PatchTriangle *triangle)
 {
     const PatchPoint *points = refining->patch->points;
@@ -262,7 +265,7 @@ static void spare_edges(const FaceRefining *refining, const PatchTriangle *trian
     }
 }
 
-/* Puts what a triangle is split into in its place and behind the others. */
+/* Replaces a triangle by the first of its parts, and appends the others. */
 static Status split(const FaceRefining *refining, size_t number)
 {
     Patch *patch = refining->patch;

@@ -1,28 +1,28 @@
-/* About each smallest edge of the octree stand three or four leaves; two of them that share a face
- * make, with the edge, a tetrahedron between their centres and the ends of the edge. In a graded
- * octree these tetrahedra fill space and none is inverted; in one of equal cells they are the
+/* There are three or four leaves about each smallest edge of the octree. Two of them that share a
+ * face make a tetrahedron of their centres and the two ends of the edge. In a graded octree these
+ * tetrahedra fill space, and none is inverted. In an octree of equal cells they are the
  * body-centred cubic lattice, whose tetrahedra are the best known for such cuts [F. Labelle, J.
- * Shewchuk: Isosurface stuffing, SIGGRAPH 2007]. Whatever the signs at its points, what separates
- * them is a closed manifold.
+ * Shewchuk: Isosurface stuffing, SIGGRAPH 2007]. For any signs at the lattice points, the surface
+ * that separates them is a closed manifold.
  *
  * Cells, faces and edges are walked by the three recursions of T. Ju et al.: Dual contouring of
  * Hermite data, SIGGRAPH 2002.
  *
- * Points of the lattice that lie almost on the wall are moved off it, on their own side, so that no
- * triangle becomes a sliver. */
+ * Lattice points that are almost on the surface are moved away from it, on their own side, so that
+ * no triangle becomes a sliver. */
 #include "mesh/lattice/lattice.h"
 
 #include <stdlib.h>
 
-/* How close to the wall points may lie, over the side of a cell. */
+/* In units of the cell's side: minimum distance of lattice points from the surface. */
 static const double clearance = 0.1;
-/* Nearer than this, by height, it is looked at how near a point is. */
+/* In units of height: the distance of points that are nearer than this is measured. */
 static const double nearly = 0.3;
-/* Of an edge: the longest step towards a crossing whose end is not looked at. The crossings stay on
- * the edges: moved off them, triangles may run into each other. */
+/* In units of the edge: after a shorter Newton step, its end is not evaluated. Crossings stay on
+ * the edges, because triangles could run into each other if they were moved off them. */
 static const double last_step = 1e-3;
 enum { MOST_STEPS = 40 };
-/* Away from active cells, up to this many terms are all looked at. */
+/* Away from active cells, all terms are evaluated if there are at most this many. */
 enum { FEW_TERMS = 512 };
 
 typedef struct LatticeCutter {
@@ -49,7 +49,8 @@ void lattice_release(Lattice *lattice)
     *lattice = (Lattice){0};
 }
 
-/* Moves a point by a vector, unless its height is then less than this. */
+/* Moves a point by a vector, unless its height would be below the minimum. Returns false if it does
+ * not move. */
 static bool move_point(const LatticeCutter *cutter, const LocalField *part, Vec3 by,
                        double least_height, LatticePoint *point)
 {
@@ -62,8 +63,8 @@ static bool move_point(const LatticeCutter *cutter, const LocalField *part, Vec3
     return true;
 }
 
-/* Moves a point off the wall, on its own side; to the inside where it would come too near another
- * wall, as outside in a crease. */
+/* Moves a point away from the surface, on its own side. If it would come too near to another
+ * surface, as outside in a crease, it is moved to the inside. */
 static void clear_wall(const LatticeCutter *cutter, const LocalField *part, double side,
                        LatticePoint *point)
 {
@@ -81,7 +82,7 @@ static void clear_wall(const LatticeCutter *cutter, const LocalField *part, doub
                    point);
 }
 
-/* Makes cutter->local what matters near x, of few enough terms. */
+/* Makes cutter->local the terms that matter near x, of which there must be few enough. */
 static Status find_local(LatticeCutter *cutter, Vec3 x)
 {
     LocalFieldPool *stack = &cutter->away->stack;
@@ -103,8 +104,8 @@ static Status find_local(LatticeCutter *cutter, Vec3 x)
     return cutter->local.n_terms > MAX_LOCAL_TERMS ? localfield_refuse(cutter->err) : STATUS_OK;
 }
 
-/* What matters at a point away from active cells: all terms, or, where those are too many at once,
- * those that matter near by; the points of a walk lie close together. */
+/* Finds the terms that matter at a point away from active cells: all terms, or those that matter
+ * nearby if there are too many. Points that follow each other are near each other. */
 static Status part_away(LatticeCutter *cutter, Vec3 x, const LocalField **part)
 {
     bool few = cutter->whole.n_terms <= FEW_TERMS;
@@ -114,7 +115,7 @@ static Status part_away(LatticeCutter *cutter, Vec3 x, const LocalField **part)
     return STATUS_OK;
 }
 
-/* A point whose field is that of the cell `from` if that is active. */
+/* Adds a lattice point. Its field is that of the cell `from` if that cell is active. */
 static Status add_point(LatticeCutter *cutter, const OctreeCell *from, Vec3 x, uint32_t *number)
 {
     Lattice *lattice = cutter->lattice;
@@ -162,17 +163,18 @@ static Status corner_at(LatticeCutter *cutter, const OctreeCell *from, const uin
     return STATUS_OK;
 }
 
-/* What the field lacks of the level, bent so that over the slope it is the way to a lone vessel's
- * wall: to second order that of field_height, which is linear in the distance. */
+/* Returns what the field lacks of the level, corrected so that, divided by the slope, it is the
+ * distance to a lone vessel's surface. The correction is that of field_height to second order;
+ * field_height is linear in the distance. */
 static double step_to_wall(double phi)
 {
     double lacks = FIELD_LEVEL - phi;
     return fabs(lacks) < 0.5 * phi ? lacks * (1 - 0.375 * lacks / phi) : lacks;
 }
 
-/* Where the wall crosses the way from a point inside to one outside: Newton's steps from where it
- * would if the height were linear, which it nearly is; a step that would leave what is left of the
- * way halves that. A last step is made without looking where it ends. */
+/* Finds where the surface crosses the line from a point inside to a point outside, by Newton steps
+ * from where it would cross if the height were linear, which it nearly is. A step that would leave
+ * the rest of the line halves the rest instead. The end of the last step is not evaluated. */
 static PatchPoint find_crossing(const LatticeCutter *cutter, const LocalField *part,
                                 const LatticePoint *inside, const LatticePoint *outside)
 {
@@ -194,8 +196,8 @@ static PatchPoint find_crossing(const LatticeCutter *cutter, const LocalField *p
     }
 }
 
-/* In place of a crossing, where a point is inside only by decree; away from active cells there is
- * no other. */
+/* Returns the middle of an edge, in place of a crossing, where a point is inside only because it
+ * was repaired. Away from active cells there is no other point. */
 static Status find_middle(LatticeCutter *cutter, const OctreeCell *from, const LatticePoint *inside,
                           const LatticePoint *outside, PatchPoint *point)
 {
@@ -210,7 +212,7 @@ static Status find_middle(LatticeCutter *cutter, const OctreeCell *from, const L
     return STATUS_OK;
 }
 
-/* The point of the wall between two points of the lattice, of which `a` is inside. */
+/* Finds the point of the surface between two lattice points, of which `a` is inside. */
 static Status crossing_of(LatticeCutter *cutter, const OctreeCell *from, uint32_t a, uint32_t b,
                           uint32_t *number)
 {
@@ -238,9 +240,9 @@ static bool is_inside(const LatticeCutter *cutter, uint32_t point)
     return cutter->lattice->points[point].height < 0;
 }
 
-/* Corner `lone` is on its own side, the other three on the other. Their order is that of a
- * tetrahedron turned as all are, so that the triangle of the crossings faces away from the lone
- * corner. */
+/* Cuts off the corner `lone`, which is alone on its side. The other corners are ordered as in a
+ * tetrahedron with the orientation that all have, so that the triangle of the crossings faces away
+ * from the lone corner. */
 static Status cut_corner(LatticeCutter *cutter, const OctreeCell *from, const uint32_t corners[4],
                          int lone)
 {
@@ -255,8 +257,8 @@ static Status cut_corner(LatticeCutter *cutter, const OctreeCell *from, const ui
     return patch_add_triangle(cutter->patch, (PatchTriangle){{at[0], at[1], at[2]}}, cutter->err);
 }
 
-/* Points a and b are inside, c and d outside, and a, b, c, d are turned as all tetrahedra are: a
- * quadrilateral, cut along its shorter diagonal. */
+/* Cuts a tetrahedron with a and b inside, c and d outside, in the orientation that all have. The
+ * quadrilateral is cut along its shorter diagonal. */
 static Status cut_middle(LatticeCutter *cutter, const OctreeCell *from, uint32_t a, uint32_t b,
                          uint32_t c, uint32_t d)
 {
@@ -273,9 +275,10 @@ static Status cut_middle(LatticeCutter *cutter, const OctreeCell *from, uint32_t
                               cutter->err);
 }
 
-/* The corners are turned alike in all tetrahedra: det(at[1] - at[0], at[2] - at[0], at[3] - at[0])
- * is positive. Triangles take their turn from that and not from where the crossings lie: of a
- * triangle that is small beside what the crossings are found to, that would be chance. */
+/* Cuts a tetrahedron. In all tetrahedra det(at[1] - at[0], at[2] - at[0], at[3] - at[0]) is
+ * positive. Triangles take their orientation from that, and not from the positions of the
+ * crossings: for a triangle that is smaller than the error of the crossings, these would be chance.
+ */
 static Status cut_tetrahedron(LatticeCutter *cutter, const OctreeCell *from, const uint32_t at[4])
 {
     int in[4], out[4], n_in = 0, n_out = 0;
@@ -357,8 +360,8 @@ static bool is_leaf(const LatticeCutter *cutter, uint32_t cell)
     return cutter->tree->cells[cell].children == 0;
 }
 
-/* Whether the wall may pass one of some cells, or leaves below them; a cell that is not active has
- * none below it that is. */
+/* Returns true if the surface may pass one of some cells, or leaves below them. A cell that is not
+ * active has no active cell below it. */
 static bool may_cut(const LatticeCutter *cutter, const uint32_t *cells, int n)
 {
     bool may = cutter->away != NULL;

@@ -9,7 +9,7 @@ typedef struct LatticePoint {
     Vec3 x;
     double height;  /* field_height at x; below 0: inside */
     uint32_t first; /* of a point inside: a crossing on an edge that begins here, or NO_CROSSING */
-    bool is_repaired; /* counts as inside although the field says outside [repair.h] */
+    bool is_repaired; /* counts as inside although the field says outside [latticerepair.h] */
 } LatticePoint;
 
 #define NO_CROSSING UINT32_MAX

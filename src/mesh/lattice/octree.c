@@ -1,28 +1,31 @@
-/* A cell is split while it is larger than what suits the thinnest vessel that may matter in it, and
- * an active one while the normal turns too much across it, as in the crotch of a bifurcation. Where
- * vessels that do not blend pass each other, cells are a sixth: the gap between them must hold
- * cells. Cells behind the plane of an stub are not split below the stub's own size and make no
- * wall; what lies there is cut off anyway.
+/* A cell is split while it is larger than suits the thinnest vessel that may matter in it. An
+ * active cell is also split while the normal turns too much across it, as in the crotch of a
+ * bifurcation. Where vessels that do not blend pass each other, cells are six times smaller,
+ * because the gap between the vessels must contain cells. Cells behind the plane of a stub are not
+ * split below the size that suits the stub, and make no surface: what is there is cut off anyway.
  *
- * The root's side is a power of two times a cell that suits the stubs: of the eighth parts of an
- * octave that one is taken which makes the fewest cells along them. */
+ * The root's side is a power of two times the side of a cell that suits the stubs. Of eight sides,
+ * an eighth of an octave apart, the one with the fewest cells along the stubs is used. */
 #include "mesh/lattice/octree.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 static const double half_diagonal = 0.8660254037844387;
-/* What an active leaf must know of, in sides from its centre: the centres of its larger
- * neighbours. */
+/* In units of a leaf's side: radius of the ball about its centre in which an active leaf knows all
+ * terms. The ball holds the centres of its larger neighbours. */
 static const double known_reach = 1.75;
-/* Cells near vessels that do not blend, and the least of all, over the usual. */
+/* In units of the usual side: cells near vessels that do not blend, and the smallest cells of all.
+ */
 static const double parted_part = 1.0 / 6, least_part = 1.0 / 8;
-/* Of the bending: a crease is cut off, and not an arc. */
+/* In units of CellSize.bending: what a crease may have, because it is cut off where an arc is
+ * followed. */
 static const double crease_part = 0.22;
-/* Behind a plane walls go on for so many usual cells, in which the plane may be moved. */
+/* In units of the usual side: the surface continues this far behind a plane, so that the plane may
+ * be shifted. */
 static const double margin_behind = 0.75;
 static const double surely = 1e-3;
-/* Where others add less than this, the wall is that of one tube. */
+/* In units of the level: where other vessels add less, the surface is that of one tube. */
 static const double lone = 0.03;
 
 typedef struct OctreeBuilder {
@@ -39,7 +42,7 @@ void octree_release(Octree *tree)
     *tree = (Octree){0};
 }
 
-/* Whether the ball lies behind the plane of the stub whose wall is the only one that it may hold.
+/* Returns true if the ball is behind the plane of a stub, and only that stub's surface may pass it.
  */
 static bool is_behind(const OctreeBuilder *builder, const FieldBounds *bounds, Vec3 center,
                       double ball)
@@ -69,9 +72,9 @@ static Vec3 turn_along(const OctreeBuilder *builder, const LocalField *part, Vec
                     normal_at(builder, part, vec3_sub(x, by)));
 }
 
-/* The most that the normal turns across a cell in any direction, the larger singular value of how
- * it turns along two; measured on the tangent plane of the wall's point nearest to the centre. 0
- * when the wall does not come near. */
+/* Returns the maximum turn of the normal across a cell in any direction, or 0 if the surface is not
+ * near. It is the larger singular value of the turns along two directions in the tangent plane, at
+ * the point of the surface nearest to the centre. */
 static double turn_across(const OctreeBuilder *builder, const LocalField *part, Vec3 center,
                           double side)
 {
@@ -111,7 +114,8 @@ static bool must_split(const OctreeBuilder *builder, const LocalField *part,
 
 static Status split(OctreeBuilder *builder, uint32_t cell, const LocalField *part, Err *err);
 
-/* Finds the state of a cell of which `part` holds all that may matter, and splits it. */
+/* Finds the state of a cell, and splits it if it is too large. `part` holds all terms that may
+ * matter in it. */
 static Status settle(OctreeBuilder *builder, uint32_t number, const LocalField *part, Err *err)
 {
     Octree *tree = builder->tree;
@@ -154,7 +158,7 @@ static Status refuse(const OctreeBuilder *builder, Err *err)
                    builder->plan->field.n_terms, builder->size->most);
 }
 
-/* Gives a cell children; of an active one they are settled, else they are as it is. */
+/* Gives a cell children. Those of an active cell are settled; others have the state of the cell. */
 static Status split(OctreeBuilder *builder, uint32_t number, const LocalField *part, Err *err)
 {
     Octree *tree = builder->tree;
@@ -177,7 +181,8 @@ static Status split(OctreeBuilder *builder, uint32_t number, const LocalField *p
     return STATUS_OK;
 }
 
-/* The leaf of `level` or above that holds a cell of that level; UINT32_MAX outside the tree. */
+/* Returns the leaf of this level or a lower one that holds a cell of the level; UINT32_MAX outside
+ * the tree. */
 static uint32_t leaf_at(const Octree *tree, const int64_t at[3], int level)
 {
     for (int axis = 0; axis < 3; axis++)
@@ -201,7 +206,7 @@ const OctreeCell *octree_leaf(const Octree *tree, Vec3 x)
     return leaf != UINT32_MAX ? &tree->cells[leaf] : NULL;
 }
 
-/* Splits a leaf that has only been found too large by its neighbour. */
+/* Splits a leaf that is too large beside its neighbour. */
 static Status split_leaf(OctreeBuilder *builder, uint32_t number, Err *err)
 {
     Octree *tree = builder->tree;
@@ -215,7 +220,7 @@ static Status split_leaf(OctreeBuilder *builder, uint32_t number, Err *err)
     return STATUS_OK;
 }
 
-/* Whether the cell that stands by this from another is one of the same eight. */
+/* Returns true if the cell at this offset from another has the same parent. */
 static bool is_sibling(const OctreeCell *cell, const int by[3])
 {
     bool same = true;
@@ -224,8 +229,8 @@ static bool is_sibling(const OctreeCell *cell, const int by[3])
     return same;
 }
 
-/* Splits the leaves next to a cell that has children, over faces and edges, that are larger than
- * it. */
+/* Splits the leaves that share a face or an edge with a cell that has children, if they are larger
+ * than the cell. */
 static Status grade_about(OctreeBuilder *builder, uint32_t number, Err *err)
 {
     Octree *tree = builder->tree;
@@ -245,8 +250,7 @@ static Status grade_about(OctreeBuilder *builder, uint32_t number, Err *err)
     return STATUS_OK;
 }
 
-/* Cells made by grading stand behind the others, and are looked at in their turn; leaves that it
- * splits are looked at at once. */
+/* Grades all cells. Cells that grading makes are appended, and are looked at in their turn. */
 static Status grade(OctreeBuilder *builder, Err *err)
 {
     Octree *tree = builder->tree;
@@ -256,7 +260,7 @@ static Status grade(OctreeBuilder *builder, Err *err)
     return STATUS_OK;
 }
 
-/* The side of a cell that makes the fewest cells along the segments when halved to suit each. */
+/* Returns the side that, halved to suit each segment, makes the fewest cells along the segments. */
 static double best_side(const JunctionPlan *plan, double ratio)
 {
     double best = 0, least = HUGE_VAL, widest = 0;

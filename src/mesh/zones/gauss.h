@@ -1,18 +1,18 @@
-/* The two functions that terms of the potential are made of, as exact as a wall in single precision
- * needs: a fifth of what the C library's take. */
+/* Fast exp(-x) and erf(x), from which the terms of the potential are made. They are as exact as a
+ * surface in single precision needs, and take a fifth of the time of the C library's functions. */
 #ifndef CORCAST_MESH_ZONES_GAUSS_H
 #define CORCAST_MESH_ZONES_GAUSS_H
 
 #include <stdint.h>
 
-/* From here on 1 - erf(x) is below 2e-9. */
+/* For larger x, 1 - erf(x) is below 2e-9. */
 #define GAUSS_SATURATED 4.25
 
-/* Two numbers that go the same way, in one register. */
+/* Two numbers in one register, for the same operations. */
 typedef double Pair __attribute__((vector_size(16)));
 typedef uint64_t PairBits __attribute__((vector_size(16)));
 
-/* Of each number a where the mask is set, else b. */
+/* Returns, per number, a where the mask is set, else b. */
 static inline Pair pair_select(PairBits mask, Pair a, Pair b)
 {
     return (Pair)((mask & (PairBits)a) | (~mask & (PairBits)b));
@@ -25,9 +25,9 @@ static inline Pair pair_abs(Pair x)
     return (Pair)((PairBits)x & ~pair_sign);
 }
 
-/* exp(-x) of x >= 0 to 1e-8 of itself, where that is above 1e-300: 2^n e^f, |f| <= ln 2 / 2, and
- * e^f by its series. The sum with 1.5 2^52 rounds to whole numbers, and has n in its lowest bits.
- */
+/* Returns exp(-x) for x >= 0. The relative error is below 1e-8 where the result is above 1e-300. It
+ * is 2^n e^f with |f| <= ln 2 / 2, and e^f comes from its series. Adding 1.5 2^52 rounds to
+ * integers, and leaves n in the lowest bits. */
 static inline Pair exp_minus_pair(Pair x)
 {
     x = pair_select((PairBits)(x < 690), x, (Pair){690, 690});
@@ -44,8 +44,8 @@ static inline double exp_minus(double x)
     return exp_minus_pair((Pair){x, x})[0];
 }
 
-/* erf(x) to 3e-7 [M. Abramowitz, I. Stegun: Handbook of Mathematical Functions, 7.1.28]; 1 where it
- * lacks less than 2e-9 of that. */
+/* Returns erf(x) with an error below 3e-7 [M. Abramowitz, I. Stegun: Handbook of Mathematical
+ * Functions, 7.1.28]; exactly 1 beyond GAUSS_SATURATED. */
 static inline Pair erf_pair(Pair x)
 {
     const Pair one = {1, 1};

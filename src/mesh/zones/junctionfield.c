@@ -1,7 +1,7 @@
-/* The bounds of a term in a ball of radius rho about x, in units of 1 / k. Its radial factor lies
- * between those at E + rho and max(0, E - rho). Its axial factor, the same from either side of the
- * middle, where it is largest, falls away from it: it is smallest at one of the ends of the
- * interval of width 2 rho, and largest at the point of that nearest to the middle. */
+/* Bounds of a term in a ball of radius rho about x, in units of 1 / k: Its radial factor is between
+ * those at E + rho and max(0, E - rho). Its axial factor is symmetric about the middle of the
+ * segment, where it is largest, and falls away from it. In the interval of width 2 rho it is
+ * smallest at one of the two ends, and largest at the point nearest to the middle. */
 #include "mesh/zones/junctionfield.h"
 
 #include "mesh/zones/gauss.h"
@@ -11,7 +11,7 @@
 static const double significant = 0.1 * FIELD_LEVEL;
 /* exp(-x^2) is below 10^-5 beyond this. */
 static const double out_of_reach = 3.4;
-/* Walls bend away from the planes that they are taken for. */
+/* Factor on the radius of the ball: surfaces bend away from the planes that approximate them. */
 static const double crease_slack = 1.2;
 static const double inv_sqrt_pi = 0.56418958354775628695;
 
@@ -29,7 +29,8 @@ PotentialTerm potentialterm_make(Vec3 a, Vec3 b, double radius_mm, uint32_t segm
                            .is_round = body == BODY_ROUND};
 }
 
-/* A place in the coordinates of a term: how far inside either end, how far from the axis. */
+/* A point in the coordinates of a term: distances from the two ends, inwards, and the squared
+ * distance from the axis. */
 typedef struct TermPlace {
     double u, v, e2;
     Vec3 across; /* mm */
@@ -50,7 +51,7 @@ static inline double axial(double u, double v)
     return 0.5 * (both[0] + both[1]);
 }
 
-/* The squared distance to the segment itself, in units of 1 / k. */
+/* Returns the squared distance to the segment, in units of 1 / k. */
 static inline double distance2(const TermPlace *place)
 {
     double inside = place->u < place->v ? place->u : place->v;
@@ -67,7 +68,7 @@ static inline double value_at(const PotentialTerm *term, const TermPlace *place)
     return exp_minus(place->e2) * axial(place->u, place->v);
 }
 
-/* From the nearest point of the segment to the place, mm. */
+/* Returns the vector to the place from the nearest point of the segment, mm. */
 static Vec3 from_nearest(const PotentialTerm *term, const TermPlace *place)
 {
     double beyond = fmax(0, -place->v) - fmax(0, -place->u);
@@ -80,7 +81,7 @@ double potentialterm_value(const PotentialTerm *term, Vec3 x)
     return value_at(term, &place);
 }
 
-/* Of a term at a place, given its value there. */
+/* Returns the gradient of a term at a place where the term has this value. */
 static inline Vec3 term_gradient(const PotentialTerm *term, const TermPlace *place, double value)
 {
     if (term->is_round)
@@ -138,7 +139,7 @@ Status localfield_refuse(Err *err)
                    MAX_LOCAL_TERMS);
 }
 
-/* An empty part on top of the pool; its groups come after. */
+/* Begins an empty part at the top of the pool. Its groups come after its terms. */
 static LocalField begin_part(const LocalFieldPool *pool, uint32_t n_terms)
 {
     return (LocalField){(uint32_t)pool->n_terms, n_terms, (uint32_t)pool->n_groups, 0,
@@ -180,7 +181,7 @@ Status localfield_copy(const LocalFieldPool *from, const LocalField *part, Local
     return STATUS_OK;
 }
 
-/* If there are more groups, they are not compared with each other. */
+/* Groups are not compared with each other if there are more than this. */
 enum { MOST_COMPARED = 256 };
 
 static bool is_subset(const uint64_t *a, const uint64_t *b, uint32_t words)
@@ -191,8 +192,8 @@ static bool is_subset(const uint64_t *a, const uint64_t *b, uint32_t words)
     return true;
 }
 
-/* Adds the group on top of the pool to the part, unless it is a subset of one there, and takes out
- * those that are subsets of it. */
+/* Adds the group at the top of the pool to the part, unless it is a subset of a group of the part.
+ * Removes the groups that are subsets of it. */
 static void add_group(LocalFieldPool *pool, LocalField *part)
 {
     uint64_t *groups = &pool->groups[part->first_group];
@@ -217,7 +218,7 @@ static void add_group(LocalFieldPool *pool, LocalField *part)
     pool->n_groups = part->first_group + (size_t)kept * words;
 }
 
-/* The groups of `part`, cut down to the terms at the places of the pool's work. */
+/* Reduces the groups of `part` to the terms that the pool's work lists. */
 static Status narrow_groups(LocalFieldPool *pool, const LocalField *part, LocalField *out, Err *err)
 {
     for (uint32_t g = 0; g < part->n_groups; g++) {
@@ -234,7 +235,7 @@ static Status narrow_groups(LocalFieldPool *pool, const LocalField *part, LocalF
     return STATUS_OK;
 }
 
-/* The sum over a group of numbers `stride` doubles apart. */
+/* Returns the sum over a group of numbers that are `stride` doubles apart. */
 static double group_sum(const uint64_t *group, uint32_t words, const double *values, size_t stride)
 {
     double sum = 0;
@@ -249,7 +250,7 @@ static const uint64_t *group_of(const LocalFieldPool *pool, const LocalField *pa
     return &pool->groups[part->first_group + (size_t)number * part->words];
 }
 
-/* The group that stands for the ball: its sum is bounded the highest from below. */
+/* Returns the group with the highest lower bound of its sum in the ball. */
 static uint32_t leading_group(const LocalFieldPool *pool, const LocalField *part)
 {
     const size_t stride = sizeof *pool->work / sizeof pool->work->lower;
@@ -265,8 +266,8 @@ static uint32_t leading_group(const LocalFieldPool *pool, const LocalField *part
     return best;
 }
 
-/* Whether the sum over group `a` is below that over `b` in the whole ball: what both have is left
- * out. */
+/* Returns true if the sum over group `a` is below the sum over `b` in all of the ball. Terms of
+ * both groups are left out. */
 static bool is_below(const LocalFieldPool *pool, const LocalField *part, const uint64_t *a,
                      const uint64_t *b)
 {
@@ -280,8 +281,8 @@ static bool is_below(const LocalFieldPool *pool, const LocalField *part, const u
            group_sum(only_b, part->words, &pool->work->lower, stride);
 }
 
-/* Whether two terms that may matter are in no group together, of groups whose sum may be the
- * largest somewhere in the ball. */
+/* Returns true if two terms that may matter share no group. Only groups whose sum may be the
+ * largest somewhere in the ball are looked at. */
 static bool has_parted(const LocalFieldPool *pool, const LocalField *part)
 {
     if (part->n_terms > MAX_LOCAL_TERMS)
@@ -302,13 +303,14 @@ static bool has_parted(const LocalFieldPool *pool, const LocalField *part)
     return true;
 }
 
-/* A wall that may pass a ball: its normal, and how far the centre is outside it, mm. */
+/* A surface that may pass a ball: its normal, and the distance of the centre outside it, mm. */
 typedef struct NearWall {
     Vec3 normal;
     double outside;
 } NearWall;
 
-/* Whether two walls, as planes, meet in a ball of this radius, or face each other in it. */
+/* Returns true if two surfaces, taken as planes, meet in a ball of this radius, or face each other
+ * in it. */
 static bool walls_meet(const NearWall *a, const NearWall *b, double radius_mm)
 {
     double cosine = vec3_dot(a->normal, b->normal);
@@ -317,7 +319,7 @@ static bool walls_meet(const NearWall *a, const NearWall *b, double radius_mm)
     return cosine < -0.5 || apart <= (1 - cosine * cosine) * radius_mm * radius_mm;
 }
 
-/* How much the normals of walls differ at most that meet in the ball. */
+/* Returns the maximum difference of the normals of surfaces that meet in the ball. */
 static double find_crease(const JunctionField *field, const LocalFieldPool *pool,
                           const LocalField *part, Vec3 center, double radius_mm)
 {
@@ -398,7 +400,7 @@ Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool, const
     return STATUS_OK;
 }
 
-/* Where the sum over a group is largest; values[] are those of the part's terms. */
+/* Finds the group with the largest sum. values[] has the terms of the part. */
 static FieldValue largest_group(const LocalFieldPool *pool, const LocalField *part,
                                 const double *values)
 {
@@ -426,7 +428,7 @@ FieldValue localfield_value(const JunctionField *field, const LocalFieldPool *po
     return largest_group(pool, part, values);
 }
 
-/* The gradient of a sum, and its largest term, while it is added up. */
+/* The gradient of a sum of terms, and its largest term so far. */
 typedef struct GradientSum {
     Vec3 gradient;
     double phi, largest;
@@ -446,7 +448,7 @@ static inline void add_term(GradientSum *sum, const PotentialTerm *term, uint32_
     }
 }
 
-/* Of many groups the values tell which one's gradient it is. */
+/* Finds the group with the largest sum first, and then its gradient. */
 static FieldValue gradient_of_largest(const JunctionField *field, const LocalFieldPool *pool,
                                       const LocalField *part, Vec3 x, Vec3 *gradient)
 {
@@ -468,7 +470,7 @@ static FieldValue gradient_of_largest(const JunctionField *field, const LocalFie
     return best;
 }
 
-/* A lone group, as most parts have, holds all terms. */
+/* Most parts have one group, which holds all terms. */
 FieldValue localfield_gradient(const JunctionField *field, const LocalFieldPool *pool,
                                const LocalField *part, Vec3 x, Vec3 *gradient)
 {

@@ -264,7 +264,8 @@ static Status list_nodes(const Divider *divider, IndexLists *lists, Err *err)
     return indexlists_sort(lists, n, (ItemKeys){divider->root, n, 1}, "junctions", err);
 }
 
-/* A segment as it is in the junction that it has an end in: as an stub it ends behind its plane. */
+/* Returns the part of a segment in the region of one of its ends, from a distance `from` on. A stub
+ * ends behind its plane. */
 static FieldSegment part_in_zone(const Divider *divider, uint32_t segment, int end, double from)
 {
     FieldSegment part = divider->tree->segments[segment];
@@ -277,8 +278,8 @@ static FieldSegment part_in_zone(const Divider *divider, uint32_t segment, int e
     return part;
 }
 
-/* Whether what lies behind the plane of an stub keeps off the vessels of the junction that do not
- * blend with it. */
+/* Returns true if the part of a stub behind its plane keeps clear of the region's vessels that do
+ * not blend with it. */
 static bool is_off(const Divider *divider, const IndexLists *nodes, uint32_t segment, int end)
 {
     uint32_t node = divider->tree->nodes[segment][end], root = root_of(divider, node);
@@ -300,7 +301,8 @@ static bool is_off(const Divider *divider, const IndexLists *nodes, uint32_t seg
     return true;
 }
 
-/* Has the nodes of tubes joined that are too short for what lies behind their planes. */
+/* Marks tubes that are too short for the stubs' parts behind their planes, so that their nodes are
+ * joined. */
 static Status join_crowded(Divider *divider, bool *changed, Err *err)
 {
     const VesselTree *tree = divider->tree;

@@ -147,7 +147,7 @@ static Status build(RayIndex *index, const CellParams *params, Err *err)
 }
 
 /* Where two cells are hit at one point, the hit is that of the cell that POV-Ray looks into first.
- * Where both boxes begin at one point, which their shifts [surface/celltree.c] avoid, it is that of
+ * Where both boxes begin at one point, which their shifts [field/celltree.c] avoid, it is that of
  * the lower index. */
 static bool first_cell(const RayIndex *index, void *workspace, const RayPart *part, RayHit *hit)
 {

@@ -83,7 +83,7 @@ typedef struct RaySearch {
  *                   either way. `first` with a ray that starts inside a vessel returns the wall
  *                   that it leaves through. `any` accepts a start up to 1e-3 radii off the surface:
  *                   the wall that a ray leaves outwards, but starts just within, does not count.
- * blob_search       a blob: the field of surface/blob.h, solved piece by piece. The first t in
+ * blob_search       a blob: the field of field/blob.h, solved piece by piece. The first t in
  *                   (t_min, t_max), t_min >= 0, at which the field passes 1, in either direction;
  *                   of the segments, the one with the largest term there. */
 extern const RaySearch primitive_search, triangle_search, cell_search, field_search, blob_search;

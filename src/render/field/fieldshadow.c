@@ -17,7 +17,7 @@ static const double nearest_mm = 1e-3;
 /* The segments in the tiles of a light view. All arrays are owned. */
 typedef struct FieldLists {
     VesselLists vessels;
-    BinLists *rows;    /* per row of tiles: the lists of its tiles */
+    IndexLists *rows;  /* per row of tiles: the lists of its tiles */
     TileSpan *columns; /* a workspace for each worker while lists are made */
 } FieldLists;
 
@@ -83,7 +83,7 @@ static void release_lists(void *of)
     if (!lists)
         return;
     for (int i = 0; lists->rows && i < lists->vessels.tile_rows; i++)
-        binlists_release(&lists->rows[i]);
+        indexlists_release(&lists->rows[i]);
     free(lists->rows);
     free(lists->columns);
     vessellists_release(&lists->vessels);
@@ -319,11 +319,11 @@ static Status decide_apart(FieldTester *tester, FieldTile *tile, ShadowPoints *p
 
 /* ---- tiles ----------------------------------------------------------------------------------- */
 
-/* Returns the offsets of a tile's list in the items of its row: of the list and of the next. */
-static const size_t *list_of(const FieldTester *tester, int tile)
+/* Returns where a tile's list begins in the items of its row, and where the next one does. */
+static const uint32_t *list_of(const FieldTester *tester, int tile)
 {
     const int tiles = tester->light->view.tiles;
-    return &tester->lists->rows[tile / tiles].offsets[tile % tiles];
+    return &tester->lists->rows[tile / tiles].first[tile % tiles];
 }
 
 static Status test_tile(const LightBins *light, void *workspace, const TileQueries *queries,
@@ -333,7 +333,8 @@ static Status test_tile(const LightBins *light, void *workspace, const TileQueri
     FieldSpace *space = &tester->space;
     ShadowPoints *points = queries->points;
     FieldTile tile = tile_of(&light->view, queries->tile, space->groups);
-    const size_t *list = list_of(tester, queries->tile), n = list[1] - list[0];
+    const uint32_t *list = list_of(tester, queries->tile);
+    const size_t n = list[1] - list[0];
     const FrameSegment *segments = tester->lists->vessels.segments;
     const uint32_t *listed = tester->lists->rows[queries->tile / light->view.tiles].items + list[0];
     if (queries->next >= 0)

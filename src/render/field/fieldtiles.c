@@ -8,7 +8,7 @@
 
 typedef struct FieldWorker {
     TileSpan *columns; /* per segment of a row: the tiles that it touches */
-    BinLists lists;    /* per tile of the row: its segments */
+    IndexLists lists;  /* per tile of the row: its segments */
     FieldSpace space;
     FieldTile row; /* what all tiles of the row share */
 } FieldWorker;
@@ -87,7 +87,7 @@ void fieldtiles_free(FieldTiles *tiles)
     for (int i = 0; tiles->workers && i < tiles->params.workers; i++) {
         FieldWorker *own = &tiles->workers[i];
         free(own->columns);
-        binlists_release(&own->lists);
+        indexlists_release(&own->lists);
         fieldspace_release(&own->space);
     }
     free(tiles->workers);
@@ -103,7 +103,7 @@ Status fieldtiles_list(FieldTiles *tiles, int row, int worker, Err *err)
     size_t longest = 0;
     TRY(vessellists_row(&tiles->lists, (size_t)row, own->columns, &own->lists, err));
     for (int i = 0; i < tiles->lists.tile_columns; i++) {
-        size_t length = own->lists.offsets[i + 1] - own->lists.offsets[i];
+        size_t length = indexlists_length(&own->lists, (size_t)i);
         longest = length > longest ? length : longest;
     }
     own->row = (FieldTile){.groups = own->space.groups,
@@ -117,8 +117,7 @@ Status fieldtiles_list(FieldTiles *tiles, int row, int worker, Err *err)
 
 bool fieldtiles_is_listed(const FieldTiles *tiles, int column, int worker)
 {
-    const size_t *list = &tiles->workers[worker].lists.offsets[column];
-    return list[0] < list[1];
+    return indexlists_length(&tiles->workers[worker].lists, (size_t)column) > 0;
 }
 
 /* Decides one sample in double precision. */
@@ -166,7 +165,7 @@ Status fieldtiles_trace(FieldTiles *tiles, int worker, SeenTile *seen, TileHits 
     FieldTile tile = own->row;
     const int column = seen->column / TILE_SIDE;
     const TileAxis *x = &tiles->x[column], *y = &tiles->y[seen->row / TILE_SIDE];
-    const size_t *list = &own->lists.offsets[column];
+    const uint32_t *list = &own->lists.first[column];
     seen->x = tile.x = x->samples;
     seen->y = y->samples;
     seen->middle_x = tile.middle_x = x->middle;

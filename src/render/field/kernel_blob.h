@@ -1,4 +1,4 @@
-/* Terms of the blob [surface/blob.h; kernel_packet.h], times FIELD_LEVEL, so that the level is that
+/* Terms of the blob [field/blob.h; kernel_packet.h], times FIELD_LEVEL, so that the level is that
  * of the potential.
  *
  * The field of a segment is 0 beyond its reach, and a polynomial piece by piece, with jumps of the

@@ -9,37 +9,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- bins ------------------------------------------------------------------------------------ */
-
-/* Counting sort of n numbers, those of `numbers` or 0 .. n - 1, into the bins of their spans. */
-static Status sort_into_bins(const TileSpan *spans, const uint32_t *numbers, size_t n, int bins,
-                             BinLists *lists, Err *err)
+/* Lists, for each of `n_lists` tiles or rows of tiles, the items whose spans hold it. The items are
+ * those of `items`, or 0 .. n - 1 if that is NULL; they ascend in each list. */
+static Status list_spans(const TileSpan *spans, const uint32_t *items, size_t n, int n_lists,
+                         IndexLists *lists, Err *err)
 {
-    size_t total = 0;
-    if (!lists->offsets)
-        TRY(mem_calloc(&lists->offsets, (size_t)bins + 1, sizeof *lists->offsets, "tiles", err));
-    size_t *offsets = lists->offsets;
-    memset(offsets, 0, ((size_t)bins + 1) * sizeof *offsets);
+    TRY(indexlists_begin(lists, (size_t)n_lists, "tiles", err));
     for (size_t i = 0; i < n; i++)
-        for (int bin = spans[i].first; bin <= spans[i].last; bin++)
-            offsets[bin + 1]++;
-    for (int bin = 1; bin <= bins; bin++)
-        offsets[bin] = total += offsets[bin];
-    TRY(mem_reserve(&lists->items, &lists->capacity, total, sizeof *lists->items, "tiles", err));
-    for (size_t i = n; i-- > 0;)
-        for (int bin = spans[i].first; bin <= spans[i].last; bin++)
-            lists->items[--offsets[bin + 1]] = numbers ? numbers[i] : (uint32_t)i;
-    for (int bin = 0; bin < bins; bin++)
-        offsets[bin] = offsets[bin + 1];
-    offsets[bins] = total;
+        for (int at = spans[i].first; at <= spans[i].last; at++)
+            indexlists_count(lists, (size_t)at);
+    TRY(indexlists_allot(lists, "tiles", err));
+    for (size_t i = 0; i < n; i++)
+        for (int at = spans[i].first; at <= spans[i].last; at++)
+            indexlists_put(lists, (size_t)at, items ? items[i] : (uint32_t)i);
     return STATUS_OK;
-}
-
-void binlists_release(BinLists *lists)
-{
-    free(lists->offsets);
-    free(lists->items);
-    *lists = (BinLists){0};
 }
 
 /* ---- rows ------------------------------------------------------------------------------------ */
@@ -116,9 +99,9 @@ static Status fill_lists(const Geometry *geometry, int threads, VesselLists *lis
     TRY(mem_calloc(&lists->segments, n, sizeof *lists->segments, "segments", err));
     TRY(mem_calloc(&lists->segment_rows, n, sizeof *lists->segment_rows, "segments", err));
     threads_for((n + CHUNK - 1) / CHUNK, threads, prepare_chunk, &job);
-    TRY(sort_into_bins(lists->segment_rows, NULL, n, lists->tile_rows, &lists->rows, err));
+    TRY(list_spans(lists->segment_rows, NULL, n, lists->tile_rows, &lists->rows, err));
     for (int row = 0; row < lists->tile_rows; row++) {
-        size_t length = lists->rows.offsets[row + 1] - lists->rows.offsets[row];
+        size_t length = indexlists_length(&lists->rows, (size_t)row);
         lists->longest = length > lists->longest ? length : lists->longest;
     }
     return STATUS_OK;
@@ -178,7 +161,7 @@ void vessellists_release(VesselLists *lists)
     free(lists->y);
     free(lists->segments);
     free(lists->segment_rows);
-    binlists_release(&lists->rows);
+    indexlists_release(&lists->rows);
     *lists = (VesselLists){0};
 }
 
@@ -215,16 +198,16 @@ static TileSpan columns_of(const VesselLists *lists, const FrameSegment *segment
     return tiles_common(columns, lists->listed_columns);
 }
 
-Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns, BinLists *tiles,
+Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns, IndexLists *tiles,
                        Err *err)
 {
-    const uint32_t *segments = lists->rows.items + lists->rows.offsets[row];
-    size_t n = lists->rows.offsets[row + 1] - lists->rows.offsets[row];
+    const uint32_t *segments = lists->rows.items + lists->rows.first[row];
+    size_t n = indexlists_length(&lists->rows, (size_t)row);
     int first = (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
     last = last < lists->n_rows ? last : lists->n_rows - 1;
     double more = lists->stray / lists->per_y;
     for (size_t i = 0; i < n; i++)
         columns[i] = columns_of(lists, &lists->segments[segments[i]], lists->y[last] + more,
                                 lists->y[first] - more);
-    return sort_into_bins(columns, segments, n, lists->tile_columns, tiles, err);
+    return list_spans(columns, segments, n, lists->tile_columns, tiles, err);
 }

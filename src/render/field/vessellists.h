@@ -3,17 +3,9 @@
 #define CORCAST_RENDER_VESSELLISTS_H
 
 #include "render/field/fieldterms.h"
-#include "render/tile/interval.h"
 #include "render/light/lightview.h"
+#include "render/tile/interval.h"
 #include "render/tile/samplegrid.h"
-
-/* Numbers sorted into bins, ascending in each: those of bin i are
- * items[offsets[i] .. offsets[i + 1]). */
-typedef struct BinLists {
-    size_t *offsets;
-    uint32_t *items;
-    size_t capacity; /* of items */
-} BinLists;
 
 /* Constant once built. */
 typedef struct VesselLists {
@@ -28,7 +20,7 @@ typedef struct VesselLists {
     FrameSegment *segments;
     size_t n_segments;
     TileSpan *segment_rows; /* of tiles */
-    BinLists rows;          /* segments of each row of tiles */
+    IndexLists rows;        /* segments of each row of tiles */
     size_t longest;         /* of those */
 } VesselLists;
 
@@ -45,7 +37,6 @@ void vessellists_release(VesselLists *lists);
 /* Sets the lists of the tiles of one row: *tiles, zeroed before or used for these lists; `columns`
  * has room for the longest row. STATUS_MEMORY. */
 MUST_CHECK Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns,
-                                  BinLists *tiles, Err *err);
-void binlists_release(BinLists *lists);
+                                  IndexLists *tiles, Err *err);
 
 #endif

@@ -1,80 +1,81 @@
-/* The sky is cut into directions that are the same for all places. A place asks how much of a beam
- * is free that widens as its part of the sky does up to a width of some vessels, and is a line
- * where it begins. The parts of the beam that capsules leave free are multiplied.
+/* The sphere of directions is divided into the same occlusion directions for all shading points.
+ * For each direction a point has a cone: it begins as a line, and widens as its part of the sphere
+ * does, up to a width of some vessels. Its ambient visibility is the product of the parts that
+ * capsules leave free.
  *
- * Why this: single rays err as random numbers do, by the root of their number (0.046 in a ball of
- * 20,000 segments by 256 directions of the sphere, 0.061 by 128), and leave bands where directions
- * are shared, grain where they are not. A beam is the mean of many rays: 0.034 by 128 directions,
- * and its edges are soft. OccluderSet that widen for ever err less in a ball, but each of them
- * touches many vessels, and a box about distant ones does not stand for them until it is narrower
- * than the beam. A beam never widens beyond its height above the surface, so that it cannot be
- * covered by what lies below the horizon.
+ * Why cones: single rays err like random numbers, by the root of their number (0.046 in a ball of
+ * 20,000 segments with 256 directions of the sphere, 0.061 with 128). They leave bands if points
+ * share directions, and noise if not. A cone is the mean of many rays: its error is 0.034 with 128
+ * directions, and its shadows have soft edges. Cones that widen without a limit err less in a ball,
+ * but each of them touches many vessels. A cone never widens beyond its height above the surface,
+ * so that nothing below the horizon can block it.
  *
- * All models are seen as capsules about their segments. That of a cut cylinder begins where the
- * joint that leads to it does, and stands for both: with capsules of their own, joints would be
- * multiplied with what they overlap, and the error of a disc be 0.037 instead of 0.029. At
- * a flat end that is seen, as those of tips are, the capsule's round end stays within the cylinder:
- * beyond it, it would cover all places of the flat end, and the error of a dense ball be 0.052
- * instead of 0.031. */
+ * Vessels of all models count as capsules about their segments. The capsule of a cut cylinder
+ * begins where the joint that leads to it begins, and stands for both. If joints had capsules of
+ * their own, they would be multiplied with what they overlap, and the error of a disc would be
+ * 0.037 instead of 0.029. At a flat end that is visible, such as a tip, the capsule's round end
+ * stays within the cylinder. Otherwise it would block all points of the flat end, and the error of
+ * a dense ball would be 0.052 instead of 0.031. */
 #include "render/light/occluders.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Of the mean radius; wider beams err less in dense trees and more in thin ones. */
+/* In units of the mean radius. Wider cones err less in dense trees and more in sparse ones. */
 static const double wide_in_radii = 3.5;
 static const double golden_turn = 2.399963229728653;
 
-static void store_point(float to[3][BEAM_BLOCK], size_t lane, Vec3 point, Vec3 origin)
+static void store_point(float to[3][OCCLUDER_BLOCK], size_t lane, Vec3 point, Vec3 origin)
 {
     to[0][lane] = (float)(point.x - origin.x);
     to[1][lane] = (float)(point.y - origin.y);
     to[2][lane] = (float)(point.z - origin.z);
 }
 
-static Vec3 load_point(float from[3][BEAM_BLOCK], size_t lane, Vec3 origin)
+static Vec3 load_point(float from[3][OCCLUDER_BLOCK], size_t lane, Vec3 origin)
 {
     return vec3_add(origin,
                     vec3((double)from[0][lane], (double)from[1][lane], (double)from[2][lane]));
 }
 
-/* The capsules of a geometry while they are listed. */
+/* The capsules of a geometry while they are made. */
 typedef struct Listing {
-    OccluderSet *beams;
+    OccluderSet *occluders;
     size_t n;
-    double radii;   /* their sum */
-    uint32_t *last; /* owned; of each segment that has a cylinder, the number behind its capsule */
+    double radii; /* sum of the radii */
+    uint32_t
+        *last; /* per segment: the index of its cylinder's capsule plus 1; 0: it has none. Owned. */
 } Listing;
 
 static void add_capsule(Listing *listing, Vec3 a, Vec3 b, double radius)
 {
-    size_t lane = listing->n % BEAM_BLOCK;
-    CapsuleBlock *block = &listing->beams->capsules[listing->n++ / BEAM_BLOCK];
-    store_point(block->a, lane, a, listing->beams->origin);
-    store_point(block->b, lane, b, listing->beams->origin);
+    size_t lane = listing->n % OCCLUDER_BLOCK;
+    CapsuleBlock *block = &listing->occluders->capsules[listing->n++ / OCCLUDER_BLOCK];
+    store_point(block->a, lane, a, listing->occluders->origin);
+    store_point(block->b, lane, b, listing->occluders->origin);
     block->radius[lane] = (float)radius;
     listing->radii += radius;
 }
 
-/* Lets the capsule of the joint's segment begin where the joint does. */
+/* Moves the end of a segment's capsule to the beginning of the joint that leads to it. */
 static void stretch_capsule(const Listing *listing, const Primitive *joint)
 {
-    size_t number = listing->last[joint->segment] - 1, lane = number % BEAM_BLOCK;
-    Vec3 origin = listing->beams->origin;
-    CapsuleBlock *block = &listing->beams->capsules[number / BEAM_BLOCK];
+    size_t number = listing->last[joint->segment] - 1, lane = number % OCCLUDER_BLOCK;
+    Vec3 origin = listing->occluders->origin;
+    CapsuleBlock *block = &listing->occluders->capsules[number / OCCLUDER_BLOCK];
     bool begins_at_a = vec3_distance(joint->b, load_point(block->a, lane, origin)) <
                        vec3_distance(joint->b, load_point(block->b, lane, origin));
     store_point(begins_at_a ? block->a : block->b, lane, joint->a, origin);
 }
 
-/* An end of a segment, moved towards its other end, at most to the middle. */
+/* Returns an end of a segment, moved towards the other end, at most to the middle. */
 static Vec3 drawn_back(Vec3 end, Vec3 other, double by)
 {
     double length = vec3_distance(end, other);
     return vec3_add_scaled(end, vec3_sub(other, end), fmin(by / length, 0.5));
 }
 
-/* The capsule's round ends stay within flat ones that are seen. */
+/* Keeps the capsule's round ends within flat ends that are visible. */
 static void add_cylinder(Listing *listing, const Primitive *one)
 {
     Vec3 a = one->free_a ? drawn_back(one->a, one->b, one->radius_mm) : one->a;
@@ -102,7 +103,7 @@ static void list_primitives(Listing *listing, const Geometry *geometry)
     }
 }
 
-/* What all numbers of segments of primitives are below. */
+/* Returns the largest segment number of all primitives, plus 1. */
 static size_t end_of_segments(const Geometry *geometry)
 {
     size_t end = 0;
@@ -112,15 +113,15 @@ static size_t end_of_segments(const Geometry *geometry)
     return end;
 }
 
-Status occluderset_new(const Geometry *geometry, OccluderSet *beams, Err *err)
+Status occluderset_new(const Geometry *geometry, OccluderSet *occluders, Err *err)
 {
     size_t most = geometry->n_primitives - geometry->n_ends + geometry->n_segments;
     OccluderSet made = {.origin = box_center(geometry->bounds)};
-    Listing listing = {.beams = &made};
+    Listing listing = {.occluders = &made};
     TRY(mem_calloc(&listing.last, end_of_segments(geometry), sizeof *listing.last, "occlusion",
                    err));
-    Status status =
-        mem_calloc(&made.capsules, most / BEAM_BLOCK + 1, sizeof *made.capsules, "occlusion", err);
+    Status status = mem_calloc(&made.capsules, most / OCCLUDER_BLOCK + 1, sizeof *made.capsules,
+                               "occlusion", err);
     if (status == STATUS_OK) {
         list_primitives(&listing, geometry);
         for (size_t i = 0; i < geometry->n_segments; i++) {
@@ -129,23 +130,22 @@ Status occluderset_new(const Geometry *geometry, OccluderSet *beams, Err *err)
         }
         made.wide = listing.n > 0 ? (float)(wide_in_radii * listing.radii / (double)listing.n) : 0;
         made.slack = (float)(1e-6 * vec3_distance(geometry->bounds.low, geometry->bounds.high));
-        made.n_blocks = (listing.n + BEAM_BLOCK - 1) / BEAM_BLOCK;
-        while (listing.n % BEAM_BLOCK)
+        made.n_blocks = (listing.n + OCCLUDER_BLOCK - 1) / OCCLUDER_BLOCK;
+        while (listing.n % OCCLUDER_BLOCK)
             add_capsule(&listing, made.origin, made.origin, -1);
-        *beams = made;
+        *occluders = made;
     }
     free(listing.last);
     return status;
 }
 
-void occluderset_release(OccluderSet *beams)
+void occluderset_release(OccluderSet *occluders)
 {
-    free(beams->capsules);
-    *beams = (OccluderSet){0};
+    free(occluders->capsules);
+    *occluders = (OccluderSet){0};
 }
 
-/* Fibonacci's lattice of a hemisphere: rings of equal area, each a golden angle on from the last.
- */
+/* A Fibonacci lattice of the hemisphere: rings of equal area, each turned by a golden angle. */
 Vec3 occlusion_direction(int n, int k)
 {
     double z = 1 - (k + 0.5) / n, across = sqrt(1 - z * z);

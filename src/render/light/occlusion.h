@@ -1,14 +1,16 @@
-/* Ambient occlusion: the part of the sky that the places of a picture see. */
+/* Ambient occlusion: the ambient visibility of the pixels of a band. */
 #ifndef CORCAST_RENDER_OCCLUSION_H
 #define CORCAST_RENDER_OCCLUSION_H
 
 #include "render/light/occluders.h"
 #include "render/light/visibility.h"
 
-/* Sets light->ambient (owned by *light even when this fails) by `drawing->params->occlusion` beams.
- * `light` has places and numbers; its first row is even. What a place sees depends on those up to
- * VISIBILITY_MARGIN rows above it and below. STATUS_MEMORY. */
-MUST_CHECK Status occlusion_compute(const Drawing *drawing, const OccluderSet *beams,
-                                    PixelVisibility *light, Err *err);
+/* Computes the ambient visibility of all pixels with a hit, by drawing->params->occlusion occlusion
+ * directions: sets visibility->ambient (owned by *visibility, even after an error). Shading points
+ * and point_index must be set, and first_row must be even. The ambient visibility of a pixel
+ * depends on the shading points up to VISIBILITY_MARGIN rows above and below. Errors:
+ * STATUS_MEMORY. */
+MUST_CHECK Status occlusion_compute(const Drawing *drawing, const OccluderSet *occluders,
+                                    PixelVisibility *visibility, Err *err);
 
 #endif

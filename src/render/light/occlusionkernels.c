@@ -1,54 +1,54 @@
 /* The kernels for any processor, and the choice among all. */
-#define BEAM_KERNEL(name) LANES_NAME(name)
+#define OCCLUSION_KERNEL(name) LANES_NAME(name)
 #include "render/light/kernel_occlusion.h"
 
 #include <stdlib.h>
 
 #ifdef LANES_PORTABLE
 
-const BeamKernels *const beamkernels[] = {
-    &beamkernels_portable,
+const OcclusionKernels *const occlusionkernels[] = {
+    &occlusionkernels_portable,
 #ifdef __x86_64__
-    &beamkernels_avx2,
-    &beamkernels_avx512,
+    &occlusionkernels_avx2,
+    &occlusionkernels_avx512,
 #endif
 };
 
-Status beamplaces_new(size_t n, BeamPlaces *places, Err *err)
+Status occlusionpoints_new(size_t n, OcclusionPoints *points, Err *err)
 {
-    places->n = (uint32_t)n;
+    points->n = (uint32_t)n;
     for (int c = 0; c < 3; c++) {
-        TRY(mem_calloc(&places->at[c], n + BEAM_BLOCK, sizeof(float), "occlusion", err));
-        TRY(mem_calloc(&places->normal[c], n + BEAM_BLOCK, sizeof(float), "occlusion", err));
+        TRY(mem_calloc(&points->at[c], n + OCCLUDER_BLOCK, sizeof(float), "occlusion", err));
+        TRY(mem_calloc(&points->normal[c], n + OCCLUDER_BLOCK, sizeof(float), "occlusion", err));
     }
-    return mem_calloc(&places->above, n + BEAM_BLOCK, sizeof(float), "occlusion", err);
+    return mem_calloc(&points->above, n + OCCLUDER_BLOCK, sizeof(float), "occlusion", err);
 }
 
-void beamplaces_release(BeamPlaces *places)
+void occlusionpoints_release(OcclusionPoints *points)
 {
     for (int c = 0; c < 3; c++) {
-        free(places->at[c]);
-        free(places->normal[c]);
+        free(points->at[c]);
+        free(points->normal[c]);
     }
-    free(places->above);
+    free(points->above);
 }
 
-Status beamwork_new(size_t n, BeamWork *work, Err *err)
+Status conescratch_new(size_t n, ConeScratch *scratch, Err *err)
 {
-    size_t groups = n / BEAM_BLOCK + 1;
-    TRY(mem_alloc(&work->ends, BEAM_MOST_CELLS, sizeof *work->ends, "occlusion", err));
-    TRY(mem_alloc(&work->at, n, sizeof *work->at, "occlusion", err));
-    TRY(mem_alloc(&work->listed, groups, sizeof *work->listed, "occlusion", err));
-    return mem_alloc(&work->sorted, groups + BEAM_MOST_SQUARES, sizeof *work->sorted, "occlusion",
-                     err);
+    size_t groups = n / OCCLUDER_BLOCK + 1;
+    TRY(mem_alloc(&scratch->ends, CONE_MAX_CELLS, sizeof *scratch->ends, "occlusion", err));
+    TRY(mem_alloc(&scratch->at, n, sizeof *scratch->at, "occlusion", err));
+    TRY(mem_alloc(&scratch->listed, groups, sizeof *scratch->listed, "occlusion", err));
+    return mem_alloc(&scratch->sorted, groups + CONE_MAX_SQUARES, sizeof *scratch->sorted,
+                     "occlusion", err);
 }
 
-void beamwork_release(BeamWork *work)
+void conescratch_release(ConeScratch *scratch)
 {
-    free(work->ends);
-    free(work->at);
-    free(work->listed);
-    free(work->sorted);
+    free(scratch->ends);
+    free(scratch->at);
+    free(scratch->listed);
+    free(scratch->sorted);
 }
 
 #endif

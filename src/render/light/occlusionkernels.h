@@ -1,112 +1,116 @@
-/* What is done to beams several at once, in one version for each kind of processor, all of which
- * give the same bytes: nothing is fused, and sums and products have one order. */
+/* Kernels of ambient occlusion. A cone begins as a line at a shading point and widens along an
+ * occlusion direction. Kernels work on several cones at once. There is one version for each kind of
+ * processor. All give the same bytes: nothing is fused, and sums and products have one order. */
 #ifndef CORCAST_RENDER_OCCLUSIONKERNELS_H
 #define CORCAST_RENDER_OCCLUSIONKERNELS_H
 
 #include "render/light/occluders.h"
 #include "render/tile/tilekernels.h"
 
-/* Places from which beams begin. Arrays have room for a multiple of BEAM_BLOCK, and hold zeros
- * behind the last place. */
-typedef struct BeamPlaces {
+/* Shading points at which cones begin. Arrays have room for a multiple of OCCLUDER_BLOCK, and hold
+ * zeros behind the last point. All arrays are owned. */
+typedef struct OcclusionPoints {
     uint32_t n;
-    float *at[3];     /* owned, as all that follows; mm from OccluderSet.origin */
+    float *at[3];     /* mm, relative to OccluderSet.origin */
     float *normal[3]; /* unit */
-    float *above;     /* the ground: its sign; 0: the ground hides no sky */
-} BeamPlaces;
+    float *above;     /* +1 above the ground, -1 below it; 0: the ground blocks no light */
+} OcclusionPoints;
 
-/* The direction of the parallel lines through all places, and how wide beams along them are. */
-typedef struct BeamDirection {
-    float axes[3][3]; /* across, across, and the direction */
-    float widening;   /* the most that half a beam's width grows with its length */
-    float ground;     /* the direction's cosine to the ground's normal */
-} BeamDirection;
+/* A line through all shading points. Each point begins one cone: along the direction if its normal
+ * faces it, against it otherwise. */
+typedef struct OcclusionDirection {
+    float axes[3][3]; /* orthonormal: two across the direction, and the direction */
+    float widening;   /* largest growth of half a cone's width per length */
+    float ground;     /* cosine of the direction to the ground's normal */
+} OcclusionDirection;
 
-/* The capsules as one direction sees them: x and y across it, z along it, mm. */
-typedef struct SeenBlock {
-    float x[BEAM_BLOCK], y[BEAM_BLOCK], z[BEAM_BLOCK]; /* the middle */
-    float ux[BEAM_BLOCK], uy[BEAM_BLOCK];              /* the axis: unit, across the view */
-    float half[BEAM_BLOCK], slope[BEAM_BLOCK]; /* half its length across the view, and the rise of
-                                                * z with that */
-    float radius[BEAM_BLOCK];
-    float round[BEAM_BLOCK]; /* what its ends add to it where a beam is wider than it is */
-    /* The beams that it touches begin in a rectangle about it, turned as it is. That lies between
-     * `low` and `high` in y and within reach_x of the middle in x, and is what two strips have in
-     * common: one along the axis, one across it. In a row of the grid at y, mm from the middle,
+/* A block of capsules projected along the direction: x and y across it, z along it, mm. */
+typedef struct ProjectedBlock {
+    float x[OCCLUDER_BLOCK], y[OCCLUDER_BLOCK], z[OCCLUDER_BLOCK]; /* the middle */
+    float ux[OCCLUDER_BLOCK], uy[OCCLUDER_BLOCK];                  /* projected axis, unit */
+    float half[OCCLUDER_BLOCK];                                    /* half the projected length */
+    float slope[OCCLUDER_BLOCK]; /* growth of z along the projected axis */
+    float radius[OCCLUDER_BLOCK];
+    float round[OCCLUDER_BLOCK]; /* what the round ends add to `half` for cones wider than the
+                                  * radius */
+    /* The cones that a capsule touches begin in a rectangle about it, turned like it. The rectangle
+     * lies in [low, high] in y and within reach_x of the middle in x. It is the intersection of two
+     * strips, one along the axis and one across it. In a row of the grid at y, mm from the middle,
      * strip i lies within reach[i] of x = lean[i] y. */
-    float low[BEAM_BLOCK], high[BEAM_BLOCK];
-    float lean[2][BEAM_BLOCK], reach[2][BEAM_BLOCK];
-    float reach_x[BEAM_BLOCK];
-} SeenBlock;
+    float low[OCCLUDER_BLOCK], high[OCCLUDER_BLOCK];
+    float lean[2][OCCLUDER_BLOCK], reach[2][OCCLUDER_BLOCK];
+    float reach_x[OCCLUDER_BLOCK];
+} ProjectedBlock;
 
-/* OccluderSet of one line, as its direction sees them. */
-typedef struct BeamGroup {
-    float x[BEAM_BLOCK], y[BEAM_BLOCK], z[BEAM_BLOCK]; /* where each begins */
-    float widening[BEAM_BLOCK]; /* of half its width with z: below 0 of what leads against the
-                                 * direction, 0 of one that fills up its group */
-    float free[BEAM_BLOCK];     /* what is left of each */
-} BeamGroup;
+/* Cones of one line, projected along its direction. */
+typedef struct ConeGroup {
+    float x[OCCLUDER_BLOCK], y[OCCLUDER_BLOCK], z[OCCLUDER_BLOCK]; /* where each begins */
+    float widening[OCCLUDER_BLOCK]; /* growth of half the width with z: negative if the cone points
+                                     * against the direction; 0: the cone fills up its group */
+    float free[OCCLUDER_BLOCK];     /* part of the cone that is not blocked so far */
+} ConeGroup;
 
-/* What one thread asks with. Each row of the grid begins with a group. */
-typedef struct BeamWork {
-    SeenBlock seen;             /* a block of capsules */
-    BeamGroup *listed, *sorted; /* owned, as all that follows; by place, and by cell of a grid
-                                 * across the direction */
-    uint32_t *at;               /* of each listed beam its cell, then its number among the sorted */
-    uint32_t *ends;             /* row by row, where the row begins, and the end of each cell */
+/* The workspace of one thread. Cones are sorted into the cells of a grid across the direction. Each
+ * row of the grid begins with a new group. All arrays are owned. */
+typedef struct ConeScratch {
+    ProjectedBlock seen;        /* the present block of capsules */
+    ConeGroup *listed, *sorted; /* by shading point, and by cell */
+    uint32_t *at;   /* per listed cone: its cell, then its index among the sorted cones */
+    uint32_t *ends; /* row by row: where the row begins, and the end of each of its cells */
     int columns, rows;
-    float low[2], high[2], per_row, per_column; /* between what the beams begin */
-} BeamWork;
+    float low[2], high[2]; /* bounds of the beginnings of the cones */
+    float per_row, per_column;
+} ConeScratch;
 
-/* Squares on a side of the grid, which are parted into cells, and cells in all. */
-enum { BEAM_MOST_SQUARES = 512, BEAM_MOST_CELLS = 1 << 20 };
+/* Squares on a side of the grid, which are divided into cells, and cells in all. */
+enum { CONE_MAX_SQUARES = 512, CONE_MAX_CELLS = 1 << 20 };
 
-/* Make room for n places, to be set, or for asking about at most so many. *places and *work are the
- * caller's even when these fail. STATUS_MEMORY. */
-MUST_CHECK Status beamplaces_new(size_t n, BeamPlaces *places, Err *err);
-void beamplaces_release(BeamPlaces *places);
-MUST_CHECK Status beamwork_new(size_t n, BeamWork *work, Err *err);
-void beamwork_release(BeamWork *work);
+/* Allocates n points, to be set. Release them even after an error. Errors: STATUS_MEMORY. */
+MUST_CHECK Status occlusionpoints_new(size_t n, OcclusionPoints *points, Err *err);
+void occlusionpoints_release(OcclusionPoints *points);
+/* Allocates the workspace for up to n points. Release it even after an error. Errors:
+ * STATUS_MEMORY. */
+MUST_CHECK Status conescratch_new(size_t n, ConeScratch *scratch, Err *err);
+void conescratch_release(ConeScratch *scratch);
 
-/* An answer is the part of a beam that is free, times BEAM_FREE, and BEAM_AGAINST where the beam
- * leads against the direction. */
-enum { BEAM_FREE = 127, BEAM_AGAINST = 128 };
-/* Answers to one place are padded to multiples of this. */
-enum { SUMMED = 16 };
+/* The answer for a cone: its free part times CONE_CLEAR, plus CONE_BACKWARD if the cone points
+ * against the direction. */
+enum { CONE_CLEAR = 127, CONE_BACKWARD = 128 };
+/* The answers for one point are padded to a multiple of this. */
+enum { ANSWER_STEP = 16 };
 
-/* The directions of lines, unit and by coordinate, and zeros for what pads answers. */
-typedef struct BeamLines {
+/* Unit directions of lines, by coordinate; zeros for lines that pad the answers. */
+typedef struct OcclusionLines {
     float *towards[3]; /* owned */
-    int n;             /* a multiple of SUMMED */
-} BeamLines;
+    int n;             /* a multiple of ANSWER_STEP */
+} OcclusionLines;
 
-/* What the askers of a quad, 2 x 2 pixels, and of the quads about it were answered about the same
- * lines. */
+/* The answers for the same lines at the points of a quad, 2 x 2 pixels, and of the quads about it.
+ */
 enum { QUAD_SIDE = 2, QUAD = QUAD_SIDE * QUAD_SIDE, QUADS_ABOUT = 9 };
-typedef struct BeamAnswers {
-    const uint8_t *of[QUADS_ABOUT * QUAD];
-    uint8_t quad[QUADS_ABOUT * QUAD]; /* that each is of, row by row of the quads */
-    int n;
-} BeamAnswers;
+typedef struct QuadAnswers {
+    const uint8_t *of[QUADS_ABOUT * QUAD]; /* per point: its answers */
+    uint8_t quad[QUADS_ABOUT * QUAD];      /* per point: its quad, row by row of the nine quads */
+    int n;                                 /* number of points */
+} QuadAnswers;
 
-typedef struct BeamKernels {
-    /* Sets answers[i] for each place i, of which there is one at least. A place asks about the end
-     * of the line that its surface faces. */
-    void (*ask)(const OccluderSet *beams, const BeamDirection *direction, const BeamPlaces *places,
-                BeamWork *work, uint8_t *answers);
-    /* The part of the sky that is free, from 0 to 1, about the normal of a pixel of a quad: of each
-     * line the mean of the answers about the end that the normal faces, by the pixel's
-     * weights, and of these the mean by their cosines to the normal; 1 where there are none.
-     * answers[i] is of lines[i]. */
-    float (*open)(const BeamLines *lines, const BeamAnswers *answers, int n, int pixel,
-                  const float normal[3]);
-} BeamKernels;
+typedef struct OcclusionKernels {
+    /* Sets answers[i] for the cone of each point i. There must be at least one point. */
+    void (*trace)(const OccluderSet *occluders, const OcclusionDirection *direction,
+                  const OcclusionPoints *points, ConeScratch *scratch, uint8_t *answers);
+    /* Returns the ambient visibility, 0..1, about the normal of a pixel of a quad. For each line
+     * takes the mean of the answers for the end that the normal faces, weighted by the distance
+     * from the pixel to the quads. Then takes the mean over the lines, weighted by their cosines to
+     * the normal. Returns 1 if there are no answers. answers[i] belongs to lines[i]. */
+    float (*ambient)(const OcclusionLines *lines, const QuadAnswers *answers, int n, int pixel,
+                     const float normal[3]);
+} OcclusionKernels;
 
-extern const BeamKernels beamkernels_portable;
+extern const OcclusionKernels occlusionkernels_portable;
 #ifdef __x86_64__
-extern const BeamKernels beamkernels_avx2, beamkernels_avx512;
+extern const OcclusionKernels occlusionkernels_avx2, occlusionkernels_avx512;
 #endif
-/* As tilekernels. */
-extern const BeamKernels *const beamkernels[KINDS_OF_KERNELS];
+/* Per kind of processor, as tilekernels. */
+extern const OcclusionKernels *const occlusionkernels[KINDS_OF_KERNELS];
 
 #endif

@@ -264,30 +264,18 @@ Status rasterbins_count(const RasterBins *bins, size_t number, uint32_t *offsets
     return STATUS_OK;
 }
 
-Status rasterbins_list(const RasterBins *bins, size_t number, RasterRow *row, Err *err)
+Status rasterbins_list(const RasterBins *bins, size_t number, IndexLists *tiles, Err *err)
 {
-    size_t columns = (size_t)bins->tile_columns;
-    if (!row->offsets)
-        TRY(mem_calloc(&row->offsets, columns + 1, sizeof *row->offsets, "tiles", err));
-    uint32_t *offsets = row->offsets;
-    TRY(rasterbins_count(bins, number, offsets, err));
-    TRY(mem_reserve(&row->lists, &row->lists_capacity, offsets[columns], sizeof *row->lists,
-                    "tiles", err));
-    for (size_t i = bins->row_offsets[number]; i < bins->row_offsets[number + 1]; i++)
+    const size_t first = bins->row_offsets[number], end = bins->row_offsets[number + 1];
+    TRY(indexlists_begin(tiles, (size_t)bins->tile_columns, "tiles", err));
+    for (size_t i = first; i < end; i++)
         for (int column = bins->row_columns[i].first; column <= bins->row_columns[i].last; column++)
-            row->lists[offsets[column]++] = bins->row_items[i];
-    /* Each has become that of the next column. */
-    for (size_t i = columns; i > 0; i--)
-        offsets[i] = offsets[i - 1];
-    offsets[0] = 0;
+            indexlists_count(tiles, (size_t)column);
+    TRY(indexlists_allot(tiles, "tiles", err));
+    for (size_t i = first; i < end; i++)
+        for (int column = bins->row_columns[i].first; column <= bins->row_columns[i].last; column++)
+            indexlists_put(tiles, (size_t)column, bins->row_items[i]);
     return STATUS_OK;
-}
-
-void rasterrow_release(RasterRow *row)
-{
-    free(row->offsets);
-    free(row->lists);
-    *row = (RasterRow){0};
 }
 
 RasterTile rasterbins_tile(const RasterBins *bins, int column, int row, const uint32_t *list,

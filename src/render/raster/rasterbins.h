@@ -45,18 +45,9 @@ void rasterbins_forget_rows(RasterBins *bins);
 MUST_CHECK Status rasterbins_count(const RasterBins *bins, size_t number, uint32_t *offsets,
                                    Err *err);
 
-/* The items of each tile of one row: lists[offsets[i] .. offsets[i + 1]) for column i,
- * ascending. */
-typedef struct RasterRow {
-    uint32_t *offsets;
-    uint32_t *lists;
-    size_t lists_capacity;
-} RasterRow;
-
-/* Fills *row, which is zeroed or has been used for these bins before, with the lists of row
- * `number`. STATUS_MEMORY. */
-MUST_CHECK Status rasterbins_list(const RasterBins *bins, size_t number, RasterRow *row, Err *err);
-void rasterrow_release(RasterRow *row);
+/* Lists the items of each tile of row `number`, ascending. Errors: STATUS_MEMORY. */
+MUST_CHECK Status rasterbins_list(const RasterBins *bins, size_t number, IndexLists *tiles,
+                                  Err *err);
 
 /* The tile at (column, row) with its list of n items, borrowed, and its samples. */
 RasterTile rasterbins_tile(const RasterBins *bins, int column, int row, const uint32_t *list,

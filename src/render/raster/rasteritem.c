@@ -10,7 +10,7 @@ static const double most_pixels = 16384; /* 2^-24 of it are a thousandth of a pi
 static const double least_sine =
     0.02; /* of the angle at which a wall is looked at along its axis */
 
-static void store_vec3(float to[3], Vec3 v)
+static void store_floats(float to[3], Vec3 v)
 {
     to[0] = (float)v.x;
     to[1] = (float)v.y;
@@ -51,23 +51,23 @@ RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive,
     joint.across_change = viewpoint_to_frame(&view->eye, joint.across_change);
     face_sight(&joint, view->eye.perspective ? middle : vec3(0, 0, 1), part);
     Vec3 base = part[0], span = part[1], a = part[2], b = part[3], da = part[4], db = part[5];
-    store_vec3(made.base, base);
-    store_vec3(made.span, span);
-    store_vec3(made.a, a);
-    store_vec3(made.b, b);
-    store_vec3(made.da, da);
-    store_vec3(made.db, db);
-    store_vec3(made.by[0], vec3_add(vec3_cross(base, span), vec3_cross(b, db)));
-    store_vec3(made.by[1], vec3_add(vec3_cross(base, da), vec3_cross(a, span)));
-    store_vec3(made.by[2], vec3_add(vec3_cross(base, db), vec3_cross(b, span)));
-    store_vec3(made.by[3], vec3_sub(vec3_cross(a, da), vec3_cross(b, db)));
-    store_vec3(made.by[4], vec3_add(vec3_cross(a, db), vec3_cross(b, da)));
+    store_floats(made.base, base);
+    store_floats(made.span, span);
+    store_floats(made.a, a);
+    store_floats(made.b, b);
+    store_floats(made.da, da);
+    store_floats(made.db, db);
+    store_floats(made.by[0], vec3_add(vec3_cross(base, span), vec3_cross(b, db)));
+    store_floats(made.by[1], vec3_add(vec3_cross(base, da), vec3_cross(a, span)));
+    store_floats(made.by[2], vec3_add(vec3_cross(base, db), vec3_cross(b, span)));
+    store_floats(made.by[3], vec3_sub(vec3_cross(a, da), vec3_cross(b, db)));
+    store_floats(made.by[4], vec3_add(vec3_cross(a, db), vec3_cross(b, da)));
     return made;
 }
 
 static void store_plane(float to[4], Vec3 inward, Vec3 center, double radius)
 {
-    store_vec3(to, inward);
+    store_floats(to, inward);
     to[3] = (float)(1e-3 * radius - vec3_dot(inward, center));
 }
 

@@ -13,9 +13,9 @@ typedef struct RasterKernels {
      * if sample i sees an item. Reads tile->list[0 .. n), and of the bins what raster_decide
      * does. */
     uint64_t (*trace)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
-    /* Completes *surface after `trace` with the same tile and hits: state, z, the primitive's number
-     * (as `segment`), and the normals of joints and of what was decided in double precision; leaves
-     * any_hit and any_unsure alone. Of joints, completes *hits. */
+    /* Completes *surface after `trace` with the same tile and hits: state, z, the primitive's
+     * number (as `segment`), and the normals of joints and of what was decided in double precision;
+     * leaves any_hit and any_unsure alone. Of joints, completes *hits. */
     void (*resolve)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
     /* The places that the hits are at. */
     void (*locate)(const RasterTile *tile, const RasterHits *hits, SeenPlaces *places);

@@ -15,7 +15,7 @@ typedef struct RasterScene {
     const RasterKernels *kernels;
     RasterGrid center;
     RasterGrid *shifted; /* n x n, row by row */
-    RasterRow *rows;     /* per worker: the lists of a row */
+    IndexLists *rows;    /* per worker: the items of each tile of a row */
     int workers;
 } RasterScene;
 
@@ -31,7 +31,7 @@ static void release_raster(void *bins)
     if (!scene)
         return;
     for (int i = 0; scene->rows && i < scene->workers; i++)
-        rasterrow_release(&scene->rows[i]);
+        indexlists_release(&scene->rows[i]);
     free(scene->rows);
     free(scene->shifted);
     rasterbins_free(scene->bins);
@@ -81,19 +81,18 @@ static Status list_raster(void *bins, int row, int worker, Err *err)
 static bool is_raster_listed(const void *bins, int column, int worker)
 {
     const RasterScene *scene = bins;
-    const uint32_t *list = &scene->rows[worker].offsets[column];
-    return list[0] < list[1];
+    return indexlists_length(&scene->rows[worker], (size_t)column) > 0;
 }
 
 /* Sets the tile of an image and its list. */
 static void place_tile(const RasterScene *scene, int worker, BatchTile *tile)
 {
     RasterOwn *own = tile->own;
-    const RasterRow *lists = &scene->rows[worker];
+    const IndexLists *lists = &scene->rows[worker];
     const int column = tile->seen.column / TILE_SIDE, row = tile->seen.row / TILE_SIDE;
-    const uint32_t *list = &lists->offsets[column];
-    own->tile = rasterbins_tile(scene->bins, column, row, lists->lists + list[0], list[1] - list[0],
-                                &scene->center);
+    const uint32_t first = lists->first[column];
+    own->tile = rasterbins_tile(scene->bins, column, row, lists->items + first,
+                                lists->first[column + 1] - first, &scene->center);
     tile->seen.middle_x = own->tile.x;
     tile->seen.middle_y = own->tile.y;
     tile->depth_base = own->tile.z_middle;

@@ -1,5 +1,5 @@
-/* Values of segments in a file of their own, which become columns of their tree. docs/FIELDS.md
- * says what such files hold. */
+/* Reads values of segments from a file of their own into columns of their tree. docs/FIELDS.md
+ * describes such files. */
 #ifndef CORCAST_TREEIO_VALUES_H
 #define CORCAST_TREEIO_VALUES_H
 
@@ -7,28 +7,29 @@
 #include "tree/tree.h"
 #include <stdbool.h>
 
-/* Splits "FILE:COLUMN" or "FILE", FILE being one that tree_read_values reads, a CSV or a folder
- * that svOneDSolver has written: the length of its path in *path, and the column behind it, NULL
- * without one, in *column (borrowed). False when no such file is named. */
+/* Splits "FILE:COLUMN" or "FILE". FILE is a CSV or a folder that svOneDSolver has written.
+ *
+ * path     receives the length of the path.
+ * column   receives the column after the path, borrowed from `text`; NULL if there is none.
+ * Returns  false if the text names no such file. */
 bool values_parse(const char *text, size_t *path, const char **column);
 
-/* Reads values of the tree's segments, by their ids, into columns of the tree, where they take the
- * place of columns of the same name. With a `column`, only the one called so, or those that are the
- * series of this name [tree/series.h]. Else, if `name` is wanted, all columns must be one thing: a
- * single column, a series, or a column a frame, which become a series named after the file. What it
- * is called then is in *name (owned). Without `column` and `name`, all columns become the tree's.
- * What stands in no row is NAN.
+/* Reads values of the tree's segments, by their ids, into columns of the tree. They replace columns
+ * of the same name. Segments without a row get NAN.
  *
- * STATUS_INPUT, naming file and line, when no column is called id or name, an id is no segment's or
- * stands twice, a value is no number, frames are missing, or no column is called `column`; or when
- * there are more than BUILDER_MAX_COLUMNS. STATUS_MEMORY when the machine cannot hold them. The
- * tree may have some of the columns then. */
+ * column   only this column is read, or the columns of the series of this name [tree/series.h].
+ * NULL: all. name     receives the name of what was read (owned). Without `column`, all columns
+ * must then be one thing: a column, a series, or one column per frame, which become a series named
+ * after the file. NULL: not wanted. Errors   STATUS_INPUT, with file and line, if no column is
+ * called id or name, an id is no segment's or is given twice, a value is no number, frames are
+ * missing, no column is called `column`, or there are more than BUILDER_MAX_COLUMNS. STATUS_MEMORY
+ * if the machine cannot hold them. After an error the tree may have some of the columns. */
 MUST_CHECK Status tree_read_values(Tree *tree, const char *path, const char *column, char **name,
                                    Err *err);
 
-/* Reads the columns id and flow (ml/min) of a CSV: the flow that leaves the tree at each node takes
- * the place of the tree's flow shares, and their sum of its flow through the inlet. STATUS_INPUT as
- * tree_read_values, and for a flow below 0 or when none is above. */
+/* Reads the columns id and flow (ml/min) of a CSV. The flow that leaves the tree at each node
+ * replaces the tree's flow shares, and their sum replaces its flow through the inlet. Errors: as
+ * tree_read_values; STATUS_INPUT for a flow below 0, or if no flow is above 0. */
 MUST_CHECK Status tree_read_flows(Tree *tree, const char *path, Err *err);
 
 #endif

@@ -1,6 +1,6 @@
-/* CSV of nodes: a line that names the columns, then a line a node. The table has the columns that
- * every tree has; all others become columns of the tree. Quotes are taken off in place, as what is
- * left is never longer. */
+/* CSV of nodes: a line that names the columns, then one line per node. A table has the columns that
+ * every tree has; other columns become columns of the tree. Quotes are removed in place, because
+ * what is left is never longer. */
 #include "treeio/comments.h"
 #include "treeio/cursor.h"
 #include "treeio/formats.h"

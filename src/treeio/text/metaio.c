@@ -1,13 +1,14 @@
-/* Tubes of MetaIO scenes (.tre), as MetaIO's metaTube.cxx and ITK's converter of tubes read them: a
- * header "Key = value" for each object, which ends with "Points =" or "Points", and then the
- * points, a row of text each or packed numbers. PointDim says what the numbers of a point are;
- * without it they are x, y, z (if NDims is 3), the radius, and numbers that are left out. Positions
- * and radii are in voxels of ElementSpacing; TransformMatrix, CenterOfRotation and Offset move
- * them.
+/* Tubes of MetaIO scenes (.tre), as MetaIO's metaTube.cxx and ITK's converter of tubes read them:
+ * for each object a header of lines "Key = value", which ends with "Points =" or "Points", and then
+ * the points, one row of text each or packed numbers. PointDim names the numbers of a point.
+ * Without it, they are x, y, z (if NDims is 3), the radius, and numbers that are left out.
+ * Positions and radii are in voxels of ElementSpacing; TransformMatrix, CenterOfRotation and Offset
+ * move them.
  *
- * Older versions of MetaIO reserve more room for packed points than they fill: what lies between
- * the last point and the next object is skipped. Children lead away from their parents, so that a
- * tube hangs with one end on its parent's point, or on the nearest one where none is said. */
+ * Older versions of MetaIO reserve more bytes for packed points than they fill. What lies between
+ * the last point and the next object is skipped. Children lead away from their parents: one end of
+ * a tube is joined to the point of its parent that it names, or to the nearest one if it names
+ * none. */
 #include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include "treeio/names.h"

@@ -1,17 +1,17 @@
-/* SWC: lines are cut in place into fields. Flow shares travel as comments "flow_share: ID SHARE",
- * pairs of terminals as "terminal_pair: ID ID", which every reader of SWC skips.
+/* SWC: lines are cut into fields in place. Flow shares are comments "flow_share: ID SHARE", and
+ * pairs of terminals are comments "terminal_pair: ID ID". Every reader of SWC skips comments.
  *
- * Numbers take most of the time, so that a large file is read by all processors: blocks of whole
- * lines, of which each thread reads the plain rows, seven numbers and nothing else, without a
- * change of the text, up to the first line that is none. In the order of the file, these rows are
- * handed on then, and what is left of the block is read line by line, by the only code that refuses
- * anything. A few blocks a thread at a time keep what has been read but not handed on in the
- * processor's cache. Rows are written likewise, a block of text a thread.
+ * Parsing numbers takes most of the time, so all processors read a large file. The text is divided
+ * into blocks of whole lines. A thread reads the plain rows of a block, seven numbers and nothing
+ * else, without changing the text, up to the first line that is no plain row. Then, in the order of
+ * the file, these rows are handed over, and the rest of the block is read line by line, by the only
+ * code that refuses anything. A few blocks per thread at a time keep the rows that wait in the
+ * processor's cache. Rows are written in the same way, a block of text per thread.
  *
- * The dialects: fields may be parted by commas or semicolons, a line may name the columns, with '#'
- * or without, ids may start at 0, a root may have the parent 0, and more columns may follow, as in
- * Vaa3D's ESWC, which become the tree's. The first row shows whether ids start at 0, before
- * any id has been handed on. */
+ * Dialects: commas or semicolons may separate fields. A line may name the columns, with '#' or
+ * without. Ids may start at 0. A root may have the parent 0. More columns may follow, as in Vaa3D's
+ * ESWC; they become the tree's. The first row shows whether ids start at 0, before any id is handed
+ * over. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 

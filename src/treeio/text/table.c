@@ -1,13 +1,14 @@
 /* Tables of other programs: of nodes with a parent each, of nodes with a second table of lines, and
- * of vessels with both ends. Columns are found by the names that options give them, or else by
- * names that programs give them; those that mean nothing here become columns of the tree.
+ * of vessels with both ends. Columns are found by the names that options state, or by names that
+ * programs give them. Columns without a meaning become columns of the tree.
  *
- * The program's own CSV of segments is known by the titles that it begins with, none of which is a
+ * corcast's own CSV of segments is recognised by the titles that it begins with, none of which is a
  * column of the tree: ids are those of the distal nodes, and lengths follow from the ends.
  *
- * A first line of numbers alone is a row: the table has no titles, and options name its columns by
- * their numbers. Fields are parted by what the first line has most of: semicolons, tabs, commas, or
- * else blanks. What a row names may come later, so parents are looked up at the end. */
+ * If the first line has numbers only, it is a row: the table has no titles, and options name its
+ * columns by their numbers. The separator is the one that is most frequent in the first line:
+ * semicolon, tab or comma, or else blanks. A row may name nodes that come later, so parents are
+ * looked up at the end. */
 #include "treeio/comments.h"
 #include "treeio/cursor.h"
 #include "treeio/formats.h"

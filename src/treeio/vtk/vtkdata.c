@@ -13,10 +13,12 @@
 
 /* ---- types ----------------------------------------------------------------------------------- */
 
-static const struct {
-    size_t size;
+typedef struct VtkTypeRow {
+    size_t size; /* of a value, in bytes */
     bool is_float, is_signed;
-} types[VTK_TYPES] = {
+} VtkTypeRow;
+
+static const VtkTypeRow types[VTK_TYPES] = {
     [VTK_TEXT] = {1, false, false},   [VTK_INT8] = {1, false, true},
     [VTK_UINT8] = {1, false, false},  [VTK_INT16] = {2, false, true},
     [VTK_UINT16] = {2, false, false}, [VTK_INT32] = {4, false, true},
@@ -89,18 +91,18 @@ size_t vtk_type_size(VtkType type)
     return types[type].size;
 }
 
-static double number_of_bits(VtkType type, uint64_t bits)
+static double number_of_bits(const VtkTypeRow *type, uint64_t bits)
 {
     uint32_t low = (uint32_t)bits;
     float single;
     double wide;
     memcpy(&single, &low, sizeof single);
     memcpy(&wide, &bits, sizeof wide);
-    if (types[type].is_float)
-        return type == VTK_FLOAT ? (double)single : wide;
-    if (!types[type].is_signed)
+    if (type->is_float)
+        return type->size == 4 ? (double)single : wide;
+    if (!type->is_signed)
         return (double)bits;
-    int unused = (int)(64 - 8 * types[type].size);
+    int unused = (int)(64 - 8 * type->size);
     return (double)((int64_t)(bits << unused) >> unused);
 }
 
@@ -136,7 +138,8 @@ enum { BLOCK = 1 << 19 /* numbers: two huge pages */ };
 static void take_block(size_t index, int worker, void *context)
 {
     const VtkValues all = *(const VtkValues *)context;
-    size_t size = types[all.type].size, first = index * BLOCK, left = all.n - first;
+    const VtkTypeRow *type = &types[all.type];
+    size_t size = type->size, first = index * BLOCK, left = all.n - first;
     size_t n = left < BLOCK ? left : BLOCK;
     const char *bytes = all.bytes + first * size;
     (void)worker;
@@ -146,7 +149,7 @@ static void take_block(size_t index, int worker, void *context)
         uint64_t bits = 0;
         for (size_t k = 0; k < size; k++)
             bits = bits << 8 | (unsigned char)bytes[all.is_big_endian ? k : size - 1 - k];
-        all.out[first + i] = number_of_bits(all.type, bits);
+        all.out[first + i] = number_of_bits(type, bits);
     }
 }
 

@@ -40,10 +40,10 @@ static Status add_lines(const VtkMeaning *meaning, const VtkData *data, Graph *g
 /* ---- columns --------------------------------------------------------------------------------- */
 
 /* Sets column `k` to one component of an array. Lines of a polyline have the value of its cell. */
-static Status add_values(const VtkData *data, Graph *graph, const VtkArray *array, GraphElement of,
-                         const double *value, size_t k, Err *err)
+static Status add_values(Graph *graph, const VtkArray *array, GraphElement of, const double *value,
+                         size_t k, Err *err)
 {
-    size_t n = of == GRAPH_POINTS ? data->n_points : graph->n_lines;
+    size_t n = of == GRAPH_POINTS ? array->n : graph->n_lines;
     for (size_t i = 0; i < n; i++) {
         size_t element = of == GRAPH_POINTS ? i : graph->line[i].record;
         TRY(graph_value(graph, k, i, value[element * array->components], err));
@@ -51,8 +51,8 @@ static Status add_values(const VtkData *data, Graph *graph, const VtkArray *arra
     return STATUS_OK;
 }
 
-static Status add_column(const VtkData *data, Graph *graph, const VtkArray *array, GraphElement of,
-                         size_t component, Err *err)
+static Status add_column(Graph *graph, const VtkArray *array, GraphElement of, size_t component,
+                         Err *err)
 {
     char *title = NULL;
     size_t column;
@@ -67,7 +67,7 @@ static Status add_column(const VtkData *data, Graph *graph, const VtkArray *arra
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", graph->name);
     TRY_GOTO(status);
-    TRY_GOTO(add_values(data, graph, array, of, array->value + component, column, err));
+    TRY_GOTO(add_values(graph, array, of, array->value + component, column, err));
 done:
     text_release(&text);
     free(title);
@@ -87,7 +87,7 @@ static Status add_columns(const VtkMeaning *meaning, const VtkData *data, Graph 
             TRY(reading_note(graph->reading, err, "the array '%.60s' is left out: it is %s",
                              array->name, array->value ? "of too many components" : "of text"));
         for (size_t k = 0; is_column && k < array->components; k++)
-            TRY(add_column(data, graph, array, of, k, err));
+            TRY(add_column(graph, array, of, k, err));
     }
     return STATUS_OK;
 }

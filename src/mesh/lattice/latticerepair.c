@@ -11,7 +11,7 @@
  * grids, 1994, for tetrahedra]. The outside of a sphere is a ball and stays one, so the inside is
  * one, too. A tunnel is entered from both its ends, and is closed where its points are nearest to
  * the surface. */
-#include "mesh/lattice/repair.h"
+#include "mesh/lattice/latticerepair.h"
 
 #include <stdlib.h>
 

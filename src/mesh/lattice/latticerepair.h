@@ -1,6 +1,6 @@
 /* Closes tunnels and hollows that are narrower than the cells of a lattice. */
-#ifndef CORCAST_MESH_LATTICE_REPAIR_H
-#define CORCAST_MESH_LATTICE_REPAIR_H
+#ifndef CORCAST_MESH_LATTICE_LATTICEREPAIR_H
+#define CORCAST_MESH_LATTICE_LATTICEREPAIR_H
 
 #include "mesh/lattice/lattice.h"
 
