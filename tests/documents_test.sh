@@ -114,7 +114,7 @@ longer than 2 x 16384 pixels @ rasteritem.c @ most_pixels = 16384;
 cylinders seen within 0.02 rad of their axis @ rasteritem.c @ 0.02; /* of the angle
 cylinders seen within 0.02 rad of their axis @ kernel_round.h @ steep_sine2 = 4e-4f;
 within 10⁻⁴ r of the ray @ kernel_joint.h @ off_joint_line = 1e-4f;
-0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ slack = slack_mm + 0x3p-23 * lightview_radius
+0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ slack_mm + 0x3p-23 * lightview_radius
 0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ slack_mm = 1e-3;
 within 1.16 radii of the scene's middle cast rays @ lightview.c @ least_radii = 1.16;
 at most a quarter of a pixel apart @ zbuffer.c @ pixels_apart = 0.25;
