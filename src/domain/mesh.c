@@ -16,13 +16,13 @@
 
 /* Where the line a + t d meets the plane of a triangle: at t, which is a's corner plus u ab + v ac.
  */
-typedef struct Crossing {
+typedef struct MeshCrossing {
     double t, u, v;
     int sign; /* 1 from the back of the triangle to its front, -1 from front to back */
-} Crossing;
+} MeshCrossing;
 
 /* False when the line and the plane are too nearly parallel to say. */
-static bool cross_plane(const Triangle *triangle, Vec3 a, Vec3 d, Crossing *crossing)
+static bool cross_plane(const Triangle *triangle, Vec3 a, Vec3 d, MeshCrossing *crossing)
 {
     const double parallel = 1e-12; /* cosine of the line and the normal */
     Vec3 normal = vec3_cross(triangle->ab, triangle->ac);
@@ -39,7 +39,7 @@ static bool cross_plane(const Triangle *triangle, Vec3 a, Vec3 d, Crossing *cros
 }
 
 /* How deep in its triangle a crossing is: the least of its barycentric coordinates. */
-static double depth(const Crossing *crossing)
+static double depth(const MeshCrossing *crossing)
 {
     return fmin(fmin(crossing->u, crossing->v), 1 - crossing->u - crossing->v);
 }
@@ -54,7 +54,7 @@ static bool sum_crossings(const Mesh *mesh, Vec3 point, Vec3 end, int *sum)
     *sum = 0;
     Box around = box_with_ball(box_with_ball(box_empty(), point, 0), end, 0);
     for (BoxWalk walk = boxwalk_box(&mesh->tree, around); boxwalk_next(&walk, &i);) {
-        Crossing crossing;
+        MeshCrossing crossing;
         if (!cross_plane(&mesh->triangles[i], point, d, &crossing)) {
             safe = false;
             continue;
@@ -87,7 +87,7 @@ double mesh_distance2(const Triangle *triangle, Vec3 point)
 {
     Vec3 to = vec3_sub(point, triangle->a);
     Vec3 normal = vec3_cross(triangle->ab, triangle->ac);
-    Crossing foot;
+    MeshCrossing foot;
     if (cross_plane(triangle, point, normal, &foot) && depth(&foot) >= 0)
         return foot.t * foot.t * vec3_dot(normal, normal);
     double nearest =
@@ -115,7 +115,7 @@ static bool mesh_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 /* Whether the line a + t d meets the triangle or its margin, at t. */
 static bool find_contact(const Triangle *triangle, Vec3 a, Vec3 d, double *t)
 {
-    Crossing crossing;
+    MeshCrossing crossing;
     if (!cross_plane(triangle, a, d, &crossing) || depth(&crossing) < -CONTACT_MARGIN)
         return false;
     *t = crossing.t;

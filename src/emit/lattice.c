@@ -11,12 +11,12 @@
 
 enum { SIDES = 4 };
 
-typedef struct Lattice {
+typedef struct BeamLattice {
     const EmitParams *params;
     uint32_t *number; /* of each node in the file, by its index; owned */
     Vec3 *places;     /* of the nodes by number, as single precision; owned */
     size_t n_places;
-} Lattice;
+} BeamLattice;
 
 static Vec3 as_float(Vec3 v)
 {
@@ -24,7 +24,7 @@ static Vec3 as_float(Vec3 v)
 }
 
 /* Numbers the nodes that segments have, in the order in which these come. */
-static Status number_nodes(Lattice *lattice, Err *err)
+static Status number_nodes(BeamLattice *lattice, Err *err)
 {
     const VesselTree *vessels = lattice->params->vessels;
     TRY(mem_calloc(&lattice->number, vessels->n_nodes, sizeof *lattice->number, "nodes", err));
@@ -43,13 +43,13 @@ static Status number_nodes(Lattice *lattice, Err *err)
     return STATUS_OK;
 }
 
-static uint32_t node_of(const Lattice *lattice, size_t segment, int end)
+static uint32_t node_of(const BeamLattice *lattice, size_t segment, int end)
 {
     return lattice->number[lattice->params->vessels->nodes[segment][end]];
 }
 
 /* Less than the length of the shortest beam by what its reader may lose. */
-static double shortest_beam(const Lattice *lattice)
+static double shortest_beam(const BeamLattice *lattice)
 {
     double shortest = INFINITY;
     for (size_t i = 0; i < lattice->params->vessels->n_segments; i++)
@@ -60,12 +60,12 @@ static double shortest_beam(const Lattice *lattice)
 
 static void put_vertex(Text *out, const void *lattice, size_t i)
 {
-    threemf_put_vertex(((const Lattice *)lattice)->places[i], out);
+    threemf_put_vertex(((const BeamLattice *)lattice)->places[i], out);
 }
 
 static void put_beam(Text *out, const void *context, size_t i)
 {
-    const Lattice *lattice = context;
+    const BeamLattice *lattice = context;
     put_text(out, "<b:beam v1=\"%u\" v2=\"%u\" r1=\"%f\"", node_of(lattice, i, 0),
              node_of(lattice, i, 1), lattice->params->vessels->segments[i].radius_mm);
     if (lattice->params->appearance->colors)
@@ -76,7 +76,7 @@ static void put_beam(Text *out, const void *context, size_t i)
 /* Appends the corners of the prism of segment i. */
 static void put_preview_vertices(Text *out, const void *lattice, size_t i)
 {
-    const FieldSegment *segment = &((const Lattice *)lattice)->params->vessels->segments[i];
+    const FieldSegment *segment = &((const BeamLattice *)lattice)->params->vessels->segments[i];
     Vec3 u, v;
     vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
     for (int k = 0; k < 2 * SIDES; k++) {
@@ -90,7 +90,7 @@ static void put_preview_vertices(Text *out, const void *lattice, size_t i)
 
 /* Appends a triangle of a prism. Its corners are numbered within the prism: 0 to 3 around its
  * start, 4 to 7 around its end. */
-static void put_triangle(const Lattice *lattice, size_t prism, const int corner[3], Text *out)
+static void put_triangle(const BeamLattice *lattice, size_t prism, const int corner[3], Text *out)
 {
     size_t first = 2 * SIDES * prism;
     put_text(out, "<triangle v1=\"%z\" v2=\"%z\" v3=\"%z\"", first + (size_t)corner[0],
@@ -116,7 +116,7 @@ static void put_preview_triangles(Text *out, const void *lattice, size_t i)
 
 static Status put_model(Text *out, void *context, Err *err)
 {
-    const Lattice *lattice = context;
+    const BeamLattice *lattice = context;
     const EmitParams *params = lattice->params;
     const VesselTree *vessels = params->vessels;
     Values values = {0};
@@ -132,7 +132,7 @@ static Status put_model(Text *out, void *context, Err *err)
 
 Status lattice_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    Lattice lattice = {.params = params};
+    BeamLattice lattice = {.params = params};
     Status status;
     TRY_GOTO(number_nodes(&lattice, err));
     TRY_GOTO(threemf_put_archive(params, put_model, &lattice, to->file, err));

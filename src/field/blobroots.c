@@ -145,9 +145,9 @@ static bool meets_ball(Ray ray, Ball ball)
     return vec3_length(off) <= ball.radius;
 }
 
-/* Finds the components that the ray may meet between t_min and t_max. */
+/* Finds the components that the ray may meet in a range of t. */
 static Status list_felt(RootSearch *search, const FieldSegment *segments, size_t n, Ray ray,
-                        double t_min, double t_max, Err *err)
+                        const double range[2], Err *err)
 {
     for (size_t i = 0; i < n; i++) {
         BlobComponent components[BLOB_COMPONENTS];
@@ -157,8 +157,8 @@ static Status list_felt(RootSearch *search, const FieldSegment *segments, size_t
         TRY(ARRAY_RESERVE(&search->felt, BLOB_COMPONENTS, "components", err));
         for (int c = 0; c < BLOB_COMPONENTS; c++) {
             Felt *next = &search->felt.items[search->felt.n];
-            if (!take_component(search, &components[c], blob_component_is_tube(c), t_min, t_max,
-                                next))
+            if (!take_component(search, &components[c], blob_component_is_tube(c), range[0],
+                                range[1], next))
                 continue;
             search->low = fminl(search->low, next->t0);
             search->high = fmaxl(search->high, next->t1);
@@ -180,7 +180,7 @@ Status blob_roots(const FieldSegment *segments, size_t n, Ray ray, double t_min,
                          .roots = roots};
     Status status;
     *roots = (BlobRoots){.sure = true};
-    TRY_GOTO(list_felt(&search, segments, n, ray, t_min, t_max, err));
+    TRY_GOTO(list_felt(&search, segments, n, ray, (const double[2]){t_min, t_max}, err));
     if (search.felt.n > 0) {
         long double low = search.low, high = search.high, far = fmaxl(fabsl(low), fabsl(high));
         search.narrow = fmaxl(1e-12L * search.least, 4 * LDBL_EPSILON * far);

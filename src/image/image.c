@@ -41,13 +41,13 @@ Status image_check_memory(int width, int height, size_t bytes, Err *err)
 typedef Status Allocator(void *out, size_t count, size_t size, const char *what, Err *err);
 
 /* Allocates width * height * channels items. */
-static Status allocate(Allocator *allocator, void *out, int width, int height, int channels,
-                       size_t item, Err *err)
+static Status allocate(Allocator *allocator, void *out, int width, int height, size_t pixel_bytes,
+                       Err *err)
 {
     TRY(image_check_sides("the image", width, height, err));
-    size_t count = (size_t)width * (size_t)height * (size_t)channels;
-    TRY(image_check_memory(width, height, count * item, err));
-    return allocator(out, count, item, "image values", err);
+    size_t count = (size_t)width * (size_t)height;
+    TRY(image_check_memory(width, height, count * pixel_bytes, err));
+    return allocator(out, count, pixel_bytes, "image values", err);
 }
 
 static Status make_plane(Allocator *allocator, Plane *plane, int width, int height, int channels,
@@ -55,7 +55,7 @@ static Status make_plane(Allocator *allocator, Plane *plane, int width, int heig
 {
     assert(channels >= 1 && channels <= IMAGE_MAX_CHANNELS);
     float *values;
-    TRY(allocate(allocator, &values, width, height, channels, sizeof *values, err));
+    TRY(allocate(allocator, &values, width, height, (size_t)channels * sizeof *values, err));
     *plane = (Plane){.width = width, .height = height, .channels = channels, .values = values};
     return STATUS_OK;
 }
@@ -76,10 +76,11 @@ Status picture_init(Picture *picture, int width, int height, int channels, int b
     assert(bits == 8 || bits == 16);
     Picture made = {.width = width, .height = height, .channels = channels, .bits = bits};
     if (bits == 8)
-        TRY(allocate(mem_calloc, &made.codes8, width, height, channels, sizeof *made.codes8, err));
+        TRY(allocate(mem_calloc, &made.codes8, width, height,
+                     (size_t)channels * sizeof *made.codes8, err));
     else
-        TRY(allocate(mem_calloc, &made.codes16, width, height, channels, sizeof *made.codes16,
-                     err));
+        TRY(allocate(mem_calloc, &made.codes16, width, height,
+                     (size_t)channels * sizeof *made.codes16, err));
     *picture = made;
     return STATUS_OK;
 }
@@ -106,7 +107,7 @@ bool picture_rows_equal(const Picture *a, const Picture *b, int y, int x, int n)
 Status idplane_init(IdPlane *ids, int width, int height, Err *err)
 {
     uint32_t *values;
-    TRY(allocate(mem_calloc, &values, width, height, 1, sizeof *values, err));
+    TRY(allocate(mem_calloc, &values, width, height, sizeof *values, err));
     *ids = (IdPlane){.width = width, .height = height, .ids = values};
     return STATUS_OK;
 }

@@ -738,10 +738,12 @@ Status render(const Scene *scene, const RenderParams *params, Frame *frame, Rend
 {
     Renderer *renderer;
     TRY(renderer_new(&scene->geometry, params, &renderer, err));
-    Status status = renderer_rows(renderer, &scene->view, &scene->appearance, 0,
-                                  scene->view.camera.height, frame, err);
-    if (status == STATUS_OK && stats)
+    Status status = STATUS_OK;
+    TRY_GOTO(renderer_rows(renderer, &scene->view, &scene->appearance, 0, scene->view.camera.height,
+                           frame, err));
+    if (stats)
         *stats = renderer->stats;
+done:
     renderer_free(renderer);
     return status;
 }

@@ -19,13 +19,13 @@ typedef struct EndPlace {
 /* What is no end. */
 enum { WALL, LUMEN, FRAME, WALLS };
 
-typedef struct EndSearch {
+typedef struct MeshEndSearch {
     const VesselMesh *mesh;
     const VesselTree *tree;
     bool is_hollow;
     uint32_t walls[WALLS]; /* their parts */
     EndPlace *places;
-} EndSearch;
+} MeshEndSearch;
 
 void meshends_release(MeshEnds *ends)
 {
@@ -51,7 +51,7 @@ static bool is_end(const VesselMesh *mesh, size_t triangle)
 }
 
 /* The place of a triangle of an end. */
-static uint32_t place_of(const EndSearch *search, size_t triangle)
+static uint32_t place_of(const MeshEndSearch *search, size_t triangle)
 {
     float normal[3];
     uint32_t segment = mesh_segment(search->mesh, triangle);
@@ -71,7 +71,7 @@ static double triangle_area(const VesselMesh *mesh, size_t triangle)
 }
 
 /* Which walls there are, and what they are called. */
-static void find_walls(EndSearch *search, MeshEnds *ends)
+static void find_walls(MeshEndSearch *search, MeshEnds *ends)
 {
     bool found[WALLS] = {false};
     for (size_t i = 0; i < search->mesh->n_triangles; i++)
@@ -85,7 +85,7 @@ static void find_walls(EndSearch *search, MeshEnds *ends)
         }
 }
 
-static MeshEnd make_end(const EndSearch *search, uint32_t place)
+static MeshEnd make_end(const MeshEndSearch *search, uint32_t place)
 {
     const FieldSegment *segment = &search->tree->segments[place / PLACES];
     bool is_inlet = !(place & AT_END);
@@ -133,7 +133,7 @@ static void name_ends(const VesselTree *tree, MeshEnds *ends)
 }
 
 /* Lists the places that have an area, in their order, and counts them. */
-static Status sort_places(const EndSearch *search, uint64_t **keys, size_t *n, Err *err)
+static Status sort_places(const MeshEndSearch *search, uint64_t **keys, size_t *n, Err *err)
 {
     size_t count = 0;
     for (size_t place = 0; place < PLACES * search->tree->n_segments; place++)
@@ -147,7 +147,7 @@ static Status sort_places(const EndSearch *search, uint64_t **keys, size_t *n, E
     return STATUS_OK;
 }
 
-static Status list_ends(EndSearch *search, MeshEnds *ends, Err *err)
+static Status list_ends(MeshEndSearch *search, MeshEnds *ends, Err *err)
 {
     uint64_t *keys = NULL;
     Status status;
@@ -167,7 +167,7 @@ done:
 Status meshends_find(const VesselMesh *mesh, const VesselTree *tree, MeshEnds *out, Err *err)
 {
     MeshEnds made = {0};
-    EndSearch search = {.mesh = mesh, .tree = tree};
+    MeshEndSearch search = {.mesh = mesh, .tree = tree};
     Status status;
     TRY_GOTO(
         mem_calloc(&search.places, PLACES * tree->n_segments, sizeof *search.places, "ends", err));

@@ -231,10 +231,11 @@ static Status refuse_value(MetaKey key, const char *value, Err *err)
 {
     Text allowed = TEXT_INIT;
     put_allowed(key, &allowed);
-    Status status = text_check(&allowed, err);
-    if (status == STATUS_OK)
-        status = err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be %s", meta_rows[key].name,
-                         value, text_chars(&allowed));
+    Status status = STATUS_OK;
+    TRY_GOTO(text_check(&allowed, err));
+    status = err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be %s", meta_rows[key].name, value,
+                     text_chars(&allowed));
+done:
     text_release(&allowed);
     return status;
 }
@@ -320,9 +321,8 @@ Status meta_parse(TreeMeta *meta, MetaKey key, const char *value, Err *err)
                     : kind == META_CURVE ? set_curve(meta, key, bare, err)
                                          : set_number(meta, key, bare, err);
     free(copy);
-    if (status == STATUS_OK && kind != META_LINES)
-        status = add_line(meta, (MetaLine){.key = key}, err);
-    return status;
+    TRY(status);
+    return kind == META_LINES ? STATUS_OK : add_line(meta, (MetaLine){.key = key}, err);
 }
 
 void meta_put_value(const TreeMeta *meta, MetaKey key, Text *text)

@@ -550,8 +550,10 @@ static Status read_graph(const TreeSource *source, TreeBuilder *builder, const R
     Graph graph = {.name = source->name, .options = options, .reading = reading, .tree = builder};
     Status status = source->format->read_graph(&graph, source->bytes, source->size, err);
     *is_tree = builder->n > 0;
-    if (status == STATUS_OK && !*is_tree)
+    TRY_GOTO(status);
+    if (!*is_tree)
         status = graph_build(&graph, builder, err);
+done:
     graph_release(&graph);
     return status;
 }
@@ -687,16 +689,18 @@ Status tree_write(const Tree *tree, const char *path, Err *err)
     TRY(tree_check(tree, err));
     TRY(outfile_open(&file, path, err));
     Text text = TEXT_TO(file.stream);
-    Status status = write_to(path, tree, &text, err);
-    if (status == STATUS_OK)
-        status = text_flush(&text, err);
+    Status status = STATUS_OK;
+    TRY_GOTO(write_to(path, tree, &text, err));
+    status = text_flush(&text, err);
+done:
     text_release(&text);
     if (status == STATUS_IO)
         err_prefix(err, "%s: ", is_standard(path) ? "standard output" : path);
-    if (status == STATUS_OK)
-        return outfile_commit(&file, err);
-    outfile_discard(&file);
-    return status;
+    if (status != STATUS_OK) {
+        outfile_discard(&file);
+        return status;
+    }
+    return outfile_commit(&file, err);
 }
 
 Status tree_write_text(const Tree *tree, const char *path, Text *out, Err *err)

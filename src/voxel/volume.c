@@ -217,11 +217,17 @@ static const uint8_t gzip_header[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};
 /* An empty last block. */
 static const uint8_t deflate_end[2] = {3, 0};
 
-/* What stands before the samples, in *bytes (owned). */
+/* The bytes that precede the samples in the file. */
+typedef struct HeaderBytes {
+    char *bytes; /* owned */
+    size_t size;
+} HeaderBytes;
+
+/* Makes the header of a volume in *made, which the caller frees also after an error. */
 static Status make_header(const VolumeStream *stream, const VoxelGrid *grid, bool parts,
-                          const char *about, char **bytes, size_t *size, Err *err)
+                          const char *about, HeaderBytes *made, Err *err)
 {
-    FILE *memory = open_memstream(bytes, size);
+    FILE *memory = open_memstream(&made->bytes, &made->size);
     if (!memory)
         return mem_out_of("for", stream->path, err);
     Text header = TEXT_TO(memory);
@@ -229,7 +235,7 @@ static Status make_header(const VolumeStream *stream, const VoxelGrid *grid, boo
     Status status = text_flush(&header, err);
     text_release(&header);
     /* Closing tells only by NULL that there was no room for the bytes. */
-    if ((fclose(memory) != 0 || !*bytes) && status == STATUS_OK)
+    if ((fclose(memory) != 0 || !made->bytes) && status == STATUS_OK)
         status = mem_out_of("for", stream->path, err);
     return status;
 }
@@ -239,23 +245,22 @@ Status volume_begin(VolumeStream *stream, const VoxelGrid *grid, bool parts, con
 {
     const VolumeFormat *format = stream->format;
     VolumePart part = {0};
-    char *header = NULL;
-    size_t size = 0;
+    HeaderBytes header = {0};
     Status status;
     stream->crc = (uint32_t)crc32(0, NULL, 0);
     stream->plain = 0;
-    TRY_GOTO(make_header(stream, grid, parts, about, &header, &size, err));
+    TRY_GOTO(make_header(stream, grid, parts, about, &header, err));
     if (!format->header_deflated)
-        fwrite(header, 1, size, stream->to);
+        fwrite(header.bytes, 1, header.size, stream->to);
     if (format->deflated)
         fwrite(gzip_header, 1, sizeof gzip_header, stream->to);
     if (format->header_deflated) {
-        TRY_GOTO(volume_pack(stream, (uint8_t *)header, size, &part, err));
+        TRY_GOTO(volume_pack(stream, (uint8_t *)header.bytes, header.size, &part, err));
         TRY_GOTO(volume_put(stream, &part, err));
     }
 done:
     free(part.bytes);
-    free(header);
+    free(header.bytes);
     return status;
 }
 

@@ -46,8 +46,8 @@ static void check(const Tree *tree, TreeReading *reading)
     assert(status == STATUS_OK);
     (void)status;
     assert(tree->n == reading->network.points - reading->network.merged - reading->network.unused);
-    assert(tree->n - reading->n_roots ==
-           reading->network.lines - reading->network.without_length - reading->network.repeated - reading->network.loops);
+    assert(tree->n - reading->n_roots == reading->network.lines - reading->network.without_length -
+                                             reading->network.repeated - reading->network.loops);
     assert(reading->network.n_cuts == reading->network.loops);
     for (int i = 0; i <= READ_MAX_DEGREE; i++)
         degrees += reading->degree[i];

@@ -287,7 +287,8 @@ static void quads_weigh_by_their_distance_from_the_pixel(void **state)
     (void)state;
     static const double parts[2][3] = {{3, 4, 1}, {1, 4, 3}};
     float towards[3][ANSWER_STEP] = {{0}, {0}, {1}};
-    const OcclusionLines lines = {.towards = {towards[0], towards[1], towards[2]}, .n = ANSWER_STEP};
+    const OcclusionLines lines = {.towards = {towards[0], towards[1], towards[2]},
+                                  .n = ANSWER_STEP};
     const float normal[3] = {0, 0, 1};
     uint8_t bytes[QUADS_ABOUT][ANSWER_STEP] = {{0}};
     QuadAnswers answers = {.n = QUADS_ABOUT};
@@ -300,8 +301,8 @@ static void quads_weigh_by_their_distance_from_the_pixel(void **state)
             for (int quad = 0; quad < QUADS_ABOUT; quad++) {
                 double weight = parts[pixel % 2][quad % 3] * parts[pixel / 2][quad / 3];
                 bytes[quad][0] = CONE_CLEAR;
-                double open = (double)occlusionkernels[kind - KERNELS_PORTABLE]->ambient(&lines, &answers,
-                                                                                 1, pixel, normal);
+                double open = (double)occlusionkernels[kind - KERNELS_PORTABLE]->ambient(
+                    &lines, &answers, 1, pixel, normal);
                 bytes[quad][0] = 0;
                 assert_true(fabs(open - weight / 64) < 1e-6);
             }

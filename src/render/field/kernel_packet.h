@@ -35,7 +35,7 @@ typedef struct PacketTerm {
     Lanes reach[2];           /* z between which it may exceed the cut-off */
     const TileTerm *term;
     float z;       /* of the term, relative to the group's */
-    float on, off; /* likewise, between which it may exceed the cut-off */
+    float felt[2]; /* z between which it may exceed the cut-off, relative to the group's */
     bool bent;     /* whether half_gauss, curvature, steep and `flat` are set */
     bool flat;     /* u and v are the same all along, and their factor is in half_gauss */
 } PacketTerm;
@@ -281,7 +281,7 @@ LANE_FN void add_sample(const TermSample *one, LaneMask here, const PacketTerm *
     sum->slope = lanes_add_where(here, sum->slope, one->slope);
     sum->curvature = lanes_add_where(here, sum->curvature, term->curvature);
     sum->steep = lanes_add_where(here, sum->steep, term->steep);
-    float depth = term->off - term->on;
+    float depth = term->felt[1] - term->felt[0];
     sum->depth = depth > sum->depth ? depth : sum->depth;
     sum->n++;
 }

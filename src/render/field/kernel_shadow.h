@@ -66,8 +66,8 @@ LANE_FN uint32_t terms_ahead(const Departures *way, size_t first)
 FOLDED_FN void set_depths(const Departures *way, PacketTerm *term)
 {
     term->z = (float)(term->term->z_near - way->base);
-    term->on = (float)(term->term->on - way->base);
-    term->off = (float)(term->term->off - way->base);
+    term->felt[0] = (float)(term->term->on - way->base);
+    term->felt[1] = (float)(term->term->off - way->base);
 }
 
 /* Keeps the term as a blocker, and adds what it is at the places to *at. */
@@ -82,8 +82,8 @@ FOLDED_FN void pass_term(Departures *way, PacketTerm *term, LaneMask open, Packe
                                                  .u1 = lanes_abs(term->u1),
                                                  .e2 = term->e2,
                                                  .peak = term->peak};
-    if (term->on > way->to) {
-        at->next = lanes_min(at->next, lanes_set(term->on));
+    if (term->felt[0] > way->to) {
+        at->next = lanes_min(at->next, lanes_set(term->felt[0]));
         return;
     }
     if (!matters(term, open))
@@ -268,12 +268,12 @@ LANE_FN void look_through_union(Departures *way, LaneMask *open, LaneMask *dark,
 }
 
 /* Some of a tile's places, and their numbers there. */
-typedef struct Places {
+typedef struct ShadowPlaces {
     float x[LANES], y[LANES];
     double z[LANES];
     uint16_t numbers[LANES];
     int n;
-} Places;
+} ShadowPlaces;
 
 /* Sets the circle about the places. */
 LANE_FN void enclose(Departures *way)
@@ -340,7 +340,7 @@ LANE_FN void place_terms(Departures *way)
 }
 
 /* Decides the places that have been put off, and forgets them. */
-LANE_FN void decide_by_march(ShadowPoints *places, Places *later, Departures *way)
+LANE_FN void decide_by_march(ShadowPoints *places, ShadowPlaces *later, Departures *way)
 {
     for (int lane = later->n; lane < LANES; lane++) {
         later->x[lane] = later->x[later->n - 1];
@@ -363,7 +363,7 @@ LANE_FN void decide_by_march(ShadowPoints *places, Places *later, Departures *wa
     later->n = 0;
 }
 
-LANE_FN void put_off(const ShadowPoints *places, int number, Places *later)
+LANE_FN void put_off(const ShadowPoints *places, int number, ShadowPlaces *later)
 {
     int n = later->n++;
     later->x[n] = places->x[number];
@@ -374,7 +374,7 @@ LANE_FN void put_off(const ShadowPoints *places, int number, Places *later)
 
 LANE_TARGET void SHADOW_KERNEL(const FieldTile *tile, TileWork *work, ShadowPoints *places)
 {
-    Places later = {.n = 0};
+    ShadowPlaces later = {.n = 0};
     assert(tile->n_terms <= work->capacity);
     Departures way = {.packet = {.tile = tile, .terms = work->memory}, .blockers = work->memory};
     share_memory(&way.packet);

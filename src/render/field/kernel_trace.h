@@ -246,9 +246,9 @@ LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Gr
         end = terms[last]->term->off > end ? terms[last]->term->off : end;
     for (size_t i = first; i < last; i++) {
         terms[i]->z = (float)(terms[i]->term->z_near - base);
-        terms[i]->on = (float)(terms[i]->term->on - base);
-        terms[i]->off = (float)(terms[i]->term->off - base);
-        depth = fmaxf(depth, terms[i]->off - terms[i]->on);
+        terms[i]->felt[0] = (float)(terms[i]->term->on - base);
+        terms[i]->felt[1] = (float)(terms[i]->term->off - base);
+        depth = fmaxf(depth, terms[i]->felt[1] - terms[i]->felt[0]);
     }
     double reach = end - base > base - begin ? end - base : base - begin;
     float width = packet->tile->half_size;

@@ -114,10 +114,10 @@ static Status query_views(AreaJob *job, const OffPixelViews *views, Err *err)
     TRY_GOTO(threads_try(job->points->n_runs, drawing->params->threads, query_run, job, err));
 done:
     shadowpass_release(&job->pass, drawing);
-    if (status == STATUS_OK && job->sources->off_pixel)
-        status =
-            offpixel_query(drawing, views, (size_t)job->light_index, job->sources->off_pixel, err);
-    return status;
+    TRY(status);
+    if (!job->sources->off_pixel)
+        return STATUS_OK;
+    return offpixel_query(drawing, views, (size_t)job->light_index, job->sources->off_pixel, err);
 }
 
 /* Makes light views from the points of the present set, and queries them. */

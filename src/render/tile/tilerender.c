@@ -646,8 +646,9 @@ Status tilerender_rows(const Drawing *drawing, void *prepared, Frame *frame, Err
     picture.shifts = canvas->more.side > 0 && !tiles->engine->fine_grid;
     picture.has_shadows = params->shadows && canvas->wants_color && !canvas->wholly_colored;
     picture.batch_tiles = picture.has_shadows ? tiles->engine->batch_tiles : 1;
-    if (status == STATUS_OK)
-        status = draw_band(&picture, err);
+    TRY_GOTO(status);
+    status = draw_band(&picture, err);
+done:
     release_picture(&picture);
     return status;
 }

@@ -110,9 +110,10 @@ static Status check_file(const char *path, Err *err)
 static Status read_moment(Collection *collection, Moment *moment, const ReadOptions *options,
                           Err *err)
 {
-    Status status = check_file(moment->path, err);
-    if (status == STATUS_OK)
-        status = tree_read_as(&moment->tree, moment->path, options, NULL, err);
+    Status status = STATUS_OK;
+    TRY_GOTO(check_file(moment->path, err));
+    status = tree_read_as(&moment->tree, moment->path, options, NULL, err);
+done:
     if (status != STATUS_OK)
         err_prefix(err, "%s:%zu: ", collection->name, moment->line);
     TRY(status);
@@ -172,13 +173,13 @@ static Status add_column(TreeBuilder *builder, const Moment *moment, size_t colu
     text_puts(&name, from->name);
     if (!constant)
         text_printf(&name, "_%s", number_text(moment->time, time));
-    Status status = text_check(&name, err);
-    if (status == STATUS_OK)
-        status = builder_column(builder, text_chars(&name), from->unit, &number, err);
-    text_release(&name);
-    TRY(status);
+    Status status = STATUS_OK;
+    TRY_GOTO(text_check(&name, err));
+    TRY_GOTO(builder_column(builder, text_chars(&name), from->unit, &number, err));
     source[number] = from->value;
-    return STATUS_OK;
+done:
+    text_release(&name);
+    return status;
 }
 
 static Status add_columns(TreeBuilder *builder, const Collection *collection, const double **source,

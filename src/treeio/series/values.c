@@ -156,10 +156,11 @@ static Status refuse_column(const ValuesReader *reader, Err *err)
     for (size_t i = 0; i < reader->columns.n && shown < SHOWN; i++)
         if (reader->columns.items[i].wanted)
             text_printf(&known, "%s%.40s", shown++ ? ", " : "", reader->columns.items[i].name);
-    Status status = text_check(&known, err);
-    if (status == STATUS_OK)
-        status = err_set(err, STATUS_INPUT, "there is no column '%.40s'; there are %s%s",
-                         reader->wanted, text_chars(&known), shown == SHOWN ? ", ..." : "");
+    Status status = STATUS_OK;
+    TRY_GOTO(text_check(&known, err));
+    status = err_set(err, STATUS_INPUT, "there is no column '%.40s'; there are %s%s",
+                     reader->wanted, text_chars(&known), shown == SHOWN ? ", ..." : "");
+done:
     text_release(&known);
     return status;
 }
@@ -254,9 +255,10 @@ static Status read_titles(ValuesReader *reader, char *line, Err *err)
                                            : "there is no column of values");
     TRY(mem_calloc(&reader->field, reader->columns.n, sizeof *reader->field, "fields", err));
     text_append(&base, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
-    Status status = text_check(&base, err);
-    if (status == STATUS_OK)
-        status = name_columns(reader, text_chars(&base), err);
+    Status status = STATUS_OK;
+    TRY_GOTO(text_check(&base, err));
+    status = name_columns(reader, text_chars(&base), err);
+done:
     text_release(&base);
     TRY(status);
     reader->n_wanted = count_columns(reader, MATCH_ALL, NULL);
@@ -443,6 +445,18 @@ static Status check_all_times(const ValuesReader *reader, const double *times, s
     return check_room(reader, n * reader->n_wanted, err);
 }
 
+/* Opens a column by a name, which it releases. */
+static Status open_named(ValuesReader *reader, Text *name, const char *unit, size_t before,
+                         double **value, Err *err)
+{
+    Status status = STATUS_OK;
+    TRY_GOTO(text_check(name, err));
+    status = open_column(reader, text_chars(name), unit, before, value, err);
+done:
+    text_release(name);
+    return status;
+}
+
 /* The frames of a wanted column, its `number`th. A value that does not change is no series. */
 static Status fill_frames(ValuesReader *reader, const ValueColumn *column, size_t number,
                           const double *times, size_t n, Err *err)
@@ -453,11 +467,7 @@ static Status fill_frames(ValuesReader *reader, const ValueColumn *column, size_
         double *value;
         Text name = TEXT_INIT;
         text_printf(&name, n > 1 ? "%s_%s" : "%s", column->name, number_text(times[k], time));
-        Status status = text_check(&name, err);
-        if (status == STATUS_OK)
-            status = open_column(reader, text_chars(&name), column->unit, before, &value, err);
-        text_release(&name);
-        TRY(status);
+        TRY(open_named(reader, &name, column->unit, before, &value, err));
         for (size_t i = k; i < reader->rows.n; i += n)
             put_value(reader, reader->rows.items[i].key, value,
                       reader->held.items[reader->rows.items[i].values + number]);
@@ -540,8 +550,10 @@ Status tree_read_values(Tree *tree, const char *path, const char *column, char *
                            .time = NONE};
     Status status = is_folder(path, strlen(path)) ? steps_read(tree, path, column, err)
                                                   : read_csv(&reader, err);
-    if (status == STATUS_OK && name)
+    TRY_GOTO(status);
+    if (name)
         status = mem_strdup(name, column ? column : reader.what, err);
+done:
     reader_release(&reader);
     return status;
 }

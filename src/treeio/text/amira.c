@@ -281,8 +281,9 @@ static Status unpack(AmiraReader *reader, const AmiraField *field, size_t n, Err
                         : bytes_inflate(from, field->packed, bytes, size, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "the %zu bytes of @%lld are ", field->packed, field->block);
-    if (status == STATUS_OK)
-        vtk_numbers(field->type, reader->is_big_endian, bytes, n, field->value);
+    TRY_GOTO(status);
+    vtk_numbers(field->type, reader->is_big_endian, bytes, n, field->value);
+done:
     reader->cursor.at += field->packed;
     free(bytes);
     return status;

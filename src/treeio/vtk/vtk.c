@@ -442,8 +442,8 @@ Status vtk_read(Graph *graph, char *bytes, size_t size, Err *err)
     status = add_all_cells(&reader, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", graph->name);
-    if (status == STATUS_OK)
-        status = vtk_to_graph(&reader.data, graph, err);
+    TRY_GOTO(status);
+    status = vtk_to_graph(&reader.data, graph, err);
 done:
     for (size_t k = 0; k < VTK_CELL_KINDS; k++)
         vtk_release_cells(&reader.cells[k]);

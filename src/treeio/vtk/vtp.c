@@ -238,11 +238,11 @@ static Status decode(VtpReader *reader, XmlArray *of, const char *from, const ch
     TRY(vtp_decode(&source, &got, err));
     size_t n = got.size / source.number_size;
     reader->taken += (double)n * sizeof *of->array.value;
-    Status status = mem_calloc(&of->array.value, n, sizeof *of->array.value, "numbers", err);
-    if (status == STATUS_OK) {
-        vtk_numbers(of->type, reader->coding.is_big_endian, got.bytes, n, of->array.value);
-        status = finish_array(of, n, err);
-    }
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&of->array.value, n, sizeof *of->array.value, "numbers", err));
+    vtk_numbers(of->type, reader->coding.is_big_endian, got.bytes, n, of->array.value);
+    status = finish_array(of, n, err);
+done:
     free(got.decoded);
     return status;
 }

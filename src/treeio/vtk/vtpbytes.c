@@ -239,9 +239,10 @@ Status vtp_decode(const VtpSource *source, VtpBytes *out, Err *err)
     VtpBytes made = {0};
     Status status = source->coding.packing == VTP_PLAIN ? decode_plain(&stream, &made, err)
                                                         : decode_blocks(&stream, &made, err);
-    if (status == STATUS_OK)
-        *out = made;
-    else
-        free(made.decoded);
+    TRY_GOTO(status);
+    *out = made;
+    return STATUS_OK;
+done:
+    free(made.decoded);
     return status;
 }
