@@ -9,8 +9,8 @@
 #define EXP_LN2_HIGH 0x1.62e42fef80000p-8
 #define EXP_LN2_LOW 0x1.1cf79abc9e3b4p-43
 
-/* log: ln 2 as a multiple of 2^-42 and the rest, and the bits at which the first interval
- * begins. */
+/* log: ln 2 as a multiple of 2^-42 and the rest, and the bits at which the first interval begins.
+ */
 #define LOG_LN2_HIGH 0x1.62e42fefa3800p-1
 #define LOG_LN2_LOW 0x1.ef35793c76730p-45
 #define LOG_START 0x3fe6955555555556u
@@ -28,8 +28,8 @@
 #define HALF_PI_3 0x1.3198a2e037073p-69
 #define TWO_PER_PI 0x1.45f306dc9c883p-1
 
-/* 2^(j / 128): the bits of the double, less j 2^45, and the relative rounding error of the
- * double. */
+/* 2^(j / 128): the bits of the double, less j 2^45, and the relative rounding error of the double.
+ */
 typedef struct ExpEntry {
     uint64_t bits;
     double tail;
