@@ -52,7 +52,7 @@ static void put_argument(Text *text, char conversion, va_list *arguments)
         put_color_numbers(text, va_arg(*arguments, Rgb));
         break;
     default:
-        assert(!"a conversion of put_text");
+        assert(false && "a conversion of put_text");
     }
 }
 
