@@ -62,7 +62,7 @@ static Status failed_writing(Err *err)
 {
     if (errno == ENOMEM)
         return mem_out_of("to write a file of the format", running->format, err);
-    return err_set(err, STATUS_IO, "writing the %s file failed: %s", running->format,
+    return err_set(err, STATUS_IO, "writing the %s failed: %s", running->format,
                    ferror(running->stream) || !*running->complaint ? strerror(errno)
                                                                    : running->complaint);
 }
