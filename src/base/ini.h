@@ -1,21 +1,27 @@
-/* INI files: lines `name = value` and, before those of a section, `[section]`. */
+/* Reads INI files. A line is `name = value`, or `[section]`, which begins a section. */
 #ifndef CORCAST_BASE_INI_H
 #define CORCAST_BASE_INI_H
 
 #include "base/status.h"
 
-/* Called for each line: a pair in `section` ("" above the first one), or the head of a section,
- * with `name` and `value` NULL. Its error sentence need not name file and line: ini_read adds
- * them. */
+/* Called for each pair and for each section head. `section` is "" before the first section head.
+ * For a section head, `name` and `value` are NULL. An error need not name file and line, which
+ * ini_read adds. */
 typedef Status IniTake(void *user, const char *section, const char *name, const char *value,
                        Err *err);
 
-/* Reads the file, `what` ("a look") naming its kind in sentences, and calls `take` line by line. A
- * line whose first character is ';' or '#' is a comment, and so is the rest of a line from a ';'
- * that follows a blank or a '='. Blanks around names, values and sections, and in front of lines,
- * do not count. What names and values point into is handed over in *text (owned), or freed when
- * `text` is NULL. STATUS_INPUT, naming file and line, on any other line, and what `take`
- * returns. */
+/* Reads a file and calls `take` for each pair and section head, in the order of the file, until a
+ * call fails.
+ *
+ * A line that begins with ';' or '#' is a comment. A ';' after a blank or a '=' begins a comment
+ * that lasts to the end of the line. Blanks at the start of a line, and around names, values and
+ * sections, are ignored.
+ *
+ * what     the kind of file, for errors: "a look".
+ * text     receives the buffer that all names and values point into (owned). NULL: the buffer is
+ *          freed before ini_read returns.
+ * Errors   STATUS_INPUT with file and line for any other line; STATUS_IO; STATUS_MEMORY; any error
+ *          of `take`. */
 MUST_CHECK Status ini_read(const char *path, const char *what, IniTake *take, void *user,
                            char **text, Err *err);
 

@@ -1,16 +1,17 @@
-/* Work that a user may cut short with SIGINT and keep the result of. */
+/* Lets a user stop long work with SIGINT and keep the result so far. */
 #ifndef CORCAST_BASE_INTERRUPT_H
 #define CORCAST_BASE_INTERRUPT_H
 
 #include <stdbool.h>
 
-/* From here on the first SIGINT only makes interrupt_asked() true; a second one ends the program as
- * usual. A SIGINT that the caller ignores stays ignored. */
+/* Installs a handler of SIGINT. The first SIGINT makes interrupt_asked return true. The second one
+ * ends the program. If the process ignored SIGINT before, nothing changes. */
 void interrupt_catch(void);
-/* Ends what interrupt_catch began: SIGINT does again what it did before. */
+/* Restores the handling of SIGINT from before interrupt_catch. */
 void interrupt_release(void);
 
-/* Whether SIGINT came since interrupt_catch. `context` is unused: the form of a stop callback. */
+/* Returns true if a SIGINT came since interrupt_catch. `context` is unused; it makes the function
+ * fit the type of a stop callback. */
 bool interrupt_asked(void *context);
 
 #endif

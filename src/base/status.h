@@ -1,10 +1,11 @@
 /* Status codes and error text.
  *
  * A function that can fail for a reason outside the program returns a Status and takes an
- * `Err *err` as its last argument. The frame that knows what went wrong writes one whole sentence,
- * naming the file and line or the option, the value, and what is allowed; callers may prefix where
- * it happened; main prints it once. On failure every output argument is unchanged. A broken
- * invariant is an assert, a rejected candidate is an outcome: neither is a Status. */
+ * `Err *err` as its last argument. The function that detects the error writes one sentence. The
+ * sentence names the file and line, or the option; the value; and what is allowed. Callers may put
+ * the place of the error in front. main prints the sentence once. After an error the output
+ * arguments are unchanged, unless the function's comment says otherwise. A broken invariant is
+ * caught by assert. A rejected candidate is a normal return value. Neither is a Status. */
 #ifndef CORCAST_BASE_STATUS_H
 #define CORCAST_BASE_STATUS_H
 
@@ -36,14 +37,14 @@ typedef struct Err {
 #define PRINTF_LIKE(format_index, first_index)                                                     \
     __attribute__((format(printf, format_index, first_index)))
 
-/* Writes the sentence and returns `status`, so that a failing frame reads
- * `return err_set(err, STATUS_INPUT, "...")`. `err` may be NULL. */
+/* Writes the sentence, cut to the length of Err.text, and returns `status`. Used as `return
+ * err_set(err, STATUS_INPUT, "...");`. `err` may be NULL. */
 Status err_set(Err *err, Status status, const char *format, ...) PRINTF_LIKE(3, 4);
 
 /* Puts text in front of the sentence: err_prefix(err, "%s: ", path). `err` may be NULL. */
 void err_prefix(Err *err, const char *format, ...) PRINTF_LIKE(2, 3);
 
-/* The process exit status (0 to 3) that stands for `status`. */
+/* Returns the exit status of the process, 0 to 3, for `status`. */
 int status_exit(Status status);
 
 /* Returns the status of `expression` from the calling function unless it is STATUS_OK. */
@@ -54,8 +55,8 @@ int status_exit(Status status);
             return try_status_;                                                                    \
     } while (0)
 
-/* Stores the status of `expression` in the local `status` and jumps to `done:` unless it is
- * STATUS_OK, for functions that hold resources. */
+/* For functions that hold resources. Stores the status of `expression` in the local variable
+ * `status`. If it is not STATUS_OK, jumps to the label `done`. */
 #define TRY_GOTO(expression)                                                                       \
     do {                                                                                           \
         status = (expression);                                                                     \

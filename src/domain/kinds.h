@@ -1,5 +1,5 @@
-/* What each kind of domain supplies to domain.c, all in the domain's own coordinates; private to
- * the room. */
+/* The functions that each kind of domain supplies to domain.c. All coordinates are those of the
+ * domain itself. Private to the module domain. */
 #ifndef CORCAST_DOMAIN_KINDS_H
 #define CORCAST_DOMAIN_KINDS_H
 
@@ -9,16 +9,20 @@ typedef struct DomainOps {
     const char *name;       /* "disc" */
     const char *parameters; /* "R" */
     bool is_convex;
-    /* Reads the text behind the colon into a domain that is zeroed but for its ops: fills sizes,
-     * file, dimension, bounds, volume and inlet. Of STATUS_USAGE the sentence lacks "`domain` TEXT:
-     * ". On failure the caller releases what there is. */
+    /* Reads the text after the colon. Before the call only domain->ops is set, and all else is
+     * zero. Sets sizes, file, dimension, bounds, volume and inlet. The sentence of a STATUS_USAGE
+     * does not name the option, which the caller adds. The caller releases the domain, also after
+     * an error. */
     Status (*load)(Domain *domain, const char *values, Err *err);
+    /* Returns true if the point is in the domain, or outside by at most the tolerance. */
     bool (*inside)(const Domain *domain, Vec3 point, double tolerance_mm);
-    /* For segments longer than slack_mm; NULL for convex kinds. */
+    /* Returns true if the whole segment, which is longer than slack_mm, is in the domain. NULL for
+     * convex kinds, where the two ends decide. */
     bool (*holds_segment)(const Domain *domain, Vec3 a, Vec3 b);
-    /* NULL: rejection from the bounds. */
+    /* Returns a random point. NULL: domain.c draws points in the bounds until one is inside. */
     Vec3 (*sample)(const Domain *domain, Random *random);
-    /* The point of the domain that a fork near it is moved to; NULL: it stays. */
+    /* Returns the point of the domain to which a bifurcation near `point` is moved. NULL:
+     * bifurcations stay where they are. */
     Vec3 (*settle)(const Domain *domain, Vec3 point);
     /* Frees what the union holds; NULL for the kinds that read no file. */
     void (*release)(Domain *domain);
@@ -27,11 +31,12 @@ typedef struct DomainOps {
 extern const DomainOps disc_ops, ball_ops, rect_ops, box_ops, ellipsoid_ops, shell_ops;
 extern const DomainOps polygon_ops, mask_ops, mesh_ops, hull_ops, surface_ops;
 
-/* Reads FILE[,MM] into file, size and n_sizes; size[0] is 1 where MM is not given. */
+/* Reads FILE[,MM] into file, size and n_sizes. size[0] is the mm per unit of the file, 1 if MM is
+ * not given. Errors: STATUS_USAGE, STATUS_MEMORY. */
 MUST_CHECK Status domain_load_file_name(Domain *domain, const char *values, Err *err);
 
-/* STATUS_INPUT, naming the file and the line (0: there are none), unless the point is finite and
- * within DOMAIN_MAX_MM of the origin on each axis. */
+/* Checks that a point of a file is finite and within DOMAIN_MAX_MM of the origin on each axis. Else
+ * fails with STATUS_INPUT, which names the file and the line (0: the file has no lines). */
 MUST_CHECK Status domain_check_point(const char *file, size_t line, Vec3 point, Err *err);
 
 #endif

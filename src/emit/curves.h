@@ -1,4 +1,5 @@
-/* Vessels as curves: series of segments of the same kind. Private to the module emit. */
+/* Joins segments of vessels to curves. A curve is a chain of connected segments of the same kind.
+ * Private to the module emit. */
 #ifndef CORCAST_EMIT_CURVES_H
 #define CORCAST_EMIT_CURVES_H
 
@@ -21,7 +22,8 @@ typedef struct Curves {
 } Curves;
 
 /* Joins the segments of params->vessels to curves. A segment is continued by its daughter of the
- * same Strahler order [params->anatomy] and the same paint; there is at most one.
+ * same Strahler order [params->anatomy] and the same paint. At most one daughter has the order of
+ * its parent.
  *
  * paints   per segment; NULL: all segments have the same paint.
  * out      is released with curves_release.
@@ -47,13 +49,13 @@ static inline size_t curve_points(const Curves *curves, size_t curve)
 {
     return curves->first[curve + 1] - curves->first[curve] + 1;
 }
-/* Returns the segment whose values a point has: the one that ends there; at the start, the first.
- */
+/* Returns the segment that gives a point its values. This is the segment that ends at the point;
+ * for point 0 it is the first segment. */
 static inline uint32_t curve_segment(const Curves *curves, size_t curve, size_t point)
 {
     return curves->segments[curves->first[curve] + (point ? point - 1 : 0)];
 }
-/* Returns the position and the radius of a point of a curve. */
+/* Return the position, and the radius in mm, of a point of a curve. */
 static inline Vec3 curve_point(const Curves *curves, size_t curve, size_t point)
 {
     const FieldSegment *segment = &curves->vessels->segments[curve_segment(curves, curve, point)];

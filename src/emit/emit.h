@@ -1,5 +1,5 @@
-/* The public header of the module emit: writes scenes, meshes and curves as files of other
- * programs. The text of each language is in templates/; the C code adds numbers, and calls of
+/* The public header of the module emit. The module writes scenes, meshes and curves as files of
+ * other programs. The text of each language is in templates/; the C code adds numbers, and calls of
  * macros that the templates define. */
 #ifndef CORCAST_EMIT_EMIT_H
 #define CORCAST_EMIT_EMIT_H
@@ -26,8 +26,8 @@ typedef struct EmitParams {
     const Scene *scene;           /* for emitters of scenes */
     const Anatomy *anatomy;       /* NULL: Strahler orders are 0, and trees have no names */
     const VesselMesh *mesh;       /* for emitters of meshes */
-    const VesselTree *vessels;    /* for emitters of meshes, whose labels are its segments; and for
-                                   * emitters of curves */
+    const VesselTree *vessels;    /* for emitters of curves; and for emitters of meshes, where the
+                                   * labels of the mesh are indices of its segments */
     const Appearance *appearance; /* for emitters with has_colors */
     const double *orders; /* for emitters with has_colors: Strahler order per segment index */
     const MeshEnds *ends; /* for emitters with has_parts */
@@ -54,8 +54,8 @@ typedef struct EmitParams {
 
 typedef struct EmitReport {
     size_t cells;    /* of an isosurface, or of a blob that is divided into cells; else 0 */
-    int joint_sides; /* number of sides of a joint's mesh; 0: joints are exact, of which POV-Ray can
-                      * hold 349,000 */
+    int joint_sides; /* number of sides of the mesh of a joint; 0: joints are exact shapes. POV-Ray
+                      * can hold at most 349,000 exact joints [docs/POVRAY.md]. */
     double openscad_s; /* estimated time in which OpenSCAD makes a solid; else 0 */
 } EmitReport;
 

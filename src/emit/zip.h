@@ -11,11 +11,13 @@ typedef struct ZipEntry {
     void *context;
 } ZipEntry;
 
-enum { ZIP_MOST_ENTRIES = 8 };
+enum { ZIP_MOST_ENTRIES = 8 }; /* largest number of entries of an archive */
 
-/* Appends an archive of `n` entries, which are compressed while they are made. Their date is 1
- * January 1980, so that the same entries give the same bytes. Errors: STATUS_INFEASIBLE if the
- * archive has 4 GB or more, STATUS_MEMORY, and those of the entries. */
+/* Appends a ZIP archive of `n` <= ZIP_MOST_ENTRIES entries to `out`. Each entry is compressed while
+ * its callback produces it. Every entry is dated 1 January 1980, so equal entries give equal bytes.
+ *
+ * Errors   STATUS_INFEASIBLE if the archive would have 4 GB or more; STATUS_MEMORY; any error of an
+ *          entry's callback. */
 MUST_CHECK Status zip_put(const ZipEntry *entries, size_t n, Text *out, Err *err);
 
 #endif

@@ -9,7 +9,7 @@
 /* A character of a line. Lengths are multiples of the font size. */
 typedef struct Glyph {
     unsigned index; /* of the glyph; 0: the font's box for a character that it lacks */
-    int bytes;      /* length of the character in the text */
+    int bytes;      /* number of bytes of the character in the UTF-8 text */
     double x;       /* distance from the beginning of the line */
     double scale; /* size of the glyph: 1, or less for a substitute of a superscript or subscript */
     double rise;  /* height of the glyph's baseline above the line's baseline */
@@ -34,7 +34,9 @@ void glyphs_release(Glyphs *glyphs);
 FT_Library fonts_library(const FigureFonts *fonts);
 FT_Face fonts_face(const FigureFonts *fonts, bool bold);
 
-/* Height of capitals, and depth of letters below the baseline, over the font size. */
+/* Height of capitals above the baseline, and depth of letters below it, as multiples of the font
+ * size.
+ */
 #define FONT_CAPITALS 0.73
 #define FONT_DESCENT 0.21
 

@@ -18,12 +18,13 @@ typedef struct JointFrame {
     double radius, radius_change;
 } JointFrame;
 
-/* Circles of radius[i] > 0 about center[i] in the planes across axis[i]. The axes are unit vectors
- * that both lead from the first circle on to the second. Where they are parallel, any f will do and
- * one is chosen. */
+/* Prepares the joint of two circles. Circle i has the centre center[i] and the radius radius[i] >
+ * 0, and its plane is perpendicular to axis[i]. The axes are unit vectors, and both point from the
+ * first circle towards the second. If the axes are parallel, f is an arbitrary perpendicular. */
 JointFrame joint_frame(const Vec3 center[2], const Vec3 axis[2], const double radius[2]);
 
-/* The point of the surface at angle p, given by its cosine and sine, and l. */
+/* Returns the point of the surface at the parameters p and l. The angle p is given by its cosine
+ * and sine. */
 Vec3 joint_point(const JointFrame *joint, double cosine, double sine, double l);
 
 /* All crossings of the line with the surface, in no order: at most 4. Lines that graze it, crossing

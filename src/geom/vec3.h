@@ -1,5 +1,4 @@
-/* Three-vectors in double precision. Millimetres where they are places, pure numbers where they
- * are directions. */
+/* Vectors of three doubles. Positions are in millimetres. Directions have no unit. */
 #ifndef CORCAST_GEOM_VEC3_H
 #define CORCAST_GEOM_VEC3_H
 
@@ -16,7 +15,7 @@ static inline Vec3 vec3(double x, double y, double z)
     return (Vec3){x, y, z};
 }
 
-/* Along axis 0, 1 or 2. */
+/* Returns component `axis` of v: 0 is x, 1 is y, 2 is z. */
 static inline double vec3_component(Vec3 v, int axis)
 {
     return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
@@ -63,8 +62,8 @@ static inline double vec3_distance(Vec3 a, Vec3 b)
     return vec3_length(vec3_sub(a, b));
 }
 
-/* The squared distance of the point `a` from the segment from the origin to `along`, which may have
- * no length. */
+/* Returns the squared distance between the point `a` and the segment from the origin to `along`,
+ * which may be the zero vector. */
 static inline double vec3_distance2_along(Vec3 a, Vec3 along)
 {
     double length2 = vec3_dot(along, along), t = vec3_dot(a, along) / length2;

@@ -12,7 +12,7 @@ enum { DISTAL = LEFT, FRESH = RIGHT };
 typedef struct Connection {
     Vec3 terminal; /* mm */
     int32_t segment;
-    double price;        /* increase of S_root [law.h], to first order */
+    double price; /* first-order estimate of the increase of S_root [law.h], the tree's target */
     Vec3 bifurcation;    /* mm */
     double radius[ENDS]; /* mm; set by connection_optimise */
 } Connection;

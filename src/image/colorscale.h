@@ -5,7 +5,7 @@
 #include "base/base.h"
 #include "image/colormap.h"
 
-/* A colour for values that the map has no colour for. */
+/* A colour for values outside of the map. If `given` is false, the default applies. */
 typedef struct ScaleColor {
     bool given;
     float rgb[3]; /* linear */
@@ -19,8 +19,8 @@ typedef struct ColorScale {
     double range[2];  /* values at the ends of the map, ascending; above 0 with `log` */
     bool log;         /* the map is linear in the logarithm of the value */
     int classes;      /* N >= 2: N equal classes of one colour each; else continuous */
-    /* Bounds of classes, ascending, in place of `classes`: below the first bound, between
-     * neighbouring bounds, and from the last bound on. */
+    /* Bounds of classes, ascending. They replace `classes`: n bounds make n + 1 classes, the first
+     * below bounds[0] and the last from bounds[n - 1] on. */
     double bounds[COLORSCALE_MOST_BOUNDS];
     int n_bounds;           /* 0: there are none */
     ScaleColor under, over; /* of values below and above the range, or all bounds; default: the
@@ -86,8 +86,8 @@ typedef struct ColorRamp {
 } ColorRamp;
 
 void colorramp_init(ColorRamp *ramp, const Colormap *map);
-/* As colorscale_at, with the continuous colours of the ramp, which was made from the scale's map.
- */
+/* Does the same as colorscale_at, with interpolated colours of `ramp`, which colorramp_init made
+ * from scale->map. */
 void colorscale_on_ramp(const ColorScale *scale, const ColorRamp *ramp, double place, float rgb[3]);
 
 /* Appends "wss 3.70 to 54.1 Pa". */

@@ -10,24 +10,26 @@
 /* POV-Ray refuses cylinders shorter than this [docs/POVRAY.md]. */
 #define SHORTEST_MM 1e-9
 
-/* Values of Places.cover for a segment that no sister covers. */
+/* Values of Places.cover that are not the index of a sister. */
 enum { PLACES_UNCOVERED = -1, PLACES_CANNOT_DRAW = -2, PLACES_COVERED_BACKWARDS = -3 };
 
 typedef struct Places {
-    /* Per node: the twin of the segment that ends there, or a PLACES_... A segment with a twin is
-     * not drawn. A twin is a segment between the same two points that is at least as thick: a
-     * sister, which starts at the same node, or PLACES_COVERED_BACKWARDS, which runs the other way.
-     * Without a twin: PLACES_UNCOVERED; without a segment that can be drawn: PLACES_CANNOT_DRAW.
+    /* Per node, about the segment that ends there. A twin of a segment lies between the same two
+     * points and is at least as thick. A segment with a twin is not drawn.
+     *   0 or more                  the index of its twin, a sister that starts at the same node
+     *   PLACES_COVERED_BACKWARDS   it has a twin that runs in the opposite direction
+     *   PLACES_UNCOVERED           it has no twin, and is drawn
+     *   PLACES_CANNOT_DRAW         no segment that can be drawn ends here
      * Owned. */
     int32_t *cover;
     int32_t *place; /* per node: the node that represents all nodes at the same place; owned */
 } Places;
 
 /* Finds the twins and places of a tree. Release *places with places_release. Errors: STATUS_MEMORY.
- * O(n) for n nodes, unless many are close to each other. */
+ * Cost: O(n) for n nodes, and more if many nodes lie close together. */
 MUST_CHECK Status places_find(const Tree *tree, Places *places, Err *err);
 void places_release(Places *places);
-/* Returns the counts `drawn`, `dropped` and `covered` of the tree's segments, and nothing else. */
+/* Returns a report in which only `drawn`, `dropped` and `covered` are set. */
 StageReport places_count(const Tree *tree, const Places *places);
 
 /* Returns the stored result of segment_can_be_drawn. */

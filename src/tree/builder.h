@@ -1,8 +1,8 @@
-/* Makes a tree of nodes that a file names in any order.
+/* Builds a tree from nodes that a file lists in any order.
  *
- * A reader hands over what the file says, record by record, and need not resolve anything: ids are
- * found, parents put before their children, and all that no tree can be is refused with a sentence
- * that names the record. A graph without directions has to be directed first. */
+ * A reader passes on the records of its file one by one. The builder resolves the ids and puts each
+ * parent before its children. If the records do not form a tree, the error names the record. The
+ * caller directs the edges of an undirected graph first. */
 #ifndef CORCAST_TREE_BUILDER_H
 #define CORCAST_TREE_BUILDER_H
 
@@ -18,28 +18,28 @@ typedef struct TreeReading TreeReading;
 
 enum { BUILDER_MAX_COLUMNS = 10000 };
 
-/* A node as a file has it. */
+/* A node as it stands in the file, before ids are resolved. */
 typedef struct BuilderNode {
-    int64_t id;     /* different in every node */
-    int64_t parent; /* the id of a node given before or after it; TREE_NO_PARENT: a root */
+    int64_t id;     /* unique */
+    int64_t parent; /* the id of any other node of the file; TREE_NO_PARENT: a root */
     int32_t type;
     Vec3 position;    /* mm */
     double radius_mm; /* of the segment that ends here */
-    size_t record;    /* where in the file, for sentences */
+    size_t record;    /* line or number of the record in the file, for errors */
 } BuilderNode;
 
 /* Begin with {.name = ..., .record = ..., .reading = ...}; release with builder_release. */
 typedef struct TreeBuilder {
-    const char *name;   /* of the file (borrowed) */
-    const char *record; /* what its records are called, "point" (borrowed); NULL: they are lines */
+    const char *name;   /* of the file, for errors; borrowed */
+    const char *record; /* what errors call a record, such as "point"; NULL: a line. Borrowed. */
     const ReadOptions *options;  /* how radii are checked (borrowed); may be NULL */
-    TreeReading *reading;        /* where the reader says what it assumes (borrowed); may be NULL */
-    TreeMeta meta;               /* of the tree, for the reader to fill */
-    int32_t *id, *type, *parent; /* of each row; a parent by its id */
+    TreeReading *reading;        /* receives what the reader assumes (borrowed); may be NULL */
+    TreeMeta meta;               /* metadata of the tree, which the reader fills in */
+    int32_t *id, *type, *parent; /* per node, in the order of the file; `parent` is an id */
     Vec3 *position;
     double *radius_mm;
     size_t *row_record;
-    size_t n, capacity; /* rows */
+    size_t n, capacity; /* number of nodes */
     struct BuilderColumn *column;
     size_t n_columns, columns_capacity;
     struct BuilderShare *share;
@@ -50,36 +50,46 @@ typedef struct TreeBuilder {
 
 void builder_release(TreeBuilder *builder);
 
-/* Puts "FILE:RECORD: " in front of the sentence of a STATUS_INPUT, and returns `status`: for what
- * is wrong with a record, whether the reader finds it or one of the functions below but
- * builder_build, which names the record itself. */
+/* Puts "FILE:RECORD: " in front of the error if `status` is STATUS_INPUT. Returns `status`. Call it
+ * for errors of the reader and of the functions below, except builder_build, which names the record
+ * itself. */
 Status builder_blame(const TreeBuilder *builder, size_t record, Status status, Err *err);
 
-/* Adds a node, in O(1) amortised. STATUS_INPUT for an id or a parent beyond 1 .. TREE_MAX_ID, a
- * position that is not finite, and a radius that reading_radius refuses. */
+/* Adds a node. O(1) on average.
+ *
+ * Errors   STATUS_INPUT if the id or the parent is not in 1 .. TREE_MAX_ID, the position is not
+ *          finite, or reading_radius refuses the radius. STATUS_MEMORY. */
 MUST_CHECK Status builder_node(TreeBuilder *builder, const BuilderNode *node, Err *err);
 
-/* Adds a column of values of nodes (name and unit copied), numbered in *column from 0 on.
- * STATUS_INPUT when the name is empty or that of another, or there are too many: each name is held
- * against all others. */
+/* Adds a column with one value for each node. Copies the name and the unit.
+ *
+ * column   receives the index of the column.
+ * Errors   STATUS_INPUT if the name is empty or already in use, or there are BUILDER_MAX_COLUMNS
+ *          columns. STATUS_MEMORY.
+ * Cost     O(columns), because the name is compared with all others. */
 MUST_CHECK Status builder_column(TreeBuilder *builder, const char *name, const char *unit,
                                  size_t *column, Err *err);
-/* Sets the column's value of the node added last. What is not set, or not finite, is NAN. */
+/* Sets the value of a column for the node that was added last. A value that is not set, or is not
+ * finite, is stored as NAN. Errors: STATUS_MEMORY. */
 MUST_CHECK Status builder_value(TreeBuilder *builder, size_t column, double value, Err *err);
 
-/* Says the flow share, above 0, of a node given before or after. */
+/* Sets the flow share of a node, which must be above 0. The node may be added later. */
 MUST_CHECK Status builder_share(TreeBuilder *builder, int64_t id, double share, size_t record,
                                 Err *err);
 
-/* Says a pair of nodes [pairs.h] given before or after; pairs are numbered as they are said. */
+/* Adds a pair of nodes [pairs.h]. The nodes may be added later. Pairs are numbered in the order of
+ * the calls. */
 MUST_CHECK Status builder_pair(TreeBuilder *builder, int64_t id, int64_t other, size_t record,
                                Err *err);
 
-/* Makes the tree in *tree (owned; tree_release), which tree_check accepts: parents first and
- * otherwise in the order given, an ancestor that is given later just before its first descendant.
- * The meta moves to it. O(nodes log nodes). STATUS_INPUT when there is no node, an id is given
- * twice, a parent is no node's id, nodes are their own ancestors, a share or a pair is
- * said of what is no node, or twice, or a share against the key terminal_flow. */
+/* Builds the tree, which tree_check accepts. The metadata move to it. Nodes keep the order of the
+ * file, except that an ancestor that comes later moves to just before its first descendant.
+ *
+ * tree     receives the tree; release it with tree_release.
+ * Errors   STATUS_INPUT if there is no node, an id occurs twice, a parent does not exist, nodes
+ * form a cycle, a share or a pair refers to a node that does not exist or is given twice, or there
+ * is a share although the key terminal_flow forbids it. STATUS_MEMORY. Cost     O(n log n) for n
+ * nodes. */
 MUST_CHECK Status builder_build(TreeBuilder *builder, Tree *tree, Err *err);
 
 #endif

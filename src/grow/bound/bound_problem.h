@@ -1,5 +1,5 @@
-/* A tree as a convex optimisation problem. Outlets and inlets are fixed; all other joints are
- * free. */
+/* States a tree as a convex optimisation problem: move the joints so that the sum of the costs of
+ * all segments is least. Outlets and inlets are fixed; all other joints are free. */
 #ifndef CORCAST_GROW_BOUND_PROBLEM_H
 #define CORCAST_GROW_BOUND_PROBLEM_H
 
@@ -11,7 +11,7 @@
  * Outlet. */
 enum { PLACE_AXES = 3, DROP = 3, STATE = 4 };
 
-/* The first smoothing of lengths, relative to the mean length. */
+/* Lengths are smoothed, see Reach. The first smoothing is this multiple of Problem.mean_length. */
 #define FIRST_SMOOTHING 0.3
 
 /* A node and the segment that leads to it. */
@@ -20,7 +20,7 @@ typedef struct Joint {
     double flow;    /* sum of the shares of the outlets at and below the joint */
     double factor;  /* flow^a */
     int32_t parent; /* lower than the joint's own index; -1 at an inlet */
-    int32_t outlet; /* index of the outlet; -1: the joint is none */
+    int32_t outlet; /* index of the outlet; -1: the joint is not an outlet */
     bool is_free;
 } Joint;
 

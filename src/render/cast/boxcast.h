@@ -1,5 +1,6 @@
-/* Rays among items in a bounding volume hierarchy: the walks that primitives, triangles and cells
- * share. The walks are inline, so that each search compiles with its own crossings. */
+/* Searches a bounding volume hierarchy for the items that a ray hits. Primitives, triangles and
+ * cells share this code. The functions are inline, so that the compiler can inline the callback
+ * that computes the crossings. */
 #ifndef CORCAST_RENDER_BOXCAST_H
 #define CORCAST_RENDER_BOXCAST_H
 
@@ -13,8 +14,8 @@ enum { ITEM_CROSSINGS = 4 }; /* maximum number of crossings of one item */
 typedef int ItemCrossings(const void *items, uint32_t item, Ray ray, Hit hits[ITEM_CROSSINGS],
                           double *rank);
 
-/* Finds the nearest crossing with t_min <= t < t_max and the item it belongs to. Boxes are left out
- * unless the ray meets them at `boxes_from` or later. */
+/* Finds the nearest crossing with t_min <= t < t_max, and its item. Returns false if there is none.
+ * Leaves out boxes that the ray does not meet at t = `boxes_from` or later. */
 static inline bool boxcast_first(const BoxTree *tree, const RayPart *part, double boxes_from,
                                  ItemCrossings *crossings, const void *items, Hit *hit,
                                  uint32_t *index)

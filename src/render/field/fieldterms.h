@@ -1,5 +1,5 @@
-/* The segments of an implicit scene in the camera's frame, and as the terms of a tile: what the
- * kernels of kernel_trace.h are given. */
+/* Prepares the segments of an implicit scene for the kernels of kernel_trace.h. A segment is first
+ * moved to the camera's frame. It then becomes a term of each tile that it may touch. */
 #ifndef CORCAST_RENDER_FIELDTERMS_H
 #define CORCAST_RENDER_FIELDTERMS_H
 
@@ -12,53 +12,58 @@ typedef struct FrameSegment {
     Vec3 a, b, axis; /* the ends, and the unit vector from a to b */
     double length;
     double k; /* potential_k, 1 / mm */
-    /* Of the angle between the axis and parallel rays, and 1 / sine; 0 where the axis is parallel
-     * to the rays. */
+    /* Orthographic views: the sine of the angle between the axis and the rays, and 1 / sine. Both
+     * are 0 if the axis is parallel to the rays. */
     double sine, per_sine;
-    double reach; /* mm from the axis, beyond which the term is below the cut-off */
+    double reach; /* distance from the axis beyond which the term is below the cut-off */
 } FrameSegment;
 
-/* A term of the potential as the tile sees it. `o` is where the middle ray passes at z = z_near:
- * its place less the point of the axis that is nearest to the ray. k = potential_k. */
+/* A term of the potential, prepared for one tile. P is the point of the segment's axis that is
+ * nearest to the tile's middle ray. The ray is nearest to P at z = z_near. `o` is the vector from P
+ * to that point of the ray. k is potential_k. */
 typedef struct TileTerm {
     double z_near;
-    double on, off; /* z between which the term may exceed the cut-off on a ray of the tile */
+    double on, off; /* range of z where the term may exceed the cut-off on a ray of the tile */
     float k, per_k2;
-    float reach2; /* the term is below the cut-off where (k distance)^2 of the segment exceeds it */
-    float u, v;   /* k times the distances of that point from the two ends */
+    float reach2; /* the term is below the cut-off where (k x distance)^2 > reach2 */
+    float u, v;   /* k times the distances from P to the two ends */
     float o[3];
     float axis[3];                /* unit */
-    float cross[3];               /* (middle ray's direction) x axis; orthographic: of length k */
+    float cross[3];               /* middle ray x axis; orthographic: scaled to length k */
     float sine, per_sine, cosine; /* orthographic: of the angle between axis and ray */
     float per_w, per_u;           /* orthographic: 1 / (k sine) and 1 / (k cosine), finite */
     uint32_t segment;             /* index in the scene */
 } TileTerm;
 
-/* A tile of the potential: the terms near it, and where its samples are. */
+/* A tile of the potential: the terms near it, and the positions of its samples. */
 typedef struct FieldTile {
-    const TileTerm *terms; /* by rising `on`, unless in a plane or of any depth */
+    const TileTerm *terms; /* sorted by rising `on`, unless `plane` or `any_depth` is true */
     size_t n_terms;
-    LocalGroups *groups; /* a workspace; NULL where all segments blend */
+    LocalGroups *groups; /* a workspace; NULL if all segments blend */
     bool perspective;
-    bool any_depth;     /* samples are places, not rays from the eye: no plane is looked for */
-    bool blob;          /* terms are those of a blob: nor is it there */
-    bool plane;         /* all blend, and lie in one plane, square to all rays */
-    const float *x, *y; /* of the samples, relative to the middle ray */
+    bool any_depth;     /* samples are points, not rays from the eye; `plane` is then false */
+    bool blob;          /* the terms are those of a blob; `plane` is then false */
+    bool plane;         /* all terms blend, and all axes lie in one plane across all rays */
+    const float *x, *y; /* positions of the samples, relative to the middle ray */
     double middle_x, middle_y;
     float half_size; /* largest distance of a sample from the middle ray */
-    double z_min;    /* nothing is seen before it; of places: they are not before it */
+    double z_min;    /* no hit has a smaller z; with any_depth, no sample has a smaller z */
 } FieldTile;
 
-/* Sets the terms of a tile, one for each of the n segments listed that is within reach of its rays,
- * and the list of those segments; there is room for n. Sets `plane`; all else of the tile but the
- * terms is set. */
+/* Makes one term for each of the n listed segments that is within reach of the tile's rays. Sets
+ * `terms`, `n_terms` and `plane` of the tile; the caller has set its other fields.
+ *
+ * terms   has room for n terms, to which the tile then points.
+ * kept    has room for n indices; it receives the segments of the terms, in the order of the list.
+ */
 void fieldterms_make(const FrameSegment *segments, const uint32_t *list, size_t n, FieldTile *tile,
                      TileTerm *terms, uint32_t *kept);
 
-/* Has the memory of the segments fetched that fieldterms_make is about to read. */
+/* Prefetches the segments that fieldterms_make will read. It has no other effect. */
 void fieldterms_fetch(const FrameSegment *segments, const uint32_t *list, size_t n);
 
-enum { TILE_WORK_BYTES = 2176 }; /* of one term in a kernel's workspace */
+/* Bytes that one term takes in a kernel's workspace; kernel_packet.h checks that they suffice. */
+enum { TILE_WORK_BYTES = 2176 };
 
 /* The workspace of a kernel, for up to `capacity` terms. */
 typedef struct TileWork {
@@ -66,7 +71,7 @@ typedef struct TileWork {
     size_t capacity;
 } TileWork;
 
-/* Makes room for `n` terms. */
+/* Makes room for `n` terms, and does not keep their content. Errors: STATUS_MEMORY. */
 MUST_CHECK Status tilework_reserve(TileWork *work, size_t n, Err *err);
 void tilework_release(TileWork *work);
 

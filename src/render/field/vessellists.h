@@ -1,4 +1,4 @@
-/* Which segments of an implicit model may matter in which tile of a picture. */
+/* Lists, for each tile of a picture, the segments of an implicit model that can affect the tile. */
 #ifndef CORCAST_RENDER_VESSELLISTS_H
 #define CORCAST_RENDER_VESSELLISTS_H
 
@@ -7,35 +7,40 @@
 #include "render/tile/interval.h"
 #include "render/tile/samplegrid.h"
 
-/* Constant once built. */
+/* The segments of a model, sorted into the rows of tiles of a picture. Nothing changes it after it
+ * is made. All arrays except `hidden` are owned. */
 typedef struct VesselLists {
     Viewpoint eye;
-    const bool *hidden;    /* per segment: not seen; NULL: none is hidden. Borrowed; set before. */
+    const bool *hidden;    /* per segment: it is left out; NULL: none is. Borrowed. */
     int n_columns, n_rows; /* samples */
-    double *x, *y;         /* of the grid's columns and rows, in the camera's plane */
-    double per_x, per_y;   /* samples in a unit there, per_y below 0 */
-    double stray;          /* samples are up to so much off their places, in samples */
+    double *x, *y;         /* positions of the columns and rows in the camera's plane */
+    double per_x, per_y;   /* samples per unit of x and y; per_y is below 0 */
+    double stray;          /* largest distance of a sample from the grid, in samples */
     int tile_columns, tile_rows;
-    TileSpan listed_columns, listed_rows; /* of tiles: those whose lists are not left empty */
+    TileSpan listed_columns, listed_rows; /* the tiles that get lists */
     FrameSegment *segments;
     size_t n_segments;
-    TileSpan *segment_rows; /* of tiles */
-    IndexLists rows;        /* segments of each row of tiles */
-    size_t longest;         /* of those */
+    TileSpan *segment_rows; /* per segment: the rows of tiles that it may affect */
+    IndexLists rows;        /* per row of tiles: its segments */
+    size_t longest;         /* number of segments of the longest row */
 } VesselLists;
 
 /* Moves the segments to the frame of the camera and sorts them into the rows of tiles of the grid.
- * *lists is zeroed before except `hidden`, and the caller's even when this fails. STATUS_MEMORY. */
+ * The caller zeroes *lists first, except `hidden`, and releases it, also after an error. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status vessellists_make(const Geometry *geometry, const Camera *camera,
                                    const SampleGrid *grid, int threads, VesselLists *lists,
                                    Err *err);
-/* The same for the tiles of a light's view. */
+/* Does the same as vessellists_make for the tiles of a light's view. */
 MUST_CHECK Status vessellists_of_light(const Geometry *geometry, const LightView *view, int threads,
                                        VesselLists *lists, Err *err);
 void vessellists_release(VesselLists *lists);
 
-/* Sets the lists of the tiles of one row: *tiles, zeroed before or used for these lists; `columns`
- * has room for the longest row. STATUS_MEMORY. */
+/* Sorts the segments of one row of tiles into one list per tile.
+ *
+ * columns   workspace of lists->longest spans.
+ * tiles     receives the lists. It is zeroed, or was filled by a call with the same *lists.
+ * Errors    STATUS_MEMORY. */
 MUST_CHECK Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns,
                                   IndexLists *tiles, Err *err);
 

@@ -1,4 +1,5 @@
-/* Pictures ray by ray: of any model, with all that a view may have. */
+/* The engine that traces each ray separately. It draws every model and supports every option of a
+ * view. It draws where no engine of tiles can, or RENDER_TRACE is asked for. */
 #ifndef CORCAST_RENDER_RAYRENDER_H
 #define CORCAST_RENDER_RAYRENDER_H
 

@@ -1,5 +1,5 @@
-/* Vessels that are narrower than the distance of samples. They are drawn by the area that they
- * cover [render/tile/thincells.h]. */
+/* Draws thin vessels: those that are narrower than the spacing of samples. A thin vessel
+ * contributes to a pixel in proportion to the area that it covers [render/tile/thincells.h]. */
 #ifndef CORCAST_RENDER_THINVESSELS_H
 #define CORCAST_RENDER_THINVESSELS_H
 
@@ -12,11 +12,11 @@
 /* The thin vessels of a geometry in one view, and the light that reaches them. */
 typedef struct ThinVessels {
     const Geometry *whole;  /* borrowed */
-    Camera camera;          /* a bitwise copy of the one given */
+    Camera camera;          /* a copy of the caller's camera */
     ThinLayer layer;        /* has no colours before thinvessels_color */
     uint32_t *piece_strips; /* per piece: index of its strip; owned */
     OffPixelPoints lights;  /* shading points of the pieces; no lights before offpixel_init */
-    float *open;            /* per piece: ambient visibility; NULL: 1. Owned. */
+    float *open;            /* per piece: ambient visibility, 0 to 1; owned. NULL: all are 1. */
 } ThinVessels;
 
 /* Widths on the picture, pixels. */
@@ -41,8 +41,8 @@ void thinvessels_release(ThinVessels *thin);
 MUST_CHECK Status thinvessels_find_open(const Drawing *drawing, const OccluderSet *beams,
                                         ThinVessels *thin, Err *err);
 
-/* Sets the colours of the pieces of those strips that may touch the drawing's band, by the light
- * found so far. */
+/* Sets the colours of pieces whose strips may touch the drawing's band. Uses thin->lights and
+ * thin->open as they are now. */
 void thinvessels_color(const Drawing *drawing, const ThinVessels *thin);
 
 /* Points thin->lights to the shading points of the pieces; it has no lights yet. */

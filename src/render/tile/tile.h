@@ -12,8 +12,8 @@
 
 enum { TILE_SIDE = 8, TILE_SAMPLES = TILE_SIDE * TILE_SIDE };
 
-/* Samples of a tile are numbered so that each run of 16, of 8, and of 4, is a compact block; these
- * are column and row of a sample in its tile. */
+/* Samples are numbered so that each aligned run of 4, 8 or 16 samples is a compact block (Morton
+ * order). These functions return the column and the row of a sample in its tile. */
 static inline int tile_sample_x(int sample)
 {
     return (sample >> 4 & 1) * 4 + (sample >> 2 & 1) * 2 + (sample & 1);
@@ -24,7 +24,7 @@ static inline int tile_sample_y(int sample)
     return (sample >> 5) * 4 + (sample >> 3 & 1) * 2 + (sample >> 1 & 1);
 }
 
-/* The number of the sample at (x, y) of the tile. */
+/* Returns the index of the sample in column x and row y of its tile, each in 0 .. 7. */
 static inline int tile_sample_at(int x, int y)
 {
     return (y >> 2) << 5 | (x >> 2) << 4 | (y >> 1 & 1) << 3 | (x >> 1 & 1) << 2 | (y & 1) << 1 |
@@ -32,46 +32,49 @@ static inline int tile_sample_at(int x, int y)
 }
 
 typedef enum TileState {
-    TILE_MISS = 0, /* proven: nothing is there */
-    TILE_HIT,      /* proven: the first hit is there */
-    TILE_UNSURE    /* within the margin of the arithmetic, or seen from inside */
+    TILE_MISS = 0, /* proven: the line of sight hits nothing */
+    TILE_HIT,      /* proven: the first hit is the one stored */
+    TILE_UNSURE    /* too close to decide within rounding, or seen from inside */
 } TileState;
 
-/* What the samples see; undefined, but for the state, of samples that are no hits. */
+/* What the samples see. Of a sample that is not TILE_HIT only `state` is defined. */
 typedef struct TileHits {
     double z[TILE_SAMPLES];
     float normal[3][TILE_SAMPLES];  /* unit; either side of the surface until geometry is stored */
     uint32_t segment[TILE_SAMPLES]; /* index of the scene's segment or primitive */
     uint8_t state[TILE_SAMPLES];    /* TileState */
-    bool any_hit, any_unsure; /* of the potential: whether a state is such, or was before it was
-                               * decided */
+    bool any_hit, any_unsure; /* implicit scenes: whether a state is, or was before it was decided,
+                               * TILE_HIT or TILE_UNSURE */
 } TileHits;
 
 /* A tile of a picture: the lines of sight of its samples, and what they see. */
 typedef struct SeenTile {
-    int column, row;       /* of its first sample, in the grid of all samples of the picture */
-    int n_columns, n_rows; /* how many of its samples are inside that grid */
+    int column, row;       /* position of its first sample in the picture's grid of samples */
+    int n_columns, n_rows; /* number of its columns and rows inside that grid */
     bool perspective;
-    const float *x, *y; /* where samples are in the view's plane, from the tile's middle */
+    const float *x, *y; /* positions of samples in the view's plane, from the tile's middle */
     double middle_x, middle_y;
-    const TileHits *hits; /* NULL: nothing is seen in the whole tile */
+    const TileHits *hits; /* borrowed; NULL: no sample of the tile hits anything */
     uint64_t ground;      /* bit i: the hit of sample i is on the ground [canvas_see_ground] */
 } SeenTile;
 
-/* How many of a tile's columns or rows are in a picture of which so many are left. */
+/* Returns the number of columns (or rows) of a tile in a picture that has `left` > 0 of them left.
+ */
 static inline int tile_extent(int left)
 {
     return left < TILE_SIDE ? left : TILE_SIDE;
 }
 
-/* In perspective: where a sample's line of sight is at the depth 1 of the view. */
+/* Returns the position of a sample in the view's plane, with z = 1. In perspective this is the
+ * point of its line of sight at depth 1. */
 static inline Vec3 seen_line(const SeenTile *seen, int sample)
 {
     return vec3(seen->middle_x + (double)seen->x[sample], seen->middle_y + (double)seen->y[sample],
                 1);
 }
 
-/* Where a sample that is a hit meets the surface, in the frame of the view. */
+/* Returns the point where the line of sight of a TILE_HIT meets the surface, in the view's frame.
+ */
 static inline Vec3 seen_place(const SeenTile *seen, int sample)
 {
     Vec3 line = seen_line(seen, sample);
@@ -79,7 +82,7 @@ static inline Vec3 seen_place(const SeenTile *seen, int sample)
     return vec3(line.x * scale, line.y * scale, z);
 }
 
-/* How far that is along the line of sight, mm. */
+/* Returns the distance along the line of sight to the hit of a sample, mm. */
 static inline double seen_depth(const SeenTile *seen, int sample)
 {
     Vec3 line = seen_line(seen, sample);

@@ -1,5 +1,6 @@
-/* What an engine does for the pipeline of tilerender.h: it finds what the samples of a tile show.
- * The pipeline does the rest: batches, shadows, shading, antialiasing, threads and their errors. */
+/* The interface between the pipeline of tilerender.h and an engine. The engine finds the surface
+ * that each sample of a tile sees. The pipeline does batches, shadows, shading, antialiasing and
+ * threads. */
 #ifndef CORCAST_RENDER_TILEENGINE_H
 #define CORCAST_RENDER_TILEENGINE_H
 
@@ -20,10 +21,10 @@ typedef struct BatchTile {
     ThinCells cells, further;          /* thin vessels over the samples, and over shifted samples */
 } BatchTile;
 
-/* One pass of one sample per grid point, and its workspaces, one for each worker. */
+/* An engine. One pass takes one sample per grid point. Each worker has a workspace of its own. */
 typedef struct TileEngine {
-    /* Further samples of antialiasing lie on a grid that is N times as fine, with bins of its own.
-     * Otherwise they are N x N shifted passes over the tiles of the pixels. */
+    /* How antialiasing with N x N samples per pixel is done. True: on a second grid, N times as
+     * fine, with bins of its own. False: by N x N shifted passes over the same tiles. */
     bool fine_grid;
     bool either_side;   /* hits have normals that may point away from the viewer */
     bool single_depths; /* depths are single precision about BatchTile.depth_base */
