@@ -1,7 +1,7 @@
 /* The first failure of several workers.
  *
  * Of the calls of a parallel loop, several may fail. The failure of the lowest index is the result,
- * as in a serial loop, whatever the number of threads. Calls of higher indices stop early; calls of
+ * as in a serial loop, for any number of threads. Calls of higher indices stop early; calls of
  * lower indices go on, because one of them may fail, too. */
 #ifndef CORCAST_BASE_FIRSTFAIL_H
 #define CORCAST_BASE_FIRSTFAIL_H

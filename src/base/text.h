@@ -57,9 +57,9 @@ void text_clear(Text *text);
 #define TEXT_BLANKS " \t\v\f"
 /* `text` without the blanks at both ends, cut off in place. */
 char *text_trim(char *text);
-/* Cuts the next line off the text at *rest, in place, and moves *rest behind it; NULL behind the
- * last, whose end is that of the text: for (char *rest = text, *line; (line =
- * text_line(&rest));). */
+/* Cuts the next line off the text at *rest, in place. Moves *rest to the start of the line after
+ * it, or sets it to NULL after the last line. Returns the line, or NULL if there is none. Use: for
+ * (char *rest = text, *line; (line = text_line(&rest));). */
 char *text_line(char **rest);
 /* Whether fields of a line stand on either side of it. By comparisons: strcspn makes a table of its
  * set each time, which takes longer than a field. */

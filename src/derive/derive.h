@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* A value per node: that of the segment that ends there, at its distal end; NAN at roots. */
+/* One value per node: the value at the distal end of the segment that ends there; NAN at roots. */
 typedef struct Field {
     const char *name; /* borrowed */
     const char *unit; /* borrowed; "" for pure numbers */

@@ -84,7 +84,7 @@ typedef struct MorphometryComparison {
 
 /* Compares a tree's diameter-defined orders with a table.
  *
- * A tree is rarely that of a whole organ, so order k of the tree is compared with the published
+ * A tree rarely covers a whole organ, so order k of the tree is compared with the published
  * order k + shift. Among the shifts for which the most orders have a counterpart, the shift is the
  * one with the least mean squared logarithm of the ratio of mean diameters. Horton's ratios of the
  * tree are computed from the orders that also gave the published ratios. A number agrees if it is

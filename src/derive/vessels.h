@@ -13,8 +13,8 @@ typedef struct Vessel {
     int32_t parent; /* index of the parent vessel; NO_VESSEL if it starts at a root */
     int32_t start;  /* the node at which it starts */
     int32_t level, strahler;
-    double radius_mm; /* mean of its segments, weighted by length; if all lengths are 0, that of the
-                       * first */
+    double radius_mm; /* mean of its segments' radii, weighted by length; if all lengths are 0, the
+                       * first segment's radius */
     double length_mm;
 } Vessel;
 

@@ -43,7 +43,7 @@ MUST_CHECK Status mask_invert_axes(Mask *mask, const char *file, double *volume,
 /* Returns the index of the voxel that holds a point (mm), or -1 if the point is outside the mask. A
  * mask of two dimensions ignores z. */
 int64_t mask_voxel(const Mask *mask, Vec3 point);
-/* Returns true if the file's name ends as that of a NIfTI file. */
+/* Returns true if the file's name has the extension of a NIfTI file. */
 bool mask_is_nifti(const char *file);
 
 #endif

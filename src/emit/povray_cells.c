@@ -421,8 +421,8 @@ static void put_top(Text *text, const CellTree *cells, const Cell *cell)
     text_puts(text, " Cell_Top_End() ");
 }
 
-/* Appends the paint of a cell: that of the term that is largest in all of it, or of each term where
- * it is largest. */
+/* Appends the paint of a cell. If one term is the largest everywhere in the cell, its paint is
+ * used. Otherwise each point has the paint of the term that is largest there. */
 static Status put_cell_paint(CellWriter *writer, const Cell *cell, CellTextPart part, Err *err)
 {
     const CellTree *cells = writer->cells;

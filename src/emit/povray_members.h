@@ -16,7 +16,7 @@ Status put_mesh_macros(Text *out, void *geometry, Err *err);
 /* Appends the numbers and functions of an isosurface. */
 Status put_cell_macros(Text *out, void *geometry, Err *err);
 /* Appends the numbers of a blob and the functions that find the segment of a point. Errors: also
- * STATUS_INFEASIBLE if POV-Ray cannot paint so many segments. */
+ * STATUS_INFEASIBLE if there are more segments than POV-Ray can paint. */
 Status put_blob_macros(Text *out, void *geometry, Err *err);
 
 /* Finds the cells of each object of an isosurface. */

@@ -2,10 +2,10 @@
  * trees come near each other, the whole is the level set of the sum over all of them. Each tree is
  * therefore declared beside the whole, as a field of its own segments.
  *
- * If only a part of the picture is drawn, the items are those that its rays can hit. A field keeps
- * all its segments, because its values are sums over segments elsewhere; its cells are chosen
- * instead (find_cells, find_painted). POV-Ray thus meets the same pieces in the part as in the
- * whole picture. */
+ * If only a part of the picture is drawn, only items that a ray of the part can hit are written. A
+ * field keeps all its segments, because its values are sums over segments elsewhere; its cells are
+ * chosen instead (find_cells, find_painted). POV-Ray thus meets the same pieces in the part as in
+ * the whole picture. */
 #include "emit/povray_objects.h"
 
 #include <assert.h>

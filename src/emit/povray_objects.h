@@ -40,8 +40,8 @@ void povray_objects_release(PovrayGeometry *geometry);
 MUST_CHECK Status put_declaration(Text *out, const PovrayGeometry *geometry, const char *kind,
                                   Values *members, Err *err);
 
-/* Appends the declarations of all objects. `put_object` appends that of geometry->object. Errors:
- * those of `put_object` and of put_declaration. */
+/* Appends the declarations of all objects. `put_object` appends the declaration of
+ * geometry->object. Errors: those of `put_object` and of put_declaration. */
 MUST_CHECK Status put_objects(Text *out, PovrayGeometry *geometry,
                               Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err),
                               Err *err);

@@ -11,7 +11,7 @@ enum { VALUES_MAX = 40, PARTS_MAX = 6 };
 /* Appends what stands for the i-th of several items. */
 typedef void PutItem(Text *out, const void *context, size_t i);
 
-/* Items that are appended one after another, as they are needed. */
+/* A list of items. Each item is appended to the text when the template reaches it. */
 typedef struct ValueList {
     PutItem *put;
     const void *context; /* borrowed */

@@ -640,13 +640,13 @@ Status tilerender_rows(const Drawing *drawing, void *prepared, Frame *frame, Err
                            .pass = &tiles->center,
                            .chooses = params->antialias_threshold > 0};
     Canvas *canvas = &picture.canvas;
-    Status status = canvas_init(drawing, frame, &eye, canvas, err);
+    Status status = STATUS_OK;
+    TRY_GOTO(canvas_init(drawing, frame, &eye, canvas, err));
     canvas->wholly_colored =
         params->method == RENDER_TRACE && raycolor_is_needed(drawing->view, params);
     picture.shifts = canvas->more.side > 0 && !tiles->engine->fine_grid;
     picture.has_shadows = params->shadows && canvas->wants_color && !canvas->wholly_colored;
     picture.batch_tiles = picture.has_shadows ? tiles->engine->batch_tiles : 1;
-    TRY_GOTO(status);
     status = draw_band(&picture, err);
 done:
     release_picture(&picture);

@@ -237,9 +237,9 @@ Status vtp_decode(const VtpSource *source, VtpBytes *out, Err *err)
 {
     ByteStream stream = {.source = source, .at = source->from};
     VtpBytes made = {0};
-    Status status = source->coding.packing == VTP_PLAIN ? decode_plain(&stream, &made, err)
-                                                        : decode_blocks(&stream, &made, err);
-    TRY_GOTO(status);
+    Status status = STATUS_OK;
+    TRY_GOTO(
+        (source->coding.packing == VTP_PLAIN ? decode_plain : decode_blocks)(&stream, &made, err));
     *out = made;
     return STATUS_OK;
 done:
