@@ -129,10 +129,17 @@ expect_tree() {
 
 npm_module() {
     local folder=$REPO/build/npm
-    [ ! -d "$NPM_MODULES/$1" ] || return 0
-    command -v npm >/dev/null || skip "$1 is not installed, and there is no npm to install it"
-    mkdir -p "$folder" && cp "$REPO"/tests/npm/*.json "$folder" &&
-        timeout 60 npm ci --prefix "$folder" >npm.log 2>&1 || skip "npm cannot install $1: $(tail -1 npm.log)"
+    command -v npm >/dev/null || [ -e "$folder/whole" ] ||
+        skip "$1 is not installed, and there is no npm to install it"
+    mkdir -p "$folder"
+    # Tests run side by side: one installs, the others wait. A folder of modules alone may be half installed.
+    (
+        flock 7
+        [ -e "$folder/whole" ] || {
+            cp "$REPO"/tests/npm/*.json "$folder" &&
+                timeout 60 npm ci --prefix "$folder" >npm.log 2>&1 && touch "$folder/whole"
+        }
+    ) 7>"$folder/lock" || skip "npm cannot install $1: $(tail -1 npm.log)"
 }
 
 # A grown tree of N terminals in ./tree.swc.
