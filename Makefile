@@ -17,9 +17,9 @@ say = $(if $(V),,@printf '  %-6s %s\n' $(1) $(2))
 # This Makefile again, with what `make deps` has installed; -j only when the caller gave none.
 AGAIN = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(JOBS))
 
-ROOMS := $(filter-out app,$(notdir $(patsubst %/,%,$(wildcard src/*/))))
+ROOMS := $(filter-out cli python,$(notdir $(patsubst %/,%,$(wildcard src/*/))))
 ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c) $(ROOMS:%=src/%/*/*.c))
-APP_SOURCES := $(wildcard src/app/*.c src/app/*/*.c)
+CLI_SOURCES := $(wildcard src/cli/*.c src/cli/*/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
 FORMATTED := $(sort $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
 	tests/alloc/*.c tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h tests/optima/*.c))
@@ -27,7 +27,7 @@ FORMATTED := $(sort $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/unit/*.c tests/
 # Kernels of the renderer are compiled once for each kind of processor [src/render/tile/lanes.h].
 KERNELS := $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),$(wildcard src/render/*/*kernels.c))
 ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o) $(foreach kind,avx2 avx512,$(KERNELS:%.c=$(BUILD)/%.$(kind).o))
-APP_OBJECTS := $(APP_SOURCES:%.c=$(BUILD)/%.o)
+CLI_OBJECTS := $(CLI_SOURCES:%.c=$(BUILD)/%.o)
 TEST_OBJECTS := $(TEST_SOURCES:%.c=$(BUILD)/%.o)
 TEST_PROGRAMS := $(TEST_SOURCES:tests/unit/%.c=$(BUILD)/tests/%)
 ORACLE := $(BUILD)/tests/check_tree
@@ -213,7 +213,7 @@ $(VIEWER): $(wildcard templates/viewer/*)
 
 program: $(BUILD)/corcast ## the program of this MODE, build/MODE/corcast
 
-$(BUILD)/corcast: $(APP_OBJECTS) $(BUILD)/rooms.a
+$(BUILD)/corcast: $(CLI_OBJECTS) $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)$(LINK) -o $@ $^ $(LIBS)
 
@@ -221,7 +221,7 @@ $(BUILD)/rooms.a: $(ROOM_OBJECTS)
 	$(call say,AR,$@)
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
-$(BUILD)/app.a: $(filter-out %/main.o,$(APP_OBJECTS))
+$(BUILD)/cli.a: $(filter-out %/main.o,$(CLI_OBJECTS))
 	$(call say,AR,$@)
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
@@ -239,7 +239,7 @@ $(BUILD)/%.avx512.o: %.c Makefile | packages
 $(BUILD)/%.o: %.c Makefile | packages
 	$(COMPILE_OBJECT)
 
-$(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/app.a $(BUILD)/rooms.a
+$(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/cli.a $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(LINK) -o $@ $^ $(LIBS) -lcmocka
@@ -255,7 +255,7 @@ $(FRAMES): $(BUILD)/tests/bench/frames.o $(BUILD)/rooms.a
 
 # Replayed from files, or driven by libFuzzer.
 $(FUZZ_PROGRAMS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/fuzz/fuzz.o \
-	$(if $(filter fuzz,$(MODE)),,$(BUILD)/tests/fuzz/replay.o) $(BUILD)/app.a $(BUILD)/rooms.a
+	$(if $(filter fuzz,$(MODE)),,$(BUILD)/tests/fuzz/replay.o) $(BUILD)/cli.a $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)$(subst fuzzer-no-link,fuzzer,$(LINK)) -o $@ $^ $(LIBS)
 
@@ -291,12 +291,12 @@ $(FAILING): tests/alloc/failing.c Makefile
 	$(Q)$(CC) -D_GNU_SOURCE -std=c11 -O1 -g $(WARNINGS) -fPIC -shared -o $@ $<
 
 # Loops over pixels gain from vectors, growth from square roots that set no errno.
-$(filter $(BUILD)/src/image/% $(BUILD)/src/verify/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/light/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
+$(filter $(BUILD)/src/image/% $(BUILD)/src/compare/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/light/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
 
 # Kernels of pictures read no input and write to arrays of fixed size; a check of the stack costs them 2 %.
 $(filter %kernels.o %kernels.avx2.o %kernels.avx512.o,$(ROOM_OBJECTS)): HARDEN_release += -fno-stack-protector
 
--include $(ROOM_OBJECTS:.o=.d) $(APP_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
+-include $(ROOM_OBJECTS:.o=.d) $(CLI_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 
 packages:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)

@@ -1,5 +1,5 @@
 /* Options of every kind: a recipe, then the arguments, each up to a zero byte. */
-#include "app/run/options.h"
+#include "options/options.h"
 
 #include "fuzz.h"
 #include <stdio.h>

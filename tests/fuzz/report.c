@@ -2,7 +2,7 @@
  * where templates/ is. */
 #include "fuzz.h"
 
-#include "verify/verify.h"
+#include "compare/compare.h"
 #include <stdio.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)

@@ -1,7 +1,7 @@
 /* The plan of a study, up to the first zero byte, and then JSON that tables are made of. All runs
  * of a plan that is read have options. */
-#include "app/trees/study_plan.h"
-#include "app/trees/study_table.h"
+#include "study/study_plan.h"
+#include "study/study_table.h"
 
 #include "fuzz.h"
 

@@ -1,7 +1,7 @@
 /* The name of a tolerance that is read reads back to itself. */
 #include "fuzz.h"
 
-#include "verify/verify.h"
+#include "compare/compare.h"
 
 static Status read_text(const void *bytes, size_t size, Text *out, Err *err)
 {

@@ -4,7 +4,7 @@
 
 #include "render/render.h"
 #include "scene/scene.h"
-#include "verify/verify.h"
+#include "compare/compare.h"
 
 typedef struct Subject {
     Scene scene; /* owned */

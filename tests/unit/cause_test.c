@@ -2,7 +2,7 @@
  * colour, drawn by a formula wherever the camera is: the right words for each, and none for faults
  * that no sentence is about, for two at once, and for chance. */
 #include "unit.h"
-#include "verify/verify.h"
+#include "compare/compare.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>

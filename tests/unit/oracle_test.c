@@ -1,6 +1,6 @@
 /* When a POV-Ray is ended that has its picture. This program stands for POV-Ray when it is called
  * as such. */
-#include "verify/oracle.h"
+#include "oracle/oracle.h"
 
 #include "unit.h"
 #include <stdio.h>

@@ -1,30 +1,56 @@
-#include "app/run/progress.h"
+#include "cli/screen.h"
 #include "unit.h"
 
 #include <stdint.h>
 #include <stdio.h>
 #include <unistd.h>
 
-/* What is said in a log of something that began so many seconds ago. */
-static void said_at(double fraction, double seconds_ago, double since_last_s, bool quiet,
-                    char out[80])
+/* Begins to collect standard error in *log; returns the descriptor that collect_end restores. */
+static int collect_begin(FILE **log)
 {
-    Progress progress;
-    FILE *log = tmpfile();
     int kept = dup(STDERR_FILENO);
-    assert_non_null(log);
-    dup2(fileno(log), STDERR_FILENO);
-    progress_start(&progress, "growing", quiet);
-    progress.start_s -= seconds_ago;
-    progress.last_s -= since_last_s;
-    progress_show(&progress, fraction);
-    progress_show(&progress, fraction + 0.01);
-    progress_end(&progress);
+    *log = tmpfile();
+    assert_non_null(*log);
+    dup2(fileno(*log), STDERR_FILENO);
+    return kept;
+}
+
+static void collect_end(FILE *log, int kept, char out[80])
+{
     dup2(kept, STDERR_FILENO);
     close(kept);
     rewind(log);
     out[fread(out, 1, 79, log)] = '\0';
     fclose(log);
+}
+
+static void told(bool quiet, char out[80])
+{
+    Screen screen;
+    Talk talk = screen_talk(&screen, quiet);
+    FILE *log;
+    int kept = collect_begin(&log);
+    talk_note(&talk, "%d segments", 2);
+    talk_warn(&talk, "no %s", "room");
+    collect_end(log, kept, out);
+}
+
+/* What is said in a log of something that began so many seconds ago. */
+static void said_at(double fraction, double seconds_ago, double since_last_s, bool quiet,
+                    char out[80])
+{
+    Screen screen;
+    Talk talk = screen_talk(&screen, quiet);
+    Progress progress;
+    FILE *log;
+    int kept = collect_begin(&log);
+    progress_start(&progress, "growing", &talk);
+    screen.start_s -= seconds_ago;
+    screen.last_s -= since_last_s;
+    progress_show(&progress, fraction);
+    progress_show(&progress, fraction + 0.01);
+    progress_end(&progress);
+    collect_end(log, kept, out);
 }
 
 static void said_in_a_log(double seconds_ago, double since_last_s, bool quiet, char out[80])
@@ -50,6 +76,16 @@ static void a_log_gets_a_line_of_progress_every_ten_seconds(void **state)
     assert_string_equal(said, "");
 }
 
+static void a_note_is_said_unless_quiet_and_a_warning_always(void **state)
+{
+    (void)state;
+    char said[80];
+    told(false, said);
+    assert_string_equal(said, "corcast: 2 segments\ncorcast: no room\n");
+    told(true, said);
+    assert_string_equal(said, "corcast: no room\n");
+}
+
 static void work_of_days_says_so_after_ten_seconds(void **state)
 {
     (void)state;
@@ -64,6 +100,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_log_gets_a_line_of_progress_every_ten_seconds),
+        cmocka_unit_test(a_note_is_said_unless_quiet_and_a_warning_always),
         cmocka_unit_test(work_of_days_says_so_after_ten_seconds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

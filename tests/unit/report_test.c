@@ -1,8 +1,8 @@
 #include "any_file.h"
 #include "unit.h"
-#include "verify/check.h"
-#include "verify/result.h"
-#include "verify/verify.h"
+#include "compare/check.h"
+#include "compare/result.h"
+#include "compare/compare.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

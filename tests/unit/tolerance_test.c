@@ -1,7 +1,7 @@
 /* Tiers, the ledger of segments, float colours, and tolerances as files. */
 #include "unit.h"
-#include "verify/result.h"
-#include "verify/verify.h"
+#include "compare/result.h"
+#include "compare/compare.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,0 +1,165 @@
+/* What there is to choose from, one name a line, for people and scripts. */
+#include "cli/commands.h"
+#include "derive/derive.h"
+#include "domain/domain.h"
+#include "job/picture/picture.h"
+#include "options/options.h"
+#include "options/templates.h"
+#include "treeio/treeio.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Fills `lines`. */
+typedef Status ListNames(Text *lines, Err *err);
+
+static Status list(ListNames *names, Err *err)
+{
+    Text lines = TEXT_INIT;
+    Status status = names(&lines, err);
+    if (status == STATUS_OK)
+        status = text_check(&lines, err);
+    if (status == STATUS_OK && text_chars(&lines))
+        fputs(text_chars(&lines), stdout);
+    text_release(&lines);
+    return status;
+}
+
+static Status list_fields(Text *lines, Err *err)
+{
+    for (size_t i = 0; derive_field_name(i); i++)
+        text_printf(lines, *derive_field_unit(i) ? "%s\t%s\n" : "%s\n", derive_field_name(i),
+                    derive_field_unit(i));
+    return text_check(lines, err);
+}
+
+static Status list_domains(Text *lines, Err *err)
+{
+    for (size_t i = 0; domain_shape_name(i); i++)
+        text_printf(lines, "%s:%s\n", domain_shape_name(i), domain_shape_parameters(i));
+    return text_check(lines, err);
+}
+
+static Status list_formats(Text *lines, Err *err)
+{
+    for (size_t i = 0; tree_format_name(i); i++)
+        text_printf(lines, ".%s\t%s\t%s\n", tree_format_extension(i), tree_format_name(i),
+                    tree_format_description(i));
+    return text_check(lines, err);
+}
+
+/* Appends what is to be said of a look: whether POV-Ray repeats it, and what it is. */
+static Status describe_look(const char *name, Text *lines, Err *err)
+{
+    char *path = NULL;
+    Look look;
+    Text names = TEXT_INIT;
+    TRY(template_file("look", "looks", name, ".ini", &path, err));
+    Status status = look_read(&look, path, err);
+    free(path);
+    TRY(status);
+    const Effects effects = look_effects(&look, 1, 1);
+    effects_list(&effects, &names);
+    text_printf(lines, "%s\t", name);
+    if (effects.xray.per_mm > 0)
+        text_puts(lines, "POV-Ray draws none");
+    else
+        text_puts(lines, names.length ? "POV-Ray draws it without " : "POV-Ray draws the same");
+    if (!(effects.xray.per_mm > 0))
+        text_add(lines, &names);
+    text_printf(lines, "\t%s\n", look.about);
+    text_release(&names);
+    return text_check(lines, err);
+}
+
+static Status list_looks(Text *lines, Err *err)
+{
+    Text names = TEXT_INIT;
+    Status status = template_names("looks", ".ini", &names, err);
+    char *rest = NULL, *all = NULL;
+    if (status == STATUS_OK)
+        status = mem_strdup(&all, text_chars(&names), err);
+    for (char *name = all ? strtok_r(all, "\n", &rest) : NULL; name && status == STATUS_OK;
+         name = strtok_r(NULL, "\n", &rest))
+        status = describe_look(name, lines, err);
+    free(all);
+    text_release(&names);
+    return status;
+}
+
+static Status list_presets(Text *lines, Err *err)
+{
+    return template_names("presets", ".ini", lines, err);
+}
+
+static Status list_morphometries(Text *lines, Err *err)
+{
+    return template_names("morphometry", ".txt", lines, err);
+}
+
+/* What models may be made of. */
+typedef enum ModelKind { MODELS_OF_ANYTHING, MODELS_OF_PRIMITIVES, MODELS_OF_A_FIELD } ModelKind;
+static const char *const model_kinds[] = {"anything", "primitives", "field", NULL};
+static const unsigned kind_elements[] = {~0U, MODEL_PRIMITIVES, MODEL_FIELD};
+
+typedef struct ModelsOptions {
+    ModelKind of;
+} ModelsOptions;
+
+static const Option models_own[] = {
+    {.name = "of",
+     SETS(CHOICE, ModelsOptions, of),
+     .choices = model_kinds,
+     .help = "models made of nothing else"},
+};
+
+static const OptionTable models_table = OPTION_TABLE(models_own);
+
+static Status run_models(void *options, Parsed *parsed, Err *err)
+{
+    (void)parsed;
+    (void)err;
+    const ModelsOptions *own = options;
+    for (int i = 0; i < SCENE_MODELS; i++)
+        if (model_is_of((SceneModel)i, kind_elements[own->of]))
+            puts(models[i].name);
+    return STATUS_OK;
+}
+
+static Status run_list(void *options, Parsed *parsed, Err *err)
+{
+    (void)options;
+    static const struct {
+        const Command *command;
+        ListNames *names;
+    } lists[] = {{&command_fields, list_fields},   {&command_looks, list_looks},
+                 {&command_domains, list_domains}, {&command_formats, list_formats},
+                 {&command_presets, list_presets}, {&command_morphometries, list_morphometries}};
+    size_t i = 0;
+    while (lists[i].command != parsed->command)
+        i++;
+    return list(lists[i].names, err);
+}
+
+const Command command_models = {.name = "models",
+                                .summary = "the values of --model",
+                                .operands = "",
+                                .size = sizeof(ModelsOptions),
+                                .tables = {{&models_table, 0}},
+                                .run = run_models};
+const Command command_fields = {.name = "fields",
+                                .summary = "the values of --color-by, with their units",
+                                .operands = "",
+                                .run = run_list};
+const Command command_looks = {
+    .name = "looks", .summary = "the values of --look", .operands = "", .run = run_list};
+const Command command_presets = {
+    .name = "presets", .summary = "the values of --preset", .operands = "", .run = run_list};
+const Command command_domains = {
+    .name = "domains", .summary = "the shapes of --domain", .operands = "", .run = run_list};
+const Command command_formats = {
+    .name = "formats", .summary = "the formats of tree files", .operands = "", .run = run_list};
+const Command command_morphometries = {.name = "morphometries",
+                                       .summary = "the values of --morphometry",
+                                       .operands = "",
+                                       .run = run_list};

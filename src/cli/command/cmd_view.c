@@ -1,0 +1,489 @@
+/* A window on a tree. What it shows is the picture that `render` draws with the options that key o
+ * prints: the same scene, the same renderer, the same camera, moved by moving its options. */
+#include "cli/commands.h"
+#include "cli/window/display.h"
+#include "cli/window/window.h"
+#include "job/picture/picture.h"
+#include "options/output.h"
+#include "render/render.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+typedef struct Viewer {
+    PictureOptions *options; /* camera included, once there is a scene */
+    const Parsed *parsed;
+    const Common *common;
+    const char *tree, *recipe;
+    PictureSource source;
+    ViewParams home; /* the camera that the options asked for */
+    Box box;         /* of the scene's geometry, for its views */
+    Scene scene;
+    Display *display;
+    Window *window;
+    bool moved; /* the picture is of another camera */
+    bool quit;
+} Viewer;
+
+/* ---- scene and camera ------------------------------------------------------------------------ */
+
+static Status make_display(Viewer *viewer, Err *err)
+{
+    int coarseness = viewer->display ? display_coarseness(viewer->display) : 0;
+    const RenderParams params = {.method = RENDER_RASTER,
+                                 .threads = viewer->common->threads,
+                                 .antialias = viewer->options->antialias,
+                                 .shadows = viewer->options->stage.shadows,
+                                 .occlusion = viewer->options->occlusion,
+                                 .codes_suffice = true,
+                                 .want_color = true};
+    display_free(viewer->display);
+    viewer->display = NULL;
+    TRY(display_new(&viewer->scene.geometry, &params, &viewer->display, err));
+    if (coarseness)
+        display_set_coarseness(viewer->display, coarseness);
+    viewer->moved = true;
+    return STATUS_OK;
+}
+
+static Status aim(Viewer *viewer, Err *err)
+{
+    viewer->moved = true;
+    return picture_view(viewer->options, &viewer->source, &viewer->scene.geometry,
+                        &viewer->scene.view, err);
+}
+
+/* Makes the geometry anew; the one there is stays on failure. */
+static Status make_geometry(Viewer *viewer, Err *err)
+{
+    Geometry made;
+    TRY(picture_geometry(viewer->options, &viewer->source, viewer->common, &made, NULL, err));
+    geometry_release(&viewer->scene.geometry);
+    viewer->scene.geometry = made;
+    const ViewParams params = picture_view_params(viewer->options, &viewer->source);
+    viewer->box = stage_box(&params, &made);
+    viewer->options->stage.box = &viewer->box;
+    TRY(aim(viewer, err));
+    return make_display(viewer, err);
+}
+
+/* Makes the appearance anew; the one there is stays on failure. */
+static Status make_appearance(Viewer *viewer, Err *err)
+{
+    Appearance made;
+    TRY(picture_appearance(viewer->options, &viewer->source, &made, err));
+    appearance_release(&viewer->scene.appearance);
+    viewer->scene.appearance = made;
+    viewer->moved = true;
+    return STATUS_OK;
+}
+
+static void set_title(const Viewer *viewer)
+{
+    Text title = TEXT_INIT;
+    const char *field = viewer->options->coloring.field;
+    text_printf(&title, "%s: %zu segments, %s%s%s", file_name(viewer->tree),
+                viewer->scene.geometry.drawn, models[viewer->scene.geometry.model].name,
+                field ? ", " : "", field ? field : "");
+    if (text_chars(&title))
+        window_title(viewer->window, text_chars(&title));
+    text_release(&title);
+}
+
+/* Where the tree cannot be had in this model, the one that there is stays. */
+static Status use_model(Viewer *viewer, SceneModel model, Err *err)
+{
+    int before = viewer->options->model;
+    viewer->options->model = (int)model;
+    Status status = make_geometry(viewer, err);
+    if (status != STATUS_OK && viewer->scene.geometry.model != model) {
+        fprintf(stderr, "corcast view: %s\n", err->text);
+        viewer->options->model = before;
+        return STATUS_OK;
+    }
+    set_title(viewer);
+    return status;
+}
+
+/* The number of a field, that after the last being none. */
+static size_t field_number(const char *field)
+{
+    size_t number = 0;
+    while (derive_field_name(number) &&
+           (!field || strcasecmp(derive_field_name(number), field) != 0))
+        number++;
+    return number;
+}
+
+/* Fields that the tree has not got are passed over. */
+static Status use_next_field(Viewer *viewer, Err *err)
+{
+    const char **field = &viewer->options->coloring.field;
+    size_t none = field_number(NULL);
+    for (size_t number = field_number(*field);;) {
+        number = number == none ? 0 : number + 1;
+        *field = derive_field_name(number);
+        Status status = make_appearance(viewer, err);
+        if (number == none || (status != STATUS_INPUT && status != STATUS_USAGE)) {
+            set_title(viewer);
+            return status;
+        }
+    }
+}
+
+/* ---- what is shown, as options --------------------------------------------------------------- */
+
+/* Appends what stands for one option. */
+typedef Status PutSetting(Text *text, const Option *option, const char *value, Err *err);
+
+static Status put_argument(Text *text, const Option *option, const char *value, Err *err)
+{
+    (void)err;
+    text_printf(text, " --%s", option->name);
+    if (option->kind == OPTION_FLAG)
+        return STATUS_OK;
+    text_puts(text, " ");
+    text_put_shell_word(text, value);
+    return STATUS_OK;
+}
+
+/* An INI file takes blanks at the ends of a value away, and what follows a semicolon after a
+ * blank. */
+static Status put_pair(Text *text, const Option *option, const char *value, Err *err)
+{
+    size_t length = strlen(value);
+    bool bare = *value == ';' || strstr(value, " ;") || strpbrk(value, "\t\r\n") ||
+                (length && (value[0] == ' ' || value[length - 1] == ' '));
+    if (bare)
+        return err_set(err, STATUS_USAGE, "--%s: a recipe cannot hold '%s'", option->name, value);
+    text_printf(text, "%s = %s\n", option->name, value);
+    return STATUS_OK;
+}
+
+static Status put_setting(const Setting *setting, PutSetting *put, Text *text, Err *err)
+{
+    Status status = STATUS_OK;
+    for (size_t at = 0; at < setting_count(setting) && status == STATUS_OK; at++) {
+        Text value = TEXT_INIT;
+        setting_put(setting, at, &value);
+        status = text_check(&value, err);
+        if (status == STATUS_OK)
+            status = put(text, setting->option, text_chars(&value), err);
+        text_release(&value);
+    }
+    return status;
+}
+
+/* Whether the option makes the picture what it is; `plain` has its default. `text` as
+ * setting_differs has it. */
+static bool is_shown(const PictureOptions *options, const Setting *setting, const Setting *plain,
+                     Text *text)
+{
+    static const char *const always[] = {"model", "size", "projection", NULL};
+    static const char *const framing[] = {"view", "turn", "margin", "angle", "height", NULL};
+    const char *name = setting->option->name;
+    bool perspective = options->projection == PROJECTION_PERSPECTIVE;
+    if (is_one_of(name, always) || strcmp(name, perspective ? "angle" : "height") == 0)
+        return true;
+    return picture_takes(options, setting->option) && !is_one_of(name, framing) &&
+           setting_differs(setting, plain, text);
+}
+
+/* Model, size, projection, where the camera is, and all that is not by default; the first settings
+ * of a view are its own. */
+static Status put_settings(const Viewer *viewer, PutSetting *put, Text *text, Err *err)
+{
+    Parsed plain;
+    TRY(parsed_init(&plain, &command_view, err));
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < plain.n_settings && status == STATUS_OK; i++) {
+        const Setting *setting = &viewer->parsed->settings[i];
+        if (!setting->option->aside && is_shown(viewer->options, setting, &plain.settings[i], text))
+            status = put_setting(setting, put, text, err);
+    }
+    parsed_release(&plain);
+    TRY(status);
+    return text_check(text, err);
+}
+
+static Status print_options(const Viewer *viewer, Err *err)
+{
+    Text text = TEXT_INIT;
+    text_puts(&text, "corcast render ");
+    put_shell_operand(&text, viewer->tree);
+    Status status = put_settings(viewer, put_argument, &text, err);
+    if (status == STATUS_OK) {
+        printf("%s -o P.png\n", text_chars(&text));
+        fflush(stdout);
+    }
+    text_release(&text);
+    return status;
+}
+
+static Status write_recipe(const Viewer *viewer, Err *err)
+{
+    Text text = TEXT_INIT;
+    text_puts(&text, "; a view of ");
+    text_put_line(&text, file_name(viewer->tree));
+    text_puts(&text, ", for render --recipe\n");
+    Status status = put_settings(viewer, put_pair, &text, err);
+    if (status == STATUS_OK)
+        status = file_write_text(viewer->recipe, &text, err);
+    if (status == STATUS_OK && !viewer->common->quiet)
+        fprintf(stderr, "corcast: the view is written to %s\n", viewer->recipe);
+    text_release(&text);
+    return status;
+}
+
+/* ---- events ---------------------------------------------------------------------------------- */
+
+static Status use_projection(Viewer *viewer, Err *err)
+{
+    ViewParams stage = picture_view_params(viewer->options, &viewer->source);
+    Projection other = stage.projection == PROJECTION_PERSPECTIVE ? PROJECTION_ORTHOGRAPHIC
+                                                                  : PROJECTION_PERSPECTIVE;
+    orbit_project(&stage, other, &viewer->scene.geometry);
+    viewer->options->stage = stage;
+    viewer->options->projection = (int)other;
+    return aim(viewer, err);
+}
+
+static Status go_home(Viewer *viewer, Err *err)
+{
+    const ViewParams *now = &viewer->options->stage;
+    bool shadows = now->shadows;
+    viewer->options->stage = viewer->home;
+    viewer->options->stage.shadows = shadows;
+    viewer->options->projection = (int)viewer->home.projection;
+    return aim(viewer, err);
+}
+
+static Status on_key(Viewer *viewer, int key, Err *err)
+{
+    PictureOptions *options = viewer->options;
+    Status status;
+    Err sentence = {{0}};
+    if (key >= '1' && key < '1' + SCENE_MODELS)
+        return use_model(viewer, (SceneModel)(key - '1'), err);
+    switch (key) {
+    case 'q':
+    case WINDOW_KEY_ESCAPE:
+        viewer->quit = true;
+        return STATUS_OK;
+    case 'c':
+        return use_next_field(viewer, err);
+    case 'p':
+        return use_projection(viewer, err);
+    case 's':
+        options->stage.shadows = !options->stage.shadows;
+        TRY(aim(viewer, err));
+        return make_display(viewer, err);
+    case 'a':
+        options->occlusion = options->occlusion ? 0 : 16;
+        return make_display(viewer, err);
+    case 'r':
+        return go_home(viewer, err);
+    case 'o':
+        return print_options(viewer, err);
+    case 'w':
+        status = write_recipe(viewer, &sentence);
+        if (status != STATUS_OK) /* the window stays */
+            fprintf(stderr, "corcast view: %s\n", sentence.text);
+        return STATUS_OK;
+    default:
+        return STATUS_OK;
+    }
+}
+
+static Status on_drag(Viewer *viewer, const WindowEvent *event, Err *err)
+{
+    ViewParams stage = picture_view_params(viewer->options, &viewer->source);
+    int side = stage.width < stage.height ? stage.width : stage.height;
+    if (event->button == WINDOW_LEFT)
+        orbit_turn(&stage, event->x / side * PI, -event->y / side * PI);
+    else
+        orbit_pan(&stage, event->x / stage.height, -event->y / stage.height);
+    viewer->options->stage = stage;
+    return aim(viewer, err);
+}
+
+static Status on_wheel(Viewer *viewer, const WindowEvent *event, Err *err)
+{
+    ViewParams stage = picture_view_params(viewer->options, &viewer->source);
+    orbit_zoom(&stage, elementary_pow(1.15, event->y));
+    viewer->options->stage = stage;
+    return aim(viewer, err);
+}
+
+static Status on_event(Viewer *viewer, const WindowEvent *event, Err *err)
+{
+    switch (event->kind) {
+    case WINDOW_NOTHING:
+        break;
+    case WINDOW_QUIT:
+        viewer->quit = true;
+        break;
+    case WINDOW_KEY:
+        return on_key(viewer, event->key, err);
+    case WINDOW_DRAG:
+        return on_drag(viewer, event, err);
+    case WINDOW_WHEEL:
+        return on_wheel(viewer, event, err);
+    case WINDOW_SIZE:
+        viewer->options->size.pixels[0] = event->x < 1 ? 1 : (int)event->x;
+        viewer->options->size.pixels[1] = event->y < 1 ? 1 : (int)event->y;
+        return aim(viewer, err);
+    case WINDOW_EXPOSED:
+        viewer->moved = true;
+        break;
+    }
+    return STATUS_OK;
+}
+
+/* ---- the loop -------------------------------------------------------------------------------- */
+
+static Status draw(Viewer *viewer, bool *done, Err *err)
+{
+    DisplayPicture picture;
+    const Scene *scene = &viewer->scene;
+    if (viewer->moved) {
+        TRY(display_quick(viewer->display, &scene->view, &scene->appearance, &picture, err));
+        *done = false;
+    } else {
+        TRY(display_refine(viewer->display, &scene->view, &scene->appearance, &picture, done, err));
+    }
+    viewer->moved = false;
+    return window_show(viewer->window, picture.rgb, picture.width, picture.height, err);
+}
+
+/* All events that wait are heard before the next picture is drawn. */
+static Status run(Viewer *viewer, Err *err)
+{
+    bool done = false;
+    while (!viewer->quit) {
+        WindowEvent event = window_event(viewer->window, done && !viewer->moved);
+        while (event.kind != WINDOW_NOTHING && !viewer->quit) {
+            TRY(on_event(viewer, &event, err));
+            event = window_event(viewer->window, false);
+        }
+        if (!viewer->quit && (viewer->moved || !done))
+            TRY(draw(viewer, &done, err));
+    }
+    return STATUS_OK;
+}
+
+/* Turns the camera once around in `pictures` full pictures, as fast as they are drawn. */
+static Status turn_around(Viewer *viewer, int pictures, Err *err)
+{
+    bool done;
+    double start_s = clock_seconds(), start_cpu_s = clock_cpu_seconds();
+    for (int i = 0; i < pictures && !viewer->quit; i++) {
+        WindowEvent event = window_event(viewer->window, false);
+        if (event.kind == WINDOW_QUIT)
+            viewer->quit = true;
+        ViewParams stage = picture_view_params(viewer->options, &viewer->source);
+        orbit_turn(&stage, FULL_TURN / pictures, 0);
+        viewer->options->stage = stage;
+        TRY(aim(viewer, err));
+        display_set_coarseness(viewer->display, 1);
+        TRY(draw(viewer, &done, err));
+    }
+    printf("%.1f pictures a second, %.1f ms of a processor each\n",
+           pictures / (clock_seconds() - start_s),
+           1e3 * (clock_cpu_seconds() - start_cpu_s) / pictures);
+    return STATUS_OK;
+}
+
+static Status open_viewer(Viewer *viewer, Err *err)
+{
+    PictureOptions *options = viewer->options;
+    TRY(picture_read_source(options, viewer->parsed, &viewer->source, err));
+    Status status = make_appearance(viewer, err);
+    if (status == STATUS_OK)
+        status = make_geometry(viewer, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", viewer->tree);
+    TRY(status);
+    ViewParams stage = picture_view_params(options, &viewer->source);
+    orbit_begin(&stage, &viewer->scene.view.camera, &viewer->scene.geometry);
+    viewer->home = options->stage = stage;
+    TRY(window_open(&viewer->window, file_name(viewer->tree), options->size.pixels[0],
+                    options->size.pixels[1], err));
+    set_title(viewer);
+    return STATUS_OK;
+}
+
+typedef struct ViewOptions {
+    const char *recipe;
+    int turn;
+    PictureOptions picture;
+} ViewOptions;
+
+static const Option own[] = {
+    {.name = "save",
+     SETS(OUTPUT, ViewOptions, recipe),
+     .aside = true,
+     .help = "the recipe that key w writes"},
+    {.name = "turntable",
+     SETS(WHOLE, ViewOptions, turn),
+     FROM_TO(1, 100000),
+     .group = GROUP_RUN,
+     .aside = true,
+     .otherwise = "",
+     .help = "turn once around in N pictures of every pixel, say how many a second, and quit"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    ViewOptions *own_options = options;
+    picture_set_defaults(&own_options->picture);
+    own_options->picture.antialias = PICTURE_ANTIALIAS;
+    own_options->recipe = "view.ini";
+}
+
+static Status run_view(void *options, Parsed *parsed, Err *err)
+{
+    ViewOptions *own_options = options;
+    Viewer viewer = {.options = &own_options->picture,
+                     .parsed = parsed,
+                     .common = &parsed->common,
+                     .tree = parsed->operands[0],
+                     .recipe = own_options->recipe};
+    mem_keep();
+    Status status = open_viewer(&viewer, err);
+    if (status == STATUS_OK)
+        status =
+            own_options->turn ? turn_around(&viewer, own_options->turn, err) : run(&viewer, err);
+    window_close(viewer.window);
+    display_free(viewer.display);
+    scene_release(&viewer.scene);
+    picture_source_release(&viewer.source);
+    return status;
+}
+
+const Command command_view = {
+    .name = "view",
+    .summary = "look at a tree in a window",
+    .operands = "T.swc",
+    .examples = "  corcast view tree.swc\n"
+                "  corcast view tree.swc --model isosurface --color-by pressure --shadows on\n"
+                "in the window:\n"
+                "  drag turns, drag with the right button or shift moves, the wheel zooms\n"
+                "  1 ... 6    cylinders, joined, rounded, isosurface, blob, mesh\n"
+                "  c          the next field that colours the vessels, or none\n"
+                "  p s a      projection, shadows, ambient occlusion\n"
+                "  r          back to where the camera was\n"
+                "  o          print the options that draw this picture\n"
+                "  w          write them as a recipe, for --recipe\n"
+                "  q, Escape  quit\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .reads_tree = true,
+    .size = sizeof(ViewOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}, PICTURE_TABLES(ViewOptions, picture)},
+    .run = run_view,
+};

@@ -1,0 +1,197 @@
+/* Manual pages in the language of man [groff_man(7)], and docs/REFERENCE.md. Both go through the
+ * options by heading, as the help does. A page has no date: the same sources make the same page. */
+#include "cli/commands.h"
+#include "cli/help.h"
+#include "options/output.h"
+#include <string.h>
+
+/* Calls `put` for the options of each heading that has some, after `head` for the heading. */
+static void for_groups(const Parsed *plain, bool common, void (*head)(const char *name, Text *text),
+                       void (*put)(const Setting *setting, Text *text), Text *text)
+{
+    for (int group = 0; group < OPTION_GROUPS; group++) {
+        bool headed = false;
+        for (size_t i = 0; i < plain->n_settings; i++) {
+            const Setting *setting = &plain->settings[i];
+            if ((int)setting->option->group != group || (!common && help_is_common(plain, setting)))
+                continue;
+            if (!headed)
+                head(option_group_names[group], text);
+            headed = true;
+            put(setting, text);
+        }
+    }
+}
+
+/* ---- man ------------------------------------------------------------------------------------- */
+
+/* Appends text that troff is to print as it is; it begins no line. */
+static void put_troff(const char *chars, Text *text)
+{
+    if (!chars)
+        text_puts(text, chars);
+    for (; chars && *chars; chars++)
+        text_puts(text, *chars == '\\'   ? "\\e"
+                        : *chars == '-'  ? "\\-"
+                        : *chars == '\'' ? "\\(aq"
+                        : *chars == '`'  ? "\\(ga"
+                        : *chars == '^'  ? "\\(ha"
+                        : *chars == '~'  ? "\\(ti"
+                                         : (const char[]){*chars, '\0'});
+}
+
+/* Lines that are printed as they are. */
+static void put_lines(const char *lines, Text *text)
+{
+    text_puts(text, ".EX\n");
+    while (*lines) {
+        size_t length = strcspn(lines, "\n");
+        Text line = TEXT_INIT;
+        text_append(&line, lines, length);
+        text_puts(text, "\\&");
+        put_troff(text_chars(&line), text);
+        text_puts(text, "\n");
+        text_release(&line);
+        lines += length + (lines[length] == '\n');
+    }
+    text_puts(text, ".EE\n");
+}
+
+static void put_man_heading(const char *name, Text *text)
+{
+    text_printf(text, ".SS %s\n", name);
+}
+
+static void put_man_option(const Setting *plain, Text *text)
+{
+    const Option *option = plain->option;
+    Text argument = TEXT_INIT, meaning = TEXT_INIT;
+    text_puts(text, ".TP\n\\fB");
+    if (strcmp(option->name, "output") == 0)
+        text_puts(text, "\\-o\\fR, \\fB");
+    text_puts(text, "\\-\\-");
+    put_troff(option->name, text);
+    option_put_argument(option, &argument);
+    help_put_meaning(plain, &meaning);
+    text_puts(text, argument.length ? "\\fR \\fI" : "");
+    put_troff(text_chars(&argument), text);
+    text_puts(text, "\\fR\n\\&");
+    put_troff(text_chars(&meaning), text);
+    text_puts(text, "\n");
+    text_release(&argument);
+    text_release(&meaning);
+}
+
+static void put_title(const char *name, Text *text)
+{
+    text_puts(text, ".TH ");
+    for (const char *c = name; c && *c; c++)
+        text_printf(text, "%c", *c >= 'a' && *c <= 'z' ? *c - 'a' + 'A' : *c);
+    text_puts(text, " 1 \"\" \"" GENERATOR "\" \"corcast manual\"\n.SH NAME\n");
+    put_troff(name, text);
+    text_puts(text, " \\- ");
+}
+
+static void put_exit_status(Text *text)
+{
+    text_puts(text, ".SH EXIT STATUS\n");
+    put_troff(help_exit_status, text);
+    text_puts(text, "\n");
+}
+
+void manual_put(const Parsed *plain, Text *text)
+{
+    const Command *command = plain->command;
+    Text name = TEXT_INIT;
+    text_printf(&name, "corcast-%s", command->name);
+    put_title(text_chars(&name), text);
+    text_release(&name);
+    put_troff(command->summary, text);
+    text_printf(text, "\n.SH SYNOPSIS\n\\fBcorcast %s\\fR ", command->name);
+    put_troff(command->operands, text);
+    text_puts(text, *command->operands ? " [options]\n" : "[options]\n");
+    text_puts(text, ".SH OPTIONS\n");
+    for_groups(plain, true, put_man_heading, put_man_option, text);
+    if (command->examples) {
+        text_puts(text, ".SH EXAMPLES\n");
+        put_lines(command->examples, text);
+    }
+    put_exit_status(text);
+    text_puts(text, ".SH SEE ALSO\n\\fBcorcast\\fR(1)\n");
+}
+
+void manual_put_overview(Text *text)
+{
+    put_title("corcast", text);
+    text_puts(text, "grow, draw and verify arterial trees\n.SH SYNOPSIS\n"
+                    "\\fBcorcast\\fR \\fIcommand\\fR [options] [files]\n.SH COMMANDS\n");
+    for (const Command *const *command = all_commands; *command; command++) {
+        text_printf(text, ".TP\n\\fBcorcast\\-%s\\fR(1)\n", (*command)->name);
+        put_troff((*command)->summary, text);
+        text_puts(text, "\n");
+    }
+    text_puts(text,
+              ".SH DESCRIPTION\nA file may be \\(aq\\-\\(aq, standard input or output, wherever "
+              "one is named.\nOptions may also stand in an INI file, which "
+              "\\fB\\-\\-recipe\\fR names.\n");
+    put_exit_status(text);
+}
+
+/* ---- Markdown -------------------------------------------------------------------------------- */
+
+static void put_markdown_heading(const char *name, Text *text)
+{
+    text_printf(text, "\n| %s | |\n|---|---|\n", name);
+}
+
+static void put_markdown_option(const Setting *plain, Text *text)
+{
+    const Option *option = plain->option;
+    bool output = strcmp(option->name, "output") == 0;
+    Text argument = TEXT_INIT, meaning = TEXT_INIT;
+    option_put_argument(option, &argument);
+    help_put_meaning(plain, &meaning);
+    text_printf(text, "| `%s--%s%s", output ? "-o, " : "", option->name,
+                argument.length ? " " : "");
+    help_put_escaped(text_chars(&argument), "|", text);
+    text_puts(text, "` | ");
+    help_put_escaped(text_chars(&meaning), "|*<", text);
+    text_puts(text, " |\n");
+    text_release(&argument);
+    text_release(&meaning);
+}
+
+static void put_markdown(const Parsed *plain, Text *text)
+{
+    const Command *command = plain->command;
+    text_printf(text, "\n## %s\n\n", command->name);
+    help_put_escaped(command->summary, "*<", text);
+    text_printf(text, "\n\n    corcast %s %s\n", command->name, command->operands);
+    for_groups(plain, false, put_markdown_heading, put_markdown_option, text);
+    if (command->examples)
+        text_printf(text, "\n```\n%s```\n", command->examples);
+}
+
+static void put_common(const Parsed *plain, Text *text)
+{
+    text_puts(text, "\n| option | |\n|---|---|\n");
+    for (size_t i = 0; i < plain->n_settings; i++)
+        if (help_is_common(plain, &plain->settings[i]))
+            put_markdown_option(&plain->settings[i], text);
+}
+
+Status reference_put(Text *text, Err *err)
+{
+    text_puts(text,
+              "# Reference\n\n`make reference` writes this page from the descriptions that the "
+              "program itself goes by. What holds\nwithout an option stands in brackets behind "
+              "it.\n\nEvery command takes these options:\n");
+    TRY(help_put(put_common, all_commands[0], text, err));
+    text_printf(
+        text,
+        "\nA recipe holds options, `name = value` a line; below `[COMMAND]` they are of that "
+        "command. `-` stands for\nstandard input or output wherever a file may stand.\n\n"
+        "Exit status: %s\n",
+        help_exit_status);
+    return help_put_all(put_markdown, text, err);
+}

@@ -1,0 +1,78 @@
+/* Progress is one line of standard error, written over where that is a terminal. The time left is
+ * what the rest takes at the speed so far. */
+#include "cli/screen.h"
+
+#include "base/base.h"
+#include <stdio.h>
+#include <unistd.h>
+
+/* ", 12 s left" once there is something to tell it by, else nothing: after a hundredth of the work,
+ * or ten seconds of it. */
+static const char *time_left(double elapsed_s, double fraction, char out[32])
+{
+    double left_s = elapsed_s * (1 - fraction) / fraction;
+    out[0] = '\0';
+    if (elapsed_s < 1 || !(fraction >= (elapsed_s < 10 ? 0.01 : 1e-6)))
+        return out;
+    if (left_s < 100)
+        snprintf(out, 32, ", %.0f s left", left_s);
+    else if (left_s < 6000)
+        snprintf(out, 32, ", %.0f min left", left_s / 60);
+    else
+        snprintf(out, 32, ", %.0f h left", left_s / 3600);
+    return out;
+}
+
+static void begin_step(Screen *screen, const char *what)
+{
+    screen->what = what;
+    screen->start_s = clock_seconds();
+    screen->last_s = screen->terminal ? 0 : screen->start_s;
+}
+
+static void clear_line(Screen *screen)
+{
+    if (screen->shown)
+        fputs("\r\033[K", stderr);
+    screen->shown = false;
+}
+
+static void end_step(Screen *screen)
+{
+    clear_line(screen);
+    screen->what = NULL;
+}
+
+static void show_progress(void *user, const char *what, double fraction)
+{
+    char left[32];
+    Screen *screen = user;
+    if (!what) {
+        end_step(screen);
+        return;
+    }
+    if (what != screen->what)
+        begin_step(screen, what);
+    double now_s = clock_seconds();
+    if (screen->quiet || now_s - screen->last_s < (screen->terminal ? 0.1 : 10))
+        return;
+    screen->last_s = now_s;
+    screen->shown = screen->terminal;
+    fprintf(stderr, screen->terminal ? "\r%s %3.0f %%%s\033[K" : "%s: %.0f %%%s\n", what,
+            100 * fraction, time_left(now_s - screen->start_s, fraction, left));
+    fflush(stderr);
+}
+
+static void print_sentence(void *user, TalkKind kind, const char *sentence)
+{
+    Screen *screen = user;
+    clear_line(screen);
+    if (kind == TALK_WARNING || !screen->quiet)
+        fprintf(stderr, "corcast: %s\n", sentence);
+}
+
+Talk screen_talk(Screen *screen, bool quiet)
+{
+    *screen = (Screen){.quiet = quiet, .terminal = isatty(STDERR_FILENO)};
+    return (Talk){.say = print_sentence, .progress = show_progress, .user = screen};
+}

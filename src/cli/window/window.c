@@ -1,0 +1,254 @@
+/* SDL 2 is opened when a window is, so that all other commands run where it is not installed and
+ * start without loading the fifty libraries that it needs. Its header says what its functions
+ * are. */
+#include "cli/window/window.h"
+
+#include <SDL.h>
+#include <dlfcn.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SDL_FUNCTIONS(X)                                                                           \
+    X(GetVersion)                                                                                  \
+    X(SetMainReady)                                                                                \
+    X(SetHint)                                                                                     \
+    X(Init)                                                                                        \
+    X(Quit)                                                                                        \
+    X(GetError)                                                                                    \
+    X(CreateWindow)                                                                                \
+    X(DestroyWindow)                                                                               \
+    X(SetWindowTitle)                                                                              \
+    X(GetCurrentVideoDriver)                                                                       \
+    X(GetWindowSurface)                                                                            \
+    X(LockSurface)                                                                                 \
+    X(UnlockSurface)                                                                               \
+    X(UpdateWindowSurface)                                                                         \
+    X(GetModState)                                                                                 \
+    X(PollEvent)                                                                                   \
+    X(Delay)
+
+/* SDL's functions under their names without "SDL_". */
+typedef struct Sdl {
+#define X(name) __typeof__(&SDL_##name) name;
+    SDL_FUNCTIONS(X)
+#undef X
+} Sdl;
+
+struct Window {
+    void *library;
+    Sdl sdl;
+    bool started;
+    SDL_Window *window;
+};
+
+static Status load(Window *window, Err *err)
+{
+    window->library = dlopen("libSDL2-2.0.so.0", RTLD_NOW | RTLD_LOCAL);
+    if (!window->library)
+        return err_set(err, STATUS_TOOL,
+                       "a window needs SDL 2 (Debian: libsdl2-2.0-0), which cannot be loaded: %s",
+                       dlerror());
+    const struct {
+        const char *name;
+        void *where;
+    } functions[] = {
+#define X(name) {"SDL_" #name, &window->sdl.name},
+        SDL_FUNCTIONS(X)
+#undef X
+    };
+    for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) {
+        void *found = dlsym(window->library, functions[i].name);
+        if (!found)
+            return err_set(err, STATUS_TOOL, "SDL 2 is too old: it has no %s", functions[i].name);
+        memcpy(functions[i].where, &found, sizeof found);
+    }
+    return STATUS_OK;
+}
+
+static Status failed(const Window *window, const char *what, Err *err)
+{
+    return err_set(err, STATUS_TOOL, "%s: %s", what, window->sdl.GetError());
+}
+
+/* SDL makes do with a display that nobody sees. */
+static bool is_seen(const char *driver)
+{
+    return strcmp(driver, "dummy") != 0 && strcmp(driver, "offscreen") != 0;
+}
+
+static Status start(Window *window, const char *title, int width, int height, Err *err)
+{
+    const Sdl *sdl = &window->sdl;
+    sdl->SetMainReady();
+    sdl->SetHint("SDL_NO_SIGNAL_HANDLERS", "1");
+    sdl->SetHint("SDL_FRAMEBUFFER_ACCELERATION", "0");
+    if (sdl->Init(SDL_INIT_VIDEO) != 0)
+        return failed(window, "there is no display to open a window on", err);
+    window->started = true;
+    if (!is_seen(sdl->GetCurrentVideoDriver()) && !getenv("SDL_VIDEODRIVER"))
+        return err_set(err, STATUS_TOOL,
+                       "there is no display to open a window on: DISPLAY names none that answers");
+    window->window =
+        sdl->CreateWindow(title, (int)SDL_WINDOWPOS_UNDEFINED, (int)SDL_WINDOWPOS_UNDEFINED, width,
+                          height, SDL_WINDOW_RESIZABLE);
+    return window->window ? STATUS_OK : failed(window, "the window cannot be opened", err);
+}
+
+Status window_open(Window **out, const char *title, int width, int height, Err *err)
+{
+    Window *window;
+    TRY(mem_calloc(&window, 1, sizeof *window, "windows", err));
+    Status status = STATUS_OK;
+    if (!getenv("DISPLAY") && !getenv("WAYLAND_DISPLAY") && !getenv("SDL_VIDEODRIVER"))
+        status = err_set(err, STATUS_TOOL,
+                         "there is no display to open a window on: neither DISPLAY nor "
+                         "WAYLAND_DISPLAY is set");
+    if (status == STATUS_OK)
+        status = load(window, err);
+    if (status == STATUS_OK)
+        status = start(window, title, width, height, err);
+    if (status != STATUS_OK) {
+        window_close(window);
+        return status;
+    }
+    *out = window;
+    return STATUS_OK;
+}
+
+/* The library stays loaded: what it has loaded in turn does not always bear being unloaded. */
+void window_close(Window *window)
+{
+    if (!window)
+        return;
+    if (window->window)
+        window->sdl.DestroyWindow(window->window);
+    if (window->started)
+        window->sdl.Quit();
+    free(window);
+}
+
+static WindowEvent drag_event(const Window *window, const SDL_MouseMotionEvent *motion)
+{
+    WindowEvent event = {.kind = WINDOW_DRAG, .x = motion->xrel, .y = motion->yrel};
+    if (motion->state & SDL_BUTTON_LMASK)
+        event.button = window->sdl.GetModState() & KMOD_SHIFT ? WINDOW_MIDDLE : WINDOW_LEFT;
+    else if (motion->state & SDL_BUTTON_MMASK)
+        event.button = WINDOW_MIDDLE;
+    else if (motion->state & SDL_BUTTON_RMASK)
+        event.button = WINDOW_RIGHT;
+    else
+        event.kind = WINDOW_NOTHING;
+    return event;
+}
+
+static WindowEvent translate(const Window *window, const SDL_Event *from)
+{
+    switch (from->type) {
+    case SDL_QUIT:
+        return (WindowEvent){.kind = WINDOW_QUIT};
+    case SDL_KEYDOWN:
+        return (WindowEvent){.kind = WINDOW_KEY, .key = (int)from->key.keysym.sym};
+    case SDL_MOUSEMOTION:
+        return drag_event(window, &from->motion);
+    case SDL_MOUSEWHEEL:
+        return (WindowEvent){.kind = WINDOW_WHEEL, .y = from->wheel.y};
+    case SDL_WINDOWEVENT:
+        if (from->window.event == SDL_WINDOWEVENT_SIZE_CHANGED)
+            return (WindowEvent){
+                .kind = WINDOW_SIZE, .x = from->window.data1, .y = from->window.data2};
+        if (from->window.event == SDL_WINDOWEVENT_EXPOSED)
+            return (WindowEvent){.kind = WINDOW_EXPOSED};
+        break;
+    default:
+        break;
+    }
+    return (WindowEvent){.kind = WINDOW_NOTHING};
+}
+
+/* Events that mean nothing here are passed over. Waiting is asking every few milliseconds:
+ * SDL 2.26's WaitEvent sends messages to the window over a connection of its own, which X answers
+ * with an error that ends the program when the window has been closed meanwhile. */
+WindowEvent window_event(Window *window, bool wait)
+{
+    enum { PAUSE_MS = 5 };
+    for (;;) {
+        SDL_Event next;
+        while (window->sdl.PollEvent(&next)) {
+            WindowEvent event = translate(window, &next);
+            if (event.kind != WINDOW_NOTHING)
+                return event;
+        }
+        if (!wait)
+            return (WindowEvent){.kind = WINDOW_NOTHING};
+        window->sdl.Delay(PAUSE_MS);
+    }
+}
+
+/* Copies a row of as many pixels to a window whose pixels are 0xRRGGBB, as they nearly always are.
+ */
+static void copy_row(const uint8_t *rgb, int n, uint32_t alpha, uint32_t *pixels)
+{
+    for (int x = 0; x < n; x++, rgb += 3)
+        pixels[x] = alpha | (uint32_t)rgb[0] << 16 | (uint32_t)rgb[1] << 8 | rgb[2];
+}
+
+/* Copies a row to any window's, the nearest of the picture's pixels. */
+static void stretch_row(const uint8_t *rgb, int width, const SDL_PixelFormat *format, int n,
+                        uint32_t *pixels)
+{
+    uint64_t step = ((uint64_t)width << 32) / (uint64_t)n, at = 0;
+    for (int x = 0; x < n; x++, at += step) {
+        const uint8_t *from = rgb + 3 * (at >> 32);
+        pixels[x] = (uint32_t)from[0] << format->Rshift | (uint32_t)from[1] << format->Gshift |
+                    (uint32_t)from[2] << format->Bshift | format->Amask;
+    }
+}
+
+/* Copies the picture to the window's pixels, of 32 bits each. */
+static void stretch(const uint8_t *rgb, int width, int height, SDL_Surface *to)
+{
+    const SDL_PixelFormat *format = to->format;
+    const bool as_is =
+        width == to->w && format->Rshift == 16 && format->Gshift == 8 && format->Bshift == 0;
+    for (int y = 0; y < to->h; y++) {
+        uint32_t *pixels = (uint32_t *)((uint8_t *)to->pixels + (size_t)y * (size_t)to->pitch);
+        const uint8_t *row = rgb + (size_t)((long long)y * height / to->h) * (size_t)width * 3;
+        if (as_is)
+            copy_row(row, width, format->Amask, pixels);
+        else
+            stretch_row(row, width, format, to->w, pixels);
+    }
+}
+
+Status window_show(Window *window, const uint8_t *rgb, int width, int height, Err *err)
+{
+    const Sdl *sdl = &window->sdl;
+    SDL_Surface *surface = sdl->GetWindowSurface(window->window);
+    if (!surface || surface->format->BytesPerPixel != 4 || sdl->LockSurface(surface) != 0)
+        return failed(window, "the window cannot be drawn to", err);
+    stretch(rgb, width, height, surface);
+    sdl->UnlockSurface(surface);
+    return sdl->UpdateWindowSurface(window->window) == 0
+               ? STATUS_OK
+               : failed(window, "the window cannot be drawn to", err);
+}
+
+void window_title(Window *window, const char *title)
+{
+    window->sdl.SetWindowTitle(window->window, title);
+}
+
+void window_put_library(Text *text)
+{
+    Window window = {0};
+    Err err = {{0}};
+    SDL_version version;
+    if (load(&window, &err) == STATUS_OK) {
+        window.sdl.GetVersion(&version);
+        text_printf(text, "%d.%d.%d", version.major, version.minor, version.patch);
+    } else {
+        text_put_line(text, err.text);
+    }
+    if (window.library)
+        dlclose(window.library);
+}

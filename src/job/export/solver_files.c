@@ -1,0 +1,125 @@
+/* Ends are those of the mesh; how the flow parts among them is the tree's. Radii and
+ * places come from the vessels, which may have been thinned, and lengthened at their ends. */
+#include "job/export/solver_files.h"
+
+#include "treeio/treeio.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* The part of all blood that passes each segment, in *parts (owned). */
+static Status find_flow_parts(const Tree *tree, double **parts, Err *err)
+{
+    double total = 0;
+    TRY(tree_flow_shares(tree, parts, err));
+    double *part = *parts;
+    for (size_t i = tree->n; i-- > 0;)
+        if (tree_is_segment(tree, i))
+            part[tree->parent[i]] += part[i];
+        else
+            total += part[i];
+    for (size_t i = 0; i < tree->n && total > 0; i++)
+        part[i] /= total;
+    return STATUS_OK;
+}
+
+static void put_vector(Vec3 v, Text *out)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        text_number(out, vec3_component(v, axis) + 0);
+        text_puts(out, ",");
+    }
+}
+
+Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels, Text *out,
+                   Err *err)
+{
+    double *parts;
+    TRY(find_flow_parts(tree, &parts, err));
+    text_puts(out, "name,face,id,x_mm,y_mm,z_mm,normal_x,normal_y,normal_z,radius_mm,area_mm2,"
+                   "flow_part\n");
+    for (size_t i = 0; i < ends->n; i++) {
+        const MeshEnd *end = &ends->ends[i];
+        text_printf(out, "%s,%zu,%u,", end->name, ends->n_walls + i + 1,
+                    vessels->ids[end->segment]);
+        put_vector(end->center, out);
+        put_vector(end->normal, out);
+        text_number(out, end->radius_mm);
+        text_puts(out, ",");
+        text_number(out, end->area_mm2);
+        text_puts(out, ",");
+        if (!end->is_ring)
+            text_number(out, parts[vessels->segments[end->segment].segment]);
+        text_puts(out, "\n");
+    }
+    free(parts);
+    return text_check(out, err);
+}
+
+Status solver_centerline(const Tree *tree, const VesselTree *vessels, Text *out, Err *err)
+{
+    Tree drawn = *tree;
+    Status status;
+    drawn.radius_mm = NULL;
+    drawn.position = NULL;
+    TRY_GOTO(mem_calloc(&drawn.radius_mm, tree->n, sizeof *drawn.radius_mm, "radii", err));
+    TRY_GOTO(mem_calloc(&drawn.position, tree->n, sizeof *drawn.position, "points", err));
+    memcpy(drawn.radius_mm, tree->radius_mm, tree->n * sizeof *drawn.radius_mm);
+    memcpy(drawn.position, tree->position, tree->n * sizeof *drawn.position);
+    for (size_t i = 0; i < vessels->n_segments; i++) {
+        const FieldSegment *segment = &vessels->segments[i];
+        drawn.radius_mm[segment->segment] = segment->radius_mm;
+        drawn.position[segment->segment] = segment->b;
+        drawn.position[tree->parent[segment->segment]] = segment->a;
+    }
+    TRY_GOTO(tree_write_text(&drawn, "centreline.vtp", out, err));
+done:
+    free(drawn.radius_mm);
+    free(drawn.position);
+    return status;
+}
+
+/* A part by what it bounds: blood within the lumen, or the wall about it. */
+static bool bounds_blood(const MeshEnds *ends, size_t part)
+{
+    if (part < ends->n_walls)
+        return strcmp(ends->walls[part], "outer") != 0;
+    return !ends->ends[part - ends->n_walls].is_ring;
+}
+
+static bool bounds_wall(const MeshEnds *ends, size_t part)
+{
+    return part < ends->n_walls || ends->ends[part - ends->n_walls].is_ring;
+}
+
+/* gmsh numbers surfaces from 1 on, in the order of the file. */
+static void put_volume(const MeshEnds *ends, bool (*bounds)(const MeshEnds *, size_t),
+                       const char *name, int number, Text *out)
+{
+    const char *before = "";
+    text_printf(out, "Surface Loop(%d) = {", number);
+    for (size_t part = 0; part < meshends_parts(ends); part++) {
+        if (!bounds(ends, part))
+            continue;
+        text_printf(out, "%s%zu", before, part + 1);
+        before = ", ";
+    }
+    text_printf(out, "};\nVolume(%d) = {%d};\nPhysical Volume(\"%s\") = {%d};\n", number, number,
+                name, number);
+}
+
+void solver_gmsh(const MeshEnds *ends, const char *file, Text *out)
+{
+    bool is_hollow = false;
+    text_puts(out, "Merge \"");
+    for (const char *c = file; *c; c++)
+        text_printf(out, "%s%c", *c == '"' || *c == '\\' ? "\\" : "", *c);
+    text_puts(out, "\";\n");
+    for (size_t part = 0; part < meshends_parts(ends); part++) {
+        const char *name = meshends_part_name(ends, part);
+        is_hollow = is_hollow || strcmp(name, "outer") == 0;
+        text_printf(out, "Physical Surface(\"%s\") = {%zu};\n", name, part + 1);
+    }
+    put_volume(ends, bounds_blood, "blood", 1, out);
+    if (is_hollow)
+        put_volume(ends, bounds_wall, "wall", 2, out);
+}

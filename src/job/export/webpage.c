@@ -1,0 +1,371 @@
+/* The viewer is built apart from the program [templates/viewer/bundle], as it takes npm, and stands
+ * beside the templates where it is installed, or in the build folder. A page holds whatever fields
+ * there are, so that who reads it needs no other. */
+#include "job/export/webpage.h"
+
+#include "derive/derive.h"
+#include "options/output.h"
+#include "options/templates.h"
+#include "page/page.h"
+#include "tree/tree.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct Webpage {
+    const PictureTree *of;
+    Look look;
+    Appearance appearance;
+    FieldSeries *fields;
+    size_t n_fields, capacity;
+    char **names; /* of series of columns, which fields borrow; owned */
+    size_t n_names, names_capacity;
+    PageMap *maps;
+    size_t n_maps, maps_capacity;
+} Webpage;
+
+static void webpage_release(Webpage *page)
+{
+    appearance_release(&page->appearance);
+    for (size_t i = 0; i < page->n_fields; i++)
+        fieldseries_release(&page->fields[i]);
+    for (size_t i = 0; i < page->n_names; i++)
+        free(page->names[i]);
+    for (size_t i = 0; i < page->n_maps; i++) {
+        free(page->maps[i].name);
+        colormap_release(&page->maps[i].map);
+    }
+    free(page->fields);
+    free(page->names);
+    free(page->maps);
+}
+
+Status webpage_check_needs(const Coloring *coloring, const Parsed *parsed, Err *err)
+{
+    static const char of_pictures[] = "is for pictures; a page has a scale that runs on";
+    const OptionNeed needs[] = {
+        {"classes", false, of_pictures},
+        {"under", false, of_pictures},
+        {"over", false, of_pictures},
+        {"no-data", false, of_pictures},
+        {"moment", false, "is for pictures; a page has a slider"},
+        {"range-of", false, "is for pictures; a page holds what it shows"},
+        {0},
+    };
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        const Option *option = setting->option;
+        if (setting->typed && option->group == GROUP_COLOR && !coloring_takes(coloring, option))
+            return err_set(err, STATUS_USAGE, "--%s needs --color-by", option->name);
+    }
+    return options_check_needs(parsed, needs, err);
+}
+
+/* ---- fields ---------------------------------------------------------------------------------- */
+
+static bool has_field(const Webpage *page, const char *name)
+{
+    for (size_t i = 0; i < page->n_fields; i++)
+        if (strcmp(page->fields[i].field.name, name) == 0)
+            return true;
+    return false;
+}
+
+static Status add_field(Webpage *page, const TreeMeta *said, const char *name, Err *err)
+{
+    TRY(mem_reserve(&page->fields, &page->capacity, page->n_fields + 1, sizeof *page->fields,
+                    "fields", err));
+    TRY(derive_series(&page->of->tree, said, name, &page->fields[page->n_fields], err));
+    page->n_fields++;
+    return STATUS_OK;
+}
+
+/* What the page opens with takes precedence over others of that name: it may be of a file of
+ * values, and in a unit that was asked for. */
+static Status add_shown(Webpage *page, Err *err)
+{
+    Appearance *shown = &page->appearance;
+    if (!shown->colors)
+        return STATUS_OK;
+    TRY(mem_reserve(&page->fields, &page->capacity, 1, sizeof *page->fields, "fields", err));
+    page->fields[page->n_fields++] = (FieldSeries){.field = {.name = shown->scale.name,
+                                                             .unit = shown->scale.unit,
+                                                             .value = shown->values,
+                                                             .n = shown->n_values},
+                                                   .time = shown->time,
+                                                   .frames = shown->n_frames ? shown->n_frames : 1};
+    shown->values = NULL;
+    shown->time = NULL;
+    return STATUS_OK;
+}
+
+static size_t count_roots(const Tree *tree)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < tree->n; i++)
+        n += !tree_is_segment(tree, i);
+    return n;
+}
+
+/* The fields that can be derived, and that tell segments apart; `lacking` lists those that lack
+ * what they need. */
+static Status add_derived(Webpage *page, const TreeMeta *said, Text *lacking, Err *err)
+{
+    const bool is_alone = count_roots(&page->of->tree) == 1;
+    const char *name;
+    for (size_t i = 0; (name = derive_field_name(i)); i++) {
+        if (has_field(page, name) || (is_alone && strcmp(name, "tree") == 0))
+            continue;
+        Status status = add_field(page, said, name, err);
+        if (status == STATUS_INPUT)
+            text_printf(lacking, "%s%s", lacking->length ? ", " : "", name);
+        else if (status != STATUS_OK)
+            return status;
+    }
+    return STATUS_OK;
+}
+
+/* The name of the series that a column is a moment of, owned by the page, in *name; else that of
+ * the column. */
+static Status series_name(Webpage *page, const char *column, const char **name, Err *err)
+{
+    size_t length;
+    double time;
+    Series series = {0};
+    *name = column;
+    if (!series_parse(column, &length, &time))
+        return STATUS_OK;
+    char *made = NULL;
+    TRY(mem_reserve(&page->names, &page->names_capacity, page->n_names + 1, sizeof *page->names,
+                    "names", err));
+    TRY(mem_strdup(&made, column, err));
+    made[length] = '\0';
+    page->names[page->n_names++] = made;
+    TRY(tree_series(&page->of->tree, made, &series, err));
+    if (series.n)
+        *name = made;
+    series_release(&series);
+    return STATUS_OK;
+}
+
+static Status add_columns(Webpage *page, const TreeMeta *said, Err *err)
+{
+    const Tree *tree = &page->of->tree;
+    for (size_t i = 0; i < tree->n_columns; i++) {
+        const char *name;
+        TRY(series_name(page, tree->column[i].name, &name, err));
+        if (!has_field(page, name))
+            TRY(add_field(page, said, name, err));
+    }
+    return STATUS_OK;
+}
+
+static Status add_fields(const Coloring *coloring, bool quiet, Webpage *page, Err *err)
+{
+    const TreeMeta said = blood_said(&coloring->blood);
+    Text lacking = TEXT_INIT;
+    Status status;
+    TRY_GOTO(add_shown(page, err));
+    TRY_GOTO(add_derived(page, &said, &lacking, err));
+    TRY_GOTO(add_columns(page, &said, err));
+    TRY_GOTO(text_check(&lacking, err));
+    if (!quiet && *text_chars(&lacking))
+        fprintf(stderr,
+                "corcast: %s are left out: neither the tree nor an option says what they need\n",
+                text_chars(&lacking));
+done:
+    text_release(&lacking);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", page->of->path);
+    return status;
+}
+
+/* ---- colours --------------------------------------------------------------------------------- */
+
+/* Takes `name` over. */
+static Status add_map(Webpage *page, char *name, const char *path, Err *err)
+{
+    PageMap *map = &page->maps[page->n_maps];
+    *map = (PageMap){.name = name};
+    page->n_maps++;
+    return colormap_read(&map->map, path, err);
+}
+
+static Status read_map(Webpage *page, const char *value, Err *err)
+{
+    char *path = NULL, *name = NULL;
+    Status status;
+    TRY_GOTO(template_file("colormap", "colormaps", value, ".txt", &path, err));
+    TRY_GOTO(mem_reserve(&page->maps, &page->maps_capacity, page->n_maps + 1, sizeof *page->maps,
+                         "colour maps", err));
+    TRY_GOTO(mem_strdup(&name, file_name(value), err));
+    status = add_map(page, name, path, err);
+done:
+    free(path);
+    return status;
+}
+
+/* All maps that there are, and the user's own. */
+static Status read_maps(const char *chosen, Webpage *page, Err *err)
+{
+    Text names = TEXT_INIT;
+    char *lines = NULL;
+    Status status = template_names("colormaps", ".txt", &names, err);
+    if (status == STATUS_OK)
+        status = text_take(&names, &lines, err);
+    text_release(&names);
+    if (status == STATUS_OK && strchr(chosen, '/'))
+        status = read_map(page, chosen, err);
+    char *rest = lines;
+    for (char *name; status == STATUS_OK && (name = text_line(&rest));)
+        if (*name)
+            status = read_map(page, name, err);
+    free(lines);
+    return status;
+}
+
+/* ---- the file -------------------------------------------------------------------------------- */
+
+static int thicker_first(const void *a, const void *b)
+{
+    const double *x = a, *y = b;
+    return (*x < *y) - (*x > *y);
+}
+
+/* The radius below which segments are to be dropped so that no more are left than a page holds. */
+static Status radius_to_prune(const Tree *tree, double *radius_mm, Err *err)
+{
+    double *radii;
+    TRY(mem_calloc(&radii, tree->n, sizeof *radii, "radii", err));
+    memcpy(radii, tree->radius_mm, tree->n * sizeof *radii);
+    qsort(radii, tree->n, sizeof *radii, thicker_first);
+    double last = radii[WEBPAGE_MOST_SEGMENTS - 1], next = radii[WEBPAGE_MOST_SEGMENTS];
+    *radius_mm = (last + next) / 2;
+    free(radii);
+    return STATUS_OK;
+}
+
+static Status check_count(const PictureTree *of, Err *err)
+{
+    const double bytes_each = 85;
+    const size_t n = of->tree.n - count_roots(&of->tree);
+    double radius_mm;
+    char size[BYTES_TEXT_SIZE];
+    if (n <= WEBPAGE_MOST_SEGMENTS)
+        return STATUS_OK;
+    TRY(radius_to_prune(&of->tree, &radius_mm, err));
+    return err_set(err, STATUS_INFEASIBLE,
+                   "%s: %zu segments make a page of %s, and a browser does not turn "
+                   "more than %d; --prune-radius %.3g leaves about as many",
+                   of->path, n, bytes_text((double)n * bytes_each, size), WEBPAGE_MOST_SEGMENTS,
+                   radius_mm);
+}
+
+/* Of the values, as float in base64. */
+static Status check_bytes(const Webpage *page, Err *err)
+{
+    double bytes = 0;
+    size_t moments = 0;
+    char size[BYTES_TEXT_SIZE];
+    for (size_t i = 0; i < page->n_fields; i++) {
+        bytes += (double)page->fields[i].field.n * sizeof(float) * 4 / 3;
+        moments += page->fields[i].frames;
+    }
+    if (bytes <= WEBPAGE_MOST_BYTES)
+        return STATUS_OK;
+    return err_set(
+        err, STATUS_INFEASIBLE,
+        "%s: the fields, %zu with all moments, make a page of %s, and a browser does not "
+        "open more than %d MB; leave columns or moments out of the file",
+        page->of->path, moments, bytes_text(bytes, size), WEBPAGE_MOST_BYTES / 1000000);
+}
+
+/* The viewer's file in *path (owned). */
+static Status find_viewer(const char *templates, char **path, Err *err)
+{
+    static const char *const places[] = {"page/viewer.js", "../build/viewer/viewer.js"};
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        char *place = NULL;
+        TRY(file_join(templates, places[i], &place, err));
+        if (access(place, R_OK) == 0) {
+            *path = place;
+            return STATUS_OK;
+        }
+        free(place);
+    }
+    return err_set(err, STATUS_TOOL,
+                   "this corcast was built without the viewer that pages hold: install npm and "
+                   "esbuild (`make deps FOR=page`) and run `make` again");
+}
+
+static Status put_file(const PageParams *params, const char *output, Err *err)
+{
+    OutFile file;
+    TRY(outfile_open(&file, output, err));
+    Text text = TEXT_TO(file.stream);
+    Status status = page_put(params, &text, err);
+    if (status == STATUS_OK)
+        status = text_flush(&text, err);
+    text_release(&text);
+    if (status == STATUS_IO)
+        err_prefix(err, "%s: ", output);
+    if (status == STATUS_OK)
+        return outfile_commit(&file, err);
+    outfile_discard(&file);
+    return status;
+}
+
+static Status write_page(const Coloring *coloring, const char *look, const Webpage *page,
+                         const char *output, const Parsed *parsed, Err *err)
+{
+    char *templates = NULL, *viewer = NULL, *name = NULL, *command = NULL;
+    const Tree *tree = &page->of->tree;
+    Status status;
+    TRY_GOTO(templates_folder(&templates, err));
+    TRY_GOTO(find_viewer(templates, &viewer, err));
+    TRY_GOTO(shown_name(page->of->path, &name, err));
+    TRY_GOTO(command_line_text(parsed, &command, err));
+    const Box box = tree_bounds(tree);
+    const PageParams params = {.templates = templates,
+                               .viewer = viewer,
+                               .title = name,
+                               .generator = GENERATOR,
+                               .command = command,
+                               .tree = tree,
+                               .origin = vec3_scale(vec3_add(box.low, box.high), 0.5),
+                               .fields = page->fields,
+                               .n_fields = page->n_fields,
+                               .maps = page->maps,
+                               .n_maps = page->n_maps,
+                               .look = &page->look,
+                               .look_name = look,
+                               .scale = page->appearance.colors ? &page->appearance.scale : NULL,
+                               .map = file_name(coloring->colormap)};
+    status = put_file(&params, output, err);
+done:
+    free(templates);
+    free(viewer);
+    free(name);
+    free(command);
+    return status;
+}
+
+Status webpage_write(const Coloring *coloring, const char *look, const PictureTree *of,
+                     const char *output, const Parsed *parsed, Err *err)
+{
+    const bool quiet = parsed->common.quiet;
+    const ColoredTree tree = picture_colored_tree(of);
+    Webpage page = {.of = of};
+    Status status;
+    TRY_GOTO(check_count(of, err));
+    TRY_GOTO(coloring_read_look(look, &page.look, err));
+    TRY_GOTO(coloring_appearance(coloring, &tree, &page.look, &page.appearance, err));
+    TRY_GOTO(add_fields(coloring, quiet, &page, err));
+    TRY_GOTO(check_bytes(&page, err));
+    TRY_GOTO(read_maps(coloring->colormap, &page, err));
+    status = write_page(coloring, look, &page, output, parsed, err);
+done:
+    webpage_release(&page);
+    return status;
+}

@@ -1,0 +1,111 @@
+/* The grid: columns of one width, rows of one height. Places are whole pixels of the page, so that
+ * no picture is resampled. */
+#include "job/figure/figure_making.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* The cell in which each panel begins, row by row; how many rows there are. */
+static int find_cells(const Figure *figure, int (*cell)[2])
+{
+    const int columns = figure->options->columns;
+    int row = 0, column = 0;
+    for (size_t i = 0; i < figure->plan.n; i++) {
+        const Section *section = figure->plan.sections[i];
+        if (!figure_is_panel(figure, i))
+            continue;
+        int span = ((const PanelOptions *)section->own.options)->span;
+        if (column + span > columns) {
+            row++;
+            column = 0;
+        }
+        cell[i][0] = column;
+        cell[i][1] = row;
+        column += span;
+    }
+    return row + 1;
+}
+
+/* Whether any panel of the row has a title: all keep its place then. */
+static bool has_titles(const Figure *figure, int (*cell)[2], int row)
+{
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_is_panel(figure, i) && cell[i][1] == row &&
+            ((const PanelOptions *)figure->plan.sections[i]->own.options)->title)
+            return true;
+    return false;
+}
+
+static Status place_panel(const Figure *figure, const FigureBox *cell, double title_mm, size_t i,
+                          Err *err)
+{
+    const Section *section = figure->plan.sections[i];
+    const PanelOptions *panel = section->own.options;
+    double width = cell->right - cell->left, height = cell->bottom - cell->top - title_mm;
+    double left = cell->left, top = cell->top + title_mm;
+    if (panel->aspect > 0 && width > 0 && height > 0) {
+        double fitting = fmin(width, height * panel->aspect);
+        left += (width - fitting) / 2;
+        top += (height - fitting / panel->aspect) / 2;
+        width = fitting;
+        height = fitting / panel->aspect;
+    }
+    const FigurePage *page = &figure->sheet.page;
+    Place place = {
+        .left = figure_pixels(page, left), .top = figure_pixels(page, top), .title_mm = title_mm};
+    place.width = figure_pixels(page, left + width) - place.left;
+    place.height = figure_pixels(page, top + height) - place.top;
+    if (place.width < 1 || place.height < 1)
+        return err_set(err, STATUS_USAGE,
+                       "[panel %s] has no room: the page is %.4g x %.4g mm, with `margin_mm` and "
+                       "`gap_mm`",
+                       section->name, page->width_mm, page->height_mm);
+    figure->places[i] = place;
+    return STATUS_OK;
+}
+
+static Status lay_out(Figure *figure, int (*cell)[2], Err *err)
+{
+    const FigureOptions *options = figure->options;
+    const FigurePage *page = &figure->sheet.page;
+    const int rows = find_cells(figure, cell);
+    double margin = options->margin_mm, gap = options->gap_mm;
+    double wide = (page->width_mm - 2 * margin - gap * (options->columns - 1)) / options->columns;
+    double high = (page->height_mm - 2 * margin - gap * (rows - 1)) / rows;
+    for (size_t i = 0; i < figure->plan.n; i++) {
+        if (!figure_is_panel(figure, i))
+            continue;
+        const Section *section = figure->plan.sections[i];
+        int span = ((const PanelOptions *)section->own.options)->span;
+        if (span > options->columns)
+            return err_set(err, STATUS_USAGE, "[panel %s] spans %d columns, of which there are %d",
+                           section->name, span, options->columns);
+        double left = margin + cell[i][0] * (wide + gap), top = margin + cell[i][1] * (high + gap);
+        double title =
+            has_titles(figure, cell, cell[i][1]) ? 1.7 * options->text_pt * MM_PER_POINT : 0;
+        const FigureBox box = {left, top, left + span * wide + (span - 1) * gap, top + high};
+        TRY(place_panel(figure, &box, title, i, err));
+    }
+    return STATUS_OK;
+}
+
+Status figure_place_panels(Figure *figure, Err *err)
+{
+    int(*cell)[2];
+    size_t n = figure->plan.n;
+    TRY(mem_calloc(&figure->places, n, sizeof *figure->places, "panels", err));
+    TRY(mem_calloc(&figure->panels, n, sizeof *figure->panels, "panels", err));
+    TRY(mem_calloc(&figure->insets, n, sizeof *figure->insets, "insets", err));
+    TRY(mem_calloc(&cell, n, sizeof *cell, "panels", err));
+    Status status = lay_out(figure, cell, err);
+    free(cell);
+    return status;
+}
+
+FigureBox figure_panel_box(const Figure *figure, size_t i)
+{
+    const Place *place = &figure->places[i];
+    double pixel = MM_PER_INCH / figure->sheet.page.dpi;
+    return (FigureBox){place->left * pixel, place->top * pixel,
+                       (place->left + place->width) * pixel, (place->top + place->height) * pixel};
+}

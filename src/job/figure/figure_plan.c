@@ -1,0 +1,400 @@
+/* A section is the options of a command that nobody can call: `panel`, `inset` or `text`. So keys
+ * are read, checked, and written back by the tables that the command line has. A panel has the
+ * options of `render` besides, but those that say where a picture goes and how it is cut up: that
+ * the page says. Its tree is a file, or what a command makes: the key `grow` holds its options. */
+#include "job/figure/figure_plan.h"
+
+#include "options/output.h"
+#include "options/registry.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const Option panel_rows[] = {
+    {.name = "tree",
+     SETS(TEXT, PanelOptions, tree),
+     .otherwise = "",
+     .argument = "T.swc",
+     .help = "the tree's file"},
+    {.name = "title", SETS(TEXT, PanelOptions, title), .help = "a line above the panel"},
+    {.name = "span",
+     SETS(WHOLE, PanelOptions, span),
+     FROM_TO(1, 64),
+     .help = "columns that the panel takes"},
+    {.name = "aspect",
+     SETS(NUMBER, PanelOptions, aspect),
+     FROM_TO(0, 100),
+     .help = "width over height, at most as large as its cell; 0: the cell's"},
+};
+
+static const Option inset_rows[] = {
+    {.name = "of", SETS(TEXT, InsetOptions, of), .help = "the panel of which it shows a part"},
+    {.name = "at",
+     SETS(VECTOR, InsetOptions, at),
+     GIVEN(InsetOptions, has_at),
+     .help = "middle of the part, over the panel's width and height"},
+    {.name = "place",
+     SETS(VECTOR, InsetOptions, place),
+     GIVEN(InsetOptions, has_place),
+     .help = "middle of the inset, likewise"},
+    {.name = "magnify", SETS(NUMBER, InsetOptions, magnify), FROM_TO(1, 1000), .help = "how much"},
+    {.name = "width",
+     SETS(NUMBER, InsetOptions, width_mm),
+     FROM_TO(1, 1e4),
+     .unit = "mm",
+     .help = "of the inset on the page"},
+    {.name = "height",
+     SETS(NUMBER, InsetOptions, height_mm),
+     FROM_TO(0, 1e4),
+     .unit = "mm",
+     .help = "likewise; 0: as wide"},
+    {.name = "scale-bar",
+     SETS(NUMBER, InsetOptions, scale_bar_mm),
+     GIVEN(InsetOptions, has_scale_bar),
+     FROM_TO(1e-6, 1e7),
+     .unit = "mm",
+     .help = "as render has it"},
+};
+
+static const char *const aligns[] = {
+    [ALIGN_LEFT] = "left", [ALIGN_CENTER] = "center", [ALIGN_RIGHT] = "right", NULL};
+
+static const Option text_rows[] = {
+    {.name = "text", SETS(TEXT, TextOptions, text), .help = "one line"},
+    {.name = "at",
+     SETS(VECTOR, TextOptions, at),
+     GIVEN(TextOptions, has_at),
+     .help = "where it begins, ends or has its middle, on its baseline: mm from the page's corner"},
+    {.name = "text-size",
+     SETS(NUMBER, TextOptions, text_pt),
+     GIVEN(TextOptions, has_text_pt),
+     FROM_TO(1, 1000),
+     .unit = "pt",
+     .help = "the figure's if it is not given"},
+    {.name = "bold", SETS(SWITCH, TextOptions, bold), .help = "or regular"},
+    {.name = "align",
+     SETS(CHOICE, TextOptions, align),
+     .choices = aligns,
+     .help = "what of it is at its place"},
+    {.name = "color", SETS(COLOR, TextOptions, color), .help = "of the letters"},
+};
+
+static const OptionTable panel_table = OPTION_TABLE(panel_rows),
+                         inset_table = OPTION_TABLE(inset_rows),
+                         text_table = OPTION_TABLE(text_rows);
+
+static void panel_defaults(void *options)
+{
+    *(PanelOptions *)options = (PanelOptions){.span = 1};
+}
+
+static void inset_defaults(void *options)
+{
+    *(InsetOptions *)options = (InsetOptions){.magnify = 4, .width_mm = 20};
+}
+
+static const Command kinds[] = {
+    [SECTION_PANEL] = {.name = "panel",
+                       .size = sizeof(PanelOptions),
+                       .set_defaults = panel_defaults,
+                       .tables = {{&panel_table, 0}}},
+    [SECTION_INSET] = {.name = "inset",
+                       .size = sizeof(InsetOptions),
+                       .set_defaults = inset_defaults,
+                       .tables = {{&inset_table, 0}}},
+    [SECTION_TEXT] = {.name = "text", .size = sizeof(TextOptions), .tables = {{&text_table, 0}}},
+};
+
+/* ---- keys ------------------------------------------------------------------------------------ */
+
+/* Returns true if an option of `render` is a key of panels. How the file is packed and which preset
+ * it follows are keys of the page. */
+static bool is_of_panels(const Option *option)
+{
+    static const char *const of_page[] = {"size", "dpi", "seed", NULL};
+    return !option->aside && option->group != GROUP_FILES && option->group != GROUP_ANIMATION &&
+           option->group != GROUP_PARTS && option->group != GROUP_PRESS &&
+           !is_one_of(option->name, of_page);
+}
+
+/* Whether an option of a section's own command, or of `figure`, is a key. */
+static bool is_own(const Option *option)
+{
+    static const char *const common[] = {"seed", "output", NULL};
+    return !option->aside && !is_one_of(option->name, common);
+}
+
+static Setting *find_key(const Parsed *parsed, OptionIsKey *is_key, const char *name)
+{
+    for (size_t i = 0; parsed->settings && i < parsed->n_settings; i++)
+        if (is_key(parsed->settings[i].option) &&
+            strcmp(parsed->settings[i].option->name, name) == 0)
+            return &parsed->settings[i];
+    return NULL;
+}
+
+static void offer_keys(const Parsed *parsed, OptionIsKey *is_key, Suggestion *suggestion)
+{
+    for (size_t i = 0; parsed->settings && i < parsed->n_settings; i++)
+        if (is_key(parsed->settings[i].option))
+            suggestion_offer(suggestion, parsed->settings[i].option->name);
+}
+
+/* `b` may have no options. */
+static Status unknown_key(const char *name, const char *section, const Parsed *a, const Parsed *b,
+                          Err *err)
+{
+    Suggestion suggestion = suggestion_for(name, strlen(name));
+    offer_keys(a, is_own, &suggestion);
+    offer_keys(b, is_of_panels, &suggestion);
+    (void)err_set(err, STATUS_USAGE, "'%.40s' is not a key of [%s]", name, section);
+    suggestion_add(&suggestion, "", err);
+    return STATUS_USAGE;
+}
+
+/* The command of this name that writes a tree, or NULL. */
+static const Command *find_maker(const char *name)
+{
+    const Command *command = command_find(name);
+    for (int t = 0; command && t < MAX_TABLES && command->tables[t].table; t++) {
+        const OptionTable *table = command->tables[t].table;
+        for (size_t i = 0; i < table->n; i++)
+            if (strcmp(table->options[i].name, "output") == 0 && table->options[i].argument &&
+                strcmp(table->options[i].argument, "T.swc") == 0)
+                return command;
+    }
+    return NULL;
+}
+
+/* The sentence is about keys of a file, not options. */
+static Status read_value(Setting *setting, const char *value, bool twice, Err *err)
+{
+    if (setting->typed && !twice)
+        return err_set(err, STATUS_USAGE, "'%s' is given twice", setting->option->name);
+    TRY(setting_read(setting, value, err));
+    setting->typed = setting->said = true;
+    return STATUS_OK;
+}
+
+/* A panel's own tree takes precedence over that of [panels], and is one of two: a file, or what a
+ * command makes. */
+static Status take_tree(Section *section, const Command *maker, const char *value, Err *err)
+{
+    PanelOptions *panel = section->own.options;
+    Setting *tree = find_key(&section->own, is_own, "tree");
+    if (section->made || tree->typed)
+        return err_set(err, STATUS_USAGE, "the tree is given twice");
+    section->maker = maker;
+    section->arguments = maker ? value : NULL;
+    section->made = maker != NULL;
+    panel->tree = maker ? NULL : value;
+    tree->typed = !maker;
+    return STATUS_OK;
+}
+
+static Status take_key(Section *section, const char *name, const char *value, Err *err)
+{
+    const bool panel = section->kind == SECTION_PANEL;
+    const Command *maker = panel ? find_maker(name) : NULL;
+    if (maker || (panel && strcmp(name, "tree") == 0))
+        return take_tree(section, maker, value, err);
+    Setting *setting = find_key(&section->own, is_own, name);
+    if (!setting)
+        setting = find_key(&section->render, is_of_panels, name);
+    if (!setting)
+        return unknown_key(name, kinds[section->kind].name, &section->own, &section->render, err);
+    return read_value(setting, value, setting->option->kind == OPTION_VECTORS, err);
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+/* A line of [panels]. */
+typedef struct Default {
+    const char *name, *value;
+    size_t line;
+} Default;
+
+typedef struct Reading {
+    Parsed *figure;
+    FigurePlan *plan;
+    Parsed said;       /* of `figure`: which keys the recipe has given */
+    Default *defaults; /* owned */
+    size_t n, capacity;
+    bool seen_figure, seen_panels;
+    enum { IN_NOTHING, IN_FIGURE, IN_PANELS, IN_SECTION } in;
+} Reading;
+
+/* Options that [panels] gives are not typed: one without effect in this panel is no fault of it,
+ * and one of the panel's own takes precedence. */
+static Status take_defaults(const Reading *reading, Section *section, Err *err)
+{
+    for (size_t i = 0; i < reading->n; i++)
+        TRY(take_key(section, reading->defaults[i].name, reading->defaults[i].value, err));
+    Parsed *const all[] = {&section->own, &section->render};
+    for (size_t k = 0; k < 2; k++)
+        for (size_t i = 0; i < all[k]->n_settings; i++)
+            all[k]->settings[i].typed = false;
+    section->made = false;
+    return STATUS_OK;
+}
+
+static Status add_section(Reading *reading, SectionKind kind, const char *name, Err *err)
+{
+    FigurePlan *plan = reading->plan;
+    for (size_t i = 0; i < plan->n; i++)
+        if (plan->sections[i]->kind == kind && strcmp(plan->sections[i]->name, name) == 0)
+            return err_set(err, STATUS_USAGE, "there is a section [%s %s] already",
+                           kinds[kind].name, name);
+    TRY(mem_reserve(&plan->sections, &plan->capacity, plan->n + 1, sizeof *plan->sections,
+                    "sections", err));
+    Section *section;
+    TRY(mem_calloc(&section, 1, sizeof *section, "sections", err));
+    plan->sections[plan->n++] = section;
+    *section = (Section){.kind = kind, .name = name};
+    TRY(parsed_init(&section->own, &kinds[kind], err));
+    if (kind != SECTION_PANEL)
+        return STATUS_OK;
+    TRY(parsed_init(&section->render, command_find("render"), err));
+    return take_defaults(reading, section, err);
+}
+
+static Status begin_panels(Reading *reading, Err *err)
+{
+    for (size_t i = 0; i < reading->plan->n; i++)
+        if (reading->plan->sections[i]->kind == SECTION_PANEL)
+            return err_set(err, STATUS_USAGE, "[panels] stands before all panels");
+    reading->in = IN_PANELS;
+    return STATUS_OK;
+}
+
+static Status begin_section(Reading *reading, const char *head, Err *err)
+{
+    bool *seen = strcmp(head, "figure") == 0   ? &reading->seen_figure
+                 : strcmp(head, "panels") == 0 ? &reading->seen_panels
+                                               : NULL;
+    if (seen && *seen)
+        return err_set(err, STATUS_USAGE, "there is a section [%s] already", head);
+    if (seen) {
+        *seen = true;
+        reading->in = IN_FIGURE;
+        return seen == &reading->seen_panels ? begin_panels(reading, err) : STATUS_OK;
+    }
+    size_t length = strcspn(head, TEXT_BLANKS);
+    const char *name = head + length + strspn(head + length, TEXT_BLANKS);
+    reading->in = IN_SECTION;
+    for (size_t kind = 0; kind < sizeof kinds / sizeof *kinds; kind++)
+        if (*name && strlen(kinds[kind].name) == length &&
+            strncmp(kinds[kind].name, head, length) == 0)
+            return add_section(reading, (SectionKind)kind, name, err);
+    return err_set(err, STATUS_USAGE,
+                   "[%.40s] is not [figure], [panels], [panel NAME], [inset NAME] or [text NAME]",
+                   head);
+}
+
+/* The command line takes precedence over the recipe, and both over what a preset implies. `said`
+ * marks the keys that the recipe has given, so that a key that is given twice is found. */
+static Status take_figure_key(Reading *reading, const char *name, const char *value, Err *err)
+{
+    Setting *setting = find_key(reading->figure, is_own, name);
+    Setting *said = find_key(&reading->said, is_own, name);
+    if (!setting)
+        return unknown_key(name, "figure", reading->figure, &(Parsed){0}, err);
+    TRY(read_value(said, value, false, err));
+    setting->said = true;
+    return setting->typed ? STATUS_OK : setting_read(setting, value, err);
+}
+
+/* Errors have the line of [panels] only when it is checked there: on a panel that is not kept. */
+static Status take_default(Reading *reading, const char *name, const char *value, Err *err)
+{
+    TRY(mem_reserve(&reading->defaults, &reading->capacity, reading->n + 1,
+                    sizeof *reading->defaults, "keys", err));
+    reading->defaults[reading->n++] = (Default){.name = name, .value = value};
+    Section trial = {.kind = SECTION_PANEL};
+    Status status = parsed_init(&trial.own, &kinds[SECTION_PANEL], err);
+    if (status == STATUS_OK)
+        status = parsed_init(&trial.render, command_find("render"), err);
+    if (status == STATUS_OK)
+        status = take_defaults(reading, &trial, err);
+    parsed_release(&trial.own);
+    parsed_release(&trial.render);
+    return status;
+}
+
+static Status take_line(void *user, const char *head, const char *name, const char *value, Err *err)
+{
+    Reading *reading = user;
+    if (!name)
+        return begin_section(reading, head, err);
+    switch (reading->in) {
+    case IN_FIGURE:
+        return take_figure_key(reading, name, value, err);
+    case IN_PANELS:
+        return take_default(reading, name, value, err);
+    case IN_SECTION:
+        return take_key(reading->plan->sections[reading->plan->n - 1], name, value, err);
+    case IN_NOTHING:
+        break;
+    }
+    return err_set(err, STATUS_USAGE, "'%.40s' stands before any section", name);
+}
+
+/* What holds only of the whole. */
+static Status check_plan(const FigurePlan *plan, Err *err)
+{
+    size_t panels = 0;
+    for (size_t i = 0; i < plan->n; i++) {
+        const Section *section = plan->sections[i];
+        const PanelOptions *panel = section->own.options;
+        if (section->kind != SECTION_PANEL)
+            continue;
+        panels++;
+        if (!panel->tree && !section->maker)
+            return err_set(err, STATUS_USAGE,
+                           "[panel %s] has no tree: give 'tree', or 'grow' with options of grow",
+                           section->name);
+    }
+    return panels ? STATUS_OK : err_set(err, STATUS_USAGE, "there is no [panel NAME]");
+}
+
+Status figureplan_read(const char *path, Parsed *figure, FigurePlan *plan, Err *err)
+{
+    Reading reading = {.figure = figure, .plan = plan};
+    TRY(parsed_init(&reading.said, figure->command, err));
+    Status status = ini_read(path, "the recipe of a figure", take_line, &reading, &plan->text, err);
+    free(reading.defaults);
+    parsed_release(&reading.said);
+    TRY(status);
+    status = check_plan(plan, err);
+    if (status != STATUS_OK)
+        err_prefix(err, "%s: ", path);
+    return status;
+}
+
+void figureplan_release(FigurePlan *plan)
+{
+    for (size_t i = 0; i < plan->n; i++) {
+        parsed_release(&plan->sections[i]->own);
+        parsed_release(&plan->sections[i]->render);
+        free(plan->sections[i]);
+    }
+    free(plan->sections);
+    free(plan->text);
+    *plan = (FigurePlan){0};
+}
+
+/* ---- writing --------------------------------------------------------------------------------- */
+
+void figureplan_put(const FigurePlan *plan, const Parsed *figure, Text *text)
+{
+    text_puts(text, "[figure]\n");
+    options_put_keys(figure, is_own, text);
+    for (size_t i = 0; i < plan->n; i++) {
+        const Section *section = plan->sections[i];
+        text_printf(text, "\n[%s %s]\n", kinds[section->kind].name, section->name);
+        if (section->maker)
+            text_printf(text, "%s = %s\n", section->maker->name, section->arguments);
+        options_put_keys(&section->own, is_own, text);
+        if (section->kind == SECTION_PANEL)
+            options_put_keys(&section->render, is_of_panels, text);
+    }
+}

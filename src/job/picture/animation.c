@@ -1,0 +1,193 @@
+/* A picture differs from the next in one thing: colours (a series), the view (a turn) or the
+ * geometry (growth). The first two leave what a renderer has prepared of the geometry as it is, so
+ * that such a picture costs its pixels. */
+#include "job/picture/animation.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_PICTURES = 1000000 };
+
+/* "all" or "A..B" or "A". */
+static bool read_frames(const char *text, Animation *animation)
+{
+    const char *dots = strstr(text, "..");
+    char first[16];
+    long long from, to;
+    if (strcmp(text, "all") == 0) {
+        animation->first = 1;
+        return true;
+    }
+    size_t length = dots ? (size_t)(dots - text) : strlen(text);
+    if (length >= sizeof first)
+        return false;
+    memcpy(first, text, length);
+    first[length] = '\0';
+    if (!integer_parse(first, 1, MOST_PICTURES, &from) ||
+        !integer_parse(dots ? dots + 2 : first, from, MOST_PICTURES, &to))
+        return false;
+    animation->first = (int)from;
+    animation->last = (int)to;
+    return true;
+}
+
+/* The one %d, %4d or %04d of a pattern: its start, width and length. */
+typedef struct Place {
+    size_t start, length;
+    int width;
+    bool zeros;
+} Place;
+
+static bool find_place(const char *pattern, Place *place)
+{
+    const char *percent = strchr(pattern, '%');
+    if (!percent)
+        return false;
+    const char *at = percent + 1;
+    Place found = {.start = (size_t)(percent - pattern), .zeros = *at == '0'};
+    if (*at >= '0' && *at <= '9')
+        found.width = *at++ - '0';
+    if (found.width == 0 && found.zeros && *at >= '1' && *at <= '9')
+        found.width = *at++ - '0';
+    found.length = (size_t)(at + 1 - percent);
+    *place = found;
+    return *at == 'd' && !strchr(at, '%');
+}
+
+static Status check_pattern(const char *output, Err *err)
+{
+    Place place;
+    if (find_place(output, &place))
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "-o: '%s' has no place for a number; several pictures take a name as in "
+                   "f%%04d.png",
+                   output);
+}
+
+Status animation_read(const AnimationOptions *options, const char *output, Animation *animation,
+                      Err *err)
+{
+    Animation made = {.first = 1};
+    if ((options->frames != NULL) + (options->turn > 0) + (options->growth > 0) > 1)
+        return err_set(err, STATUS_USAGE,
+                       "--frames, --turntable and --growth exclude each other; give one");
+    if (options->frames) {
+        made.kind = ANIMATION_SERIES;
+        if (!read_frames(options->frames, &made))
+            return err_set(err, STATUS_USAGE, "--frames: '%.40s' is not all or A..B, as in 1..24",
+                           options->frames);
+    } else if (options->turn || options->growth) {
+        made.kind = options->turn ? ANIMATION_TURN : ANIMATION_GROWTH;
+        made.n = made.last = options->turn ? options->turn : options->growth;
+    } else {
+        made.n = made.last = 1;
+    }
+    if (made.kind != ANIMATION_NONE)
+        TRY(check_pattern(output, err));
+    *animation = made;
+    return STATUS_OK;
+}
+
+Status animation_count(Animation *animation, const Appearance *appearance, Err *err)
+{
+    if (animation->kind != ANIMATION_SERIES)
+        return STATUS_OK;
+    int n = (int)appearance->n_frames;
+    if (n == 0)
+        return err_set(err, STATUS_USAGE,
+                       "--frames: %s does not change with time; it needs --color-by with values "
+                       "that do",
+                       appearance->name ? appearance->name : "the picture");
+    if (animation->last > n)
+        return err_set(err, STATUS_USAGE, "--frames: %s has %d frames, not %d", appearance->name, n,
+                       animation->last);
+    animation->n = n;
+    if (animation->last == 0)
+        animation->last = n;
+    return STATUS_OK;
+}
+
+Status animation_path(const Animation *animation, const char *pattern, int number, char **path,
+                      Err *err)
+{
+    Place place;
+    if (animation->kind == ANIMATION_NONE || !find_place(pattern, &place))
+        return mem_strdup(path, pattern, err);
+    Text name = TEXT_INIT;
+    text_append(&name, pattern, place.start);
+    text_printf(&name, place.zeros ? "%0*d" : "%*d", place.width, number);
+    text_puts(&name, pattern + place.start + place.length);
+    Status status = text_take(&name, path, err);
+    text_release(&name);
+    return status;
+}
+
+Status animation_frame_turn(const PictureOptions *options, const PictureSource *source,
+                            Scene *scene, Err *err)
+{
+    ViewParams params = picture_view_params(options, source);
+    if (params.has_location || options->has_height)
+        return STATUS_OK;
+    orbit_frame_turn(&params, &scene->geometry);
+    return stage_view(&source->look, &params, &scene->geometry, &scene->view, err);
+}
+
+/* The colours of a part of a tree, whose nodes are in the same order. */
+static Status part_appearance(const Appearance *whole, const Tree *tree, const Tree *part,
+                              Appearance *out, Err *err)
+{
+    Appearance made = appearance_frame(whole, 0);
+    made.colors = NULL;
+    made.values = NULL;
+    made.time = NULL;
+    made.name = made.unit = made.said = NULL;
+    made.n_values = 0;
+    made.scale = (ColorScale){0};
+    if (whole->colors) {
+        TRY(mem_calloc(&made.colors, part->n, sizeof *made.colors, "colours", err));
+        for (size_t i = 0, k = 0; i < part->n; i++, k++) {
+            while (tree->id[k] != part->id[i])
+                k++;
+            made.colors[i] = whole->colors[k];
+        }
+    }
+    *out = made;
+    return STATUS_OK;
+}
+
+/* The tree as far as it has grown, seen as the whole one is. */
+static Status grow_to(const AnimationSubject *subject, double part, Scene *grown, Err *err)
+{
+    const Scene *whole = subject->whole;
+    const Tree *tree = &subject->source->of.tree;
+    PictureSource young = *subject->source;
+    TRY(tree_grown(tree, part, &young.of.tree, err));
+    Status status =
+        picture_geometry(subject->options, &young, subject->common, &grown->geometry, NULL, err);
+    if (status == STATUS_OK)
+        status = part_appearance(&whole->appearance, tree, &young.of.tree, &grown->appearance, err);
+    tree_release(&young.of.tree);
+    Vec3 moved = vec3_sub(whole->geometry.origin, grown->geometry.origin);
+    grown->view = view_moved(&whole->view, moved);
+    return status;
+}
+
+Status animation_scene(const Animation *animation, const AnimationSubject *subject, int number,
+                       Scene *shown, Scene *grown, Err *err)
+{
+    const Scene *whole = subject->whole;
+    double angle = -FULL_TURN * (number - 1) / animation->n; /* of the camera, against the tree's */
+    *shown = *whole;
+    if (animation->kind == ANIMATION_SERIES)
+        shown->appearance = appearance_frame(&whole->appearance, (size_t)(number - 1));
+    if (animation->kind == ANIMATION_TURN)
+        shown->view = view_turned(&whole->view, box_center(whole->geometry.bounds),
+                                  whole->view.camera.up, angle);
+    if (animation->kind != ANIMATION_GROWTH)
+        return STATUS_OK;
+    TRY(grow_to(subject, (double)number / animation->n, grown, err));
+    *shown = *grown;
+    return STATUS_OK;
+}

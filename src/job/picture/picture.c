@@ -1,0 +1,710 @@
+/* Options in, and out of them the three things that a picture is of: the look and the tree are read
+ * once, and geometry, appearance and view made of them, each by itself. An option that has no
+ * effect on the picture asked for is refused. */
+#include "job/picture/picture.h"
+
+#include "image/image.h"
+#include "job/picture/frames.h"
+#include "job/tree/tree_domain.h"
+#include "options/reading.h"
+#include "options/talk.h"
+#include "render/render.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const potentials[] = {"paper", "graph", NULL};
+static const char *const joint_forms[] = {
+    [JOINTS_ROBUST] = "robust", [JOINTS_PAPER] = "paper", NULL};
+static const char *const projections[] = {
+    [PROJECTION_ORTHOGRAPHIC] = "orthographic", [PROJECTION_PERSPECTIVE] = "perspective", NULL};
+static const char *const views[] = {
+    [VIEW_FRONT] = "front", [VIEW_BACK] = "back",     [VIEW_LEFT] = "left", [VIEW_RIGHT] = "right",
+    [VIEW_TOP] = "top",     [VIEW_BOTTOM] = "bottom", [VIEW_ISO] = "iso",   NULL};
+static const char *const up_axes[] = {[UP_Y] = "y", [UP_Z] = "z", NULL};
+
+/* What is framed: the tree, whatever the model; the domain that it tells; or what is drawn. */
+enum { PICTURE_TREE, PICTURE_DOMAIN, PICTURE_DRAWING };
+static const char *const framings[] = {
+    [PICTURE_TREE] = "tree", [PICTURE_DOMAIN] = "domain", [PICTURE_DRAWING] = "drawing", NULL};
+
+/* What a point has the colour of: its largest term, or the mean of all. */
+enum { BLEND_SEGMENT, BLEND_BLENDED };
+static const char *const color_blends[] = {
+    [BLEND_SEGMENT] = "segment", [BLEND_BLENDED] = "blended", NULL};
+
+static const char *const erf_names[] = {[ERF_FAST] = "fast", [ERF_EXACT] = "exact", NULL};
+
+const Range antialias_range = {1, RENDER_MOST_ANTIALIAS}, prune_range = {0, 1e7},
+            tolerance_range = {0.002, 0.2};
+
+static const Option rows[] = {
+    {.name = "model",
+     SETS(CHOICE, PictureOptions, model),
+     .choices = model_names,
+     .group = GROUP_VESSELS,
+     .help = "how vessels are drawn"},
+    {.name = "potential",
+     SETS(CHOICE, PictureOptions, potential),
+     .choices = potentials,
+     .group = GROUP_VESSELS,
+     .help = "isosurface: all vessels blend, or only those near along the tree"},
+    {.name = "joints",
+     SETS(CHOICE, PictureOptions, joints),
+     GIVEN(PictureOptions, has_joints),
+     .choices = joint_forms,
+     .group = GROUP_VESSELS,
+     .help = "joined: what is done where vessels are too short or turn too sharply"},
+    {.name = "tolerance",
+     SETS(NUMBER, PictureOptions, tolerance),
+     .range = &tolerance_range,
+     .group = GROUP_VESSELS,
+     .help = "mesh: how far triangles may be off the surface, over the local radius"},
+    {.name = "part-overlaps",
+     SETS(FLAG, PictureOptions, part_overlaps),
+     .group = GROUP_VESSELS,
+     .help = "mesh: thin vessels that overlap others that they do not belong with"},
+    {.name = "prune-radius",
+     SETS(NUMBER, PictureOptions, prune_radius_mm),
+     .range = &prune_range,
+     .group = GROUP_VESSELS,
+     .unit = "mm",
+     .help = "drop segments thinner than this"},
+    {.name = "color-blend",
+     SETS(CHOICE, PictureOptions, color_blend),
+     .choices = color_blends,
+     .group = GROUP_COLOR,
+     .help =
+         "isosurface, blob: a point has its largest segment's colour, or that of the mean value"},
+    {.name = "size",
+     SETS(SIZE, PictureOptions, size),
+     FROM_TO(1, IMAGE_MAX_SIDE),
+     .group = GROUP_CAMERA,
+     .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
+    {DPI_OF_SIZE(PictureOptions, size), .group = GROUP_CAMERA,
+     .help = "pixels an inch on paper, which .png, .tif and .jpg keep"},
+    {.name = "projection",
+     SETS(CHOICE, PictureOptions, projection),
+     .choices = projections,
+     .group = GROUP_CAMERA,
+     .help = "of the camera"},
+    {.name = "view",
+     SETS(CHOICE, PictureOptions, view),
+     GIVEN(PictureOptions, has_view),
+     .choices = views,
+     .group = GROUP_CAMERA,
+     .help = "where from"},
+    {.name = "turn",
+     SETS(NUMBERS, PictureOptions, turn),
+     GIVEN(PictureOptions, has_turn),
+     .group = GROUP_CAMERA,
+     .argument = "AZ,EL",
+     .otherwise = "",
+     .help = "from there so many degrees to the right about the upright, and up"},
+    {.name = "up-axis",
+     SETS(CHOICE, PictureOptions, stage.up_axis),
+     .choices = up_axes,
+     .group = GROUP_CAMERA,
+     .help = "the upright of the tree's coordinates; measured trees often have z"},
+    {.name = "frame",
+     SETS(CHOICE, PictureOptions, frame),
+     .choices = framings,
+     .group = GROUP_CAMERA,
+     .help = "what fills the picture: the tree, the same for all models, the domain it was grown "
+             "in, or what is drawn"},
+    {.name = "location",
+     SETS(VECTOR, PictureOptions, stage.location),
+     GIVEN(PictureOptions, stage.has_location),
+     .group = GROUP_CAMERA,
+     .otherwise = "",
+     .help = "camera point, mm"},
+    {.name = "look-at",
+     SETS(VECTOR, PictureOptions, stage.look_at),
+     GIVEN(PictureOptions, stage.has_look_at),
+     .group = GROUP_CAMERA,
+     .otherwise = "",
+     .help = "point in the middle of the picture, mm; alone it moves the framed camera"},
+    {.name = "up",
+     SETS(VECTOR, PictureOptions, stage.up),
+     GIVEN(PictureOptions, stage.has_up),
+     .group = GROUP_CAMERA,
+     .otherwise = "",
+     .help = "what is up in the picture"},
+    {.name = "angle",
+     SETS(NUMBER, PictureOptions, stage.angle_deg),
+     GIVEN(PictureOptions, has_angle),
+     FROM_TO(0.01, 170),
+     .group = GROUP_CAMERA,
+     .unit = "deg",
+     .help = "full horizontal angle, perspective"},
+    {.name = "height",
+     SETS(NUMBER, PictureOptions, stage.height_mm),
+     GIVEN(PictureOptions, has_height),
+     FROM_TO(1e-6, 1e7),
+     .group = GROUP_CAMERA,
+     .unit = "mm",
+     .otherwise = "",
+     .help = "height of the picture, orthographic"},
+    {.name = "margin",
+     SETS(NUMBER, PictureOptions, stage.margin),
+     FROM_TO(0, 0.45),
+     .group = GROUP_CAMERA,
+     .help = "free part on each side when the tree is framed"},
+    {.name = "antialias",
+     SETS(WHOLE, PictureOptions, antialias),
+     GIVEN(PictureOptions, has_antialias),
+     .range = &antialias_range,
+     .group = GROUP_LIGHT,
+     .help = "N x N samples a pixel"},
+    {.name = "ao",
+     SETS(WHOLE, PictureOptions, occlusion),
+     FROM_TO(0, 4096),
+     .group = GROUP_LIGHT,
+     .help = "ambient occlusion by N beams a pixel, or with --exact N rays a sample; best with "
+             "--look print; 0: none"},
+    {.name = "look",
+     SETS(LOOKUP, PictureOptions, look),
+     .group = GROUP_LIGHT,
+     .list = "looks",
+     .help = "a file of templates/looks, or a path"},
+    {.name = "erf",
+     SETS(CHOICE, PictureOptions, erf),
+     .choices = erf_names,
+     .group = GROUP_POVRAY,
+     .help = "POV-Ray's isosurface: how exact erf is"},
+    {.name = "cell-beta",
+     SETS(NUMBER, PictureOptions, cell_beta),
+     FROM_TO(0.5, 64),
+     .group = GROUP_POVRAY,
+     .otherwise = "6",
+     .help = "POV-Ray's isosurface: side of a cell over the smallest radius in it"},
+    {.name = "shadows",
+     SETS(SWITCH, PictureOptions, stage.shadows),
+     .group = GROUP_LIGHT,
+     .help = "of the lights"},
+    {.name = "background",
+     SETS(COLOR, PictureOptions, background),
+     GIVEN(PictureOptions, has_background),
+     .can_be_none = true,
+     .group = GROUP_LIGHT,
+     .otherwise = "the look's",
+     .help = "a name as in CSS, #RRGGBB, R,G,B from 0 to 1, or none: transparent"},
+};
+
+const OptionTable picture_table = OPTION_TABLE(rows);
+
+void picture_set_defaults(PictureOptions *picture)
+{
+    *picture = (PictureOptions){.stage = view_defaults(),
+                                .model = model_with(MODEL_DEFAULT),
+                                .tolerance = MESHING_TOLERANCE,
+                                .size = {.pixels = {1000, 1000}},
+                                .antialias = 1,
+                                .look = "cast"};
+    coloring_set_defaults(&picture->coloring);
+}
+
+CellParams picture_cells(const PictureOptions *options)
+{
+    return (CellParams){.beta = options->cell_beta, .erf = (ErfForm)options->erf};
+}
+
+/* Options that fight each other are refused rather than silently ignored. */
+static Status check_camera(const PictureOptions *options, Err *err)
+{
+    const ViewParams *stage = &options->stage;
+    bool perspective = options->projection == PROJECTION_PERSPECTIVE;
+    if (options->has_height && perspective)
+        return err_set(err, STATUS_USAGE,
+                       "--height is for orthographic pictures; a perspective one takes --angle");
+    if (options->has_angle && !perspective)
+        return err_set(err, STATUS_USAGE,
+                       "--angle is for perspective pictures; an orthographic one takes --height");
+    if (stage->has_location && (options->has_view || options->has_turn))
+        return err_set(err, STATUS_USAGE, "--%s and --location exclude each other; give one",
+                       options->has_view ? "view" : "turn");
+    if (options->turn.n > 2)
+        return err_set(err, STATUS_USAGE, "--turn takes AZ,EL, degrees, as in 30,15, or AZ alone");
+    if (stage->has_up && !(vec3_length(stage->up) > 0 && isfinite(vec3_length(stage->up))))
+        return err_set(err, STATUS_USAGE,
+                       "--up: the vector must have a length from 1e-150 to 1e150");
+    return STATUS_OK;
+}
+
+/* Options that have an effect on models of these elements alone. */
+typedef struct ModelOption {
+    const char *name;
+    unsigned elements;
+    const char *rest; /* of the sentence that refuses it */
+} ModelOption;
+
+static const ModelOption of_models[] = {
+    {"potential", MODEL_POTENTIAL, ""},
+    {"erf", MODEL_POTENTIAL, ""},
+    {"cell-beta", MODEL_POTENTIAL, ""},
+    {"hits", MODEL_POTENTIAL, ""},
+    {"joints", MODEL_JOINTS, ""},
+    {"tolerance", MODEL_TRIANGLES, ""},
+    {"part-overlaps", MODEL_TRIANGLES, ""},
+    {"color-blend", MODEL_FIELD, ""},
+    {"ids", MODEL_FIELD, "; other scenes have ids anyway"},
+};
+
+/* The row of an option; NULL when it has an effect on all models. */
+static const ModelOption *model_option(const Option *option)
+{
+    for (size_t i = 0; i < sizeof of_models / sizeof *of_models; i++)
+        if (strcmp(of_models[i].name, option->name) == 0)
+            return &of_models[i];
+    return NULL;
+}
+
+bool picture_takes(const PictureOptions *options, const Option *option)
+{
+    const ModelOption *of = model_option(option);
+    return of ? model_has((SceneModel)options->model, of->elements)
+              : coloring_takes(&options->coloring, option);
+}
+
+static Status refuse(const Option *option, const ModelOption *of, Err *err)
+{
+    return err_set(err, STATUS_USAGE, "--%s is for --model %s%s", option->name,
+                   models_with(of->elements).text, of->rest);
+}
+
+Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, Err *err)
+{
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        const ModelOption *of = model_option(setting->option);
+        if (setting->typed && of && !picture_takes(options, setting->option))
+            return refuse(setting->option, of, err);
+    }
+    return coloring_check_needs(&options->coloring, parsed, err);
+}
+
+Status picture_check_dpi(const PictureSize *size, const char *output, const Parsed *parsed,
+                         Err *err)
+{
+    const bool kept = image_traits(output).keeps_dpi || frames_is_page(output);
+    const OptionNeed needs[] = {{"dpi", size_is_on_paper(size) || kept,
+                                 NEEDS_PAPER
+                                 ", or a file that keeps it (.png, .tif, .jpg, .pdf, .svg)"},
+                                {0}};
+    return options_check_needs(parsed, needs, err);
+}
+
+Status picture_check_povray(const PictureOptions *options, Err *err)
+{
+    if (options->occlusion == 0)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "--ao is corcast's own: POV-Ray has no ambient occlusion to hold it against");
+}
+
+/* What of the tree the picture cannot show. */
+static Status warn_of_losses(const Geometry *geometry, const PictureReport *told, Err *err)
+{
+    const StageReport *report = &told->staged;
+    size_t hidden;
+    TRY(surface_count_hidden(geometry, &hidden, err));
+    size_t segments = report->dropped + report->drawn;
+    if (told->pruned)
+        fprintf(stderr, "corcast: %zu of %zu segments are pruned\n", told->pruned,
+                told->pruned + segments);
+    if (report->dropped)
+        fprintf(stderr,
+                "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
+                report->dropped, segments);
+    if (report->covered)
+        fprintf(stderr,
+                "corcast: %zu of %zu segments lie within others between the same two points "
+                "and are not drawn\n",
+                report->covered, segments);
+    if (hidden)
+        fprintf(stderr,
+                "corcast: %zu of %zu segments are too short for their radius: the potential is "
+                "below e^-2 there and shows nothing\n",
+                hidden, segments);
+    if (report->thinned)
+        fprintf(stderr,
+                "corcast: %zu segment%s thinned, because of an overlap with others that do not "
+                "belong there, or blend with such\n",
+                report->thinned, report->thinned == 1 ? " is" : "s are");
+    if (report->places_short + report->places_sharp)
+        fprintf(stderr,
+                "corcast: at %zu places vessels are too short for joints, at %zu they turn too "
+                "sharply; these are %s\n",
+                report->places_short, report->places_sharp,
+                told->joints == JOINTS_PAPER ? "joined all the same" : "drawn round");
+    if (report->places_crowded)
+        fprintf(
+            stderr,
+            "corcast: at %zu places too many vessels meet to be joined; these are drawn round\n",
+            report->places_crowded);
+    return STATUS_OK;
+}
+
+/* Returns the farthest distance of a corner of the box from the camera, along rays. */
+static double farthest_corner(const Camera *camera, const Box *box)
+{
+    double farthest = 0;
+    for (int i = 0; i < 8; i++) {
+        const Vec3 corner = {i & 1 ? box->low.x : box->high.x, i & 2 ? box->low.y : box->high.y,
+                             i & 4 ? box->low.z : box->high.z};
+        const Vec3 from = vec3_sub(corner, camera->location);
+        farthest = fmax(farthest, camera->projection == PROJECTION_ORTHOGRAPHIC
+                                      ? vec3_dot(from, camera->direction)
+                                      : vec3_length(from));
+    }
+    return farthest;
+}
+
+/* Returns true if the tree is so small that POV-Ray's least distance from the camera, which render
+ * keeps to, may hide it or a part of it. */
+static bool may_be_hidden(const Scene *scene)
+{
+    const Box *box = &scene->geometry.bounds;
+    return vec3_distance(box->low, box->high) <= 10 * render_nearest_mm(&scene->geometry);
+}
+
+/* Refuses a tiny tree if POV-Ray's least distance from the camera hides all of it. */
+static Status check_distance(const Scene *scene, Err *err)
+{
+    const double least = render_nearest_mm(&scene->geometry);
+    if (!may_be_hidden(scene) ||
+        farthest_corner(&scene->view.camera, &scene->geometry.bounds) > least)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "all of the tree is nearer to the camera than %g mm, where neither POV-Ray "
+                   "nor render sees it; a larger --input-unit or another camera shows it",
+                   least);
+}
+
+/* Reports what POV-Ray's fixed lengths, below which it sees nothing, hide of a tiny tree. */
+static void warn_of_limits(const Scene *scene, bool shadows)
+{
+    const Geometry *geometry = &scene->geometry;
+    const double nearest_mm = render_nearest_mm(geometry);
+    const double ball_mm = 1e-5, shadow_mm = fmax(nearest_mm, 1e-3);
+    double thickest = 0, near_mm, far_mm;
+    size_t balls = 0;
+    for (size_t i = 0; i < geometry->n_primitives; i++) {
+        thickest = fmax(thickest, geometry->primitives[i].radius_mm);
+        balls += geometry->primitives[i].kind == PRIMITIVE_SPHERE &&
+                 geometry->primitives[i].radius_mm <= ball_mm;
+    }
+    for (size_t i = 0; i < geometry->n_segments; i++)
+        thickest = fmax(thickest, geometry->segments[i].radius_mm);
+    camera_depth_range(&scene->view.camera, geometry->bounds, &near_mm, &far_mm);
+    if (may_be_hidden(scene) && near_mm < nearest_mm)
+        fprintf(stderr,
+                "corcast: what is nearer to the camera than %g mm is not seen, as by POV-Ray; a "
+                "larger --input-unit or another camera shows all of the tree\n",
+                nearest_mm);
+    if (balls)
+        fprintf(stderr,
+                "corcast: %zu balls of at most %g mm are not seen, as by POV-Ray; a larger "
+                "--input-unit shows them\n",
+                balls, ball_mm);
+    if (shadows && 2 * thickest < shadow_mm)
+        fprintf(stderr,
+                "corcast: what is nearer to a lit point than %g mm casts no shadow on it, as in "
+                "POV-Ray, and no vessel is as thick\n",
+                shadow_mm);
+}
+
+static bool is_xray(const Look *look)
+{
+    return look_effects(look, 1, 1).xray.per_mm > 0;
+}
+
+static Status read_look(const PictureOptions *options, const Parsed *parsed, Look *look, Err *err)
+{
+    TRY(coloring_read_look(options->look, look, err));
+    if (is_xray(look) && options->coloring.field)
+        return err_set(err, STATUS_USAGE,
+                       "--look %s has two colours of its own; --color-by has no effect",
+                       options->look);
+    const OptionNeed needs[] = {{"ao", !is_xray(look), "is of lit walls, and an x-ray has none"},
+                                {"shadows", !is_xray(look), "are of lights, and an x-ray has none"},
+                                {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    if (options->has_background && !color_is_none(options->background))
+        look->background = rgb_of_option(options->background);
+    return STATUS_OK;
+}
+
+static bool has_segments(const Tree *tree)
+{
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i))
+            return true;
+    return false;
+}
+
+/* The tree without thin segments, in its place. */
+static Status prune(double radius_mm, bool keep_whole, PictureTree *of, Err *err)
+{
+    Tree rest;
+    TRY(tree_pruned(&of->tree, radius_mm, &rest, err));
+    of->pruned = of->tree.n - rest.n;
+    if (of->pruned > 0 && !has_segments(&rest)) {
+        tree_release(&rest);
+        return err_set(err, STATUS_INPUT, "%s: all %zu segments are thinner than --prune-radius %g",
+                       of->path, of->pruned, radius_mm);
+    }
+    if (keep_whole)
+        of->whole = of->tree;
+    else
+        tree_release(&of->tree);
+    of->tree = rest;
+    return STATUS_OK;
+}
+
+Status picture_read_tree(const Coloring *coloring, double prune_radius_mm, const Parsed *parsed,
+                         PictureTree *out, Err *err)
+{
+    PictureTree made = {.path = parsed->operands[0]};
+    TRY(reading_tree(parsed, made.path, &made.tree, NULL, err));
+    Status status = blood_settle(&coloring->blood, parsed, &made.tree, err);
+    if (status == STATUS_OK)
+        status = coloring_join(coloring, &made.tree, &made.joined, err);
+    if (status == STATUS_OK && prune_radius_mm > 0)
+        status = prune(prune_radius_mm, coloring->range_of == RANGE_OF_TREE, &made, err);
+    if (status == STATUS_OK)
+        *out = made;
+    else
+        picture_tree_release(&made);
+    return status;
+}
+
+void picture_tree_release(PictureTree *tree)
+{
+    tree_release(&tree->tree);
+    tree_release(&tree->whole);
+    free(tree->joined);
+}
+
+ColoredTree picture_colored_tree(const PictureTree *tree)
+{
+    return (ColoredTree){.path = tree->path,
+                         .joined = tree->joined,
+                         .drawn = &tree->tree,
+                         .whole = tree->whole.n ? &tree->whole : &tree->tree};
+}
+
+static Status find_domain(const PictureTree *of, Box *domain, Err *err)
+{
+    bool found;
+    Status status = tree_domain_box(&of->tree, domain, &found, err);
+    if (status == STATUS_OK && !found)
+        status = err_set(err, STATUS_INPUT,
+                         "does not tell the domain that it was grown in, for --frame domain");
+    if (status != STATUS_OK)
+        err_prefix(err, "%s: ", of->path);
+    return status;
+}
+
+Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
+                           PictureSource *source, Err *err)
+{
+    PictureSource made = {0};
+    TRY(check_camera(options, err));
+    TRY(read_look(options, parsed, &made.look, err));
+    TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &made.of, err));
+    Status status = STATUS_OK;
+    if (options->frame == PICTURE_DOMAIN)
+        status = find_domain(&made.of, &made.domain, err);
+    if (status == STATUS_OK)
+        *source = made;
+    else
+        picture_source_release(&made);
+    return status;
+}
+
+void picture_source_release(PictureSource *source)
+{
+    picture_tree_release(&source->of);
+}
+
+bool picture_is_transparent(const PictureOptions *options)
+{
+    return options->has_background && color_is_none(options->background);
+}
+
+ViewParams picture_view_params(const PictureOptions *options, const PictureSource *source)
+{
+    ViewParams params = options->stage;
+    params.tree = options->frame == PICTURE_DRAWING ? NULL : &source->of.tree;
+    params.domain = options->frame == PICTURE_DOMAIN ? &source->domain : NULL;
+    params.transparent = picture_is_transparent(options);
+    params.turn_deg = options->turn.at[0];
+    params.rise_deg = options->turn.at[1];
+    params.projection = (Projection)options->projection;
+    params.view = (NamedView)options->view;
+    params.width = options->size.pixels[0];
+    params.height = options->size.pixels[1];
+    return params;
+}
+
+Status picture_geometry(const PictureOptions *options, const PictureSource *source,
+                        const Common *common, Geometry *geometry, StageReport *report, Err *err)
+{
+    const SceneModel model = (SceneModel)options->model;
+    Progress progress;
+    const GeometryParams params = {.model = model,
+                                   .joints = (JointForm)options->joints,
+                                   .implied_ends = options->by_tiles && !is_xray(&source->look),
+                                   .graph =
+                                       options->potential != 0 && model_has(model, MODEL_POTENTIAL),
+                                   .part_overlaps = options->part_overlaps,
+                                   .mesh = {.tolerance = options->tolerance,
+                                            .threads = common->threads,
+                                            .progress = progress_report,
+                                            .context = &progress}};
+    progress_start(&progress, "triangulating", common->talk);
+    Status status = stage_geometry(&source->of.tree, &params, geometry, report, err);
+    progress_end(&progress);
+    return status;
+}
+
+/* Has the colours blend, if they are to. */
+static Status blend(const PictureOptions *options, Appearance *appearance, Err *err)
+{
+    enum { MOST_STEPS = 128 }; /* that a colour map of POV-Ray holds */
+    const ColorScale *scale = &appearance->scale;
+    if (options->color_blend == BLEND_SEGMENT || !appearance->colors)
+        return STATUS_OK;
+    if (colorscale_counts(scale))
+        return err_set(
+            err, STATUS_USAGE,
+            "--color-blend blended: --colormap %s has separate colours, which blend only "
+            "with --classes",
+            options->coloring.colormap);
+    if (colorscale_steps(scale) > MOST_STEPS)
+        return err_set(err, STATUS_USAGE,
+                       "--color-blend blended takes at most %d --classes, not %d", MOST_STEPS,
+                       colorscale_steps(scale));
+    return stage_blend(appearance, err);
+}
+
+Status picture_appearance(const PictureOptions *options, const PictureSource *source,
+                          Appearance *appearance, Err *err)
+{
+    const ColoredTree tree = picture_colored_tree(&source->of);
+    Appearance made;
+    TRY(coloring_appearance(&options->coloring, &tree, &source->look, &made, err));
+    Status status = blend(options, &made, err);
+    if (status == STATUS_OK)
+        *appearance = made;
+    else
+        appearance_release(&made);
+    return status;
+}
+
+Status picture_view(const PictureOptions *options, const PictureSource *source,
+                    const Geometry *geometry, View *view, Err *err)
+{
+    const ViewParams params = picture_view_params(options, source);
+    return stage_view(&source->look, &params, geometry, view, err);
+}
+
+static Status make_scene(const PictureOptions *options, const PictureSource *source,
+                         const Common *common, Scene *scene, StageReport *report, Err *err)
+{
+    TRY(picture_appearance(options, source, &scene->appearance, err));
+    Status status = picture_geometry(options, source, common, &scene->geometry, report, err);
+    if (status == STATUS_OK)
+        status = picture_view(options, source, &scene->geometry, &scene->view, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", source->of.path);
+    return status;
+}
+
+Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene *scene,
+                     PictureReport *report, Err *err)
+{
+    PictureSource source;
+    TRY(picture_read_source(options, parsed, &source, err));
+    Status status = picture_scene_of(options, &source, parsed, scene, NULL, report, err);
+    picture_source_release(&source);
+    return status;
+}
+
+Status picture_scene_of(const PictureOptions *options, const PictureSource *source,
+                        const Parsed *parsed, Scene *scene, Anatomy *anatomy, PictureReport *report,
+                        Err *err)
+{
+    PictureReport told = {.pruned = source->of.pruned,
+                          .joints = (JointForm)options->joints,
+                          .shadows = options->stage.shadows};
+    Scene made = {0};
+    Status status = make_scene(options, source, &parsed->common, &made, &told.staged, err);
+    if (status == STATUS_OK)
+        status = check_distance(&made, err);
+    if (status == STATUS_OK && anatomy)
+        status = stage_anatomy(&source->of.tree, made.geometry.origin, anatomy, err);
+    if (status != STATUS_OK) {
+        scene_release(&made);
+        return status;
+    }
+    *scene = made;
+    *report = told;
+    return STATUS_OK;
+}
+
+Status picture_say(const Scene *scene, const PictureReport *report, bool quiet, Err *err)
+{
+    if (quiet)
+        return STATUS_OK;
+    warn_of_limits(scene, report->shadows);
+    TRY(warn_of_losses(&scene->geometry, report, err));
+    coloring_say(&scene->appearance);
+    return STATUS_OK;
+}
+
+Status picture_say_effects(const PictureOptions *options, const View *view, const char *what,
+                           bool quiet, Err *err)
+{
+    Text names = TEXT_INIT;
+    if (view->effects.xray.per_mm > 0)
+        return err_set(err, STATUS_USAGE,
+                       "--look %s is an x-ray, which POV-Ray does not draw; render does",
+                       options->look);
+    effects_list(&view->effects, &names);
+    Status status = text_check(&names, err);
+    if (status == STATUS_OK && names.length && !quiet)
+        fprintf(stderr, "corcast: --look %s: %s are corcast's own, and %s\n", options->look,
+                text_chars(&names), what);
+    text_release(&names);
+    return status;
+}
+
+Status picture_fits(int width, int height, double bytes_a_pixel, Err *err)
+{
+    double needed = (double)width * height * bytes_a_pixel;
+    double memory = mem_of_machine();
+    if (needed < 0.9 * memory)
+        return STATUS_OK;
+    return err_set(err, STATUS_MEMORY,
+                   "out of memory: --size %dx%d needs %.1f GB and this machine has %.1f GB", width,
+                   height, needed * 1e-9, memory * 1e-9);
+}
+
+Status picture_check_ids(const Geometry *geometry, const char *tree_path, Err *err)
+{
+    for (size_t i = 0; i < geometry->n_ids; i++)
+        if (geometry->ids[i] > IMAGE_MAX_ID)
+            return err_set(err, STATUS_INPUT,
+                           "%s: the id %u does not fit an id plane, which holds ids up to %d; "
+                           "`corcast convert` numbers the nodes from 1 on",
+                           tree_path, geometry->ids[i], IMAGE_MAX_ID);
+    return STATUS_OK;
+}
+
+void picture_description(const Geometry *geometry, const char *tree_path, Text *out)
+{
+    text_puts(out, "arterial tree ");
+    text_put_line(out, file_name(tree_path));
+    text_printf(out, ", %zu segments as %s", geometry->drawn, models[geometry->model].name);
+}

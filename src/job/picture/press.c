@@ -1,0 +1,171 @@
+/* Options that have no effect on a file of the format that its name says are refused. */
+#include "job/picture/press.h"
+
+#include "job/picture/preset.h"
+#include <string.h>
+#include <strings.h>
+
+static const char *const compressions[] = {
+    [IMAGE_LZW] = "lzw", [IMAGE_DEFLATE] = "deflate", [IMAGE_UNCOMPRESSED] = "none", NULL};
+static const char *const intents[] = {
+    [INKS_PERCEPTUAL] = "perceptual", [INKS_RELATIVE] = "relative", NULL};
+
+enum { COLUMN_SINGLE, COLUMN_DOUBLE };
+static const char *const columns[] = {"single", "double", NULL};
+
+static const Option rows[] = {
+    {.name = "preset",
+     SETS(LOOKUP, PressOptions, preset),
+     .group = GROUP_PRESS,
+     .list = "presets",
+     .help = "size, dpi and compression as a publisher wants them, where nothing else is said"},
+    {.name = "column",
+     SETS(CHOICE, PressOptions, column),
+     .choices = columns,
+     .group = GROUP_PRESS,
+     .help = "how many columns of the preset's the picture is wide"},
+    {.name = "bits",
+     SETS(WHOLE, PressOptions, bits),
+     FROM_TO(8, 32),
+     .group = GROUP_PRESS,
+     .argument = "8|16|32",
+     .otherwise = "8; 32 of an .exr",
+     .help = "of a channel; of an .exr, which has floats, 16 or 32"},
+    {.name = "compression",
+     SETS(CHOICE, PressOptions, compression),
+     .choices = compressions,
+     .group = GROUP_PRESS,
+     .help = "of a .tif; none loses anything"},
+    {.name = "quality",
+     SETS(WHOLE, PressOptions, quality),
+     FROM_TO(1, 100),
+     .group = GROUP_PRESS,
+     .help = "of a .jpg, which loses a little even at 100"},
+    {.name = "cmyk-profile",
+     SETS(INPUT, PressOptions, cmyk_profile),
+     .group = GROUP_PRESS,
+     .argument = "P.icc",
+     .help = "a .tif or .jpg in the inks of the press that this ICC profile is of"},
+    {.name = "cmyk-intent",
+     SETS(CHOICE, PressOptions, intent),
+     .choices = intents,
+     .group = GROUP_PRESS,
+     .help = "colours that the press has not: all make way, or they alone"},
+};
+
+/* Sets an option to the preset's value, unless the command line or a recipe gives the option. */
+static Status imply(const Parsed *parsed, const char *name, const char *value, Err *err)
+{
+    const Setting *setting = parsed_find(parsed, name, strlen(name));
+    return setting && !setting->said ? setting_read(setting, value, err) : STATUS_OK;
+}
+
+/* A picture is square, but no higher than a page. */
+static Status settle(const void *set, const Parsed *parsed, Err *err)
+{
+    const PressOptions *options = set;
+    Preset preset;
+    char size[80], dpi[40];
+    if (!options->preset)
+        return STATUS_OK;
+    TRY(preset_read(options->preset, &preset, err));
+    double width = options->column == COLUMN_DOUBLE ? preset.double_mm : preset.single_mm;
+    double height = preset.height_mm > 0 && preset.height_mm < width ? preset.height_mm : width;
+    snprintf(size, sizeof size, "%gmmx%gmm", width, height);
+    snprintf(dpi, sizeof dpi, "%g", preset.render_dpi);
+    Status status = imply(parsed, "size", size, err);
+    if (status == STATUS_OK)
+        status = imply(parsed, "dpi", dpi, err);
+    if (status == STATUS_OK && strcmp(preset.compression, "any") != 0)
+        status = imply(parsed, "compression", preset.compression, err);
+    preset_release(&preset);
+    return status;
+}
+
+const OptionTable press_table = {
+    .options = rows, .n = sizeof rows / sizeof *rows, .settle = settle};
+
+void press_set_defaults(PressOptions *options)
+{
+    *options = (PressOptions){.intent = INKS_RELATIVE, .quality = 95};
+}
+
+static bool is_of(const char *output, const char *extension, const char *other)
+{
+    return strcasecmp(file_extension(output), extension) == 0 ||
+           strcasecmp(file_extension(output), other) == 0;
+}
+
+static Status check_bits(const char *output, int bits, Err *err)
+{
+    static const struct {
+        const char *extension, *other;
+        int bits[2];
+        const char *sentence;
+    } rules[] = {{"exr", "exr", {16, 32}, "an .exr has floats of 16 or 32 bits"},
+                 {"pfm", "pfm", {0, 0}, "a .pfm has floats of 32 bits anyway"},
+                 {"jpg", "jpeg", {8, 8}, "a .jpg has 8 bits"},
+                 {"", "", {8, 16}, "a picture has 8 or 16 bits"}};
+    size_t i = 0, last = sizeof rules / sizeof *rules - 1;
+    while (i < last && !is_of(output, rules[i].extension, rules[i].other))
+        i++;
+    if (bits == 0 || bits == rules[i].bits[0] || bits == rules[i].bits[1])
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "--bits: '%d': %s", bits, rules[i].sentence);
+}
+
+Status press_check(const PressOptions *options, const char *output, const Parsed *parsed, Err *err)
+{
+    const OptionNeed needs[] = {
+        {"column", options->preset != NULL, "needs --preset"},
+        {"compression", is_of(output, "tif", "tiff"), "is for .tif"},
+        {"quality", is_of(output, "jpg", "jpeg"), "is for .jpg"},
+        {"cmyk-profile", image_traits(output).has_profile, "is for .tif and .jpg"},
+        {"cmyk-intent", options->cmyk_profile != NULL, "needs --cmyk-profile"},
+        {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    return check_bits(output, options->bits, err);
+}
+
+enum { OF_SIZE = 2 /* the first rows */ };
+
+static Status refuse_from(size_t first, const Parsed *parsed, const char *sentence, Err *err)
+{
+    for (size_t i = first; i < sizeof rows / sizeof *rows; i++) {
+        const OptionNeed needs[] = {{rows[i].name, false, sentence}, {0}};
+        TRY(options_check_needs(parsed, needs, err));
+    }
+    return STATUS_OK;
+}
+
+Status press_refuse(const Parsed *parsed, const char *sentence, Err *err)
+{
+    return refuse_from(0, parsed, sentence, err);
+}
+
+Status press_refuse_packing(const Parsed *parsed, const char *sentence, Err *err)
+{
+    return refuse_from(OF_SIZE, parsed, sentence, err);
+}
+
+Status press_open(const PressOptions *options, const char *output, int threads, Press *press,
+                  Err *err)
+{
+    bool floats = image_traits(output).floats;
+    Press made = {.bits = floats || options->bits == 0 ? 8 : options->bits};
+    if (options->cmyk_profile && image_traits(output).has_profile)
+        TRY(inks_read(&made.inks, options->cmyk_profile, (InkIntent)options->intent, made.bits,
+                      err));
+    made.packing = (ImagePacking){.compression = (ImageCompression)options->compression,
+                                  .threads = threads,
+                                  .quality = options->quality,
+                                  .half = floats && options->bits == 16,
+                                  .inks = made.inks};
+    *press = made;
+    return STATUS_OK;
+}
+
+void press_release(Press *press)
+{
+    inks_free(press->inks);
+}

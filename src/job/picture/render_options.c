@@ -1,0 +1,269 @@
+/* What is said of a picture beside its scene: the method, the file, and what fights what. */
+#include "job/picture/render_options.h"
+
+#include "job/picture/frames.h"
+#include "job/picture/line_drawing.h"
+#include "options/output.h"
+#include <string.h>
+
+enum { HITS_EXACT, HITS_POVRAY };
+static const char *const hits_names[] = {"exact", "povray", NULL};
+static const char *const methods[] = {[RENDER_TRACE] = "trace",
+                                      [RENDER_RASTER] = "raster",
+                                      [RENDER_ZBUFFER] = "zbuffer",
+                                      [RENDER_FASTEST] = "fastest",
+                                      NULL};
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, RenderOptions, output),
+     .argument = "P",
+     .help = "the picture: .png, .ppm, .tif, .jpg, .exr or .pfm, or a page that holds it: .pdf, "
+             ".svg"},
+    {.name = "planes",
+     SETS(TEXT, RenderOptions, planes),
+     .argument = "LIST",
+     .help = "planes beside it, or in an .exr: color,depth,normal,id"},
+    {.name = "exact",
+     SETS(FLAG, RenderOptions, exact),
+     .group = GROUP_RUN,
+     .help = "the picture that verify draws: POV-Ray's arithmetic, ray by ray, and one ray a pixel "
+             "unless --antialias says more"},
+    {.name = "method",
+     SETS(CHOICE, RenderOptions, method),
+     GIVEN(RenderOptions, has_method),
+     .choices = methods,
+     .group = GROUP_RUN,
+     .help = "cylinders, joined, rounded, and but for zbuffer blob: as POV-Ray does, by tiles, as "
+             "the paper does, or tiles where they can"},
+    {.name = "min-width",
+     SETS(NUMBER, RenderOptions, min_width_px),
+     FROM_TO(0, 64),
+     .argument = "PX",
+     .group = GROUP_VESSELS,
+     .help = "vessels are drawn at least so many pixels wide; 0: as wide as they are"},
+    {.name = "ink",
+     SETS(NUMBER, RenderOptions, ink_mm),
+     .range = &ink_range,
+     .group = GROUP_VESSELS,
+     .unit = "mm",
+     .otherwise = "",
+     .help = "a drawing in lines of this width instead, hidden lines left out: .svg or .pdf"},
+    {.name = "hits",
+     SETS(CHOICE, RenderOptions, hits),
+     .choices = hits_names,
+     .group = GROUP_POVRAY,
+     .help = "isosurface: where it is, or where POV-Ray's root finder sees it"},
+    {.name = "antialias-threshold",
+     SETS(NUMBER, RenderOptions, threshold),
+     FROM_TO(0, 1),
+     .group = GROUP_LIGHT,
+     .argument = "T",
+     .help = "antialias only pixels that differ by T from a neighbour; 0: all, as POV-Ray"},
+    {.name = "kernels",
+     SETS(CHOICE, RenderOptions, kernels),
+     .choices = render_kernel_names,
+     .group = GROUP_RUN,
+     .help = "instructions that tiles are drawn with, for tests"},
+    {.name = "memory",
+     SETS(NUMBER, RenderOptions, memory_mb),
+     FROM_TO(1e-3, 1e9),
+     .group = GROUP_RUN,
+     .aside = true,
+     .unit = "MB",
+     .help = "of a band; larger pictures are drawn and written band by band"},
+    {.name = "json", SETS(OUTPUT, RenderOptions, json), .help = "what was done, as JSON"},
+    {.name = "frames",
+     SETS(TEXT, RenderOptions, animation.frames),
+     .group = GROUP_ANIMATION,
+     .argument = "all|A..B",
+     .help = "a picture for each frame of values that change with time"},
+    {.name = "turntable",
+     SETS(WHOLE, RenderOptions, animation.turn),
+     .group = GROUP_ANIMATION,
+     FROM_TO(1, 100000),
+     .otherwise = "",
+     .help = "so many pictures, once about the upright"},
+    {.name = "growth",
+     SETS(WHOLE, RenderOptions, animation.growth),
+     .group = GROUP_ANIMATION,
+     FROM_TO(1, 100000),
+     .otherwise = "",
+     .help = "so many pictures of the tree as it grows from its root"},
+};
+
+const OptionTable render_table = OPTION_TABLE(own);
+
+void render_set_defaults(void *options)
+{
+    RenderOptions *own_options = options;
+    picture_set_defaults(&own_options->picture);
+    annotation_set_defaults(&own_options->annotation);
+    press_set_defaults(&own_options->press);
+    own_options->picture.antialias = PICTURE_ANTIALIAS;
+    own_options->method = RENDER_FASTEST;
+    own_options->kernels = KERNELS_FASTEST;
+    own_options->memory_mb = 128;
+}
+
+void render_settle(RenderOptions *options)
+{
+    PictureOptions *picture = &options->picture;
+    if (options->exact && !options->has_method)
+        options->method = RENDER_TRACE;
+    if (!picture->has_antialias && (options->exact || options->method == RENDER_ZBUFFER))
+        picture->antialias = 1;
+}
+
+/* Whether vessels thinner than a pixel are drawn by their coverage: not where a method is asked
+ * for, whose picture it is. */
+static bool covers_thin(const RenderOptions *options)
+{
+    return options->method == RENDER_FASTEST && options->hits == HITS_EXACT;
+}
+
+/* Of an isosurface and of a mesh there is one way to be drawn. */
+static Status check_method(const RenderOptions *options, Err *err)
+{
+    SceneModel model = (SceneModel)options->picture.model;
+    unsigned elements = MODEL_PRIMITIVES;
+    if (options->method != RENDER_ZBUFFER)
+        elements |= MODEL_BLOB;
+    if (model_is_of(model, elements))
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "--method %s is for %s, not for %s", methods[options->method],
+                   models_of(elements).text, models[model].name);
+}
+
+/* What the file holds: 8 bits of a page, and nothing over floats. */
+static Status check_file(const RenderOptions *options, const Parsed *parsed, Err *err)
+{
+    if (frames_is_page(options->output))
+        return press_refuse_packing(parsed, "is for pictures; a page holds one of 8 bits", err);
+    if (image_traits(options->output).floats && annotation_is_any(&options->annotation))
+        return err_set(err, STATUS_USAGE,
+                       "-o: %s holds numbers to measure, and no legend, scale bar or letter",
+                       strcmp(file_extension(options->output), "exr") ? "a .pfm" : "an .exr");
+    return press_check(&options->press, options->output, parsed, err);
+}
+
+/* Nothing can be drawn over what is transparent, nor parts of it joined; and every pixel is to be
+ * of the same samples over any background. */
+static Status check_transparent(const RenderOptions *options, const Parsed *parsed, Err *err)
+{
+    static const char *const able[] = {"png", "tif", "tiff", "exr", NULL};
+    if (!picture_is_transparent(&options->picture))
+        return STATUS_OK;
+    if (!is_one_of(file_extension(options->output), able))
+        return err_set(err, STATUS_USAGE,
+                       "-o: '%s' cannot be transparent; --background none takes .png, .tif or .exr",
+                       options->output);
+    if (annotation_is_any(&options->annotation))
+        return err_set(err, STATUS_USAGE,
+                       "--background none: a legend, a scale bar or a letter needs a background");
+    const OptionNeed needs[] = {
+        {"cmyk-profile", false, "needs a background, not --background none"},
+        {"antialias-threshold", false, "needs a background, not --background none"},
+        {0}};
+    return options_check_needs(parsed, needs, err);
+}
+
+Status render_check(const RenderOptions *options, const Parsed *parsed, Err *err)
+{
+    const PictureOptions *picture = &options->picture;
+    TRY(check_file(options, parsed, err));
+    if (options->ink_mm > 0)
+        TRY(line_drawing_check(picture, options->output, parsed, err));
+    if (options->min_width_px > 0 && !covers_thin(options))
+        return err_set(err, STATUS_USAGE,
+                       "--min-width is for --method fastest, without --exact and --hits povray");
+    if (options->min_width_px > 0 && model_is_of((SceneModel)picture->model, MODEL_TRIANGLES))
+        return err_set(err, STATUS_USAGE, "--min-width is for vessels, not for --model %s",
+                       models[picture->model].name);
+    TRY(picture_check_needs(picture, parsed, err));
+    TRY(annotation_check(&options->annotation, picture, parsed, err));
+    TRY(check_transparent(options, parsed, err));
+    TRY(picture_check_dpi(&picture->size, options->output, parsed, err));
+    if (options->threshold > 0 && picture->antialias == 1)
+        return err_set(err, STATUS_USAGE,
+                       "--antialias-threshold needs --antialias N, with N from 2 to 9");
+    if (options->exact && options->method != RENDER_TRACE)
+        return err_set(err, STATUS_USAGE, "--exact is --method trace, not --method %s",
+                       methods[options->method]);
+    if (options->has_method && options->method != RENDER_TRACE)
+        TRY(check_method(options, err));
+    if (options->method == RENDER_ZBUFFER &&
+        (picture->stage.shadows || picture->antialias > 1 || picture->occlusion > 0))
+        return err_set(err, STATUS_USAGE,
+                       "--method zbuffer draws neither shadows nor antialiased pictures nor "
+                       "ambient occlusion");
+    return STATUS_OK;
+}
+
+RenderParams render_params_of(const RenderOptions *options, int threads, CellParams *cells)
+{
+    const PictureOptions *picture = &options->picture;
+    *cells = picture_cells(picture);
+    return (RenderParams){.threads = threads,
+                          .antialias = picture->antialias,
+                          .antialias_threshold = options->threshold,
+                          .shadows = picture->stage.shadows,
+                          .occlusion = picture->occlusion,
+                          .method = options->method,
+                          .povray_cells = options->hits == HITS_POVRAY ? cells : NULL,
+                          .cover_thin = covers_thin(options),
+                          .least_px = options->min_width_px,
+                          .kernels = options->kernels};
+}
+
+/* Of an animation the one picture that --only asks for. */
+static Status pick_only(int only, Animation *animation, Err *err)
+{
+    if (only == 0)
+        return STATUS_OK;
+    if (only < animation->first || only > animation->last)
+        return err_set(err, STATUS_USAGE, "--only: %d is not a picture from %d to %d", only,
+                       animation->first, animation->last);
+    animation->first = animation->last = only;
+    return STATUS_OK;
+}
+
+/* Options that have no place beside effects of the look. */
+static Status check_effects(const RenderOptions *options, const View *view, Err *err)
+{
+    if (!effects_present(&view->effects))
+        return STATUS_OK;
+    if (options->exact)
+        return err_set(err, STATUS_USAGE,
+                       "--exact is the picture that verify draws, and verify leaves out what "
+                       "--look %s adds to it",
+                       options->picture.look);
+    if (options->threshold > 0)
+        return err_set(err, STATUS_USAGE,
+                       "--antialias-threshold: --look %s needs all samples of every pixel",
+                       options->picture.look);
+    if (options->min_width_px > 0 && effects_have_shape(&view->effects))
+        return err_set(err, STATUS_USAGE,
+                       "--min-width: --look %s draws the edges of vessels as they are",
+                       options->picture.look);
+    return STATUS_OK;
+}
+
+Status render_make_scene(RenderOptions *options, Parsed *parsed, const PictureSource *source,
+                         const FigureFonts *fonts, Scene *scene, PictureReport *made,
+                         Animation *animation, Err *err)
+{
+    PictureOptions *picture = &options->picture;
+    picture->by_tiles = options->ink_mm == 0 &&
+                        (options->method == RENDER_FASTEST || options->method == RENDER_RASTER);
+    TRY(picture_scene_of(picture, source, parsed, scene, NULL, made, err));
+    TRY(animation_count(animation, &scene->appearance, err));
+    TRY(pick_only(options->shard.only, animation, err));
+    if (options->annotation.legend) {
+        TRY(annotation_make_room(&options->annotation, fonts, &scene->appearance, picture, err));
+        TRY(picture_view(picture, source, &scene->geometry, &scene->view, err));
+    }
+    if (animation->kind == ANIMATION_TURN)
+        TRY(animation_frame_turn(picture, source, scene, err));
+    return check_effects(options, &scene->view, err);
+}

@@ -1,0 +1,264 @@
+/* Tiles are whole rows: a renderer holds no more of a picture than a band of rows anyway, and rows
+ * that are drawn by themselves have the bytes that they have in the whole picture [render.h], so
+ * that nothing is asked of a tile but where it begins. Tiles begin where bands do.
+ *
+ * What a file is right for is decided by one text, its note, which holds its place and the hash:
+ * --resume makes the note that the file should have and compares. */
+#include "job/picture/shard.h"
+
+#include "figure/figure.h"
+#include "options/output.h"
+#include "options/templates.h"
+#include "render/render.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_TILES = 100000 };
+
+static const Option rows[] = {
+    {.name = "tile",
+     SETS(TEXT, ShardOptions, tile),
+     .group = GROUP_PARTS,
+     .argument = "I/N",
+     .aside = true,
+     .help = "rows only: part I of N, from the top; corcast merge joins them"},
+    {.name = "tiles",
+     SETS(WHOLE, ShardOptions, tiles),
+     FROM_TO(1, MOST_TILES),
+     .group = GROUP_PARTS,
+     .aside = true,
+     .otherwise = "",
+     .help = "with --commands: a command for each of N tiles, P.tile-1.png to P.tile-N.png"},
+    {.name = "only",
+     SETS(WHOLE, ShardOptions, only),
+     FROM_TO(1, 1000000),
+     .group = GROUP_PARTS,
+     .argument = "K",
+     .aside = true,
+     .otherwise = "",
+     .help = "picture K of an animation alone"},
+    {.name = "commands",
+     SETS(FLAG, ShardOptions, commands),
+     .group = GROUP_PARTS,
+     .aside = true,
+     .help = "draw nothing, but print a command a line, for GNU parallel, Slurm and others, that "
+             "draws a tile or a picture of an animation"},
+    {.name = "resume",
+     SETS(FLAG, ShardOptions, resume),
+     .group = GROUP_PARTS,
+     .aside = true,
+     .help = "keep files that are there and were made from the same"},
+};
+
+const OptionTable shard_table = OPTION_TABLE(rows);
+
+/* Tiles begin where bands of rows do. */
+static int most_tiles(int height)
+{
+    return (height + RENDER_BAND_STEP - 1) / RENDER_BAND_STEP;
+}
+
+Status shard_check(const ShardOptions *options, bool animated, const FramesForm *form,
+                   const Parsed *parsed, Err *err)
+{
+    static const char *const noted[] = {"png", "tif", "tiff", NULL};
+    bool parts = options->tile || options->commands || options->resume;
+    const OptionNeed needs[] = {
+        {"tile", !animated, "is for single pictures, not for animations"},
+        {"tiles", options->commands, "needs --commands"},
+        {"tiles", !animated, "is for single pictures, not for animations"},
+        {"tiles", !options->tile, "and --tile exclude each other"},
+        {"only", animated, "is for animations"},
+        {"commands", animated || options->tiles > 0, "needs --tiles N or an animation"},
+        {"planes", !parts, "is not for parts: --tile, --commands and --resume know pictures only"},
+        {"json", !parts, "is not for parts: --tile, --commands and --resume know pictures only"},
+        {"cmyk-profile", !parts, "is not for parts: they are put together as sRGB"},
+        {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    if (parts && !is_one_of(file_extension(form->path), noted))
+        return err_set(err, STATUS_USAGE,
+                       "-o: '%s' cannot say what part of what it is; parts are .png or .tif",
+                       form->path);
+    if (options->tiles > most_tiles(form->height))
+        return err_set(err, STATUS_USAGE, "--tiles: %d rows have at most %d tiles, not %d",
+                       form->height, most_tiles(form->height), options->tiles);
+    if (options->commands && strcmp(parsed->operands[0], "-") == 0)
+        return err_set(err, STATUS_USAGE,
+                       "--commands reads the tree often, not from standard input");
+    return STATUS_OK;
+}
+
+/* Where tile `number`, counted from 0, begins. */
+static int tile_begin(int number, int count, int height)
+{
+    int row = (int)((long long)number * most_tiles(height) / count) * RENDER_BAND_STEP;
+    return row < height ? row : height;
+}
+
+static void place(Shard *shard)
+{
+    shard->first = tile_begin(shard->number - 1, shard->count, shard->height);
+    shard->rows = tile_begin(shard->number, shard->count, shard->height) - shard->first;
+}
+
+Status shard_of_tile(const char *tile, int height, Shard *shard, Err *err)
+{
+    const int most = most_tiles(height);
+    Shard made = {.number = 1, .count = 1, .height = height};
+    const char *slash = tile ? strchr(tile, '/') : NULL;
+    long long number = 1, count = 1;
+    char first[16] = "";
+    if (slash && slash - tile < (ptrdiff_t)sizeof first)
+        memcpy(first, tile, (size_t)(slash - tile));
+    if (tile && (!slash || !integer_parse(slash + 1, 1, most, &count) ||
+                 !integer_parse(first, 1, count, &number)))
+        return err_set(
+            err, STATUS_USAGE,
+            "--tile: '%.40s' is not I/N with I from 1 to N and N from 1 to %d, the tiles "
+            "of %d rows or more that %d rows have",
+            tile, most, height < RENDER_BAND_STEP ? height : RENDER_BAND_STEP, height);
+    made.number = (int)number;
+    made.count = (int)count;
+    place(&made);
+    *shard = made;
+    return STATUS_OK;
+}
+
+/* ---- what it was made from ------------------------------------------------------------------- */
+
+/* Adds the bytes of the fonts, whose letters are pixels of the picture. */
+static Status hash_fonts(Hash *hash, Err *err)
+{
+    Status status = STATUS_OK;
+    for (size_t i = 0; figure_font_files[i] && status == STATUS_OK; i++) {
+        char *path = NULL;
+        TRY(templates_path(figure_font_files[i], &path, err));
+        status = file_hash(path, hash, err);
+        free(path);
+    }
+    return status;
+}
+
+Status shard_hash(Shard *shard, const Parsed *parsed, const ShardSource *source, int number,
+                  Err *err)
+{
+    Hash hash;
+    hash_begin(&hash);
+    hash_add_text(&hash, GENERATOR);
+    hash_add_text(&hash, source->line);
+    hash_add_text(&hash, shard->kernels);
+    hash_add(&hash, &number, sizeof number);
+    tree_hash(source->tree, &hash);
+    hash_add(&hash, &source->domain, sizeof source->domain);
+    TRY(hash_option_files(parsed, &hash, err));
+    if (source->has_text)
+        TRY(hash_fonts(&hash, err));
+    shard->made_from = hash_text(&hash);
+    return STATUS_OK;
+}
+
+/* ---- the note -------------------------------------------------------------------------------- */
+
+void shard_put(const Shard *shard, Text *text)
+{
+    text_printf(text, "tile %d of %d, rows %d to %d of %d, %s, made from %s", shard->number,
+                shard->count, shard->first, shard->first + shard->rows - 1, shard->height,
+                shard->kernels, shard->made_from.hex);
+}
+
+/* What is read is written again and compared, so that nothing but a note is one. */
+bool shard_parse(const char *note, Shard *shard)
+{
+    Shard made = {0};
+    int first, last;
+    if (sscanf(note, "tile %d of %d, rows %d to %d of %d, %15[a-z0-9], made from %64[0-9a-f]",
+               &made.number, &made.count, &first, &last, &made.height, made.kernels,
+               made.made_from.hex) != 7)
+        return false;
+    if (made.height < 1 || made.count < 1 || made.count > made.height || made.number < 1 ||
+        made.number > made.count || strlen(made.made_from.hex) != sizeof(HashText) - 1)
+        return false;
+    place(&made);
+    *shard = made;
+    return made.rows > 0 && first == made.first && last == made.first + made.rows - 1;
+}
+
+/* ---- what is there already ------------------------------------------------------------------- */
+
+static Status read_all(ImageReader *reader, Err *err)
+{
+    const ImageForm *form = imagereader_form(reader);
+    Picture row;
+    TRY(picture_init(&row, form->width, 1, form->channels, form->bits, err));
+    Status status = STATUS_OK;
+    for (int y = 0; y < form->height && status == STATUS_OK; y++)
+        status = imagereader_codes(reader, &row, err);
+    picture_release(&row);
+    return status;
+}
+
+/* A file that is no picture, or broken, is as good as none. */
+Status shard_is_there(const char *path, const Shard *shard, bool *there, Err *err)
+{
+    ImageReader *reader = NULL;
+    Text note = TEXT_INIT;
+    shard_put(shard, &note);
+    Status status = imagereader_open(&reader, path, err);
+    const char *has = status == STATUS_OK ? imagereader_note(reader, "Shard") : NULL;
+    bool same = has && text_chars(&note) && strcmp(has, text_chars(&note)) == 0 &&
+                imagereader_form(reader)->height == shard->rows;
+    if (same)
+        status = read_all(reader, err);
+    imagereader_close(reader);
+    text_release(&note);
+    if (status == STATUS_MEMORY)
+        return status;
+    *there = same && status == STATUS_OK;
+    return STATUS_OK;
+}
+
+/* ---- commands -------------------------------------------------------------------------------- */
+
+/* P.tile-07.png of P.png, in *path (owned). */
+static Status tile_path(const char *output, int number, int count, char **path, Err *err)
+{
+    char suffix[64];
+    int digits = snprintf(NULL, 0, "%d", count);
+    snprintf(suffix, sizeof suffix, ".tile-%0*d.%.8s", digits, number, file_extension(output));
+    return file_with_suffix(output, suffix, path, err);
+}
+
+/* What a line has besides what all have: the part, and where it goes. */
+static Status put_part(const ShardOptions *options, const char *output, int number, Text *line,
+                       Err *err)
+{
+    char *path = NULL;
+    if (options->tiles > 0)
+        TRY(tile_path(output, number, options->tiles, &path, err));
+    if (options->tiles > 0)
+        text_printf(line, " --tile %d/%d", number, options->tiles);
+    else
+        text_printf(line, " --only %d", number);
+    text_puts(line, " --resume -o ");
+    text_put_shell_word(line, path ? path : output);
+    free(path);
+    return STATUS_OK;
+}
+
+Status shard_print_commands(const ShardOptions *options, const Parsed *parsed, const char *output,
+                            int first, int last, Err *err)
+{
+    static const char *const without[] = {"commands", "tiles", "only", "resume", NULL};
+    Text same = TEXT_INIT, lines = TEXT_TO(stdout);
+    Status status = command_again(parsed, without, &same, err);
+    for (int k = first; k <= last && status == STATUS_OK; k++) {
+        text_add(&lines, &same);
+        status = put_part(options, output, k, &lines, err);
+        text_puts(&lines, "\n");
+    }
+    if (status == STATUS_OK)
+        status = text_flush(&lines, err);
+    text_release(&same);
+    text_release(&lines);
+    return status;
+}

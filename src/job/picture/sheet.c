@@ -1,0 +1,39 @@
+/* Templates and fonts are found first: a page that cannot be written is not worth drawing. */
+#include "job/picture/sheet.h"
+
+#include "options/output.h"
+#include "options/templates.h"
+#include <stdlib.h>
+
+Status sheet_open(Sheet *sheet, Err *err)
+{
+    TRY(templates_folder(&sheet->templates, err));
+    return figurefonts_load(sheet->templates, &sheet->fonts, err);
+}
+
+void sheet_begin(Sheet *sheet, const int pixels[2], double dpi)
+{
+    figure_init(&sheet->page, pixels[0] * MM_PER_INCH / dpi, pixels[1] * MM_PER_INCH / dpi, dpi,
+                sheet->fonts);
+}
+
+Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err *err)
+{
+    TRY(text_take(description, &sheet->description, err));
+    TRY(mem_strdup(&sheet->command, command, err));
+    sheet->notes = (FigureNotes){.templates = sheet->templates,
+                                 .description = sheet->description,
+                                 .generator = GENERATOR,
+                                 .command = sheet->command};
+    return STATUS_OK;
+}
+
+void sheet_release(Sheet *sheet)
+{
+    figure_release(&sheet->page);
+    figurefonts_free(sheet->fonts);
+    free(sheet->templates);
+    free(sheet->description);
+    free(sheet->command);
+    *sheet = (Sheet){0};
+}

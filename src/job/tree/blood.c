@@ -1,0 +1,139 @@
+/* One set of options wherever fields of flow are derived from a tree. */
+#include "job/tree/blood.h"
+
+#include "derive/derive.h"
+#include "treeio/treeio.h"
+#include <string.h>
+#include <strings.h>
+
+static const char of_tree[] = "the tree's";
+
+#define SAYS(KEY) SETS_KEY(BloodOptions, said.number[META_##KEY], said.known, KEY)
+
+static const Option rows[] = {
+    {.name = "q-perf",
+     SAYS(Q_PERF),
+     .group = GROUP_BLOOD,
+     .otherwise = of_tree,
+     .help = "flow through the inlet"},
+    {.name = "terminal-flow",
+     SETS(TEXT, BloodOptions, terminal_flow),
+     .group = GROUP_BLOOD,
+     .argument = "equal|murray|FILE.csv",
+     .otherwise = of_tree,
+     .help = "how flow parts: the same for all terminals, as radius^gamma, or by id and flow"},
+    {.name = "gamma",
+     SAYS(GAMMA),
+     .group = GROUP_BLOOD,
+     .otherwise = "the tree's, or 3",
+     .help = "exponent of the radius, for murray"},
+    {.name = "p-perf",
+     SAYS(P_PERF),
+     .group = GROUP_BLOOD,
+     .otherwise = of_tree,
+     .help = "pressure at the inlet"},
+    {.name = "viscosity",
+     SAYS(VISCOSITY),
+     .group = GROUP_BLOOD,
+     .otherwise = of_tree,
+     .help = "of the blood"},
+    {.name = "viscosity-law",
+     SETS(CHOICE, BloodOptions, law),
+     GIVEN(BloodOptions, said.known[META_VISCOSITY_LAW]),
+     .choices = viscosity_law_names,
+     .group = GROUP_BLOOD,
+     .otherwise = of_tree,
+     .help = "the same in all vessels, or by their diameter"},
+    {.name = "hematocrit",
+     SAYS(HEMATOCRIT),
+     .group = GROUP_BLOOD,
+     .argument = "H",
+     .otherwise = of_tree,
+     .help = "of the blood, for pries"},
+    {.name = "plasma-viscosity",
+     SAYS(PLASMA_VISCOSITY),
+     .group = GROUP_BLOOD,
+     .otherwise = of_tree,
+     .help = "of the plasma, for pries"},
+};
+
+const OptionTable blood_table = OPTION_TABLE(rows);
+
+TreeMeta blood_said(const BloodOptions *blood)
+{
+    TreeMeta said = blood->said;
+    said.number[META_VISCOSITY_LAW] = blood->law;
+    return said;
+}
+
+Status blood_check_law(ViscosityLaw law, const Parsed *parsed, Err *err)
+{
+    bool pries = law == VISCOSITY_PRIES;
+    static const char of_pries[] = "is for --viscosity-law pries";
+    const OptionNeed needs[] = {{"viscosity", !pries, "is for --viscosity-law constant"},
+                                {"hematocrit", pries, of_pries},
+                                {"plasma-viscosity", pries, of_pries},
+                                {0}};
+    return options_check_needs(parsed, needs, err);
+}
+
+Status blood_refuse(const Parsed *parsed, const char *sentence, Err *err)
+{
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        if (setting->typed && setting->option->group == GROUP_BLOOD)
+            return err_set(err, STATUS_USAGE, "--%s %s", setting->option->name, sentence);
+    }
+    return STATUS_OK;
+}
+
+/* The exponent that is said, else the tree's, else Murray's own. */
+static double gamma_of(const BloodOptions *blood, const Tree *tree)
+{
+    const TreeMeta *source = blood->said.known[META_GAMMA] ? &blood->said : &tree->meta;
+    return source->known[META_GAMMA] ? source->number[META_GAMMA] : 3;
+}
+
+/* Refuses to take the exponent from a tree that has many. */
+static Status check_gamma(const BloodOptions *blood, const Tree *tree, const char *tree_path,
+                          Err *err)
+{
+    if (blood->said.known[META_GAMMA] || !tree->meta.known[META_GAMMA_BY_RADIUS])
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "--terminal-flow murray: the exponent of %s follows the radius; give --gamma",
+                   tree_path);
+}
+
+static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_path, Err *err)
+{
+    const char *law = blood->terminal_flow;
+    if (!law)
+        return STATUS_OK;
+    if (strcmp(law, "equal") == 0) {
+        tree_part_flow_equally(tree);
+        return STATUS_OK;
+    }
+    if (strcmp(law, "murray") == 0) {
+        TRY(check_gamma(blood, tree, tree_path, err));
+        Status status = tree_part_flow_by_radius(tree, gamma_of(blood, tree), err);
+        if (status == STATUS_INPUT)
+            err_prefix(err, "%s: ", tree_path);
+        return status;
+    }
+    if (strcasecmp(file_extension(law), "csv") == 0)
+        return tree_read_flows(tree, law, err);
+    return err_set(err, STATUS_USAGE, "--terminal-flow: '%.60s' is not equal, murray or a FILE.csv",
+                   law);
+}
+
+Status blood_settle(const BloodOptions *blood, const Parsed *parsed, Tree *tree, Err *err)
+{
+    const TreeMeta said = blood_said(blood);
+    const char *law = blood->terminal_flow;
+    const OptionNeed needs[] = {
+        {"gamma", law && strcmp(law, "murray") == 0, "is for --terminal-flow murray"}, {0}};
+    TRY(options_check_needs(parsed, needs, err));
+    TRY(blood_check_law(derive_viscosity_law(tree, &said), parsed, err));
+    return part_flow(blood, tree, parsed->operands[0], err);
+}

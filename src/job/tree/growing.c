@@ -1,0 +1,249 @@
+/* What a command line says of growth becomes grow's parameters in three steps: defaults, the header
+ * of a tree to grow on from, and what the user gave, each over the one before. */
+#include "job/tree/growing.h"
+
+#include "job/tree/blood.h"
+#include "job/tree/tree_domain.h"
+#include "options/reading.h"
+#include "options/talk.h"
+#include <stdio.h>
+
+static const char *const tosses[] = {
+    [GROW_TOSS_SEGMENT] = "segment", [GROW_TOSS_TERMINAL] = "terminal", NULL};
+static const char plain_domain[] = "disc:50";
+
+static const Option rows[] = {
+    {.name = "terminals",
+     SETS(COUNT, Growing, params.terminals),
+     FROM_TO(1, GROW_MAX_TERMINALS),
+     .group = GROUP_TREE,
+     .help = "in the whole tree"},
+    {.name = "domain",
+     SETS(TEXT, Growing, domain_spec),
+     .group = GROUP_TREE,
+     .argument = "SHAPE",
+     .otherwise = plain_domain,
+     .help =
+         "tissue, mm: disc:R, ball:R, rect:W,H, box:A,B,C, ellipsoid:A,B,C, "
+         "shell:A,B,C,THICKNESS, polygon:FILE, mask:FILE, mesh:FILE, hull:MM (what is within MM "
+         "of the tree of --from), surface:FILE[,OFFSET]; @X,Y,Z behind it places it"},
+    {.name = "inlet",
+     SETS(VECTORS, Growing, inlet),
+     .group = GROUP_TREE,
+     .otherwise = "top of the rim",
+     .help = "where the tree starts, mm; given several times: one tree from each"},
+    {.name = "inlet-shares",
+     SETS(NUMBERS, Growing, inlet_share),
+     .group = GROUP_TREE,
+     .otherwise = "equal",
+     .help = "of the terminals for the trees, in the order of the inlets, any sum"},
+    {.name = "from",
+     SETS(INPUT, Growing, from_path),
+     .group = GROUP_FILES,
+     .argument = "T.swc",
+     .help = "grow on from this tree: its nodes keep places, ids and types, its segments stay "
+             "straight; all radii follow anew. What its header says holds unless options say "
+             "otherwise"},
+    {.name = "keep-radii",
+     SETS(FLAG, Growing, params.keep_radii),
+     .group = GROUP_TREE,
+     .help = "the tree of --from keeps its radii, too; what leaves it has those that follow"},
+    {.name = "gamma",
+     SETS(CURVE, Growing, params.gamma),
+     GIVEN(Growing, given[META_GAMMA]),
+     .meta = &meta_rows[META_GAMMA],
+     .group = GROUP_BLOOD,
+     .argument = "NUMBER|MM:NUMBER,...",
+     .help = "Murray exponent; or by the radius of the parent, in between linear in its logarithm"},
+    {.name = "lambda",
+     SETS_KEY(Growing, params.lambda, given, LAMBDA),
+     .group = GROUP_OPTIMUM,
+     .help = "target: sum of length * radius^lambda"},
+    {.name = "p-perf",
+     SETS_KEY(Growing, params.blood.p_perf_mmhg, given, P_PERF),
+     .group = GROUP_BLOOD,
+     .help = "pressure at the inlet"},
+    {.name = "p-term",
+     SETS_KEY(Growing, params.blood.p_term_mmhg, given, P_TERM),
+     .group = GROUP_BLOOD,
+     .help = "pressure at every terminal"},
+    {.name = "q-perf",
+     SETS_KEY(Growing, params.blood.q_perf_ml_min, given, Q_PERF),
+     .group = GROUP_BLOOD,
+     .help = "flow through all inlets"},
+    {.name = "viscosity",
+     SETS_KEY(Growing, params.blood.viscosity_cp, given, VISCOSITY),
+     .group = GROUP_BLOOD,
+     .help = "of the blood"},
+    {.name = "viscosity-law",
+     SETS(CHOICE, Growing, params.blood.viscosity_law),
+     GIVEN(Growing, given[META_VISCOSITY_LAW]),
+     .choices = viscosity_law_names,
+     .group = GROUP_BLOOD,
+     .help = "the same in all vessels, or by their diameter, Pries 1994"},
+    {.name = "hematocrit",
+     SETS_KEY(Growing, params.blood.hematocrit, given, HEMATOCRIT),
+     .group = GROUP_BLOOD,
+     .argument = "H",
+     .help = "for pries"},
+    {.name = "plasma-viscosity",
+     SETS_KEY(Growing, params.blood.plasma_viscosity_cp, given, PLASMA_VISCOSITY),
+     .group = GROUP_BLOOD,
+     .help = "for pries"},
+    {.name = "terminal-flow",
+     SETS(CHOICE, Growing, params.blood.terminal_flow),
+     GIVEN(Growing, given[META_TERMINAL_FLOW]),
+     .choices = terminal_flow_names,
+     .group = GROUP_BLOOD,
+     .help =
+         "the same through all terminals, or as large as the tissue nearest to each, or as what "
+         "that tissue asks for by --demand"},
+    {.name = "demand",
+     SETS(TEXT, Growing, demand_spec),
+     .group = GROUP_TREE,
+     .argument = "FILE[,MM]",
+     .otherwise = "even",
+     .help = "how densely terminals are to stand, or by --terminal-flow demand how much blood they "
+             "get: a picture with pixels MM wide, or NIfTI"},
+    {.name = "min-radius",
+     SETS(NUMBER, Growing, params.min_radius_mm),
+     FROM_TO(0, 1e3),
+     .group = GROUP_TREE,
+     .unit = "mm",
+     .help = "growth ends when the terminals' mean radius is this; 0: with --terminals"},
+    {.name = "clearance",
+     SETS_KEY(Growing, params.clearance_mm, given, CLEARANCE),
+     .group = GROUP_TREE,
+     .help = "least distance of the walls of vessels of different trees, proved at the end"},
+    {.name = "pair",
+     SETS(NUMBER, Growing, params.pair_mm),
+     FROM_TO(0, 1e3),
+     .group = GROUP_TREE,
+     .unit = "mm",
+     .help = "two trees whose terminals are pairs, the ends of each this far apart; 0: no pairs"},
+    {.name = "candidates",
+     SETS(WHOLE, Growing, params.candidates),
+     FROM_TO(1, GROW_MAX_CANDIDATES),
+     .group = GROUP_OPTIMUM,
+     .argument = "K",
+     .help = "nearest segments tried for each terminal"},
+    {.name = "relax",
+     SETS(COUNT, Growing, params.relax),
+     FROM_TO(0, GROW_MAX_TERMINALS),
+     .group = GROUP_OPTIMUM,
+     .help = "move all bifurcations to better places whenever the terminals have doubled, up to so "
+             "many; 0: never"},
+    {.name = "toss",
+     SETS(CHOICE, Growing, params.toss),
+     .choices = tosses,
+     .group = GROUP_OPTIMUM,
+     .help = "new terminals keep their distance to"},
+    {.name = "partial",
+     SETS(FLAG, Growing, params.partial),
+     .group = GROUP_TREE,
+     .help = "write the tree so far when no more terminals find room"},
+};
+
+const OptionTable growing_table = OPTION_TABLE(rows);
+
+void growing_set_defaults(Growing *growing)
+{
+    growing->params = grow_defaults();
+}
+
+/* What is known of the tree and no option says. */
+static Status take_meta(Growing *growing, Err *err)
+{
+    const Tree *from = &growing->from;
+    grow_take(&growing->params, &from->meta, growing->given);
+    if (from->flow_share && !from->meta.known[META_TERMINAL_FLOW] &&
+        !growing->given[META_TERMINAL_FLOW])
+        return err_set(
+            err, STATUS_USAGE,
+            "--from: the tree has flow shares, and does not say after what new terminals "
+            "are to get theirs; give --terminal-flow equal, territory or demand");
+    return STATUS_OK;
+}
+
+static Status read_from(Growing *growing, const Parsed *parsed, bool *has_domain, Err *err)
+{
+    TRY(reading_tree(parsed, growing->from_path, &growing->from, NULL, err));
+    growing->params.from = &growing->from;
+    TRY(take_meta(growing, err));
+    if (growing->domain_spec)
+        return STATUS_OK;
+    TRY(tree_domain(&growing->from, &growing->domain, has_domain, err));
+    if (*has_domain)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "--from: the header of the tree names no domain; give --domain");
+}
+
+/* Takes note of the domain's file, and refuses what the law of viscosity, settled by now, does not
+ * take. */
+static Status check(const Growing *growing, Parsed *parsed, Err *err)
+{
+    TRY(blood_check_law(growing->params.blood.viscosity_law, parsed, err));
+    if (!growing->domain.file)
+        return STATUS_OK;
+    return files_read(&parsed->files, "--domain", growing->domain.file, err);
+}
+
+Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
+{
+    GrowParams *params = &growing->params;
+    params->seed = parsed->common.seed;
+    params->threads = parsed->common.threads;
+    params->inlets = growing->inlet.n;
+    params->inlet = growing->inlet.at;
+    params->inlet_shares = growing->inlet_share.n;
+    params->inlet_share = growing->inlet_share.at;
+    bool has_domain = false;
+    if (!growing->from_path)
+        TRY(reading_refuse(parsed, "needs --from", err));
+    else
+        TRY(read_from(growing, parsed, &has_domain, err));
+    if (!has_domain)
+        TRY(tree_domain_parse(growing->domain_spec ? growing->domain_spec : plain_domain,
+                              growing->params.from, growing->from_path, &growing->domain, err));
+    TRY(growing_read_demand(growing, err));
+    if (growing->demand)
+        TRY(files_read(&parsed->files, "--demand", demand_file(growing->demand), err));
+    return check(growing, parsed, err);
+}
+
+Status growing_read_demand(Growing *growing, Err *err)
+{
+    demand_release(growing->demand);
+    growing->params.demand = growing->demand = NULL;
+    if (!growing->demand_spec)
+        return STATUS_OK;
+    TRY(demand_read(&growing->demand, growing->demand_spec, err));
+    growing->params.demand = growing->demand;
+    return STATUS_OK;
+}
+
+Status growing_run(Growing *growing, const Talk *talk, Tree *tree, GrowReport *report, Err *why,
+                   Err *err)
+{
+    Progress progress;
+    TRY(grow_params_check(&growing->params, &growing->domain, err));
+    if (growing->params.pair_mm > 0 && growing->domain.dimension == 2)
+        talk_note(talk, "two trees that must not cross soon shut each other out in the plane: as a "
+                        "rule some 20 terminals in pairs find room, and any number in a domain of "
+                        "three dimensions");
+    growing->params.progress = progress_report;
+    growing->params.progress_context = &progress;
+    progress_start(&progress, "growing", talk);
+    Status status = grow_tree(&growing->params, &growing->domain, tree, report, err);
+    *why = *err;
+    progress_end(&progress);
+    return status;
+}
+
+void growing_release(Growing *growing)
+{
+    domain_release(&growing->domain);
+    demand_release(growing->demand);
+    tree_release(&growing->from);
+}

@@ -1,0 +1,108 @@
+/* One driver for both commands that refine: it shows progress, and hears the first SIGINT. */
+#include "job/tree/refining.h"
+
+#include "options/talk.h"
+
+#include <stdio.h>
+
+static const char *const levels[] = {[GROW_REFINE_NONE] = "none",
+                                     [GROW_REFINE_GEOMETRY] = "geometry",
+                                     [GROW_REFINE_TOPOLOGY] = "topology",
+                                     [GROW_REFINE_ANNEAL] = "anneal",
+                                     NULL};
+
+static const Option rows[] = {
+    {.name = "refine",
+     SETS(CHOICE, Refining, level),
+     .choices = levels,
+     .group = GROUP_OPTIMUM,
+     .argument = "LEVEL",
+     .help = "whole-tree optimisation"},
+    {.name = "refine-seconds",
+     SETS(NUMBER, Refining, seconds),
+     FROM_TO(0, 1e6),
+     .group = GROUP_OPTIMUM,
+     .unit = "s",
+     .help = "at most this long, and results then depend on the machine; 0: as the moves allow"},
+    {.name = "refine-moves",
+     SETS(COUNT, Refining, moves),
+     FROM_TO(0, 1e12),
+     .group = GROUP_OPTIMUM,
+     .help = "moves tried at most; 0: enough for the tree"},
+};
+
+const OptionTable refining_table = OPTION_TABLE(rows);
+
+Status refining_check(const Refining *refining, const Parsed *parsed, Err *err)
+{
+    bool refines = refining->level != GROW_REFINE_NONE;
+    const OptionNeed needs[] = {{"refine-seconds", refines, "needs --refine"},
+                                {"refine-moves", refines, "needs --refine"},
+                                {0}};
+    return options_check_needs(parsed, needs, err);
+}
+
+Status refining_check_growing(const Refining *refining, const Growing *growing, Err *err)
+{
+    if (refining->level == GROW_REFINE_NONE)
+        return STATUS_OK;
+    if (growing->from_path)
+        return err_set(err, STATUS_USAGE,
+                       "--refine: would move the tree of --from; use corcast refine afterwards");
+    return STATUS_OK;
+}
+
+Status refining_apply(const Refining *refining, const Common *common, const Domain *domain,
+                      Tree *tree, RefineReport *report, Err *err)
+{
+    *report = (RefineReport){0};
+    if (refining->level == GROW_REFINE_NONE)
+        return STATUS_OK;
+    Progress progress;
+    const RefineParams params = {.level = refining->level,
+                                 .seconds = refining->seconds,
+                                 .moves = refining->moves,
+                                 .seed = common->seed,
+                                 .threads = common->threads,
+                                 .stop = interrupt_asked,
+                                 .progress = progress_report,
+                                 .progress_context = &progress};
+    progress_start(&progress, "refining", common->talk);
+    interrupt_catch();
+    Status status = refine_tree(&params, domain, tree, report, err);
+    interrupt_release();
+    progress_end(&progress);
+    return status;
+}
+
+void refining_print(const RefineReport *report)
+{
+    if (report->target_before > 0)
+        fprintf(stderr,
+                "refined in %.3g s%s: target %.6g to %.6g (%.2f %%), %llu of %llu moves kept\n",
+                report->seconds, report->stopped ? ", stopped" : "", report->target_before,
+                report->target_after, 100 * (report->target_after / report->target_before - 1),
+                (unsigned long long)report->moves_kept, (unsigned long long)report->moves_tried);
+    if (report->target_before > 0 && isfinite(report->apart_mm))
+        fprintf(stderr, "walls of different trees are at least %.4g mm apart\n", report->apart_mm);
+}
+
+void print_broken(size_t broken)
+{
+    if (broken > 0)
+        fprintf(stderr,
+                "corcast: %zu segment%s shorter than wide or too near to others all the same\n",
+                broken, broken == 1 ? " is" : "s are");
+}
+
+Status refining_describe(const Refining *refining, const RefineReport *report, TreeMeta *meta,
+                         Err *err)
+{
+    char line[160];
+    if (refining->level == GROW_REFINE_NONE)
+        return STATUS_OK;
+    snprintf(line, sizeof line, "refined: %s, %llu of %llu moves kept%s", levels[refining->level],
+             (unsigned long long)report->moves_kept, (unsigned long long)report->moves_tried,
+             report->stopped ? ", stopped" : "");
+    return meta_add_text(meta, META_KEYS, line, err);
+}

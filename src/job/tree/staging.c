@@ -1,0 +1,243 @@
+/* The file is read line by line, each value through its option, so that what is wrong is said with
+ * its line before anything grows. Then each stage's lines are applied again, in turn, twice, with
+ * the options put back before: to compare every stage with the one before it, and to grow it. */
+#include "job/tree/staging.h"
+
+#include "job/tree/tree_domain.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct StageLine {
+    const char *stage, *name, *value; /* of a stage's head, name and value are NULL */
+} StageLine;
+
+typedef struct Staging {
+    const char *path;
+    const Parsed *parsed;
+    Growing *growing;
+    StageLine *line; /* owned */
+    size_t n, capacity;
+    char *text;            /* that lines point into; owned */
+    const char *domain;    /* the text of the domain that there is; NULL: the one prepared */
+    const char *last_name; /* of the stage before; NULL: none */
+    LogCurve last_gamma;
+    double last_p_term;
+    size_t last_terminals; /* 0 where a radius may have ended its growth */
+} Staging;
+
+/* The option of growth; NULL when it is none of a stage's. */
+static const Setting *find_option(const Staging *staging, const char *name)
+{
+    static const char *const others[] = {"from", NULL};
+    const Setting *setting = parsed_find(staging->parsed, name, strlen(name));
+    bool is_growth = setting && setting->base == (const char *)staging->growing;
+    for (int k = 0; is_growth && others[k]; k++)
+        is_growth = strcmp(name, others[k]) != 0;
+    return is_growth ? setting : NULL;
+}
+
+/* What a stage cannot say. */
+static Status check_line(const Staging *staging, const StageLine *line, Err *err)
+{
+    static const char *const of_first[] = {"inlet", "inlet-shares", NULL};
+    bool is_first = staging->n == 0 || strcmp(line->stage, staging->line[0].stage) == 0;
+    for (size_t i = 0; i < staging->n; i++) {
+        const StageLine *other = &staging->line[i];
+        if (strcmp(other->stage, line->stage) != 0)
+            continue;
+        if (!line->name)
+            return err_set(err, STATUS_INPUT, "there is a stage [%s] already", line->stage);
+        if (other->name && strcmp(other->name, line->name) == 0)
+            return err_set(err, STATUS_INPUT, "stage [%s] says '%s' twice", line->stage,
+                           line->name);
+    }
+    for (int k = 0; line->name && !is_first && of_first[k]; k++)
+        if (strcmp(line->name, of_first[k]) == 0)
+            return err_set(err, STATUS_INPUT,
+                           "'%s' is for the first stage; the others grow on its trees", line->name);
+    return STATUS_OK;
+}
+
+static Status take_line(void *user, const char *section, const char *name, const char *value,
+                        Err *err)
+{
+    Staging *staging = user;
+    if (*section == '\0')
+        return err_set(err, STATUS_INPUT, "'%s' stands above the first stage, [NAME]", name);
+    TRY(mem_reserve(&staging->line, &staging->capacity, staging->n + 1, sizeof *staging->line,
+                    "lines", err));
+    const StageLine line = {section, name, value};
+    const Setting *setting = name ? find_option(staging, name) : NULL;
+    if (name && !setting)
+        return err_set(err, STATUS_INPUT, "'%s' is no option of a stage", name);
+    TRY(check_line(staging, &line, err));
+    staging->line[staging->n++] = line;
+    if (!name)
+        return STATUS_OK;
+    Status status = setting_read(setting, value, err);
+    return status == STATUS_USAGE ? STATUS_INPUT : status;
+}
+
+static Status refuse_gamma(const Staging *staging, const char *name, Err *err)
+{
+    Text own = TEXT_INIT, last = TEXT_INIT;
+    text_logcurve(&own, &staging->growing->params.gamma);
+    text_logcurve(&last, &staging->last_gamma);
+    Status status = text_check(&own, err);
+    if (status == STATUS_OK)
+        status = text_check(&last, err);
+    if (status == STATUS_OK)
+        status =
+            err_set(err, STATUS_INPUT,
+                    "%s: [%s]: gamma %s would change the radii of stage [%s], which has %s; say "
+                    "keep-radii = on, or the same gamma",
+                    staging->path, name, text_chars(&own), staging->last_name, text_chars(&last));
+    text_release(&own);
+    text_release(&last);
+    return status;
+}
+
+/* What two stages must not say. */
+static Status check_stage(const Staging *staging, const char *name, Err *err)
+{
+    const GrowParams *params = &staging->growing->params;
+    if (!staging->last_name)
+        return STATUS_OK;
+    if (!params->keep_radii && !logcurve_is_same(&params->gamma, &staging->last_gamma))
+        return refuse_gamma(staging, name, err);
+    if (params->keep_radii && params->blood.p_term_mmhg >= staging->last_p_term)
+        return err_set(err, STATUS_INPUT,
+                       "%s: [%s]: p-term %g mmHg leaves nothing to drop beyond stage [%s], whose "
+                       "radii are kept and whose terminals are at %g; it must fall from stage to "
+                       "stage",
+                       staging->path, name, params->blood.p_term_mmhg, staging->last_name,
+                       staging->last_p_term);
+    if (params->terminals <= staging->last_terminals)
+        return err_set(
+            err, STATUS_INPUT, "%s: [%s]: terminals %zu: must be above the %zu of stage [%s]",
+            staging->path, name, params->terminals, staging->last_terminals, staging->last_name);
+    return STATUS_OK;
+}
+
+/* Remembers what the next stage is compared with. */
+static void take_note(Staging *staging, const char *name)
+{
+    const GrowParams *params = &staging->growing->params;
+    staging->last_name = name;
+    staging->last_gamma = params->gamma;
+    staging->last_p_term = params->blood.p_term_mmhg;
+    staging->last_terminals = params->min_radius_mm > 0 ? 0 : params->terminals;
+}
+
+/* Makes the domain that the stage names, if it is another. */
+static Status change_domain(Staging *staging, const Tree *from, Err *err)
+{
+    Growing *growing = staging->growing;
+    if (!growing->domain_spec ||
+        (staging->domain && strcmp(growing->domain_spec, staging->domain) == 0))
+        return STATUS_OK;
+    Domain domain;
+    TRY(tree_domain_parse(growing->domain_spec, from,
+                          staging->last_name ? staging->last_name : growing->from_path, &domain,
+                          err));
+    domain_release(&growing->domain);
+    growing->domain = domain;
+    staging->domain = growing->domain_spec;
+    return STATUS_OK;
+}
+
+/* Grows one stage on *tree, which is then its own. */
+static Status grow_stage(Staging *staging, const char *name, Tree *tree, GrowReport *report,
+                         Err *why, Err *err)
+{
+    Growing *growing = staging->growing;
+    GrowReport own;
+    Tree made = {0};
+    if (staging->last_name) {
+        growing->params.from = tree;
+        growing->params.inlets = growing->params.inlet_shares = 0;
+    } else if (!growing->params.from) {
+        growing->params.inlets = growing->inlet.n;
+        growing->params.inlet_shares = growing->inlet_share.n;
+    }
+    Status status = change_domain(staging, growing->params.from, err);
+    if (status == STATUS_OK)
+        status = growing_read_demand(growing, err);
+    if (status == STATUS_OK)
+        status = growing_run(growing, staging->parsed->common.talk, &made, &own, why, err);
+    if (status != STATUS_OK) {
+        err_prefix(err, "%s: [%s]: ", staging->path, name);
+        return status;
+    }
+    if (!staging->parsed->common.quiet)
+        fprintf(stderr, "stage %s: %zu terminals in %.3g s\n", name, own.terminals, own.seconds);
+    own.median_change = own.least_change = own.greatest_change = 0;
+    own.seconds += report->seconds;
+    own.tosses += report->tosses;
+    own.rejected += report->rejected;
+    own.broken += report->broken;
+    *report = own;
+    tree_release(tree);
+    *tree = made;
+    take_note(staging, name);
+    return STATUS_OK;
+}
+
+/* Applies the lines of the stage whose head is line `at`; returns the next head. */
+static size_t apply(const Staging *staging, size_t at)
+{
+    for (at++; at < staging->n && staging->line[at].name; at++) {
+        const StageLine *line = &staging->line[at];
+        Status status = setting_read(find_option(staging, line->name), line->value, NULL);
+        (void)status; /* it was read before */
+    }
+    return at;
+}
+
+/* Holds all stages against each other; the options are afterwards as they were. */
+static Status check_all(Staging *staging, Err *err)
+{
+    Growing before = *staging->growing;
+    if (staging->n == 0)
+        return err_set(err, STATUS_INPUT, "%s: has no stage, [NAME]", staging->path);
+    for (size_t at = 0; at < staging->n;) {
+        const char *name = staging->line[at].stage;
+        at = apply(staging, at);
+        TRY(check_stage(staging, name, err));
+        take_note(staging, name);
+    }
+    staging->last_name = NULL;
+    *staging->growing = before;
+    return STATUS_OK;
+}
+
+static Status grow_all(Staging *staging, Tree *tree, GrowReport *report, Err *why, Err *err)
+{
+    *report = (GrowReport){.complete = true};
+    for (size_t at = 0; at < staging->n && report->complete;) {
+        const char *name = staging->line[at].stage;
+        at = apply(staging, at);
+        TRY(grow_stage(staging, name, tree, report, why, err));
+    }
+    return STATUS_OK;
+}
+
+Status staging_grow(const char *path, Growing *growing, const Parsed *parsed, Tree *tree,
+                    GrowReport *report, Err *why, Err *err)
+{
+    Staging staging = {.path = path, .parsed = parsed, .growing = growing};
+    Status status = STATUS_OK;
+    Growing before = *growing;
+    TRY_GOTO(ini_read(path, "a file of stages", take_line, &staging, &staging.text, err));
+    *growing = before;
+    TRY_GOTO(check_all(&staging, err));
+    TRY_GOTO(grow_all(&staging, tree, report, why, err));
+done:
+    before.demand = growing->demand;
+    before.domain = growing->domain; /* what else stages said is in their text */
+    *growing = before;
+    free(staging.line);
+    free(staging.text);
+    return status;
+}

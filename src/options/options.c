@@ -1,0 +1,468 @@
+/* The command line: `--name value`, `--name=value`, `-o value`, `-h`, and operands, in any order;
+ * what follows `--` are operands. It is read twice, for --recipe alone first, then in full, so that
+ * the recipe's values are there when the command line's replace them.
+ *
+ * A recipe is an INI file, `name = value` a line, one line for each time that the option would be
+ * given. A line before the first [COMMAND] is for whatever command reads it, one below is for that
+ * command alone. */
+#include "options/options.h"
+
+#include "options/reading.h"
+#include "options/registry.h"
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const Option common_options[] = {
+    {.name = "recipe",
+     SETS(INPUT, Common, recipe),
+     .group = GROUP_RUN,
+     .aside = true,
+     .help = "read options from an INI file, one name = value a line"},
+    {.name = "dump-recipe",
+     SETS(FLAG, Common, dump),
+     .group = GROUP_RUN,
+     .aside = true,
+     .help = "print a recipe that says all of what was done"},
+    {.name = "seed", SETS(SEED, Common, seed), .group = GROUP_RUN, .help = "of what is random"},
+    {.name = "threads",
+     SETS(WHOLE, Common, threads),
+     FROM_TO(0, 256),
+     .group = GROUP_RUN,
+     .aside = true,
+     .help = "processors to use; 0 takes all"},
+    {.name = "quiet",
+     SETS(FLAG, Common, quiet),
+     .group = GROUP_RUN,
+     .aside = true,
+     .help = "no progress, no summary"},
+    {.name = "help",
+     SETS(FLAG, Common, help),
+     .group = GROUP_RUN,
+     .aside = true,
+     .help = "this text; -h does, too"},
+};
+
+static const OptionTable common_table = OPTION_TABLE(common_options);
+
+/* ---- settings -------------------------------------------------------------------------------- */
+
+static void bind(Parsed *parsed, const OptionTable *table, void *base)
+{
+    for (size_t i = 0; i < table->n; i++)
+        parsed->settings[parsed->n_settings++] =
+            (Setting){.option = &table->options[i], .base = base};
+}
+
+Status parsed_init(Parsed *parsed, const Command *command, Err *err)
+{
+    *parsed = (Parsed){.command = command, .common = {.seed = 1}};
+    size_t n = common_table.n + reading_table.n;
+    for (int t = 0; t < MAX_TABLES && command->tables[t].table; t++)
+        n += command->tables[t].table->n;
+    TRY(mem_calloc(&parsed->settings, n, sizeof *parsed->settings, "options", err));
+    Status status = mem_calloc(&parsed->options, 1, command->size, "options", err);
+    if (status != STATUS_OK) {
+        parsed_release(parsed);
+        return status;
+    }
+    if (command->set_defaults)
+        command->set_defaults(parsed->options);
+    for (int t = 0; t < MAX_TABLES && command->tables[t].table; t++)
+        bind(parsed, command->tables[t].table, (char *)parsed->options + command->tables[t].at);
+    if (command->reads_tree)
+        bind(parsed, &reading_table, &parsed->reading);
+    bind(parsed, &common_table, &parsed->common);
+    return STATUS_OK;
+}
+
+void parsed_release(Parsed *parsed)
+{
+    free(parsed->common.recipe_text);
+    free(parsed->settings);
+    free(parsed->options);
+    files_release(&parsed->files);
+    *parsed = (Parsed){0};
+}
+
+static Setting *find(const Parsed *parsed, const char *name, size_t length)
+{
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const char *known = parsed->settings[i].option->name;
+        if (strlen(known) == length && strncmp(known, name, length) == 0)
+            return &parsed->settings[i];
+    }
+    return NULL;
+}
+
+const Setting *parsed_find(const Parsed *parsed, const char *name, size_t length)
+{
+    return find(parsed, name, length);
+}
+
+/* STATUS_USAGE with the sentence that is there already and the option that may have been meant. */
+static Status suggest_option(const Parsed *parsed, const char *name, size_t length,
+                             const char *prefix, Err *err)
+{
+    Suggestion suggestion = suggestion_for(name, length);
+    for (size_t i = 0; i < parsed->n_settings; i++)
+        suggestion_offer(&suggestion, parsed->settings[i].option->name);
+    suggestion_add(&suggestion, prefix, err);
+    return STATUS_USAGE;
+}
+
+/* ---- recipes --------------------------------------------------------------------------------- */
+
+/* A section of another command is passed over; one of no command is an error. */
+static Status take_recipe_line(void *user, const char *section, const char *name, const char *value,
+                               Err *err)
+{
+    const Parsed *parsed = user;
+    const Command *command = parsed->command;
+    if (*section && strcmp(section, command->name) != 0)
+        return name || command_find(section)
+                   ? STATUS_OK
+                   : err_set(err, STATUS_USAGE, "[%s] is not the name of a command", section);
+    if (!name)
+        return STATUS_OK;
+    Setting *setting = find(parsed, name, strlen(name));
+    if (!setting || strcmp(name, "recipe") == 0 || strcmp(name, "help") == 0) {
+        (void)err_set(err, STATUS_USAGE, "'%s' is not an option of %s%s", name, command->name,
+                      setting ? " that a recipe may give" : "");
+        return setting ? STATUS_USAGE : suggest_option(parsed, name, strlen(name), "", err);
+    }
+    setting->said = true;
+    return setting_read(setting, value, err);
+}
+
+static Status read_recipe(Parsed *parsed, Err *err)
+{
+    TRY(ini_read(parsed->common.recipe, "a recipe", take_recipe_line, parsed,
+                 &parsed->common.recipe_text, err));
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        if (setting->option->kind == OPTION_VECTORS)
+            ((VectorList *)(setting->base + setting->option->where))->from_recipe = true;
+    }
+    return STATUS_OK;
+}
+
+static void put_key(const Setting *setting, Text *text)
+{
+    for (size_t at = 0; at < setting_count(setting); at++) {
+        text_printf(text, "%s = ", setting->option->name);
+        setting_put(setting, at, text);
+        text_puts(text, "\n");
+    }
+}
+
+/* Of an option that is not given, its default is what holds, unless it stands for something else.
+ */
+void options_put_keys(const Parsed *parsed, OptionIsKey *is_key, Text *text)
+{
+    Parsed plain;
+    if (parsed_init(&plain, parsed->command, NULL) != STATUS_OK) {
+        text_puts(text, NULL);
+        return;
+    }
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Option *option = parsed->settings[i].option;
+        const bool holds = !option->has_given && !option->otherwise;
+        if (is_key(option) &&
+            (holds || setting_differs(&parsed->settings[i], &plain.settings[i], text)))
+            put_key(&parsed->settings[i], text);
+    }
+    parsed_release(&plain);
+}
+
+static bool is_of_result(const Option *option)
+{
+    return !option->aside && option->kind != OPTION_OUTPUT && option->kind != OPTION_FOLDER;
+}
+
+void options_put_recipe(const Parsed *parsed, Text *text)
+{
+    const Command *command = parsed->command;
+    text_printf(text, "; corcast " CORCAST_VERSION ": %s %s --recipe FILE\n[%s]\n", command->name,
+                command->operands, command->name);
+    options_put_keys(parsed, is_of_result, text);
+}
+
+/* ---- the command line ------------------------------------------------------------------------ */
+
+typedef struct Role {
+    char text[40]; /* "--json" */
+} Role;
+
+static Role role_of(const Option *option)
+{
+    Role role;
+    bool output = strcmp(option->name, "output") == 0;
+    snprintf(role.text, sizeof role.text, "%s%s", output ? "" : "--", output ? "-o" : option->name);
+    return role;
+}
+
+/* Takes note of an option of the command line. Of two files only one would be read or written. */
+static Status note_typed(Setting *setting, Err *err)
+{
+    if (setting->typed && option_is_path(setting->option))
+        return err_set(err, STATUS_USAGE, "%s is given twice; give it once",
+                       role_of(setting->option).text);
+    setting->typed = true;
+    return STATUS_OK;
+}
+
+/* Whether the word after a switch is its value: not if it is another option or a file. */
+static bool is_value_of_switch(const char *word)
+{
+    return *word && *word != '-' && !strpbrk(word, "./");
+}
+
+/* An option as it stands on the command line. */
+typedef struct Written {
+    const char *name;
+    size_t length;
+    const char *value; /* after '='; NULL: none */
+    bool is_known;     /* not a single dash before a long name */
+} Written;
+
+static Written written(const char *argument)
+{
+    if (strcmp(argument, "-o") == 0)
+        return (Written){"output", strlen("output"), NULL, true};
+    if (strcmp(argument, "-h") == 0)
+        return (Written){"help", strlen("help"), NULL, true};
+    if (argument[1] != '-')
+        return (Written){argument + 1, strlen(argument + 1), NULL, false};
+    const char *equals = strchr(argument, '=');
+    size_t length = equals ? (size_t)(equals - argument - 2) : strlen(argument + 2);
+    return (Written){argument + 2, length, equals ? equals + 1 : NULL, true};
+}
+
+/* The value of an option, which may be the next argument. */
+static Status take_value(const Option *option, const Written *as, int argc, char **argv, int *at,
+                         const char **value, Err *err)
+{
+    const char *next = *at + 1 < argc ? argv[*at + 1] : NULL;
+    *value = as->value;
+    if (option->kind == OPTION_FLAG && as->value)
+        return err_set(err, STATUS_USAGE, "--%s takes no value", option->name);
+    if (as->value)
+        return STATUS_OK;
+    if (option->kind == OPTION_FLAG ||
+        (option->kind == OPTION_SWITCH && !is_value_of_switch(next ? next : "")))
+        *value = "on";
+    else if (!next)
+        return err_set(err, STATUS_USAGE, "--%s needs a value", option->name);
+    else
+        *value = argv[++*at];
+    return STATUS_OK;
+}
+
+static Status read_option(Parsed *parsed, int argc, char **argv, int *at, bool apply, Err *err)
+{
+    const Written as = written(argv[*at]);
+    Setting *setting = find(parsed, as.name, as.length);
+    if (!setting || !as.is_known) {
+        (void)err_set(err, STATUS_USAGE,
+                      "unknown option '%s'; see corcast %s --help for those there are", argv[*at],
+                      parsed->command->name);
+        return suggest_option(parsed, as.name, as.length, "--", err);
+    }
+    const char *value;
+    TRY(take_value(setting->option, &as, argc, argv, at, &value, err));
+    TRY(note_typed(setting, err));
+    setting->said = true;
+    bool is_recipe = strcmp(setting->option->name, "recipe") == 0;
+    return apply || is_recipe ? setting_read(setting, value, err) : STATUS_OK;
+}
+
+/* One pass over the arguments; options other than --recipe take effect only when `apply`. */
+static Status read_arguments(Parsed *parsed, int argc, char **argv, bool apply, Err *err)
+{
+    const Command *command = parsed->command;
+    bool only_operands = false;
+    parsed->n_operands = 0;
+    for (size_t i = 0; i < parsed->n_settings; i++)
+        parsed->settings[i].typed = false;
+    for (int i = 0; i < argc; i++) {
+        if (!only_operands && strcmp(argv[i], "--") == 0) {
+            only_operands = true;
+        } else if (!only_operands && argv[i][0] == '-' && argv[i][1] != '\0') {
+            TRY(read_option(parsed, argc, argv, &i, apply, err));
+        } else if (parsed->n_operands == command->max_operands) {
+            return err_set(err, STATUS_USAGE, "'%s' is one operand too many; usage: corcast %s %s",
+                           argv[i], command->name, command->operands);
+        } else {
+            parsed->operands[parsed->n_operands++] = argv[i];
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Takes note of the file that an option names, if it is written, or else read, as asked for. */
+static Status note_file(const Setting *setting, bool is_written, Files *files, Err *err)
+{
+    const Option *option = setting->option;
+    if (!option_is_path(option) || option->kind == OPTION_FOLDER)
+        return STATUS_OK;
+    const char *path = *(const char **)(setting->base + option->where);
+    if (!path || (option->kind == OPTION_LOOKUP && !strchr(path, '/')))
+        return STATUS_OK;
+    if (is_written != (option->kind == OPTION_OUTPUT))
+        return STATUS_OK;
+    return is_written ? files_write(files, role_of(option).text, path, err)
+                      : files_read(files, role_of(option).text, path, err);
+}
+
+/* Takes note of all files that are named: what is read first, as errors then name what is
+ * written. */
+static Status note_files(Parsed *parsed, Err *err)
+{
+    Files *files = &parsed->files;
+    int read = parsed->command->writes_last ? parsed->n_operands - 1 : parsed->n_operands;
+    if (parsed->command->is_lookup)
+        return STATUS_OK;
+    for (int i = 0; i < read; i++)
+        TRY(files_read(files, "the input", parsed->operands[i], err));
+    for (int is_written = 0; is_written < 2; is_written++)
+        for (size_t i = 0; i < parsed->n_settings; i++)
+            TRY(note_file(&parsed->settings[i], is_written, files, err));
+    for (int i = read; i < parsed->n_operands; i++)
+        TRY(files_write(files, "the output", parsed->operands[i], err));
+    return STATUS_OK;
+}
+
+/* STATUS_USAGE for what has to be there and is not. */
+static Status check_present(const Parsed *parsed, Err *err)
+{
+    const Command *command = parsed->command;
+    const Setting *output = find(parsed, "output", strlen("output"));
+    if (command->needs_output && setting_count(output) == 0)
+        return err_set(err, STATUS_USAGE, "-o %s is missing; usage: corcast %s %s",
+                       output->option->argument, command->name, command->operands);
+    if (parsed->n_operands < command->min_operands)
+        return err_set(err, STATUS_USAGE, "a file is missing; usage: corcast %s %s", command->name,
+                       command->operands);
+    return STATUS_OK;
+}
+
+/* The pixels of a size on paper. */
+static Status settle_size(const Option *option, PictureSize *size, Err *err)
+{
+    enum { PAPER_DPI = 300 };
+    if (!size_is_on_paper(size))
+        return STATUS_OK;
+    size->dpi = size->has_dpi ? size->dpi : PAPER_DPI;
+    for (int i = 0; i < 2; i++) {
+        double pixels = round(size->mm[i] / MM_PER_INCH * size->dpi);
+        char range[RANGE_TEXT_SIZE];
+        if (!range_has(*option_range(option), pixels))
+            return err_set(err, STATUS_USAGE, "--%s: %g mm at %g dpi are %.10g pixels, not %s",
+                           option->name, size->mm[i], size->dpi, pixels,
+                           range_text(*option_range(option), range));
+        size->pixels[i] = (int)pixels;
+    }
+    return STATUS_OK;
+}
+
+/* What can be said only of all options together. */
+Status options_settle(const Parsed *parsed, Err *err)
+{
+    for (int t = 0; t < MAX_TABLES && parsed->command->tables[t].table; t++) {
+        const OptionTable *table = parsed->command->tables[t].table;
+        if (table->settle)
+            TRY(table->settle((char *)parsed->options + parsed->command->tables[t].at, parsed,
+                              err));
+    }
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        if (setting->option->kind == OPTION_SIZE)
+            TRY(settle_size(setting->option, (void *)(setting->base + setting->option->where),
+                            err));
+    }
+    return STATUS_OK;
+}
+
+Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
+{
+    TRY(read_arguments(parsed, argc, argv, false, err));
+    if (parsed->common.recipe)
+        TRY(read_recipe(parsed, err));
+    TRY(read_arguments(parsed, argc, argv, true, err));
+    if (parsed->common.help)
+        return STATUS_OK;
+    TRY(options_settle(parsed, err));
+    TRY(check_present(parsed, err));
+    return note_files(parsed, err);
+}
+
+bool options_typed(const Parsed *parsed, const char *name)
+{
+    const Setting *setting = find(parsed, name, strlen(name));
+    return setting && setting->typed;
+}
+
+bool options_said(const Parsed *parsed, const char *name)
+{
+    const Setting *setting = find(parsed, name, strlen(name));
+    return setting && setting->said;
+}
+
+Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *err)
+{
+    for (const OptionNeed *need = needs; need->name; need++)
+        if (!need->met && options_typed(parsed, need->name))
+            return err_set(err, STATUS_USAGE, "--%s %s", need->name, need->sentence);
+    return STATUS_OK;
+}
+
+/* ---- fields ---------------------------------------------------------------------------------- */
+
+/* Whether an option's name, and then its unit, read like the field. */
+static bool is_called(const Option *option, const char *field, size_t length)
+{
+    const char *unit = option_unit(option);
+    char name[128];
+    size_t bare = strlen(option->name), i = 0;
+    snprintf(name, sizeof name, "%s-%s", option->name, unit ? unit : "");
+    while (name[i] && i < length &&
+           (tolower((unsigned char)name[i]) == tolower((unsigned char)field[i]) ||
+            (field[i] == '_' && strchr("-/", name[i]))))
+        i++;
+    return i == length && (i == bare || (unit && !name[i]));
+}
+
+static bool sets(const Option *option, const char *field, size_t length)
+{
+    const char *dot = strrchr(option->member, '.'), *member = dot ? dot + 1 : option->member;
+    return (strlen(member) == length && strncmp(member, field, length) == 0) ||
+           is_called(option, field, length);
+}
+
+/* Appends as many of `n` characters as there is room for. */
+static void append(Err *sentence, const char *chars, size_t n)
+{
+    size_t length = strlen(sentence->text), room = sizeof sentence->text - 1 - length;
+    memcpy(sentence->text + length, chars, n < room ? n : room);
+}
+
+/* Memory may have run out, so that a sentence of its own size has to do. */
+void options_name_fields(const Parsed *parsed, Err *err)
+{
+    Err named = {{0}};
+    const char *rest = err->text;
+    for (const char *open; (open = strchr(rest, '`')); rest = open + 1) {
+        const char *field = open + 1, *option = NULL;
+        size_t length = strspn(field, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_");
+        for (size_t i = 0; i < parsed->n_settings && field[length] == '`' && !option; i++)
+            if (sets(parsed->settings[i].option, field, length))
+                option = parsed->settings[i].option->name;
+        append(&named, rest, (size_t)(open - rest));
+        append(&named, option ? "--" : "`", option ? 2 : 1);
+        append(&named, option ? option : "", option ? strlen(option) : 0);
+        open = option ? field + length : open;
+    }
+    append(&named, rest, strlen(rest));
+    *err = named;
+}

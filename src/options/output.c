@@ -1,0 +1,291 @@
+/* What commands have in common when they write: the command line that a file tells of itself, made
+ * of the options' values rather than of what was typed, so that a recipe, the order of the options
+ * and what does not matter leave no trace; names for people; JSON. */
+#include "options/output.h"
+
+#include "options/templates.h"
+#include "treeio/treeio.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+bool is_one_of(const char *word, const char *const *words)
+{
+    while (*words && strcmp(*words, word) != 0)
+        words++;
+    return *words;
+}
+
+/* *line, cleaned for one line, in *out. */
+static Status take_line(Text *line, char **out, Err *err)
+{
+    Text clean = TEXT_INIT;
+    text_put_line(&clean, text_chars(line));
+    text_release(line);
+    Status status = text_take(&clean, out, err);
+    text_release(&clean);
+    return status;
+}
+
+Status shown_name(const char *path, char **out, Err *err)
+{
+    Text name = TEXT_INIT;
+    text_puts(&name, file_name(path));
+    return take_line(&name, out, err);
+}
+
+/* Of a path the last component. What stands before a colon in a text is no path, as in
+ * mesh:FILE, and a file of the user's own is told from a template by its '/'. */
+static void put_shown_value(const Setting *setting, size_t at, Text *text)
+{
+    Text value = TEXT_INIT;
+    setting_put(setting, at, &value);
+    const char *whole = text_chars(&value), *name = whole;
+    OptionKind kind = setting->option->kind;
+    size_t kept = kind == OPTION_TEXT && whole && strchr(whole, ':')
+                      ? (size_t)(strchr(whole, ':') + 1 - whole)
+                      : 0;
+    Text shown = TEXT_INIT;
+    if (whole && (option_is_path(setting->option) || kept))
+        name = file_name(whole + kept);
+    text_append(&shown, whole, whole ? kept : 0);
+    text_puts(&shown, kind == OPTION_LOOKUP && name != whole ? "./" : "");
+    text_puts(&shown, name);
+    text_put_shell_word(text, text_chars(&shown));
+    text_release(&shown);
+    text_release(&value);
+}
+
+static void put_whole_value(const Setting *setting, size_t at, Text *text)
+{
+    Text value = TEXT_INIT;
+    setting_put(setting, at, &value);
+    text_put_shell_word(text, text_chars(&value));
+    text_release(&value);
+}
+
+typedef void PutValue(const Setting *setting, size_t at, Text *text);
+
+/* Appends the option as often as it has to be given. */
+static void put_setting(const Setting *setting, PutValue *put_value, Text *text)
+{
+    for (size_t at = 0; at < setting_count(setting); at++) {
+        text_printf(text, " --%s", setting->option->name);
+        if (setting->option->kind == OPTION_FLAG)
+            continue;
+        text_puts(text, " ");
+        put_value(setting, at, text);
+    }
+}
+
+/* As file_extension, but "nii.gz" of V.nii.gz. */
+static const char *whole_extension(const char *path)
+{
+    const char *extension = file_extension(path), *name = file_name(path);
+    const char *at = extension - (extension > name);
+    while (at > name && at[-1] != '.')
+        at--;
+    return strcmp(extension, "gz") == 0 && at > name ? at : extension;
+}
+
+/* Appends the output under the name that the help gives it, with the extension that it has: what is
+ * written does not depend on its own name, but where it tells that. */
+static void put_output(const Setting *setting, Text *text)
+{
+    const char *path = *(const char *const *)(setting->base + setting->option->where);
+    const char *name = setting->option->argument, *extension = whole_extension(path ? path : "");
+    if (!path)
+        return;
+    text_puts(text, " -o ");
+    if (setting->option->is_told || (strcmp(path, "-") == 0 && !strchr(name, '.')))
+        text_put_shell_word(text, file_name(path));
+    else if (*extension)
+        text_printf(text, "%.*s.%s", (int)strcspn(name, "."), name, extension);
+    else
+        text_puts(text, name);
+}
+
+/* The output itself stands last; others are told where what is written shows them. */
+static bool tells(const Setting *setting, const Setting *plain, Text *text)
+{
+    const Option *option = setting->option;
+    bool output = strcmp(option->name, "output") == 0;
+    bool hidden = option->kind == OPTION_OUTPUT && !option->is_told;
+    return !option->aside && !output && !hidden && setting_differs(setting, plain, text);
+}
+
+void put_shell_operand(Text *text, const char *path)
+{
+    Text word = TEXT_INIT;
+    text_printf(&word, "%s%s", path[0] == '-' && path[1] ? "./" : "", path);
+    text_put_shell_word(text, text_chars(&word));
+    text_release(&word);
+}
+
+Status command_line_text(const Parsed *parsed, char **out, Err *err)
+{
+    Parsed plain;
+    TRY(parsed_init(&plain, parsed->command, err));
+    Text text = TEXT_INIT;
+    text_printf(&text, "corcast %s", parsed->command->name);
+    for (int i = 0; i < parsed->n_operands; i++) {
+        text_puts(&text, " ");
+        put_shell_operand(&text, file_name(parsed->operands[i]));
+    }
+    for (size_t i = 0; i < parsed->n_settings; i++)
+        if (tells(&parsed->settings[i], &plain.settings[i], &text))
+            put_setting(&parsed->settings[i], put_shown_value, &text);
+    const Setting *output = parsed_find(parsed, "output", strlen("output"));
+    if (output)
+        put_output(output, &text);
+    parsed_release(&plain);
+    return take_line(&text, out, err);
+}
+
+/* `cd` to the working folder, and the program by its own path. */
+static Status put_program(Text *text, Err *err)
+{
+    char program[4096];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    char *here = getcwd(NULL, 0);
+    if (!here)
+        return errno == ENOMEM
+                   ? err_set(err, STATUS_MEMORY, "out of memory: no room for a folder's name")
+                   : err_set(err, STATUS_IO, "the working folder has no name: %s", strerror(errno));
+    text_puts(text, "cd ");
+    text_put_shell_word(text, here);
+    free(here);
+    program[length > 0 ? length : 0] = '\0';
+    text_puts(text, " && ");
+    text_put_shell_word(text, length > 0 ? program : "corcast");
+    return STATUS_OK;
+}
+
+Status command_again(const Parsed *parsed, const char *const *without, Text *text, Err *err)
+{
+    Parsed plain;
+    TRY(put_program(text, err));
+    TRY(parsed_init(&plain, parsed->command, err));
+    text_printf(text, " %s", parsed->command->name);
+    for (int i = 0; i < parsed->n_operands; i++) {
+        text_puts(text, " ");
+        put_shell_operand(text, parsed->operands[i]);
+    }
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        const char *name = setting->option->name;
+        if (strcmp(name, "output") != 0 && strcmp(name, "recipe") != 0 &&
+            !is_one_of(name, without) && setting_differs(setting, &plain.settings[i], text))
+            put_setting(setting, put_whole_value, text);
+    }
+    parsed_release(&plain);
+    return text_check(text, err);
+}
+
+/* Adds the bytes of the file that a value of OPTION_LOOKUP names. */
+static Status hash_lookup(const Option *option, const char *value, Hash *hash, Err *err)
+{
+    const char *extension = strcmp(option->list, "colormaps") == 0 ? ".txt" : ".ini";
+    char *path = NULL;
+    TRY(template_file(option->name, option->list, value, extension, &path, err));
+    Status status = file_hash(path, hash, err);
+    free(path);
+    return status;
+}
+
+Status hash_option_files(const Parsed *parsed, Hash *hash, Err *err)
+{
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Option *option = parsed->settings[i].option;
+        const bool is_lookup = option->kind == OPTION_LOOKUP;
+        if (option->aside || (option->kind != OPTION_INPUT && !is_lookup))
+            continue;
+        const char *value = *(const char *const *)(parsed->settings[i].base + option->where);
+        hash_add_text(hash, value ? option->name : "");
+        if (value)
+            TRY(is_lookup ? hash_lookup(option, value, hash, err) : file_hash(value, hash, err));
+    }
+    return STATUS_OK;
+}
+
+Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err)
+{
+    char *line = NULL;
+    TRY(command_line_text(parsed, &line, err));
+    Status status = meta_add_text(meta, META_COMMAND, line, err);
+    free(line);
+    return status;
+}
+
+void print_columns_left_out(const char *command, const Tree *tree, const char *why)
+{
+    size_t left_out = 0;
+    for (size_t k = 0; k < tree->n_columns; k++) {
+        if (strcmp(tree->column[k].name, tree_pairs_name) == 0)
+            continue;
+        if (left_out++ == 0)
+            fprintf(stderr, "corcast %s: the columns ", command);
+        fprintf(stderr, "%s%.40s", left_out > 1 ? ", " : "", tree->column[k].name);
+    }
+    if (left_out > 0)
+        fprintf(stderr, " are left out: %s\n", why);
+}
+
+/* Nothing is allocated, which could fail: the file has been written. */
+static void print_left_out(const char *command, const Tree *tree, const char *path,
+                           const TreeLosses *lost)
+{
+    const struct {
+        bool is_lost;
+        const char *what;
+    } others[] = {{lost->types, "the types"},
+                  {lost->flow_shares, "the flow shares"},
+                  {lost->terminal_flow, "the key terminal_flow"},
+                  {lost->root_values, "the roots' values"},
+                  {lost->root_radii, "the roots' own radii"},
+                  {lost->lone_roots, "the roots without segments"}};
+    if (!lost->columns && !lost->types && !lost->flow_shares && !lost->terminal_flow &&
+        !lost->root_values && !lost->root_radii && !lost->lone_roots)
+        return;
+    fprintf(stderr, "corcast %s: ", command);
+    for (size_t k = 0, n = 0; k < tree->n_columns; k++)
+        if (!tree_format_keeps(path, &tree->column[k]))
+            fprintf(stderr, "%s%.40s", n++ ? ", " : "the columns ", tree->column[k].name);
+    for (size_t i = 0, n = lost->columns; i < sizeof others / sizeof *others; i++)
+        if (others[i].is_lost)
+            fprintf(stderr, "%s%s", n++ ? " and " : "", others[i].what);
+    fprintf(stderr, " are left out: the format has no place for them\n");
+}
+
+static void print_merged(const char *command, const TreeLosses *lost)
+{
+    if (lost->merged)
+        fprintf(stderr,
+                "corcast %s: nodes that lie where others do: %zu; the format tells nodes by their "
+                "places, so that such a segment may come back as none\n",
+                command, lost->merged);
+}
+
+Status output_tree(const char *command, const Tree *tree, const char *path, bool quiet, Err *err)
+{
+    TreeLosses lost = {0};
+    if (!quiet)
+        TRY(tree_format_losses(path, tree, &lost, err));
+    TRY(tree_write(tree, path, err));
+    print_left_out(command, tree, path, &lost);
+    print_merged(command, &lost);
+    return STATUS_OK;
+}
+
+Status json_write(json_t *object, const char *path, Err *err)
+{
+    Text text = TEXT_INIT;
+    text_json(&text, object, 2);
+    text_puts(&text, "\n");
+    Status status = file_write_text(path, &text, err);
+    text_release(&text);
+    return status;
+}

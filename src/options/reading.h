@@ -1,0 +1,24 @@
+/* Reading trees: the options of every command that takes one, and what is said of what was read. */
+#ifndef CORCAST_OPTIONS_READING_H
+#define CORCAST_OPTIONS_READING_H
+
+#include "base/base.h"
+#include "options/options.h"
+#include "tree/tree.h"
+
+extern const OptionTable reading_table; /* sets a ReadOptions */
+
+/* STATUS_USAGE, with this end of the sentence, for an option of reading on the command line, where
+ * none has an effect: "needs --from". */
+MUST_CHECK Status reading_refuse(const Parsed *parsed, const char *sentence, Err *err);
+
+/* Reads a tree as the options say, as tree_read_as, and says on standard error, unless quiet, where
+ * loops were cut and which unit the radii look like if it is another. */
+MUST_CHECK Status reading_tree(const Parsed *parsed, const char *path, Tree *tree,
+                               TreeReading *reading, Err *err);
+
+/* What was found, as lines of `info` and as JSON. */
+void reading_print(const TreeReading *reading);
+json_t *reading_json(const TreeReading *reading);
+
+#endif

@@ -1,0 +1,63 @@
+/* A sentence is formatted twice: once to learn its length, once into memory of that length. */
+#include "options/talk.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static void say(const Talk *talk, TalkKind kind, const char *format, va_list values)
+{
+    va_list again;
+    if (!talk || !talk->say)
+        return;
+    va_copy(again, values);
+    int length = vsnprintf(NULL, 0, format, values);
+    char *sentence = length < 0 ? NULL : malloc((size_t)length + 1);
+    if (sentence) {
+        vsnprintf(sentence, (size_t)length + 1, format, again);
+        talk->say(talk->user, kind, sentence);
+    }
+    va_end(again);
+    free(sentence);
+}
+
+void talk_note(const Talk *talk, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    say(talk, TALK_NOTE, format, values);
+    va_end(values);
+}
+
+void talk_warn(const Talk *talk, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    say(talk, TALK_WARNING, format, values);
+    va_end(values);
+}
+
+void progress_start(Progress *progress, const char *what, const Talk *talk)
+{
+    *progress = (Progress){.talk = talk, .what = what};
+    progress_show(progress, 0);
+}
+
+void progress_show(const Progress *progress, double fraction)
+{
+    const Talk *talk = progress->talk;
+    if (talk && talk->progress)
+        talk->progress(talk->user, progress->what, fraction);
+}
+
+void progress_report(double fraction, void *progress)
+{
+    progress_show(progress, fraction);
+}
+
+void progress_end(const Progress *progress)
+{
+    const Talk *talk = progress->talk;
+    if (talk && talk->progress)
+        talk->progress(talk->user, NULL, 1);
+}

@@ -1,0 +1,43 @@
+/* The channel through which an operation tells its caller about its work: sentences, and how far it
+ * is. The command line prints them; a program that calls the library takes them by callbacks. */
+#ifndef CORCAST_OPTIONS_TALK_H
+#define CORCAST_OPTIONS_TALK_H
+
+#include <stdbool.h>
+
+typedef enum TalkKind {
+    TALK_NOTE,   /* a fact that --quiet leaves out */
+    TALK_WARNING /* a fact that every user must know */
+} TalkKind;
+
+/* Both callbacks may be NULL. They are called by the thread that started the operation. */
+typedef struct Talk {
+    /* Takes one sentence without a final newline; the sentence is borrowed during the call. */
+    void (*say)(void *user, TalkKind kind, const char *sentence);
+    /* Takes how much of the step `what` is done, in [0, 1]. A step begins with the fraction 0; a
+     * call with `what` NULL says that the step has ended, whether it is complete or has failed. */
+    void (*progress)(void *user, const char *what, double fraction);
+    void *user; /* passed to both callbacks; borrowed */
+} Talk;
+
+/* Formats a sentence, of any length, and passes it to `talk`, which may be NULL: then nobody
+ * listens. A sentence for which memory runs out is dropped. */
+void talk_note(const Talk *talk, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void talk_warn(const Talk *talk, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* One step whose progress is told. */
+typedef struct Progress {
+    const Talk *talk; /* may be NULL; borrowed */
+    const char *what; /* "growing"; borrowed */
+} Progress;
+
+/* Begins a step. */
+void progress_start(Progress *progress, const char *what, const Talk *talk);
+/* Tells that `fraction` of the step, in [0, 1], is done. */
+void progress_show(const Progress *progress, double fraction);
+/* Does what progress_show does, for the callbacks of lower modules, whose context is a Progress. */
+void progress_report(double fraction, void *progress);
+/* Ends a step. */
+void progress_end(const Progress *progress);
+
+#endif

@@ -1,0 +1,158 @@
+/* The folder of templates is looked for where the program is: beside the build folder, or where
+ * `make install` puts it. */
+#include "options/templates.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static bool is_folder(const char *path)
+{
+    return access(path, X_OK) == 0;
+}
+
+/* Takes the last `n` components of a path away, but not its root. */
+static void cut_components(char *path, int n)
+{
+    for (; n > 0 && strrchr(path, '/') > path; n--)
+        *strrchr(path, '/') = '\0';
+}
+
+/* Takes the folder that CORCAST_TEMPLATES names, if looks are in it. */
+static Status take_given(const char *given, char **folder, Err *err)
+{
+    char *looks = NULL;
+    TRY(file_join(given, "looks", &looks, err));
+    const bool has_looks = is_folder(looks);
+    free(looks);
+    if (has_looks)
+        return mem_strdup(folder, given, err);
+    return err_set(err, STATUS_IO,
+                   "CORCAST_TEMPLATES: '%s' is not a folder of templates: it has no folder 'looks'",
+                   given);
+}
+
+Status templates_folder(char **folder, Err *err)
+{
+    const char *given = getenv("CORCAST_TEMPLATES");
+    if (given && *given)
+        return take_given(given, folder, err);
+    char program[4096];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length > 0) {
+        program[length] = '\0';
+        static const struct {
+            int up; /* components fewer than for the one before */
+            const char *path;
+        } places[] = {{2, "templates"}, {0, "share/corcast/templates"}, {1, "templates"}};
+        for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+            char *path = NULL;
+            cut_components(program, places[i].up);
+            TRY(file_join(program, places[i].path, &path, err));
+            if (is_folder(path)) {
+                *folder = path;
+                return STATUS_OK;
+            }
+            free(path);
+        }
+    }
+    return err_set(err, STATUS_IO,
+                   "the templates folder was found neither beside the program nor where it is "
+                   "installed; name it in CORCAST_TEMPLATES");
+}
+
+/* Appends the names, without their extension, of the files in the folder that have it, `between`
+ * them and `before_last`. */
+static void list_names(const char *folder, const char *extension, const char *between,
+                       const char *before_last, Text *out)
+{
+    struct dirent **entries = NULL;
+    int n = scandir(folder, &entries, NULL, alphasort);
+    const char *last = NULL;
+    if (n < 0 && errno == ENOMEM)
+        text_puts(out, NULL);
+    for (int i = 0; i < n; i++) {
+        char *name = entries[i]->d_name;
+        size_t length = strlen(name), ending = strlen(extension);
+        if (length <= ending || strcmp(name + length - ending, extension) != 0)
+            continue;
+        name[length - ending] = '\0';
+        if (last)
+            text_printf(out, "%s%s", out->length ? between : "", last);
+        last = name;
+    }
+    text_printf(out, "%s%s", out->length ? before_last : "", last ? last : "none");
+    for (int i = 0; i < n; i++)
+        free(entries[i]);
+    free(entries);
+}
+
+Status templates_path(const char *name, char **path, Err *err)
+{
+    char *folder = NULL;
+    TRY(templates_folder(&folder, err));
+    Status status = file_join(folder, name, path, err);
+    free(folder);
+    return status;
+}
+
+Status template_names(const char *folder, const char *extension, Text *lines, Err *err)
+{
+    char *place = NULL;
+    TRY(templates_path(folder, &place, err));
+    list_names(place, extension, "\n", "\n", lines);
+    text_puts(lines, "\n");
+    free(place);
+    return text_check(lines, err);
+}
+
+/* Lists the names that there are, in place of a file that is not there. */
+static Status refuse_name(const char *what, const char *value, const char *folder,
+                          const char *extension, Err *err)
+{
+    Text names = TEXT_INIT;
+    list_names(folder, extension, ", ", " or ", &names);
+    Status status = text_check(&names, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_USAGE,
+                         "%s '%s' is not %s, nor has it the '/' of a path to a file of your own",
+                         what, value, text_chars(&names));
+    text_release(&names);
+    return status;
+}
+
+Status template_find(const char *what, const char *folder, const char *value, const char *extension,
+                     char **path, Err *err)
+{
+    if (strchr(value, '/'))
+        return mem_strdup(path, value, err);
+    char *place = NULL, *found = NULL;
+    Text name = TEXT_INIT;
+    Status status = STATUS_OK;
+    text_printf(&name, "%s%s", value, extension);
+    TRY_GOTO(text_check(&name, err));
+    TRY_GOTO(templates_path(folder, &place, err));
+    TRY_GOTO(file_join(place, text_chars(&name), &found, err));
+    if (access(found, R_OK) != 0) {
+        status = refuse_name(what, value, place, extension, err);
+        goto done;
+    }
+    *path = found;
+    found = NULL;
+done:
+    text_release(&name);
+    free(place);
+    free(found);
+    return status;
+}
+
+Status template_file(const char *option, const char *folder, const char *value,
+                     const char *extension, char **path, Err *err)
+{
+    char what[64];
+    snprintf(what, sizeof what, "--%s:", option);
+    return template_find(what, folder, value, extension, path, err);
+}

@@ -1,0 +1,295 @@
+/* Each value goes through the option it is for, alone, when the plan is read, so that what is wrong
+ * is said with its line before anything grows; what comes out is the value as the option writes it,
+ * so that 2.50 and 2.5 are one. A run's number is its values' places, the last key's counting
+ * fastest. */
+#include "study/study_plan.h"
+
+#include "options/output.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const Option rows[] = {
+    {.name = "output", SETS(OUTPUT, StudyGrowth, output), .argument = "T.swc", .help = "the tree"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(rows);
+
+static void set_defaults(void *options)
+{
+    StudyGrowth *growth = options;
+    growing_set_defaults(&growth->growing);
+    growth->output = "T.swc";
+}
+
+static const Command growth_command = {
+    .name = "grow",
+    .reads_tree = true,
+    .size = sizeof(StudyGrowth),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0},
+               {&growing_table, offsetof(StudyGrowth, growing)},
+               {&refining_table, offsetof(StudyGrowth, refining)}},
+};
+
+/* ---- values ---------------------------------------------------------------------------------- */
+
+/* The value as the option writes it, in *written (owned). */
+static Status rewrite(const char *name, const char *value, char **written, Err *err)
+{
+    Parsed parsed;
+    Text text = TEXT_INIT;
+    TRY(parsed_init(&parsed, &growth_command, err));
+    const Setting *setting = parsed_find(&parsed, name, strlen(name));
+    Status status = setting_read(setting, value, err);
+    if (status == STATUS_OK) {
+        setting_put(setting, 0, &text);
+        status = text_take(&text, written, err);
+    }
+    text_release(&text);
+    parsed_release(&parsed);
+    return status;
+}
+
+/* Takes `written`, also on failure. */
+static Status add_written(StudyKey *key, char *written, Err *err)
+{
+    Status status =
+        mem_reserve(&key->value, &key->capacity, key->n + 1, sizeof *key->value, "values", err);
+    if (status == STATUS_OK)
+        key->value[key->n++] = written;
+    else
+        free(written);
+    return status;
+}
+
+static Status add_value(StudyKey *key, const char *value, Err *err)
+{
+    char *written = NULL;
+    TRY(rewrite(key->name, value, &written, err));
+    return add_written(key, written, err);
+}
+
+/* A..B of an option that takes whole numbers; false for any other value. */
+static bool is_range(const Option *option, const char *value, long long *from, long long *to)
+{
+    const char *dots = strstr(value, "..");
+    char first[24] = "";
+    bool whole =
+        option->kind == OPTION_SEED || option->kind == OPTION_WHOLE || option->kind == OPTION_COUNT;
+    if (!whole || !dots || dots - value >= (ptrdiff_t)sizeof first)
+        return false;
+    memcpy(first, value, (size_t)(dots - value));
+    return integer_parse(first, 0, 1000000000000, from) &&
+           integer_parse(dots + 2, 0, 1000000000000, to);
+}
+
+/* Of a range, the ends are checked against what the option takes. */
+static Status add_range(StudyKey *key, const char *range, long long from, long long to, Err *err)
+{
+    if (to < from)
+        return err_set(err, STATUS_INPUT, "%s: the range %s is empty: it runs backwards", key->name,
+                       range);
+    if (to - from >= STUDY_MOST_RUNS)
+        return err_set(err, STATUS_INPUT, "%s: the range %s has more than %d values", key->name,
+                       range, STUDY_MOST_RUNS);
+    for (long long i = from; i <= to; i++) {
+        char number[24], *written = NULL;
+        snprintf(number, sizeof number, "%lld", i);
+        TRY(i == from || i == to ? rewrite(key->name, number, &written, err)
+                                 : mem_strdup(&written, number, err));
+        TRY(add_written(key, written, err));
+    }
+    return STATUS_OK;
+}
+
+static Status add_values(StudyKey *key, const Option *option, const char *value, Err *err)
+{
+    long long from, to;
+    return is_range(option, value, &from, &to) ? add_range(key, value, from, to, err)
+                                               : add_value(key, value, err);
+}
+
+/* The comma that ends the first value of a list, before a blank or the end; NULL: there is none. */
+static char *end_of_value(char *list)
+{
+    char *comma = strchr(list, ',');
+    while (comma && comma[1] && !strchr(TEXT_BLANKS, comma[1]))
+        comma = strchr(comma + 1, ',');
+    return comma;
+}
+
+static Status add_list(StudyKey *key, const Option *option, const char *list, Err *err)
+{
+    char *copy = NULL;
+    TRY(mem_strdup(&copy, list, err));
+    Status status = STATUS_OK;
+    for (char *rest = copy; rest && status == STATUS_OK;) {
+        char *comma = end_of_value(rest);
+        if (comma)
+            *comma = '\0';
+        char *value = text_trim(rest);
+        status = *value ? add_values(key, option, value, err)
+                        : err_set(err, STATUS_INPUT, "%s: a value is missing", key->name);
+        rest = comma ? comma + 1 : NULL;
+    }
+    free(copy);
+    return status;
+}
+
+static int by_text(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static Status check_different(const StudyKey *key, Err *err)
+{
+    char **sorted = NULL;
+    TRY(mem_calloc(&sorted, key->n, sizeof *sorted, "values", err));
+    memcpy(sorted, key->value, key->n * sizeof *sorted);
+    qsort(sorted, key->n, sizeof *sorted, by_text);
+    Status status = STATUS_OK;
+    for (size_t i = 1; i < key->n && status == STATUS_OK; i++)
+        if (strcmp(sorted[i - 1], sorted[i]) == 0)
+            status = err_set(err, STATUS_INPUT, "%s: %s stands twice", key->name, sorted[i]);
+    free(sorted);
+    return status;
+}
+
+/* ---- the file -------------------------------------------------------------------------------- */
+
+typedef struct Reading {
+    StudyPlan *plan;
+    const Parsed *options; /* that there are */
+    bool in_section;
+} Reading;
+
+/* The option of a key. STATUS_USAGE when there is none that a plan may vary. */
+static Status find_option(const Reading *reading, const char *name, const Option **option, Err *err)
+{
+    static const char *const others[] = {"output", "refine-seconds", "recipe", "threads",
+                                         "quiet",  "help",           NULL};
+    const Setting *setting = parsed_find(reading->options, name, strlen(name));
+    if (setting && !is_one_of(name, others)) {
+        *option = setting->option;
+        return STATUS_OK;
+    }
+    Suggestion suggestion = suggestion_for(name, strlen(name));
+    for (size_t i = 0; i < reading->options->n_settings; i++)
+        if (!is_one_of(reading->options->settings[i].option->name, others))
+            suggestion_offer(&suggestion, reading->options->settings[i].option->name);
+    Status status = err_set(err, STATUS_USAGE, "'%.40s' is not an option of grow that a plan %s",
+                            name, setting ? "may set" : "could set");
+    suggestion_add(&suggestion, "", err);
+    return status;
+}
+
+static Status add_key(StudyPlan *plan, const char *name, StudyKey **key, Err *err)
+{
+    for (size_t k = 0; k < plan->n; k++)
+        if (strcmp(plan->key[k].name, name) == 0)
+            return err_set(err, STATUS_INPUT, "'%s' stands twice; give all its values in one line",
+                           name);
+    TRY(mem_reserve(&plan->key, &plan->capacity, plan->n + 1, sizeof *plan->key, "keys", err));
+    *key = &plan->key[plan->n];
+    **key = (StudyKey){0};
+    TRY(mem_strdup(&(*key)->name, name, err));
+    plan->n++;
+    return STATUS_OK;
+}
+
+static Status take_line(void *user, const char *section, const char *name, const char *value,
+                        Err *err)
+{
+    Reading *reading = user;
+    StudyPlan *plan = reading->plan;
+    const Option *option = NULL;
+    StudyKey *key = NULL;
+    if (strcmp(section, "grow") != 0)
+        return err_set(err, STATUS_INPUT, "%s%.40s%s; a plan has the section [grow] alone",
+                       *section ? "[" : "'", *section ? section : name,
+                       *section ? "] is no section of a plan" : "' stands above [grow]");
+    if (!name && reading->in_section)
+        return err_set(err, STATUS_INPUT, "[grow] stands twice");
+    reading->in_section = true;
+    if (!name)
+        return STATUS_OK;
+    TRY(find_option(reading, name, &option, err));
+    TRY(add_key(plan, name, &key, err));
+    TRY(add_list(key, option, value, err));
+    TRY(check_different(key, err));
+    if (key->n > STUDY_MOST_RUNS / plan->runs)
+        return err_set(err, STATUS_INPUT, "%s: these are more than %d combinations", name,
+                       STUDY_MOST_RUNS);
+    plan->runs *= key->n;
+    return STATUS_OK;
+}
+
+static HashText hash_of(const StudyPlan *plan)
+{
+    Hash hash;
+    hash_begin(&hash);
+    hash_add_text(&hash, GENERATOR);
+    for (size_t k = 0; k < plan->n; k++) {
+        hash_add_text(&hash, plan->key[k].name);
+        for (size_t i = 0; i < plan->key[k].n; i++)
+            hash_add_text(&hash, plan->key[k].value[i]);
+        hash_add_text(&hash, "");
+    }
+    return hash_text(&hash);
+}
+
+Status study_plan_read(const char *path, StudyPlan *plan, Err *err)
+{
+    StudyPlan made = {.runs = 1};
+    Parsed options;
+    TRY(parsed_init(&options, &growth_command, err));
+    Reading reading = {.plan = &made, .options = &options};
+    Status status = ini_read(path, "a plan", take_line, &reading, NULL, err);
+    if (status == STATUS_OK && made.n == 0)
+        status = err_set(err, STATUS_INPUT, "%s: sets no option of grow", path);
+    parsed_release(&options);
+    if (status != STATUS_OK) {
+        study_plan_release(&made);
+        return status;
+    }
+    made.hash = hash_of(&made);
+    *plan = made;
+    return STATUS_OK;
+}
+
+void study_plan_release(StudyPlan *plan)
+{
+    for (size_t k = 0; k < plan->n; k++) {
+        for (size_t i = 0; i < plan->key[k].n; i++)
+            free(plan->key[k].value[i]);
+        free(plan->key[k].value);
+        free(plan->key[k].name);
+    }
+    free(plan->key);
+    *plan = (StudyPlan){0};
+}
+
+/* ---- runs ------------------------------------------------------------------------------------ */
+
+const char *study_plan_value(const StudyPlan *plan, size_t run, size_t k)
+{
+    for (size_t last = plan->n - 1; last > k; last--)
+        run /= plan->key[last].n;
+    return plan->key[k].value[run % plan->key[k].n];
+}
+
+Status study_plan_options(const StudyPlan *plan, size_t run, int threads, Parsed *parsed, Err *err)
+{
+    TRY(parsed_init(parsed, &growth_command, err)); /* in its place: settings point into it */
+    parsed->common.quiet = true;
+    parsed->common.threads = threads;
+    Status status = STATUS_OK;
+    for (size_t k = 0; k < plan->n && status == STATUS_OK; k++) {
+        const char *name = plan->key[k].name;
+        status = setting_read(parsed_find(parsed, name, strlen(name)),
+                              study_plan_value(plan, run, k), err);
+    }
+    if (status != STATUS_OK)
+        parsed_release(parsed);
+    return status;
+}

@@ -1,0 +1,278 @@
+/* A file is right when it holds the hash of what it would be made from: program, command line, and
+ * the bytes of the files that it names. Its place in the plan is no part of that, so that a plan
+ * may get more values, or others in front, and what has been grown stays.
+ *
+ * Nothing in the file depends on time, machine or the number of threads. */
+#include "study/study_run.h"
+
+#include "job/tree/summary_json.h"
+#include "options/output.h"
+#include "treeio/treeio.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { NAME_DIGITS = 16 };
+
+/* What is known of a run before it has grown. */
+typedef struct Run {
+    Parsed parsed;
+    StudyGrowth *growth; /* in parsed */
+    size_t number;       /* from 1 */
+    HashText made_from;
+    char *command;       /* owned */
+    char *report, *tree; /* names of files; owned */
+} Run;
+
+static void release(Run *run)
+{
+    if (run->growth)
+        growing_release(&run->growth->growing);
+    parsed_release(&run->parsed);
+    free(run->command);
+    free(run->report);
+    free(run->tree);
+}
+
+static Status hash_run(Run *run, Err *err)
+{
+    const Growing *growing = &run->growth->growing;
+    Hash hash;
+    hash_begin(&hash);
+    hash_add_text(&hash, GENERATOR);
+    hash_add_text(&hash, run->command);
+    TRY(hash_option_files(&run->parsed, &hash, err));
+    if (growing->params.from)
+        tree_hash(growing->params.from, &hash);
+    if (growing->domain.file)
+        TRY(file_hash(growing->domain.file, &hash, err));
+    if (growing->demand)
+        TRY(file_hash(demand_file(growing->demand), &hash, err));
+    run->made_from = hash_text(&hash);
+    return STATUS_OK;
+}
+
+static Status name_file(const Run *run, const char *folder, const char *extension, char **path,
+                        Err *err)
+{
+    char name[NAME_DIGITS + 8];
+    snprintf(name, sizeof name, "%.*s.%s", NAME_DIGITS, run->made_from.hex, extension);
+    return file_join(folder, name, path, err);
+}
+
+static Status prepare(const StudyRunParams *params, size_t index, Run *run, Err *err)
+{
+    TRY(study_plan_options(params->plan, index, params->threads, &run->parsed, err));
+    run->growth = run->parsed.options;
+    run->number = index + 1;
+    TRY(command_line_text(&run->parsed, &run->command, err));
+    TRY(refining_check_growing(&run->growth->refining, &run->growth->growing, err));
+    TRY(refining_check(&run->growth->refining, &run->parsed, err));
+    TRY(growing_prepare(&run->growth->growing, &run->parsed, err));
+    TRY(hash_run(run, err));
+    TRY(name_file(run, params->folder, "json", &run->report, err));
+    return name_file(run, params->folder, "swc", &run->tree, err);
+}
+
+/* ---- what is there --------------------------------------------------------------------------- */
+
+/* The hash of a file; that of nothing when it cannot be read. */
+static Status hash_of_tree(const char *path, HashText *text, Err *err)
+{
+    Hash hash;
+    hash_begin(&hash);
+    Status status = file_hash(path, &hash, err);
+    *text = hash_text(&hash);
+    return status;
+}
+
+static bool is_text(const json_t *object, const char *key, const char *text)
+{
+    const char *has = json_string_value(json_object_get(object, key));
+    return has && strcmp(has, text) == 0;
+}
+
+static json_t *read_report(const char *path)
+{
+    static const FileForm form = {.name = "a JSON file", .most_bytes = 1e6, .is_text = true};
+    char *text;
+    size_t size;
+    json_error_t error;
+    bool no_memory;
+    if (file_read(path, &form, &text, &size, NULL) != STATUS_OK)
+        return NULL;
+    json_t *report = json_read(text, size, JSON_REJECT_DUPLICATES, &error, &no_memory);
+    free(text);
+    return report;
+}
+
+/* What the file holds if it is right; NULL when it is not, is not there, or memory ran out to read
+ * it: then it is made again. */
+static json_t *read_right(const StudyRunParams *params, const Run *run)
+{
+    HashText tree;
+    json_t *report = read_report(run->report);
+    const json_t *shard = json_object_get(report, "shard");
+    bool right = is_text(shard, "made_from", run->made_from.hex) && json_object_get(shard, "tree");
+    if (right && params->trees && !json_object_get(report, "error"))
+        right =
+            hash_of_tree(run->tree, &tree, NULL) == STATUS_OK && is_text(shard, "tree", tree.hex);
+    if (right)
+        return report;
+    json_decref(report);
+    return NULL;
+}
+
+/* ---- growing --------------------------------------------------------------------------------- */
+
+static Status grow(Run *run, Tree *tree, GrowReport *report, Err *err)
+{
+    const Growing *growing = &run->growth->growing;
+    const Refining *refining = &run->growth->refining;
+    const RefineParams params = {.level = refining->level,
+                                 .moves = refining->moves,
+                                 .seed = run->parsed.common.seed,
+                                 .threads = run->parsed.common.threads};
+    RefineReport refined;
+    TRY(grow_tree(&growing->params, &growing->domain, tree, report, err));
+    if (refining->level != GROW_REFINE_NONE)
+        TRY(refine_tree(&params, &growing->domain, tree, &refined, err));
+    TRY(command_describe(&run->parsed, &tree->meta, err));
+    return refining_describe(refining, &refined, &tree->meta, err);
+}
+
+/* The values of the plan, as numbers where they are. */
+static json_t *values_json(const StudyPlan *plan, size_t index)
+{
+    json_t *values = json_object();
+    for (size_t k = 0; k < plan->n; k++) {
+        const char *value = study_plan_value(plan, index, k);
+        double number;
+        long long whole;
+        json_t *json = integer_parse(value, -1000000000000000, 1000000000000000, &whole)
+                           ? json_integer(whole)
+                       : number_parse(value, &number) ? json_number(number)
+                                                      : json_text(value);
+        values = json_with(values, plan->key[k].name, json);
+    }
+    return values;
+}
+
+static json_t *measured_json(const Tree *tree, const GrowReport *report, Err *err)
+{
+    TreeSummary summary;
+    if (derive_summary(tree, &(TreeMeta){0}, &summary, err) != STATUS_OK)
+        return NULL;
+    const JsonMember grown[] = {{"complete", json_boolean(report->complete)},
+                                {"thickness", json_number(report->thickness)},
+                                {"broken", json_count(report->broken)}};
+    return json_with_members(summary_json(&summary), grown, sizeof grown / sizeof *grown);
+}
+
+/* Writes the tree if it is kept; its hash, or null. */
+static Status keep_tree(const StudyRunParams *params, const Run *run, const Tree *tree,
+                        json_t **hash, Err *err)
+{
+    HashText text;
+    if (!params->trees) {
+        *hash = json_null();
+        return STATUS_OK;
+    }
+    TRY(tree_write(tree, run->tree, err));
+    TRY(hash_of_tree(run->tree, &text, err));
+    *hash = json_text(text.hex);
+    return STATUS_OK;
+}
+
+/* What there is to say of a tree, or why there is none, in *said; the hash of its file in *hash. */
+static Status grow_and_measure(const StudyRunParams *params, Run *run, json_t **said, json_t **hash,
+                               Err *err)
+{
+    Tree tree = {0};
+    GrowReport report;
+    Status status = grow(run, &tree, &report, err);
+    if (status == STATUS_INFEASIBLE) {
+        options_name_fields(&run->parsed, err);
+        *hash = json_null();
+        *said = json_with(json_object(), "error", json_text(err->text));
+        return STATUS_OK;
+    }
+    if (status == STATUS_OK)
+        status = keep_tree(params, run, &tree, hash, err);
+    if (status == STATUS_OK)
+        *said = measured_json(&tree, &report, err);
+    tree_release(&tree);
+    return status;
+}
+
+/* ---- the file -------------------------------------------------------------------------------- */
+
+/* The line: place and values first, then what was found; NULL when that is. Takes `hash`. */
+static json_t *line_json(const StudyRunParams *params, const Run *run, json_t *said, json_t *hash)
+{
+    const StudyPlan *plan = params->plan;
+    const char *key;
+    json_t *value;
+    const JsonMember of_shard[] = {{"plan", json_text(plan->hash.hex)},
+                                   {"runs", json_count(plan->runs)},
+                                   {"made_from", json_text(run->made_from.hex)},
+                                   {"tree", hash}};
+    const JsonMember first[] = {
+        {"run", json_count(run->number)},
+        {"grow", values_json(plan, run->number - 1)},
+        {"generator", json_text(GENERATOR)},
+        {"command", json_text(run->command)},
+        {"shard", json_with_members(json_object(), of_shard, sizeof of_shard / sizeof *of_shard)}};
+    json_t *line =
+        json_with_members(said ? json_object() : NULL, first, sizeof first / sizeof *first);
+    json_object_foreach(said, key, value)
+    {
+        if (!json_object_get(line, key))
+            line = json_with(line, key, json_incref(value));
+    }
+    return line;
+}
+
+static Status write_line(const char *path, json_t *line, Err *err)
+{
+    Text text = TEXT_INIT;
+    text_json(&text, line, 0);
+    text_puts(&text, "\n");
+    Status status = file_write_text(path, &text, err);
+    text_release(&text);
+    return status;
+}
+
+static Status find_or_grow(const StudyRunParams *params, Run *run, bool *kept, Err *err)
+{
+    json_t *hash = NULL, *said = read_right(params, run);
+    *kept = said != NULL;
+    if (said)
+        hash = json_incref(json_object_get(json_object_get(said, "shard"), "tree"));
+    else
+        TRY(grow_and_measure(params, run, &said, &hash, err));
+    json_t *line = line_json(params, run, said, hash);
+    bool same = *kept && json_equal(line, said);
+    json_decref(said);
+    if (!same)
+        return write_line(run->report, line, err);
+    json_decref(line);
+    return STATUS_OK;
+}
+
+Status study_run(const StudyRunParams *params, size_t index, char **path, bool *kept, Err *err)
+{
+    Run run = {0};
+    Status status = prepare(params, index, &run, err);
+    if (status == STATUS_OK)
+        status = find_or_grow(params, &run, kept, err);
+    if (status != STATUS_OK)
+        options_name_fields(&run.parsed, err);
+    if (status != STATUS_OK)
+        err_prefix(err, "run %zu of %zu: ", index + 1, params->plan->runs);
+    if (status == STATUS_OK) {
+        *path = run.report;
+        run.report = NULL;
+    }
+    release(&run);
+    return status;
+}
