@@ -1,8 +1,8 @@
 /* What made B of A, of faults planted in a picture of seven shaded balls before a background of one
  * colour, drawn by a formula wherever the camera is: the right words for each, and none for faults
  * that no sentence is about, for two at once, and for chance. */
-#include "unit.h"
 #include "compare/compare.h"
+#include "unit.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>

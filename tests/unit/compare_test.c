@@ -1,5 +1,5 @@
-#include "unit.h"
 #include "compare/compare.h"
+#include "unit.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* The pairs and the values of NVIDIA's FLIP 1.6 come with the shared data; without it those tests
  * are skipped. */
-#include "unit.h"
 #include "compare/compare.h"
+#include "unit.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>

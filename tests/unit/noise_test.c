@@ -1,6 +1,6 @@
 /* The test of noisy pictures: how often it is wrong, and what it finds. */
-#include "unit.h"
 #include "compare/compare.h"
+#include "unit.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* Faults that are planted in pictures, and three programs of which one may stand alone. */
-#include "unit.h"
 #include "compare/compare.h"
+#include "unit.h"
 #include <math.h>
 #include <stdint.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 #include "any_file.h"
-#include "unit.h"
 #include "compare/check.h"
-#include "compare/result.h"
 #include "compare/compare.h"
+#include "compare/result.h"
+#include "unit.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

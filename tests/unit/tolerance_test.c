@@ -1,7 +1,7 @@
 /* Tiers, the ledger of segments, float colours, and tolerances as files. */
-#include "unit.h"
-#include "compare/result.h"
 #include "compare/compare.h"
+#include "compare/result.h"
+#include "unit.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
