@@ -5,6 +5,7 @@
 #include "render/render.h"
 #include "scene/scene.h"
 #include "compare/compare.h"
+#include "compare/measures/perception.h"
 
 typedef struct Subject {
     Scene scene; /* owned */

@@ -276,7 +276,7 @@ static Status compare_linear(const CompareOptions *options, const Sides *sides,
     bool pictures = options->heat || options->difference || options->flicker || options->page ||
                     options->report;
     bool asks_cause =
-        !result->agrees && !*result->cause && result->nan_pixels_a + result->nan_pixels_b == 0;
+        !result->agrees && !*result->cause && result->values[MEASURE_NAN_PIXELS] == 0;
     if (pictures || asks_cause) {
         TRY_GOTO(picture_from_plane(&clipped[0], a, ENCODING_SRGB, 16, err));
         TRY_GOTO(picture_from_plane(&clipped[1], b, ENCODING_SRGB, 16, err));

@@ -170,8 +170,10 @@ static void print_exact(const CompareResult *exact)
 {
     printf("  %-7s %-7s", "exact", exact->agrees ? "agree" : "differ");
     if (exact->agrees)
-        printf("gain %.6f, %zu of %zu pixels off by more than %g levels\n", exact->gain,
-               exact->beyond_pixels, exact->common_pixels, exact->tolerance.color_levels);
+        printf("gain %.6f, %zu of %zu pixels off by more than %g levels\n",
+               exact->values[MEASURE_GAIN], result_count(exact, MEASURE_BEYOND_PIXELS),
+               result_count(exact, MEASURE_COMMON_PIXELS),
+               exact->tolerance.limits[LIMIT_COLOR_LEVELS]);
     else
         printf("%s\n", exact->reason);
 }
@@ -209,17 +211,21 @@ static Status print_verdict(const Verification *v, bool agrees, Err *err)
         if (!result->agrees)
             printf("%s\n", result->reason);
         else if (kind == PLANE_DEPTH)
-            printf("median %.3g mm, 99 %% within %.3g mm, worst %.3g mm\n", result->median,
-                   result->p99, result->max);
+            printf("median %.3g mm, 99 %% within %.3g mm, worst %.3g mm\n",
+                   result->values[MEASURE_MEDIAN], result->values[MEASURE_P99],
+                   result->values[MEASURE_MAX]);
         else if (kind == PLANE_NORMAL)
-            printf("median %.3g deg, 99 %% within %.3g deg, worst %.3g deg\n", result->median,
-                   result->p99, result->max);
+            printf("median %.3g deg, 99 %% within %.3g deg, worst %.3g deg\n",
+                   result->values[MEASURE_MEDIAN], result->values[MEASURE_P99],
+                   result->values[MEASURE_MAX]);
         else
-            printf("%zu of %zu pixels differ\n", result->differing_pixels, result->pixels);
+            printf("%zu of %zu pixels differ\n", result_count(result, MEASURE_DIFFERING_PIXELS),
+                   result_count(result, MEASURE_PIXELS));
     }
     if (v->has_alpha && v->alpha.agrees)
-        printf("  %-7s %-7s%zu of %zu pixels differ\n", "alpha", "agree", v->alpha.differing_pixels,
-               v->alpha.pixels);
+        printf("  %-7s %-7s%zu of %zu pixels differ\n", "alpha", "agree",
+               result_count(&v->alpha, MEASURE_DIFFERING_PIXELS),
+               result_count(&v->alpha, MEASURE_PIXELS));
     else if (v->has_alpha)
         printf("  %-7s %-7s%s\n", "alpha", "differ", v->alpha.reason);
     if (v->asked)
@@ -326,7 +332,9 @@ static void move_off_ties(Camera *camera)
 static Status check_shows_something(const Verification *v, Err *err)
 {
     const CompareResult *ids = &v->results[PLANE_ID];
-    if (ids->common_pixels + ids->missing_pixels + ids->extra_pixels + ids->settled_pixels > 0)
+    if (ids->values[MEASURE_COMMON_PIXELS] + ids->values[MEASURE_MISSING_PIXELS] +
+            ids->values[MEASURE_EXTRA_PIXELS] + ids->values[MEASURE_SETTLED_PIXELS] >
+        0)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
                    "neither POV-Ray nor corcast shows a vessel of %s in this view, so nothing is "
