@@ -1,7 +1,7 @@
 #include "fuzz.h"
 
-#include "job/figure/figure_plan.h"
 #include "cli/commands.h"
+#include "job/figure/figure_plan.h"
 
 /* A recipe that is read is written to one that is read, and says the same. */
 static void check_again(const FigurePlan *plan, const Parsed *figure)

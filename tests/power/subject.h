@@ -2,9 +2,9 @@
 #ifndef CORCAST_POWER_SUBJECT_H
 #define CORCAST_POWER_SUBJECT_H
 
+#include "compare/compare.h"
 #include "render/render.h"
 #include "scene/scene.h"
-#include "compare/compare.h"
 
 typedef struct Subject {
     Scene scene; /* owned */
