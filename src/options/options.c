@@ -8,7 +8,6 @@
 #include "options/options.h"
 
 #include "options/reading.h"
-#include "options/registry.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -120,7 +119,7 @@ static Status take_recipe_line(void *user, const char *section, const char *name
     const Parsed *parsed = user;
     const Command *command = parsed->command;
     if (*section && strcmp(section, command->name) != 0)
-        return name || command_find(section)
+        return name || !parsed->find_command || parsed->find_command(section)
                    ? STATUS_OK
                    : err_set(err, STATUS_USAGE, "[%s] is not the name of a command", section);
     if (!name)

@@ -1,7 +1,7 @@
 /* Options, each described once. A description says what an option is called, what it sets, which
  * values it takes and what it means; command line, recipe, help, man page, completion and reference
- * are made from it, and values are written back through it. A Command is its descriptions and the
- * function that runs it. */
+ * are made from it, and values are written back through it. A Command is what is known of an
+ * operation before it runs; how it is run is its caller's. */
 #ifndef CORCAST_OPTIONS_OPTIONS_H
 #define CORCAST_OPTIONS_OPTIONS_H
 
@@ -210,8 +210,10 @@ typedef struct Command {
         const OptionTable *table;
         size_t at; /* offset in that struct of the one that the table sets */
     } tables[MAX_TABLES];
-    Status (*run)(void *options, Parsed *parsed, Err *err);
 } Command;
+
+/* Finds the command of this name; NULL when there is none. */
+typedef const Command *FindCommand(const char *name);
 
 /* The options that every command has. */
 typedef struct Common {
@@ -234,7 +236,8 @@ typedef struct Setting {
 
 struct Parsed {
     const Command *command;
-    void *options; /* of the command, command->size bytes; owned */
+    FindCommand *find_command; /* checks the names of a recipe's sections; NULL: any name stands */
+    void *options;             /* of the command, command->size bytes; owned */
     Common common;
     ReadOptions reading; /* of commands that read trees */
     Setting *settings;   /* all options, the command's first; owned */
