@@ -245,6 +245,8 @@ struct Parsed {
     Files files; /* that operands and options name */
     const char *operands[MAX_OPERANDS];
     int n_operands;
+    const Tree *given; /* stands in for the first operand (parsed_give); borrowed; NULL: none */
+    bool in_memory;    /* the caller takes the result in memory: --output may be missing */
 };
 
 /* What an option of the command line takes to have an effect. */
@@ -257,6 +259,13 @@ typedef struct OptionNeed {
 /* The command's options with their defaults, in *parsed (parsed_release). */
 MUST_CHECK Status parsed_init(Parsed *parsed, const Command *command, Err *err);
 void parsed_release(Parsed *parsed);
+
+/* Makes `tree` the first operand, in place of a file. The operand is then `name`, which sentences
+ * and provenance contain: the path that the tree was read from. NULL calls the tree parsed_memory
+ * in sentences, and names it in provenance as the help names the operand. Tree and name are
+ * borrowed until parsed_release. Call it before operands are added. */
+void parsed_give(Parsed *parsed, const Tree *tree, const char *name);
+extern const char parsed_memory[]; /* "the tree" */
 
 /* Reads the arguments after the command's name, the recipe first so that the command line wins.
  * STATUS_USAGE with a sentence that names the option, its value and what is allowed; errors as
