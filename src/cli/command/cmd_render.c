@@ -209,7 +209,7 @@ static Status settle_shard(const ShardOptions *options, bool animated, const Par
     return STATUS_OK;
 }
 
-static Status run_render(void *options, Parsed *parsed, Err *err)
+Status run_render(void *options, Parsed *parsed, Err *err)
 {
     RenderOptions *own_options = options;
     render_settle(own_options);
@@ -252,5 +252,4 @@ const Command command_render = {
                {&annotation_table, offsetof(RenderOptions, annotation)},
                PICTURE_TABLES(RenderOptions, picture),
                {&press_table, offsetof(RenderOptions, press)}},
-    .run = run_render,
 };
