@@ -516,8 +516,8 @@ CORCAST_API int corcast_verify(const corcast_tree *tree, const corcast_options *
  * the recipe that describes the panels (docs/FORMATS.md), and `path` the output: .pdf, .svg, .png,
  * .tif or .jpg.
  * Stability: provisional. */
-CORCAST_API int corcast_figure(const char *recipe, const corcast_options *options,
-                               const char *path, corcast_error *error);
+CORCAST_API int corcast_figure(const char *recipe, const corcast_options *options, const char *path,
+                               corcast_error *error);
 
 #ifdef __cplusplus
 }

@@ -21,7 +21,8 @@
     X(IO, 3, "reading or writing failed")                                                          \
     X(MEMORY, 3, "memory ran out")                                                                 \
     X(TOOL, 3, "another program is missing or failed")                                             \
-    X(INTERRUPTED, 3, "stopped by a signal")
+    X(INTERRUPTED, 3, "stopped by a signal")                                                       \
+    X(CANCELLED, 3, "stopped by the caller")
 
 typedef enum Status {
 #define X(name, exit_status, meaning) STATUS_##name,

@@ -267,16 +267,21 @@ static Status take_value(const Option *option, const Written *as, int argc, char
     return STATUS_OK;
 }
 
+static Status refuse_option(const Parsed *parsed, const char *argument, const Written *as,
+                            const char *dashes, Err *err)
+{
+    (void)err_set(err, STATUS_USAGE,
+                  "unknown option '%s'; see corcast %s --help for those there are", argument,
+                  parsed->command->name);
+    return suggest_option(parsed, as->name, as->length, dashes, err);
+}
+
 static Status read_option(Parsed *parsed, int argc, char **argv, int *at, bool apply, Err *err)
 {
     const Written as = written(argv[*at]);
     Setting *setting = find(parsed, as.name, as.length);
-    if (!setting || !as.is_known) {
-        (void)err_set(err, STATUS_USAGE,
-                      "unknown option '%s'; see corcast %s --help for those there are", argv[*at],
-                      parsed->command->name);
-        return suggest_option(parsed, as.name, as.length, "--", err);
-    }
+    if (!setting || !as.is_known)
+        return refuse_option(parsed, argv[*at], &as, "--", err);
     const char *value;
     TRY(take_value(setting->option, &as, argc, argv, at, &value, err));
     TRY(note_typed(setting, err));
@@ -392,17 +397,44 @@ Status options_settle(const Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
+/* What follows once all options have their values. */
+static Status complete(Parsed *parsed, Err *err)
+{
+    TRY(options_settle(parsed, err));
+    TRY(check_present(parsed, err));
+    return note_files(parsed, err);
+}
+
 Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
 {
     TRY(read_arguments(parsed, argc, argv, false, err));
     if (parsed->common.recipe)
         TRY(read_recipe(parsed, err));
     TRY(read_arguments(parsed, argc, argv, true, err));
-    if (parsed->common.help)
-        return STATUS_OK;
-    TRY(options_settle(parsed, err));
-    TRY(check_present(parsed, err));
-    return note_files(parsed, err);
+    return parsed->common.help ? STATUS_OK : complete(parsed, err);
+}
+
+Status options_set(Parsed *parsed, const OptionText *text, Err *err)
+{
+    const Written as = {text->name, strlen(text->name), NULL, true};
+    Setting *setting = find(parsed, as.name, as.length);
+    if (!setting)
+        return refuse_option(parsed, as.name, &as, "", err);
+    TRY(setting_read(setting, text->value, err));
+    setting->typed = setting->said = true;
+    return STATUS_OK;
+}
+
+Status options_take(Parsed *parsed, const OptionText *texts, size_t n, Err *err)
+{
+    for (size_t i = 0; i < n; i++)
+        if (strcmp(texts[i].name, "recipe") == 0)
+            TRY(options_set(parsed, &texts[i], err));
+    if (parsed->common.recipe)
+        TRY(read_recipe(parsed, err));
+    for (size_t i = 0; i < n; i++)
+        TRY(options_set(parsed, &texts[i], err));
+    return complete(parsed, err);
 }
 
 bool options_typed(const Parsed *parsed, const char *name)

@@ -273,6 +273,21 @@ extern const char parsed_memory[]; /* "the tree" */
  * given twice the last holds. With --help, nothing needs to be there. */
 MUST_CHECK Status options_parse(Parsed *parsed, int argc, char **argv, Err *err);
 
+/* An option by its name, without dashes, and its value as the command line has it. */
+typedef struct OptionText {
+    const char *name, *value;
+} OptionText;
+
+/* Sets one option as the command line does. A flag takes "on" or "off". Errors: STATUS_USAGE for
+ * an unknown name or a wrong value; the option then keeps its value. */
+MUST_CHECK Status options_set(Parsed *parsed, const OptionText *text, Err *err);
+
+/* Does what options_parse does, for a program in place of a command line: reads the recipe if one
+ * of the `n` options names one, sets the options in their order, and checks what can only be
+ * checked of all together. The values are borrowed until parsed_release. Errors: as options_parse.
+ */
+MUST_CHECK Status options_take(Parsed *parsed, const OptionText *texts, size_t n, Err *err);
+
 /* Whether an option is a key of a recipe. */
 typedef bool OptionIsKey(const Option *option);
 /* Appends the lines of a recipe that say what these options say, whether they were given or not:
