@@ -136,10 +136,10 @@ static Status write_scene(const SceneOptions *options, const Emitter *emitter,
     EmitReport report = {0};
     PictureReport made;
     TRY(picture_scene_of(picture, source, parsed, &scene, &anatomy, &made, err));
-    Status status = picture_say(&scene, &made, parsed->common.quiet, err);
+    Status status = picture_say(&scene, &made, parsed->common.talk, err);
     if (status == STATUS_OK && emitter->has_view)
         status = picture_say_effects(picture, &scene.view, "the scene is without them",
-                                     parsed->common.quiet, err);
+                                     parsed->common.talk, err);
     const EmitParams params = {.scene = &scene,
                                .anatomy = &anatomy,
                                .command = line,
