@@ -8,7 +8,6 @@
 #include "options/options.h"
 
 #include "options/reading.h"
-#include "options/registry.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -85,6 +84,15 @@ void parsed_release(Parsed *parsed)
     *parsed = (Parsed){0};
 }
 
+const char parsed_memory[] = "the tree";
+
+void parsed_give(Parsed *parsed, const Tree *tree, const char *name)
+{
+    parsed->given = tree;
+    parsed->operands[0] = name ? name : parsed_memory;
+    parsed->n_operands = 1;
+}
+
 static Setting *find(const Parsed *parsed, const char *name, size_t length)
 {
     for (size_t i = 0; i < parsed->n_settings; i++) {
@@ -120,7 +128,7 @@ static Status take_recipe_line(void *user, const char *section, const char *name
     const Parsed *parsed = user;
     const Command *command = parsed->command;
     if (*section && strcmp(section, command->name) != 0)
-        return name || command_find(section)
+        return name || !parsed->find_command || parsed->find_command(section)
                    ? STATUS_OK
                    : err_set(err, STATUS_USAGE, "[%s] is not the name of a command", section);
     if (!name)
@@ -323,7 +331,7 @@ static Status note_files(Parsed *parsed, Err *err)
     int read = parsed->command->writes_last ? parsed->n_operands - 1 : parsed->n_operands;
     if (parsed->command->is_lookup)
         return STATUS_OK;
-    for (int i = 0; i < read; i++)
+    for (int i = parsed->given != NULL; i < read; i++)
         TRY(files_read(files, "the input", parsed->operands[i], err));
     for (int is_written = 0; is_written < 2; is_written++)
         for (size_t i = 0; i < parsed->n_settings; i++)
@@ -338,7 +346,7 @@ static Status check_present(const Parsed *parsed, Err *err)
 {
     const Command *command = parsed->command;
     const Setting *output = find(parsed, "output", strlen("output"));
-    if (command->needs_output && setting_count(output) == 0)
+    if (command->needs_output && !parsed->in_memory && setting_count(output) == 0)
         return err_set(err, STATUS_USAGE, "-o %s is missing; usage: corcast %s %s",
                        output->option->argument, command->name, command->operands);
     if (parsed->n_operands < command->min_operands)

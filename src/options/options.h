@@ -1,7 +1,7 @@
 /* Options, each described once. A description says what an option is called, what it sets, which
  * values it takes and what it means; command line, recipe, help, man page, completion and reference
- * are made from it, and values are written back through it. A Command is its descriptions and the
- * function that runs it. */
+ * are made from it, and values are written back through it. A Command is what is known of an
+ * operation before it runs; how it is run is its caller's. */
 #ifndef CORCAST_OPTIONS_OPTIONS_H
 #define CORCAST_OPTIONS_OPTIONS_H
 
@@ -210,8 +210,10 @@ typedef struct Command {
         const OptionTable *table;
         size_t at; /* offset in that struct of the one that the table sets */
     } tables[MAX_TABLES];
-    Status (*run)(void *options, Parsed *parsed, Err *err);
 } Command;
+
+/* Finds the command of this name; NULL when there is none. */
+typedef const Command *FindCommand(const char *name);
 
 /* The options that every command has. */
 typedef struct Common {
@@ -234,7 +236,8 @@ typedef struct Setting {
 
 struct Parsed {
     const Command *command;
-    void *options; /* of the command, command->size bytes; owned */
+    FindCommand *find_command; /* checks the names of a recipe's sections; NULL: any name stands */
+    void *options;             /* of the command, command->size bytes; owned */
     Common common;
     ReadOptions reading; /* of commands that read trees */
     Setting *settings;   /* all options, the command's first; owned */
@@ -242,6 +245,8 @@ struct Parsed {
     Files files; /* that operands and options name */
     const char *operands[MAX_OPERANDS];
     int n_operands;
+    const Tree *given; /* stands in for the first operand (parsed_give); borrowed; NULL: none */
+    bool in_memory;    /* the caller takes the result in memory: --output may be missing */
 };
 
 /* What an option of the command line takes to have an effect. */
@@ -254,6 +259,13 @@ typedef struct OptionNeed {
 /* The command's options with their defaults, in *parsed (parsed_release). */
 MUST_CHECK Status parsed_init(Parsed *parsed, const Command *command, Err *err);
 void parsed_release(Parsed *parsed);
+
+/* Makes `tree` the first operand, in place of a file. The operand is then `name`, which sentences
+ * and provenance contain: the path that the tree was read from. NULL calls the tree parsed_memory
+ * in sentences, and names it in provenance as the help names the operand. Tree and name are
+ * borrowed until parsed_release. Call it before operands are added. */
+void parsed_give(Parsed *parsed, const Tree *tree, const char *name);
+extern const char parsed_memory[]; /* "the tree" */
 
 /* Reads the arguments after the command's name, the recipe first so that the command line wins.
  * STATUS_USAGE with a sentence that names the option, its value and what is allowed; errors as

@@ -420,7 +420,7 @@ done:
     return status;
 }
 
-static Status run_compare(void *options, Parsed *parsed, Err *err)
+Status run_compare(void *options, Parsed *parsed, Err *err)
 {
     CompareOptions *own_options = options;
     bool agrees;
@@ -477,5 +477,4 @@ const Command command_compare = {
     .size = sizeof(CompareOptions),
     .set_defaults = compare_set_defaults,
     .tables = {{&compare_options, 0}, {&judge_options, offsetof(CompareOptions, judge)}},
-    .run = run_compare,
 };

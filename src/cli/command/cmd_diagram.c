@@ -191,7 +191,7 @@ static Status check(const DiagramOptions *options, const Parsed *parsed, Err *er
     return frames_check_output(options->output, false, err);
 }
 
-static Status run_diagram(void *options, Parsed *parsed, Err *err)
+Status run_diagram(void *options, Parsed *parsed, Err *err)
 {
     const DiagramOptions *own_options = options;
     Drawing drawing = {0};
@@ -228,5 +228,4 @@ const Command command_diagram = {
     .tables = {{&own_table, 0},
                COLORING_TABLES(DiagramOptions, coloring),
                {&press_table, offsetof(DiagramOptions, press)}},
-    .run = run_diagram,
 };

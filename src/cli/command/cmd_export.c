@@ -210,7 +210,7 @@ static Status export_page(const ExportOptions *options, const Parsed *parsed, Er
     return status;
 }
 
-static Status run_export(void *options, Parsed *parsed, Err *err)
+Status run_export(void *options, Parsed *parsed, Err *err)
 {
     ExportOptions *own_options = options;
     const VolumeFormat *volume = volume_format_find(own_options->output);
@@ -254,5 +254,4 @@ const Command command_export = {
     .tables = {{&own_table, 0},
                {&volume_table, offsetof(ExportOptions, volume)},
                COLORING_TABLES(ExportOptions, meshing.coloring)},
-    .run = run_export,
 };

@@ -472,9 +472,9 @@ static void figure_done(Figure *figure)
     free(figure->insets);
 }
 
-static Status run_figure(void *options, Parsed *parsed, Err *err)
+Status run_figure(void *options, Parsed *parsed, Err *err)
 {
-    Figure figure = {.options = options, .parsed = parsed};
+    Figure figure = {.options = options, .parsed = parsed, .trees = {.run = command_run}};
     char *recipe = NULL;
     TRY(check_output(options, err));
     TRY(find_recipe(parsed->operands[0], &recipe, err));
@@ -499,5 +499,4 @@ const Command command_figure = {
     .size = sizeof(FigureOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, {&press_table, offsetof(FigureOptions, press)}},
-    .run = run_figure,
 };

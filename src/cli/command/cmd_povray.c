@@ -96,7 +96,7 @@ static Status check(PovrayOptions *options, const Parsed *parsed, Err *err)
     return options->has_size ? STATUS_OK : size_of_scene(parsed->operands[0], &options->size, err);
 }
 
-static Status run_povray(void *options, Parsed *parsed, Err *err)
+Status run_povray(void *options, Parsed *parsed, Err *err)
 {
     PovrayOptions *own_options = options;
     Progress progress;
@@ -141,5 +141,4 @@ const Command command_povray = {
     .size = sizeof(PovrayOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}},
-    .run = run_povray,
 };

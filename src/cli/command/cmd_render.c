@@ -2,7 +2,7 @@
 #include "cli/commands.h"
 #include "job/picture/render.h"
 
-static Status run_render(void *options, Parsed *parsed, Err *err)
+Status run_render(void *options, Parsed *parsed, Err *err)
 {
     return render_run(options, parsed, err);
 }
@@ -27,5 +27,4 @@ const Command command_render = {
                {&annotation_table, offsetof(RenderOptions, annotation)},
                PICTURE_TABLES(RenderOptions, picture),
                {&press_table, offsetof(RenderOptions, press)}},
-    .run = run_render,
 };

@@ -222,7 +222,7 @@ static Status write_source(const SceneOptions *options, const Emitter *emitter,
     return status;
 }
 
-static Status run_scene(void *options, Parsed *parsed, Err *err)
+Status run_scene(void *options, Parsed *parsed, Err *err)
 {
     const SceneOptions *own_options = options;
     const Emitter *emitter;
@@ -249,5 +249,4 @@ const Command command_scene = {
     .size = sizeof(SceneOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(SceneOptions, picture)},
-    .run = run_scene,
 };

@@ -359,7 +359,7 @@ static Status verify(Verification *v, int frame, Folder *folder, Parsed *parsed,
     return check_shows_something(v, err);
 }
 
-static Status run_verify(void *options, Parsed *parsed, Err *err)
+Status run_verify(void *options, Parsed *parsed, Err *err)
 {
     VerifyOptions *own_options = options;
     Status status = STATUS_OK;
@@ -404,5 +404,4 @@ const Command command_verify = {
     .size = sizeof(VerifyOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(VerifyOptions, picture)},
-    .run = run_verify,
 };
