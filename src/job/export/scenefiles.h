@@ -1,6 +1,6 @@
 /* A scene as the files that another program reads, and which POV-Ray to run. */
-#ifndef CORCAST_JOB_EXPORT_POVFILES_H
-#define CORCAST_JOB_EXPORT_POVFILES_H
+#ifndef CORCAST_JOB_EXPORT_SCENEFILES_H
+#define CORCAST_JOB_EXPORT_SCENEFILES_H
 
 #include "base/base.h"
 #include "compare/compare.h"

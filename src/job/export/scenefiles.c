@@ -1,5 +1,5 @@
 /* Where the files of a scene go, and which POV-Ray draws them. */
-#include "job/export/povfiles.h"
+#include "job/export/scenefiles.h"
 
 #include "job/export/volumes.h"
 #include "job/picture/picture.h"

@@ -2,26 +2,17 @@
  * format has no use for are refused. OpenSCAD has two: modules, which it unites for half a second
  * each, and one closed surface; where nothing that is asked for decides, the number of vessels
  * does. */
-#include "cli/commands.h"
+#include "job/export/scene.h"
+
 #include "job/export/meshing.h"
-#include "job/export/povfiles.h"
-#include "job/picture/picture.h"
+#include "job/export/scenefiles.h"
 #include "options/output.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* How a model for OpenSCAD is made. */
-typedef enum ScadForm { SCAD_AUTO, SCAD_PARAMETRIC, SCAD_POLYHEDRON } ScadForm;
 static const char *const scad_forms[] = {
     [SCAD_AUTO] = "auto", [SCAD_PARAMETRIC] = "parametric", [SCAD_POLYHEDRON] = "polyhedron", NULL};
-
-typedef struct SceneOptions {
-    const char *output;
-    bool ids, ini;
-    ScadForm scad;
-    PictureOptions picture;
-} SceneOptions;
 
 static const Option own[] = {
     {.name = "output",
