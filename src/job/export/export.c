@@ -196,7 +196,7 @@ static Status export_page(const ExportOptions *options, const Parsed *parsed, Er
     return status;
 }
 
-Status run_export(void *options, Parsed *parsed, Err *err)
+Status export_run(void *options, Parsed *parsed, Err *err)
 {
     ExportOptions *own_options = options;
     const VolumeFormat *volume = volume_format_find(own_options->output);

@@ -20,4 +20,9 @@ typedef struct ExportOptions {
 /* Describes the operation. Its options set an ExportOptions. */
 extern const Command command_export;
 
+/* Checks the options, a pointer to an ExportOptions, makes what they ask for of the tree, and
+ * writes it.
+ */
+MUST_CHECK Status export_run(void *options, Parsed *parsed, Err *err);
+
 #endif

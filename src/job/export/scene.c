@@ -213,7 +213,7 @@ static Status write_source(const SceneOptions *options, const Emitter *emitter,
     return status;
 }
 
-Status run_scene(void *options, Parsed *parsed, Err *err)
+Status scene_run(void *options, Parsed *parsed, Err *err)
 {
     const SceneOptions *own_options = options;
     const Emitter *emitter;

@@ -23,4 +23,9 @@ typedef struct SceneOptions {
 /* Describes the operation. Its options set a SceneOptions. */
 extern const Command command_scene;
 
+/* Checks the options, a pointer to a SceneOptions, makes what they ask for of the tree, and writes
+ * it.
+ */
+MUST_CHECK Status scene_run(void *options, Parsed *parsed, Err *err);
+
 #endif
