@@ -42,6 +42,9 @@ typedef struct Err {
  * err_set(err, STATUS_INPUT, "...");`. `err` may be NULL. */
 Status err_set(Err *err, Status status, const char *format, ...) PRINTF_LIKE(3, 4);
 
+/* Fails with STATUS_CANCELLED: a progress callback asked to stop. `err` may be NULL. */
+Status err_cancelled(Err *err);
+
 /* Puts text in front of the sentence: err_prefix(err, "%s: ", path). `err` may be NULL. */
 void err_prefix(Err *err, const char *format, ...) PRINTF_LIKE(2, 3);
 

@@ -414,12 +414,17 @@ Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
     return parsed->common.help ? STATUS_OK : complete(parsed, err);
 }
 
+Status options_refuse(const Parsed *parsed, const char *name, Err *err)
+{
+    const Written as = {name, strlen(name), NULL, true};
+    return refuse_option(parsed, name, &as, "", err);
+}
+
 Status options_set(Parsed *parsed, const OptionText *text, Err *err)
 {
-    const Written as = {text->name, strlen(text->name), NULL, true};
-    Setting *setting = find(parsed, as.name, as.length);
+    Setting *setting = find(parsed, text->name, strlen(text->name));
     if (!setting)
-        return refuse_option(parsed, as.name, &as, "", err);
+        return options_refuse(parsed, text->name, err);
     TRY(setting_read(setting, text->value, err));
     setting->typed = setting->said = true;
     return STATUS_OK;

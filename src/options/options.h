@@ -282,6 +282,10 @@ typedef struct OptionText {
  * an unknown name or a wrong value; the option then keeps its value. */
 MUST_CHECK Status options_set(Parsed *parsed, const OptionText *text, Err *err);
 
+/* Returns STATUS_USAGE, with a sentence that names the option that may have been meant, for a name
+ * that no option of the command has. */
+Status options_refuse(const Parsed *parsed, const char *name, Err *err);
+
 /* Does what options_parse does, for a program in place of a command line: reads the recipe if one
  * of the `n` options names one, sets the options in their order, and checks what can only be
  * checked of all together. The values are borrowed until parsed_release. Errors: as options_parse.

@@ -32,7 +32,7 @@ typedef struct OracleParams {
     double clock;        /* of the scene, 0 to 1 */
     double patience_s;   /* POV-Ray is ended after this many seconds without output, and after five
                           * times as many without progress; 0: never */
-    void (*progress)(double fraction, void *context); /* may be NULL */
+    bool (*progress)(double fraction, void *context); /* false: stop; may be NULL */
     void *progress_context;
 } OracleParams;
 

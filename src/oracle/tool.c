@@ -131,6 +131,7 @@ typedef struct Log {
     double bytes;      /* number of bytes read so far */
     double heard_s;    /* time of the last output */
     double progress_s; /* time at which `progress` changed, or the program began */
+    bool cancelled;    /* the progress callback asked to stop */
     char progress[80]; /* the last line with a percentage, up to the percentage */
 } Log;
 
@@ -173,8 +174,8 @@ static void report_progress(const Tool *tool, Log *log, size_t size)
     if (at == first || sscanf(chars + at, "%d%%)", &percent) != 1)
         return;
     note_progress(log, chars + at);
-    if (tool->progress)
-        tool->progress(percent / 100.0, tool->progress_context);
+    if (tool->progress && !tool->progress(percent / 100.0, tool->progress_context))
+        log->cancelled = true;
 }
 
 /* Reads once if there is something within `wait_ms`; false at the end of all. */
@@ -219,6 +220,8 @@ static Status check_life(const Tool *tool, const Log *log, Err *err)
 {
     enum { PATIENCE_WITHOUT_PROGRESS = 5 }; /* POV-Ray reports no progress while it parses */
     double now_s = clock_seconds(), patience_s = tool->patience_s;
+    if (log->cancelled)
+        return err_cancelled(err);
     if (log->bytes > log_most)
         return err_set(err, STATUS_TOOL, "%s was ended: it has said more than %.0f MB about %s",
                        tool->name, log_most * 1e-6, tool->scene);

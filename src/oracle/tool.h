@@ -30,7 +30,8 @@ typedef struct Tool {
     const char *patience; /* the variable that sets patience_s */
     double patience_s;    /* the program is ended after this many seconds without output, and after
                            * five times as many without progress; 0: never */
-    void (*progress)(double fraction, void *context); /* told of each "(30%)"; may be NULL */
+    bool (*progress)(double fraction, void *context); /* receives each "(30%)"; false: the program
+                                                       * is ended; NULL: none */
     void *progress_context;
     /* Adds the program and its arguments; `scene` and `picture` are how it is to call them. */
     Status (*add_arguments)(const void *context, const char *scene, const char *picture,

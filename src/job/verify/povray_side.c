@@ -282,7 +282,7 @@ typedef struct PlaneRun {
     Runs *runs;
 } PlaneRun;
 
-static void report_plane(double fraction, void *context)
+static bool report_plane(double fraction, void *context)
 {
     PlaneRun *run = context;
     Runs *runs = run->runs;
@@ -291,8 +291,9 @@ static void report_plane(double fraction, void *context)
     run->fraction = fraction;
     for (size_t i = 0; i < runs->n; i++)
         sum += runs->run[i].fraction;
-    progress_show(&runs->progress, sum / (double)runs->n);
+    const bool goes_on = progress_show(&runs->progress, sum / (double)runs->n);
     pthread_mutex_unlock(&runs->lock);
+    return goes_on;
 }
 
 /* How many run side by side, each on its share of the processors that were asked for. */
