@@ -200,7 +200,7 @@ Status verification_pick_frame(Verification *v, int frame, Err *err)
     const Appearance *all = &v->scene.appearance;
     size_t n = all->n_frames ? all->n_frames : 1;
     if (frame > 0)
-        TRY(coloring_check_frame(frame, all->name ? all->name : "the picture", n, err));
+        TRY(fieldscale_check_frame(frame, all->name ? all->name : "the picture", n, err));
     v->frame = frame ? frame : 1;
     if (all->n_frames == 0)
         return STATUS_OK;
