@@ -342,9 +342,9 @@ static Status verify(Verification *v, int frame, Folder *folder, Parsed *parsed,
     PictureReport made;
     TRY(picture_scene(v->picture, parsed, &v->scene, &made, err));
     TRY(picture_check_ids(&v->scene.geometry, parsed->operands[0], err));
-    TRY(picture_say(&v->scene, &made, parsed->common.quiet, err));
+    TRY(picture_say(&v->scene, &made, parsed->common.talk, err));
     TRY(picture_say_effects(v->picture, &v->scene.view, "left out on both sides",
-                            parsed->common.quiet, err));
+                            parsed->common.talk, err));
     v->scene.view.effects = (Effects){0};
     if (!v->picture->stage.has_location)
         move_off_ties(&v->scene.view.camera);

@@ -346,13 +346,13 @@ static Status set_said(const Coloring *coloring, const Values *values, const Val
     return status;
 }
 
-void coloring_say(const Appearance *appearance)
+void coloring_say(const Appearance *appearance, const Talk *talk)
 {
     const double decades = 3;
     ColorScale log = appearance->scale;
     if (!appearance->said)
         return;
-    fprintf(stderr, "corcast: %s\n", appearance->said);
+    talk_note(talk, "%s", appearance->said);
     log.log = true;
     if (!appearance->fitted || appearance->scale.log || colorscale_steps(&appearance->scale) ||
         appearance->scale.range[0] < 0 ||
@@ -360,8 +360,8 @@ void coloring_say(const Appearance *appearance)
         return;
     double span = elementary_log10(log.range[1] / log.range[0]);
     if (span > decades)
-        fprintf(stderr, "corcast: the field %s spans %.1f decades, which --log shows evenly\n",
-                log.name, span);
+        talk_note(talk, "the field %s spans %.1f decades, which --log shows evenly", log.name,
+                  span);
 }
 
 json_t *coloring_json(const Appearance *appearance)

@@ -76,8 +76,8 @@ typedef struct ColoredTree {
 MUST_CHECK Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree,
                                       const Look *look, Appearance *appearance, Err *err);
 
-/* Says on standard error what the colours mean, and which option would show more. */
-void coloring_say(const Appearance *appearance);
+/* Says what the colours mean, and whether --log would show more. Without a scale says nothing. */
+void coloring_say(const Appearance *appearance, const Talk *talk);
 /* The same for programs; null without a scale. */
 json_t *coloring_json(const Appearance *appearance);
 
