@@ -19,5 +19,7 @@ typedef struct ExportOptions {
 
 /* Describes the operation. Its options set an ExportOptions. */
 extern const Command command_export;
+/* Runs the operation: checks the options, works and writes. Errors are in the sentences. */
+MUST_CHECK Status run_export(void *options, Parsed *parsed, Err *err);
 
 #endif
