@@ -1,7 +1,7 @@
 /* POV-Ray with the switches that `verify` gives it, on any scene; the size is what a scene of ours
  * asks for in its header. */
 #include "cli/commands.h"
-#include "job/export/povfiles.h"
+#include "job/export/scenefiles.h"
 #include "job/picture/frames.h"
 #include "job/picture/picture.h"
 #include "options/options.h"

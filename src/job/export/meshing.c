@@ -3,7 +3,7 @@
 #include "job/export/meshing.h"
 
 #include "derive/derive.h"
-#include "job/export/povfiles.h"
+#include "job/export/scenefiles.h"
 #include "job/export/solver_files.h"
 #include "job/picture/picture.h"
 #include "options/output.h"

@@ -9,7 +9,7 @@
  * leaves out is chosen by where vessels lie, never by what corcast has drawn. */
 #include "job/verify/povray_side.h"
 
-#include "job/export/povfiles.h"
+#include "job/export/scenefiles.h"
 #include "job/picture/frames.h"
 #include "options/talk.h"
 #include "oracle/oracle.h"

@@ -4,7 +4,7 @@
  * whose picture must be POV-Ray's, and where that sees the surface is compared with where it is. */
 #include "job/verify/verification.h"
 
-#include "job/export/povfiles.h"
+#include "job/export/scenefiles.h"
 #include "job/picture/frames.h"
 #include "job/verify/povray_side.h"
 #include "oracle/settle.h"
