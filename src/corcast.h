@@ -40,7 +40,7 @@
  * THREADS. Two threads may use two handles at the same time. Two threads may pass one handle to two
  * functions at the same time if both take it as a pointer to const. An operation may use several
  * threads of its own: the option "threads", 0 for all processors. Callbacks are called by the
- * thread that called the operation.
+ * thread that called the operation; those of corcast_verify, one at a time, by any thread.
  *
  * SURROUNDINGS. The library has no global state. It never writes to standard output or standard
  * error, never reads standard input, never ends the process, and never reads or changes the
@@ -156,8 +156,9 @@ CORCAST_API int corcast_options_get(corcast_options *options, const char *name, 
 
 /* Receives the progress of an operation. `step` names what is done, "growing"; a step starts with
  * fraction 0, and a call with step NULL ends it. `fraction` is in [0, 1]. Return 0 to continue.
- * Any other value stops the operation soon: it fails with CORCAST_FAILED and the kind "cancelled".
- * The callback must not use the handles of the operation that calls it. */
+ * Any other value stops the operation soon: it fails with CORCAST_FAILED and the kind "cancelled",
+ * unless it ends before it notices. The callback must not use the handles of the operation that
+ * calls it. */
 typedef int corcast_progress(void *user, const char *step, double fraction);
 
 /* Receives a sentence about the work, without a final newline. `is_warning` is 0 for a fact, and 1
@@ -384,8 +385,8 @@ CORCAST_API int corcast_scene_new(const corcast_tree *tree, const corcast_option
  * Errors   CORCAST_FAILED, kind "memory", for a picture that is larger than memory; corcast_export
  *          writes such pictures band by band.
  * Stability: stable. */
-CORCAST_API int corcast_render(const corcast_scene *scene, corcast_image **out,
-                               corcast_report **report, corcast_error *error);
+CORCAST_API int corcast_render(corcast_scene *scene, corcast_image **out, corcast_report **report,
+                               corcast_error *error);
 
 /* Frees a scene. NULL is allowed.
  * Stability: stable. */

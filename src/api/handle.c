@@ -8,9 +8,9 @@
 #include <string.h>
 
 static const char *const kind_names[] = {
-    [HANDLE_ERROR] = "corcast_error", [HANDLE_OPTIONS] = "corcast_options",
+    [HANDLE_ERROR] = "corcast_error",   [HANDLE_OPTIONS] = "corcast_options",
     [HANDLE_REPORT] = "corcast_report", [HANDLE_TREE] = "corcast_tree",
-    [HANDLE_SCENE] = "corcast_scene", [HANDLE_IMAGE] = "corcast_image",
+    [HANDLE_SCENE] = "corcast_scene",   [HANDLE_IMAGE] = "corcast_image",
     [HANDLE_MESH] = "corcast_mesh"};
 
 /* Random numbers, so that no other data begins like a handle. */

@@ -19,6 +19,8 @@ typedef struct ExportOptions {
 
 /* Describes the operation. Its options set an ExportOptions. */
 extern const Command command_export;
+/* Runs the operation: checks the options, works and writes. Errors are in the sentences. */
+MUST_CHECK Status run_export(void *options, Parsed *parsed, Err *err);
 
 /* Checks the options, a pointer to an ExportOptions, makes what they ask for of the tree, and
  * writes it.

@@ -22,6 +22,8 @@ typedef struct SceneOptions {
 
 /* Describes the operation. Its options set a SceneOptions. */
 extern const Command command_scene;
+/* Runs the operation: checks the options, works and writes. Errors are in the sentences. */
+MUST_CHECK Status run_scene(void *options, Parsed *parsed, Err *err);
 
 /* Checks the options, a pointer to a SceneOptions, makes what they ask for of the tree, and writes
  * it.
