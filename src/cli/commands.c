@@ -1,59 +1,67 @@
 /* The commands there are, in the order of the help. A new one is its row here, its declaration, and
  * a file cmd_NAME.c. */
 #include "cli/commands.h"
-#include "cli/screen.h"
 
 #include "cli/help.h"
+#include "cli/screen.h"
+#include "job/export/export.h"
+#include "job/export/scene.h"
 #include <stdio.h>
 #include <string.h>
 
-const Command *const all_commands[] = {
-    &command_grow,
-    &command_refine,
-    &command_bifurcation,
-    &command_study,
-    &command_info,
-    &command_certify,
-    &command_convert,
-    &command_scene,
-    &command_export,
-    &command_povray,
-    &command_render,
-    &command_merge,
-    &command_diagram,
-    &command_figure,
-    &command_view,
-    &command_verify,
-    &command_compare,
-    &command_report,
-    &command_power,
-    &command_check_figure,
-    &command_models,
-    &command_fields,
-    &command_looks,
-    &command_presets,
-    &command_colormaps,
-    &command_domains,
-    &command_formats,
-    &command_morphometries,
-    &command_help,
-    &command_version,
-    NULL,
+const CommandRow command_rows[] = {
+    {&command_grow, run_grow},
+    {&command_refine, run_refine},
+    {&command_bifurcation, run_bifurcation},
+    {&command_study, run_study},
+    {&command_info, run_info},
+    {&command_certify, run_certify},
+    {&command_convert, run_convert},
+    {&command_scene, scene_run},
+    {&command_export, export_run},
+    {&command_povray, run_povray},
+    {&command_render, run_render},
+    {&command_merge, run_merge},
+    {&command_diagram, run_diagram},
+    {&command_figure, run_figure},
+    {&command_view, run_view},
+    {&command_verify, run_verify},
+    {&command_compare, run_compare},
+    {&command_report, run_report},
+    {&command_power, run_power},
+    {&command_check_figure, run_check_figure},
+    {&command_models, run_models},
+    {&command_fields, run_list},
+    {&command_looks, run_list},
+    {&command_presets, run_list},
+    {&command_colormaps, run_colormaps},
+    {&command_domains, run_list},
+    {&command_formats, run_list},
+    {&command_morphometries, run_list},
+    {&command_help, run_help},
+    {&command_version, run_version},
+    {0},
 };
+
+/* The row of this name; the one that ends the rows when there is none. */
+static const CommandRow *find_row(const char *name)
+{
+    const CommandRow *row = command_rows;
+    while (row->command && strcmp(row->command->name, name) != 0)
+        row++;
+    return row;
+}
 
 const Command *command_find(const char *name)
 {
-    for (const Command *const *command = all_commands; *command; command++)
-        if (strcmp((*command)->name, name) == 0)
-            return *command;
-    return NULL;
+    return find_row(name)->command;
 }
 
 Status command_unknown(const char *name, Err *err)
 {
     Suggestion suggestion = suggestion_for(name, strlen(name));
-    for (const Command *const *command = all_commands; *command; command++)
-        suggestion_offer(&suggestion, (*command)->name);
+    for (const CommandRow *row = command_rows; row->command; row++)
+        suggestion_offer(&suggestion, row->command->name);
     Status status = err_set(err, STATUS_USAGE,
                             "unknown command '%s'; corcast --help lists those there are", name);
     suggestion_add(&suggestion, "", err);
@@ -73,16 +81,17 @@ static Status check_dump(const Parsed *parsed, Err *err)
 static Status run(Parsed *parsed, Err *err)
 {
     const Command *command = parsed->command;
+    RunCommand *run_command = find_row(command->name)->run;
     if (parsed->common.help)
         return help_print(command, err);
     TRY(check_dump(parsed, err));
     if (!parsed->common.dump || command->own_recipe)
-        return command->run(parsed->options, parsed, err);
+        return run_command(parsed->options, parsed, err);
     Text recipe = TEXT_INIT; /* made first: what is written is not to be followed by a failure */
     options_put_recipe(parsed, &recipe);
     Status status = text_check(&recipe, err);
     if (status == STATUS_OK)
-        status = command->run(parsed->options, parsed, err);
+        status = run_command(parsed->options, parsed, err);
     if (status == STATUS_OK)
         fputs(text_chars(&recipe), stdout);
     text_release(&recipe);
@@ -93,6 +102,7 @@ Status command_run(const Command *command, int argc, char **argv, Err *err)
 {
     Parsed parsed;
     TRY(parsed_init(&parsed, command, err));
+    parsed.find_command = command_find;
     Screen screen;
     Status status = options_parse(&parsed, argc, argv, err);
     Talk talk = screen_talk(&screen, parsed.common.quiet);

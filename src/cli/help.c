@@ -124,8 +124,8 @@ Status help_put(HelpPut *put, const Command *command, Text *text, Err *err)
 
 Status help_put_all(HelpPut *put, Text *text, Err *err)
 {
-    for (const Command *const *command = all_commands; *command; command++)
-        TRY(help_put(put, *command, text, err));
+    for (const CommandRow *row = command_rows; row->command; row++)
+        TRY(help_put(put, row->command, text, err));
     return STATUS_OK;
 }
 
@@ -137,8 +137,8 @@ static void put_usage(Text *text)
 {
     text_puts(text, GENERATOR ": grow, draw and verify arterial trees\n\n"
                               "usage: corcast COMMAND [options] [files]\n\n");
-    for (const Command *const *command = all_commands; *command; command++)
-        text_printf(text, "  %-9s %s\n", (*command)->name, (*command)->summary);
+    for (const CommandRow *row = command_rows; row->command; row++)
+        text_printf(text, "  %-9s %s\n", row->command->name, row->command->summary);
     text_printf(text,
                 "\ncorcast COMMAND --help tells the options of a command; '-' stands for standard "
                 "input\nor output wherever a file may stand.\n\nexit status: %s\n",

@@ -125,9 +125,9 @@ void manual_put_overview(Text *text)
     put_title("corcast", text);
     text_puts(text, "grow, draw and verify arterial trees\n.SH SYNOPSIS\n"
                     "\\fBcorcast\\fR \\fIcommand\\fR [options] [files]\n.SH COMMANDS\n");
-    for (const Command *const *command = all_commands; *command; command++) {
-        text_printf(text, ".TP\n\\fBcorcast\\-%s\\fR(1)\n", (*command)->name);
-        put_troff((*command)->summary, text);
+    for (const CommandRow *row = command_rows; row->command; row++) {
+        text_printf(text, ".TP\n\\fBcorcast\\-%s\\fR(1)\n", row->command->name);
+        put_troff(row->command->summary, text);
         text_puts(text, "\n");
     }
     text_puts(text,
@@ -186,7 +186,7 @@ Status reference_put(Text *text, Err *err)
               "# Reference\n\n`make reference` writes this page from the descriptions that the "
               "program itself goes by. What holds\nwithout an option stands in brackets behind "
               "it.\n\nEvery command takes these options:\n");
-    TRY(help_put(put_common, all_commands[0], text, err));
+    TRY(help_put(put_common, command_rows[0].command, text, err));
     text_printf(
         text,
         "\nA recipe holds options, `name = value` a line; below `[COMMAND]` they are of that "

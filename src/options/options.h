@@ -1,7 +1,7 @@
 /* Options, each described once. A description says what an option is called, what it sets, which
  * values it takes and what it means; command line, recipe, help, man page, completion and reference
- * are made from it, and values are written back through it. A Command is its descriptions and the
- * function that runs it. */
+ * are made from it, and values are written back through it. A Command is what is known of an
+ * operation before it runs; how it is run is its caller's. */
 #ifndef CORCAST_OPTIONS_OPTIONS_H
 #define CORCAST_OPTIONS_OPTIONS_H
 
@@ -46,7 +46,6 @@ static inline bool color_is_none(Vec3 color)
 typedef struct VectorList {
     Vec3 at[MAX_LIST];
     size_t n;
-    bool from_recipe; /* all so far; the first on the command line replaces them */
 } VectorList;
 
 typedef struct NumberList {
@@ -176,6 +175,7 @@ static inline const char *option_unit(const Option *option)
 #define OPTION_TYPE_CHOICE int : (char)0, unsigned
 
 typedef struct Parsed Parsed;
+typedef struct OwnedText OwnedText;
 
 /* Descriptions that set members of one struct. */
 typedef struct OptionTable {
@@ -210,8 +210,10 @@ typedef struct Command {
         const OptionTable *table;
         size_t at; /* offset in that struct of the one that the table sets */
     } tables[MAX_TABLES];
-    Status (*run)(void *options, Parsed *parsed, Err *err);
 } Command;
+
+/* Finds the command of this name; NULL when there is none. */
+typedef const Command *FindCommand(const char *name);
 
 /* The options that every command has. */
 typedef struct Common {
@@ -234,14 +236,18 @@ typedef struct Setting {
 
 struct Parsed {
     const Command *command;
-    void *options; /* of the command, command->size bytes; owned */
+    FindCommand *find_command; /* checks the names of a recipe's sections; NULL: any name stands */
+    void *options;             /* of the command, command->size bytes; owned */
     Common common;
     ReadOptions reading; /* of commands that read trees */
     Setting *settings;   /* all options, the command's first; owned */
     size_t n_settings;
-    Files files; /* that operands and options name */
+    OwnedText *texts; /* values that options_set copied; owned */
+    Files files;      /* that operands and options name */
     const char *operands[MAX_OPERANDS];
     int n_operands;
+    const Tree *given; /* stands in for the first operand (parsed_give); borrowed; NULL: none */
+    bool in_memory;    /* the caller takes the result in memory: --output may be missing */
 };
 
 /* What an option of the command line takes to have an effect. */
@@ -255,11 +261,34 @@ typedef struct OptionNeed {
 MUST_CHECK Status parsed_init(Parsed *parsed, const Command *command, Err *err);
 void parsed_release(Parsed *parsed);
 
+/* Makes `tree` the first operand, in place of a file. The operand is then `name`, which sentences
+ * and provenance contain: the path that the tree was read from. NULL calls the tree parsed_memory
+ * in sentences, and names it in provenance as the help names the operand. Tree and name are
+ * borrowed until parsed_release. Call it before operands are added. */
+void parsed_give(Parsed *parsed, const Tree *tree, const char *name);
+extern const char parsed_memory[]; /* "the tree" */
+
 /* Reads the arguments after the command's name, the recipe first so that the command line wins.
  * STATUS_USAGE with a sentence that names the option, its value and what is allowed; errors as
  * files_read and files_write have them for the files that operands and options name. Of a value
  * given twice the last holds. With --help, nothing needs to be there. */
 MUST_CHECK Status options_parse(Parsed *parsed, int argc, char **argv, Err *err);
+
+/* Sets an option by its name, without dashes, as the command line does: the first value replaces
+ * the default, and each value of an OPTION_VECTORS is appended. An option may be set again.
+ *
+ * value   as the command line takes it; "on" for a flag. The value is copied.
+ * Errors  STATUS_USAGE with the sentence of the command line: there is no such option, or it does
+ *         not take this value, and keeps the value before. STATUS_MEMORY. */
+MUST_CHECK Status options_set(Parsed *parsed, const char *name, const char *value, Err *err);
+/* Appends the value of an option as options_set takes it. The values of an OPTION_VECTORS stand on
+ * a line each. Appends nothing for an option that has no value and for a flag that is not set.
+ * Errors  STATUS_USAGE when there is no such option. STATUS_MEMORY. */
+MUST_CHECK Status options_get(const Parsed *parsed, const char *name, Text *text, Err *err);
+/* Completes options that were set by name: reads the recipe, sets what follows from other options,
+ * and checks everything that options_parse checks. Call it once, after the operands are set.
+ * Errors  as options_parse. */
+MUST_CHECK Status options_finish(Parsed *parsed, Err *err);
 
 /* Whether an option is a key of a recipe. */
 typedef bool OptionIsKey(const Option *option);

@@ -93,10 +93,12 @@ static const char *whole_extension(const char *path)
 
 /* Appends the output under the name that the help gives it, with the extension that it has: what is
  * written does not depend on its own name, but where it tells that. */
-static void put_output(const Setting *setting, Text *text)
+static void put_output(const Setting *setting, bool in_memory, Text *text)
 {
     const char *path = *(const char *const *)(setting->base + setting->option->where);
     const char *name = setting->option->argument, *extension = whole_extension(path ? path : "");
+    if (!path && in_memory)
+        path = name;
     if (!path)
         return;
     text_puts(text, " -o ");
@@ -125,22 +127,32 @@ void put_shell_operand(Text *text, const char *path)
     text_release(&word);
 }
 
+/* Appends the operands by their last components. */
+static void put_operands(const Parsed *parsed, Text *text)
+{
+    const char *first = parsed->command->operands; /* "T.swc -o P.png" */
+    for (int i = 0; i < parsed->n_operands; i++) {
+        text_puts(text, " ");
+        if (parsed->operands[i] == parsed_memory)
+            text_append(text, first, strcspn(first, " "));
+        else
+            put_shell_operand(text, file_name(parsed->operands[i]));
+    }
+}
+
 Status command_line_text(const Parsed *parsed, char **out, Err *err)
 {
     Parsed plain;
     TRY(parsed_init(&plain, parsed->command, err));
     Text text = TEXT_INIT;
     text_printf(&text, "corcast %s", parsed->command->name);
-    for (int i = 0; i < parsed->n_operands; i++) {
-        text_puts(&text, " ");
-        put_shell_operand(&text, file_name(parsed->operands[i]));
-    }
+    put_operands(parsed, &text);
     for (size_t i = 0; i < parsed->n_settings; i++)
         if (tells(&parsed->settings[i], &plain.settings[i], &text))
             put_setting(&parsed->settings[i], put_shown_value, &text);
     const Setting *output = parsed_find(parsed, "output", strlen("output"));
     if (output)
-        put_output(output, &text);
+        put_output(output, parsed->in_memory, &text);
     parsed_release(&plain);
     return take_line(&text, out, err);
 }

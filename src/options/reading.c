@@ -96,26 +96,24 @@ static Status check(const ReadOptions *options, Err *err)
     return STATUS_OK;
 }
 
-static void say_cuts(const TreeReading *reading)
+static void say_cuts(const Talk *talk, const TreeReading *reading)
 {
     const ReadCut *cut = reading->network.cut;
-    if (reading->network.n_cuts == 0)
-        return;
-    fprintf(stderr,
-            "corcast: %zu loop%s cut, the first at %g, %g, %g mm where the radius is %g mm\n",
-            reading->network.loops, reading->network.loops == 1 ? " is" : "s are", cut->position.x,
-            cut->position.y, cut->position.z, cut->radius_mm);
+    if (reading->network.n_cuts > 0)
+        talk_note(talk, "%zu loop%s cut, the first at %g, %g, %g mm where the radius is %g mm",
+                  reading->network.loops, reading->network.loops == 1 ? " is" : "s are",
+                  cut->position.x, cut->position.y, cut->position.z, cut->radius_mm);
 }
 
 /* Reports radii that the options changed. */
-static void say_radii(const char *path, const TreeReading *reading)
+static void say_radii(const Talk *talk, const char *path, const TreeReading *reading)
 {
     if (reading->repaired_radii > 0)
-        fprintf(stderr, "corcast: %s: radii replaced by those of the parents: %zu\n", path,
-                reading->repaired_radii);
+        talk_note(talk, "%s: radii replaced by those of the parents: %zu", path,
+                  reading->repaired_radii);
     if (reading->given_radius > 0)
-        fprintf(stderr, "corcast: %s: segments without a radius that got --radius: %zu\n", path,
-                reading->given_radius);
+        talk_note(talk, "%s: segments without a radius that got --radius: %zu", path,
+                  reading->given_radius);
 }
 
 /* Rounds up to two digits, so that a tolerance is not below the gap. */
@@ -125,51 +123,67 @@ static double rounded_up(double gap)
     return (floor(gap / unit) + 1) * unit;
 }
 
-static void say_near_ends(const char *path, const TreeReading *reading)
+static void say_near_ends(const Talk *talk, const char *path, const TreeReading *reading)
 {
     if (reading->network.near_ends > 0)
-        fprintf(stderr,
-                "corcast: %s: ends that miss another tree by at most %.2g mm: %zu; "
-                "--merge-tolerance %.2g joins them\n",
-                path, reading->network.near_mm, reading->network.near_ends,
-                rounded_up(1.001 * reading->network.near_mm));
+        talk_note(talk,
+                  "%s: ends that miss another tree by at most %.2g mm: %zu; "
+                  "--merge-tolerance %.2g joins them",
+                  path, reading->network.near_mm, reading->network.near_ends,
+                  rounded_up(1.001 * reading->network.near_mm));
 }
 
-static void say_unit(const char *path, const TreeReading *reading)
+static void say_unit(const Talk *talk, const char *path, const TreeReading *reading)
 {
     const char *unit = length_unit_names[reading->unit];
     if (reading->unit_said || reading->median_radius_mm == 0)
         return;
     if (reading->believes && reading->believed != reading->unit)
-        fprintf(stderr,
-                "corcast: %s: the unit is taken for %s, but the median radius, %.3g, looks like "
-                "%s; --input-unit tells\n",
-                path, unit, reading->median_radius_mm / length_unit_mm(reading->unit),
-                length_unit_names[reading->believed]);
+        talk_note(talk,
+                  "%s: the unit is taken for %s, but the median radius, %.3g, looks like "
+                  "%s; --input-unit tells",
+                  path, unit, reading->median_radius_mm / length_unit_mm(reading->unit),
+                  length_unit_names[reading->believed]);
     if (reading->looks_like_voxels)
-        fprintf(stderr,
-                "corcast: %s: all coordinates are whole numbers, which looks like voxels; "
-                "--voxel-size tells\n",
-                path);
+        talk_note(talk,
+                  "%s: all coordinates are whole numbers, which looks like voxels; "
+                  "--voxel-size tells",
+                  path);
+}
+
+static Status read_file(const Parsed *parsed, const char *path, Tree *tree, TreeReading *reading,
+                        Err *err)
+{
+    const Talk *talk = parsed->common.talk;
+    TRY(check(&parsed->reading, err));
+    TRY(tree_read_as(tree, path, &parsed->reading, reading, err));
+    say_cuts(talk, reading);
+    say_radii(talk, path, reading);
+    say_near_ends(talk, path, reading);
+    say_unit(talk, path, reading);
+    return STATUS_OK;
+}
+
+static Status copy_given(const Parsed *parsed, Tree *tree, TreeReading *reading, Err *err)
+{
+    *reading = (TreeReading){.format = "memory", .unit = LENGTH_MM, .unit_said = true};
+    TRY(reading_refuse(parsed, "is for a tree in a file", err));
+    TRY(reading_measure(reading, parsed->given, err));
+    return tree_pruned(parsed->given, 0, tree, err);
 }
 
 Status reading_tree(const Parsed *parsed, const char *path, Tree *tree, TreeReading *reading,
                     Err *err)
 {
-    TreeReading own;
-    TRY(check(&parsed->reading, err));
-    TRY(tree_read_as(tree, path, &parsed->reading, &own, err));
-    if (!parsed->common.quiet) {
-        say_cuts(&own);
-        say_radii(path, &own);
-        say_near_ends(path, &own);
-        say_unit(path, &own);
-    }
-    if (reading)
+    TreeReading own = {0};
+    Status status = parsed->given && path == parsed->operands[0]
+                        ? copy_given(parsed, tree, &own, err)
+                        : read_file(parsed, path, tree, &own, err);
+    if (status == STATUS_OK && reading)
         *reading = own;
     else
         reading_release(&own);
-    return STATUS_OK;
+    return status;
 }
 
 /* ---- info ------------------------------------------------------------------------------------ */

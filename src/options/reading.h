@@ -12,8 +12,15 @@ extern const OptionTable reading_table; /* sets a ReadOptions */
  * none has an effect: "needs --from". */
 MUST_CHECK Status reading_refuse(const Parsed *parsed, const char *sentence, Err *err);
 
-/* Reads a tree as the options say, as tree_read_as, and says on standard error, unless quiet, where
- * loops were cut and which unit the radii look like if it is another. */
+/* Reads a tree as the options say, or copies the tree in memory that stands in for the first
+ * operand.
+ *
+ * Notes tell where loops were cut, which radii were replaced, which ends nearly touch, and which
+ * unit the radii look like if it is another than the one used.
+ *
+ * path     parsed->operands[0] for the first operand.
+ * reading  receives what was found; release it with reading_release. NULL: not wanted.
+ * Errors   as tree_read_as; STATUS_USAGE for an option of reading if the tree is in memory. */
 MUST_CHECK Status reading_tree(const Parsed *parsed, const char *path, Tree *tree,
                                TreeReading *reading, Err *err);
 

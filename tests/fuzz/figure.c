@@ -1,7 +1,7 @@
 #include "fuzz.h"
 
-#include "job/figure/figure_plan.h"
 #include "cli/commands.h"
+#include "job/figure/figure_plan.h"
 
 /* A recipe that is read is written to one that is read, and says the same. */
 static void check_again(const FigurePlan *plan, const Parsed *figure)
@@ -14,6 +14,7 @@ static void check_again(const FigurePlan *plan, const Parsed *figure)
     assert(text_check(&said, &err) == STATUS_OK);
     const char *path = fuzz_file("again.ini", text_chars(&said), said.length);
     assert(parsed_init(&parsed, &command_figure, &err) == STATUS_OK);
+    parsed.find_command = command_find;
     assert(figureplan_read(path, &parsed, &copy, &err) == STATUS_OK);
     figureplan_put(&copy, &parsed, &again);
     assert(text_check(&again, &err) == STATUS_OK);
@@ -31,6 +32,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     Parsed parsed;
     Err err = {{0}};
     assert(parsed_init(&parsed, &command_figure, &err) == STATUS_OK);
+    parsed.find_command = command_find;
     Status status = figureplan_read(path, &parsed, &plan, &err);
     fuzz_check_refusal(status, &err, path);
     if (status == STATUS_OK)

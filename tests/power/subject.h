@@ -2,10 +2,10 @@
 #ifndef CORCAST_POWER_SUBJECT_H
 #define CORCAST_POWER_SUBJECT_H
 
-#include "render/render.h"
-#include "scene/scene.h"
 #include "compare/compare.h"
 #include "compare/measures/perception.h"
+#include "render/render.h"
+#include "scene/scene.h"
 
 typedef struct Subject {
     Scene scene; /* owned */

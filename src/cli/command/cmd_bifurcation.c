@@ -169,7 +169,7 @@ static void fill(const double radii[3], const double lengths[3], const double an
     tree_renumber(tree);
 }
 
-static Status run_bifurcation(void *options, Parsed *parsed, Err *err)
+Status run_bifurcation(void *options, Parsed *parsed, Err *err)
 {
     const BifurcationOptions *own_options = options;
     double radii[3], lengths[3], angles[2] = {0};
@@ -199,5 +199,4 @@ const Command command_bifurcation = {
     .size = sizeof(BifurcationOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}},
-    .run = run_bifurcation,
 };

@@ -52,7 +52,7 @@ static void show_text(const char *path, const Certified *found)
                    100 * found->part[k] / bound->bound, part_rows[k].meaning);
 }
 
-static Status run_certify(void *options, Parsed *parsed, Err *err)
+Status run_certify(void *options, Parsed *parsed, Err *err)
 {
     const CertifyOptions *own_options = options;
     const char *path = parsed->operands[0];
@@ -86,5 +86,4 @@ const Command command_certify = {
     .reads_tree = true,
     .size = sizeof(CertifyOptions),
     .tables = {{&own_table, 0}, {&certifying_table, offsetof(CertifyOptions, certifying)}},
-    .run = run_certify,
 };

@@ -296,7 +296,7 @@ static Status print_verdict(Findings *all, const CheckOptions *options, Err *err
     return STATUS_OK;
 }
 
-static Status run_check(void *options, Parsed *parsed, Err *err)
+Status run_check_figure(void *options, Parsed *parsed, Err *err)
 {
     const CheckOptions *own_options = options;
     Preset preset = {0};
@@ -326,5 +326,4 @@ const Command command_check_figure = {
     .max_operands = 1,
     .size = sizeof(CheckOptions),
     .tables = {{&own_table, 0}},
-    .run = run_check,
 };

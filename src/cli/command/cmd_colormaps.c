@@ -135,7 +135,7 @@ static Status make_plane(Plane *plane, int strips, Err *err)
     return STATUS_OK;
 }
 
-static Status run_colormaps(void *options, Parsed *parsed, Err *err)
+Status run_colormaps(void *options, Parsed *parsed, Err *err)
 {
     const ColormapsOptions *own_options = options;
     Text names = TEXT_INIT, lines = TEXT_INIT;
@@ -167,5 +167,4 @@ const Command command_colormaps = {.name = "colormaps",
                                    .examples = "  corcast colormaps --cite\n"
                                                "  corcast colormaps -o maps.png\n",
                                    .size = sizeof(ColormapsOptions),
-                                   .tables = {{&own_table, 0}},
-                                   .run = run_colormaps};
+                                   .tables = {{&own_table, 0}}};

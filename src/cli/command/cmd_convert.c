@@ -262,7 +262,7 @@ static Status check_press(const ConvertOptions *options, const char *to, const P
     return press_check(&options->press, to, parsed, err);
 }
 
-static Status run_convert(void *options, Parsed *parsed, Err *err)
+Status run_convert(void *options, Parsed *parsed, Err *err)
 {
     const ConvertOptions *own_options = options;
     const char *from = parsed->operands[0], *to = parsed->operands[1];
@@ -312,5 +312,4 @@ const Command command_convert = {
     .tables = {{&own_table, 0},
                {&blood_table, offsetof(ConvertOptions, blood)},
                {&press_table, offsetof(ConvertOptions, press)}},
-    .run = run_convert,
 };

@@ -123,8 +123,7 @@ static Status make_drawing(const DiagramOptions *options, const Parsed *parsed, 
                 of->pruned == 1 ? " is" : "s are");
     const ColoredTree tree = picture_colored_tree(of);
     TRY(coloring_appearance(&options->coloring, &tree, &drawing->look, &drawing->appearance, err));
-    if (!parsed->common.quiet)
-        coloring_say(&drawing->appearance);
+    coloring_say(&drawing->appearance, parsed->common.talk);
     TRY(paint(options, drawing, err));
     Status status = diagram_lay_out(&drawing->of.tree, options->gap_mm, &drawing->diagram, err);
     if (status == STATUS_INPUT)
@@ -192,7 +191,7 @@ static Status check(const DiagramOptions *options, const Parsed *parsed, Err *er
     return frames_check_output(options->output, false, err);
 }
 
-static Status run_diagram(void *options, Parsed *parsed, Err *err)
+Status run_diagram(void *options, Parsed *parsed, Err *err)
 {
     const DiagramOptions *own_options = options;
     Drawing drawing = {0};
@@ -229,5 +228,4 @@ const Command command_diagram = {
     .tables = {{&own_table, 0},
                COLORING_TABLES(DiagramOptions, coloring),
                {&press_table, offsetof(DiagramOptions, press)}},
-    .run = run_diagram,
 };

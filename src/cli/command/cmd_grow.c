@@ -151,7 +151,7 @@ static Status finish(const GrowOptions *options, const Common *common, const Tre
     return STATUS_OK;
 }
 
-static Status run_grow(void *options, Parsed *parsed, Err *err)
+Status run_grow(void *options, Parsed *parsed, Err *err)
 {
     GrowOptions *own_options = options;
     Growing *growing = &own_options->growing;
@@ -200,5 +200,4 @@ const Command command_grow = {
     .tables = {{&own_table, 0},
                {&growing_table, offsetof(GrowOptions, growing)},
                {&refining_table, offsetof(GrowOptions, refining)}},
-    .run = run_grow,
 };

@@ -66,7 +66,7 @@ static Status put_form(HelpForm form, const Command *command, Text *text, Err *e
     return STATUS_OK;
 }
 
-static Status run_help(void *options, Parsed *parsed, Err *err)
+Status run_help(void *options, Parsed *parsed, Err *err)
 {
     HelpForm form = ((const HelpOptions *)options)->form;
     const char *name = parsed->n_operands ? parsed->operands[0] : NULL;
@@ -97,5 +97,4 @@ const Command command_help = {
     .is_lookup = true,
     .size = sizeof(HelpOptions),
     .tables = {{&own_table, 0}},
-    .run = run_help,
 };

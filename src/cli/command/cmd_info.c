@@ -187,7 +187,7 @@ static Status find_out(const InfoOptions *options, const Tree *tree, Findings *f
                               &found->comparison, err);
 }
 
-static Status run_info(void *options, Parsed *parsed, Err *err)
+Status run_info(void *options, Parsed *parsed, Err *err)
 {
     const InfoOptions *own_options = options;
     Status status = STATUS_OK;
@@ -221,5 +221,4 @@ const Command command_info = {
     .reads_tree = true,
     .size = sizeof(InfoOptions),
     .tables = {{&own_table, 0}, {&blood_table, offsetof(InfoOptions, blood)}},
-    .run = run_info,
 };

@@ -115,7 +115,7 @@ static const Option models_own[] = {
 
 static const OptionTable models_table = OPTION_TABLE(models_own);
 
-static Status run_models(void *options, Parsed *parsed, Err *err)
+Status run_models(void *options, Parsed *parsed, Err *err)
 {
     (void)parsed;
     (void)err;
@@ -126,7 +126,7 @@ static Status run_models(void *options, Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
-static Status run_list(void *options, Parsed *parsed, Err *err)
+Status run_list(void *options, Parsed *parsed, Err *err)
 {
     (void)options;
     static const struct {
@@ -145,21 +145,15 @@ const Command command_models = {.name = "models",
                                 .summary = "the values of --model",
                                 .operands = "",
                                 .size = sizeof(ModelsOptions),
-                                .tables = {{&models_table, 0}},
-                                .run = run_models};
-const Command command_fields = {.name = "fields",
-                                .summary = "the values of --color-by, with their units",
-                                .operands = "",
-                                .run = run_list};
-const Command command_looks = {
-    .name = "looks", .summary = "the values of --look", .operands = "", .run = run_list};
+                                .tables = {{&models_table, 0}}};
+const Command command_fields = {
+    .name = "fields", .summary = "the values of --color-by, with their units", .operands = ""};
+const Command command_looks = {.name = "looks", .summary = "the values of --look", .operands = ""};
 const Command command_presets = {
-    .name = "presets", .summary = "the values of --preset", .operands = "", .run = run_list};
+    .name = "presets", .summary = "the values of --preset", .operands = ""};
 const Command command_domains = {
-    .name = "domains", .summary = "the shapes of --domain", .operands = "", .run = run_list};
+    .name = "domains", .summary = "the shapes of --domain", .operands = ""};
 const Command command_formats = {
-    .name = "formats", .summary = "the formats of tree files", .operands = "", .run = run_list};
-const Command command_morphometries = {.name = "morphometries",
-                                       .summary = "the values of --morphometry",
-                                       .operands = "",
-                                       .run = run_list};
+    .name = "formats", .summary = "the formats of tree files", .operands = ""};
+const Command command_morphometries = {
+    .name = "morphometries", .summary = "the values of --morphometry", .operands = ""};

@@ -241,7 +241,7 @@ static Status merge_runs(const char *output, Parsed *parsed, Err *err)
     return status;
 }
 
-static Status run_merge(void *options, Parsed *parsed, Err *err)
+Status run_merge(void *options, Parsed *parsed, Err *err)
 {
     static const char *const tables[] = {"csv", "jsonl", NULL};
     const char *output = ((const MergeOptions *)options)->output;
@@ -263,5 +263,4 @@ const Command command_merge = {
     .needs_output = true,
     .size = sizeof(MergeOptions),
     .tables = {{&own_table, 0}},
-    .run = run_merge,
 };

@@ -272,7 +272,7 @@ static Status check(const PowerOptions *options, const Parsed *parsed, Err *err)
     return options_check_needs(parsed, needs, err);
 }
 
-static Status run_power(void *options, Parsed *parsed, Err *err)
+Status run_power(void *options, Parsed *parsed, Err *err)
 {
     const PowerOptions *own_options = options;
     Place place = {0};
@@ -305,5 +305,4 @@ const Command command_power = {
     .size = sizeof(PowerOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, {&judge_options, offsetof(PowerOptions, judge)}},
-    .run = run_power,
 };

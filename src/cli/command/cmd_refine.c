@@ -83,7 +83,7 @@ static Status write_report(const char *path, const RefineReport *report, const T
                       path, err);
 }
 
-static Status run_refine(void *options, Parsed *parsed, Err *err)
+Status run_refine(void *options, Parsed *parsed, Err *err)
 {
     const RefineOptions *own_options = options;
     const Refining *refining = &own_options->refining;
@@ -131,5 +131,4 @@ const Command command_refine = {
     .size = sizeof(RefineOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, {&refining_table, offsetof(RefineOptions, refining)}},
-    .run = run_refine,
 };

@@ -38,7 +38,7 @@ static const Option own[] = {
 
 static const OptionTable own_table = OPTION_TABLE(own);
 
-static Status run_report(void *options, Parsed *parsed, Err *err)
+Status run_report(void *options, Parsed *parsed, Err *err)
 {
     const ReportOptions *own_options = options;
     char *folder = NULL;
@@ -70,5 +70,4 @@ const Command command_report = {
     .needs_output = true,
     .size = sizeof(ReportOptions),
     .tables = {{&own_table, 0}},
-    .run = run_report,
 };

@@ -211,7 +211,7 @@ static Status check(const StudyOptions *options, const Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
-static Status run_study(void *options, Parsed *parsed, Err *err)
+Status run_study(void *options, Parsed *parsed, Err *err)
 {
     const StudyOptions *own_options = options;
     StudyPlan plan;
@@ -241,5 +241,4 @@ const Command command_study = {
     .max_operands = MAX_OPERANDS,
     .size = sizeof(StudyOptions),
     .tables = {{&own_table, 0}},
-    .run = run_study,
 };

@@ -68,7 +68,7 @@ static void put_templates(Text *text)
     free(folder);
 }
 
-static Status run_version(void *options, Parsed *parsed, Err *err)
+Status run_version(void *options, Parsed *parsed, Err *err)
 {
     (void)options;
     (void)parsed;
@@ -98,5 +98,4 @@ const Command command_version = {
     .name = "version",
     .summary = "tell versions: of corcast, compiler, libraries, POV-Ray, OpenSCAD",
     .operands = "",
-    .run = run_version,
 };

@@ -444,7 +444,7 @@ static void set_defaults(void *options)
     own_options->recipe = "view.ini";
 }
 
-static Status run_view(void *options, Parsed *parsed, Err *err)
+Status run_view(void *options, Parsed *parsed, Err *err)
 {
     ViewOptions *own_options = options;
     Viewer viewer = {.options = &own_options->picture,
@@ -485,5 +485,4 @@ const Command command_view = {
     .size = sizeof(ViewOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(ViewOptions, picture)},
-    .run = run_view,
 };

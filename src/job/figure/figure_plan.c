@@ -5,7 +5,6 @@
 #include "job/figure/figure_plan.h"
 
 #include "options/output.h"
-#include "options/registry.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -152,9 +151,9 @@ static Status unknown_key(const char *name, const char *section, const Parsed *a
 }
 
 /* The command of this name that writes a tree, or NULL. */
-static const Command *find_maker(const char *name)
+static const Command *find_maker(FindCommand *find_command, const char *name)
 {
-    const Command *command = command_find(name);
+    const Command *command = find_command(name);
     for (int t = 0; command && t < MAX_TABLES && command->tables[t].table; t++) {
         const OptionTable *table = command->tables[t].table;
         for (size_t i = 0; i < table->n; i++)
@@ -194,7 +193,7 @@ static Status take_tree(Section *section, const Command *maker, const char *valu
 static Status take_key(Section *section, const char *name, const char *value, Err *err)
 {
     const bool panel = section->kind == SECTION_PANEL;
-    const Command *maker = panel ? find_maker(name) : NULL;
+    const Command *maker = panel ? find_maker(section->render.find_command, name) : NULL;
     if (maker || (panel && strcmp(name, "tree") == 0))
         return take_tree(section, maker, value, err);
     Setting *setting = find_key(&section->own, is_own, name);
@@ -222,6 +221,14 @@ typedef struct Reading {
     bool seen_figure, seen_panels;
     enum { IN_NOTHING, IN_FIGURE, IN_PANELS, IN_SECTION } in;
 } Reading;
+
+static Status init_render(const Reading *reading, Section *section, Err *err)
+{
+    FindCommand *find_command = reading->figure->find_command;
+    TRY(parsed_init(&section->render, find_command("render"), err));
+    section->render.find_command = find_command;
+    return STATUS_OK;
+}
 
 /* Options that [panels] gives are not typed: one without effect in this panel is no fault of it,
  * and one of the panel's own takes precedence. */
@@ -253,7 +260,7 @@ static Status add_section(Reading *reading, SectionKind kind, const char *name, 
     TRY(parsed_init(&section->own, &kinds[kind], err));
     if (kind != SECTION_PANEL)
         return STATUS_OK;
-    TRY(parsed_init(&section->render, command_find("render"), err));
+    TRY(init_render(reading, section, err));
     return take_defaults(reading, section, err);
 }
 
@@ -312,7 +319,7 @@ static Status take_default(Reading *reading, const char *name, const char *value
     Section trial = {.kind = SECTION_PANEL};
     Status status = parsed_init(&trial.own, &kinds[SECTION_PANEL], err);
     if (status == STATUS_OK)
-        status = parsed_init(&trial.render, command_find("render"), err);
+        status = init_render(reading, &trial, err);
     if (status == STATUS_OK)
         status = take_defaults(reading, &trial, err);
     parsed_release(&trial.own);

@@ -48,11 +48,11 @@ typedef struct FigurePlan {
     char *text; /* owned; what values point into */
 } FigurePlan;
 
-/* Reads a recipe. Keys of [figure] go to `figure`'s options, where the command line does not say
- * otherwise; those of [panels], which stands before all panels, are every panel's. STATUS_USAGE or
- * STATUS_INPUT, naming file and line, for sections and keys that there are none of, or that stand
- * there twice, and for values that options do not take. *plan is owned (figureplan_release), also
- * on failure. */
+/* Reads a recipe; `figure->find_command` must be set. Keys of [figure] go to `figure`'s options,
+ * where the command line does not say otherwise; those of [panels], which stands before all panels,
+ * are every panel's. STATUS_USAGE or STATUS_INPUT, naming file and line, for sections and keys that
+ * there are none of, or that stand there twice, and for values that options do not take. *plan is
+ * owned (figureplan_release), also on failure. */
 MUST_CHECK Status figureplan_read(const char *path, Parsed *figure, FigurePlan *plan, Err *err);
 void figureplan_release(FigurePlan *plan);
 

@@ -2,7 +2,6 @@
  * blanks that stand in no quotes, and it is told to be quiet and where to write. */
 #include "job/figure/figure_trees.h"
 
-#include "options/registry.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,7 +60,8 @@ static Status check_words(const Words *words, Err *err)
     return STATUS_OK;
 }
 
-static Status run_maker(const Section *section, int threads, char *file, Words *words, Err *err)
+static Status run_maker(const Section *section, int threads, RunMaker *run, char *file,
+                        Words *words, Err *err)
 {
     char limit[40], quiet[] = "--quiet", output[] = "-o";
     TRY(cut_words(section->arguments, words, err));
@@ -71,7 +71,7 @@ static Status run_maker(const Section *section, int threads, char *file, Words *
     words->word[words->n++] = quiet;
     words->word[words->n++] = output;
     words->word[words->n++] = file;
-    return command_run(section->maker, words->n, words->word, err);
+    return run(section->maker, words->n, words->word, err);
 }
 
 static Status make_tree(const FigurePlan *plan, int threads, const MadeTrees *trees, size_t i,
@@ -79,7 +79,7 @@ static Status make_tree(const FigurePlan *plan, int threads, const MadeTrees *tr
 {
     const Section *section = plan->sections[i];
     Words words = {0};
-    Status status = run_maker(section, threads, trees->files[i], &words, err);
+    Status status = run_maker(section, threads, trees->run, trees->files[i], &words, err);
     free(words.text);
     if (status == STATUS_OK)
         return STATUS_OK;

@@ -4,11 +4,15 @@
 
 #include "job/figure/figure_plan.h"
 
+/* Runs a command, whose name is not among the arguments. */
+typedef Status RunMaker(const Command *command, int argc, char **argv, Err *err);
+
 /* Files in a folder of their own, which are removed with it. */
 typedef struct MadeTrees {
     char *folder; /* owned; NULL: nothing is made */
     char **files; /* owned; of the section of this number, where it is the first with this tree */
     size_t n;
+    RunMaker *run;
 } MadeTrees;
 
 /* Names the files, in a folder beside `output`. *trees is owned (madetrees_release), also on

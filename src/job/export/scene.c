@@ -2,26 +2,17 @@
  * format has no use for are refused. OpenSCAD has two: modules, which it unites for half a second
  * each, and one closed surface; where nothing that is asked for decides, the number of vessels
  * does. */
-#include "cli/commands.h"
+#include "job/export/scene.h"
+
 #include "job/export/meshing.h"
-#include "job/export/povfiles.h"
-#include "job/picture/picture.h"
+#include "job/export/scenefiles.h"
 #include "options/output.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* How a model for OpenSCAD is made. */
-typedef enum ScadForm { SCAD_AUTO, SCAD_PARAMETRIC, SCAD_POLYHEDRON } ScadForm;
 static const char *const scad_forms[] = {
     [SCAD_AUTO] = "auto", [SCAD_PARAMETRIC] = "parametric", [SCAD_POLYHEDRON] = "polyhedron", NULL};
-
-typedef struct SceneOptions {
-    const char *output;
-    bool ids, ini;
-    ScadForm scad;
-    PictureOptions picture;
-} SceneOptions;
 
 static const Option own[] = {
     {.name = "output",
@@ -136,10 +127,10 @@ static Status write_scene(const SceneOptions *options, const Emitter *emitter,
     EmitReport report = {0};
     PictureReport made;
     TRY(picture_scene_of(picture, source, parsed, &scene, &anatomy, &made, err));
-    Status status = picture_say(&scene, &made, parsed->common.quiet, err);
+    Status status = picture_say(&scene, &made, parsed->common.talk, err);
     if (status == STATUS_OK && emitter->has_view)
         status = picture_say_effects(picture, &scene.view, "the scene is without them",
-                                     parsed->common.quiet, err);
+                                     parsed->common.talk, err);
     const EmitParams params = {.scene = &scene,
                                .anatomy = &anatomy,
                                .command = line,
@@ -222,7 +213,7 @@ static Status write_source(const SceneOptions *options, const Emitter *emitter,
     return status;
 }
 
-static Status run_scene(void *options, Parsed *parsed, Err *err)
+Status scene_run(void *options, Parsed *parsed, Err *err)
 {
     const SceneOptions *own_options = options;
     const Emitter *emitter;
@@ -249,5 +240,4 @@ const Command command_scene = {
     .size = sizeof(SceneOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(SceneOptions, picture)},
-    .run = run_scene,
 };

@@ -1,27 +1,13 @@
-/* The extension of the output chooses the emitter, as in cmd_scene.c, or an option does; meshing.c
+/* The extension of the output chooses the emitter, as in scene.c, or an option does; meshing.c
  * makes what it writes, volumes.c voxels, webpage.c a page. Options that have no effect on a format
  * are refused. */
-#include "cli/commands.h"
+#include "job/export/export.h"
+
 #include "emit/emit.h"
-#include "job/export/meshing.h"
-#include "job/export/povfiles.h"
-#include "job/export/volumes.h"
+#include "job/export/scenefiles.h"
 #include "job/export/webpage.h"
 #include "job/picture/picture.h"
 #include <string.h>
-
-#include <string.h>
-
-typedef struct ExportOptions {
-    const char *output;
-    double prune_radius_mm;
-    bool parts, lattice;
-    const char *print;
-    PrintSettings settings; /* what it says, or --wall */
-    double wall_mm;         /* 0: none */
-    MeshingOptions meshing;
-    VolumeOptions volume;
-} ExportOptions;
 
 static const Option own[] = {
     {.name = "output",
@@ -210,7 +196,7 @@ static Status export_page(const ExportOptions *options, const Parsed *parsed, Er
     return status;
 }
 
-static Status run_export(void *options, Parsed *parsed, Err *err)
+Status export_run(void *options, Parsed *parsed, Err *err)
 {
     ExportOptions *own_options = options;
     const VolumeFormat *volume = volume_format_find(own_options->output);
@@ -254,5 +240,4 @@ const Command command_export = {
     .tables = {{&own_table, 0},
                {&volume_table, offsetof(ExportOptions, volume)},
                COLORING_TABLES(ExportOptions, meshing.coloring)},
-    .run = run_export,
 };
