@@ -77,7 +77,7 @@ $(error $(INEXACT) changes results, which are to be the same bytes everywhere: l
 endif
 # The Makefile's own flags; the caller's CFLAGS, CPPFLAGS and LDFLAGS follow them.
 VECTORS :=
-OWN_CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -fPIE $(WARNINGS)
+OWN_CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -fPIC -fvisibility=hidden $(WARNINGS)
 OWN_CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-config --cflags $(PACKAGES) $(HEADERS) 2>/dev/null)
 OWN_LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE))) -pie -Wl,-z,relro,-z,now,-z,noexecstack
 COMPILE = $(CC) $(OWN_CPPFLAGS) $(CPPFLAGS) $(OWN_CFLAGS) $(HARDEN_$(MODE)) $(VECTORS) $(CFLAGS) $(EXACT)

@@ -24,6 +24,10 @@ typedef struct FileForm {
  * STATUS_MEMORY naming the file. */
 MUST_CHECK Status file_read(const char *path, const FileForm *form, char **bytes, size_t *size,
                             Err *err);
+/* Copies what the bytes of a file in memory are into *bytes, as file_read does for a file. `name`
+ * is for the sentences. Errors: as file_read. */
+MUST_CHECK Status file_read_memory(const void *from, size_t from_size, const char *name,
+                                   const FileForm *form, char **bytes, size_t *size, Err *err);
 /* Adds the size and the bytes of a file to `hash`. Errors as file_read. */
 MUST_CHECK Status file_hash(const char *path, Hash *hash, Err *err);
 /* Makes a text of what was read as bytes, as file_read does; `path` and `form` are for the

@@ -4,12 +4,12 @@
 #define CORCAST_COMPARE_COMPARE_H
 
 #include "base/base.h"
-#include "compare/picture_fault.h" // IWYU pragma: export
-#include "compare/power.h"         // IWYU pragma: export
-#include "compare/settled.h"       // IWYU pragma: export
-#include "compare/suite.h"         // IWYU pragma: export
-#include "compare/surface_check.h" // IWYU pragma: export
-#include "compare/witness.h"       // IWYU pragma: export
+#include "compare/cause/picture_fault.h" // IWYU pragma: export
+#include "compare/cause/power.h"         // IWYU pragma: export
+#include "compare/rules/settled.h"       // IWYU pragma: export
+#include "compare/suite/suite.h"         // IWYU pragma: export
+#include "compare/rules/surface_check.h" // IWYU pragma: export
+#include "compare/rules/witness.h"       // IWYU pragma: export
 #include "image/image.h"
 
 typedef enum PlaneKind { PLANE_COLOR, PLANE_DEPTH, PLANE_NORMAL, PLANE_ID, PLANE_KINDS } PlaneKind;

@@ -158,9 +158,9 @@ void figure_add_text(FigurePage *page, const FigureText *text);
 
 /* Errors: STATUS_MEMORY if an item could not be added. */
 MUST_CHECK Status figure_check(const FigurePage *page, Err *err);
-/* Prints a warning on standard error for characters that the font lacks: one line for boxes and,
- * unless `quiet`, one for substitutes. Each line begins with `command`. */
-void figure_warn(const FigurePage *page, const char *command, bool quiet);
+/* Appends a sentence that names the characters the font lacks: those with a substitute, or those
+ * that a box stands for. Appends nothing if there are none. */
+void figure_put_lacking(const FigurePage *page, bool substituted, Text *out);
 
 /* Returns the bounds of the items from index `first` on. */
 FigureBox figure_bounds(const FigurePage *page, size_t first);

@@ -200,23 +200,18 @@ Status figure_check(const FigurePage *page, Err *err)
     return page->failed ? mem_out_of("for", "the page", err) : STATUS_OK;
 }
 
-static void print_letters(const char *command, const uint32_t *letters, int n, const char *drawn)
-{
-    if (n == 0)
-        return;
-    fprintf(stderr, "%s: the font Liberation Sans lacks", command);
-    for (int i = 0; i < n; i++)
-        fprintf(stderr, "%s U+%04X", i ? "," : "", (unsigned)letters[i]);
-    fprintf(stderr, "; %s\n", drawn);
-}
-
-void figure_warn(const FigurePage *page, const char *command, bool quiet)
+void figure_put_lacking(const FigurePage *page, bool substituted, Text *out)
 {
     const FigureLetters *replaced = &page->replaced;
-    print_letters(command, replaced->boxed, replaced->n_boxed, "a box is drawn in place of each");
-    if (!quiet)
-        print_letters(command, replaced->substituted, replaced->n_substituted,
-                      "ordinary letters are drawn, small and raised or lowered");
+    const uint32_t *letters = substituted ? replaced->substituted : replaced->boxed;
+    const int n = substituted ? replaced->n_substituted : replaced->n_boxed;
+    if (n == 0)
+        return;
+    text_puts(out, "the font Liberation Sans lacks");
+    for (int i = 0; i < n; i++)
+        text_printf(out, "%s U+%04X", i ? "," : "", (unsigned)letters[i]);
+    text_puts(out, substituted ? "; ordinary letters are drawn, small and raised or lowered"
+                               : "; a box is drawn in place of each");
 }
 
 FigureBox figure_bounds(const FigurePage *page, size_t first)

@@ -71,7 +71,7 @@ typedef struct GrowParams {
     GrowToss toss;
     int threads;  /* 0: all processors. The tree does not depend on it */
     bool partial; /* a tree with fewer terminals is a result if no more find room */
-    void (*progress)(double fraction, void *context); /* NULL: none */
+    bool (*progress)(double fraction, void *context); /* false: stop; NULL: none */
     void *progress_context;
 } GrowParams;
 
@@ -182,7 +182,7 @@ typedef struct RefineParams {
     bool (*stop)(
         void *context); /* called after every move, by any thread; true stops; NULL: none */
     void *stop_context;
-    void (*progress)(double fraction, void *context); /* NULL: none */
+    bool (*progress)(double fraction, void *context); /* false: stop; NULL: none */
     void *progress_context;
 } RefineParams;
 

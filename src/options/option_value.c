@@ -239,8 +239,6 @@ static Status read_vector(const Option *option, const char *value, void *where, 
 static Status read_vectors(const Option *option, const char *value, void *where, Err *err)
 {
     VectorList *list = where;
-    if (list->from_recipe)
-        *list = (VectorList){0};
     if (list->n == MAX_LIST)
         return err_set(err, STATUS_USAGE, "--%s: may be given at most %d times", option->name,
                        MAX_LIST);

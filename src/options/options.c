@@ -1,6 +1,6 @@
 /* The command line: `--name value`, `--name=value`, `-o value`, `-h`, and operands, in any order;
- * what follows `--` are operands. It is read twice, for --recipe alone first, then in full, so that
- * the recipe's values are there when the command line's replace them.
+ * what follows `--` are operands. The recipe is read after it, and sets only options that the
+ * command line has not set.
  *
  * A recipe is an INI file, `name = value` a line, one line for each time that the option would be
  * given. A line before the first [COMMAND] is for whatever command reads it, one below is for that
@@ -75,8 +75,23 @@ Status parsed_init(Parsed *parsed, const Command *command, Err *err)
     return STATUS_OK;
 }
 
+struct OwnedText {
+    OwnedText *next;
+    char chars[];
+};
+
+static void release_texts(OwnedText *text)
+{
+    while (text) {
+        OwnedText *next = text->next;
+        free(text);
+        text = next;
+    }
+}
+
 void parsed_release(Parsed *parsed)
 {
+    release_texts(parsed->texts);
     free(parsed->common.recipe_text);
     free(parsed->settings);
     free(parsed->options);
@@ -147,6 +162,8 @@ static Status take_recipe_line(void *user, const char *section, const char *name
     if (!name)
         return STATUS_OK;
     Setting *setting = find(parsed, name, strlen(name));
+    if (setting && setting->typed)
+        return STATUS_OK;
     if (!setting || strcmp(name, "recipe") == 0 || strcmp(name, "help") == 0) {
         (void)err_set(err, STATUS_USAGE, "'%s' is not an option of %s%s", name, command->name,
                       setting ? " that a recipe may give" : "");
@@ -158,14 +175,10 @@ static Status take_recipe_line(void *user, const char *section, const char *name
 
 static Status read_recipe(Parsed *parsed, Err *err)
 {
-    TRY(ini_read(parsed->common.recipe, "a recipe", take_recipe_line, parsed,
-                 &parsed->common.recipe_text, err));
-    for (size_t i = 0; i < parsed->n_settings; i++) {
-        const Setting *setting = &parsed->settings[i];
-        if (setting->option->kind == OPTION_VECTORS)
-            ((VectorList *)(setting->base + setting->option->where))->from_recipe = true;
-    }
-    return STATUS_OK;
+    if (!parsed->common.recipe || parsed->common.recipe_text)
+        return STATUS_OK;
+    return ini_read(parsed->common.recipe, "a recipe", take_recipe_line, parsed,
+                    &parsed->common.recipe_text, err);
 }
 
 static void put_key(const Setting *setting, Text *text)
@@ -223,16 +236,6 @@ static Role role_of(const Option *option)
     return role;
 }
 
-/* Takes note of an option of the command line. Of two files only one would be read or written. */
-static Status note_typed(Setting *setting, Err *err)
-{
-    if (setting->typed && option_is_path(setting->option))
-        return err_set(err, STATUS_USAGE, "%s is given twice; give it once",
-                       role_of(setting->option).text);
-    setting->typed = true;
-    return STATUS_OK;
-}
-
 /* Whether the word after a switch is its value: not if it is another option or a file. */
 static bool is_value_of_switch(const char *word)
 {
@@ -280,37 +283,46 @@ static Status take_value(const Option *option, const Written *as, int argc, char
     return STATUS_OK;
 }
 
-static Status read_option(Parsed *parsed, int argc, char **argv, int *at, bool apply, Err *err)
+/* STATUS_USAGE for an option, as it was written, that the command does not have. */
+static Status unknown_option(const Parsed *parsed, const char *written, const char *name,
+                             size_t length, Err *err)
+{
+    (void)err_set(err, STATUS_USAGE,
+                  "unknown option '%s'; see corcast %s --help for those there are", written,
+                  parsed->command->name);
+    return suggest_option(parsed, name, length, "--", err);
+}
+
+static Status set_value(Setting *setting, const char *value, Err *err)
+{
+    TRY(setting_read(setting, value, err));
+    setting->typed = setting->said = true;
+    return STATUS_OK;
+}
+
+static Status read_option(Parsed *parsed, int argc, char **argv, int *at, Err *err)
 {
     const Written as = written(argv[*at]);
     Setting *setting = find(parsed, as.name, as.length);
-    if (!setting || !as.is_known) {
-        (void)err_set(err, STATUS_USAGE,
-                      "unknown option '%s'; see corcast %s --help for those there are", argv[*at],
-                      parsed->command->name);
-        return suggest_option(parsed, as.name, as.length, "--", err);
-    }
+    if (!setting || !as.is_known)
+        return unknown_option(parsed, argv[*at], as.name, as.length, err);
     const char *value;
     TRY(take_value(setting->option, &as, argc, argv, at, &value, err));
-    TRY(note_typed(setting, err));
-    setting->said = true;
-    bool is_recipe = strcmp(setting->option->name, "recipe") == 0;
-    return apply || is_recipe ? setting_read(setting, value, err) : STATUS_OK;
+    if (setting->typed && option_is_path(setting->option))
+        return err_set(err, STATUS_USAGE, "%s is given twice; give it once",
+                       role_of(setting->option).text);
+    return set_value(setting, value, err);
 }
 
-/* One pass over the arguments; options other than --recipe take effect only when `apply`. */
-static Status read_arguments(Parsed *parsed, int argc, char **argv, bool apply, Err *err)
+static Status read_arguments(Parsed *parsed, int argc, char **argv, Err *err)
 {
     const Command *command = parsed->command;
     bool only_operands = false;
-    parsed->n_operands = 0;
-    for (size_t i = 0; i < parsed->n_settings; i++)
-        parsed->settings[i].typed = false;
     for (int i = 0; i < argc; i++) {
         if (!only_operands && strcmp(argv[i], "--") == 0) {
             only_operands = true;
         } else if (!only_operands && argv[i][0] == '-' && argv[i][1] != '\0') {
-            TRY(read_option(parsed, argc, argv, &i, apply, err));
+            TRY(read_option(parsed, argc, argv, &i, err));
         } else if (parsed->n_operands == command->max_operands) {
             return err_set(err, STATUS_USAGE, "'%s' is one operand too many; usage: corcast %s %s",
                            argv[i], command->name, command->operands);
@@ -405,18 +417,64 @@ Status options_settle(const Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
-Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
+Status options_finish(Parsed *parsed, Err *err)
 {
-    TRY(read_arguments(parsed, argc, argv, false, err));
-    if (parsed->common.recipe)
-        TRY(read_recipe(parsed, err));
-    TRY(read_arguments(parsed, argc, argv, true, err));
-    if (parsed->common.help)
-        return STATUS_OK;
+    TRY(read_recipe(parsed, err));
     TRY(options_settle(parsed, err));
     TRY(check_present(parsed, err));
     return note_files(parsed, err);
 }
+
+Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
+{
+    TRY(read_arguments(parsed, argc, argv, err));
+    return parsed->common.help ? STATUS_OK : options_finish(parsed, err);
+}
+
+/* ---- options by name ------------------------------------------------------------------------- */
+
+/* Copies a value, which options of text kinds point into. */
+static Status keep_text(Parsed *parsed, const char *chars, const char **kept, Err *err)
+{
+    size_t size = strlen(chars) + 1;
+    OwnedText *text;
+    TRY(mem_alloc(&text, 1, sizeof *text + size, "a value", err));
+    memcpy(text->chars, chars, size);
+    text->next = parsed->texts;
+    parsed->texts = text;
+    *kept = text->chars;
+    return STATUS_OK;
+}
+
+static Status find_named(const Parsed *parsed, const char *name, Setting **setting, Err *err)
+{
+    char written[64];
+    *setting = find(parsed, name, strlen(name));
+    snprintf(written, sizeof written, "--%s", name);
+    return *setting ? STATUS_OK : unknown_option(parsed, written, name, strlen(name), err);
+}
+
+Status options_set(Parsed *parsed, const char *name, const char *value, Err *err)
+{
+    Setting *setting;
+    const char *kept;
+    TRY(find_named(parsed, name, &setting, err));
+    TRY(keep_text(parsed, value, &kept, err));
+    return set_value(setting, kept, err);
+}
+
+Status options_get(const Parsed *parsed, const char *name, Text *text, Err *err)
+{
+    Setting *setting;
+    TRY(find_named(parsed, name, &setting, err));
+    for (size_t at = 0; at < setting_count(setting); at++) {
+        text_puts(text, at ? "\n" : "");
+        setting_put(setting, at, text);
+    }
+    return text_check(text, err);
+}
+
+/* ---- what was given -------------------------------------------------------------------------- */
 
 bool options_typed(const Parsed *parsed, const char *name)
 {

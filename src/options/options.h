@@ -46,7 +46,6 @@ static inline bool color_is_none(Vec3 color)
 typedef struct VectorList {
     Vec3 at[MAX_LIST];
     size_t n;
-    bool from_recipe; /* all so far; the first on the command line replaces them */
 } VectorList;
 
 typedef struct NumberList {
@@ -176,6 +175,7 @@ static inline const char *option_unit(const Option *option)
 #define OPTION_TYPE_CHOICE int : (char)0, unsigned
 
 typedef struct Parsed Parsed;
+typedef struct OwnedText OwnedText;
 
 /* Descriptions that set members of one struct. */
 typedef struct OptionTable {
@@ -242,7 +242,8 @@ struct Parsed {
     ReadOptions reading; /* of commands that read trees */
     Setting *settings;   /* all options, the command's first; owned */
     size_t n_settings;
-    Files files; /* that operands and options name */
+    OwnedText *texts; /* values that options_set copied; owned */
+    Files files;      /* that operands and options name */
     const char *operands[MAX_OPERANDS];
     int n_operands;
     const Tree *given;      /* set by parsed_give; borrowed; NULL: none */
@@ -274,6 +275,22 @@ extern const char parsed_memory[]; /* "the tree" */
  * files_read and files_write have them for the files that operands and options name. Of a value
  * given twice the last holds. With --help, nothing needs to be there. */
 MUST_CHECK Status options_parse(Parsed *parsed, int argc, char **argv, Err *err);
+
+/* Sets an option by its name, without dashes, as the command line does: the first value replaces
+ * the default, and each value of an OPTION_VECTORS is appended. An option may be set again.
+ *
+ * value   as the command line takes it; "on" for a flag. The value is copied.
+ * Errors  STATUS_USAGE with the sentence of the command line: there is no such option, or it does
+ *         not take this value, and keeps the value before. STATUS_MEMORY. */
+MUST_CHECK Status options_set(Parsed *parsed, const char *name, const char *value, Err *err);
+/* Appends the value of an option as options_set takes it. The values of an OPTION_VECTORS stand on
+ * a line each. Appends nothing for an option that has no value and for a flag that is not set.
+ * Errors  STATUS_USAGE when there is no such option. STATUS_MEMORY. */
+MUST_CHECK Status options_get(const Parsed *parsed, const char *name, Text *text, Err *err);
+/* Completes options that were set by name: reads the recipe, sets what follows from other options,
+ * and checks everything that options_parse checks. Call it once, after the operands are set.
+ * Errors  as options_parse. */
+MUST_CHECK Status options_finish(Parsed *parsed, Err *err);
 
 /* Whether an option is a key of a recipe. */
 typedef bool OptionIsKey(const Option *option);

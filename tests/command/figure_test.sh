@@ -130,7 +130,7 @@ test_a_letter_that_the_font_lacks_is_drawn_by_another_and_told() {
     pdftotext letters.pdf - | grep -q '10⁻³ m⁻² 日 ₚ' || fail "expected the letters, got $(pdftotext letters.pdf -)"
     grep -q '10⁻³ m⁻² 日 ₚ' letters.svg || fail "expected the letters in the SVG"
     run_ok corcast render t.swc --size 40x40 --letter '⁻日' --text-size 3 -o r.pdf
-    grep -q 'corcast render: .* lacks U+65E5; a box' stderr || fail "expected a warning of render, got $(cat stderr)"
+    grep -q 'corcast: .* lacks U+65E5; a box' stderr || fail "expected a warning of render, got $(cat stderr)"
 }
 
 test_controls_of_bidirectional_text_are_blanks() {
@@ -227,6 +227,16 @@ test_names_that_there_are_none_of() {
     run corcast render t.swc --recipe help.ini -o x.png
     expect_status 2
     expect_sentence "help.ini:1: 'help' is not an option of render that a recipe may give"
+}
+
+# One whose inset shows nothing is drawn without a word: the page shows where it lies.
+test_a_panel_that_shows_no_vessel_is_drawn_with_a_warning() {
+    run_ok corcast grow --terminals 12 --quiet -o t.swc
+    printf '[panel far]\ntree = t.swc\nlook-at = 1000,0,0\nheight = 1\n[inset i]\nof = far\nat = 0.5,0.5\n' >far.ini
+    printf 'place = 0.5,0.5\n' >>far.ini
+    run_ok corcast figure far.ini -o far.png
+    grep -q 'panel far\] shows no vessel' stderr || fail "expected a warning, got $(cat stderr)"
+    expect_file far.png
 }
 
 test_what_cannot_be_drawn_is_named_with_its_section() {

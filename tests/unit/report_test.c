@@ -1,7 +1,7 @@
 #include "any_file.h"
-#include "compare/check.h"
+#include "compare/rules/check.h"
 #include "compare/compare.h"
-#include "compare/result.h"
+#include "compare/measures/result.h"
 #include "unit.h"
 #include <math.h>
 #include <stdint.h>

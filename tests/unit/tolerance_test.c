@@ -1,6 +1,6 @@
 /* Tiers, the ledger of segments, float colours, and tolerances as files. */
 #include "compare/compare.h"
-#include "compare/result.h"
+#include "compare/measures/result.h"
 #include "unit.h"
 #include <math.h>
 #include <stdint.h>

@@ -123,8 +123,7 @@ static Status make_drawing(const DiagramOptions *options, const Parsed *parsed, 
                 of->pruned == 1 ? " is" : "s are");
     const ColoredTree tree = picture_colored_tree(of);
     TRY(coloring_appearance(&options->coloring, &tree, &drawing->look, &drawing->appearance, err));
-    if (!parsed->common.quiet)
-        coloring_say(&drawing->appearance);
+    coloring_say(&drawing->appearance, parsed->common.talk);
     TRY(paint(options, drawing, err));
     Status status = diagram_lay_out(&drawing->of.tree, options->gap_mm, &drawing->diagram, err);
     if (status == STATUS_INPUT)

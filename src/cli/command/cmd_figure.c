@@ -108,6 +108,7 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
     if (section->maker)
         assume_mm(&section->render.reading);
     section->render.common.quiet = figure->parsed->common.quiet;
+    section->render.common.talk = figure->parsed->common.talk;
     section->render.common.threads = figure->parsed->common.threads;
     section->render.operands[0] =
         section->maker ? madetrees_file(&figure->plan, &figure->trees, i) : panel->tree;
@@ -123,6 +124,9 @@ static Status draw_panels(Figure *figure, Err *err)
         Section *section = figure->plan.sections[i];
         if (!figure_is_panel(figure, i))
             continue;
+        char name[80];
+        snprintf(name, sizeof name, "[panel %.60s]", section->name);
+        panel->name = name;
         panel->fonts = figure->sheet.fonts;
         panel->made_tree = section->maker != NULL;
         panel->insets = figure->insets + first;
@@ -258,8 +262,8 @@ static Status say_panels(const Figure *figure, Err *err)
     Status status = STATUS_OK;
     for (size_t i = 0; i < figure->plan.n && status == STATUS_OK; i++)
         if (figure_is_panel(figure, i))
-            status = picture_say(&figure->panels[i].scene, &figure->panels[i].made,
-                                 figure->parsed->common.quiet, err);
+            status = picture_say(&figure->panels[i].scene, &figure->panels[i].report,
+                                 figure->parsed->common.talk, err);
     return status;
 }
 
@@ -277,7 +281,7 @@ static Status fill_page(Figure *figure, Err *err)
         if (figure->plan.sections[i]->kind == SECTION_TEXT)
             TRY(put_text(figure, figure->plan.sections[i], err));
     TRY(figure_check(&figure->sheet.page, err));
-    figure_warn(&figure->sheet.page, "corcast figure", figure->parsed->common.quiet);
+    sheet_say(&figure->sheet, figure->parsed->common.talk);
     return say_panels(figure, err);
 }
 

@@ -3,7 +3,7 @@
 #include "job/export/meshing.h"
 
 #include "derive/derive.h"
-#include "job/export/povfiles.h"
+#include "job/export/scenefiles.h"
 #include "job/export/solver_files.h"
 #include "job/picture/picture.h"
 #include "options/output.h"
@@ -52,14 +52,14 @@ static Status take_vessels(Meshing *made, VesselBody body, Err *err)
 }
 
 /* What the segments look like, and by which orders they are grouped. */
-static Status color_vessels(const MeshingOptions *options, bool quiet, Meshing *made, Err *err)
+static Status color_vessels(const MeshingOptions *options, const Talk *talk, Meshing *made,
+                            Err *err)
 {
     const ColoredTree tree = picture_colored_tree(made->of);
     Look look;
     TRY(coloring_read_look(options->look, &look, err));
     TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
-    if (!quiet)
-        coloring_say(&made->appearance);
+    coloring_say(&made->appearance, talk);
     TRY(stage_anatomy(tree.drawn, vec3(0, 0, 0), &made->anatomy, err));
     return derive_rule(tree.drawn, &(TreeMeta){0}, "strahler", &made->orders, err);
 }
@@ -158,7 +158,7 @@ static Status make(const Common *common, const MeshingOptions *options, const Em
     if (made->print)
         TRY(printing_prepare(made->print, &made->vessels, &made->changes, err));
     if (emitter->has_colors)
-        TRY(color_vessels(options, common->quiet, made, err));
+        TRY(color_vessels(options, common->talk, made, err));
     if (emitter->of_lines)
         return STATUS_OK;
     TRY(triangulate(made, options, emitter->has_parts, common, err));

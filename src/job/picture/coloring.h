@@ -54,9 +54,6 @@ MUST_CHECK Status coloring_check_needs(const Coloring *coloring, const Parsed *p
  * into *joined (owned; else unchanged). As tree_read_values. */
 MUST_CHECK Status coloring_join(const Coloring *coloring, Tree *tree, char **joined, Err *err);
 
-/* STATUS_USAGE unless `name` has a frame of this number, from 1 on. */
-MUST_CHECK Status coloring_check_frame(int frame, const char *name, size_t frames, Err *err);
-
 /* A tree that is coloured. */
 typedef struct ColoredTree {
     const char *path;   /* for sentences */
@@ -76,8 +73,8 @@ typedef struct ColoredTree {
 MUST_CHECK Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree,
                                       const Look *look, Appearance *appearance, Err *err);
 
-/* Says on standard error what the colours mean, and which option would show more. */
-void coloring_say(const Appearance *appearance);
+/* Says what the colours mean, and whether --log would show more. Without a scale says nothing. */
+void coloring_say(const Appearance *appearance, const Talk *talk);
 /* The same for programs; null without a scale. */
 json_t *coloring_json(const Appearance *appearance);
 

@@ -57,8 +57,8 @@ struct FramesWriter {
     ImageChannel channels[LAYERS]; /* of an OpenEXR file */
     int n_channels;
     ImageWriter *files[FRAME_FILES]; /* NULL: not wanted */
-    Picture whole;                   /* of a page, or to be kept */
-    int next;                        /* row */
+    Picture whole;                   /* the picture of a page; owned */
+    int next;                        /* row that comes next */
 };
 
 static bool is_asked_for(const FramesForm *form, int file)
@@ -86,16 +86,10 @@ static void choose_channels(FramesWriter *writer)
             writer->channels[writer->n_channels++] = layers[i].channel;
 }
 
-/* Whether the picture is held in memory until the end. */
-static bool is_held(const FramesForm *form)
-{
-    return form->kept || frames_is_page(form->path);
-}
-
 static Status open_picture(FramesWriter *writer, Err *err)
 {
     const FramesForm *form = writer->form;
-    if (is_held(form))
+    if (frames_is_page(form->path))
         return picture_init(&writer->whole, form->width, form->height, 3, 8, err);
     ImageNote notes[4] = {{"Software", GENERATOR}, {"Comment", form->provenance}};
     ImageNotes all = {.notes = notes, .count = 2, .dpi = form->dpi};
@@ -154,16 +148,39 @@ static Status open_plane(FramesWriter *writer, int file, Err *err)
     return status;
 }
 
+static Status open_files(FramesWriter *writer, Err *err)
+{
+    for (int file = 0; file < FRAME_FILES; file++)
+        if (is_wanted(writer->form, file))
+            TRY(file == FILE_PICTURE ? open_picture(writer, err) : open_plane(writer, file, err));
+    return STATUS_OK;
+}
+
+/* Makes the frame that receives everything in memory. A picture of floats is its colour plane. */
+static Status open_memory(const FramesForm *form, Err *err)
+{
+    const int width = form->width, height = form->height;
+    const bool floats = form->picture && image_traits(form->path).floats;
+    Frame *kept = form->kept;
+    if (form->picture && !floats)
+        TRY(picture_init(&kept->codes, width, height, form->alpha ? 4 : 3, form->bits, err));
+    if (form->color || floats)
+        TRY(plane_init_unset(&kept->color, width, height, 3, err));
+    if (form->alpha && floats)
+        TRY(plane_init_unset(&kept->alpha, width, height, 1, err));
+    if (form->depth)
+        TRY(plane_init_unset(&kept->depth, width, height, 1, err));
+    if (form->normal)
+        TRY(plane_init_unset(&kept->normal, width, height, 3, err));
+    return form->id ? idplane_init(&kept->id, width, height, err) : STATUS_OK;
+}
+
 Status frames_open(FramesWriter **out, const FramesForm *form, Err *err)
 {
     FramesWriter *writer;
     TRY(mem_calloc(&writer, 1, sizeof *writer, "writers", err));
     writer->form = form;
-    Status status = STATUS_OK;
-    for (int file = 0; file < FRAME_FILES && status == STATUS_OK; file++)
-        if (is_wanted(form, file))
-            status =
-                file == FILE_PICTURE ? open_picture(writer, err) : open_plane(writer, file, err);
+    Status status = form->kept ? open_memory(form, err) : open_files(writer, err);
     if (status != STATUS_OK) {
         frames_discard(writer);
         return status;
@@ -172,23 +189,44 @@ Status frames_open(FramesWriter **out, const FramesForm *form, Err *err)
     return STATUS_OK;
 }
 
-static Status write_codes(ImageWriter *file, Picture *codes, Err *err)
+/* Copies rows into a whole picture or plane, from the row `at` on. Without values there is nothing
+ * to copy. */
+static void keep_codes(Picture *whole, const Picture *rows, int at)
 {
-    Status status = imagewriter_codes(file, codes, err);
-    picture_release(codes);
-    return status;
+    const size_t stride = picture_stride(rows), n = (size_t)rows->height * stride;
+    if (whole->codes8)
+        memcpy(whole->codes8 + (size_t)at * stride, rows->codes8, n);
+    if (whole->codes16)
+        memcpy(whole->codes16 + (size_t)at * stride, rows->codes16, n * sizeof *rows->codes16);
 }
 
-/* Rows of the picture with what is drawn over them. */
-static Status annotate(FramesWriter *writer, Picture *codes, Err *err)
+static void keep_values(Plane *whole, const Plane *rows, int at)
+{
+    const size_t stride = (size_t)whole->width * (size_t)whole->channels;
+    if (whole->values)
+        memcpy(whole->values + (size_t)at * stride, rows->values,
+               (size_t)rows->height * stride * sizeof *rows->values);
+}
+
+static void keep_ids(IdPlane *whole, const IdPlane *rows, int at)
+{
+    const size_t stride = (size_t)whole->width;
+    if (whole->ids)
+        memcpy(whole->ids + (size_t)at * stride, rows->ids,
+               (size_t)rows->height * stride * sizeof *rows->ids);
+}
+
+/* Draws what lies over the picture, and hands the rows over: to a page or memory, or to the file.
+ */
+static Status take_codes(FramesWriter *writer, Picture *codes, Err *err)
 {
     const FramesForm *form = writer->form;
-    if (is_held(form))
-        memcpy(writer->whole.codes8 + (size_t)writer->next * picture_stride(codes), codes->codes8,
-               (size_t)codes->height * picture_stride(codes));
-    else if (form->page)
+    ImageWriter *file = writer->files[FILE_PICTURE];
+    if (form->page && !writer->whole.codes8)
         TRY(figure_draw(form->page, form->first + writer->next, codes, err));
-    writer->next += codes->height;
+    if (file)
+        return imagewriter_codes(file, codes, err);
+    keep_codes(form->kept ? &form->kept->codes : &writer->whole, codes, writer->next);
     return STATUS_OK;
 }
 
@@ -226,21 +264,20 @@ static Status write_layers(FramesWriter *writer, const Frame *rows, Err *err)
 
 static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
 {
-    ImageWriter *file = writer->files[FILE_PICTURE];
-    if (is_layered(writer->form))
-        return write_layers(writer, rows, err);
-    if (image_traits(writer->form->path).floats)
-        return imagewriter_floats(file, &rows->color, err);
-    if (rows->codes.codes8)
-        return imagewriter_codes(file, &rows->codes, err);
     const FramesForm *form = writer->form;
-    Picture codes;
+    if (image_traits(form->path).floats && form->kept)
+        return STATUS_OK;
+    if (is_layered(form))
+        return write_layers(writer, rows, err);
+    if (image_traits(form->path).floats)
+        return imagewriter_floats(writer->files[FILE_PICTURE], &rows->color, err);
+    Picture codes = rows->codes;
+    if (codes.width > 0)
+        return take_codes(writer, &codes, err);
     TRY(form->alpha ? picture_from_transparent(&codes, &rows->color, &rows->alpha, form->encoding,
                                                form->bits, err)
                     : picture_from_plane(&codes, &rows->color, form->encoding, form->bits, err));
-    Status status = annotate(writer, &codes, err);
-    if (status == STATUS_OK && file)
-        return write_codes(file, &codes, err);
+    Status status = take_codes(writer, &codes, err);
     picture_release(&codes);
     return status;
 }
@@ -265,15 +302,10 @@ Status frames_write_page(const FigurePage *page, const FigureNotes *notes, const
     return status;
 }
 
-/* The picture in its page, which is written, or handed over. */
-static Status finish_held(FramesWriter *writer, Err *err)
+/* Writes the page with its picture in it. */
+static Status finish_page(FramesWriter *writer, Err *err)
 {
     const FramesForm *form = writer->form;
-    if (form->kept) {
-        *form->kept = writer->whole;
-        writer->whole = (Picture){0};
-        return STATUS_OK;
-    }
     figure_add_picture(form->page, &writer->whole, 0, 0);
     TRY(figure_check(form->page, err));
     Status status = frames_write_page(form->page, form->notes, form->path, err);
@@ -281,19 +313,45 @@ static Status finish_held(FramesWriter *writer, Err *err)
     return status;
 }
 
-Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err)
+static Status write_ids(ImageWriter *file, const IdPlane *ids, Err *err)
+{
+    Picture codes;
+    TRY(picture_from_ids(&codes, ids, err));
+    Status status = imagewriter_codes(file, &codes, err);
+    picture_release(&codes);
+    return status;
+}
+
+static Status write_planes(FramesWriter *writer, const Frame *rows, Err *err)
 {
     const Plane *const values[] = {
         [FILE_COLOR] = &rows->color, [FILE_DEPTH] = &rows->depth, [FILE_NORMAL] = &rows->normal};
     for (int file = FILE_COLOR; file <= FILE_NORMAL; file++)
         if (writer->files[file])
             TRY(imagewriter_floats(writer->files[file], values[file], err));
-    if (writer->files[FILE_ID]) {
-        Picture codes;
-        TRY(picture_from_ids(&codes, &rows->id, err));
-        TRY(write_codes(writer->files[FILE_ID], &codes, err));
-    }
-    return writer->form->picture ? write_picture(writer, rows, err) : STATUS_OK;
+    return writer->files[FILE_ID] ? write_ids(writer->files[FILE_ID], &rows->id, err) : STATUS_OK;
+}
+
+static void keep_planes(Frame *kept, const Frame *rows, int at)
+{
+    keep_values(&kept->color, &rows->color, at);
+    keep_values(&kept->alpha, &rows->alpha, at);
+    keep_values(&kept->depth, &rows->depth, at);
+    keep_values(&kept->normal, &rows->normal, at);
+    keep_ids(&kept->id, &rows->id, at);
+}
+
+Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err)
+{
+    const FramesForm *form = writer->form;
+    if (form->kept)
+        keep_planes(form->kept, rows, writer->next);
+    else
+        TRY(write_planes(writer, rows, err));
+    if (form->picture)
+        TRY(write_picture(writer, rows, err));
+    writer->next += rows->codes.width > 0 ? rows->codes.height : rows->color.height;
+    return STATUS_OK;
 }
 
 Status frames_commit(FramesWriter *writer, Err *err)
@@ -306,25 +364,30 @@ Status frames_commit(FramesWriter *writer, Err *err)
         writer->files[file] = NULL;
     }
     if (status == STATUS_OK && writer->whole.codes8)
-        status = finish_held(writer, err);
+        status = finish_page(writer, err);
     frames_discard(writer);
     return status;
 }
 
 void frames_discard(FramesWriter *writer)
 {
-    for (int file = 0; writer && file < FRAME_FILES; file++)
+    if (!writer)
+        return;
+    for (int file = 0; file < FRAME_FILES; file++)
         imagewriter_discard(writer->files[file]);
-    if (writer)
-        picture_release(&writer->whole);
+    picture_release(&writer->whole);
     free(writer);
 }
 
 Status frames_write(const Frame *frame, const FramesForm *form, Err *err)
 {
     FramesForm whole = *form;
-    whole.width = form->picture ? frame->color.width : frame->id.width;
-    whole.height = form->picture ? frame->color.height : frame->id.height;
+    whole.width = frame->codes.width > 0 ? frame->codes.width
+                  : form->picture        ? frame->color.width
+                                         : frame->id.width;
+    whole.height = frame->codes.width > 0 ? frame->codes.height
+                   : form->picture        ? frame->color.height
+                                          : frame->id.height;
     whole.depth = frame->depth.values != NULL;
     whole.normal = frame->normal.values != NULL;
     whole.id = frame->id.ids != NULL;

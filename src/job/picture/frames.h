@@ -39,7 +39,9 @@ typedef struct FramesForm {
     FigurePage *page;         /* drawn over the picture, and what holds it if the file is a page;
                                * NULL: nothing, and it is none */
     const FigureNotes *notes; /* of a page */
-    Picture *kept;            /* the picture is left here (owned), not written; NULL: it is not */
+    Frame *kept; /* receives the picture, as `codes` or, if it has floats, as `color` and `alpha`,
+                  * and the planes, and no file is written; zeroed before; the caller releases it
+                  * even after an error; NULL: files are written */
 } FramesForm;
 
 /* Takes note of the planes that are to be written, of the picture's name or not. */

@@ -301,46 +301,43 @@ Status picture_check_povray(const PictureOptions *options, Err *err)
                    "--ao is corcast's own: POV-Ray has no ambient occlusion to hold it against");
 }
 
-/* What of the tree the picture cannot show. */
-static Status warn_of_losses(const Geometry *geometry, const PictureReport *told, Err *err)
+/* Says which segments and joints of the tree the picture does not show. */
+static Status say_losses(const Geometry *geometry, const PictureReport *made, const Talk *talk,
+                         Err *err)
 {
-    const StageReport *report = &told->staged;
+    const StageReport *report = &made->staged;
+    const size_t segments = report->dropped + report->drawn;
     size_t hidden;
     TRY(surface_count_hidden(geometry, &hidden, err));
-    size_t segments = report->dropped + report->drawn;
-    if (told->pruned)
-        fprintf(stderr, "corcast: %zu of %zu segments are pruned\n", told->pruned,
-                told->pruned + segments);
+    if (made->pruned)
+        talk_note(talk, "%zu of %zu segments are pruned", made->pruned, made->pruned + segments);
     if (report->dropped)
-        fprintf(stderr,
-                "corcast: %zu of %zu segments have no length or no radius and are not drawn\n",
-                report->dropped, segments);
+        talk_note(talk, "%zu of %zu segments have no length or no radius and are not drawn",
+                  report->dropped, segments);
     if (report->covered)
-        fprintf(stderr,
-                "corcast: %zu of %zu segments lie within others between the same two points "
-                "and are not drawn\n",
-                report->covered, segments);
+        talk_note(talk,
+                  "%zu of %zu segments lie within others between the same two points and are not "
+                  "drawn",
+                  report->covered, segments);
     if (hidden)
-        fprintf(stderr,
-                "corcast: %zu of %zu segments are too short for their radius: the potential is "
-                "below e^-2 there and shows nothing\n",
-                hidden, segments);
+        talk_note(talk,
+                  "%zu of %zu segments are too short for their radius: the potential is below e^-2 "
+                  "there and shows nothing",
+                  hidden, segments);
     if (report->thinned)
-        fprintf(stderr,
-                "corcast: %zu segment%s thinned, because of an overlap with others that do not "
-                "belong there, or blend with such\n",
-                report->thinned, report->thinned == 1 ? " is" : "s are");
+        talk_note(talk,
+                  "%zu segment%s thinned, because of an overlap with others that do not belong "
+                  "there, or blend with such",
+                  report->thinned, report->thinned == 1 ? " is" : "s are");
     if (report->places_short + report->places_sharp)
-        fprintf(stderr,
-                "corcast: at %zu places vessels are too short for joints, at %zu they turn too "
-                "sharply; these are %s\n",
-                report->places_short, report->places_sharp,
-                told->joints == JOINTS_PAPER ? "joined all the same" : "drawn round");
+        talk_note(talk,
+                  "at %zu places vessels are too short for joints, at %zu they turn too sharply; "
+                  "these are %s",
+                  report->places_short, report->places_sharp,
+                  made->joints == JOINTS_PAPER ? "joined all the same" : "drawn round");
     if (report->places_crowded)
-        fprintf(
-            stderr,
-            "corcast: at %zu places too many vessels meet to be joined; these are drawn round\n",
-            report->places_crowded);
+        talk_note(talk, "at %zu places too many vessels meet to be joined; these are drawn round",
+                  report->places_crowded);
     return STATUS_OK;
 }
 
@@ -380,8 +377,8 @@ static Status check_distance(const Scene *scene, Err *err)
                    least);
 }
 
-/* Reports what POV-Ray's fixed lengths, below which it sees nothing, hide of a tiny tree. */
-static void warn_of_limits(const Scene *scene, bool shadows)
+/* Says what POV-Ray's fixed lengths hide of a tiny tree: it sees nothing below them. */
+static void say_limits(const Scene *scene, bool shadows, const Talk *talk)
 {
     const Geometry *geometry = &scene->geometry;
     const double nearest_mm = render_nearest_mm(geometry);
@@ -397,20 +394,20 @@ static void warn_of_limits(const Scene *scene, bool shadows)
         thickest = fmax(thickest, geometry->segments[i].radius_mm);
     camera_depth_range(&scene->view.camera, geometry->bounds, &near_mm, &far_mm);
     if (may_be_hidden(scene) && near_mm < nearest_mm)
-        fprintf(stderr,
-                "corcast: what is nearer to the camera than %g mm is not seen, as by POV-Ray; a "
-                "larger --input-unit or another camera shows all of the tree\n",
-                nearest_mm);
+        talk_note(talk,
+                  "what is nearer to the camera than %g mm is not seen, as by POV-Ray; a larger "
+                  "--input-unit or another camera shows all of the tree",
+                  nearest_mm);
     if (balls)
-        fprintf(stderr,
-                "corcast: %zu balls of at most %g mm are not seen, as by POV-Ray; a larger "
-                "--input-unit shows them\n",
-                balls, ball_mm);
+        talk_note(talk,
+                  "%zu balls of at most %g mm are not seen, as by POV-Ray; a larger --input-unit "
+                  "shows them",
+                  balls, ball_mm);
     if (shadows && 2 * thickest < shadow_mm)
-        fprintf(stderr,
-                "corcast: what is nearer to a lit point than %g mm casts no shadow on it, as in "
-                "POV-Ray, and no vessel is as thick\n",
-                shadow_mm);
+        talk_note(talk,
+                  "what is nearer to a lit point than %g mm casts no shadow on it, as in POV-Ray, "
+                  "and no vessel is as thick",
+                  shadow_mm);
 }
 
 static bool is_xray(const Look *look)
@@ -653,18 +650,16 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
     return STATUS_OK;
 }
 
-Status picture_say(const Scene *scene, const PictureReport *report, bool quiet, Err *err)
+Status picture_say(const Scene *scene, const PictureReport *report, const Talk *talk, Err *err)
 {
-    if (quiet)
-        return STATUS_OK;
-    warn_of_limits(scene, report->shadows);
-    TRY(warn_of_losses(&scene->geometry, report, err));
-    coloring_say(&scene->appearance);
+    say_limits(scene, report->shadows, talk);
+    TRY(say_losses(&scene->geometry, report, talk, err));
+    coloring_say(&scene->appearance, talk);
     return STATUS_OK;
 }
 
 Status picture_say_effects(const PictureOptions *options, const View *view, const char *what,
-                           bool quiet, Err *err)
+                           const Talk *talk, Err *err)
 {
     Text names = TEXT_INIT;
     if (view->effects.xray.per_mm > 0)
@@ -673,9 +668,9 @@ Status picture_say_effects(const PictureOptions *options, const View *view, cons
                        options->look);
     effects_list(&view->effects, &names);
     Status status = text_check(&names, err);
-    if (status == STATUS_OK && names.length && !quiet)
-        fprintf(stderr, "corcast: --look %s: %s are corcast's own, and %s\n", options->look,
-                text_chars(&names), what);
+    if (status == STATUS_OK && names.length)
+        talk_note(talk, "--look %s: %s are corcast's own, and %s", options->look,
+                  text_chars(&names), what);
     text_release(&names);
     return status;
 }

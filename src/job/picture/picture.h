@@ -125,16 +125,16 @@ MUST_CHECK Status picture_scene_of(const PictureOptions *options, const PictureS
                                    const Parsed *parsed, Scene *scene, Anatomy *anatomy,
                                    PictureReport *report, Err *err);
 
-/* Reports on standard error, unless quiet, how many segments are pruned, cannot be drawn, or have
- * no surface, how many places are not joined, and what the colours are. To be called when all that
- * may be refused has been checked: a command that fails prints one line. */
-MUST_CHECK Status picture_say(const Scene *scene, const PictureReport *report, bool quiet,
+/* Says how many segments are pruned, cannot be drawn, or have no surface, how many places are not
+ * joined, and what the colours mean. Call it after all checks: an operation that is refused says
+ * nothing else. Errors: STATUS_MEMORY. */
+MUST_CHECK Status picture_say(const Scene *scene, const PictureReport *report, const Talk *talk,
                               Err *err);
 
-/* Says on standard error, unless quiet, what of the look is no picture of POV-Ray's, and `what`
- * becomes of it. STATUS_USAGE when nothing would be left. */
+/* Says which effects of the look POV-Ray does not draw; `what` ends the sentence with what becomes
+ * of them. Errors: STATUS_USAGE for an x-ray, of which nothing would be left; STATUS_MEMORY. */
 MUST_CHECK Status picture_say_effects(const PictureOptions *options, const View *view,
-                                      const char *what, bool quiet, Err *err);
+                                      const char *what, const Talk *talk, Err *err);
 
 /* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the
  * machine. */

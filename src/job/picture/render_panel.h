@@ -1,44 +1,45 @@
-/* What `render` does, for a page of several pictures. */
+/* Panels: pictures, or lines, for a page that holds several of them. */
 #ifndef CORCAST_JOB_PICTURE_RENDER_PANEL_H
 #define CORCAST_JOB_PICTURE_RENDER_PANEL_H
 
 #include "image/image.h"
-#include "job/picture/annotation.h"
-#include "job/picture/sheet.h"
-#include "scene/scene.h"
+#include "job/picture/render.h"
 
-/* A part of a panel, larger. */
+/* A part of a panel, magnified. */
 typedef struct PanelInset {
-    double at[2]; /* its middle, from the panel's upper left corner, over width and height */
+    double
+        at[2]; /* middle of the part, from the panel's upper left corner, in widths and heights */
     double magnify;
-    int pixels[2];   /* of the inset itself */
-    Picture picture; /* made; owned */
-    Strokes strokes; /* made in its place, of a panel in lines; owned */
+    int pixels[2];   /* width and height of the inset */
+    Picture picture; /* result, unless the panel is in lines; owned */
+    Strokes strokes; /* result, if the panel is in lines; owned */
 } PanelInset;
 
-/* A picture of a tree. */
+/* A picture of a tree on a page. */
 typedef struct Panel {
-    const FigureFonts *fonts; /* borrowed */
+    const char *name;         /* "[panel a]", for sentences; borrowed */
+    const FigureFonts *fonts; /* of the page; borrowed */
     PanelInset *insets;       /* borrowed */
     size_t n_insets;
-    bool made_tree; /* the tree is a command's, whose file nobody knows: nothing is said of how it
-                       reads */
-    bool in_lines;
-    Picture picture;       /* made, of 8 bits, unless in lines; owned */
-    Strokes strokes;       /* made, in lines; owned */
-    Scene scene;           /* made; owned */
-    PictureReport made;    /* what the scene has lost, to be reported by the caller */
-    Annotation annotation; /* what the options ask for, to be drawn by the caller */
+    bool made_tree;  /* the tree was made by a command: nothing is said about how it was read */
+    bool in_lines;   /* result: --ink was given */
+    Picture picture; /* result, of 8 bits, unless it is in lines; owned */
+    Strokes strokes; /* result, if it is in lines; owned */
+    Scene scene;     /* result; owned */
+    PictureReport report;  /* result: what the scene has lost; the caller says it */
+    Annotation annotation; /* result: legend, scale bar and letter, which the caller draws */
 } Panel;
 
-/* The part of a camera's picture that an inset shows, over width and height, and its own view. */
+/* Returns the part of the camera's picture that an inset shows, in widths and heights. */
 FigureBox panel_part(const PanelInset *inset, const Camera *camera);
+/* Returns the view of an inset. */
 View panel_inset_view(const PanelInset *inset, const View *view);
 
-/* Draws what options of `render` ask for that come from anywhere but a command line: the tree is
- * the first operand; there are no output, planes, JSON, parts and animations. Checks and sentences
- * are those of the command. STATUS_USAGE for insets in perspective. *panel is owned
- * (panel_release), also on failure. */
+/* Draws a panel and its insets into memory. parsed->options are RenderOptions without output,
+ * planes, JSON, parts and animation.
+ *
+ * panel   owned; the caller calls panel_release even after an error.
+ * Errors  STATUS_USAGE for insets of a picture in perspective; errors of render_make. */
 MUST_CHECK Status panel_draw(Parsed *parsed, Panel *panel, Err *err);
 void panel_release(Panel *panel);
 

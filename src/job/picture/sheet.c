@@ -28,6 +28,19 @@ Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err 
     return STATUS_OK;
 }
 
+void sheet_say(const Sheet *sheet, const Talk *talk)
+{
+    Text boxed = TEXT_INIT, substituted = TEXT_INIT;
+    figure_put_lacking(&sheet->page, false, &boxed);
+    figure_put_lacking(&sheet->page, true, &substituted);
+    if (boxed.length)
+        talk_warn(talk, "%s", text_chars(&boxed));
+    if (substituted.length)
+        talk_note(talk, "%s", text_chars(&substituted));
+    text_release(&boxed);
+    text_release(&substituted);
+}
+
 void sheet_release(Sheet *sheet)
 {
     figure_release(&sheet->page);

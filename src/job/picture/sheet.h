@@ -4,6 +4,7 @@
 
 #include "figure/figure.h"
 #include "options/options.h"
+#include "options/talk.h"
 
 typedef struct Sheet {
     FigurePage page;
@@ -19,6 +20,8 @@ MUST_CHECK Status sheet_open(Sheet *sheet, Err *err);
 void sheet_begin(Sheet *sheet, const int pixels[2], double dpi);
 /* Sets the notes: `description`, of which the sheet takes hold, and the command. */
 MUST_CHECK Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err *err);
+/* Says which letters of the page the font lacks. */
+void sheet_say(const Sheet *sheet, const Talk *talk);
 void sheet_release(Sheet *sheet);
 
 #endif

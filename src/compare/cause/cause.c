@@ -1,0 +1,269 @@
+/* What made B of A, where that can be said for certain: each guess is a map of one picture onto the
+ * other, or a place, and it is named when it explains the pictures, not when it merely resembles
+ * them. Guesses about places come before those about colours, exact ones before those that leave
+ * something. All are tried on a few hundred of the pixels that differ, and only what fits those on
+ * all. Two faults at once have no sentence, unless one of them is a fiftieth of the other. */
+#include "compare/cause/cause.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { REACH = 48, BLOCK = 64 };
+
+static void take_block(const Picture *a, const Picture *b, int x, int y, size_t step, size_t *seen,
+                       Samples *samples)
+{
+    int end = x + BLOCK < a->width ? x + BLOCK : a->width;
+    if (picture_rows_equal(a, b, y, x, end - x))
+        return;
+    for (; x < end && samples->n < CAUSE_SAMPLES; x++)
+        if (!picture_rows_equal(a, b, y, x, 1) && (*seen)++ % step == 0)
+            samples->at[samples->n++] = (PixelPlace){.x = x, .y = y};
+}
+
+static void choose_samples(const Picture *a, const Picture *b, size_t differing, Samples *samples)
+{
+    size_t step = (differing + CAUSE_SAMPLES - 1) / CAUSE_SAMPLES, seen = 0;
+    samples->n = 0;
+    for (int y = 0; y < a->height; y++) {
+        bool equal = picture_rows_equal(a, b, y, 0, a->width);
+        for (int x = 0; x < a->width && !equal; x += BLOCK)
+            take_block(a, b, x, y, step, &seen, samples);
+    }
+}
+
+static int code_at(const Picture *picture, int x, int y, int c)
+{
+    size_t pixel = (size_t)y * (size_t)picture->width + (size_t)x;
+    return picture_code(picture, pixel * (size_t)picture->channels + (size_t)c);
+}
+
+/* Whether what is left of the differences is at most a part of them. */
+static bool leaves(double before, double after, double part)
+{
+    return before > 0 && after <= part * before;
+}
+
+/* ---- turned, or with other channels ---------------------------------------------------------- */
+
+typedef struct Turn {
+    bool mirrored, upended;
+    int from[3]; /* the channel of A that each of B is */
+    const char *sentence;
+} Turn;
+
+/* Adds the differences of a pixel of B without the turn and with it. */
+static void add_turned(const Picture *a, const Picture *b, const Turn *turn, int x, int y,
+                       double *before, double *after)
+{
+    int u = turn->mirrored ? a->width - 1 - x : x, v = turn->upended ? a->height - 1 - y : y;
+    for (int c = 0; c < a->channels; c++) {
+        int code = code_at(b, x, y, c);
+        *before += abs(code - code_at(a, x, y, c));
+        *after += abs(code - code_at(a, u, v, turn->from[c]));
+    }
+}
+
+static bool is_turned(const Picture *a, const Picture *b, const Samples *samples, const Turn *turn)
+{
+    double before = 0, after = 0;
+    if (a->channels == 1 && turn->from[0] != 0)
+        return false;
+    for (int i = 0; i < samples->n; i++)
+        add_turned(a, b, turn, samples->at[i].x, samples->at[i].y, &before, &after);
+    if (!leaves(before, after, 0.05))
+        return false;
+    before = after = 0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++)
+            add_turned(a, b, turn, x, y, &before, &after);
+    return leaves(before, after, 0.02);
+}
+
+static void find_turn(const Picture *a, const Picture *b, const Samples *samples, Sentence *out)
+{
+    static const Turn turns[] = {
+        {true, false, {0, 1, 2}, "mirrored, left for right"},
+        {false, true, {0, 1, 2}, "upside down, top for bottom"},
+        {true, true, {0, 1, 2}, "turned by 180 degrees"},
+        {false, false, {2, 1, 0}, "with red and blue exchanged"},
+        {false, false, {1, 0, 2}, "with red and green exchanged"},
+        {false, false, {0, 2, 1}, "with green and blue exchanged"},
+        {false, false, {1, 2, 0}, "with its channels as green, blue, red"},
+        {false, false, {2, 0, 1}, "with its channels as blue, red, green"},
+    };
+    for (size_t i = 0; i < sizeof turns / sizeof *turns && !*out->text; i++)
+        if (is_turned(a, b, samples, &turns[i]))
+            snprintf(out->text, out->size, "B is A %s", turns[i].sentence);
+}
+
+/* ---- moved ----------------------------------------------------------------------------------- */
+
+/* Sum of |b - a| of one pixel of A; false where B has no such pixel. */
+static bool differs_by(const Picture *a, const Picture *b, int x, int y, const Shift *shift,
+                       double *sum)
+{
+    int u = x + shift->dx, v = y + shift->dy;
+    if (u < 0 || u >= b->width || v < 0 || v >= b->height)
+        return false;
+    for (int c = 0; c < a->channels; c++)
+        *sum += abs(code_at(b, u, v, c) - code_at(a, x, y, c));
+    return true;
+}
+
+/* A sample of A, with its codes. */
+typedef struct Sample {
+    int x, y, codes[3];
+    double off; /* from B, without a shift */
+} Sample;
+
+static int most_off_first(const void *left, const void *right)
+{
+    const Sample *a = left, *b = right;
+    return (a->off < b->off) - (a->off > b->off);
+}
+
+static void take_samples(const Picture *a, const Picture *b, const Samples *samples, Sample *out)
+{
+    static const Shift none = {0};
+    for (int i = 0; i < samples->n; i++) {
+        int x = samples->at[i].x, y = samples->at[i].y;
+        out[i] = (Sample){.x = x, .y = y};
+        for (int c = 0; c < a->channels; c++)
+            out[i].codes[c] = code_at(a, x, y, c);
+        differs_by(a, b, x, y, &none, &out[i].off);
+    }
+    qsort(out, (size_t)samples->n, sizeof *out, most_off_first);
+}
+
+/* The mean over the samples that stay within the picture, infinite where fewer than three in four
+ * do, or as soon as the sum is as large as `limit`. */
+static double off_when_shifted(const Picture *b, const Sample *samples, int n, int dx, int dy,
+                               double limit)
+{
+    double sum = 0;
+    int inside = 0;
+    for (int i = 0; i < n; i++) {
+        int u = samples[i].x + dx, v = samples[i].y + dy;
+        if (u < 0 || u >= b->width || v < 0 || v >= b->height)
+            continue;
+        for (int c = 0; c < b->channels; c++)
+            sum += abs(code_at(b, u, v, c) - samples[i].codes[c]);
+        inside++;
+        if (sum > limit)
+            return (double)INFINITY;
+    }
+    return 4 * inside >= 3 * n && inside > 0 ? sum / inside : (double)INFINITY;
+}
+
+static Shift search_shifts(const Picture *b, const Sample *samples, int n)
+{
+    Shift best = {.off = off_when_shifted(b, samples, n, 0, 0, (double)INFINITY)};
+    for (int dy = -REACH; dy <= REACH; dy++)
+        for (int dx = -REACH; dx <= REACH; dx++) {
+            double off = off_when_shifted(b, samples, n, dx, dy, best.off * n);
+            bool nearer = dx * dx + dy * dy < best.dx * best.dx + best.dy * best.dy;
+            if (off < best.off || (off == best.off && nearer))
+                best = (Shift){.dx = dx, .dy = dy, .off = off};
+        }
+    return best;
+}
+
+/* What differs most without a shift comes first: it tells soonest that a shift is wrong. A few
+ * samples are asked before all, since most pictures are not moved. */
+Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples)
+{
+    enum { FEW = 64 };
+    Sample taken[CAUSE_SAMPLES], few[FEW];
+    take_samples(a, b, samples, taken);
+    const Shift none = {.off = off_when_shifted(b, taken, samples->n, 0, 0, (double)INFINITY)};
+    if (samples->n <= FEW)
+        return search_shifts(b, taken, samples->n);
+    for (int i = 0; i < FEW; i++)
+        few[i] = taken[i * samples->n / FEW];
+    double before = off_when_shifted(b, few, FEW, 0, 0, (double)INFINITY);
+    bool moved = leaves(before, search_shifts(b, few, FEW).off, 0.7);
+    return moved ? search_shifts(b, taken, samples->n) : none;
+}
+
+static double off_by(const Picture *a, const Picture *b, const Shift *shift, const Shift *common)
+{
+    double sum = 0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++) {
+            int u = x + common->dx, v = y + common->dy;
+            if (u >= 0 && u < b->width && v >= 0 && v < b->height)
+                differs_by(a, b, x, y, shift, &sum);
+        }
+    return sum;
+}
+
+bool cause_is_same_saturation(double aa, double ab)
+{
+    const double enough = 1e4; /* the rounding of codes then moves the quotient by 0.5 % at most */
+    return aa < enough || fabs(ab / aa - 1) <= 0.03;
+}
+
+static bool has_shifted_saturation(const Picture *a, const Picture *b, const Shift *shift)
+{
+    const double level = a->bits == 8 ? 1 : 257;
+    double aa = 0, ab = 0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++) {
+            int u = x + shift->dx, v = y + shift->dy, sum_a = 0, sum_b = 0;
+            if (u < 0 || u >= b->width || v < 0 || v >= b->height)
+                continue;
+            for (int c = 0; c < a->channels; c++) {
+                int in_a = code_at(a, x, y, c), in_b = code_at(b, u, v, c);
+                sum_a += in_a;
+                sum_b += in_b;
+                aa += (double)in_a * in_a;
+                ab += (double)in_a * in_b;
+            }
+            aa -= (double)sum_a * sum_a / a->channels;
+            ab -= (double)sum_a * sum_b / a->channels;
+        }
+    return cause_is_same_saturation(aa / (level * level), ab / (level * level));
+}
+
+void cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
+                 Sentence *out)
+{
+    static const Shift none = {0};
+    double before = 0;
+    for (int i = 0; i < samples->n; i++)
+        differs_by(a, b, samples->at[i].x, samples->at[i].y, &none, &before);
+    if (!leaves(before, shift->off * samples->n, 0.05))
+        return;
+    before = off_by(a, b, &none, shift);
+    double after = off_by(a, b, shift, shift);
+    if (leaves(before, after, 0.02) && (after == 0 || has_shifted_saturation(a, b, shift)))
+        snprintf(out->text, out->size,
+                 "B is %sA moved by (%d, %d) pixels, right and down being positive",
+                 after > 0 ? "nearly " : "", shift->dx, shift->dy);
+}
+
+/* ---- all of them ----------------------------------------------------------------------------- */
+
+Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, Err *err)
+{
+    Sentence out = {result->cause, sizeof result->cause};
+    if (result->differing_pixels == 0)
+        return STATUS_OK;
+    Samples samples;
+    choose_samples(a, b, result->differing_pixels, &samples);
+    find_turn(a, b, &samples, &out);
+    if (!*out.text)
+        TRY(cause_background(a, b, &samples, &out, err));
+    const Shift shift = *out.text ? (Shift){0} : cause_best_shift(a, b, &samples);
+    if (!*out.text)
+        cause_shift(a, b, &samples, &shift, &out);
+    if (!*out.text && result->max_code <= 1)
+        snprintf(out.text, out.size, "only rounding differs: no code is off by more than 1");
+    if (!*out.text)
+        TRY(cause_tone(a, b, &samples, &out, err));
+    if (!*out.text)
+        TRY(cause_warp(a, b, &samples, &shift, &out, err));
+    return *out.text ? STATUS_OK : cause_place(a, b, &samples, result, &out, err);
+}

@@ -1,0 +1,280 @@
+/* A fault says what the faulty picture has at a place, from the whole one: so one loop plants all.
+ * What renderers do in light is done in light: codes are decoded, changed and encoded. Faults of a
+ * part are planted where the codes vary most, because what is flat shows little. */
+#include "compare/cause/picture_fault.h"
+
+#include <math.h>
+#include <string.h>
+
+static double clamp(double x, double low, double high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* The code at a place, of the nearest pixel beyond the rim. */
+static double at(const Picture *picture, int x, int y, int c)
+{
+    x = x < 0 ? 0 : x < picture->width ? x : picture->width - 1;
+    y = y < 0 ? 0 : y < picture->height ? y : picture->height - 1;
+    size_t pixel = (size_t)y * (size_t)picture->width + (size_t)x;
+    return picture_code(picture, pixel * (size_t)picture->channels + (size_t)c) /
+           (picture->bits == 8 ? 255.0 : 65535.0);
+}
+
+/* Between pixels, linearly. */
+static double between(const Picture *picture, double x, double y, int c)
+{
+    int i = (int)floor(x), j = (int)floor(y);
+    double u = x - i, v = y - j;
+    return (1 - v) * ((1 - u) * at(picture, i, j, c) + u * at(picture, i + 1, j, c)) +
+           v * ((1 - u) * at(picture, i, j + 1, c) + u * at(picture, i + 1, j + 1, c));
+}
+
+static double light(double code)
+{
+    return (double)srgb_decode((float)code);
+}
+
+static double code_of(double linear)
+{
+    return (double)srgb_encode((float)clamp(linear, 0, 1));
+}
+
+static double brightened(double code, double percent)
+{
+    return code_of(light(code) * (1 + percent / 100));
+}
+
+static bool in_part(const Planting *p, int x, int y)
+{
+    return x >= p->left && x < p->left + p->side && y >= p->top && y < p->top + p->side;
+}
+
+/* ---- places ---------------------------------------------------------------------------------- */
+
+static double shifted(const Planting *p, int x, int y, int c)
+{
+    return between(p->from, x - p->size, y, c);
+}
+
+static double turned(const Planting *p, int x, int y, int c)
+{
+    double middle_x = (p->from->width - 1) / 2.0, middle_y = (p->from->height - 1) / 2.0;
+    double angle = p->size * DEGREE, dx = x - middle_x, dy = y - middle_y;
+    return between(p->from, middle_x + elementary_cos(angle) * dx + elementary_sin(angle) * dy,
+                   middle_y - elementary_sin(angle) * dx + elementary_cos(angle) * dy, c);
+}
+
+static double larger(const Planting *p, int x, int y, int c)
+{
+    double middle_x = (p->from->width - 1) / 2.0, middle_y = (p->from->height - 1) / 2.0;
+    double scale = 1 / (1 + p->size / 100);
+    return between(p->from, middle_x + scale * (x - middle_x), middle_y + scale * (y - middle_y),
+                   c);
+}
+
+static double part_shifted(const Planting *p, int x, int y, int c)
+{
+    return in_part(p, x, y) ? shifted(p, x, y, c) : at(p->from, x, y, c);
+}
+
+static double blurred(const Planting *p, int x, int y, int c)
+{
+    int reach = (int)ceil(3 * p->size);
+    double sum = 0, weights = 0;
+    for (int j = -reach; j <= reach; j++)
+        for (int i = -reach; i <= reach; i++) {
+            double weight = elementary_exp(-(i * i + j * j) / (2 * p->size * p->size));
+            sum += weight * at(p->from, x + i, y + j, c);
+            weights += weight;
+        }
+    return sum / weights;
+}
+
+/* ---- tones ----------------------------------------------------------------------------------- */
+
+static double brighter(const Planting *p, int x, int y, int c)
+{
+    return brightened(at(p->from, x, y, c), p->size);
+}
+
+static double redder(const Planting *p, int x, int y, int c)
+{
+    return c ? at(p->from, x, y, c) : brighter(p, x, y, c);
+}
+
+static double part_brighter(const Planting *p, int x, int y, int c)
+{
+    return in_part(p, x, y) ? brighter(p, x, y, c) : at(p->from, x, y, c);
+}
+
+static double darker_codes(const Planting *p, int x, int y, int c)
+{
+    return at(p->from, x, y, c) - p->size / 255;
+}
+
+static double gamma_off(const Planting *p, int x, int y, int c)
+{
+    return elementary_pow(at(p->from, x, y, c), 1 + p->size / 100);
+}
+
+/* The highlights are what is brighter than 0.8 of white, in light. */
+static double highlights_dimmer(const Planting *p, int x, int y, int c)
+{
+    double linear = light(at(p->from, x, y, c)), beyond = linear - 0.8;
+    return beyond > 0 ? code_of(linear - beyond * p->size / 100) : at(p->from, x, y, c);
+}
+
+/* Normal noise, of a place always the same. */
+static double noisy(const Planting *p, int x, int y, int c)
+{
+    Random random;
+    random_seed(&random,
+                ((uint64_t)(unsigned)y << 34) + ((uint64_t)(unsigned)x << 2) + (uint64_t)c);
+    double u = 1 - random_uniform(&random), v = random_uniform(&random);
+    return at(p->from, x, y, c) +
+           p->size / 255 * sqrt(-2 * elementary_log(u)) * elementary_cos(FULL_TURN * v);
+}
+
+static double fewer_bits(const Planting *p, int x, int y, int c)
+{
+    double step = elementary_exp2(p->size) / 256;
+    return floor(at(p->from, x, y, c) / step) * step;
+}
+
+static double gamma_22(const Planting *p, int x, int y, int c)
+{
+    return elementary_pow(light(at(p->from, x, y, c)), 1 / 2.2);
+}
+
+static double unencoded(const Planting *p, int x, int y, int c)
+{
+    return light(at(p->from, x, y, c));
+}
+
+/* ---- rows and pixels ------------------------------------------------------------------------- */
+
+static double part_lost(const Planting *p, int x, int y, int c)
+{
+    bool lost = x >= p->left && x < p->left + p->size && y >= p->top && y < p->top + p->size;
+    return lost ? 0 : at(p->from, x, y, c);
+}
+
+static double channels_swapped(const Planting *p, int x, int y, int c)
+{
+    return at(p->from, x, y, p->from->channels - 1 - c);
+}
+
+static double upside_down(const Planting *p, int x, int y, int c)
+{
+    return at(p->from, x, p->from->height - 1 - y, c);
+}
+
+static double mirrored(const Planting *p, int x, int y, int c)
+{
+    return at(p->from, p->from->width - 1 - x, y, c);
+}
+
+/* The picture as read with rows of `stride` pixels. */
+static double with_stride(const Planting *p, int stride, int x, int y, int c)
+{
+    int64_t place = ((int64_t)y * stride + x) % ((int64_t)p->from->width * p->from->height);
+    return at(p->from, (int)(place % p->from->width), (int)(place / p->from->width), c);
+}
+
+static double long_rows(const Planting *p, int x, int y, int c)
+{
+    return with_stride(p, p->from->width + 1, x, y, c);
+}
+
+static double transposed_stride(const Planting *p, int x, int y, int c)
+{
+    return with_stride(p, p->from->height, x, y, c);
+}
+
+static double row_repeated(const Planting *p, int x, int y, int c)
+{
+    return at(p->from, x, y == p->from->height / 2 ? y - 1 : y, c);
+}
+
+const PictureFault picture_faults[] = {
+    {"picture shifted", "px", {0.01, 0.03, 0.1, 0.3, 1, 3}, shifted},
+    {"picture turned", "deg", {0.003, 0.01, 0.03, 0.1, 0.3, 1}, turned},
+    {"picture larger", "%", {0.01, 0.03, 0.1, 0.3, 1, 3}, larger},
+    {"a part shifted", "px", {0.01, 0.03, 0.1, 0.3, 1, 3}, part_shifted},
+    {"blurred", "px", {0.3, 0.5, 1}, blurred},
+    {"brighter", "% of light", {0.1, 0.3, 1, 3, 10, 30}, brighter},
+    {"redder", "% of light", {0.1, 0.3, 1, 3, 10, 30}, redder},
+    {"a part brighter", "% of light", {0.1, 0.3, 1, 3, 10, 30}, part_brighter},
+    {"highlights dimmer", "% of light", {1, 3, 10, 30, 100}, highlights_dimmer},
+    {"codes lower", "levels", {0.3, 1, 3, 10, 30}, darker_codes},
+    {"gamma off", "%", {0.1, 0.3, 1, 3, 10, 30}, gamma_off},
+    {"noise", "levels", {0.3, 1, 3, 10, 30}, noisy},
+    {"bits lost", "bits", {1, 2, 3, 4}, fewer_bits},
+    {"a square lost", "px", {1, 3, 8, 24}, part_lost},
+    {"gamma 2.2 instead of sRGB", NULL, {0}, gamma_22},
+    {"linear values as codes", NULL, {0}, unencoded},
+    {"red and blue swapped", NULL, {0}, channels_swapped},
+    {"a row repeated", NULL, {0}, row_repeated},
+    {"rows upside down", NULL, {0}, upside_down},
+    {"mirrored", NULL, {0}, mirrored},
+    {"rows one pixel too long", NULL, {0}, long_rows},
+    {"stride is the height", NULL, {0}, transposed_stride},
+};
+const size_t n_picture_faults = sizeof picture_faults / sizeof *picture_faults;
+
+const PictureFault *picture_fault_named(const char *name)
+{
+    const PictureFault *fault = picture_faults;
+    while (strcmp(fault->name, name) != 0)
+        fault++;
+    return fault;
+}
+
+/* ---- planting -------------------------------------------------------------------------------- */
+
+/* The sum of differences between neighbours in a square. */
+static double detail(const Picture *picture, int left, int top, int side)
+{
+    double sum = 0;
+    for (int y = top; y < top + side; y++)
+        for (int x = left; x < left + side; x++)
+            for (int c = 0; c < picture->channels; c++)
+                sum += fabs(at(picture, x, y, c) - at(picture, x + 1, y, c)) +
+                       fabs(at(picture, x, y, c) - at(picture, x, y + 1, c));
+    return sum;
+}
+
+static void find_part(Planting *planting)
+{
+    enum { SIDE = 32 };
+    const Picture *picture = planting->from;
+    double most = -1;
+    planting->side = SIDE;
+    for (int y = 0; y == 0 || y + SIDE <= picture->height; y += SIDE)
+        for (int x = 0; x == 0 || x + SIDE <= picture->width; x += SIDE) {
+            double here = detail(picture, x, y, SIDE);
+            if (here > most) {
+                most = here;
+                planting->left = x;
+                planting->top = y;
+            }
+        }
+}
+
+Status picture_fault_plant(const PictureFault *fault, double size, const Picture *from,
+                           Picture *out, Err *err)
+{
+    Planting planting = {.from = from, .size = size};
+    const double largest = from->bits == 8 ? 255 : 65535;
+    size_t i = 0;
+    TRY(picture_init(out, from->width, from->height, from->channels, from->bits, err));
+    find_part(&planting);
+    for (int y = 0; y < from->height; y++)
+        for (int x = 0; x < from->width; x++)
+            for (int c = 0; c < from->channels; c++) {
+                double code = clamp(fault->value(&planting, x, y, c), 0, 1);
+                picture_set(out, i++, (uint16_t)(code * largest + 0.5));
+            }
+    return STATUS_OK;
+}

@@ -1,0 +1,280 @@
+/* Each case is a picture of its own, so that processors share them. A fault that changes no code,
+ * as a shift of a hundredth of a pixel in flat colour, is none, and is counted nowhere. */
+#include "compare/cause/power.h"
+
+#include "compare/compare.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const PublishedRule published_rules[PUBLISHED_RULES] = {
+    {.name = "pixelmatch",
+     .says = "no pixel by pixelmatch 7.2.0 at 0.1, its own",
+     .pixelmatch = 0.1},
+    {.name = "Playwright", .says = "no pixel by pixelmatch at 0.2, its own", .pixelmatch = 0.2},
+    {.name = "Blender",
+     .says = "1 % of the pixels off by more than 0.016 of the range",
+     .pixelmatch = (double)NAN,
+     .levels = 0.016 * 255,
+     .ppm = 10000,
+     .most_levels = (double)INFINITY},
+    {.name = "OpenImageIO",
+     .says = "0.02 % off by more than 0.004, none by more than 0.012",
+     .pixelmatch = (double)NAN,
+     .levels = 0.004 * 255,
+     .ppm = 200,
+     .most_levels = 0.012 * 255},
+    {.name = "reg-suit",
+     .says = "no pixel by pixelmatch at 0, its own, those of antialiasing not left out",
+     .pixelmatch = (double)NAN,
+     .levels = 0.5, /* it rounds 16 bits to 8 */
+     .most_levels = (double)INFINITY},
+};
+
+static Status published_differs(const PublishedRule *rule, const Picture *a, const Picture *b,
+                                bool *differs, Err *err)
+{
+    if (!isnan(rule->pixelmatch)) {
+        *differs = pixelmatch_count(a, b, rule->pixelmatch) > 0;
+        return STATUS_OK;
+    }
+    CompareResult result;
+    Tolerance tolerance = tolerance_none();
+    tolerance.color_levels = rule->levels;
+    const Rendering of_a = {.picture = a}, of_b = {.picture = b};
+    TRY(compare_pictures(&of_a, &of_b, &tolerance, &result, NULL, err));
+    *differs = (double)result.beyond_pixels > rule->ppm * 1e-6 * (double)result.pixels ||
+               result.max_abs > rule->most_levels;
+    return STATUS_OK;
+}
+
+/* ---- cases ----------------------------------------------------------------------------------- */
+
+typedef struct Work {
+    const Picture *reference, *drawn;
+    const PowerRule *rule;
+    Status (*keep)(void *context, const PowerCase *missed, const Picture *picture, Err *err);
+    void *keep_context;
+    Power *power;
+    Status *status; /* of each case */
+    Err *err;
+} Work;
+
+static Status ask_all(const Work *work, const Picture *picture, bool found[POWER_RULES], Err *err)
+{
+    TRY(work->rule->differs(work->rule->context, work->reference, picture, &found[0], err));
+    for (int i = 0; i < PUBLISHED_RULES; i++)
+        TRY(published_differs(&published_rules[i], work->reference, picture, &found[1 + i], err));
+    return STATUS_OK;
+}
+
+static bool same_codes(const Picture *a, const Picture *b)
+{
+    for (int y = 0; y < a->height; y++)
+        if (!picture_rows_equal(a, b, y, 0, a->width))
+            return false;
+    return true;
+}
+
+static void measure_case(size_t index, int worker, void *context)
+{
+    (void)worker;
+    const Work *work = context;
+    PowerCase *one = &work->power->cases[index];
+    Err *err = &work->err[index];
+    Picture planted;
+    Status status = picture_fault_plant(one->fault, one->size, work->drawn, &planted, err);
+    if (status == STATUS_OK) {
+        one->exists = !same_codes(work->drawn, &planted);
+        if (one->exists)
+            status = ask_all(work, &planted, one->found, err);
+        if (status == STATUS_OK && one->exists && !one->found[0] && work->keep)
+            status = work->keep(work->keep_context, one, &planted, err);
+        picture_release(&planted);
+    }
+    work->status[index] = status;
+}
+
+static void list_cases(Power *power)
+{
+    for (size_t i = 0; i < n_picture_faults; i++) {
+        const PictureFault *fault = &picture_faults[i];
+        int k = 0;
+        do
+            power->cases[power->n++] = (PowerCase){.fault = fault, .size = fault->sizes[k]};
+        while (fault->unit && ++k < FAULT_SIZES && fault->sizes[k] > 0);
+    }
+}
+
+static void count(Power *power)
+{
+    for (size_t i = 0; i < power->n; i++) {
+        power->planted += power->cases[i].exists;
+        for (int rule = 0; rule < POWER_RULES; rule++)
+            power->missed[rule] += power->cases[i].exists && !power->cases[i].found[rule];
+    }
+}
+
+static Status measure_all(Work *work, int threads, Err *err)
+{
+    Power *power = work->power;
+    TRY(ask_all(work, work->drawn, power->alarm, err));
+    threads_for(power->n, threads, measure_case, work);
+    for (size_t i = 0; i < power->n; i++)
+        if (work->status[i] != STATUS_OK)
+            return err_set(err, work->status[i], "%s", work->err[i].text);
+    return STATUS_OK;
+}
+
+Status power_measure(const Picture *reference, const Picture *drawn, const PowerRule *rule,
+                     int threads,
+                     Status (*keep)(void *context, const PowerCase *missed, const Picture *picture,
+                                    Err *err),
+                     void *keep_context, Power *power, Err *err)
+{
+    Power made = {
+        .name = rule->name, .width = drawn->width, .height = drawn->height, .bits = drawn->bits};
+    Work work = {reference, drawn, rule, keep, keep_context, &made, NULL, NULL};
+    const size_t most = n_picture_faults * FAULT_SIZES;
+    Status status = STATUS_OK;
+    if (reference->width != drawn->width || reference->height != drawn->height ||
+        reference->channels != drawn->channels || reference->bits != drawn->bits)
+        return err_set(err, STATUS_INPUT,
+                       "the two drawings have unlike shapes: %d x %d pixels of %d x %d bits, and "
+                       "%d x %d of %d x %d",
+                       reference->width, reference->height, reference->channels, reference->bits,
+                       drawn->width, drawn->height, drawn->channels, drawn->bits);
+    TRY_GOTO(mem_calloc(&made.cases, most, sizeof *made.cases, "faults", err));
+    TRY_GOTO(mem_calloc(&work.status, most, sizeof *work.status, "faults", err));
+    TRY_GOTO(mem_calloc(&work.err, most, sizeof *work.err, "faults", err));
+    list_cases(&made);
+    made.repeats = same_codes(reference, drawn);
+    TRY_GOTO(measure_all(&work, threads, err));
+    count(&made);
+    *power = made;
+    made.cases = NULL;
+done:
+    free(made.cases);
+    free(work.status);
+    free(work.err);
+    return status;
+}
+
+void power_release(Power *power)
+{
+    free(power->cases);
+    *power = (Power){0};
+}
+
+/* ---- output ---------------------------------------------------------------------------------- */
+
+static const char *rule_name(const Power *power, int rule)
+{
+    return rule ? published_rules[rule - 1].name : power->name;
+}
+
+/* The cases of one fault follow each other. */
+static size_t end_of(const Power *power, size_t first)
+{
+    size_t end = first;
+    while (end < power->n && power->cases[end].fault == power->cases[first].fault)
+        end++;
+    return end;
+}
+
+/* From which size on a rule finds the fault. */
+static void put_found(const Power *power, size_t first, size_t end, int rule, Text *out)
+{
+    char cell[32] = "-";
+    bool all = true;
+    for (size_t i = end; i-- > first && all;) {
+        const PowerCase *one = &power->cases[i];
+        all = !one->exists || one->found[rule];
+        if (!one->exists)
+            continue;
+        if (!all && strcmp(cell, "-") == 0)
+            snprintf(cell, sizeof cell, "%s", one->fault->unit ? "never" : "missed");
+        else if (all && one->fault->unit)
+            snprintf(cell, sizeof cell, "%g", one->size);
+        else if (all)
+            snprintf(cell, sizeof cell, "found");
+    }
+    text_printf(out, " %12s", cell);
+}
+
+static void put_fault(const Power *power, size_t first, size_t end, Text *out)
+{
+    const PictureFault *fault = power->cases[first].fault;
+    char name[64];
+    if (fault->unit)
+        snprintf(name, sizeof name, "%s by %g to %g %s", fault->name, fault->sizes[0],
+                 power->cases[end - 1].size, fault->unit);
+    else
+        snprintf(name, sizeof name, "%s", fault->name);
+    text_printf(out, "%-42s", name);
+    for (int rule = 0; rule < POWER_RULES; rule++)
+        put_found(power, first, end, rule, out);
+    text_puts(out, "\n");
+}
+
+static void put_sum(const Power *power, Text *out)
+{
+    text_printf(out, "%-42s", "missed of all that were planted");
+    for (int rule = 0; rule < POWER_RULES; rule++)
+        text_printf(out, " %5zu of %3zu", power->missed[rule], power->planted);
+    text_puts(out, "\n");
+    for (int rule = 0; rule < POWER_RULES; rule++)
+        if (power->alarm[rule])
+            text_printf(out, "false alarm: %s calls two drawings of the same scene different\n",
+                        rule_name(power, rule));
+}
+
+void power_text(const Power *power, Text *out)
+{
+    text_printf(out, "%d x %d pixels of %d bits; two drawings are %s\n", power->width,
+                power->height, power->bits, power->repeats ? "the same" : "not the same");
+    text_printf(out, "%-42s", "fault, found from this size on by");
+    for (int rule = 0; rule < POWER_RULES; rule++)
+        text_printf(out, " %12.12s", rule_name(power, rule));
+    text_puts(out, "\n");
+    for (size_t first = 0; first < power->n; first = end_of(power, first))
+        put_fault(power, first, end_of(power, first), out);
+    put_sum(power, out);
+}
+
+static json_t *case_json(const PowerCase *one)
+{
+    json_t *found = json_object();
+    for (int rule = 0; rule < POWER_RULES; rule++)
+        found = json_with(found, rule ? published_rules[rule - 1].name : "rule",
+                          json_boolean(one->found[rule]));
+    const JsonMember members[] = {{"fault", json_text(one->fault->name)},
+                                  {"size", one->fault->unit ? json_number(one->size) : json_null()},
+                                  {"unit", json_text_or_null(one->fault->unit)},
+                                  {"found", found}};
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+json_t *power_json(const Power *power)
+{
+    json_t *rules = json_array(), *cases = json_array();
+    for (int rule = 0; rule < POWER_RULES; rule++)
+        rules = json_with_item(
+            rules,
+            json_pack("{s:o, s:o, s:o, s:o}", "name", json_text(rule_name(power, rule)), "says",
+                      json_text_or_null(rule ? published_rules[rule - 1].says : NULL), "missed",
+                      json_count(power->missed[rule]), "false_alarm",
+                      json_boolean(power->alarm[rule])));
+    for (size_t i = 0; i < power->n; i++)
+        if (power->cases[i].exists)
+            cases = json_with_item(cases, case_json(&power->cases[i]));
+    const JsonMember members[] = {{"width", json_integer(power->width)},
+                                  {"height", json_integer(power->height)},
+                                  {"bits", json_integer(power->bits)},
+                                  {"repeats", json_boolean(power->repeats)},
+                                  {"planted", json_count(power->planted)},
+                                  {"rules", rules},
+                                  {"faults", cases}};
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}

@@ -1,0 +1,380 @@
+/* Bands of rows are counted by threads; each gathers whole numbers into sums of its own, which are
+ * added in order, so that no result depends on the number of threads. Rows that are equal in both
+ * pictures and both labels take a short path, because equal pictures are what is hoped for. */
+#include "compare/measures/pixel_counts.h"
+
+#include "compare/measures/result.h"
+#include "compare/measures/wide.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BAND_ROWS = 32, BLOCK = 32 };
+
+/* One row being looked at. */
+typedef struct Row {
+    const LabelWindow *window;
+    const uint16_t *a, *b; /* codes; when the rows are equal the same pointer, perhaps to what has
+                            * not been read */
+    int y;
+} Row;
+
+/* ------------------------------------------------------------------------------------- classes */
+
+/* Of a pixel whose labels agree. */
+static PixelClass class_of_shading(const Counting *counting, const Row *row, int x, bool seen,
+                                   int difference)
+{
+    size_t pixel = (size_t)row->y * (size_t)counting->labels->width + (size_t)x;
+    bool known = counting->a->depth && counting->a->normal;
+    if (known && seen &&
+        geometry_differs(counting->a, counting->b, pixel, counting->geometry_mm,
+                         counting->geometry_deg))
+        return PIXEL_GEOMETRY;
+    if (known && seen && difference > 1) {
+        double sum_a = 0, sum_b = 0;
+        int channels = counting->a->picture->channels;
+        for (int c = 0; c < channels; c++) {
+            sum_a += row->a[x * channels + c];
+            sum_b += row->b[x * channels + c];
+        }
+        if (sum_a > 1.5 * sum_b || sum_b > 1.5 * sum_a)
+            return PIXEL_SHADOW;
+    }
+    return difference > 1 ? PIXEL_SHADING : difference == 1 ? PIXEL_ROUNDING : PIXEL_IDENTICAL;
+}
+
+/* The largest difference over the channels of a pixel, in codes; adds to the sums. */
+static int pixel_difference(const uint16_t *a, const uint16_t *b, int channels, Sums *sums)
+{
+    int largest = 0, sum = 0;
+    for (int c = 0; c < channels; c++) {
+        int difference = b[c] - a[c], size = abs(difference);
+        sums->signed_codes[c] += difference;
+        sums->abs += (uint64_t)size;
+        sums->squares += (uint64_t)size * (uint64_t)size;
+        largest = size > largest ? size : largest;
+        sum += difference;
+    }
+    sums->brighter += sum > 0;
+    sums->darker += sum < 0;
+    return largest;
+}
+
+static void count_pixel(const Counting *counting, const Row *row, int x, Sums *sums)
+{
+    const LabelWindow *window = row->window;
+    int channels = counting->a->picture->channels;
+    uint32_t in_a = window->rows[0][1][x], in_b = window->rows[1][1][x];
+    bool band = window->band[x];
+    int difference = pixel_difference(row->a + x * channels, row->b + x * channels, channels, sums);
+    bool common = in_a && in_b, beyond = difference > counting->beyond;
+    size_t pixel = (size_t)row->y * (size_t)counting->labels->width + (size_t)x;
+    bool settled = counting->settled && counting->settled[pixel];
+    PixelClass pixel_class = settled ? PIXEL_SETTLED
+                             : in_a != in_b
+                                 ? labels_class(in_a, in_b, band)
+                                 : class_of_shading(counting, row, x, common, difference);
+    sums->classes[pixel_class]++;
+    if (counting->classes)
+        counting->classes[pixel] = (uint8_t)pixel_class;
+    sums->common += common;
+    if (!in_a != !in_b && !settled) {
+        counting->coverage[pixel] = in_a ? COVERED_MISSING : COVERED_EXTRA;
+        sums->missing += in_a != 0;
+        sums->extra += in_b != 0;
+    }
+    sums->band += band;
+    sums->band_differs += band && in_a != in_b;
+    sums->differing += difference > 0;
+    sums->settled += settled;
+    beyond = beyond && !settled;
+    sums->beyond += beyond && (common || !counting->common_only);
+    sums->band_beyond += beyond && band;
+    sums->interior_beyond += beyond && !band;
+    if (!band && !settled && difference > sums->interior_max)
+        sums->interior_max = difference;
+    if (!settled && difference > sums->unsettled_max)
+        sums->unsettled_max = difference;
+    if (difference > sums->max) {
+        sums->max = difference;
+        sums->worst = (PixelPlace){.x = x, .y = row->y};
+    }
+}
+
+/* Pixels [from, to) of a row that are equal in colour and label, and whose geometry nobody asked
+ * about. */
+static void count_equal(const LabelWindow *window, int from, int to, Sums *sums)
+{
+    const uint32_t *label = window->rows[0][1];
+    unsigned common = 0, band = 0;
+    for (int x = from; x < to; x++) {
+        common += label[x] != 0;
+        band += window->band[x];
+    }
+    sums->common += common;
+    sums->band += band;
+    sums->classes[PIXEL_IDENTICAL] += (size_t)(to - from);
+}
+
+/* The largest difference over the channels and the sum of all, of each pixel of a block. */
+typedef struct Differences {
+    int largest[BLOCK], sum[BLOCK];
+} Differences;
+
+/* Of n pixels; adds to the sums. No sum of a block exceeds 64 bits, and but squares 32. */
+static inline void take_differences(const uint16_t *a, const uint16_t *b, int n, int channels,
+                                    Differences *out, Sums *sums)
+{
+    uint64_t squares = 0;
+    uint32_t total = 0;
+    int signed_codes[3] = {0};
+    for (int x = 0; x < n; x++) {
+        int largest = 0, sum = 0;
+        for (int c = 0; c < channels; c++) {
+            int difference = b[x * channels + c] - a[x * channels + c], size = abs(difference);
+            signed_codes[c] += difference;
+            total += (uint32_t)size;
+            squares += (uint32_t)size * (uint32_t)size;
+            largest = size > largest ? size : largest;
+            sum += difference;
+        }
+        out->largest[x] = largest;
+        out->sum[x] = sum;
+    }
+    sums->squares += squares;
+    sums->abs += total;
+    for (int c = 0; c < channels; c++)
+        sums->signed_codes[c] += signed_codes[c];
+}
+
+static void note_worst(const Differences *differences, int from, int n, int y, Sums *sums)
+{
+    for (int x = 0; x < n; x++)
+        if (differences->largest[x] > sums->max) {
+            sums->max = differences->largest[x];
+            sums->worst = (PixelPlace){.x = from + x, .y = y};
+        }
+}
+
+/* Pixels [from, to) of a row whose labels agree, of which nobody asks more than their colours: as
+ * count_pixel counts them. */
+static void count_colors(const Counting *counting, const Row *row, int from, int to, Sums *sums)
+{
+    const uint32_t *label = row->window->rows[0][1] + from;
+    const uint8_t *band = row->window->band + from;
+    const int n = to - from, channels = counting->a->picture->channels;
+    const uint16_t *a = row->a + from * channels, *b = row->b + from * channels;
+    Differences differences;
+    unsigned rounding = 0, shading = 0, common = 0, in_band = 0, brighter = 0, darker = 0;
+    unsigned beyond = 0, band_beyond = 0, interior_beyond = 0;
+    int interior_max = sums->interior_max, unsettled_max = sums->unsettled_max;
+    if (channels == 3)
+        take_differences(a, b, n, 3, &differences, sums);
+    else
+        take_differences(a, b, n, 1, &differences, sums);
+    for (int x = 0; x < n; x++) {
+        int difference = differences.largest[x], off_band = band[x] ? 0 : difference;
+        unsigned is_beyond = difference > counting->beyond, is_common = label[x] != 0;
+        rounding += difference == 1;
+        shading += difference > 1;
+        brighter += differences.sum[x] > 0;
+        darker += differences.sum[x] < 0;
+        common += is_common;
+        in_band += band[x];
+        beyond += is_beyond & (is_common | !counting->common_only);
+        band_beyond += is_beyond & band[x];
+        interior_beyond += is_beyond & !band[x];
+        interior_max = off_band > interior_max ? off_band : interior_max;
+        unsettled_max = difference > unsettled_max ? difference : unsettled_max;
+    }
+    sums->classes[PIXEL_ROUNDING] += rounding;
+    sums->classes[PIXEL_SHADING] += shading;
+    sums->classes[PIXEL_IDENTICAL] += (unsigned)n - rounding - shading;
+    sums->differing += rounding + shading;
+    sums->brighter += brighter;
+    sums->darker += darker;
+    sums->common += common;
+    sums->band += in_band;
+    sums->beyond += beyond;
+    sums->band_beyond += band_beyond;
+    sums->interior_beyond += interior_beyond;
+    sums->interior_max = interior_max;
+    sums->unsettled_max = unsettled_max;
+    note_worst(&differences, from, n, row->y, sums);
+}
+
+static bool labels_equal(const Row *row, int from, int to)
+{
+    const uint32_t *in_a = row->window->rows[0][1], *in_b = row->window->rows[1][1];
+    size_t n = (size_t)(to - from);
+    return in_a == in_b || memcmp(in_a + from, in_b + from, n * sizeof *in_a) == 0;
+}
+
+static bool codes_equal(const Row *row, int from, int to, int channels)
+{
+    size_t start = (size_t)from * (size_t)channels, n = (size_t)(to - from) * (size_t)channels;
+    return row->a == row->b || memcmp(row->a + start, row->b + start, n * sizeof *row->a) == 0;
+}
+
+/* Counts a row by blocks, most of which are equal even in rows that are not. */
+static void count_blocks(const Counting *counting, const Row *row, Sums *sums)
+{
+    int width = counting->labels->width, channels = counting->a->picture->channels;
+    bool geometry = counting->a->depth && counting->a->normal;
+    bool colors = !counting->settled && !counting->classes;
+    for (int from = 0, to; from < width; from = to) {
+        to = from + BLOCK < width ? from + BLOCK : width;
+        bool plain = !geometry && labels_equal(row, from, to);
+        if (plain && codes_equal(row, from, to, channels))
+            count_equal(row->window, from, to, sums);
+        else if (plain && colors)
+            count_colors(counting, row, from, to, sums);
+        else
+            for (int x = from; x < to; x++)
+                count_pixel(counting, row, x, sums);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------- sums */
+
+static void count_silhouette(const uint32_t *row, const uint32_t *below, int width, Sums *sums)
+{
+    unsigned edges = 0;
+    for (int x = 0; x < width; x++)
+        edges += (row[x] != 0) != (below[x] != 0);
+    for (int x = 0; x + 1 < width; x++)
+        edges += (row[x] != 0) != (row[x + 1] != 0);
+    sums->silhouette += edges;
+}
+
+/* What the straight line through the colours seen in both needs. */
+static void add_regression(const Row *row, int width, int channels, Sums *sums)
+{
+    const uint32_t *in_a = row->window->rows[0][1], *in_b = row->window->rows[1][1];
+    for (int x = 0; x < width; x++) {
+        if (!in_a[x] || !in_b[x])
+            continue;
+        for (int i = x * channels; i < (x + 1) * channels; i++) {
+            int64_t a = row->a[i], d = row->b[i] - a;
+            sums->a += (uint64_t)a;
+            sums->aa += (uint64_t)(a * a);
+            sums->d += d;
+            sums->ad += a * d;
+            sums->dd += (uint64_t)(d * d);
+        }
+        sums->n += (uint64_t)channels;
+    }
+}
+
+static void count_row(const Counting *counting, const Row *row, Sums *sums, SegmentSums *segments)
+{
+    int width = counting->labels->width, channels = counting->a->picture->channels;
+    count_blocks(counting, row, sums);
+    if (counting->labels->source == LABELS_UNKNOWN)
+        return;
+    count_silhouette(row->window->rows[0][1], row->window->rows[0][2], width, sums);
+    if (!counting->index)
+        return;
+    add_regression(row, width, channels, sums);
+    segment_sums_add_row(segments, counting->index, row->window, row->a, row->b, channels);
+}
+
+static void count_band(size_t index, int worker, void *context)
+{
+    Counting *counting = context;
+    const Picture *a = counting->a->picture, *b = counting->b->picture;
+    uint8_t *scratch = counting->scratch + (size_t)worker * counting->scratch_size;
+    uint16_t *codes[2] = {(uint16_t *)(scratch + label_window_size(a->width))};
+    codes[1] = codes[0] + picture_stride(a);
+    SegmentSums *segments =
+        counting->index ? counting->segments + (size_t)worker * counting->index->n : NULL;
+    int top = (int)index * BAND_ROWS;
+    int bottom = top + BAND_ROWS < a->height ? top + BAND_ROWS : a->height;
+    LabelWindow window;
+    label_window_open(&window, counting->labels, top, scratch);
+    for (int y = top; y < bottom; y++) {
+        bool equal = picture_rows_equal(a, b, y, 0, a->width);
+        bool read = !equal || counting->index || counting->a->depth;
+        Row row = {.window = &window, .y = y};
+        row.a = read ? picture_row(a, y, codes[0]) : codes[0];
+        row.b = equal ? row.a : picture_row(b, y, codes[1]);
+        count_row(counting, &row, &counting->sums[index], segments);
+        if (y + 1 < bottom)
+            label_window_next(&window);
+    }
+}
+
+WIDE static void count_band_wide(size_t index, int worker, void *context)
+{
+    count_band(index, worker, context);
+}
+
+static void add_sums(Sums *to, const Sums *from)
+{
+    to->abs += from->abs;
+    to->squares += from->squares;
+    for (int c = 0; c < 3; c++)
+        to->signed_codes[c] += from->signed_codes[c];
+    for (int i = 0; i < PIXEL_CLASSES; i++)
+        to->classes[i] += from->classes[i];
+    to->differing += from->differing;
+    to->beyond += from->beyond;
+    to->settled += from->settled;
+    to->brighter += from->brighter;
+    to->darker += from->darker;
+    to->common += from->common;
+    to->missing += from->missing;
+    to->extra += from->extra;
+    to->band += from->band;
+    to->band_differs += from->band_differs;
+    to->band_beyond += from->band_beyond;
+    to->interior_beyond += from->interior_beyond;
+    to->silhouette += from->silhouette;
+    to->n += from->n;
+    to->a += from->a;
+    to->aa += from->aa;
+    to->d += from->d;
+    to->ad += from->ad;
+    to->dd += from->dd;
+    if (from->interior_max > to->interior_max)
+        to->interior_max = from->interior_max;
+    if (from->unsettled_max > to->unsettled_max)
+        to->unsettled_max = from->unsettled_max;
+    if (from->max > to->max) {
+        to->max = from->max;
+        to->worst = from->worst;
+    }
+}
+
+Status count_pixels(Counting *counting, Err *err)
+{
+    int bands = (counting->labels->height + BAND_ROWS - 1) / BAND_ROWS;
+    int threads = threads_available();
+    threads = threads < bands ? threads : bands;
+    const Picture *a = counting->a->picture;
+    size_t segments = counting->index ? (size_t)threads * counting->index->n : 0;
+    counting->scratch_size = label_window_size(a->width) + 2 * picture_stride(a) * sizeof(uint16_t);
+    TRY(mem_calloc(&counting->sums, (size_t)bands, sizeof *counting->sums, "sums of rows", err));
+    TRY(mem_calloc(&counting->segments, segments, sizeof *counting->segments, "sums of segments",
+                   err));
+    TRY(mem_calloc(&counting->coverage, (size_t)a->width * (size_t)a->height, 1, "pixel marks",
+                   err));
+    TRY(mem_calloc(&counting->scratch, (size_t)threads, counting->scratch_size, "rows", err));
+    segment_sums_clear(counting->segments, segments);
+    threads_for((size_t)bands, threads, wide_usable() ? count_band_wide : count_band, counting);
+    for (int i = 1; i < bands; i++)
+        add_sums(&counting->sums[0], &counting->sums[i]);
+    for (int t = 1; t < threads && counting->index; t++)
+        segment_sums_add(counting->segments, counting->segments + (size_t)t * counting->index->n,
+                         counting->index->n);
+    return STATUS_OK;
+}
+
+void counting_release(Counting *counting)
+{
+    free(counting->coverage);
+    free(counting->sums);
+    free(counting->segments);
+    free(counting->scratch);
+}

@@ -1,0 +1,47 @@
+/* The one pass over two pictures in which all pixels are counted and all sums taken; private to the
+ * room compare. */
+#ifndef CORCAST_COMPARE_MEASURES_PIXEL_COUNTS_H
+#define CORCAST_COMPARE_MEASURES_PIXEL_COUNTS_H
+
+#include "compare/measures/ledger.h"
+
+/* What is gathered over a band of rows. */
+typedef struct Sums {
+    uint64_t abs, squares; /* codes, codes^2 */
+    int64_t signed_codes[3];
+    size_t differing, beyond, settled;
+    size_t brighter, darker; /* pixels, by the sum of their channels */
+    size_t classes[PIXEL_CLASSES];
+    int max, interior_max, unsettled_max; /* codes; unsettled_max leaves settled pixels out */
+    PixelPlace worst;
+    size_t common, missing, extra, band, band_differs, band_beyond, interior_beyond;
+    uint64_t silhouette; /* sides of A's pixels that part something from nothing */
+    uint64_t n, a, aa;   /* over samples seen in both: count, a, a a */
+    int64_t d, ad;       /* ... d = b - a, a d */
+    uint64_t dd;         /* ... d d */
+} Sums;
+
+/* What is counted, and where to. */
+typedef struct Counting {
+    const Rendering *a, *b;
+    const Labels *labels;
+    const SegmentIndex *index; /* NULL without ids */
+    int beyond;                /* codes a pixel may be off */
+    bool common_only;
+    const uint8_t *settled;           /* as in Tolerance */
+    double geometry_mm, geometry_deg; /* beyond which geometry differs */
+    uint8_t *classes;                 /* borrowed; takes the PixelClass of each pixel; or NULL */
+    uint8_t *coverage;                /* owned; a Coverage for each pixel */
+    Sums *sums;                       /* owned; one for each band */
+    SegmentSums *segments;            /* owned; index->n for each worker */
+    uint8_t *scratch;                 /* owned; scratch_size for each worker */
+    size_t scratch_size;
+} Counting;
+
+/* Counts the pixels of all rows, by as many threads as there are; sums[0] and `segments` hold the
+ * whole then. The caller has filled in what is not owned, and releases with counting_release, also
+ * on failure. */
+MUST_CHECK Status count_pixels(Counting *counting, Err *err);
+void counting_release(Counting *counting);
+
+#endif

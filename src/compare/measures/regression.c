@@ -1,0 +1,148 @@
+/* The straight line b = gain a + offset through the colours that both pictures show, by least
+ * squares, and its standard errors: a few pixels at the rims of shadows move the line, too.
+ *
+ * An error supposes that the samples are independent. They are not where a picture repeats itself:
+ * all rows of an upright tube are alike, and a hundred of them say no more than one. Pixels in a
+ * row, a column or a diagonal that follow each other with the same codes in A and the same codes in
+ * B are a run, and count as one measurement with the weight of all its pixels [cluster-robust
+ * errors, Liang and Zeger 1986]. The largest error counts: that of independent samples, or that of
+ * the runs in one of the four directions. */
+#include "compare/measures/regression.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* With d = b - a: gain - 1 = cov(a, d) / var(a). All in codes. */
+typedef struct Line {
+    double n, mean_a, mean_d, slope; /* slope: gain - 1 */
+    double squares_a;                /* of a beside its mean, summed */
+} Line;
+
+/* Squares of the standard errors, codes. */
+typedef struct LineError {
+    double slope, offset;
+} LineError;
+
+enum { DIRECTIONS = 4 };
+static const int directions[DIRECTIONS][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
+
+typedef struct Runs {
+    const Rendering *a, *b;
+    const Line *line;
+    LineError *errors; /* owned; DIRECTIONS for each row, of the runs that begin in it */
+} Runs;
+
+static LineError error_of_samples(const Sums *sums, const Line *line)
+{
+    double rest = (double)sums->dd - line->n * line->mean_d * line->mean_d -
+                  line->slope * line->slope * line->squares_a;
+    double variance = fmax(0, rest) / line->n;
+    return (LineError){variance / line->squares_a,
+                       variance * (1 / line->n + line->mean_a * line->mean_a / line->squares_a)};
+}
+
+static bool is_common(const Runs *runs, int x, int y)
+{
+    int width = runs->a->picture->width;
+    if (x < 0 || y < 0 || x >= width || y >= runs->a->picture->height)
+        return false;
+    size_t pixel = (size_t)y * (size_t)width + (size_t)x;
+    return runs->a->ids->ids[pixel] && runs->b->ids->ids[pixel];
+}
+
+static bool has_same_codes(const Picture *picture, int x, int y, int u, int v)
+{
+    size_t size = (size_t)picture->channels * ((size_t)picture->bits / 8);
+    const char *codes =
+        picture->bits == 8 ? (const char *)picture->codes8 : (const char *)picture->codes16;
+    size_t width = (size_t)picture->width;
+    return memcmp(codes + ((size_t)y * width + (size_t)x) * size,
+                  codes + ((size_t)v * width + (size_t)u) * size, size) == 0;
+}
+
+/* Whether the common pixel (u, v) goes on with the run of (x, y). */
+static bool repeats(const Runs *runs, int x, int y, int u, int v)
+{
+    return is_common(runs, u, v) && has_same_codes(runs->a->picture, x, y, u, v) &&
+           has_same_codes(runs->b->picture, x, y, u, v);
+}
+
+/* What a run of `length` pixels like (x, y) adds to the squares of the errors. */
+static void add_run(const Runs *runs, int x, int y, int length, LineError *error)
+{
+    const Line *line = runs->line;
+    const Picture *a = runs->a->picture, *b = runs->b->picture;
+    size_t first = ((size_t)y * (size_t)a->width + (size_t)x) * (size_t)a->channels;
+    for (size_t i = first; i < first + (size_t)a->channels; i++) {
+        double in_a = picture_code(a, i), beside = in_a - line->mean_a;
+        double rest = length * (picture_code(b, i) - in_a - line->mean_d - line->slope * beside);
+        double of_slope = rest * beside / line->squares_a;
+        double of_offset = rest / line->n - line->mean_a * of_slope;
+        error->slope += of_slope * of_slope;
+        error->offset += of_offset * of_offset;
+    }
+}
+
+static void add_row_of_runs(size_t row, int worker, void *context)
+{
+    (void)worker;
+    Runs *runs = context;
+    const int y = (int)row;
+    for (int x = 0; x < runs->a->picture->width; x++) {
+        if (!is_common(runs, x, y))
+            continue;
+        for (int i = 0; i < DIRECTIONS; i++) {
+            const int *step = directions[i];
+            int length = 1;
+            if (repeats(runs, x, y, x - step[0], y - step[1]))
+                continue;
+            while (repeats(runs, x, y, x + length * step[0], y + length * step[1]))
+                length++;
+            add_run(runs, x, y, length, &runs->errors[row * DIRECTIONS + (size_t)i]);
+        }
+    }
+}
+
+/* Raises the errors to those of the runs in each direction. */
+static Status raise_by_runs(const Counting *counting, const Line *line, LineError *error, Err *err)
+{
+    Runs runs = {.a = counting->a, .b = counting->b, .line = line};
+    size_t height = (size_t)counting->labels->height;
+    TRY(mem_calloc(&runs.errors, height * DIRECTIONS, sizeof *runs.errors, "errors of rows", err));
+    threads_for(height, 0, add_row_of_runs, &runs);
+    for (size_t i = 0; i < DIRECTIONS; i++) {
+        LineError sum = {0};
+        for (size_t y = 0; y < height; y++) {
+            sum.slope += runs.errors[y * DIRECTIONS + i].slope;
+            sum.offset += runs.errors[y * DIRECTIONS + i].offset;
+        }
+        error->slope = fmax(error->slope, sum.slope);
+        error->offset = fmax(error->offset, sum.offset);
+    }
+    free(runs.errors);
+    return STATUS_OK;
+}
+
+Status regression_take(const Counting *counting, double code_levels, CompareResult *result,
+                       Err *err)
+{
+    const Sums *sums = counting->sums;
+    double n = (double)sums->n, a = (double)sums->a, d = (double)sums->d;
+    double variance = n * (double)sums->aa - a * a;
+    if (!(variance > 0))
+        return STATUS_OK;
+    const Line line = {.n = n,
+                       .mean_a = a / n,
+                       .mean_d = d / n,
+                       .slope = (n * (double)sums->ad - a * d) / variance,
+                       .squares_a = variance / n};
+    LineError error = error_of_samples(sums, &line);
+    if (sums->dd > 0)
+        TRY(raise_by_runs(counting, &line, &error, err));
+    result->gain = 1 + line.slope;
+    result->offset_levels = (line.mean_d - line.slope * line.mean_a) * code_levels;
+    result->gain_error = sqrt(error.slope);
+    result->offset_error = sqrt(error.offset) * code_levels;
+    return STATUS_OK;
+}

@@ -1,0 +1,119 @@
+/* The tables of a case on the page: a row for each rule; and for each check its measures, a table
+ * for each heading, under a line with the first of them. Checks that differ are open. */
+#include "compare/rules/check.h"
+#include "compare/report/report.h"
+#include "compare/report/rounded.h"
+#include "tmpl/tmpl.h"
+
+enum { FIRST_MEASURES = 3 };
+
+static Status put_rule(const Check *check, int index, const char *templates, Text *out, Err *err)
+{
+    const Rule *rule = &check->rules[index];
+    Markup parts = {0};
+    text_puts(markup_text(&parts, "title"), index == 0 ? check->title : "");
+    text_puts(markup_text(&parts, "class"), rule->met ? "good" : "bad");
+    text_puts(markup_text(&parts, "verdict"), rule->met ? "✓ agree" : "✗ differ");
+    text_puts(markup_text(&parts, "rule"), rule->name);
+    text_rounded(markup_text(&parts, "measured"), rule->measured, rule->unit);
+    text_rounded(markup_text(&parts, "allowed"), rule->allowed, rule->unit);
+    return markup_put(&parts, templates, "rule.html", out, err);
+}
+
+static Status put_unjudged(const Check *check, const char *templates, Text *out, Err *err)
+{
+    Markup parts = {0};
+    text_puts(markup_text(&parts, "title"), check->title);
+    return markup_put(&parts, templates, "unjudged.html", out, err);
+}
+
+/* Puts the rows into a table with a caption, and empties them. */
+static Status put_table(const char *caption, Text *rows, const char *templates, Text *out, Err *err)
+{
+    Markup parts = {0};
+    text_puts(markup_text(&parts, "caption"), caption);
+    text_add(markup_raw(&parts, "rows"), rows);
+    text_clear(rows);
+    return markup_put(&parts, templates, "measures.html", out, err);
+}
+
+/* The tables of a check's measures, those of one heading in each. */
+static Status put_measures(const Check *check, const char *templates, Text *out, Err *err)
+{
+    Text rows = TEXT_INIT;
+    Status status = STATUS_OK;
+    for (int i = 0; i < check->n_measures; i++) {
+        const Measure *measure = &check->measures[i];
+        Markup parts = {0};
+        text_puts(markup_text(&parts, "name"), measure->name);
+        text_puts(markup_text(&parts, "class"), measure->value == 0 ? "zero" : "");
+        text_rounded(markup_text(&parts, "value"), measure->value, measure->unit);
+        TRY_GOTO(markup_put(&parts, templates, "measure.html", &rows, err));
+        if (i + 1 == check->n_measures || measure[1].table != measure->table)
+            TRY_GOTO(put_table(measure->table, &rows, templates, out, err));
+    }
+done:
+    text_release(&rows);
+    return status;
+}
+
+static Status put_settled(const ReportCase *report, const char *templates, Text *out, Err *err)
+{
+    const Settled *settled = report->settled;
+    Text rows = TEXT_INIT;
+    Status status = STATUS_OK;
+    for (int i = 0; i < settled->n_first; i++) {
+        const SettledPixel *pixel = &settled->first[i];
+        Markup parts = {0};
+        settled_describe(pixel, report->a.name, report->b.name, markup_text(&parts, "name"));
+        text_puts(markup_text(&parts, "value"), settled_cause_name(pixel->cause));
+        text_puts(markup_text(&parts, "class"), "");
+        TRY_GOTO(markup_put(&parts, templates, "measure.html", &rows, err));
+    }
+    if (settled->n_first > 0)
+        TRY_GOTO(put_table("Settled pixels, the first of them", &rows, templates, out, err));
+done:
+    text_release(&rows);
+    return status;
+}
+
+/* All that was measured for one check. */
+static Status put_measured(const ReportCase *report, const Check *check, const char *templates,
+                           Text *out, Err *err)
+{
+    Markup parts = {0};
+    Text *first = markup_text(&parts, "first"), *tables = markup_raw(&parts, "tables");
+    text_puts(markup_text(&parts, "title"), check->title);
+    text_puts(markup_text(&parts, "verdict"), check->agrees ? "✓ agree" : "✗ differ");
+    text_puts(markup_text(&parts, "open"), check->agrees ? "" : " open");
+    for (int i = 0; i < check->n_measures && i < FIRST_MEASURES; i++) {
+        const Measure *measure = &check->measures[i];
+        text_printf(first, "%s%s ", i ? ", " : "", measure->name);
+        text_rounded(first, measure->value, measure->unit);
+    }
+    if (check->settled)
+        text_printf(first, "the first %d pixels", report->settled->n_first);
+    Status status = put_measures(check, templates, tables, err);
+    if (status == STATUS_OK && check->settled)
+        status = put_settled(report, templates, tables, err);
+    if (status == STATUS_OK)
+        status = markup_put(&parts, templates, "measured.html", out, err);
+    markup_release(&parts);
+    return status;
+}
+
+Status report_tables(const ReportCase *report, const char *templates, Text *rules, Text *measures,
+                     Err *err)
+{
+    Check checks[CHECKS_MAX];
+    int n = report_checks(report, checks);
+    for (int i = 0; i < n; i++) {
+        if (checks[i].n_rules == 0)
+            TRY(put_unjudged(&checks[i], templates, rules, err));
+        for (int k = 0; k < checks[i].n_rules; k++)
+            TRY(put_rule(&checks[i], k, templates, rules, err));
+        if (checks[i].n_measures > 0 || checks[i].settled)
+            TRY(put_measured(report, &checks[i], templates, measures, err));
+    }
+    return STATUS_OK;
+}

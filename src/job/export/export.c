@@ -1,0 +1,243 @@
+/* The extension of the output chooses the emitter, as in scene.c, or an option does; meshing.c
+ * makes what it writes, volumes.c voxels, webpage.c a page. Options that have no effect on a format
+ * are refused. */
+#include "job/export/export.h"
+
+#include "emit/emit.h"
+#include "job/export/scenefiles.h"
+#include "job/export/webpage.h"
+#include "job/picture/picture.h"
+#include <string.h>
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, ExportOptions, output),
+     .argument = "M.stl",
+     .help = "the mesh, curves, a volume as V.nii.gz, or P.html, a page to turn the tree in; its "
+             "extension chooses the format"},
+    {.name = "model",
+     SETS(CHOICE, ExportOptions, meshing.body),
+     .choices = vessel_body_names,
+     .group = GROUP_VESSELS,
+     .help = "the wall: vessels that blend where they meet, or cylinders and balls"},
+    {.name = "tolerance",
+     SETS(NUMBER, ExportOptions, meshing.tolerance),
+     .group = GROUP_VESSELS,
+     .range = &tolerance_range,
+     .help = "how far triangles may be off the surface, over the local radius"},
+    {.name = "lod",
+     SETS(NUMBER, ExportOptions, meshing.lod),
+     .group = GROUP_VESSELS,
+     FROM_TO(RANGE_ABOVE_0, 1),
+     .help = "level of detail: make about this part of the triangles, farther off the surface"},
+    {.name = "tube-edge",
+     SETS(NUMBER, ExportOptions, meshing.tube_edge),
+     .group = GROUP_VESSELS,
+     FROM_TO(0.05, 1e6),
+     .otherwise = "as long as the tube",
+     .help = "how long triangles of straight tubes are along them, over the radius; for solvers"},
+    {.name = "prune-radius",
+     SETS(NUMBER, ExportOptions, prune_radius_mm),
+     .group = GROUP_VESSELS,
+     .range = &prune_range,
+     .unit = "mm",
+     .otherwise = "",
+     .help = "drop segments thinner than this"},
+    {.name = "part-overlaps",
+     SETS(FLAG, ExportOptions, meshing.part_overlaps),
+     .group = GROUP_VESSELS,
+     .help = "thin vessels that overlap others that they do not belong with"},
+    {.name = "parts",
+     SETS(FLAG, ExportOptions, parts),
+     .group = GROUP_VESSELS,
+     .help = "of an STL: the wall and each end as a named solid, as text; a VTP has them always"},
+    {.name = "lattice",
+     SETS(FLAG, ExportOptions, lattice),
+     .group = GROUP_VESSELS,
+     .help = "of a 3MF: a beam for each segment, exactly, and no mesh but a preview"},
+    {.name = "wall",
+     SETS(NUMBER, ExportOptions, wall_mm),
+     .group = GROUP_VESSELS,
+     FROM_TO(RANGE_ABOVE_0, 1e6),
+     .unit = "mm",
+     .otherwise = "",
+     .help = "of named parts: a second surface so far about the vessels, which are its lumen"},
+    {.name = "print",
+     SETS(TEXT, ExportOptions, print),
+     .argument = "KEY=VALUE,...",
+     .group = GROUP_VESSELS,
+     .otherwise = "",
+     .help = "make it fit for a printer: scale=N, min-diameter=MM, thin=clamp|prune, nozzle=MM, "
+             "wall=MM or as 0.2r, base, block=box|cylinder, margin=MM, ports, bed=AxBxC"},
+    {.name = "look",
+     SETS(LOOKUP, ExportOptions, meshing.look),
+     .group = GROUP_COLOR,
+     .list = "looks",
+     .help = "colour and finish: a file of templates/looks, or a path"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    ExportOptions *own_options = options;
+    own_options->meshing.tolerance = MESHING_TOLERANCE;
+    own_options->meshing.lod = 1;
+    own_options->meshing.look = "cast";
+    coloring_set_defaults(&own_options->meshing.coloring);
+}
+
+/* STATUS_USAGE for an option that has no effect on a file of this format. */
+static Status check_format(const ExportOptions *options, const Emitter *emitter,
+                           const Parsed *parsed, Err *err)
+{
+    static const char of_colors[] = "is for formats with colours";
+    static const char of_meshes[] = "is for formats of triangles";
+    const OptionNeed format[] = {
+        {"look", emitter->has_colors, of_colors},
+        {"color-by", emitter->has_colors, of_colors},
+        {"model", emitter->of_meshes, of_meshes},
+        {"tolerance", emitter->of_meshes, of_meshes},
+        {"lod", emitter->of_meshes, of_meshes},
+        {"tube-edge", emitter->of_meshes, of_meshes},
+        {"part-overlaps", emitter->of_meshes, of_meshes},
+        {"print", emitter->of_meshes, of_meshes},
+        {"wall", emitter->has_parts, "is for named parts: a .vtp, or an .stl with --parts"},
+        {0}};
+    TRY(options_check_needs(parsed, format, err));
+    if (emitter->has_parts && options->meshing.body == BODY_ROUND)
+        return err_set(err, STATUS_USAGE,
+                       "`model` rounded has no flat ends that could be named parts");
+    return coloring_check_needs(&options->meshing.coloring, parsed, err);
+}
+
+/* The emitter for the extension of the output, or the one that an option asks for. */
+static Status find_emitter(const ExportOptions *options, const Emitter **emitter, Err *err)
+{
+    const Emitter *asked = NULL;
+    TRY(scene_files_find(options->output, true, emitter, err));
+    if (options->parts)
+        asked = emitter_asked((*emitter)->extension, "parts");
+    else if (options->lattice)
+        asked = emitter_asked((*emitter)->extension, "lattice");
+    else
+        return STATUS_OK;
+    if (options->parts && !asked && !(*emitter)->has_parts)
+        return err_set(err, STATUS_USAGE,
+                       "--parts is for .stl and .vtp, which hold names of parts");
+    if (options->lattice && !asked)
+        return err_set(err, STATUS_USAGE, "--lattice is for .3mf, which holds beams");
+    *emitter = asked ? asked : *emitter;
+    return STATUS_OK;
+}
+
+/* Reads --wall and --print. STATUS_USAGE where one would not do what it says. */
+static Status read_print(ExportOptions *options, const Emitter *emitter, Err *err)
+{
+    PrintSettings *print = &options->settings;
+    if (!options->print && options->wall_mm == 0)
+        return STATUS_OK;
+    if (options->print && options->wall_mm > 0)
+        return err_set(err, STATUS_USAGE,
+                       "--wall and --print, which has a wall= of its own, exclude each other");
+    TRY(printing_parse(options->print ? options->print : "", print, err));
+    if (options->wall_mm > 0)
+        print->params = (PrintParams){.wall_mm = options->wall_mm, .lids = true};
+    options->meshing.print = print;
+    if (print->prunes)
+        options->prune_radius_mm =
+            fmax(options->prune_radius_mm, print->min_diameter_mm / print->scale / 2);
+    if (!strcmp(emitter->name, "mesh2"))
+        return err_set(err, STATUS_USAGE, "`print` is for solids, and .inc is a scene's");
+    if (print_is_joined(&print->params) && options->meshing.body != BODY_POTENTIAL)
+        return err_set(err, STATUS_USAGE,
+                       "`%s`: walls, blocks and bases need --model isosurface, whose ends are flat",
+                       options->print ? "print" : "wall");
+    return STATUS_OK;
+}
+
+/* STATUS_USAGE for an option about the surface, of which some formats show none. */
+static Status refuse_surface(const Parsed *parsed, const char *shown, Err *err)
+{
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        const Option *option = setting->option;
+        if (setting->typed && option->group == GROUP_VESSELS &&
+            strcmp(option->name, "prune-radius") != 0)
+            return err_set(err, STATUS_USAGE, "--%s is for the surface; %s cylinders and balls",
+                           option->name, shown);
+    }
+    return STATUS_OK;
+}
+
+static Status export_volume(const ExportOptions *options, const VolumeFormat *format,
+                            Parsed *parsed, Err *err)
+{
+    PictureTree of;
+    TRY(refuse_surface(parsed, "volumes are of", err));
+    TRY(coloring_check_needs(&options->meshing.coloring, parsed, err));
+    TRY(volumes_note(&options->volume, format, options->output, &parsed->files, err));
+    TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, &of, err));
+    Status status = volumes_write(&options->volume, format, &of, options->output, parsed, err);
+    picture_tree_release(&of);
+    return status;
+}
+
+static Status export_page(const ExportOptions *options, const Parsed *parsed, Err *err)
+{
+    const Coloring *coloring = &options->meshing.coloring;
+    PictureTree of;
+    TRY(refuse_surface(parsed, "a page shows", err));
+    TRY(webpage_check_needs(coloring, parsed, err));
+    TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
+    Status status =
+        webpage_write(coloring, options->meshing.look, &of, options->output, parsed, err);
+    picture_tree_release(&of);
+    return status;
+}
+
+Status export_run(void *options, Parsed *parsed, Err *err)
+{
+    ExportOptions *own_options = options;
+    const VolumeFormat *volume = volume_format_find(own_options->output);
+    const Emitter *emitter;
+    PictureTree of;
+    TRY(volumes_check_needs(volume != NULL, parsed, err));
+    if (strcmp(file_extension(own_options->output), "html") == 0)
+        return export_page(own_options, parsed, err);
+    if (volume)
+        return export_volume(own_options, volume, parsed, err);
+    TRY(find_emitter(own_options, &emitter, err));
+    own_options->meshing.coloring.with_flow = emitter->has_parts;
+    TRY(check_format(own_options, emitter, parsed, err));
+    TRY(read_print(own_options, emitter, err));
+    TRY(scene_files_note(emitter, own_options->output, false, &parsed->files, err));
+    TRY(picture_read_tree(&own_options->meshing.coloring, own_options->prune_radius_mm, parsed, &of,
+                          err));
+    Status status =
+        meshing_write(emitter, &own_options->meshing, &of, own_options->output, parsed, err);
+    picture_tree_release(&of);
+    return status;
+}
+
+const Command command_export = {
+    .name = "export",
+    .summary = "write the vessels as a mesh, curves, voxels, or a page to turn them in",
+    .operands = "T.swc -o M.stl",
+    .examples = "  corcast export tree.swc -o tree.stl\n"
+                "  corcast export tree.swc --color-by strahler -o tree.glb\n"
+                "  corcast export tree.swc --tolerance 0.05 -o tree.ply\n"
+                "  corcast export tree.swc --parts -o tree.stl\n"
+                "  corcast export tree.swc --color-by flow -o tree.py\n"
+                "  corcast export tree.swc --voxel 0.1 --labels segment -o tree.nii.gz\n"
+                "  corcast export tree.swc --color-by flow -o tree.html\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .reads_tree = true,
+    .size = sizeof(ExportOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0},
+               {&volume_table, offsetof(ExportOptions, volume)},
+               COLORING_TABLES(ExportOptions, meshing.coloring)},
+};

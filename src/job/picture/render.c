@@ -1,0 +1,337 @@
+/* Each way to draw begins with rendering_open, which finds everything that may fail for a reason of
+ * the user's before the first ray: options, files, templates, the tree. What is drawn then goes to
+ * memory, to files or to a page. */
+#include "job/picture/render.h"
+
+#include "job/picture/line_drawing.h"
+#include "job/picture/render_bands.h"
+#include "options/output.h"
+#include "options/talk.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- what is drawn, and where to ------------------------------------------------------------- */
+
+/* Reads the list of --planes. */
+static Status read_planes(const char *list, RenderParams *params, Err *err)
+{
+    static const char *const names[] = {"color", "depth", "normal", "id"};
+    bool *const wanted[] = {&params->want_color, &params->want_depth, &params->want_normal,
+                            &params->want_id};
+    while (list && *list) {
+        size_t length = strcspn(list, ",");
+        size_t i = 0;
+        while (i < 4 && (strlen(names[i]) != length || strncmp(names[i], list, length) != 0))
+            i++;
+        if (i == 4)
+            return err_set(err, STATUS_USAGE,
+                           "--planes: '%.*s' is not one of color, depth, normal, id", (int)length,
+                           list);
+        *wanted[i] = true;
+        list += length + (list[length] == ',');
+    }
+    return STATUS_OK;
+}
+
+/* Returns the name of a file of the form that a picture in memory has. */
+static const char *form_name(const RenderOptions *options, bool on_page)
+{
+    if (on_page)
+        return options->ink_mm > 0 ? "panel.pdf" : "panel.ppm";
+    return options->press.bits == 32 ? "picture%d.exr" : "picture%d.png";
+}
+
+static Status plan_form(Rendering *r, Err *err)
+{
+    const RenderOptions *options = r->options;
+    const bool page = frames_is_page(options->output);
+    RenderParams *params = &r->params;
+    FramesForm *form = &r->form;
+    TRY(read_planes(options->planes, params, err));
+    *form = (FramesForm){.width = options->picture.size.pixels[0],
+                         .height = options->picture.size.pixels[1],
+                         .path = options->output,
+                         .bits = r->press.bits,
+                         .packing = r->press.packing,
+                         .encoding = ENCODING_SRGB,
+                         .dpi = options->picture.size.dpi,
+                         .picture = true,
+                         .color = params->want_color,
+                         .depth = params->want_depth,
+                         .normal = params->want_normal,
+                         .id = params->want_id};
+    form->alpha = picture_is_transparent(&options->picture);
+    params->codes_suffice = form->bits == 8 && !form->color && !form->alpha && !r->has_sheet &&
+                            !image_traits(form->path).floats;
+    params->want_color = true;
+    return page ? STATUS_OK : frames_check_output(options->output, options->planes != NULL, err);
+}
+
+/* Chooses the rows that are drawn. */
+static Status plan_rows(Rendering *r, Err *err)
+{
+    const RenderOptions *options = r->options;
+    const RenderKernels kernels = options->kernels;
+    const bool animated = r->animation.kind != ANIMATION_NONE;
+    if (r->in_memory && (options->shard.commands || options->shard.resume))
+        return err_set(err, STATUS_USAGE, "--%s is for files, not for pictures in memory",
+                       options->shard.commands ? "commands" : "resume");
+    TRY(shard_check(&options->shard, animated, &r->form, r->parsed, err));
+    TRY(shard_of_tile(options->shard.tile, r->form.height, &r->shard, err));
+    snprintf(r->shard.kernels, sizeof r->shard.kernels, "%s",
+             render_kernel_names[kernels ? kernels : render_fastest_kernels()]);
+    r->form.height = r->shard.rows;
+    r->form.first = r->shard.first;
+    return STATUS_OK;
+}
+
+/* STATUS_MEMORY unless there is memory for a band, and for a picture that is held as a whole. */
+static Status check_size(const Rendering *r, Err *err)
+{
+    const FramesForm *form = &r->form;
+    const int step = render_band_rows(form, &r->params, NULL, r->options->memory_mb);
+    TRY(picture_fits(form->width, r->in_memory ? form->height : step, 40, err));
+    return frames_is_page(form->path) ? picture_fits(form->width, form->height, 12, err)
+                                      : STATUS_OK;
+}
+
+static Status plan(Rendering *r, Err *err)
+{
+    RenderOptions *options = r->options;
+    TRY(render_check(options, r->parsed, err));
+    TRY(animation_read(&options->animation, options->output, &r->animation, err));
+    TRY(press_open(&options->press, options->output, r->parsed->common.threads, &r->press, err));
+    TRY(plan_form(r, err));
+    TRY(plan_rows(r, err));
+    return check_size(r, err);
+}
+
+static Status make_scene(Rendering *r, const FigureFonts *fonts, Err *err)
+{
+    if (r->has_sheet)
+        TRY(sheet_open(&r->sheet, err));
+    TRY(picture_read_source(&r->options->picture, r->parsed, &r->source, err));
+    TRY(render_make_scene(r->options, r->parsed, &r->source, fonts ? fonts : r->sheet.fonts,
+                          &r->scene, &r->report, &r->animation, err));
+    return r->form.id ? picture_check_ids(&r->scene.geometry, r->source.of.path, err) : STATUS_OK;
+}
+
+Status rendering_open(RenderOptions *options, Parsed *parsed, const FigureFonts *fonts,
+                      Rendering *out, Err *err)
+{
+    *out = (Rendering){.options = options, .parsed = parsed, .in_memory = !options->output};
+    if (out->in_memory)
+        options->output = form_name(options, fonts != NULL);
+    render_settle(options);
+    out->params = render_params_of(options, parsed->common.threads, &out->cells);
+    out->params.progress = progress_report;
+    out->params.progress_context = &out->progress;
+    out->has_sheet =
+        !fonts && (annotation_is_any(&options->annotation) || frames_is_page(options->output));
+    Status status = plan(out, err);
+    if (status == STATUS_OK)
+        status = make_scene(out, fonts, err);
+    if (status != STATUS_OK)
+        rendering_close(out);
+    return status;
+}
+
+void rendering_close(Rendering *r)
+{
+    if (r->in_memory)
+        r->options->output = NULL;
+    renderer_free(r->renderer);
+    free(r->provenance);
+    sheet_release(&r->sheet);
+    scene_release(&r->scene);
+    picture_source_release(&r->source);
+    press_release(&r->press);
+}
+
+/* ---- what is said of it ---------------------------------------------------------------------- */
+
+/* Puts legend, scale bar and letter on the sheet. */
+static Status fill_sheet(Rendering *r, Err *err)
+{
+    const PictureOptions *picture = &r->options->picture;
+    FigurePage *page = &r->sheet.page;
+    Text description = TEXT_INIT;
+    sheet_begin(&r->sheet, picture->size.pixels, annotation_dpi(picture));
+    picture_description(&r->scene.geometry, r->source.of.path, &description);
+    Status status = sheet_describe(&r->sheet, &description, r->provenance, err);
+    text_release(&description);
+    TRY(status);
+    const FigureBox whole = {0, 0, page->width_mm, page->height_mm};
+    TRY(annotation_put(&r->options->annotation, &r->scene, whole, page, err));
+    sheet_say(&r->sheet, r->parsed->common.talk);
+    r->form.page = page;
+    r->form.notes = &r->sheet.notes;
+    return STATUS_OK;
+}
+
+/* Adds to the form what the files state and what lies over the pictures, and says what the scene
+ * has lost. */
+static Status describe(Rendering *r, Err *err)
+{
+    TRY(command_line_text(r->parsed, &r->provenance, err));
+    r->form.provenance = r->provenance;
+    r->form.colors = r->scene.appearance.said;
+    if (r->has_sheet)
+        TRY(fill_sheet(r, err));
+    return picture_say(&r->scene, &r->report, r->parsed->common.talk, err);
+}
+
+/* The report of --json. */
+static Status write_report(const Rendering *r, Err *err)
+{
+    const Scene *scene = &r->scene;
+    const StageReport *staged = &r->report.staged;
+    const RenderStats stats = render_stats(r);
+    json_t *report =
+        json_pack("{s:s, s:s, s:s, s:i, s:i, s:f, s:f, s:f, s:I, s:i}", "generator", GENERATOR,
+                  "model", models[scene->geometry.model].name, "engine", stats.engine, "width",
+                  scene->view.camera.width, "height", scene->view.camera.height, "prepare_seconds",
+                  stats.prepare_s, "trace_seconds", stats.trace_s, "cpu_seconds", stats.cpu_s,
+                  "rays", (json_int_t)stats.rays, "threads",
+                  r->params.threads ? r->params.threads : threads_available());
+    if (model_has(scene->geometry.model, MODEL_JOINTS)) {
+        const JsonMember of_joints[] = {
+            {"joints", json_count(staged->joints)},
+            {"places_short", json_count(staged->places_short)},
+            {"places_sharp", json_count(staged->places_sharp)},
+            {"places_crowded", json_count(staged->places_crowded)},
+        };
+        report = json_with_members(report, of_joints, sizeof of_joints / sizeof *of_joints);
+    }
+    if (scene->appearance.said)
+        report = json_with(report, "color", coloring_json(&scene->appearance));
+    return json_write(report, r->options->json, err);
+}
+
+/* ---- into memory ----------------------------------------------------------------------------- */
+
+static Status draw_result(Rendering *r, RenderResult *made, Err *err)
+{
+    if (r->animation.first != r->animation.last)
+        return err_set(err, STATUS_USAGE,
+                       "--only K is missing: a picture in memory is one of the animation's %d",
+                       r->animation.n);
+    TRY(describe(r, err));
+    r->name = "the picture";
+    TRY(rendering_draw(r, r->animation.first, &made->frame, err));
+    made->dpi = r->form.dpi;
+    made->engine = render_stats(r).engine;
+    if (r->form.colors)
+        TRY(mem_strdup(&made->colors, r->form.colors, err));
+    return r->options->json ? write_report(r, err) : STATUS_OK;
+}
+
+Status render_make(RenderOptions *options, Parsed *parsed, RenderResult *result, Err *err)
+{
+    Rendering r;
+    RenderResult made = {0};
+    options->output = NULL;
+    TRY(rendering_open(options, parsed, NULL, &r, err));
+    Status status = draw_result(&r, &made, err);
+    rendering_close(&r);
+    if (status == STATUS_OK)
+        *result = made;
+    else
+        render_release(&made);
+    return status;
+}
+
+void render_release(RenderResult *result)
+{
+    frame_release(&result->frame);
+    free(result->colors);
+    *result = (RenderResult){0};
+}
+
+static Status write_result(const RenderOptions *options, const Press *press, const char *command,
+                           const RenderResult *result, Err *err)
+{
+    const Frame *frame = &result->frame;
+    const bool codes = frame->codes.width > 0;
+    const FramesForm form = {.path = options->output,
+                             .bits = codes ? frame->codes.bits : 8,
+                             .encoding = ENCODING_SRGB,
+                             .packing = press->packing,
+                             .dpi = result->dpi,
+                             .picture = true,
+                             .color = codes && frame->color.values,
+                             .alpha =
+                                 codes ? frame->codes.channels == 4 : frame->alpha.values != NULL,
+                             .provenance = command,
+                             .colors = result->colors};
+    TRY(frames_check_output(options->output, false, err));
+    if (image_traits(options->output).floats == codes)
+        return err_set(err, STATUS_USAGE, "-o: '%s' does not suit a picture of %s: %s",
+                       options->output, codes ? "8 or 16 bits" : "floats",
+                       codes ? "take .png, .tif, .jpg or .ppm" : "take .exr or .pfm");
+    return frames_write(frame, &form, err);
+}
+
+Status render_write(const RenderOptions *options, const Parsed *parsed, const RenderResult *result,
+                    Err *err)
+{
+    Press press;
+    char *command = NULL;
+    TRY(press_open(&options->press, options->output, parsed->common.threads, &press, err));
+    Status status = command_line_text(parsed, &command, err);
+    if (status == STATUS_OK)
+        status = write_result(options, &press, command, result, err);
+    free(command);
+    press_release(&press);
+    return status;
+}
+
+/* ---- into files ------------------------------------------------------------------------------ */
+
+/* Notes the names of all pictures, and of the planes beside them. */
+static Status note_files(Rendering *r, Err *err)
+{
+    for (int k = r->animation.first; k <= r->animation.last; k++) {
+        FramesForm named = r->form;
+        char *path;
+        TRY(animation_path(&r->animation, r->form.path, k, &path, err));
+        named.path = path;
+        Status status = frames_note_planes(&named, &r->parsed->files, err);
+        if (status == STATUS_OK && r->animation.kind != ANIMATION_NONE)
+            status = files_write(&r->parsed->files, "-o", path, err);
+        free(path);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+/* Prints a command for each tile, or for each picture of the animation. */
+static Status print_commands(const Rendering *r, Err *err)
+{
+    const ShardOptions *options = &r->options->shard;
+    const int tiles = options->tiles;
+    return shard_print_commands(options, r->parsed, r->form.path, tiles ? 1 : r->animation.first,
+                                tiles ? tiles : r->animation.last, err);
+}
+
+static Status write_pictures(Rendering *r, Err *err)
+{
+    TRY(note_files(r, err));
+    if (r->options->shard.commands)
+        return print_commands(r, err);
+    TRY(describe(r, err));
+    if (r->options->ink_mm > 0)
+        return line_drawing_write(&r->scene, r->options->ink_mm, r->params.threads, &r->form, err);
+    for (int k = r->animation.first; k <= r->animation.last; k++)
+        TRY(rendering_draw(r, k, NULL, err));
+    return r->options->json ? write_report(r, err) : STATUS_OK;
+}
+
+Status render_run(RenderOptions *options, Parsed *parsed, Err *err)
+{
+    Rendering r;
+    TRY(rendering_open(options, parsed, NULL, &r, err));
+    Status status = write_pictures(&r, err);
+    rendering_close(&r);
+    return status;
+}

@@ -1,0 +1,219 @@
+/* A picture is drawn band by band. Each band has as many rows as --memory holds, and is written or
+ * copied before the next is drawn. A picture of any size therefore needs the memory of one band
+ * beside its own. */
+#include "job/picture/render_bands.h"
+
+#include "options/talk.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Returns the bytes per pixel of the light that pixels share. With occlusion, half of the pixels
+ * are taken to show something. */
+static int shared_bytes(const RenderParams *params, const View *view)
+{
+    if (params && params->occlusion > 0)
+        return 42 + params->occlusion;
+    return params && view && params->shadows && view_has_soft_shadows(view) ? 46 : 0;
+}
+
+static bool has_floats(const FramesForm *form)
+{
+    return image_traits(form->path).floats || form->color || form->depth || form->normal;
+}
+
+/* Maximum number of rows of a band. The memory of one band is used again for the next, whereas
+ * clearing the memory of a whole picture takes longer than filling it. 512 rows have enough tiles
+ * for many threads. There are two exceptions. Where pixels share light, each band computes rows of
+ * its neighbours. A PFM begins with its last row, and so can go to a pipe only as a whole. */
+enum { MOST_ROWS = 512 };
+
+/* The bytes per pixel are those of floats, codes and masks, and of shared light. */
+int render_band_rows(const FramesForm *form, const RenderParams *params, const View *view,
+                     double memory_mb)
+{
+    int bytes = 12 + form->bits / 8 * 3 + 1 + 4 * form->depth + 12 * form->normal + 7 * form->id;
+    if (image_traits(form->path).floats)
+        bytes += 12 + 4 * form->depth + 12 * form->normal + 4 * form->id;
+    int shared = shared_bytes(params, view);
+    double rows = memory_mb * 1e6 / ((double)(bytes + shared) * form->width);
+    if (rows > MOST_ROWS && !shared && !has_floats(form))
+        rows = MOST_ROWS;
+    if (rows >= form->height)
+        return form->height;
+    return rows < 2 * RENDER_BAND_STEP ? RENDER_BAND_STEP
+                                       : (int)rows / RENDER_BAND_STEP * RENDER_BAND_STEP;
+}
+
+/* Returns true if all pixels of a band show the background. */
+static bool shows_nothing(const Frame *band, const View *view)
+{
+    const Rgb paper = view->background;
+    const float colors[3] = {paper.r, paper.g, paper.b};
+    const Plane *color = &band->color, *alpha = &band->alpha;
+    const Picture *codes = &band->codes;
+    if (alpha->values) {
+        for (size_t i = 0; i < (size_t)alpha->width * (size_t)alpha->height; i++)
+            if (alpha->values[i] > 0)
+                return false;
+        return true;
+    }
+    for (size_t i = 0; color->values && i < 3 * (size_t)color->width * (size_t)color->height; i++)
+        if (color->values[i] != colors[i % 3])
+            return false;
+    if (color->values || !codes->codes8)
+        return color->values != NULL;
+    const uint8_t code[3] = {(uint8_t)image_code(paper.r, ENCODING_SRGB, 8),
+                             (uint8_t)image_code(paper.g, ENCODING_SRGB, 8),
+                             (uint8_t)image_code(paper.b, ENCODING_SRGB, 8)};
+    for (size_t i = 0; i < 3 * (size_t)codes->width * (size_t)codes->height; i++)
+        if (codes->codes8[i] != code[i % 3])
+            return false;
+    return true;
+}
+
+/* Warns of a picture that shows nothing. A tile or a picture of an animation may be empty. */
+static void warn_of_nothing(const Rendering *r, const FramesForm *form)
+{
+    if (r->shard.rows < r->shard.height || r->animation.kind != ANIMATION_NONE)
+        return;
+    talk_note(r->parsed->common.talk,
+              "%s shows no vessel: the camera looks past the tree, or the vessels are too small to "
+              "be drawn",
+              r->name ? r->name : form->path);
+}
+
+/* Draws the rows of the form band after band. *empty is whether they show no vessel. */
+static Status draw_bands(const Rendering *r, Renderer *renderer, const Scene *scene,
+                         FramesWriter *writer, const FramesForm *form, bool *empty, Err *err)
+{
+    const int end = form->first + form->height;
+    const int step = render_band_rows(form, &r->params, &scene->view, r->options->memory_mb);
+    if (step < form->height)
+        mem_keep();
+    *empty = true;
+    for (int first = form->first; first < end; first += step) {
+        Frame band;
+        int rows = step < end - first ? step : end - first;
+        TRY(renderer_rows(renderer, &scene->view, &scene->appearance, first, rows, &band, err));
+        *empty = *empty && shows_nothing(&band, &scene->view);
+        Status status = frames_rows(writer, &band, err);
+        frame_release(&band);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+/* Draws one picture of a scene, whose geometry is the renderer's. */
+static Status draw_picture(const Rendering *r, Renderer *renderer, const Scene *scene,
+                           const FramesForm *form, bool *empty, Err *err)
+{
+    FramesWriter *writer = NULL;
+    TRY(frames_open(&writer, form, err));
+    Status status = draw_bands(r, renderer, scene, writer, form, empty, err);
+    if (status == STATUS_OK)
+        return frames_commit(writer, err);
+    frames_discard(writer);
+    return status;
+}
+
+/* Puts the note of picture `number` into the form. *there is whether --resume finds the picture. */
+static Status find_shard(const Rendering *r, FramesForm *form, int number, Text *note, bool *there,
+                         Err *err)
+{
+    Shard shard = r->shard;
+    const ShardSource source = {.line = form->provenance,
+                                .tree = &r->source.of.tree,
+                                .domain = r->source.domain,
+                                .has_text = form->page != NULL};
+    TRY(shard_hash(&shard, r->parsed, &source, number, err));
+    shard_put(&shard, note);
+    TRY(text_check(note, err));
+    form->shard = text_chars(note);
+    if (r->options->shard.resume)
+        TRY(shard_is_there(form->path, &shard, there, err));
+    if (*there)
+        talk_note(r->parsed->common.talk, "%s is there", form->path);
+    return STATUS_OK;
+}
+
+/* Makes the renderer that all pictures of one geometry share. */
+static Status prepare(Rendering *r, Err *err)
+{
+    return r->renderer ? STATUS_OK
+                       : renderer_new(&r->scene.geometry, &r->params, &r->renderer, err);
+}
+
+/* Makes the scene of picture `number` and draws it. The tree as it grows has another geometry, and
+ * so another renderer, in each picture. All other pictures share r->renderer. */
+static Status draw_number(Rendering *r, int number, const FramesForm *form, Err *err)
+{
+    const AnimationSubject subject = {&r->options->picture, &r->parsed->common, &r->source,
+                                      &r->scene};
+    Scene shown, grown = {0};
+    const bool grows = r->animation.kind == ANIMATION_GROWTH;
+    Renderer *young = NULL;
+    bool empty;
+    Status status;
+    TRY_GOTO(animation_scene(&r->animation, &subject, number, &shown, &grown, err));
+    if (grows)
+        TRY_GOTO(renderer_new(&grown.geometry, &r->params, &young, err));
+    else
+        TRY_GOTO(prepare(r, err));
+    TRY_GOTO(draw_picture(r, grows ? young : r->renderer, &shown, form, &empty, err));
+    if (empty)
+        warn_of_nothing(r, form);
+    if (grows) {
+        const RenderStats one = renderer_stats(young);
+        renderstats_add(&r->stats, &one);
+    }
+done:
+    renderer_free(young);
+    scene_release(&grown);
+    return status;
+}
+
+static Status draw_named(Rendering *r, int number, FramesForm *form, Err *err)
+{
+    Text note = TEXT_INIT;
+    bool there = false;
+    Status status = STATUS_OK;
+    if (r->options->shard.resume || r->options->shard.tile)
+        status = find_shard(r, form, number, &note, &there, err);
+    if (status == STATUS_OK && !there)
+        status = draw_number(r, number, form, err);
+    text_release(&note);
+    return status;
+}
+
+Status rendering_draw(Rendering *r, int number, Frame *kept, Err *err)
+{
+    FramesForm form = r->form;
+    char *path, what[48];
+    TRY(animation_path(&r->animation, r->form.path, number, &path, err));
+    form.path = path;
+    form.kept = kept;
+    snprintf(what, sizeof what, "rendering %d of %d", number, r->animation.last);
+    progress_start(&r->progress, r->animation.kind ? what : "rendering", r->parsed->common.talk);
+    Status status = draw_named(r, number, &form, err);
+    progress_end(&r->progress);
+    free(path);
+    return status;
+}
+
+Status rendering_draw_view(Rendering *r, const View *view, Frame *kept, Err *err)
+{
+    FramesForm form = r->form;
+    Scene shown = r->scene;
+    bool empty;
+    shown.view = *view;
+    form.width = view->camera.width;
+    form.height = view->camera.height;
+    form.kept = kept;
+    TRY(prepare(r, err));
+    return draw_picture(r, r->renderer, &shown, &form, &empty, err);
+}
+
+RenderStats render_stats(const Rendering *r)
+{
+    return r->renderer ? renderer_stats(r->renderer) : r->stats;
+}
