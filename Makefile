@@ -52,7 +52,7 @@ WARNINGS += $(if $(findstring clang,$(CC)),-Wno-double-promotion)
 WARNINGS += $(if $(strip $(CFLAGS)),,-Werror)
 OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
-OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+OPTIMISE_asan := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 OPTIMISE_fuzz := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 OPTIMISE_tsan := -O1 -g -fsanitize=thread
 VECTORS_release := -O3 -fno-math-errno -fno-trapping-math
