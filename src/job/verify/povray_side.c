@@ -221,7 +221,7 @@ static Status write_scene(const Source *source, const Tiles *tiles, size_t numbe
         whole.appearance = v->frames;
     TRY(tile_path(v, tiles, number, ids ? "ids" : "scene", "pov", path, err));
     const EmitParams params = emit_params(source, &whole, ids, tiles->cut ? &tile->rect : NULL);
-    return scene_files_write(emitter_find("pov", false), &params, v->tree, *path, false, NULL, err);
+    return scene_files_write(emitter_find("pov", false), &params, v->tree, *path, err);
 }
 
 /* All scenes of all tiles: first those of a tile, then its ids where they have a scene. */

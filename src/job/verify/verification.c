@@ -152,8 +152,7 @@ static Status show_both(Verification *v, Err *err)
 static Status write_witness_scene(const Verification *v, const char *scene, Err *err)
 {
     const EmitParams params = {.scene = &v->scene, .command = v->commands[0], .planes = true};
-    return scene_files_write(emitter_find("tachyon", false), &params, v->tree, scene, false, NULL,
-                             err);
+    return scene_files_write(emitter_find("tachyon", false), &params, v->tree, scene, err);
 }
 
 static Status draw_witness_plane(Verification *v, const char *scene, WitnessPlane plane, Err *err)
