@@ -25,68 +25,30 @@ typedef struct Work {
     Status (*make)(void *job, Progress *progress, Err *err);
 } Work;
 
-/* Receives files in memory, in place of the file system. */
-typedef struct FileTaker {
-    /* Takes one file. `name` is the path that the file would have. All arguments are borrowed.
-     * Returns false to refuse the file, which ends the operation. */
-    bool (*take)(void *user, const char *name, const void *bytes, size_t size);
-    void *user;
-} FileTaker;
-
-/* A file that an operation writes. */
-typedef struct ResultFile {
-    const char *role; /* what the file holds, for messages: "the manifest"; NULL: the option that
-                       * names the file has been noted already. Borrowed. */
-    char *path;       /* owned; NULL: the file is not written */
-    Text text;        /* receives the content */
-    FILE *stream;     /* where the text goes, for content that does not pass through it; borrowed */
-    char *bytes;      /* the content, for a FileTaker; owned */
-    size_t size;      /* of `bytes` */
-} ResultFile;
-
-enum { MAX_RESULT_FILES = 8 };
-
-/* All files that an operation writes; the first one is its result. Zeroed: none. Must not be moved
- * after resultfiles_open. Release with resultfiles_release. */
-typedef struct ResultFiles {
-    ResultFile at[MAX_RESULT_FILES];
-    OutFile open[MAX_RESULT_FILES]; /* the files of `at` that are written, in the same order */
-    size_t n_open;
-    const FileTaker *taker; /* NULL: the files go to the file system; borrowed */
-} ResultFiles;
-
 /* Notes the files as written, except those without a role. Does nothing if there is a taker. Errors
  * as files_write. */
-MUST_CHECK Status resultfiles_note(const ResultFiles *files, Files *noted, Err *err);
-
-/* Opens the files. A text for standard output is held back until all is written. Errors as
- * outfile_open, STATUS_MEMORY. */
-MUST_CHECK Status resultfiles_open(ResultFiles *files, Err *err);
+MUST_CHECK Status work_note_files(const FileSet *files, Files *noted, Err *err);
 
 /* Estimates, checks memory and disk, and does the work.
  *
  * files    are open, and their disk is checked; NULL: nothing is written.
  * Errors   STATUS_MEMORY or STATUS_IO if the machine or the disk is too small, before the work; and
  *          those of Work.make. */
-MUST_CHECK Status work_make(const Work *work, void *job, const ResultFiles *files, const Talk *talk,
+MUST_CHECK Status work_make(const Work *work, void *job, const FileSet *files, const Talk *talk,
                             Err *err);
 
 /* Appends the content of an operation's files to the texts of `files`. `command` is the command
- * line for provenance; NULL if the caller of resultfiles_write has specified none. */
-typedef Status ResultPut(const void *job, const char *command, ResultFile files[], Err *err);
+ * line for provenance. */
+typedef Status WorkPut(const void *job, const char *command, FileSlot files[], Err *err);
 
 /* Opens the files unless they are open, fills them, and gives all of them their final names, or
- * none. An error of input or output names the file. `parsed` has the command line; NULL: `put`
- * needs none. Errors: those of resultfiles_open and of `put`; STATUS_IO if writing fails or the
- * taker refuses a file; STATUS_MEMORY. */
-MUST_CHECK Status resultfiles_write(ResultFiles *files, ResultPut *put, const void *job,
-                                    const Parsed *parsed, Err *err);
-
-/* Removes files that have no final name yet, and frees everything. */
-void resultfiles_release(ResultFiles *files);
+ * none. Errors: those of command_line_text, fileset_open, `put` and fileset_commit; a failure of
+ * input or output names the file. */
+MUST_CHECK Status work_write(FileSet *files, WorkPut *put, const void *job, const Parsed *parsed,
+                             Err *err);
 
 /* Appends a JSON document, indented, with a final newline, and releases `object`. The text fails if
  * `object` is NULL or memory runs out. */
-void resultfile_json(ResultFile *file, json_t *object);
+void work_put_json(FileSlot *file, json_t *object);
 
 #endif

@@ -282,8 +282,9 @@ static Status unknown_option(const Parsed *parsed, const char *written, const ch
 
 static Status set_value(Setting *setting, const char *value, Err *err)
 {
+    TRY(setting_read(setting, value, err));
     setting->typed = setting->said = true;
-    return setting_read(setting, value, err);
+    return STATUS_OK;
 }
 
 static Status read_option(Parsed *parsed, int argc, char **argv, int *at, Err *err)

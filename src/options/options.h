@@ -279,7 +279,7 @@ MUST_CHECK Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
  *
  * value   as the command line takes it; "on" for a flag. The value is copied.
  * Errors  STATUS_USAGE with the sentence of the command line: there is no such option, or it does
- *         not take this value. STATUS_MEMORY. */
+ *         not take this value, and keeps the value before. STATUS_MEMORY. */
 MUST_CHECK Status options_set(Parsed *parsed, const char *name, const char *value, Err *err);
 /* Appends the value of an option as options_set takes it. The values of an OPTION_VECTORS stand on
  * a line each. Appends nothing for an option that has no value and for a flag that is not set.

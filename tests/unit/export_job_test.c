@@ -200,7 +200,7 @@ static void test_a_scene_in_memory_shows_all_segments(void **state)
 
 /* ---- files on a disk ------------------------------------------------------------------------- */
 
-static Status put_two(const void *job, const char *command, ResultFile files[], Err *err)
+static Status put_two(const void *job, const char *command, FileSlot files[], Err *err)
 {
     (void)command;
     (void)err;
@@ -209,7 +209,7 @@ static Status put_two(const void *job, const char *command, ResultFile files[], 
     return STATUS_OK;
 }
 
-static void name_file(ResultFiles *files, size_t i, const char *name)
+static void name_file(FileSet *files, size_t i, const char *name)
 {
     Err err = {{0}};
     must(file_join(folder, name, &files->at[i].path, &err), &err);
@@ -223,18 +223,18 @@ static void test_of_two_files_both_are_put_in_place_or_neither(void **state)
     snprintf(first, sizeof first, "%s/a", folder);
     snprintf(second, sizeof second, "%s/b", folder);
     for (int old = 0; old < 2; old++) {
-        ResultFiles files = {0};
+        FileSet files = {0};
         Err err = {{0}};
         struct stat about;
         if (old)
             must(file_write(first, "old", 3, &err), &err);
         name_file(&files, 0, "a");
         name_file(&files, 1, "b");
-        must(resultfiles_open(&files, &err), &err);
+        must(fileset_open(&files, &err), &err);
         must(file_make_folder(second, &err), &err);
-        assert_int_equal(resultfiles_write(&files, put_two, "new", NULL, &err), STATUS_IO);
+        assert_int_equal(work_write(&files, put_two, "new", NULL, &err), STATUS_IO);
         assert_non_null(strstr(err.text, "/b"));
-        resultfiles_release(&files);
+        fileset_release(&files);
         remove(second);
         if (old)
             expect_file(first, "old", 3);
@@ -247,24 +247,24 @@ static void test_of_two_files_both_are_put_in_place_or_neither(void **state)
 static void test_an_unfinished_file_leaves_nothing(void **state)
 {
     (void)state;
-    ResultFiles files = {0};
+    FileSet files = {0};
     Err err = {{0}};
     name_file(&files, 0, "a");
-    must(resultfiles_open(&files, &err), &err);
-    resultfiles_release(&files);
+    must(fileset_open(&files, &err), &err);
+    fileset_release(&files);
 }
 
 static void test_a_full_disk_is_said_with_the_name_of_the_file(void **state)
 {
     (void)state;
-    ResultFiles files = {0};
+    FileSet files = {0};
     Err err = {{0}};
     name_file(&files, 0, "a");
     must(mem_strdup(&files.at[1].path, "/dev/full", &err), &err);
-    assert_int_equal(resultfiles_write(&files, put_two, "text", NULL, &err), STATUS_IO);
+    assert_int_equal(work_write(&files, put_two, "text", NULL, &err), STATUS_IO);
     assert_non_null(strstr(err.text, "/dev/full"));
     assert_non_null(strstr(err.text, "No space left on device"));
-    resultfiles_release(&files);
+    fileset_release(&files);
 }
 
 static WorkCost cost_too_much(const void *job, const Talk *talk)
@@ -287,15 +287,15 @@ static void test_work_that_the_machine_cannot_hold_does_not_begin(void **state)
     (void)state;
     static const Work work = {"working", "the result", cost_too_much, never_make};
     WorkCost memory = {.memory = 1e30}, disk = {.disk = 1e30};
-    ResultFiles files = {0};
+    FileSet files = {0};
     Err err = {{0}};
     name_file(&files, 0, "a");
-    must(resultfiles_open(&files, &err), &err);
+    must(fileset_open(&files, &err), &err);
     assert_int_equal(work_make(&work, &memory, NULL, NULL, &err), STATUS_MEMORY);
     assert_non_null(strstr(err.text, "the result"));
     assert_int_equal(work_make(&work, &disk, &files, NULL, &err), STATUS_IO);
     assert_non_null(strstr(err.text, "disk"));
-    resultfiles_release(&files);
+    fileset_release(&files);
 }
 
 int main(void)

@@ -193,21 +193,20 @@ Status mesh_make(ExportOptions *options, const Parsed *parsed, MeshResult *mesh,
     return meshing_make(emitter, &options->meshing, &of, &parsed->common, mesh, err);
 }
 
-static Status export_mesh(ExportOptions *options, Parsed *parsed, ResultFiles *files, Err *err)
+static Status export_mesh(ExportOptions *options, Parsed *parsed, FileSet *files, Err *err)
 {
     const Emitter *emitter;
     MeshResult mesh;
     TRY(plan_mesh(options, parsed, &emitter, err));
     TRY(scene_files_name(emitter, options->output, false, files, err));
-    TRY(resultfiles_note(files, &parsed->files, err));
+    TRY(work_note_files(files, &parsed->files, err));
     TRY(mesh_make(options, parsed, &mesh, err));
     Status status = meshing_write(&mesh, files, parsed, err);
     meshing_release(&mesh);
     return status;
 }
 
-static Status export_volume(const ExportOptions *options, Parsed *parsed, ResultFiles *files,
-                            Err *err)
+static Status export_volume(const ExportOptions *options, Parsed *parsed, FileSet *files, Err *err)
 {
     const VolumeFormat *format = volume_format_find(options->output);
     const Coloring *coloring = &options->meshing.coloring;
@@ -215,14 +214,14 @@ static Status export_volume(const ExportOptions *options, Parsed *parsed, Result
     TRY(refuse_surface(parsed, "volumes are of", err));
     TRY(coloring_check_needs(coloring, parsed, err));
     TRY(volumes_name(&options->volume, format, options->output, files, err));
-    TRY(resultfiles_note(files, &parsed->files, err));
+    TRY(work_note_files(files, &parsed->files, err));
     TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
     Status status = volumes_write(&options->volume, format, &of, files, parsed, err);
     picture_tree_release(&of);
     return status;
 }
 
-static Status export_page(const ExportOptions *options, const Parsed *parsed, ResultFiles *files,
+static Status export_page(const ExportOptions *options, const Parsed *parsed, FileSet *files,
                           Err *err)
 {
     const Coloring *coloring = &options->meshing.coloring;
@@ -238,7 +237,7 @@ static Status export_page(const ExportOptions *options, const Parsed *parsed, Re
 
 Status export_write(ExportOptions *options, Parsed *parsed, const FileTaker *taker, Err *err)
 {
-    ResultFiles files = {.taker = taker};
+    FileSet files = {.taker = taker};
     const bool is_volume = volume_format_find(options->output) != NULL;
     Status status;
     TRY_GOTO(volumes_check_needs(is_volume, parsed, err));
@@ -249,8 +248,13 @@ Status export_write(ExportOptions *options, Parsed *parsed, const FileTaker *tak
     else
         status = export_mesh(options, parsed, &files, err);
 done:
-    resultfiles_release(&files);
+    fileset_release(&files);
     return status;
+}
+
+Status export_run(void *options, Parsed *parsed, Err *err)
+{
+    return export_write(options, parsed, NULL, err);
 }
 
 const Command command_export = {

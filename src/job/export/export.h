@@ -39,4 +39,7 @@ MUST_CHECK Status mesh_make(ExportOptions *options, const Parsed *parsed, MeshRe
 MUST_CHECK Status export_write(ExportOptions *options, Parsed *parsed, const FileTaker *taker,
                                Err *err);
 
+/* Exports a tree to files: export_write for an ExportOptions, without a taker. */
+MUST_CHECK Status export_run(void *options, Parsed *parsed, Err *err);
+
 #endif

@@ -169,9 +169,9 @@ void meshing_release(MeshResult *mesh)
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-static Status put_beside(const MeshResult *made, ResultFile files[], Err *err)
+static Status put_beside(const MeshResult *made, FileSlot files[], Err *err)
 {
-    resultfile_json(&files[MESH_MANIFEST], mesh_manifest(made));
+    work_put_json(&files[MESH_MANIFEST], mesh_manifest(made));
     if (files[MESH_GMSH].path)
         solver_gmsh(&made->ends, file_name(files[SCENE_FILE].path), &files[MESH_GMSH].text);
     if (!made->emitter->has_parts)
@@ -180,7 +180,7 @@ static Status put_beside(const MeshResult *made, ResultFile files[], Err *err)
     return solver_centerline(&made->of.tree, &made->vessels, &files[MESH_CENTERLINE].text, err);
 }
 
-static Status put_mesh(const void *job, const char *command, ResultFile files[], Err *err)
+static Status put_mesh(const void *job, const char *command, FileSlot files[], Err *err)
 {
     const MeshResult *made = job;
     const Emitter *emitter = made->emitter;
@@ -196,7 +196,7 @@ static Status put_mesh(const void *job, const char *command, ResultFile files[],
     return scene_files_put(emitter, &params, made->of.path, files, NULL, err);
 }
 
-Status meshing_write(const MeshResult *mesh, ResultFiles *files, const Parsed *parsed, Err *err)
+Status meshing_write(const MeshResult *mesh, FileSet *files, const Parsed *parsed, Err *err)
 {
-    return resultfiles_write(files, put_mesh, mesh, parsed, err);
+    return work_write(files, put_mesh, mesh, parsed, err);
 }

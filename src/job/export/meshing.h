@@ -61,8 +61,8 @@ void meshing_release(MeshResult *mesh);
 
 /* Writes the mesh or the lines, and what is written beside a mesh. scene_files_name has named
  * `files`. Errors: those of scene_files_put, solver_ends, solver_centerline and
- * resultfiles_write. */
-MUST_CHECK Status meshing_write(const MeshResult *mesh, ResultFiles *files, const Parsed *parsed,
+ * work_write. */
+MUST_CHECK Status meshing_write(const MeshResult *mesh, FileSet *files, const Parsed *parsed,
                                 Err *err);
 
 /* Returns the facts about the print that a mesh is. Borrows all of them. */

@@ -169,7 +169,7 @@ static Status settle_format(const SceneOptions *options, Parsed *parsed, SceneRe
     if (!options->output)
         return STATUS_OK;
     TRY(scene_files_name(made->emitter, options->output, options->ini, &made->files, err));
-    return resultfiles_note(&made->files, &parsed->files, err);
+    return work_note_files(&made->files, &parsed->files, err);
 }
 
 Status scene_make(const SceneOptions *options, Parsed *parsed, const FileTaker *taker,
@@ -197,7 +197,7 @@ void sceneresult_release(SceneResult *scene)
     scene_release(&scene->scene);
     anatomy_release(&scene->anatomy);
     meshing_release(&scene->mesh);
-    resultfiles_release(&scene->files);
+    fileset_release(&scene->files);
 }
 
 /* ---- its files ------------------------------------------------------------------------------- */
@@ -209,7 +209,7 @@ typedef struct SceneWriting {
     EmitReport *report;
 } SceneWriting;
 
-static Status put_scene(const void *job, const char *command, ResultFile files[], Err *err)
+static Status put_scene(const void *job, const char *command, FileSlot files[], Err *err)
 {
     const SceneWriting *writing = job;
     const SceneResult *made = writing->made;
@@ -251,9 +251,18 @@ Status scene_write(const SceneOptions *options, const Parsed *parsed, SceneResul
     const SceneWriting writing = {options, scene, &report};
     if (scene->emitter->of_meshes)
         return meshing_write(&scene->mesh, &scene->files, parsed, err);
-    TRY(resultfiles_write(&scene->files, put_scene, &writing, parsed, err));
+    TRY(work_write(&scene->files, put_scene, &writing, parsed, err));
     say_limits(scene, &report, parsed->common.talk);
     return STATUS_OK;
+}
+
+Status scene_run(void *options, Parsed *parsed, Err *err)
+{
+    SceneResult scene;
+    TRY(scene_make(options, parsed, NULL, &scene, err));
+    Status status = scene_write(options, parsed, &scene, err);
+    sceneresult_release(&scene);
+    return status;
 }
 
 const Command command_scene = {

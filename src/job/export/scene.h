@@ -32,8 +32,8 @@ typedef struct SceneResult {
     PictureSource source;   /* its tree has moved to `mesh` if the emitter writes meshes */
     Scene scene;            /* if the emitter writes scenes, like `anatomy` */
     Anatomy anatomy;
-    MeshResult mesh;   /* if the emitter writes meshes */
-    ResultFiles files; /* the files of options->output; none if there is no output */
+    MeshResult mesh; /* if the emitter writes meshes */
+    FileSet files;   /* the files of options->output; none if there is no output */
 } SceneResult;
 
 /* Makes the scene of a tree. Without an output, the scene is made for POV-Ray. Reports what the
@@ -50,8 +50,11 @@ void sceneresult_release(SceneResult *scene);
 
 /* Writes the files of a scene that scene_make has made with the same options, which must have an
  * output. Reports the limits of the file. To be called once. Errors: those of scene_files_put,
- * meshing_write and resultfiles_write. */
+ * meshing_write and work_write. */
 MUST_CHECK Status scene_write(const SceneOptions *options, const Parsed *parsed, SceneResult *scene,
                               Err *err);
+
+/* Makes and writes the scene of a SceneOptions with an output. */
+MUST_CHECK Status scene_run(void *options, Parsed *parsed, Err *err);
 
 #endif

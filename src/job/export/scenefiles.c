@@ -6,7 +6,6 @@
 #include "job/picture/picture.h"
 #include "options/output.h"
 #include "options/templates.h"
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,8 +58,8 @@ static bool is_beside(const Emitter *emitter, bool settings, SceneFile file)
            (!extension || strcmp(emitter->extension, extension) == 0);
 }
 
-static Status name_beside(const Emitter *emitter, const char *path, SceneFile file,
-                          ResultFile *named, Err *err)
+static Status name_beside(const Emitter *emitter, const char *path, SceneFile file, FileSlot *named,
+                          Err *err)
 {
     char suffix[24];
     const char *own =
@@ -75,7 +74,7 @@ static Status name_beside(const Emitter *emitter, const char *path, SceneFile fi
     return file_with_suffix(path, suffix, &named->path, err);
 }
 
-Status scene_files_name(const Emitter *emitter, const char *path, bool settings, ResultFiles *files,
+Status scene_files_name(const Emitter *emitter, const char *path, bool settings, FileSet *files,
                         Err *err)
 {
     TRY(mem_strdup(&files->at[SCENE_FILE].path, path, err));
@@ -104,13 +103,13 @@ static void put_description(const Emitter *emitter, const EmitParams *params, co
         text_printf(out, ", coloured by %s", appearance->said);
 }
 
-static const char *name_of(const ResultFile *file)
+static const char *name_of(const FileSlot *file)
 {
     return file->path ? file_name(file->path) : NULL;
 }
 
 Status scene_files_put(const Emitter *emitter, const EmitParams *params, const char *tree_path,
-                       ResultFile files[], EmitReport *report, Err *err)
+                       FileSlot files[], EmitReport *report, Err *err)
 {
     Text description = TEXT_INIT;
     char *templates = NULL;
@@ -132,53 +131,4 @@ done:
     text_release(&description);
     free(templates);
     return status;
-}
-
-/* A scene that is written. All pointers are borrowed. */
-typedef struct WrittenScene {
-    const Emitter *emitter;
-    const EmitParams *params;
-    const char *tree_path;
-} WrittenScene;
-
-static Status put_scene(const void *job, const char *command, ResultFile files[], Err *err)
-{
-    const WrittenScene *scene = job;
-    (void)command;
-    return scene_files_put(scene->emitter, scene->params, scene->tree_path, files, NULL, err);
-}
-
-Status scene_files_write(const Emitter *emitter, const EmitParams *params, const char *tree_path,
-                         const char *path, Err *err)
-{
-    const WrittenScene scene = {emitter, params, tree_path};
-    ResultFiles files = {0};
-    Status status = scene_files_name(emitter, path, false, &files, err);
-    if (status == STATUS_OK)
-        status = resultfiles_write(&files, put_scene, &scene, NULL, err);
-    resultfiles_release(&files);
-    return status;
-}
-
-static Status read_patience(double *seconds, Err *err)
-{
-    const char *patience = getenv("CORCAST_POVRAY_PATIENCE");
-    *seconds = 600;
-    if (!patience || (number_parse(patience, seconds) && isfinite(*seconds) && *seconds >= 0))
-        return STATUS_OK;
-    return err_set(err, STATUS_USAGE,
-                   "CORCAST_POVRAY_PATIENCE: '%s' is not a number of seconds of at least 0",
-                   patience);
-}
-
-Status povray_from_environment(OracleParams *params, Err *err)
-{
-    params->program = getenv("CORCAST_POVRAY");
-    return read_patience(&params->patience_s, err);
-}
-
-Status tachyon_from_environment(WitnessParams *params, Err *err)
-{
-    params->program = getenv("CORCAST_TACHYON");
-    return read_patience(&params->patience_s, err);
 }

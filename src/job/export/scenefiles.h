@@ -4,10 +4,8 @@
 
 #include "emit/emit.h"
 #include "job/work.h"
-#include "oracle/oracle.h"
-#include "oracle/tachyon.h"
 
-/* Positions in ResultFiles. */
+/* Positions in FileSet. */
 typedef enum SceneFile {
     SCENE_FILE,
     SCENE_SECOND,   /* the emitter's second file */
@@ -28,10 +26,10 @@ MUST_CHECK Status scene_files_find(const char *output, bool of_meshes, const Emi
  * which is standard output, this is one file.
  *
  * settings  the settings file is written.
- * files     zeroed, except for the taker; resultfiles_release releases it, also after an error.
+ * files     zeroed, except for the taker; fileset_release releases it, also after an error.
  * Errors    STATUS_USAGE if the format cannot use a second file of that name, STATUS_MEMORY. */
 MUST_CHECK Status scene_files_name(const Emitter *emitter, const char *path, bool settings,
-                                   ResultFiles *files, Err *err);
+                                   FileSet *files, Err *err);
 
 /* Appends the file, the second file and the settings to the texts of `files`, whose paths
  * scene_files_name has set.
@@ -41,18 +39,7 @@ MUST_CHECK Status scene_files_name(const Emitter *emitter, const char *path, boo
  * report     may be NULL.
  * Errors     as emit_write. */
 MUST_CHECK Status scene_files_put(const Emitter *emitter, const EmitParams *params,
-                                  const char *tree_path, ResultFile files[], EmitReport *report,
+                                  const char *tree_path, FileSlot files[], EmitReport *report,
                                   Err *err);
-
-/* Names, fills and writes the files of a scene without settings. `params` and `tree_path` as for
- * scene_files_put. Errors: those of scene_files_name, scene_files_put and resultfiles_write. */
-MUST_CHECK Status scene_files_write(const Emitter *emitter, const EmitParams *params,
-                                    const char *tree_path, const char *path, Err *err);
-
-/* Which POV-Ray to run and how long to bear its silence, as the environment says: CORCAST_POVRAY
- * (povray) and CORCAST_POVRAY_PATIENCE, in seconds (600). STATUS_USAGE when that is no number. */
-MUST_CHECK Status povray_from_environment(OracleParams *params, Err *err);
-/* Likewise which Tachyon, CORCAST_TACHYON (tachyon), by the same patience. */
-MUST_CHECK Status tachyon_from_environment(WitnessParams *params, Err *err);
 
 #endif

@@ -70,7 +70,7 @@ void volumes_extensions(Text *out)
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-/* Positions in ResultFiles. The first three are volumes. */
+/* Positions in FileSet. The first three are volumes. */
 typedef enum VolumeFile {
     FILE_VALUES,
     FILE_LABELS,
@@ -83,7 +83,7 @@ typedef enum VolumeFile {
 
 /* Names a file `output` with `suffix` in place of the format's own, or after it. */
 static Status name_beside(const char *output, const char *replaced, const char *suffix,
-                          const char *role, ResultFile *file, Err *err)
+                          const char *role, FileSlot *file, Err *err)
 {
     Text path = TEXT_INIT;
     file->role = role;
@@ -95,9 +95,9 @@ static Status name_beside(const char *output, const char *replaced, const char *
 }
 
 Status volumes_name(const VolumeOptions *options, const VolumeFormat *format, const char *output,
-                    ResultFiles *files, Err *err)
+                    FileSet *files, Err *err)
 {
-    ResultFile *at = files->at;
+    FileSlot *at = files->at;
     const char *own = format->suffix;
     char labels[32];
     snprintf(labels, sizeof labels, ".labels%s", own);
@@ -180,7 +180,7 @@ static Status make_grid(Volumes *made, Err *err)
 }
 
 /* Sets what the volumes hold, and checks that their formats can hold it. */
-static Status choose_formats(Volumes *made, const VolumeFormat *format, const ResultFiles *files,
+static Status choose_formats(Volumes *made, const VolumeFormat *format, const FileSet *files,
                              Err *err)
 {
     const char *centreline = made->options->centreline;
@@ -293,7 +293,7 @@ static DensityBox density_box(const Volumes *made)
 }
 
 /* Appends a scene in which the volume glows. */
-static Status put_scene(const Volumes *made, const char *command, ResultFile files[], Err *err)
+static Status put_scene(const Volumes *made, const char *command, FileSlot files[], Err *err)
 {
     const DensityBox density = density_box(made);
     Text description = TEXT_INIT;
@@ -315,31 +315,31 @@ done:
 }
 
 /* The volumes have been written while they were filled. */
-static Status put_beside(const void *job, const char *command, ResultFile files[], Err *err)
+static Status put_beside(const void *job, const char *command, FileSlot files[], Err *err)
 {
     const Volumes *made = job;
     TRY(tree_write_text(&made->of->tree, files[FILE_TREE].path, &files[FILE_TREE].text, err));
     if (files[FILE_SCENE].path)
         TRY(put_scene(made, command, files, err));
-    resultfile_json(&files[FILE_MANIFEST], manifest(made, command));
+    work_put_json(&files[FILE_MANIFEST], manifest(made, command));
     return STATUS_OK;
 }
 
-static Status prepare(Volumes *made, const VolumeFormat *format, ResultFiles *files,
-                      const Talk *talk, Err *err)
+static Status prepare(Volumes *made, const VolumeFormat *format, FileSet *files, const Talk *talk,
+                      Err *err)
 {
     TRY(take_geometry(made, talk, err));
     TRY(label_segments(made, err));
     TRY(make_grid(made, err));
     TRY(choose_formats(made, format, files, err));
-    TRY(resultfiles_open(files, err));
+    TRY(fileset_open(files, err));
     for (int i = 0; i < VOLUMES; i++)
         made->streams[i].to = files->at[i].stream;
     return STATUS_OK;
 }
 
 Status volumes_write(const VolumeOptions *options, const VolumeFormat *format,
-                     const PictureTree *of, ResultFiles *files, const Parsed *parsed, Err *err)
+                     const PictureTree *of, FileSet *files, const Parsed *parsed, Err *err)
 {
     static const Work work = {"filling voxels", "the volume", estimate_volumes, fill_streams};
     const Talk *talk = parsed->common.talk;
@@ -347,7 +347,7 @@ Status volumes_write(const VolumeOptions *options, const VolumeFormat *format,
     Status status;
     TRY_GOTO(prepare(&made, format, files, talk, err));
     TRY_GOTO(work_make(&work, &made, files, talk, err));
-    TRY_GOTO(resultfiles_write(files, put_beside, &made, parsed, err));
+    TRY_GOTO(work_write(files, put_beside, &made, parsed, err));
     say_result(&made, talk);
 done:
     geometry_release(&made.geometry);

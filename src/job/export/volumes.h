@@ -22,17 +22,17 @@ void volumes_extensions(Text *out);
 
 /* Sets the paths and roles of the files that are written for `output`: volumes, and beside them the
  * tree as CSV, a manifest and, of a density file, a scene. `files` is zeroed, except for the taker;
- * resultfiles_release releases it, also after an error. Errors: STATUS_MEMORY. */
+ * fileset_release releases it, also after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status volumes_name(const VolumeOptions *options, const VolumeFormat *format,
-                               const char *output, ResultFiles *files, Err *err);
+                               const char *output, FileSet *files, Err *err);
 
 /* Writes the volumes and what is beside them. Reports the expected cost, and the result.
  *
  * files   volumes_name has named them.
  * Errors  STATUS_USAGE if a format cannot hold what is wanted; those of stage_geometry,
- *         voxelgrid_make, volume_check, work_make, voxels_write and resultfiles_write. */
+ *         voxelgrid_make, volume_check, work_make, voxels_write and work_write. */
 MUST_CHECK Status volumes_write(const VolumeOptions *options, const VolumeFormat *format,
-                                const PictureTree *of, ResultFiles *files, const Parsed *parsed,
+                                const PictureTree *of, FileSet *files, const Parsed *parsed,
                                 Err *err);
 
 #endif

@@ -306,7 +306,7 @@ typedef struct PageFrame {
     char *templates, *viewer, *name; /* owned */
 } PageFrame;
 
-static Status put_page(const void *job, const char *command, ResultFile files[], Err *err)
+static Status put_page(const void *job, const char *command, FileSlot files[], Err *err)
 {
     const PageFrame *frame = job;
     const Webpage *page = frame->page;
@@ -331,14 +331,14 @@ static Status put_page(const void *job, const char *command, ResultFile files[],
 }
 
 static Status write_page(const Coloring *coloring, const char *look, const Webpage *page,
-                         ResultFiles *files, const Parsed *parsed, Err *err)
+                         FileSet *files, const Parsed *parsed, Err *err)
 {
     PageFrame frame = {page, coloring, look, NULL, NULL, NULL};
     Status status;
     TRY_GOTO(templates_folder(&frame.templates, err));
     TRY_GOTO(find_viewer(frame.templates, &frame.viewer, err));
     TRY_GOTO(shown_name(page->of->path, &frame.name, err));
-    status = resultfiles_write(files, put_page, &frame, parsed, err);
+    status = work_write(files, put_page, &frame, parsed, err);
 done:
     free(frame.templates);
     free(frame.viewer);
@@ -347,7 +347,7 @@ done:
 }
 
 Status webpage_write(const Coloring *coloring, const char *look, const PictureTree *of,
-                     ResultFiles *files, const Parsed *parsed, Err *err)
+                     FileSet *files, const Parsed *parsed, Err *err)
 {
     const ColoredTree tree = picture_colored_tree(of);
     Webpage page = {.of = of};

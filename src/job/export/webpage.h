@@ -21,8 +21,8 @@ MUST_CHECK Status webpage_check_needs(const Coloring *coloring, const Parsed *pa
  *
  * files   the first one has the path.
  * Errors  STATUS_INFEASIBLE if there are too many segments or moments, STATUS_TOOL if the viewer
- *         was not built; those of coloring_appearance, page_put and resultfiles_write. */
+ *         was not built; those of coloring_appearance, page_put and work_write. */
 MUST_CHECK Status webpage_write(const Coloring *coloring, const char *look, const PictureTree *of,
-                                ResultFiles *files, const Parsed *parsed, Err *err);
+                                FileSet *files, const Parsed *parsed, Err *err);
 
 #endif

@@ -461,7 +461,7 @@ static Status prune(double radius_mm, bool keep_whole, PictureTree *of, Err *err
 Status picture_read_tree(const Coloring *coloring, double prune_radius_mm, const Parsed *parsed,
                          PictureTree *out, Err *err)
 {
-    PictureTree made = {.path = parsed->n_operands > 0 ? parsed->operands[0] : "the tree"};
+    PictureTree made = {.path = parsed->operands[0]};
     TRY(reading_tree(parsed, made.path, &made.tree, NULL, err));
     Status status = blood_settle(&coloring->blood, parsed, &made.tree, err);
     if (status == STATUS_OK)
