@@ -1,4 +1,4 @@
-/* Draws pictures into files, or prints the commands that draw their parts. */
+/* Draws pictures into files. */
 #include "cli/commands.h"
 #include "job/picture/render.h"
 
@@ -6,25 +6,3 @@ Status run_render(void *options, Parsed *parsed, Err *err)
 {
     return render_run(options, parsed, err);
 }
-
-const Command command_render = {
-    .name = "render",
-    .summary = "render a tree with the native renderer",
-    .operands = "T.swc -o P.png",
-    .examples = "  corcast render tree.swc -o tree.png\n"
-                "  corcast render tree.swc --model isosurface --shadows on -o tree.ppm\n"
-                "  corcast render tree.swc --planes depth,normal,id -o tree.png\n"
-                "  corcast render tree.swc --turntable 120 -o turn%03d.png\n"
-                "  corcast render tree.swc --color-by pulse.csv --frames all -o f%04d.png\n",
-    .min_operands = 1,
-    .max_operands = 1,
-    .needs_output = true,
-    .reads_tree = true,
-    .size = sizeof(RenderOptions),
-    .set_defaults = render_set_defaults,
-    .tables = {{&render_table, 0},
-               {&shard_table, offsetof(RenderOptions, shard)},
-               {&annotation_table, offsetof(RenderOptions, annotation)},
-               PICTURE_TABLES(RenderOptions, picture),
-               {&press_table, offsetof(RenderOptions, press)}},
-};
