@@ -328,7 +328,7 @@ static Status write_pictures(Rendering *r, Err *err)
     return r->options->json ? write_report(r, err) : STATUS_OK;
 }
 
-Status render_run(RenderOptions *options, Parsed *parsed, Err *err)
+Status render_run(void *options, Parsed *parsed, Err *err)
 {
     Rendering r;
     TRY(rendering_open(options, parsed, NULL, &r, err));
