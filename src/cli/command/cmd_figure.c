@@ -5,7 +5,7 @@
 
 Status run_figure(void *options, Parsed *parsed, Err *err)
 {
-    Figure figure = {.trees = {.run = command_run}};
+    Figure figure = {0};
     Status status = figure_make(options, parsed, &figure, err);
     if (status == STATUS_OK)
         status = figure_write(&figure, err);

@@ -78,15 +78,6 @@ static Status set_key(Parsed *parsed, const char *name, const char *value, Err *
     return setting_read(parsed_find(parsed, name, strlen(name)), value, err);
 }
 
-/* A tree that a command makes is in mm, as corcast writes trees. */
-static void assume_mm(ReadOptions *reading)
-{
-    if (reading->has_unit)
-        return;
-    reading->has_unit = true;
-    reading->unit = LENGTH_MM;
-}
-
 /* What the page says of a panel's options. Those of the recipe are no longer typed, as in recipes
  * of commands: one that has no effect on this panel is not refused. */
 static Status set_options(const Figure *figure, size_t i, Err *err)
@@ -105,14 +96,13 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
         TRY(set_key(&section->render, "text-size", pt, err));
     for (size_t k = 0; k < section->render.n_settings; k++)
         section->render.settings[k].typed = false;
-    if (section->maker)
-        assume_mm(&section->render.reading);
-    section->render.common.quiet = figure->parsed->common.quiet;
     section->render.common.talk = figure->parsed->common.talk;
     section->render.common.threads = figure->parsed->common.threads;
-    section->render.operands[0] =
-        section->maker ? madetrees_file(&figure->plan, &figure->trees, i) : panel->tree;
+    section->render.operands[0] = panel->tree;
     section->render.n_operands = 1;
+    if (section->maker)
+        parsed_give(&section->render, madetrees_tree(&figure->plan, &figure->trees, i),
+                    section->tree_name);
     return STATUS_OK;
 }
 
@@ -128,7 +118,6 @@ static Status draw_panels(Figure *figure, Err *err)
         snprintf(name, sizeof name, "[panel %.60s]", section->name);
         panel->name = name;
         panel->fonts = figure->sheet.fonts;
-        panel->made_tree = section->maker != NULL;
         panel->insets = figure->insets + first;
         TRY(figure_plan_insets(figure, i, first, &panel->n_insets, err));
         first += panel->n_insets;
@@ -136,7 +125,6 @@ static Status draw_panels(Figure *figure, Err *err)
         Status status = panel_draw(&section->render, panel, err);
         if (status != STATUS_OK) {
             options_name_fields(&section->render, err);
-            madetrees_name(&figure->plan, &figure->trees, i, err);
             err_prefix(err, "[panel %s]: ", section->name);
             return status;
         }
@@ -399,7 +387,7 @@ static Status draw_in_folder(Figure *figure, const char *recipe, Err *err)
     if (status == STATUS_OK)
         status = open_press(figure, true, err);
     if (status == STATUS_OK)
-        status = madetrees_make(&figure->plan, figure->parsed->common.threads, &figure->trees, err);
+        status = madetrees_make(&figure->plan, &figure->parsed->common, &figure->trees, err);
     if (status == STATUS_OK)
         status = draw_panels(figure, err);
     if (status == STATUS_OK)
@@ -445,7 +433,6 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
     TRY(sheet_open(&figure->sheet, err));
     sheet_begin(&figure->sheet, pixels, options->size.dpi > 0 ? options->size.dpi : 300);
     TRY(figure_place_panels(figure, err));
-    TRY(madetrees_open(&figure->plan, options->output, &figure->trees, err));
     TRY(draw_in_folder(figure, recipe, err));
     return figure->parsed->common.dump ? put_recipe(figure, err) : STATUS_OK;
 }
