@@ -66,13 +66,6 @@ static void show(Screen *screen, const char *what, double fraction)
     fflush(stderr);
 }
 
-/* Never stops the operation: a signal does. */
-static bool show_progress(void *user, const char *what, double fraction)
-{
-    show(user, what, fraction);
-    return true;
-}
-
 /* From the first question on, SIGINT does not end the program until the step has ended. */
 static bool is_enough(void *user)
 {
@@ -81,6 +74,13 @@ static bool is_enough(void *user)
         interrupt_catch();
     screen->catches = true;
     return interrupt_asked();
+}
+
+/* Never stops the operation: a signal does. */
+static bool show_progress(void *user, const char *what, double fraction)
+{
+    show(user, what, fraction);
+    return true;
 }
 
 static void print_sentence(void *user, TalkKind kind, const char *sentence)

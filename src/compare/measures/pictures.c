@@ -1,51 +1,57 @@
 /* Two pictures: the sums over all pixels (pixel_counts.c) become measures and a verdict. */
+#include "compare/measure.h"
+#include "compare/measures/perception.h"
+#include "compare/measures/planes.h"
 #include "compare/measures/regression.h"
-#include "compare/measures/result.h"
+#include "compare/pixels.h"
+#include "compare/rules/judge.h"
 
 #include <math.h>
 #include <string.h>
 
 static void take_color(const Sums *sums, double code_levels, int channels, CompareResult *result)
 {
-    double samples = (double)result->pixels * channels;
-    result->max_code = sums->max;
-    result->max_abs = sums->max * code_levels;
-    result->unsettled_max_abs = sums->unsettled_max * code_levels;
-    result->mean_abs = (double)sums->abs / samples * code_levels;
-    result->rmse = sqrt((double)sums->squares / samples) * code_levels;
-    result->psnr_db =
-        result->rmse > 0 ? 20 * elementary_log10(255 / result->rmse) : (double)INFINITY;
-    result->differing_pixels = sums->differing;
-    result->beyond_pixels = sums->beyond;
-    result->settled_pixels = sums->settled;
-    if (sums->max > 0)
-        result->worst = sums->worst;
-    result->bias_levels = 0;
+    double *values = result->values, pixels = values[MEASURE_PIXELS], bias_levels = 0;
+    double samples = pixels * channels, rmse = sqrt((double)sums->squares / samples) * code_levels;
     for (int c = 0; c < channels; c++) {
-        double bias = (double)sums->signed_codes[c] / (double)result->pixels * code_levels;
-        if (fabs(bias) > fabs(result->bias_levels))
-            result->bias_levels = bias;
+        double bias = (double)sums->signed_codes[c] / pixels * code_levels;
+        if (fabs(bias) > fabs(bias_levels))
+            bias_levels = bias;
     }
     double brighter = (double)sums->brighter, darker = (double)sums->darker;
-    result->sign_sigma =
+    values[MEASURE_MAX_CODE] = sums->max;
+    values[MEASURE_MAX_ABS] = sums->max * code_levels;
+    values[MEASURE_UNSETTLED_MAX_ABS] = sums->unsettled_max * code_levels;
+    values[MEASURE_MEAN_ABS] = (double)sums->abs / samples * code_levels;
+    values[MEASURE_RMSE] = rmse;
+    values[MEASURE_PSNR_DB] = rmse > 0 ? 20 * elementary_log10(255 / rmse) : (double)INFINITY;
+    values[MEASURE_DIFFERING_PIXELS] = (double)sums->differing;
+    values[MEASURE_BEYOND_PIXELS] = (double)sums->beyond;
+    values[MEASURE_SETTLED_PIXELS] = (double)sums->settled;
+    values[MEASURE_BIAS_LEVELS] = bias_levels;
+    values[MEASURE_SIGN_SIGMA] =
         sums->differing ? (brighter - darker) / sqrt(fmax(brighter + darker, 1)) : 0;
+    if (sums->max > 0)
+        result->places[PLACE_WORST] = sums->worst;
     memcpy(result->classes, sums->classes, sizeof result->classes);
 }
 
 static void take_mask(const Sums *sums, double code_levels, CompareResult *result)
 {
+    double *values = result->values, moved = (double)sums->extra - (double)sums->missing;
     result->has_mask = true;
-    result->common_pixels = sums->common;
-    result->missing_pixels = sums->missing;
-    result->extra_pixels = sums->extra;
-    result->band_pixels = sums->band;
-    result->band_beyond = sums->band_beyond;
-    result->interior_beyond = sums->interior_beyond;
-    result->interior_max_abs = sums->interior_max * code_levels;
-    result->edge_mismatch_fraction =
+    values[MEASURE_COMMON_PIXELS] = (double)sums->common;
+    values[MEASURE_MISSING_PIXELS] = (double)sums->missing;
+    values[MEASURE_EXTRA_PIXELS] = (double)sums->extra;
+    values[MEASURE_BAND_PIXELS] = (double)sums->band;
+    values[MEASURE_INTERIOR_PIXELS] = values[MEASURE_PIXELS] - (double)sums->band;
+    values[MEASURE_BAND_BEYOND] = (double)sums->band_beyond;
+    values[MEASURE_INTERIOR_BEYOND] = (double)sums->interior_beyond;
+    values[MEASURE_INTERIOR_MAX_ABS] = sums->interior_max * code_levels;
+    values[MEASURE_EDGE_MISMATCH] =
         sums->band ? (double)sums->band_differs / (double)sums->band : 0;
-    double moved = (double)sums->extra - (double)sums->missing;
-    result->silhouette_px = sums->silhouette ? moved / (PX_PER_EDGE * (double)sums->silhouette) : 0;
+    values[MEASURE_SILHOUETTE_PX] =
+        sums->silhouette ? moved / (PX_PER_EDGE * (double)sums->silhouette) : 0;
 }
 
 static Status check_views(const Rendering *a, const Rendering *b, Err *err)
@@ -70,10 +76,8 @@ static Status take_counts(const Counting *counting, CompareResult *result, Ledge
         return STATUS_OK;
     take_mask(counting->sums, code_levels, result);
     if (counting->common_only)
-        result->judged_pixels = result->common_pixels;
-    if (result->missing_pixels + result->extra_pixels > 0)
-        TRY(largest_region(counting->coverage, result->width, result->height,
-                           &result->largest_region, &result->largest_region_at, err));
+        result->values[MEASURE_JUDGED_PIXELS] = result->values[MEASURE_COMMON_PIXELS];
+    TRY(region_take(counting->coverage, counting->labels, result, err));
     if (!counting->index)
         return STATUS_OK;
     TRY(regression_take(counting, code_levels, result, err));
@@ -89,11 +93,12 @@ static Counting start_counting(const Rendering *a, const Rendering *b, const Lab
                       .b = b,
                       .labels = labels,
                       .beyond = allowed_codes(tolerance, a->picture),
-                      .common_only =
-                          tolerance->color_common_only && labels->source != LABELS_UNKNOWN,
+                      .common_only = tolerance->limits[LIMIT_COLOR_COMMON_ONLY] > 0 &&
+                                     labels->source != LABELS_UNKNOWN,
                       .settled = tolerance->settled,
-                      .geometry_mm = fmin(tolerance->depth_max_mm, tolerance->depth_p99_mm),
-                      .geometry_deg = fmin(tolerance->normal_max_deg, 1)};
+                      .geometry_mm = fmin(tolerance->limits[LIMIT_DEPTH_MAX_MM],
+                                          tolerance->limits[LIMIT_DEPTH_P99_MM]),
+                      .geometry_deg = fmin(tolerance->limits[LIMIT_NORMAL_MAX_DEG], 1)};
 }
 
 static Labels labels_of(const Rendering *a, const Rendering *b)
@@ -134,7 +139,7 @@ Status compare_pictures(const Rendering *a, const Rendering *b, const Tolerance 
     const Picture *picture = a->picture;
     CompareResult made =
         result_start(PLANE_COLOR, picture->width, picture->height, a->ids, tolerance);
-    made.bits = picture->bits;
+    made.values[MEASURE_BITS] = picture->bits;
     Labels labels = labels_of(a, b);
     SegmentIndex index = {0};
     Ledger of_segments = {0};
@@ -145,9 +150,9 @@ Status compare_pictures(const Rendering *a, const Rendering *b, const Tolerance 
         TRY_GOTO(segment_index_init(&index, a->ids, b->ids, err));
     TRY_GOTO(count_pixels(&counting, err));
     TRY_GOTO(take_counts(&counting, &made, &of_segments, err));
-    if (!isnan(tolerance->pixelmatch))
-        made.pixelmatch_pixels =
-            (double)pixelmatch_count(as_read(a), as_read(b), tolerance->pixelmatch);
+    if (!isnan(tolerance->limits[LIMIT_PIXELMATCH]))
+        made.values[MEASURE_PIXELMATCH_PIXELS] =
+            (double)pixelmatch_count(as_read(a), as_read(b), tolerance->limits[LIMIT_PIXELMATCH]);
     result_finish(&made, a->ids, b->ids);
     *result = made;
     if (ledger) {
@@ -163,10 +168,12 @@ done:
 
 Status compare_perception(const Picture *a, const Picture *b, CompareResult *result, Err *err)
 {
-    FlipSummary flip;
-    TRY(flip_compute(a, b, NULL, &flip, err));
-    result->flip_mean = flip.mean;
-    result->flip_max = flip.max;
-    TRY(ssim_compute(a, b, &result->ssim, err));
-    return de2000_compute(a, b, &result->de2000_mean, &result->de2000_max, err);
+    for (size_t i = 0; i < n_measures; i++) {
+        bool is_found = measures[i].find == NULL;
+        for (size_t k = 0; k < i && !is_found; k++)
+            is_found = measures[k].find == measures[i].find;
+        if (!is_found)
+            TRY(measures[i].find(a, b, result->values, err));
+    }
+    return STATUS_OK;
 }

@@ -1,8 +1,8 @@
 /* The second step of verifying an implicit surface: the first holds POV-Ray's picture against a
  * repetition of its root finder, this one the repetition against where the surface is. Part of the
  * room's door. */
-#ifndef CORCAST_COMPARE_RULES_SURFACE_CHECK_H
-#define CORCAST_COMPARE_RULES_SURFACE_CHECK_H
+#ifndef CORCAST_COMPARE_CHECKS_SURFACE_CHECK_H
+#define CORCAST_COMPARE_CHECKS_SURFACE_CHECK_H
 
 #include "base/base.h"
 #include "image/image.h"
@@ -26,8 +26,5 @@ typedef struct SurfaceCheck {
  * differ. */
 MUST_CHECK Status surface_check(const Plane *a, const Plane *b, const Plane *allowed,
                                 SurfaceCheck *check, Err *err);
-
-/* New reference, NULL when memory runs out. */
-json_t *surface_check_json(const SurfaceCheck *check);
 
 #endif

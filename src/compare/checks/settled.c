@@ -1,8 +1,9 @@
 /* The causes, and how many pixels of each a picture may have, are one table. A limit is the larger
  * of a number of parts in a million and a number of pixels, because in a small picture a million's
  * part is less than one. */
-#include "compare/measures/result.h"
+#include "compare/checks/settled.h"
 
+#include "compare/pixels.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -112,8 +113,8 @@ static bool geometry_beyond(const Rendering *a, const Rendering *b, size_t pixel
     double depth_a = (double)a->depth->values[pixel], depth_b = (double)b->depth->values[pixel];
     if (a->ids->ids[pixel] != b->ids->ids[pixel] || isfinite(depth_a) != isfinite(depth_b))
         return true;
-    return isfinite(depth_a) &&
-           geometry_differs(a, b, pixel, tolerance->depth_max_mm, tolerance->normal_max_deg);
+    return isfinite(depth_a) && geometry_differs(a, b, pixel, tolerance->limits[LIMIT_DEPTH_MAX_MM],
+                                                 tolerance->limits[LIMIT_NORMAL_MAX_DEG]);
 }
 
 unsigned pixel_beyond(const Rendering *a, const Rendering *b, size_t pixel,
@@ -122,41 +123,4 @@ unsigned pixel_beyond(const Rendering *a, const Rendering *b, size_t pixel,
     int off = largest_difference(a->picture, b->picture, pixel);
     return (off > allowed_codes(tolerance, a->picture) ? BEYOND_COLOR : 0u) |
            (geometry_beyond(a, b, pixel, tolerance) ? BEYOND_GEOMETRY : 0u);
-}
-
-/* ---- JSON ------------------------------------------------------------------------------------ */
-
-static json_t *pixels_json(const Settled *settled)
-{
-    json_t *pixels = json_array();
-    for (int i = 0; i < settled->n_first; i++) {
-        const SettledPixel *pixel = &settled->first[i];
-        pixels = json_with_item(
-            pixels,
-            json_pack("{s:i, s:i, s:s, s:I, s:o, s:o, s:o, s:o, s:o}", "x", pixel->x, "y", pixel->y,
-                      "cause", causes[pixel->cause].name, "segment", (json_int_t)pixel->id,
-                      "depth_a_mm", json_number(pixel->a_mm), "depth_b_mm",
-                      json_number(pixel->b_mm), "root_mm", json_number(pixel->root_mm),
-                      "blocked_mm", json_number(pixel->distance_mm), "cosine",
-                      json_number(pixel->cosine)));
-    }
-    return pixels;
-}
-
-json_t *settled_json(const Settled *settled)
-{
-    json_t *rules = json_array();
-    for (SettledCause cause = settled->from; cause <= settled->to; cause++) {
-        size_t allowed = settled_allowed(settled, cause);
-        rules = json_with_item(
-            rules, json_pack("{s:s, s:s, s:I, s:I, s:b}", "name", causes[cause].sentence, "unit",
-                             "pixels", "measured", (json_int_t)settled->count[cause], "allowed",
-                             (json_int_t)allowed, "met", settled->count[cause] <= allowed));
-    }
-    return json_pack("{s:s, s:s?, s:I, s:I, s:o, s:o}", "verdict",
-                     settled->agrees ? "agree" : "differ", "reason",
-                     settled->reason[0] ? settled->reason : NULL, "asked_pixels",
-                     (json_int_t)settled->asked, "unexplained_pixels",
-                     (json_int_t)(settled->count[SETTLED_NOT] + settled->unasked), "rules", rules,
-                     "pixels", pixels_json(settled));
 }

@@ -2,7 +2,10 @@
  * turned into codes; a level is 1/255 of the sRGB encoding, continued beyond white. What is not
  * finite is made black in copies of both, which the measures of perception then see as equal. */
 #include "compare/measures/labels.h"
-#include "compare/measures/result.h"
+#include "compare/measures/perception.h"
+#include "compare/measures/planes.h"
+#include "compare/pixels.h"
+#include "compare/rules/judge.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,62 +29,81 @@ static bool is_finite(const float *values, int channels)
 /* Counts the pixels that are not finite and makes them black in both. */
 static void blacken(Plane *a, Plane *b, CompareResult *result)
 {
-    size_t channels = (size_t)a->channels;
-    for (size_t i = 0; i < result->pixels; i++) {
+    size_t channels = (size_t)a->channels, n = result_count(result, MEASURE_PIXELS);
+    for (size_t i = 0; i < n; i++) {
         float *in_a = a->values + i * channels, *in_b = b->values + i * channels;
         bool sound_a = is_finite(in_a, a->channels), sound_b = is_finite(in_b, a->channels);
-        result->nan_pixels_a += !sound_a;
-        result->nan_pixels_b += !sound_b;
+        result->values[MEASURE_NAN_PIXELS] += !sound_a + !sound_b;
         if (sound_a && sound_b)
             continue;
-        result->judged_pixels--;
-        if (result->nan_at.x < 0)
-            result->nan_at = place_of(i, a->width);
+        result->values[MEASURE_JUDGED_PIXELS]--;
+        if (result->places[PLACE_NAN].x < 0)
+            result->places[PLACE_NAN] = place_of(i, a->width);
         memset(in_a, 0, channels * sizeof *in_a);
         memset(in_b, 0, channels * sizeof *in_b);
     }
+    result->values[MEASURE_NOT_FINITE] = result->values[MEASURE_NAN_PIXELS];
+}
+
+/* Sums over all pixels, in levels. */
+typedef struct ColorSums {
+    double sum, squares, bias[4], worst;
+    size_t differing, beyond;
+} ColorSums;
+
+/* Adds a pixel and returns its largest difference; -1 if the pixel is equal in both. */
+static double add_pixel(const float *a, const float *b, size_t channels, ColorSums *sums)
+{
+    double largest = -1;
+    for (size_t c = 0; c < channels; c++) {
+        if (a[c] == b[c])
+            continue;
+        double difference = levels_of(b[c]) - levels_of(a[c]);
+        sums->bias[c] += difference;
+        sums->sum += fabs(difference);
+        sums->squares += difference * difference;
+        largest = fmax(largest, fabs(difference));
+    }
+    return largest;
+}
+
+static void take_color_sums(const ColorSums *sums, int channels, CompareResult *result)
+{
+    double *values = result->values, judged = values[MEASURE_JUDGED_PIXELS];
+    double samples = judged * channels, bias = 0;
+    double rmse = samples > 0 ? sqrt(sums->squares / samples) : 0;
+    for (int c = 0; c < channels && samples > 0; c++)
+        if (fabs(sums->bias[c] / judged) > fabs(bias))
+            bias = sums->bias[c] / judged;
+    values[MEASURE_DIFFERING_PIXELS] = (double)sums->differing;
+    values[MEASURE_BEYOND_PIXELS] = (double)sums->beyond;
+    values[MEASURE_MAX_ABS] = values[MEASURE_UNSETTLED_MAX_ABS] = sums->worst;
+    values[MEASURE_MEAN_ABS] = samples > 0 ? sums->sum / samples : 0;
+    values[MEASURE_RMSE] = rmse;
+    values[MEASURE_PSNR_DB] = rmse > 0 ? 20 * elementary_log10(255 / rmse) : (double)INFINITY;
+    values[MEASURE_BIAS_LEVELS] = bias;
+    result->classes[PIXEL_SHADING] = sums->differing;
+    result->classes[PIXEL_IDENTICAL] = (size_t)judged - sums->differing;
 }
 
 static void measure(const Plane *a, const Plane *b, CompareResult *result)
 {
-    double sum = 0, squares = 0, bias[4] = {0}, worst = 0;
-    size_t channels = (size_t)a->channels, unsound = result->pixels - result->judged_pixels;
-    double limit = result->tolerance.color_levels;
-    for (size_t i = 0; i < result->pixels; i++) {
-        double largest = 0;
-        bool differs = false;
-        for (size_t c = 0; c < channels; c++) {
-            float in_a = a->values[i * channels + c], in_b = b->values[i * channels + c];
-            if (in_a == in_b)
-                continue;
-            double difference = levels_of(in_b) - levels_of(in_a);
-            differs = true;
-            bias[c] += difference;
-            sum += fabs(difference);
-            squares += difference * difference;
-            largest = fmax(largest, fabs(difference));
-        }
-        result->differing_pixels += differs;
-        result->beyond_pixels += limit > 0 ? largest > limit : differs;
-        result->classes[differs ? PIXEL_SHADING : PIXEL_IDENTICAL]++;
-        if (differs && (largest > worst || result->worst.x < 0)) {
-            worst = largest;
-            result->worst = place_of(i, a->width);
-        }
+    ColorSums sums = {0};
+    size_t channels = (size_t)a->channels, n = result_count(result, MEASURE_PIXELS);
+    const double limit = result->tolerance.limits[LIMIT_COLOR_LEVELS];
+    for (size_t i = 0; i < n; i++) {
+        double largest =
+            add_pixel(a->values + i * channels, b->values + i * channels, channels, &sums);
+        if (largest < 0)
+            continue;
+        sums.differing++;
+        sums.beyond += limit > 0 ? largest > limit : 1;
+        if (largest <= sums.worst && result->places[PLACE_WORST].x >= 0)
+            continue;
+        sums.worst = largest;
+        result->places[PLACE_WORST] = place_of(i, a->width);
     }
-    result->classes[PIXEL_IDENTICAL] -= unsound;
-    double samples = (double)result->judged_pixels * (double)channels;
-    result->max_abs = result->unsettled_max_abs = worst;
-    result->mean_abs = samples > 0 ? sum / samples : 0;
-    result->rmse = samples > 0 ? sqrt(squares / samples) : 0;
-    result->psnr_db =
-        result->rmse > 0 ? 20 * elementary_log10(255 / result->rmse) : (double)INFINITY;
-    result->bias_levels = 0;
-    for (size_t c = 0; c < channels && samples > 0; c++) {
-        double mean = bias[c] / (double)result->judged_pixels;
-        if (fabs(mean) > fabs(result->bias_levels))
-            result->bias_levels = mean;
-    }
+    take_color_sums(&sums, a->channels, result);
 }
 
 static Status measure_perception(const Plane *a, const Plane *b, CompareResult *result, Err *err)
@@ -90,7 +112,7 @@ static Status measure_perception(const Plane *a, const Plane *b, CompareResult *
     FlipSummary hdr;
     Status status = STATUS_OK;
     TRY_GOTO(hdr_flip_compute(a, b, NULL, &hdr, err));
-    result->hdr_flip_mean = hdr.mean;
+    result->values[MEASURE_HDR_FLIP_MEAN] = hdr.mean;
     TRY_GOTO(picture_from_plane(&picture_a, a, ENCODING_SRGB, 16, err));
     TRY_GOTO(picture_from_plane(&picture_b, b, ENCODING_SRGB, 16, err));
     TRY_GOTO(compare_perception(&picture_a, &picture_b, result, err));
@@ -119,7 +141,7 @@ Status compare_colors(const Plane *a, const Plane *b, const IdPlane *id_a, const
                        a->channels, b->channels);
     TRY(labels_check_ids(a->width, a->height, id_a, id_b, err));
     CompareResult made = result_start(PLANE_COLOR, a->width, a->height, id_a, tolerance);
-    made.bits = 32;
+    made.values[MEASURE_BITS] = 32;
     Plane copy_a = {0}, copy_b = {0};
     Status status = STATUS_OK;
     TRY_GOTO(copy_plane(&copy_a, a, err));

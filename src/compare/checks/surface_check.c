@@ -1,8 +1,8 @@
 /* One pass over the pixels: which side sees a surface, and by how much of what is allowed the two
  * depths differ. */
-#include "compare/rules/surface_check.h"
+#include "compare/checks/surface_check.h"
 
-#include "compare/measures/result.h"
+#include "compare/pixels.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -78,16 +78,4 @@ Status surface_check(const Plane *a, const Plane *b, const Plane *allowed, Surfa
     judge(&check);
     *out = check;
     return STATUS_OK;
-}
-
-json_t *surface_check_json(const SurfaceCheck *check)
-{
-    return json_pack(
-        "{s:s, s:s?, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "verdict",
-        check->agrees ? "agree" : "differ", "reason", check->reason[0] ? check->reason : NULL,
-        "pixels", (json_int_t)check->pixels, "common_pixels", (json_int_t)check->common,
-        "grazing_pixels", (json_int_t)check->grazing, "missing_pixels", (json_int_t)check->missing,
-        "extra_pixels", (json_int_t)check->extra, "beyond_pixels", (json_int_t)check->beyond,
-        "median_abs_mm", json_number(check->median_mm), "p99_abs_mm", json_number(check->p99_mm),
-        "max_abs_mm", json_number(check->max_mm), "max_ratio", json_number(check->max_ratio));
 }

@@ -1,16 +1,16 @@
 /* What a report judges, in the one form that its text, JUnit XML and page are written from; private
  * to the room compare. */
-#ifndef CORCAST_COMPARE_RULES_CHECK_H
-#define CORCAST_COMPARE_RULES_CHECK_H
+#ifndef CORCAST_COMPARE_REPORT_CHECK_H
+#define CORCAST_COMPARE_REPORT_CHECK_H
 
-#include "compare/compare.h"
+#include "compare/report/report.h"
 
-/* A number that is reported beside the rules. All is borrowed. */
-typedef struct Measure {
+/* A number that is reported beside the rules. All members are borrowed. */
+typedef struct CheckMeasure {
     const char *table; /* the heading it stands under: "Colour: sizes of differences" */
     const char *name, *unit;
     double value; /* never NAN */
-} Measure;
+} CheckMeasure;
 
 enum { MEASURES_MAX = 40 };
 
@@ -22,7 +22,7 @@ typedef struct Check {
     const char *reason; /* as in CompareResult; borrowed */
     Rule rules[RULES_MAX];
     int n_rules;
-    Measure measures[MEASURES_MAX]; /* those of one table follow each other */
+    CheckMeasure measures[MEASURES_MAX]; /* those of one table follow each other */
     int n_measures;
     const Settled *settled; /* whose first pixels are listed; NULL in other checks. Borrowed */
 } Check;

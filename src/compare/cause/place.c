@@ -17,9 +17,9 @@
  * other is another saturation, and anything else another hue: both are other colours, not other
  * light.
  */
-#include "compare/cause/cause.h"
+#include "compare/cause/guesses.h"
 #include "compare/measures/labels.h"
-#include "compare/measures/result.h"
+#include "compare/pixels.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -188,35 +188,37 @@ static void say_lack(const Picture *a, const Picture *b, const CompareResult *re
 {
     const Picture *const pictures[2] = {a, b};
     const Labels labels = labels_from_background(a, b);
-    const size_t alone = result->missing_pixels + result->extra_pixels + result->settled_pixels;
-    if (result->has_mask && 20 * alone < 19 * result->differing_pixels)
+    const size_t differing = result_count(result, MEASURE_DIFFERING_PIXELS);
+    if (20 * (result->values[MEASURE_UNCOMMON_PIXELS] + result->values[MEASURE_SETTLED_PIXELS]) <
+        19 * (double)differing)
         return; /* most of what differs is in both */
     for (int side = 0; side < 2 && labels.source == LABELS_BACKGROUND && !*out->text; side++) {
         Lack lack = find_lack(&labels, pictures, side);
-        bool one = 20 * result->largest_region >= 19 * lack.pixels;
-        bool only = 20 * lack.pixels >= 19 * result->differing_pixels;
+        bool one = 20 * result->values[MEASURE_LARGEST_REGION] >= 19 * (double)lack.pixels;
+        bool only = 20 * lack.pixels >= 19 * differing;
         if (lack.pixels >= 9 && one && only && 4 * lack.background >= 3 * lack.rim)
             snprintf(out->text, out->size,
                      "one thing, or a part of one, is in %s only, %zu pixels from (%d, %d) to "
                      "(%d, %d); %zu other pixels differ",
                      side ? "B" : "A", lack.pixels, lack.left, lack.top, lack.right, lack.bottom,
-                     result->differing_pixels - lack.pixels);
+                     differing - lack.pixels);
     }
 }
 
 /* Likewise where ids tell the segments: one is missing, and it covers what differs. */
 static void say_missing_segment(const CompareResult *result, Sentence *out)
 {
+    const size_t differing = result_count(result, MEASURE_DIFFERING_PIXELS);
     for (int i = 0; i < result->n_worst_segments && !*out->text; i++) {
         const LedgerEntry *entry = &result->worst_segments[i];
         size_t area = entry->area_a + entry->area_b;
-        if ((entry->area_a == 0 || entry->area_b == 0) && area <= result->differing_pixels &&
-            20 * area >= 19 * result->differing_pixels)
+        if ((entry->area_a == 0 || entry->area_b == 0) && area <= differing &&
+            20 * area >= 19 * differing)
             snprintf(out->text, out->size,
                      "segment %u is in %s only, %zu pixels from (%d, %d) to (%d, %d); %zu other "
                      "pixels differ",
                      entry->id, entry->area_a ? "A" : "B", area, entry->left, entry->top,
-                     entry->right, entry->bottom, result->differing_pixels - area);
+                     entry->right, entry->bottom, differing - area);
     }
 }
 
@@ -343,7 +345,8 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
         snprintf(out->text, out->size,
                  "only outlines differ by more than %d levels, by up to %.4g on %.3g %% of the "
                  "pixels",
-                 SLIGHT, result->max_abs, 100.0 * (double)sum.at_edges / (double)result->pixels);
+                 SLIGHT, result->values[MEASURE_MAX_ABS],
+                 100.0 * (double)sum.at_edges / result->values[MEASURE_PIXELS]);
     free(self.rows);
     return STATUS_OK;
 }
@@ -509,8 +512,9 @@ static Status sum_light(const Picture *a, const Picture *b, Light *all, Err *err
 
 static bool has_equal_outlines(const CompareResult *result)
 {
-    return result->has_mask && result->missing_pixels + result->extra_pixels == 0 &&
-           !(result->edge_mismatch_fraction > 0) && result->classes[PIXEL_WRONG_SEGMENT] == 0;
+    return result->has_mask && result->values[MEASURE_UNCOMMON_PIXELS] == 0 &&
+           !(result->values[MEASURE_EDGE_MISMATCH] > 0) &&
+           result->classes[PIXEL_WRONG_SEGMENT] == 0;
 }
 
 /* Whether the light of coloured pixels is most of it and has one colour, the lamp's, but for a
@@ -553,14 +557,15 @@ static void say_shading(const CompareResult *result, const Light *light, Sentenc
     bool certain = highlights ? has_one_color(light) : is_plain(light);
     if (!certain)
         return;
-    double all = sqrt((double)result->differing_pixels); /* sigmas, if all go one way */
+    double all = sqrt(result->values[MEASURE_DIFFERING_PIXELS]); /* sigmas, if all go one way */
     snprintf(out->text, out->size,
              "only %s, by up to %.4g levels on %.3g %% of the pixels, B %s; the outlines %s",
-             highlights ? "highlights differ" : "shading differs", result->max_abs,
-             100.0 * (double)result->differing_pixels / (double)result->pixels,
-             result->sign_sigma > 0.98 * all    ? "being brighter"
-             : result->sign_sigma < -0.98 * all ? "being darker"
-                                                : "being brighter here and darker there",
+             highlights ? "highlights differ" : "shading differs", result->values[MEASURE_MAX_ABS],
+             100.0 * result->values[MEASURE_DIFFERING_PIXELS] / result->values[MEASURE_PIXELS],
+             result->values[MEASURE_SIGN_SIGMA] > 0.98 * all ? "being brighter"
+             : result->values[MEASURE_SIGN_SIGMA] < -0.98 * all
+                 ? "being darker"
+                 : "being brighter here and darker there",
              result->has_ids ? "of all segments are equal" : "against the background are equal");
 }
 

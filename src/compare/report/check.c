@@ -1,8 +1,8 @@
 /* Each kind of check lists its rules and measures once, here; text, JUnit XML and page only print
  * the lists. A measure that is NAN has no meaning for the images compared, and is left out. */
-#include "compare/rules/check.h"
+#include "compare/report/check.h"
 
-#include "compare/measures/result.h"
+#include "compare/measure.h"
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,85 +13,32 @@ static void add(Check *check, const char *table, const char *name, double value,
         return;
     assert(check->n_measures < MEASURES_MAX);
     check->measures[check->n_measures++] =
-        (Measure){.table = table, .name = name, .value = value, .unit = unit};
+        (CheckMeasure){.table = table, .name = name, .value = value, .unit = unit};
 }
 
-static void add_coverage(Check *check, const char *table, const CompareResult *plane)
+static void add_classes(Check *check, const char *table, const CompareResult *plane)
 {
-    if (!plane->has_mask)
-        return;
-    add(check, table, "pixels seen in both", (double)plane->common_pixels, "");
-    add(check, table, "missing pixels (seen in A only)", (double)plane->missing_pixels, "");
-    add(check, table, "extra pixels (seen in B only)", (double)plane->extra_pixels, "");
-}
-
-static void add_classes(Check *check, const CompareResult *plane)
-{
-    const char *table = "Pixels by the cause of their difference";
     for (PixelClass i = 0; i < PIXEL_CLASSES; i++)
         if (plane->classes[i])
             add(check, table, i == PIXEL_WRONG_SEGMENT ? "wrong segment" : pixel_class_name(i),
                 (double)plane->classes[i], "");
 }
 
-/* What the colours of a picture and of an isosurface where it is have in common. */
-static void add_color_differences(Check *check, const char *sizes, const char *signs,
-                                  const CompareResult *plane)
+/* Adds the measures of one table, under `heading`. */
+static void add_table(Check *check, const char *heading, MeasureTable table,
+                      const CompareResult *plane)
 {
-    add(check, sizes, "differing pixels", (double)plane->differing_pixels, "");
-    add(check, sizes, "largest difference", plane->max_abs, "levels");
-    add(check, sizes, "largest difference off the edges", plane->interior_max_abs, "levels");
-    add(check, sizes, "mean difference", plane->mean_abs, "levels");
-    add(check, sizes, "root mean square", plane->rmse, "levels");
-    add(check, sizes, "PSNR", plane->psnr_db, "dB");
-    add(check, signs, "signed mean, worst channel", plane->bias_levels, "levels");
-    add(check, signs, "brighter pixels over darker ones", plane->sign_sigma, "sigma");
-    add(check, signs, "gain", plane->gain, "");
-    add(check, signs, "offset", plane->offset_levels, "levels");
-    add(check, signs, "mean of the segment that differs most", plane->segment_levels, "levels");
-}
-
-static void add_color(Check *check, const CompareResult *plane)
-{
-    const char *outlines = "Colour: outlines and coverage";
-    const char *perception = "Colour: as people see it (reported, never judged)";
-    add_color_differences(check, "Colour: sizes of differences", "Colour: which way B is off",
-                          plane);
-    add(check, outlines,
-        plane->has_ids ? "outline of what is seen, outwards"
-                       : "outline of what is not background, outwards",
-        plane->silhouette_px, "px");
-    add(check, outlines, "outline of the segment that moved most", plane->segment_px, "px");
-    add_coverage(check, outlines, plane);
-    add_classes(check, plane);
-    add(check, perception, "SSIM of luma", plane->ssim, "");
-    add(check, perception, "FLIP, mean", plane->flip_mean, "");
-    add(check, perception, "FLIP, largest", plane->flip_max, "");
-    add(check, perception, "HDR-FLIP, mean", plane->hdr_flip_mean, "");
-    add(check, perception, "CIEDE2000, mean", plane->de2000_mean, "");
-    add(check, perception, "CIEDE2000, largest", plane->de2000_max, "");
-    add(check, perception, "pixels that pixelmatch finds", plane->pixelmatch_pixels, "");
-}
-
-static void add_geometry(Check *check, const CompareResult *plane)
-{
-    bool depth = plane->kind == PLANE_DEPTH;
-    const char *table = depth ? "Depth" : "Normals", *unit = depth ? "mm" : "deg";
-    add(check, table, "median difference", plane->median, unit);
-    add(check, table, "99th percentile", plane->p99, unit);
-    add(check, table, "largest difference", plane->max, unit);
-    add(check, table, "values that are not a number",
-        (double)(plane->nan_pixels_a + plane->nan_pixels_b), "");
-    add_coverage(check, table, plane);
-}
-
-static void add_ids(Check *check, const CompareResult *plane)
-{
-    const char *table = "Segments";
-    add(check, table, "pixels with different ids", (double)plane->differing_pixels, "");
-    add(check, table, "of the pixels at edges", 100 * plane->edge_mismatch_fraction, "%");
-    add_coverage(check, table, plane);
-    add_classes(check, plane);
+    enum { RANKS = 3 };
+    for (int rank = 0; rank < RANKS; rank++)
+        for (size_t i = 0; i < n_measures; i++) {
+            const Measure *row = &measures[i];
+            if (row->table != table || row->rank != rank || !measure_is_for(row, plane))
+                continue;
+            if (row->part == PART_CLASSES)
+                add_classes(check, heading, plane);
+            else
+                add(check, heading, row->words, plane->values[row->id], row->unit);
+        }
 }
 
 static Check start_plane(const CompareResult *plane)
@@ -107,21 +54,18 @@ static Check start_plane(const CompareResult *plane)
 
 Check check_plane(const CompareResult *plane)
 {
-    static void (*const adders[PLANE_KINDS])(Check *, const CompareResult *) = {
-        [PLANE_COLOR] = add_color,
-        [PLANE_DEPTH] = add_geometry,
-        [PLANE_NORMAL] = add_geometry,
-        [PLANE_ID] = add_ids};
     Check check = start_plane(plane);
-    adders[plane->kind](&check, plane);
+    for (MeasureTable table = TABLE_NONE + 1; table < MEASURE_TABLES; table++)
+        add_table(&check, measure_heading(plane->kind, table), table, plane);
     return check;
 }
 
 /* The check of a second pair of pictures: its rules, and the sizes of its differences. */
-static Check check_pictures(const CompareResult *pictures, const char *table)
+static Check check_pictures(const CompareResult *pictures, const char *heading)
 {
     Check check = start_plane(pictures);
-    add_color_differences(&check, table, table, pictures);
+    add_table(&check, heading, TABLE_SIZES, pictures);
+    add_table(&check, heading, TABLE_SIGNS, pictures);
     return check;
 }
 
@@ -174,9 +118,10 @@ static Check check_pair(const Witness *witness, WitnessPair pair)
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < planes[i]->n_rules; k++)
             check.rules[check.n_rules++] = planes[i]->rules[k];
-    add(&check, check.title, "pixels with different ids", (double)planes[0]->differing_pixels, "");
-    add(&check, check.title, "largest difference of depths", planes[1]->max, "mm");
-    add_coverage(&check, check.title, planes[1]);
+    add(&check, check.title, "pixels with different ids",
+        planes[0]->values[MEASURE_DIFFERING_PIXELS], "");
+    add(&check, check.title, "largest difference of depths", planes[1]->values[MEASURE_MAX], "mm");
+    add_table(&check, check.title, TABLE_OUTLINES, planes[1]);
     return check;
 }
 

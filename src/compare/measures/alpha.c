@@ -1,6 +1,6 @@
 /* Alpha of two pictures that were laid on one background before their colours were compared. What
  * is laid on a background may agree although another part of the background shows through. */
-#include "compare/measures/result.h"
+#include "compare/measures/planes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,7 +31,7 @@ Status alpha_judge(const Picture *a, const Picture *b, CompareResult *result, Er
     if (!a->codes16 || !b->codes16 || !result->agrees)
         return STATUS_OK;
     tolerance.title = "alpha";
-    tolerance.pixelmatch = (double)NAN; /* pixelmatch looks at alpha itself */
+    tolerance.limits[LIMIT_PIXELMATCH] = (double)NAN; /* pixelmatch looks at alpha itself */
     const Rendering in_a = {.picture = a}, in_b = {.picture = b};
     TRY(compare_pictures(&in_a, &in_b, &tolerance, &alpha, NULL, err));
     if (alpha.agrees)
@@ -39,6 +39,6 @@ Status alpha_judge(const Picture *a, const Picture *b, CompareResult *result, Er
     result->agrees = false;
     snprintf(result->reason, sizeof result->reason, "%s", alpha.reason);
     snprintf(result->cause, sizeof result->cause, "only alpha differs, on %zu pixels",
-             alpha.differing_pixels);
+             result_count(&alpha, MEASURE_DIFFERING_PIXELS));
     return STATUS_OK;
 }

@@ -1,9 +1,10 @@
 /* The tolerance is tier A's except for what single precision does: a coordinate of 100 mm is off by
  * up to 4e-6 mm. That moves an edge by about 10^-5 of a pixel, and takes a pixel or two of a
  * million to its other side. */
-#include "compare/rules/witness.h"
+#include "compare/checks/witness.h"
 
-#include "compare/compare.h"
+#include "compare/measures/planes.h"
+#include "compare/rules/tolerance.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,10 +24,10 @@ static Tolerance witness_tolerance(double depth_step_mm, const IdPlane *ids)
         seen += ids->ids[i] != 0;
     Tolerance tolerance = tolerance_none();
     tolerance.tier = "witness";
-    tolerance.id_ppm = tolerance.coverage_ppm = ppm_of(pixels);
-    tolerance.depth_ppm = ppm_of(seen);
-    tolerance.depth_max_mm = depth_step_mm;
-    tolerance.region_pixels = 2;
+    tolerance.limits[LIMIT_ID_PPM] = tolerance.limits[LIMIT_COVERAGE_PPM] = ppm_of(pixels);
+    tolerance.limits[LIMIT_DEPTH_PPM] = ppm_of(seen);
+    tolerance.limits[LIMIT_DEPTH_MAX_MM] = depth_step_mm;
+    tolerance.limits[LIMIT_REGION_PIXELS] = 2;
     return tolerance;
 }
 
@@ -40,7 +41,7 @@ static Status compare_pair(const Testimony *a, const Testimony *b, double depth_
     snprintf(witness->pairs[pair].title, sizeof witness->pairs[pair].title, "%s and %s", a->name,
              b->name);
     TRY(compare_ids(a->ids, b->ids, &tolerance, *ids, err));
-    tolerance.region_pixels = SIZE_MAX; /* as judged of the ids */
+    tolerance.limits[LIMIT_REGION_PIXELS] = (double)INFINITY; /* as judged of the ids */
     TRY(compare_planes(PLANE_DEPTH, a->depth, b->depth, a->ids, b->ids, &tolerance, *depth, err));
     witness->pairs[pair].agrees = (*ids)->agrees && (*depth)->agrees;
     return STATUS_OK;
@@ -94,22 +95,4 @@ void witness_release(Witness *witness)
         free(witness->pairs[pair].depth);
         witness->pairs[pair].ids = witness->pairs[pair].depth = NULL;
     }
-}
-
-json_t *witness_json(const Witness *witness)
-{
-    json_t *pairs = json_object();
-    for (int pair = 0; pair < WITNESS_PAIRS; pair++)
-        pairs = json_with(pairs, witness->pairs[pair].title,
-                          json_pack("{s:o, s:o, s:o}", "verdict",
-                                    json_text(witness->pairs[pair].agrees ? "agree" : "differ"),
-                                    "id", compare_json(witness->pairs[pair].ids), "depth",
-                                    compare_json(witness->pairs[pair].depth)));
-    const JsonMember members[] = {{"verdict", json_text(witness->agrees ? "agree" : "differ")},
-                                  {"sentence", json_text(witness->sentence)},
-                                  {"name", json_text(witness->name)},
-                                  {"version", json_text(witness->version)},
-                                  {"seconds", json_number(witness->seconds)},
-                                  {"pairs", pairs}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }

@@ -9,7 +9,7 @@
  * so that a fifth of the difference at most is something else, and when nothing contradicts it: the
  * halves of the picture have one displacement, each channel keeps its tones, what is flat keeps its
  * codes, and no part of the picture that should have changed is as it was. */
-#include "compare/cause/cause.h"
+#include "compare/cause/guesses.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,12 +1,10 @@
 /* Pixels at which the two sides differ although B is right: a computation that shares nothing with
  * either, made by the caller, agrees with B and explains what A shows. No limit of a tolerance
  * counts these pixels; each cause has a limit of its own. Part of the room's door. */
-#ifndef CORCAST_COMPARE_RULES_SETTLED_H
-#define CORCAST_COMPARE_RULES_SETTLED_H
+#ifndef CORCAST_COMPARE_CHECKS_SETTLED_H
+#define CORCAST_COMPARE_CHECKS_SETTLED_H
 
-#include "base/base.h"
-#include "image/image.h"
-#include <jansson.h>
+#include "compare/result.h"
 
 typedef enum SettledCause {
     SETTLED_NOT,
@@ -67,7 +65,15 @@ void settled_judge(Settled *settled);
 /* Appends where and how A is wrong at a pixel: "at (118, 285), segment 2649: A sees 241.315 mm,
  * ...", with the names of both sides. */
 void settled_describe(const SettledPixel *pixel, const char *name_a, const char *name_b, Text *out);
-/* New reference, NULL when memory runs out. */
-json_t *settled_json(const Settled *settled);
+/* What of a pixel differs by more than the tolerance allows for one pixel, as bits. */
+enum {
+    BEYOND_COLOR = 1,
+    BEYOND_GEOMETRY = 2 /* id, depth or normal */
+};
+
+/* Returns these bits, or 0 if the pixel is within the tolerance. Both renderings have all planes,
+ * of one shape. */
+unsigned pixel_beyond(const Rendering *a, const Rendering *b, size_t pixel,
+                      const Tolerance *tolerance);
 
 #endif

@@ -3,7 +3,7 @@
  * sums over the pixels give; of those that fit the samples the best is named, if it fits all
  * pixels: 49 of 50 codes that are off by more than a level come within one, and no more are driven
  * away. What is white in either picture may be clipped, and is not asked. */
-#include "compare/cause/cause.h"
+#include "compare/cause/guesses.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,13 +1,9 @@
 /* Three programs have drawn one scene: which pairs of them agree about the segment and the depth at
  * each pixel, and who stands alone. */
-#ifndef CORCAST_COMPARE_RULES_WITNESS_H
-#define CORCAST_COMPARE_RULES_WITNESS_H
+#ifndef CORCAST_COMPARE_CHECKS_WITNESS_H
+#define CORCAST_COMPARE_CHECKS_WITNESS_H
 
-#include "base/base.h"
-#include "image/image.h"
-#include <jansson.h>
-
-struct CompareResult;
+#include "compare/result.h"
 
 /* What one of the three has drawn. All is borrowed. */
 typedef struct Testimony {
@@ -26,7 +22,7 @@ typedef struct Witness {
     struct {
         char title[64]; /* "POV-Ray and Tachyon" */
         bool agrees;
-        struct CompareResult *ids, *depth; /* owned */
+        CompareResult *ids, *depth; /* owned */
     } pairs[WITNESS_PAIRS];
     bool agrees;        /* all three do */
     char sentence[160]; /* who agrees with whom, and who stands alone */
@@ -37,8 +33,5 @@ typedef struct Witness {
 MUST_CHECK Status witness_compare(const Testimony three[3], double depth_step_mm, Witness *witness,
                                   Err *err);
 void witness_release(Witness *witness);
-
-/* New reference, NULL when memory runs out. */
-json_t *witness_json(const Witness *witness);
 
 #endif
