@@ -3,6 +3,7 @@
 #include "cli/screen.h"
 
 #include "base/base.h"
+#include "cli/interrupt.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,6 +43,9 @@ static void clear_line(Screen *screen)
 static void end_step(Screen *screen)
 {
     clear_line(screen);
+    if (screen->catches)
+        interrupt_release();
+    screen->catches = false;
     screen->what = NULL;
 }
 
@@ -63,6 +67,16 @@ static void show(Screen *screen, const char *what, double fraction)
     fprintf(stderr, screen->terminal ? "\r%s %3.0f %%%s\033[K" : "%s: %.0f %%%s\n", what,
             100 * fraction, time_left(now_s - screen->start_s, fraction, left));
     fflush(stderr);
+}
+
+/* From the first question on, SIGINT does not end the program until the step has ended. */
+static bool is_enough(void *user)
+{
+    Screen *screen = user;
+    if (!screen->catches)
+        interrupt_catch();
+    screen->catches = true;
+    return interrupt_asked();
 }
 
 /* Never stops the operation: a signal does. */
@@ -123,5 +137,6 @@ static void take_sentence(void *user, TalkKind kind, const char *sentence)
 Talk screen_talk(Screen *screen, bool quiet)
 {
     *screen = (Screen){.quiet = quiet, .terminal = isatty(STDERR_FILENO)};
-    return (Talk){.say = take_sentence, .progress = show_progress, .user = screen};
+    return (Talk){
+        .say = take_sentence, .progress = show_progress, .enough = is_enough, .user = screen};
 }

@@ -20,6 +20,7 @@ typedef struct Screen {
     bool prompt;            /* sentences are printed at once */
     bool shown;             /* progress stands on the terminal's last line */
     HeldSentence *held;     /* sentences in the order in which they came; owned */
+    bool catches;           /* SIGINT asks the step that is under way for its result */
     double start_s, last_s; /* when the step began and was last shown, by clock_seconds */
 } Screen;
 

@@ -2,7 +2,6 @@
 #include "options/reading.h"
 
 #include "treeio/treeio.h"
-#include <stdio.h>
 
 static const Option rows[] = {
     {.name = "input-format",
@@ -151,16 +150,30 @@ static void say_unit(const Talk *talk, const char *path, const TreeReading *read
                   path);
 }
 
-static Status read_file(const Parsed *parsed, const char *path, Tree *tree, TreeReading *reading,
-                        Err *err)
+static void say_found(const Talk *talk, const char *path, const TreeReading *reading)
 {
-    const Talk *talk = parsed->common.talk;
-    TRY(check(&parsed->reading, err));
-    TRY(tree_read_as(tree, path, &parsed->reading, reading, err));
     say_cuts(talk, reading);
     say_radii(talk, path, reading);
     say_near_ends(talk, path, reading);
     say_unit(talk, path, reading);
+}
+
+static Status read_file(const Parsed *parsed, const char *path, Tree *tree, TreeReading *reading,
+                        Err *err)
+{
+    TRY(check(&parsed->reading, err));
+    TRY(tree_read_as(tree, path, &parsed->reading, reading, err));
+    say_found(parsed->common.talk, path, reading);
+    return STATUS_OK;
+}
+
+Status reading_tree_bytes(const Parsed *parsed, const TreeBytes *file, Tree *tree, Err *err)
+{
+    TreeReading reading = {0};
+    TRY(check(&parsed->reading, err));
+    TRY(tree_read_bytes(tree, file, &parsed->reading, &reading, err));
+    say_found(parsed->common.talk, file->name, &reading);
+    reading_release(&reading);
     return STATUS_OK;
 }
 
@@ -176,7 +189,7 @@ Status reading_tree(const Parsed *parsed, const char *path, Tree *tree, TreeRead
                     Err *err)
 {
     TreeReading own = {0};
-    Status status = parsed->given && path == parsed->operands[0]
+    Status status = parsed->given && path == parsed->given_name
                         ? copy_given(parsed, tree, &own, err)
                         : read_file(parsed, path, tree, &own, err);
     if (status == STATUS_OK && reading)
@@ -184,186 +197,4 @@ Status reading_tree(const Parsed *parsed, const char *path, Tree *tree, TreeRead
     else
         reading_release(&own);
     return status;
-}
-
-/* ---- info ------------------------------------------------------------------------------------ */
-
-/* What of a network did not become part of the tree, as counts and what they are of. */
-typedef struct LeftOut {
-    size_t count;
-    const char *key, *one, *more; /* what it is called in sentences */
-} LeftOut;
-
-enum { LEFT_OUT = 5 };
-
-static void list_left_out(const TreeReading *reading, LeftOut list[LEFT_OUT])
-{
-    const LeftOut all[LEFT_OUT] = {
-        {reading->network.merged, "merged_points", "point merged into another",
-         "points merged into others"},
-        {reading->network.unused, "unused_points", "point that no line uses",
-         "points that no line uses"},
-        {reading->network.without_length, "lines_without_length", "line without length",
-         "lines without length"},
-        {reading->network.repeated, "repeated_lines", "line given before", "lines given before"},
-        {reading->network.loops, "loops", "line cut where a loop closed",
-         "lines cut where loops closed"},
-    };
-    for (size_t i = 0; i < LEFT_OUT; i++)
-        list[i] = all[i];
-}
-
-/* Of the word behind a count. */
-static const char *ending(size_t count)
-{
-    return count == 1 ? "" : "s";
-}
-
-static void print_network(const TreeReading *reading)
-{
-    LeftOut left[LEFT_OUT];
-    list_left_out(reading, left);
-    printf("  read as       %s, %zu point%s and %zu line%s\n", reading->format,
-           reading->network.points, ending(reading->network.points), reading->network.lines,
-           ending(reading->network.lines));
-    for (size_t i = 0, n = 0; i < LEFT_OUT; i++)
-        if (left[i].count > 0)
-            printf("  %s %zu %s\n", n++ ? "             " : "left out     ", left[i].count,
-                   left[i].count == 1 ? left[i].one : left[i].more);
-    for (size_t i = 0; i < reading->network.n_cuts && i < 3; i++)
-        printf("  cut at        %g, %g, %g mm, radius %g mm\n", reading->network.cut[i].position.x,
-               reading->network.cut[i].position.y, reading->network.cut[i].position.z,
-               reading->network.cut[i].radius_mm);
-    if (reading->network.n_cuts > 3)
-        printf("                and %zu more place%s\n", reading->network.loops - 3,
-               ending(reading->network.loops - 3));
-    if (reading->network.against > 0)
-        printf("  directions    %zu line%s given towards the root\n", reading->network.against,
-               reading->network.against == 1 ? " is" : "s are");
-}
-
-static void print_roots(const TreeReading *reading)
-{
-    enum { SHOWN = 5 };
-    printf("  components    %zu\n", reading->n_roots);
-    for (size_t i = 0; i < reading->n_roots && i < SHOWN; i++)
-        printf("  root          %d, %s; %zu node%s\n", reading->root[i].id,
-               root_reason_texts[reading->root[i].reason], reading->root[i].nodes,
-               ending(reading->root[i].nodes));
-    if (reading->n_roots > SHOWN)
-        printf("                and %zu more\n", reading->n_roots - SHOWN);
-}
-
-static void print_degrees(const TreeReading *reading)
-{
-    const char *before = "  degrees       ";
-    for (int degree = 0; degree <= READ_MAX_DEGREE; degree++)
-        if (reading->degree[degree] > 0) {
-            printf("%s%d%s: %zu", before, degree, degree == READ_MAX_DEGREE ? "+" : "",
-                   reading->degree[degree]);
-            before = ", ";
-        }
-    printf("\n");
-}
-
-static void print_unit(const TreeReading *reading)
-{
-    if (reading->median_radius_mm > 0)
-        printf("  median radius %.6g mm\n", reading->median_radius_mm);
-    printf("  unit          %s, %s", length_unit_names[reading->unit],
-           reading->unit_said ? "as is said" : "assumed");
-    if (reading->median_radius_mm > 0)
-        printf("; radii look like %s",
-               reading->believes ? length_unit_names[reading->believed] : "no vessel's");
-    printf("%s\n", reading->looks_like_voxels ? ", and coordinates like voxels" : "");
-    if (reading->without_radius > 0)
-        printf("  no radius     %zu segment%s\n", reading->without_radius,
-               ending(reading->without_radius));
-}
-
-void reading_print(const TreeReading *reading)
-{
-    if (reading->is_network)
-        print_network(reading);
-    print_roots(reading);
-    print_degrees(reading);
-    print_unit(reading);
-    for (size_t i = 0; i < reading->n_notes; i++)
-        printf("  %s %s\n", i ? "             " : "assumed      ", reading->note[i]);
-}
-
-static json_t *roots_json(const TreeReading *reading)
-{
-    json_t *rows_json = json_array();
-    for (size_t i = 0; i < reading->n_roots; i++)
-        rows_json = json_with_item(rows_json,
-                                   json_pack("{s:i, s:s, s:I}", "id", reading->root[i].id, "reason",
-                                             root_reason_texts[reading->root[i].reason], "nodes",
-                                             (json_int_t)reading->root[i].nodes));
-    return rows_json;
-}
-
-static json_t *cuts_json(const TreeReading *reading)
-{
-    json_t *rows_json = json_array();
-    for (size_t i = 0; i < reading->network.n_cuts; i++) {
-        const ReadCut *cut = &reading->network.cut[i];
-        rows_json = json_with_item(
-            rows_json, json_pack("{s:I, s:[f,f,f], s:o}", "record", (json_int_t)cut->record,
-                                 "position_mm", cut->position.x, cut->position.y, cut->position.z,
-                                 "radius_mm", json_number(cut->radius_mm)));
-    }
-    return rows_json;
-}
-
-static json_t *degrees_json(const TreeReading *reading)
-{
-    json_t *list = json_array();
-    for (int degree = 0; degree <= READ_MAX_DEGREE; degree++)
-        list = json_with_item(list, json_count(reading->degree[degree]));
-    return list;
-}
-
-static json_t *notes_json(const TreeReading *reading)
-{
-    json_t *list = json_array();
-    for (size_t i = 0; i < reading->n_notes; i++)
-        list = json_with_item(list, json_text(reading->note[i]));
-    return list;
-}
-
-static json_t *network_json(const TreeReading *reading)
-{
-    LeftOut left[LEFT_OUT];
-    list_left_out(reading, left);
-    json_t *json = json_pack("{s:I, s:I, s:I}", "points", (json_int_t)reading->network.points,
-                             "lines", (json_int_t)reading->network.lines, "lines_against",
-                             (json_int_t)reading->network.against);
-    for (size_t i = 0; i < LEFT_OUT; i++)
-        json = json_with(json, left[i].key, json_count(left[i].count));
-    return json_with(json, "cuts", cuts_json(reading));
-}
-
-json_t *reading_json(const TreeReading *reading)
-{
-    const JsonMember members[] = {
-        {"format", json_text(reading->format)},
-        {"network", reading->is_network ? network_json(reading) : json_null()},
-        {"components", json_count(reading->n_roots)},
-        {"roots", roots_json(reading)},
-        {"degrees", degrees_json(reading)},
-        {"median_radius_mm", json_number(reading->median_radius_mm)},
-        {"segments_without_radius", json_count(reading->without_radius)},
-        {"given_radii", json_count(reading->given_radius)},
-        {"repaired_radii", json_count(reading->repaired_radii)},
-        {"near_ends", json_count(reading->network.near_ends)},
-        {"near_ends_mm", json_number(reading->network.near_mm)},
-        {"unit", json_text(length_unit_names[reading->unit])},
-        {"unit_said", json_boolean(reading->unit_said)},
-        {"believed_unit",
-         reading->believes ? json_text(length_unit_names[reading->believed]) : json_null()},
-        {"looks_like_voxels", json_boolean(reading->looks_like_voxels)},
-        {"assumed", notes_json(reading)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }

@@ -57,6 +57,12 @@ bool progress_report(double fraction, void *progress)
     return progress_show(progress, fraction);
 }
 
+bool progress_enough(void *progress)
+{
+    const Talk *talk = ((const Progress *)progress)->talk;
+    return talk && talk->enough && talk->enough(talk->user);
+}
+
 void progress_end(const Progress *progress)
 {
     const Talk *talk = progress->talk;

@@ -35,8 +35,9 @@ void render_release(RenderResult *result);
 
 /* Draws all pictures that the options ask for and writes each band before it draws the next, so
  * that a picture needs the memory of one band. With --json writes a report. All errors of the user
- * are found before the first ray. Errors: as render_make; STATUS_IO. */
-MUST_CHECK Status render_run(RenderOptions *options, Parsed *parsed, Err *err);
+ * are found before the first ray. `options` are the
+ * RenderOptions of `parsed`. Errors: as render_make; STATUS_IO. */
+MUST_CHECK Status render_run(void *options, Parsed *parsed, Err *err);
 
 /* ---- a scene that is drawn several times ---------------------------------------------------- */
 
@@ -73,6 +74,18 @@ typedef struct Rendering {
 MUST_CHECK Status rendering_open(RenderOptions *options, Parsed *parsed, const FigureFonts *fonts,
                                  Rendering *out, Err *err);
 void rendering_close(Rendering *rendering);
+
+/* Makes the command line for provenance, puts annotations on the sheet, and tells what the scene
+ * shows and what it has lost of its tree. Call it once, before anything is drawn. Errors:
+ * STATUS_USAGE if an annotation does not fit, STATUS_MEMORY. */
+MUST_CHECK Status rendering_describe(Rendering *rendering, Err *err);
+/* Draws the single picture of the options into *made, zeroed before; the caller releases it even
+ * after an error. Errors: STATUS_USAGE if the options are of several pictures; as rendering_draw.
+ */
+MUST_CHECK Status rendering_draw_result(Rendering *rendering, RenderResult *made, Err *err);
+/* Returns what --json reports of the pictures drawn so far. New reference, or NULL if memory runs
+ * out. */
+json_t *rendering_json(const Rendering *rendering);
 
 /* Draws picture `number` of the animation, 1 for a single picture. Pictures with the same geometry
  * share what the renderer has prepared.
