@@ -4,7 +4,15 @@
 
 Status run_render(void *options, Parsed *parsed, Err *err)
 {
-    return render_run(options, parsed, err);
+    RenderOptions *render = options;
+    Text lines = TEXT_TO(stdout);
+    Status status;
+    render->shard.lines = &lines;
+    TRY_GOTO(render_run(render, parsed, err));
+    status = text_flush(&lines, err);
+done:
+    text_release(&lines);
+    return status;
 }
 
 const Command command_render = {

@@ -245,20 +245,21 @@ static Status put_part(const ShardOptions *options, const char *output, int numb
     return STATUS_OK;
 }
 
-Status shard_print_commands(const ShardOptions *options, const Parsed *parsed, const char *output,
-                            int first, int last, Err *err)
+Status shard_put_commands(const ShardOptions *options, const Parsed *parsed, const char *output,
+                          int first, int last, Err *err)
 {
     static const char *const without[] = {"commands", "tiles", "only", "resume", NULL};
-    Text same = TEXT_INIT, lines = TEXT_TO(stdout);
-    Status status = command_again(parsed, without, &same, err);
-    for (int k = first; k <= last && status == STATUS_OK; k++) {
-        text_add(&lines, &same);
-        status = put_part(options, output, k, &lines, err);
-        text_puts(&lines, "\n");
+    Text same = TEXT_INIT;
+    Status status;
+    if (!options->lines)
+        return err_set(err, STATUS_USAGE, "--commands has no place to go to");
+    TRY_GOTO(command_again(parsed, without, &same, err));
+    for (int k = first; k <= last; k++) {
+        text_add(options->lines, &same);
+        TRY_GOTO(put_part(options, output, k, options->lines, err));
+        text_puts(options->lines, "\n");
     }
-    if (status == STATUS_OK)
-        status = text_flush(&lines, err);
+done:
     text_release(&same);
-    text_release(&lines);
     return status;
 }

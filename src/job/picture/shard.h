@@ -11,10 +11,11 @@
 
 typedef struct ShardOptions {
     const char *tile; /* "I/N"; NULL: the whole picture */
-    int tiles;        /* commands for this many are printed; 0: none */
-    int only;         /* this picture of an animation; 0: all */
-    bool commands;    /* are printed, and nothing is drawn */
-    bool resume;      /* what is there and right is not drawn again */
+    int tiles;        /* number of tiles that commands are made for; 0: none */
+    int only;         /* number of the picture of an animation that is drawn; 0: all */
+    bool commands;    /* nothing is drawn; a command is made for each part */
+    bool resume;      /* a file that exists and is valid is not drawn again */
+    Text *lines;      /* receives the commands; set by the caller; borrowed; NULL: none are made */
 } ShardOptions;
 
 extern const OptionTable shard_table; /* sets a ShardOptions */
@@ -61,9 +62,9 @@ bool shard_parse(const char *note, Shard *shard);
 /* Whether the file `path` holds this shard, sound to its last row. STATUS_MEMORY. */
 MUST_CHECK Status shard_is_there(const char *path, const Shard *shard, bool *there, Err *err);
 
-/* Prints a command a line on standard output for all tiles, or for the pictures first .. last of an
- * animation. */
-MUST_CHECK Status shard_print_commands(const ShardOptions *options, const Parsed *parsed,
-                                       const char *output, int first, int last, Err *err);
+/* Appends a command line for each tile, or for each picture first .. last of an animation, to
+ * options->lines. Errors: STATUS_USAGE if there is no such text, STATUS_MEMORY, STATUS_IO. */
+MUST_CHECK Status shard_put_commands(const ShardOptions *options, const Parsed *parsed,
+                                     const char *output, int first, int last, Err *err);
 
 #endif
