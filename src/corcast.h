@@ -60,7 +60,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(CORCAST_BUILD)
+#if defined(__GNUC__)
 #define CORCAST_API __attribute__((visibility("default")))
 #else
 #define CORCAST_API
@@ -283,7 +283,8 @@ CORCAST_API int corcast_tree_nodes(const corcast_tree *tree, corcast_nodes *node
  *
  * options  NULL, or options of "info", whose group "blood" says what the tree does not: "p-perf".
  * values   receives an array with an entry per node; NAN at roots, and wherever there is no value.
- *          It belongs to the tree and is valid until the tree is freed or changed.
+ *          It belongs to the tree and is valid until the tree is freed or changed, or the same
+ *          field is found again.
  * unit     receives the unit, "" for a pure number, valid as long as `values`. May be NULL.
  * Errors   CORCAST_WRONG for an unknown name, and for a field that needs a number that neither the
  *          tree nor the options have; the sentence names the option.

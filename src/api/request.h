@@ -27,24 +27,32 @@ struct corcast_options {
     void *user;
 };
 
+/* A field that corcast_tree_field returned. */
+typedef struct TreeField {
+    char *name, *unit; /* owned */
+    double *value;     /* owned */
+} TreeField;
+
 struct corcast_tree {
     Handle handle;
     Tree tree;
-    char *name;    /* the path that it was read from; NULL: none; owned */
-    double *field; /* what corcast_tree_field returned last; owned */
-    char *unit;    /* of `field`; owned */
+    char *name; /* the path that it was read from; NULL: none; owned */
+    ARRAY(TreeField) fields;
 };
 
 /* Makes a tree handle that takes over *tree, which is zeroed then. `name` is copied; NULL: none.
  * Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_handle_new(Tree *tree, const char *name, corcast_tree **out, Err *err);
 
+/* Frees the fields of a tree that has changed. */
+void tree_handle_forget(corcast_tree *tree);
+
 /* One operation: a Parsed made of a caller's options, whose callbacks it calls. Must not be moved
  * after request_open. It copies the options: the caller may change or free them. */
 typedef struct Request {
     Parsed parsed;
-    char *name;        /* of the tree; owned */
-    char *templates;   /* owned */
+    char *name;      /* of the tree; owned */
+    char *templates; /* owned */
     Talk talk;
     corcast_progress *progress;
     corcast_message *message;

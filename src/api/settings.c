@@ -3,6 +3,7 @@
 #include "api/request.h"
 
 #include "job/job.h"
+#include "options/output.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,13 +50,14 @@ int corcast_options_new(const char *command, corcast_options **out, corcast_erro
 static Status find_option(const corcast_options *options, const char *name, const Option **option,
                           Err *err)
 {
+    static const char *const printing[] = {"help", "dump-recipe", "commands", NULL};
     TRY(argument_check(name, "name", err));
     const Setting *setting = parsed_find(&options->parsed, name, strlen(name));
     Text unused = TEXT_INIT;
     if (!setting) /* for the sentence */
         return options_get(&options->parsed, name, &unused, err);
     *option = setting->option;
-    if (strcmp(name, "help") == 0 || strcmp(name, "dump-recipe") == 0)
+    if (is_one_of(name, printing))
         return err_set(err, STATUS_USAGE, "'%s' is an option of the command line alone", name);
     return STATUS_OK;
 }

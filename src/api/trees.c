@@ -163,57 +163,86 @@ int corcast_tree_nodes(const corcast_tree *tree, corcast_nodes *nodes, corcast_e
 
 /* ---- fields ---------------------------------------------------------------------------------- */
 
-/* Computes a field of a copy of the tree, because options may part its flow anew. */
-static Status derive(const Parsed *parsed, const char *name, Field *field, char **unit, Err *err)
+static void release_field(TreeField *field)
 {
-    const BloodOptions *blood = options_struct(parsed, &blood_table);
+    free(field->name);
+    free(field->unit);
+    free(field->value);
+    *field = (TreeField){0};
+}
+
+void tree_handle_forget(corcast_tree *tree)
+{
+    for (size_t i = 0; i < tree->fields.n; i++)
+        release_field(&tree->fields.items[i]);
+    ARRAY_RELEASE(&tree->fields);
+}
+
+/* Keeps a field until the tree changes, in place of an earlier one of its name. */
+static Status keep_field(corcast_tree *tree, TreeField *field, Err *err)
+{
+    for (size_t i = 0; i < tree->fields.n; i++)
+        if (strcmp(tree->fields.items[i].name, field->name) == 0) {
+            release_field(&tree->fields.items[i]);
+            tree->fields.items[i] = *field;
+            return STATUS_OK;
+        }
+    return ARRAY_PUSH(&tree->fields, "fields", err, *field);
+}
+
+/* Computes a field of a copy of the tree, because options may divide its flow differently. */
+static Status derive(const Parsed *parsed, const char *name, TreeField *out, Err *err)
+{
+    const Setting *row = parsed_find(parsed, "q-perf", strlen("q-perf"));
+    const BloodOptions *blood = (const void *)row->base; /* what the table of q-perf sets */
     const TreeMeta said = blood_said(blood);
     Tree copy = {0};
+    Field field = {0};
     Status status = STATUS_OK;
     TRY_GOTO(reading_tree(parsed, parsed->operands[0], &copy, NULL, err));
     TRY_GOTO(blood_settle(blood, parsed, &copy, err));
-    TRY_GOTO(derive_field(&copy, &said, name, field, err));
-    status = mem_strdup(unit, field->unit, err);
-    if (status != STATUS_OK)
-        field_release(field);
+    TRY_GOTO(derive_field(&copy, &said, name, &field, err));
+    TRY_GOTO(mem_strdup(&out->name, name, err));
+    TRY_GOTO(mem_strdup(&out->unit, field.unit, err));
+    out->value = field.value;
+    field.value = NULL;
 done:
+    field_release(&field);
     tree_release(&copy);
     return status;
 }
 
 static Status get_field(corcast_tree *tree, const char *name, const corcast_options *options,
-                        const double **values, const char **unit, Call *call)
+                        TreeField *field, Call *call)
 {
     Err *err = &call->err;
     const RequestForm form = {.commands = "info", .options = options, .tree = tree};
     Request request = {0};
-    Field field = {0};
-    char *own_unit = NULL;
     Status status = STATUS_OK;
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
     TRY(argument_check(name, "name", err));
-    TRY(argument_check(values, "values", err));
     TRY_GOTO(request_open(&request, &form, call, err));
-    status = derive(&request.parsed, name, &field, &own_unit, err);
+    TRY_GOTO(derive(&request.parsed, name, field, err));
+    status = keep_field(tree, field, err);
 done:
-    status = request_close(&request, status, err);
     if (status != STATUS_OK)
-        return status;
-    free(tree->field);
-    free(tree->unit);
-    tree->field = field.value;
-    tree->unit = own_unit;
-    *values = tree->field;
-    if (unit)
-        *unit = tree->unit;
-    return STATUS_OK;
+        release_field(field);
+    return request_close(&request, status, err);
 }
 
 int corcast_tree_field(corcast_tree *tree, const char *name, const corcast_options *options,
                        const double **values, const char **unit, corcast_error *error)
 {
     Call call = call_begin(error);
-    return call_end(&call, get_field(tree, name, options, values, unit, &call));
+    TreeField field = {0};
+    Status status = argument_check(values, "values", &call.err);
+    if (status == STATUS_OK)
+        status = get_field(tree, name, options, &field, &call);
+    if (status == STATUS_OK)
+        *values = field.value;
+    if (status == STATUS_OK && unit)
+        *unit = field.unit;
+    return call_end(&call, status);
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -264,7 +293,6 @@ void corcast_tree_free(corcast_tree *tree)
         return;
     tree_release(&tree->tree);
     free(tree->name);
-    free(tree->field);
-    free(tree->unit);
+    tree_handle_forget(tree);
     handle_free(tree);
 }

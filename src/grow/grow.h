@@ -216,9 +216,9 @@ typedef struct RefineReport {
  * at the end; they must also keep it before, at the real thickness of their vessels.
  *
  * report   may be NULL.
- * Errors   *tree is unchanged. STATUS_USAGE for wrong parameters, STATUS_INPUT for a tree that
- * cannot be refined, STATUS_INFEASIBLE if the radii span more than a double can hold,
- *          STATUS_MEMORY.
+ * Errors   STATUS_USAGE for wrong parameters; STATUS_INPUT for a tree that cannot be refined;
+ *          STATUS_INFEASIBLE if the radii span more than a double can hold; STATUS_MEMORY. *tree is
+ *          then unchanged.
  * Threads  Without a limit of time, the result does not depend on the number of threads. */
 MUST_CHECK Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
                               RefineReport *report, Err *err);

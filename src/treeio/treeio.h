@@ -49,14 +49,15 @@ void tree_format_list(Text *text);
 
 /* Reads a tree.
  *
- * path     the extension decides the format; that of standard input, "-", is recognised by its
- * first bytes. tree     receives the tree; release it with tree_release. Parents come first, and
- * nodes are otherwise in file order: an ancestor that the file names later moves to just before its
- * first descendant. Errors   STATUS_USAGE for an unknown extension. STATUS_INPUT, with file and
- * line, for a wrong field count, a value that is no number or out of range, a duplicate id, an
- * unknown parent, a cycle, a key with a bad value or with two values, a flow share given twice or
- * to no node, flow shares that terminal_flow contradicts, and a file without nodes. STATUS_IO,
- * STATUS_MEMORY. */
+ * path     the extension decides the format. The format of standard input, "-", is recognized by
+ *          its first bytes.
+ * tree     receives the tree; release it with tree_release. Nodes are in the order of the file,
+ *          except that a parent which the file names later moves to just before its first child.
+ * Errors   STATUS_USAGE for an unknown extension. STATUS_INPUT, with file and line, for a wrong
+ *          number of fields, a value that is no number or out of range, a duplicate id, an unknown
+ *          parent, a cycle, a key with a bad value or with two values, a flow share given twice or
+ *          to no node, flow shares that terminal_flow contradicts, and a file without nodes.
+ *          STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
 
 /* Reads a tree as the options say, and reports what was found.
