@@ -385,60 +385,41 @@ static Status add_tile(const char *path, const PixelRect *rect, Picture *plane, 
     return STATUS_OK;
 }
 
-/* Puts the tiles of a plane together at `path`, and removes the files of the tiles. `place` is the
- * index of the plane in PovrayTiles.planes. */
-static Status join_plane(const PovrayTiles *all, size_t place, const char *path, Err *err)
+/* Puts the tiles of a plane together, writes the whole to `path`, and removes the files of the
+ * tiles. `place` is the index of the plane in PovrayTiles.planes. */
+static Status join_plane(const PovrayTiles *all, size_t place, const char *path, Picture *joined,
+                         Err *err)
 {
     bool srgb = all->planes.plane[place] == POVRAY_COLOR && all->params.bits == 8;
     size_t each = all->planes.n;
-    Picture joined = {0};
     Status status = STATUS_OK;
     for (size_t i = 0; i < all->tiles.n; i++)
         TRY_GOTO(
-            add_tile(all->run[i * each + place].output, &all->tiles.tile[i].rect, &joined, err));
-    status = picture_write(&joined, path, srgb ? ENCODING_SRGB : ENCODING_LINEAR, NULL, NULL, err);
+            add_tile(all->run[i * each + place].output, &all->tiles.tile[i].rect, joined, err));
+    status = picture_write(joined, path, srgb ? ENCODING_SRGB : ENCODING_LINEAR, NULL, NULL, err);
 done:
     for (size_t i = 0; i < all->tiles.n; i++)
         unlink(all->run[i * each + place].output);
-    picture_release(&joined);
     return status;
-}
-
-static Status read_plane(const Scene *scene, PovrayPlane plane, const char *path,
-                         OraclePlanes *planes, Err *err)
-{
-    double near_mm, far_mm;
-    Frame *frame = &planes->frame;
-    camera_depth_range(&scene->view.camera, scene->geometry.bounds, &near_mm, &far_mm);
-    switch (plane) {
-    case POVRAY_COLOR:
-        return picture_read(&planes->picture, path, ALPHA_REFUSED, err);
-    case POVRAY_DEPTH:
-        return povray_read_depth(&frame->depth, path, near_mm, far_mm, err);
-    case POVRAY_NORMAL:
-        return povray_read_normal(&frame->normal, path, err);
-    case POVRAY_ID:
-        return povray_read_ids(&frame->id, path, err);
-    case POVRAY_DEPTH_ID:
-        return povray_read_depth_ids(&frame->depth, &frame->id, path, near_mm, far_mm, err);
-    case POVRAY_ALPHA:
-        return povray_read_alpha(&planes->alpha, path, err);
-    case POVRAY_PLANES:
-        break;
-    }
-    return STATUS_OK;
 }
 
 static Status take_plane(const PovrayTiles *all, size_t place, OraclePlanes *planes, Err *err)
 {
-    PovrayPlane plane = all->planes.plane[place];
+    const PovrayPlane plane = all->planes.plane[place];
     char *path = NULL;
+    Picture picture = {0};
     Status status;
     TRY_GOTO(file_join(all->params.folder, plane_names[plane], &path, err));
     if (all->tiles.n > 1)
-        TRY_GOTO(join_plane(all, place, path, err));
-    status = read_plane(all->params.emit.scene, plane, path, planes, err);
+        TRY_GOTO(join_plane(all, place, path, &picture, err));
+    else
+        TRY_GOTO(
+            picture_read(&picture, path, plane == POVRAY_ALPHA ? ALPHA_KEPT : ALPHA_REFUSED, err));
+    status = povray_take_plane(plane, &picture, all->params.emit.scene, planes, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", path);
 done:
+    picture_release(&picture);
     free(path);
     return status;
 }
