@@ -5,7 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static void say(const Talk *talk, TalkKind kind, const char *format, va_list values)
+__attribute__((format(printf, 3, 0))) static void say(const Talk *talk, TalkKind kind,
+                                                      const char *format, va_list values)
 {
     va_list again;
     if (!talk || !talk->say)
