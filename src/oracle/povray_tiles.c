@@ -281,19 +281,21 @@ struct PovrayTiles {
     pthread_mutex_t lock; /* of the fractions, and of params.progress */
 };
 
-static void report_plane(double fraction, void *context)
+static bool report_plane(double fraction, void *context)
 {
     PlaneRun *run = context;
     PovrayTiles *all = run->all;
     double sum = 0;
     if (!all->params.progress)
-        return;
+        return true;
     pthread_mutex_lock(&all->lock);
     run->fraction = fraction;
     for (size_t i = 0; i < all->n_runs; i++)
         sum += all->run[i].fraction;
-    all->params.progress(sum / (double)all->n_runs, all->params.progress_context);
+    bool goes_on =
+        all->params.progress(sum / (double)all->n_runs, all->params.progress_context);
     pthread_mutex_unlock(&all->lock);
+    return goes_on;
 }
 
 /* Returns how many runs go on side by side. Each gets its share of the processors. */

@@ -135,6 +135,7 @@ typedef struct Log {
     double bytes;      /* number of bytes read so far */
     double heard_s;    /* time of the last output */
     double progress_s; /* time at which `progress` changed, or the program began */
+    bool cancelled;    /* the progress callback asked to stop */
     char progress[80]; /* the last line with a percentage, up to the percentage */
 } Log;
 
@@ -178,8 +179,8 @@ static void report_progress(const Program *program, Log *log, size_t size)
     if (at == first || sscanf(chars + at, "%d%%)", &percent) != 1)
         return;
     note_progress(log, chars + at);
-    if (program->progress)
-        program->progress(percent / 100.0, program->progress_context);
+    if (program->progress && !program->progress(percent / 100.0, program->progress_context))
+        log->cancelled = true;
 }
 
 /* Waits up to `wait_ms` for output and reads it once. Returns false at the end of the output. */
@@ -225,6 +226,8 @@ static Status check_life(const Program *program, const Log *log, Err *err)
     enum { PATIENCE_WITHOUT_PROGRESS = 5 }; /* POV-Ray reports no progress while it parses */
     double now_s = clock_seconds(), patience_s = program->choice.patience_s;
     const char *patience = program->choice.patience ? program->choice.patience : "patience";
+    if (log->cancelled)
+        return err_cancelled(err);
     if (log->bytes > max_output_bytes)
         return err_set(err, STATUS_TOOL, "%s was ended: it has said more than %.0f MB about %s",
                        program->name, max_output_bytes * 1e-6, program->scene);

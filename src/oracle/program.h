@@ -20,7 +20,8 @@ typedef struct ProgramChoice {
 #define PROGRAM_PATIENCE_S 600
 
 /* Called with the fraction of the picture that is drawn, in [0, 1]. */
-typedef void ProgramProgress(double fraction, void *context);
+/* Returns false to end the program, whose run then fails with STATUS_CANCELLED. */
+typedef bool ProgramProgress(double fraction, void *context);
 
 /* The folder in which the program finds the scene, as the program must name it. */
 #define PROGRAM_FOLDER "/proc/self/fd/3/"
