@@ -11,7 +11,6 @@
 #include "base/hash.h"       // IWYU pragma: export
 #include "base/heap.h"       // IWYU pragma: export
 #include "base/ini.h"        // IWYU pragma: export
-#include "base/interrupt.h"  // IWYU pragma: export
 #include "base/isolated.h"   // IWYU pragma: export
 #include "base/json.h"       // IWYU pragma: export
 #include "base/keymap.h"     // IWYU pragma: export

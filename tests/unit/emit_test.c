@@ -365,9 +365,10 @@ static void a_forest_of_primitives_is_the_union_of_its_trees(void **state)
 static void a_tree_of_a_field_is_made_of_its_own_segments(void **state)
 {
     (void)state;
-    const Blend by_tree = {.n_groups = 2,
-                           .members = {(uint32_t[]){0, 2, 3}, (uint32_t[]){0, 2, 1}},
-                           .groups = {(uint32_t[]){0, 1, 2, 3}, (uint32_t[]){0, 1, 0}}};
+    const Blend by_tree = {
+        .n_groups = 2,
+        .members = {.first = (uint32_t[]){0, 2, 3}, .items = (uint32_t[]){0, 2, 1}},
+        .groups = {.first = (uint32_t[]){0, 1, 2, 3}, .items = (uint32_t[]){0, 1, 0}}};
     for (int grouped = 0; grouped < 2; grouped++) {
         Scene scene = make_scene(SCENE_ISOSURFACE);
         EmitParams params = two_files;
