@@ -120,7 +120,7 @@ json_t *segment_ids(const VesselTree *vessels, const uint32_t *list, size_t n)
     return ids;
 }
 
-/* Adds the members of a wall. */
+/* Adds the members that describe the wall. */
 static json_t *with_wall(json_t *object, const Printing *print)
 {
     const PrintParams *params = &print->settings->params;
@@ -132,8 +132,8 @@ static json_t *with_wall(json_t *object, const Printing *print)
     return json_with_members(object, members, sizeof members / sizeof *members);
 }
 
-/* The smallest of the vessels' diameters, the walls' thicknesses and the gaps between vessels, mm.
- */
+/* Returns the minimum of the vessels' diameters, the walls' thicknesses and the gaps between
+ * vessels, in mm. */
 static double smallest_of(const Printing *print)
 {
     double least = print->changes->thinnest_mm;

@@ -1,6 +1,6 @@
-/* The viewer is built apart from the program [templates/viewer/bundle], as it takes npm, and stands
- * beside the templates where it is installed, or in the build folder. A page holds whatever fields
- * there are, so that who reads it needs no other. */
+/* The viewer is built separately from the program [templates/viewer/bundle], because its build
+ * needs npm. It is beside the templates if it is installed, else in the build folder. A page holds
+ * all fields of the tree, so that its reader needs no other page. */
 #include "job/export/webpage.h"
 
 #include "derive/derive.h"
@@ -81,8 +81,8 @@ static Status add_field(Webpage *page, const TreeMeta *said, const char *name, E
     return STATUS_OK;
 }
 
-/* What the page opens with takes precedence over others of that name: it may be of a file of
- * values, and in a unit that was asked for. */
+/* Adds the field that the page opens with. It replaces other fields of its name, because its values
+ * may come from a file, and may be in a unit that the user selected. */
 static Status add_shown(Webpage *page, Err *err)
 {
     Appearance *shown = &page->appearance;
@@ -108,8 +108,8 @@ static size_t count_roots(const Tree *tree)
     return n;
 }
 
-/* The fields that can be derived, and that tell segments apart; `lacking` lists those that lack
- * what they need. */
+/* Adds the fields that can be derived. Leaves out the field "tree" of a single tree, which has one
+ * value. `lacking` receives the names of the fields whose inputs are missing. */
 static Status add_derived(Webpage *page, const TreeMeta *said, Text *lacking, Err *err)
 {
     const bool is_alone = count_roots(&page->of->tree) == 1;
@@ -126,8 +126,8 @@ static Status add_derived(Webpage *page, const TreeMeta *said, Text *lacking, Er
     return STATUS_OK;
 }
 
-/* The name of the series that a column is a moment of, owned by the page, in *name; else that of
- * the column. */
+/* Finds the name of the series that contains a column, or the column's own name if it is in no
+ * series. The page owns the name of a series. */
 static Status series_name(Webpage *page, const char *column, const char **name, Err *err)
 {
     size_t length;
@@ -182,7 +182,7 @@ done:
 
 /* ---- colours --------------------------------------------------------------------------------- */
 
-/* Takes `name` over. */
+/* Adds a colour map. The page takes ownership of `name`. */
 static Status add_map(Webpage *page, char *name, const char *path, Err *err)
 {
     PageMap *map = &page->maps[page->n_maps];
@@ -205,7 +205,7 @@ done:
     return status;
 }
 
-/* All maps that there are, and the user's own. */
+/* Reads all colour maps of the templates, and the user's own map if `chosen` is a path. */
 static Status read_maps(const char *chosen, Webpage *page, Err *err)
 {
     Text names = TEXT_INIT;
@@ -232,7 +232,7 @@ static int thicker_first(const void *a, const void *b)
     return (*x < *y) - (*x > *y);
 }
 
-/* The radius below which segments are to be dropped so that no more are left than a page holds. */
+/* Finds the radius below which segments must be removed so that a page can hold the rest. */
 static Status radius_to_prune(const Tree *tree, double *radius_mm, Err *err)
 {
     double *radii;
@@ -261,7 +261,7 @@ static Status check_count(const PictureTree *of, Err *err)
                    radius_mm);
 }
 
-/* Of the values, as float in base64. */
+/* Refuses a page whose field values, as floats in base64, are too large. */
 static Status check_bytes(const Webpage *page, Err *err)
 {
     double bytes = 0;
@@ -280,7 +280,7 @@ static Status check_bytes(const Webpage *page, Err *err)
         page->of->path, moments, bytes_text(bytes, size), WEBPAGE_MOST_BYTES / 1000000);
 }
 
-/* The viewer's file in *path (owned). */
+/* Finds the viewer's file. *path is owned. */
 static Status find_viewer(const char *templates, char **path, Err *err)
 {
     static const char *const places[] = {"page/viewer.js", "../build/viewer/viewer.js"};
