@@ -6,6 +6,7 @@
 #include "base/clock.h"      // IWYU pragma: export
 #include "base/elementary.h" // IWYU pragma: export
 #include "base/file.h"       // IWYU pragma: export
+#include "base/fileset.h"    // IWYU pragma: export
 #include "base/firstfail.h"  // IWYU pragma: export
 #include "base/hash.h"       // IWYU pragma: export
 #include "base/heap.h"       // IWYU pragma: export

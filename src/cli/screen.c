@@ -47,10 +47,9 @@ static void end_step(Screen *screen)
     screen->what = NULL;
 }
 
-static void show_progress(void *user, const char *what, double fraction)
+static void show(Screen *screen, const char *what, double fraction)
 {
     char left[32];
-    Screen *screen = user;
     if (!what) {
         end_step(screen);
         return;
@@ -75,6 +74,13 @@ static bool is_enough(void *user)
         interrupt_catch();
     screen->catches = true;
     return interrupt_asked();
+}
+
+/* Never stops the operation: a signal does. */
+static bool show_progress(void *user, const char *what, double fraction)
+{
+    show(user, what, fraction);
+    return true;
 }
 
 static void print_sentence(void *user, TalkKind kind, const char *sentence)

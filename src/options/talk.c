@@ -5,7 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static void say(const Talk *talk, TalkKind kind, const char *format, va_list values)
+__attribute__((format(printf, 3, 0))) static void say(const Talk *talk, TalkKind kind,
+                                                      const char *format, va_list values)
 {
     va_list again;
     if (!talk || !talk->say)
@@ -43,16 +44,17 @@ void progress_start(Progress *progress, const char *what, const Talk *talk)
     progress_show(progress, 0);
 }
 
-void progress_show(const Progress *progress, double fraction)
+bool progress_show(Progress *progress, double fraction)
 {
     const Talk *talk = progress->talk;
-    if (talk && talk->progress)
-        talk->progress(talk->user, progress->what, fraction);
+    if (talk && talk->progress && !talk->progress(talk->user, progress->what, fraction))
+        progress->stopped = true;
+    return !progress->stopped;
 }
 
-void progress_report(double fraction, void *progress)
+bool progress_report(double fraction, void *progress)
 {
-    progress_show(progress, fraction);
+    return progress_show(progress, fraction);
 }
 
 bool progress_enough(void *progress)
@@ -65,5 +67,5 @@ void progress_end(const Progress *progress)
 {
     const Talk *talk = progress->talk;
     if (talk && talk->progress)
-        talk->progress(talk->user, NULL, 1);
+        (void)talk->progress(talk->user, NULL, 1);
 }

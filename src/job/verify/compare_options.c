@@ -1,4 +1,4 @@
-/* What `compare` may be told, and the limits that this makes. */
+/* The rows of the options, and the tolerance that they state. */
 #include "job/verify/compare_options.h"
 
 #include <math.h>
@@ -160,19 +160,47 @@ Status compare_tolerance(const JudgeOptions *options, double depth_mm, Tolerance
     if (options->has_levels || options->has_ppm)
         tolerance->spare_levels = 0;
     if (options->has_levels) {
-        tolerance->color_levels = options->levels;
-        tolerance->interior_levels = (double)INFINITY;
+        tolerance->limits[LIMIT_COLOR_LEVELS] = options->levels;
+        tolerance->limits[LIMIT_INTERIOR_LEVELS] = (double)INFINITY;
     }
     if (options->has_ppm)
-        tolerance->color_ppm = tolerance->id_ppm = tolerance->depth_ppm = tolerance->normal_ppm =
-            tolerance->coverage_ppm = tolerance->pixelmatch_ppm = options->ppm;
+        tolerance->limits[LIMIT_COLOR_PPM] = tolerance->limits[LIMIT_ID_PPM] =
+            tolerance->limits[LIMIT_DEPTH_PPM] = tolerance->limits[LIMIT_NORMAL_PPM] =
+                tolerance->limits[LIMIT_COVERAGE_PPM] = tolerance->limits[LIMIT_PIXELMATCH_PPM] =
+                    options->ppm;
     if (options->has_pixelmatch) {
-        tolerance->pixelmatch = options->pixelmatch;
-        tolerance->color_ppm = (double)INFINITY;
+        tolerance->limits[LIMIT_PIXELMATCH] = options->pixelmatch;
+        tolerance->limits[LIMIT_COLOR_PPM] = (double)INFINITY;
         if (!options->has_ppm)
-            tolerance->pixelmatch_ppm = 0;
+            tolerance->limits[LIMIT_PIXELMATCH_PPM] = 0;
     }
     if (options->has_levels || options->has_ppm || depth_mm > 0 || options->has_pixelmatch)
         tolerance->tier = "given";
     return STATUS_OK;
+}
+
+Status compare_check_folders(const CompareOptions *options, const Parsed *parsed, Err *err)
+{
+    const bool pair = options->reference == NULL;
+    const OptionNeed needs[] = {
+        {"html", pair, "is for two pictures, not for --reference"},
+        {"report", pair, "is for two pictures, not for --reference"},
+        {"output", pair, "is for two pictures, not for --reference"},
+        {"difference", pair, "is for two pictures, not for --reference"},
+        {"flicker", pair, "is for two pictures, not for --reference"},
+        {"ledger", pair, "is for two pictures, not for --reference"},
+        {"ids-a", pair, "is for two pictures, not for --reference"},
+        {"ids-b", pair, "is for two pictures, not for --reference"},
+        {"kind", pair, "is for two files, not for --reference"},
+        {"layer", pair, "is for two files, not for --reference"},
+        {"bits", pair, "is for two files, not for --reference"},
+        {"metrics", pair, "is for two files, not for --reference"},
+        {"noise", pair, "is for two files, not for --reference"},
+        {"variance", pair, "is for two files, not for --reference"},
+        {"variance", !options->noise, "and --noise both give the variance"},
+        {"alarms", options->noise || options->variance, "needs --noise or --variance"},
+        {"accept", !pair, "needs --reference"},
+        {"reason", !pair, "needs --reference"},
+        {0}};
+    return options_check_needs(parsed, needs, err);
 }
