@@ -3,6 +3,7 @@
 #include "cli/screen.h"
 
 #include "base/base.h"
+#include "cli/interrupt.h"
 #include <stdio.h>
 #include <unistd.h>
 
@@ -40,6 +41,9 @@ static void clear_line(Screen *screen)
 static void end_step(Screen *screen)
 {
     clear_line(screen);
+    if (screen->catches)
+        interrupt_release();
+    screen->catches = false;
     screen->what = NULL;
 }
 
@@ -62,6 +66,16 @@ static void show(Screen *screen, const char *what, double fraction)
     fflush(stderr);
 }
 
+/* From the first question on, SIGINT does not end the program until the step has ended. */
+static bool is_enough(void *user)
+{
+    Screen *screen = user;
+    if (!screen->catches)
+        interrupt_catch();
+    screen->catches = true;
+    return interrupt_asked();
+}
+
 /* Never stops the operation: a signal does. */
 static bool show_progress(void *user, const char *what, double fraction)
 {
@@ -80,5 +94,6 @@ static void print_sentence(void *user, TalkKind kind, const char *sentence)
 Talk screen_talk(Screen *screen, bool quiet)
 {
     *screen = (Screen){.quiet = quiet, .terminal = isatty(STDERR_FILENO)};
-    return (Talk){.say = print_sentence, .progress = show_progress, .user = screen};
+    return (Talk){
+        .say = print_sentence, .progress = show_progress, .enough = is_enough, .user = screen};
 }

@@ -11,6 +11,7 @@ typedef struct Screen {
     bool quiet;             /* notes and progress are left out */
     bool terminal;          /* standard error is one */
     bool shown;             /* progress stands on the terminal's last line */
+    bool catches;           /* SIGINT asks the step that is under way for its result */
     double start_s, last_s; /* when the step began and was last shown, by clock_seconds */
 } Screen;
 

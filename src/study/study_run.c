@@ -129,16 +129,9 @@ static Status grow(StudyRun *run, Tree *tree, GrowReport *report, Err *err)
 {
     const Growing *growing = &run->growth->growing;
     const Refining *refining = &run->growth->refining;
-    const RefineParams params = {.level = refining->level,
-                                 .moves = refining->moves,
-                                 .seed = run->parsed.common.seed,
-                                 .threads = run->parsed.common.threads};
     RefineReport refined;
     TRY(grow_tree(&growing->params, &growing->domain, tree, report, err));
-    if (refining->level != GROW_REFINE_NONE)
-        TRY(refine_tree(&params, &growing->domain, tree, &refined, err));
-    TRY(command_describe(&run->parsed, &tree->meta, err));
-    return refining_describe(refining, &refined, &tree->meta, err);
+    return refining_apply(refining, &run->parsed, &growing->domain, tree, &refined, err);
 }
 
 /* Returns the values of the run; numbers are JSON numbers. */

@@ -170,54 +170,91 @@ static Status refuse_surface(const Parsed *parsed, const char *shown, Err *err)
     return STATUS_OK;
 }
 
-static Status export_volume(const ExportOptions *options, const VolumeFormat *format,
-                            Parsed *parsed, Err *err)
+/* Finds the format of the mesh or the lines, and checks the options against it. Without an output,
+ * a mesh in memory has what a PLY file holds. */
+static Status plan_mesh(ExportOptions *options, const Parsed *parsed, const Emitter **emitter,
+                        Err *err)
 {
+    if (options->output)
+        TRY(find_emitter(options, emitter, err));
+    else
+        *emitter = emitter_find("ply", true);
+    options->meshing.coloring.with_flow = (*emitter)->has_parts;
+    TRY(check_format(options, *emitter, parsed, err));
+    return read_print(options, *emitter, err);
+}
+
+Status mesh_make(ExportOptions *options, const Parsed *parsed, MeshResult *mesh, Err *err)
+{
+    const Emitter *emitter;
+    PictureTree of;
+    TRY(plan_mesh(options, parsed, &emitter, err));
+    TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, &of, err));
+    return meshing_make(emitter, &options->meshing, &of, &parsed->common, mesh, err);
+}
+
+static Status export_mesh(ExportOptions *options, Parsed *parsed, FileSet *files, Err *err)
+{
+    const Emitter *emitter;
+    MeshResult mesh;
+    TRY(plan_mesh(options, parsed, &emitter, err));
+    TRY(scene_files_name(emitter, options->output, false, files, err));
+    TRY(work_note_files(files, &parsed->files, err));
+    TRY(mesh_make(options, parsed, &mesh, err));
+    Status status = meshing_write(&mesh, files, parsed, err);
+    meshing_release(&mesh);
+    return status;
+}
+
+static Status export_volume(const ExportOptions *options, Parsed *parsed, FileSet *files, Err *err)
+{
+    const VolumeFormat *format = volume_format_find(options->output);
+    const Coloring *coloring = &options->meshing.coloring;
     PictureTree of;
     TRY(refuse_surface(parsed, "volumes are of", err));
-    TRY(coloring_check_needs(&options->meshing.coloring, parsed, err));
-    TRY(volumes_note(&options->volume, format, options->output, &parsed->files, err));
-    TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, &of, err));
-    Status status = volumes_write(&options->volume, format, &of, options->output, parsed, err);
+    TRY(coloring_check_needs(coloring, parsed, err));
+    TRY(volumes_name(&options->volume, format, options->output, files, err));
+    TRY(work_note_files(files, &parsed->files, err));
+    TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
+    Status status = volumes_write(&options->volume, format, &of, files, parsed, err);
     picture_tree_release(&of);
     return status;
 }
 
-static Status export_page(const ExportOptions *options, const Parsed *parsed, Err *err)
+static Status export_page(const ExportOptions *options, const Parsed *parsed, FileSet *files,
+                          Err *err)
 {
     const Coloring *coloring = &options->meshing.coloring;
     PictureTree of;
     TRY(refuse_surface(parsed, "a page shows", err));
     TRY(webpage_check_needs(coloring, parsed, err));
+    TRY(mem_strdup(&files->at[0].path, options->output, err));
     TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
-    Status status =
-        webpage_write(coloring, options->meshing.look, &of, options->output, parsed, err);
+    Status status = webpage_write(coloring, options->meshing.look, &of, files, parsed, err);
     picture_tree_release(&of);
+    return status;
+}
+
+Status export_write(ExportOptions *options, Parsed *parsed, const FileTaker *taker, Err *err)
+{
+    FileSet files = {.taker = taker};
+    const bool is_volume = volume_format_find(options->output) != NULL;
+    Status status;
+    TRY_GOTO(volumes_check_needs(is_volume, parsed, err));
+    if (strcmp(file_extension(options->output), "html") == 0)
+        status = export_page(options, parsed, &files, err);
+    else if (is_volume)
+        status = export_volume(options, parsed, &files, err);
+    else
+        status = export_mesh(options, parsed, &files, err);
+done:
+    fileset_release(&files);
     return status;
 }
 
 Status export_run(void *options, Parsed *parsed, Err *err)
 {
-    ExportOptions *own_options = options;
-    const VolumeFormat *volume = volume_format_find(own_options->output);
-    const Emitter *emitter;
-    PictureTree of;
-    TRY(volumes_check_needs(volume != NULL, parsed, err));
-    if (strcmp(file_extension(own_options->output), "html") == 0)
-        return export_page(own_options, parsed, err);
-    if (volume)
-        return export_volume(own_options, volume, parsed, err);
-    TRY(find_emitter(own_options, &emitter, err));
-    own_options->meshing.coloring.with_flow = emitter->has_parts;
-    TRY(check_format(own_options, emitter, parsed, err));
-    TRY(read_print(own_options, emitter, err));
-    TRY(scene_files_note(emitter, own_options->output, false, &parsed->files, err));
-    TRY(picture_read_tree(&own_options->meshing.coloring, own_options->prune_radius_mm, parsed, &of,
-                          err));
-    Status status =
-        meshing_write(emitter, &own_options->meshing, &of, own_options->output, parsed, err);
-    picture_tree_release(&of);
-    return status;
+    return export_write(options, parsed, NULL, err);
 }
 
 const Command command_export = {

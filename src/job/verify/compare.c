@@ -161,7 +161,7 @@ static Status compare_linear(const CompareOptions *options, const Tolerance *tol
                        options->metrics || options->page || options->report, result, err));
     TRY(alpha_judge(&sides[0].alpha, &sides[1].alpha, result, err));
     const bool asks_cause =
-        !result->agrees && !*result->cause && result->nan_pixels_a + result->nan_pixels_b == 0;
+        !result->agrees && !*result->cause && result->values[MEASURE_NAN_PIXELS] == 0;
     for (int i = 0; i < 2 && (asks_cause || wants_pictures(options)); i++)
         TRY(picture_from_plane(&sides[i].shown, &sides[i].image.plane, ENCODING_SRGB, 16, err));
     return asks_cause ? compare_cause(&sides[0].shown, &sides[1].shown, result, err) : STATUS_OK;
