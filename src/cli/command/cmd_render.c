@@ -1,13 +1,14 @@
-/* Pictures are files. Printed are the commands that draw their parts. */
+/* Draws pictures into files, or prints the commands that draw their parts. */
 #include "cli/commands.h"
 #include "job/picture/render.h"
 
 Status run_render(void *options, Parsed *parsed, Err *err)
 {
+    RenderOptions *render = options;
     Text lines = TEXT_TO(stdout);
     Status status;
-    ((RenderOptions *)options)->shard.lines = &lines;
-    TRY_GOTO(render_run(options, parsed, err));
+    render->shard.lines = &lines;
+    TRY_GOTO(render_run(render, parsed, err));
     status = text_flush(&lines, err);
 done:
     text_release(&lines);
