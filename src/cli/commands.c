@@ -7,7 +7,6 @@
 #include "job/export/export.h"
 #include "job/export/scene.h"
 #include "job/picture/convert.h"
-#include "job/picture/render.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -22,7 +21,7 @@ const CommandRow command_rows[] = {
     {&command_scene, scene_run},
     {&command_export, export_run},
     {&command_povray, run_povray},
-    {&command_render, render_run},
+    {&command_render, run_render},
     {&command_merge, run_merge},
     {&command_diagram, run_diagram},
     {&command_figure, run_figure},
@@ -110,6 +109,7 @@ Status command_run(const Command *command, int argc, char **argv, Err *err)
     parsed.common.talk = &talk;
     if (status == STATUS_OK)
         status = run(&parsed, err);
+    (status_exit(status) < 2 ? screen_print_held : screen_drop_held)(&screen);
     if (status != STATUS_OK)
         options_name_fields(&parsed, err);
     parsed_release(&parsed);

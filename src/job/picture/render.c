@@ -313,20 +313,20 @@ static Status note_files(Rendering *r, Err *err)
     return STATUS_OK;
 }
 
-/* Prints a command for each tile, or for each picture of the animation. */
-static Status print_commands(const Rendering *r, Err *err)
+/* Makes a command for each tile, or for each picture of the animation. */
+static Status put_commands(const Rendering *r, Err *err)
 {
     const ShardOptions *options = &r->options->shard;
     const int tiles = options->tiles;
-    return shard_print_commands(options, r->parsed, r->form.path, tiles ? 1 : r->animation.first,
-                                tiles ? tiles : r->animation.last, err);
+    return shard_put_commands(options, r->parsed, r->form.path, tiles ? 1 : r->animation.first,
+                              tiles ? tiles : r->animation.last, err);
 }
 
 static Status write_pictures(Rendering *r, Err *err)
 {
     TRY(note_files(r, err));
     if (r->options->shard.commands)
-        return print_commands(r, err);
+        return put_commands(r, err);
     TRY(rendering_describe(r, err));
     if (r->options->ink_mm > 0)
         return line_drawing_write(&r->scene, r->options->ink_mm, r->params.threads, &r->form, err);
