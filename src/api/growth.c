@@ -28,11 +28,12 @@ static Status make_tree(const RequestForm *form, MadeTree *made, corcast_report 
     Status status = STATUS_OK;
     TRY_GOTO(request_open(&request, form, call, err));
     Parsed *parsed = &request.parsed;
-    if (report) /* the job makes a report for a file of that name, which is not written */
-        TRY_GOTO(options_set(parsed, "json", "report.json", err));
+    made->wants_report = report != NULL;
     TRY_GOTO(tree_maker_find(parsed->command->name)->make(parsed->options, parsed, made, err));
-    if (report)
-        status = report_of_text(&made->report, report, err);
+    if (report) {
+        status = report_new(made->report, report, err);
+        made->report = NULL;
+    }
 done:
     return request_close(&request, status, err);
 }
