@@ -8,16 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Makes a report of JSON text. Errors: STATUS_MEMORY. */
-static Status report_of_text(const Text *text, corcast_report **report, Err *err)
-{
-    const char *chars = text_chars(text);
-    json_error_t wrong;
-    bool no_memory = false;
-    return report_new(chars ? json_read(chars, strlen(chars), 0, &wrong, &no_memory) : NULL, report,
-                      err);
-}
-
 /* ---- trees that are made --------------------------------------------------------------------- */
 
 /* Makes a tree, and the report that the option json asks for. */
