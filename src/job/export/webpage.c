@@ -14,7 +14,10 @@
 #include <unistd.h>
 
 typedef struct Webpage {
-    const PictureTree *of;
+    const PictureTree *of; /* this and the next two are borrowed */
+    const Coloring *coloring;
+    const char *look_name;
+    char *templates, *viewer, *title; /* owned */
     Look look;
     Appearance appearance;
     FieldSeries *fields;
@@ -28,6 +31,9 @@ typedef struct Webpage {
 static void webpage_release(Webpage *page)
 {
     appearance_release(&page->appearance);
+    free(page->templates);
+    free(page->viewer);
+    free(page->title);
     for (size_t i = 0; i < page->n_fields; i++)
         fieldseries_release(&page->fields[i]);
     for (size_t i = 0; i < page->n_names; i++)
@@ -298,23 +304,14 @@ static Status find_viewer(const char *templates, char **path, Err *err)
                    "esbuild (`make deps FOR=page`) and run `make` again");
 }
 
-/* What a page is made of, besides its fields and maps. */
-typedef struct PageFrame {
-    const Webpage *page;
-    const Coloring *coloring;
-    const char *look;
-    char *templates, *viewer, *name; /* owned */
-} PageFrame;
-
 static Status put_page(const void *job, const char *command, FileSlot files[], Err *err)
 {
-    const PageFrame *frame = job;
-    const Webpage *page = frame->page;
+    const Webpage *page = job;
     const Tree *tree = &page->of->tree;
     const Box box = tree_bounds(tree);
-    const PageParams params = {.templates = frame->templates,
-                               .viewer = frame->viewer,
-                               .title = frame->name,
+    const PageParams params = {.templates = page->templates,
+                               .viewer = page->viewer,
+                               .title = page->title,
                                .generator = GENERATOR,
                                .command = command,
                                .tree = tree,
@@ -324,42 +321,35 @@ static Status put_page(const void *job, const char *command, FileSlot files[], E
                                .maps = page->maps,
                                .n_maps = page->n_maps,
                                .look = &page->look,
-                               .look_name = frame->look,
+                               .look_name = page->look_name,
                                .scale = page->appearance.colors ? &page->appearance.scale : NULL,
-                               .map = file_name(frame->coloring->colormap)};
+                               .map = file_name(page->coloring->colormap)};
     return page_put(&params, &files[0].text, err);
 }
 
-static Status write_page(const Coloring *coloring, const char *look, const Webpage *page,
-                         FileSet *files, const Parsed *parsed, Err *err)
+/* Refuses a page that is too large, and collects what it contains. */
+static Status collect(Webpage *page, const Talk *talk, Err *err)
 {
-    PageFrame frame = {page, coloring, look, NULL, NULL, NULL};
-    Status status;
-    TRY_GOTO(templates_folder(&frame.templates, err));
-    TRY_GOTO(find_viewer(frame.templates, &frame.viewer, err));
-    TRY_GOTO(shown_name(page->of->path, &frame.name, err));
-    status = work_write(files, put_page, &frame, parsed, err);
-done:
-    free(frame.templates);
-    free(frame.viewer);
-    free(frame.name);
-    return status;
+    const Coloring *coloring = page->coloring;
+    const ColoredTree tree = picture_colored_tree(page->of);
+    TRY(check_count(page->of, err));
+    TRY(coloring_read_look(page->look_name, &page->look, err));
+    TRY(coloring_appearance(coloring, &tree, &page->look, &page->appearance, err));
+    TRY(add_fields(coloring, talk, page, err));
+    TRY(check_bytes(page, err));
+    TRY(read_maps(coloring->colormap, page, err));
+    TRY(templates_folder(&page->templates, err));
+    TRY(find_viewer(page->templates, &page->viewer, err));
+    return shown_name(page->of->path, &page->title, err);
 }
 
 Status webpage_write(const Coloring *coloring, const char *look, const PictureTree *of,
                      FileSet *files, const Parsed *parsed, Err *err)
 {
-    const ColoredTree tree = picture_colored_tree(of);
-    Webpage page = {.of = of};
-    Status status;
-    TRY_GOTO(check_count(of, err));
-    TRY_GOTO(coloring_read_look(look, &page.look, err));
-    TRY_GOTO(coloring_appearance(coloring, &tree, &page.look, &page.appearance, err));
-    TRY_GOTO(add_fields(coloring, parsed->common.talk, &page, err));
-    TRY_GOTO(check_bytes(&page, err));
-    TRY_GOTO(read_maps(coloring->colormap, &page, err));
-    status = write_page(coloring, look, &page, files, parsed, err);
-done:
+    Webpage page = {.of = of, .coloring = coloring, .look_name = look};
+    Status status = collect(&page, parsed->common.talk, err);
+    if (status == STATUS_OK)
+        status = work_write(files, put_page, &page, parsed, err);
     webpage_release(&page);
     return status;
 }
