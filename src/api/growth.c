@@ -5,8 +5,6 @@
 #include "job/tree/certify.h"
 #include "job/tree/info.h"
 #include "job/tree/makers.h"
-#include <stdlib.h>
-#include <string.h>
 
 /* ---- trees that are made --------------------------------------------------------------------- */
 
@@ -20,10 +18,8 @@ static Status make_tree(const RequestForm *form, MadeTree *made, corcast_report 
     Parsed *parsed = &request.parsed;
     made->wants_report = report != NULL;
     TRY_GOTO(tree_maker_find(parsed->command->name)->make(parsed->options, parsed, made, err));
-    if (report) {
-        status = report_new(made->report, report, err);
-        made->report = NULL;
-    }
+    if (report)
+        status = report_new(json_incref(made->report), report, err);
 done:
     return request_close(&request, status, err);
 }
