@@ -112,7 +112,8 @@ Status command_run(const Command *command, int argc, char **argv, Err *err)
     parsed.common.talk = &talk;
     if (status == STATUS_OK)
         status = run(&parsed, err);
-    (status_exit(status) < 2 ? screen_print_held : screen_drop_held)(&screen);
+    bool failed = status_exit(status) >= 2 || fflush(stdout) != 0;
+    (failed ? screen_drop_held : screen_print_held)(&screen);
     if (status != STATUS_OK)
         options_name_fields(&parsed, err);
     parsed_release(&parsed);

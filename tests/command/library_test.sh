@@ -74,9 +74,9 @@ test_comparison_has_the_report_of_the_command_line() {
 test_facts_and_conversions_are_those_of_the_command_line() {
     grow_tree 20
     run_ok corcast info tree.swc --json --stats
-    jq -S 'del(.name, .file, .path)' stdout >program.json
+    jq -S 'del(.reading.format, .format)' stdout >program.json
     run_ok session info tree.swc stats=on
-    jq -S 'del(.name, .file, .path)' stdout >library.json
+    jq -S 'del(.reading.format, .format)' stdout >library.json
     expect_same program.json library.json
     run_ok session convert tree.swc same.swc
     expect_same tree.swc same.swc

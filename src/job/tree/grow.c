@@ -111,8 +111,8 @@ static Status make_report(const GrowOptions *options, int threads, const GrowRep
         {"terminal_pairs", pairs_json(&made->tree)},
         {"bound", bound},
     };
-    return json_put(json_with_members(json_object(), members, sizeof members / sizeof *members),
-                    &made->report, err);
+    return madetree_report(
+        made, json_with_members(json_object(), members, sizeof members / sizeof *members), err);
 }
 
 /* ---- the operation --------------------------------------------------------------------------- */
@@ -164,7 +164,7 @@ Status grow_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
     TRY_GOTO(refine(own_options, parsed, &made->tree, &report, err));
     warn_of_size(talk, &report, &growing->domain);
     refining_warn_broken(talk, report.broken);
-    if (own_options->json)
+    if (own_options->json || made->wants_report)
         status = make_report(own_options, parsed->common.threads, &report, made, err);
 done:
     growing_release(growing);

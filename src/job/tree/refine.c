@@ -91,8 +91,8 @@ static Status make_report(const RefineReport *report, MadeTree *made, Err *err)
         {"stopped", json_boolean(report->stopped)},
         {"bound", bound},
     };
-    return json_put(json_with_members(json_object(), members, sizeof members / sizeof *members),
-                    &made->report, err);
+    return madetree_report(
+        made, json_with_members(json_object(), members, sizeof members / sizeof *members), err);
 }
 
 /* Reads the tree and its domain; *found says whether there is one. */
@@ -122,7 +122,7 @@ Status refine_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
     TRY_GOTO(
         refining_apply(refining, parsed, has_domain ? &domain : NULL, &made->tree, &report, err));
     refining_warn_broken(parsed->common.talk, report.broken);
-    if (own_options->json)
+    if (own_options->json || made->wants_report)
         status = make_report(&report, made, err);
 done:
     domain_release(&domain);
