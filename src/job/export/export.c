@@ -1,6 +1,5 @@
-/* The extension of the output chooses the emitter, as in scene.c, or an option does; meshing.c
- * makes what it writes, volumes.c voxels, webpage.c a page. Options that have no effect on a format
- * are refused. */
+/* The extension of the output selects the format: a mesh or lines (meshing.c), a volume (volumes.c)
+ * or a page (webpage.c). Some extensions have a second format, which an option selects. */
 #include "job/export/export.h"
 
 #include "emit/emit.h"
@@ -87,7 +86,7 @@ static void set_defaults(void *options)
     coloring_set_defaults(&own_options->meshing.coloring);
 }
 
-/* STATUS_USAGE for an option that has no effect on a file of this format. */
+/* Returns STATUS_USAGE if an option was given that has no effect on a file of this format. */
 static Status check_format(const ExportOptions *options, const Emitter *emitter,
                            const Parsed *parsed, Err *err)
 {
@@ -111,7 +110,7 @@ static Status check_format(const ExportOptions *options, const Emitter *emitter,
     return coloring_check_needs(&options->meshing.coloring, parsed, err);
 }
 
-/* The emitter for the extension of the output, or the one that an option asks for. */
+/* Finds the emitter for the extension of the output, or the emitter that an option selects. */
 static Status find_emitter(const ExportOptions *options, const Emitter **emitter, Err *err)
 {
     const Emitter *asked = NULL;
@@ -131,7 +130,7 @@ static Status find_emitter(const ExportOptions *options, const Emitter **emitter
     return STATUS_OK;
 }
 
-/* Reads --wall and --print. STATUS_USAGE where one would not do what it says. */
+/* Reads --wall and --print. Returns STATUS_USAGE if one of them cannot have its effect. */
 static Status read_print(ExportOptions *options, const Emitter *emitter, Err *err)
 {
     PrintSettings *print = &options->settings;
@@ -156,7 +155,7 @@ static Status read_print(ExportOptions *options, const Emitter *emitter, Err *er
     return STATUS_OK;
 }
 
-/* STATUS_USAGE for an option about the surface, of which some formats show none. */
+/* Returns STATUS_USAGE if an option about the surface was given, for a format that shows none. */
 static Status refuse_surface(const Parsed *parsed, const char *shown, Err *err)
 {
     for (size_t i = 0; i < parsed->n_settings; i++) {
@@ -170,54 +169,97 @@ static Status refuse_surface(const Parsed *parsed, const char *shown, Err *err)
     return STATUS_OK;
 }
 
-static Status export_volume(const ExportOptions *options, const VolumeFormat *format,
-                            Parsed *parsed, Err *err)
+/* Finds the format of the mesh or the lines, and checks the options against it. Without an output,
+ * a mesh in memory has what a PLY file holds. */
+static Status plan_mesh(ExportOptions *options, const Parsed *parsed, const Emitter **emitter,
+                        Err *err)
+{
+    if (options->output)
+        TRY(find_emitter(options, emitter, err));
+    else
+        *emitter = emitter_find("ply", true);
+    options->meshing.coloring.with_flow = (*emitter)->has_parts;
+    TRY(check_format(options, *emitter, parsed, err));
+    return read_print(options, *emitter, err);
+}
+
+static Status make_mesh(const ExportOptions *options, const Emitter *emitter, const Parsed *parsed,
+                        MeshResult *mesh, Err *err)
 {
     PictureTree of;
-    TRY(refuse_surface(parsed, "volumes are of", err));
-    TRY(coloring_check_needs(&options->meshing.coloring, parsed, err));
-    TRY(volumes_note(&options->volume, format, options->output, &parsed->files, err));
     TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, &of, err));
-    Status status = volumes_write(&options->volume, format, &of, options->output, parsed, err);
+    return meshing_make(emitter, &options->meshing, &of, &parsed->common, mesh, err);
+}
+
+Status mesh_make(ExportOptions *options, const Parsed *parsed, MeshResult *mesh, Err *err)
+{
+    const Emitter *emitter;
+    TRY(plan_mesh(options, parsed, &emitter, err));
+    return make_mesh(options, emitter, parsed, mesh, err);
+}
+
+static Status export_mesh(ExportOptions *options, Parsed *parsed, FileSet *files, Err *err)
+{
+    const Emitter *emitter;
+    MeshResult mesh;
+    TRY(plan_mesh(options, parsed, &emitter, err));
+    TRY(scene_files_name(emitter, options->output, false, files, err));
+    TRY(work_note_files(files, &parsed->files, err));
+    TRY(make_mesh(options, emitter, parsed, &mesh, err));
+    Status status = meshing_write(&mesh, files, parsed, err);
+    meshing_release(&mesh);
+    return status;
+}
+
+static Status export_volume(const ExportOptions *options, Parsed *parsed, FileSet *files, Err *err)
+{
+    const VolumeFormat *format = volume_format_find(options->output);
+    const Coloring *coloring = &options->meshing.coloring;
+    PictureTree of;
+    TRY(refuse_surface(parsed, "volumes are of", err));
+    TRY(coloring_check_needs(coloring, parsed, err));
+    TRY(volumes_name(&options->volume, format, options->output, files, err));
+    TRY(work_note_files(files, &parsed->files, err));
+    TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
+    Status status = volumes_write(&options->volume, format, &of, files, parsed, err);
     picture_tree_release(&of);
     return status;
 }
 
-static Status export_page(const ExportOptions *options, const Parsed *parsed, Err *err)
+static Status export_page(const ExportOptions *options, const Parsed *parsed, FileSet *files,
+                          Err *err)
 {
     const Coloring *coloring = &options->meshing.coloring;
     PictureTree of;
     TRY(refuse_surface(parsed, "a page shows", err));
     TRY(webpage_check_needs(coloring, parsed, err));
+    TRY(mem_strdup(&files->at[0].path, options->output, err));
     TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
-    Status status =
-        webpage_write(coloring, options->meshing.look, &of, options->output, parsed, err);
+    Status status = webpage_write(coloring, options->meshing.look, &of, files, parsed, err);
     picture_tree_release(&of);
+    return status;
+}
+
+Status export_write(ExportOptions *options, Parsed *parsed, const FileTaker *taker, Err *err)
+{
+    FileSet files = {.taker = taker};
+    const bool is_volume = volume_format_find(options->output) != NULL;
+    Status status;
+    TRY_GOTO(volumes_check_needs(is_volume, parsed, err));
+    if (strcmp(file_extension(options->output), "html") == 0)
+        status = export_page(options, parsed, &files, err);
+    else if (is_volume)
+        status = export_volume(options, parsed, &files, err);
+    else
+        status = export_mesh(options, parsed, &files, err);
+done:
+    fileset_release(&files);
     return status;
 }
 
 Status export_run(void *options, Parsed *parsed, Err *err)
 {
-    ExportOptions *own_options = options;
-    const VolumeFormat *volume = volume_format_find(own_options->output);
-    const Emitter *emitter;
-    PictureTree of;
-    TRY(volumes_check_needs(volume != NULL, parsed, err));
-    if (strcmp(file_extension(own_options->output), "html") == 0)
-        return export_page(own_options, parsed, err);
-    if (volume)
-        return export_volume(own_options, volume, parsed, err);
-    TRY(find_emitter(own_options, &emitter, err));
-    own_options->meshing.coloring.with_flow = emitter->has_parts;
-    TRY(check_format(own_options, emitter, parsed, err));
-    TRY(read_print(own_options, emitter, err));
-    TRY(scene_files_note(emitter, own_options->output, false, &parsed->files, err));
-    TRY(picture_read_tree(&own_options->meshing.coloring, own_options->prune_radius_mm, parsed, &of,
-                          err));
-    Status status =
-        meshing_write(emitter, &own_options->meshing, &of, own_options->output, parsed, err);
-    picture_tree_release(&of);
-    return status;
+    return export_write(options, parsed, NULL, err);
 }
 
 const Command command_export = {

@@ -1,6 +1,6 @@
 /* Lets a user stop long work with SIGINT and keep the result so far. */
-#ifndef CORCAST_BASE_INTERRUPT_H
-#define CORCAST_BASE_INTERRUPT_H
+#ifndef CORCAST_CLI_INTERRUPT_H
+#define CORCAST_CLI_INTERRUPT_H
 
 #include <stdbool.h>
 
@@ -10,8 +10,7 @@ void interrupt_catch(void);
 /* Restores the handling of SIGINT from before interrupt_catch. */
 void interrupt_release(void);
 
-/* Returns true if a SIGINT came since interrupt_catch. `context` is unused; it makes the function
- * fit the type of a stop callback. */
-bool interrupt_asked(void *context);
+/* Returns true if a SIGINT came since interrupt_catch. */
+bool interrupt_asked(void);
 
 #endif

@@ -1,13 +1,11 @@
 /* A tree from a file, refined within its domain: that of the option, or that of its header. */
-#include "cli/commands.h"
-#include "job/tree/certifying.h"
+#include "job/tree/certify.h"
+#include "job/tree/makers.h"
 #include "job/tree/refining.h"
 #include "job/tree/tree_domain.h"
 #include "options/output.h"
 #include "options/reading.h"
-#include "treeio/treeio.h"
-#include <math.h>
-#include <stdio.h>
+#include <string.h>
 
 typedef struct RefineOptions {
     const char *output, *domain, *json;
@@ -62,10 +60,24 @@ static void set_clearance(double mm, TreeMeta *meta)
     meta->known[META_CLEARANCE] = mm > 0;
 }
 
-static Status write_report(const char *path, const RefineReport *report, const Tree *tree, Err *err)
+/* Notes the columns that refinement drops. */
+static Status note_columns(const Tree *tree, const Talk *talk, Err *err)
+{
+    Text names = TEXT_INIT;
+    for (size_t k = 0, n = 0; k < tree->n_columns; k++)
+        if (strcmp(tree->column[k].name, tree_pairs_name) != 0)
+            text_printf(&names, "%s%.40s", n++ ? ", " : "", tree->column[k].name);
+    Status status = text_check(&names, err);
+    if (status == STATUS_OK && *text_chars(&names))
+        talk_note(talk, "the columns %s are left out: their segments move", text_chars(&names));
+    text_release(&names);
+    return status;
+}
+
+static Status make_report(const RefineReport *report, MadeTree *made, Err *err)
 {
     json_t *bound;
-    TRY(certified_json(tree, &tree->meta, &bound, err));
+    TRY(bound_json(&made->tree, &made->tree.meta, &bound, err));
     const JsonMember members[] = {
         {"generator", json_text(GENERATOR)},
         {"seconds", json_number(report->seconds)},
@@ -74,47 +86,46 @@ static Status write_report(const char *path, const RefineReport *report, const T
         {"moves_tried", json_count(report->moves_tried)},
         {"moves_kept", json_count(report->moves_kept)},
         {"thickness", json_number(report->thickness)},
-        {"broken", json_integer((json_int_t)report->broken)},
-        {"apart_mm", isfinite(report->apart_mm) ? json_number(report->apart_mm) : json_null()},
+        {"broken", json_count(report->broken)},
+        {"apart_mm", json_number(report->apart_mm)},
         {"stopped", json_boolean(report->stopped)},
         {"bound", bound},
     };
-    return json_write(json_with_members(json_object(), members, sizeof members / sizeof *members),
-                      path, err);
+    return madetree_report(
+        made, json_with_members(json_object(), members, sizeof members / sizeof *members), err);
 }
 
-Status run_refine(void *options, Parsed *parsed, Err *err)
+/* Reads the tree and its domain; *found says whether there is one. */
+static Status read_inputs(const RefineOptions *options, Parsed *parsed, Tree *tree, Domain *domain,
+                          bool *found, Err *err)
+{
+    TRY(reading_tree(parsed, parsed->operands[0], tree, NULL, err));
+    TRY(find_domain(options->domain, tree, domain, found, err));
+    if (domain->file)
+        TRY(files_read(&parsed->files, "--domain", domain->file, err));
+    if (options->has_clearance)
+        set_clearance(options->clearance_mm, &tree->meta);
+    return note_columns(tree, parsed->common.talk, err);
+}
+
+Status refine_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
 {
     const RefineOptions *own_options = options;
     const Refining *refining = &own_options->refining;
-    TRY(tree_format_check(own_options->output, err));
-    TRY(refining_check(refining, parsed, err));
-    Tree tree = {0};
     Domain domain = {0};
-    bool has_domain;
+    bool has_domain = false;
     RefineReport report;
     Status status = STATUS_OK;
-    TRY_GOTO(reading_tree(parsed, parsed->operands[0], &tree, NULL, err));
-    TRY_GOTO(find_domain(own_options->domain, &tree, &domain, &has_domain, err));
-    if (domain.file)
-        TRY_GOTO(files_read(&parsed->files, "--domain", domain.file, err));
-    if (own_options->has_clearance)
-        set_clearance(own_options->clearance_mm, &tree.meta);
-    if (!parsed->common.quiet)
-        print_columns_left_out("refine", &tree, "their segments move");
-    TRY_GOTO(refining_apply(refining, &parsed->common, has_domain ? &domain : NULL, &tree, &report,
-                            err));
-    TRY_GOTO(command_describe(parsed, &tree.meta, err));
-    TRY_GOTO(refining_describe(refining, &report, &tree.meta, err));
-    TRY_GOTO(output_tree("refine", &tree, own_options->output, parsed->common.quiet, err));
+    TRY_GOTO(tree_output_check(own_options->output, err));
+    TRY_GOTO(refining_check(refining, parsed, err));
+    TRY_GOTO(read_inputs(own_options, parsed, &made->tree, &domain, &has_domain, err));
+    TRY_GOTO(
+        refining_apply(refining, parsed, has_domain ? &domain : NULL, &made->tree, &report, err));
+    refining_warn_broken(parsed->common.talk, report.broken);
     if (own_options->json)
-        TRY_GOTO(write_report(own_options->json, &report, &tree, err));
-    print_broken(report.broken);
-    if (!parsed->common.quiet)
-        refining_print(&report);
+        status = make_report(&report, made, err);
 done:
     domain_release(&domain);
-    tree_release(&tree);
     return status;
 }
 

@@ -1,24 +1,19 @@
 /* What a file holds follows from its extension, and what is read becomes what is to be written: a
  * tree a tree, a picture a picture of sRGB, a plane of floats a plane. */
-#include "cli/commands.h"
+#include "job/picture/convert.h"
+
 #include "image/image.h"
 #include "job/picture/coloring.h"
 #include "job/picture/press.h"
 #include "job/tree/blood.h"
-#include "job/tree/field_columns.h"
-#include "options/options.h"
+#include "job/tree/convert_tree.h"
 #include "options/output.h"
 #include "options/reading.h"
 #include "treeio/treeio.h"
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 typedef struct ConvertOptions {
-    const char *values; /* "FILE" or "FILE:COLUMN"; NULL: none */
-    const char *fields; /* "all" or "NAME,..."; NULL: none */
-    BloodOptions blood;
+    TreeConversion tree;
     PressOptions press;
     double dpi;      /* of a picture; 0: not written */
     Vec3 background; /* sRGB in [0, 1] */
@@ -26,17 +21,6 @@ typedef struct ConvertOptions {
 } ConvertOptions;
 
 static const Option own[] = {
-    {.name = "values",
-     SETS(TEXT, ConvertOptions, values),
-     .group = GROUP_FILES,
-     .argument = "FILE[:COLUMN]",
-     .help = "values of the tree's segments by id, from a CSV or a folder of svOneDSolver"},
-    {.name = "fields",
-     SETS(TEXT, ConvertOptions, fields),
-     .group = GROUP_FILES,
-     .argument = "all|NAME,...",
-     .list = "fields",
-     .help = "what follows from the tree, and is to be in its file as columns"},
     {.name = "dpi",
      SETS(NUMBER, ConvertOptions, dpi),
      FROM_TO(1, 1e5),
@@ -57,74 +41,6 @@ static const OptionTable own_table = OPTION_TABLE(own);
 static void set_defaults(void *options)
 {
     press_set_defaults(&((ConvertOptions *)options)->press);
-}
-
-/* Reads the values that are asked for into the tree. */
-static Status join_values(const ConvertOptions *options, Parsed *parsed, Tree *tree, Err *err)
-{
-    size_t length;
-    const char *column;
-    char *path = NULL;
-    if (!options->values)
-        return STATUS_OK;
-    if (!values_parse(options->values, &length, &column))
-        return err_set(err, STATUS_USAGE,
-                       "--values: '%.60s' is not a FILE.csv, FILE.csv:COLUMN or FOLDER:flow",
-                       options->values);
-    TRY(mem_strdup(&path, options->values, err));
-    path[length] = '\0';
-    Status status = files_read(&parsed->files, "--values", path, err);
-    if (status == STATUS_OK)
-        status = tree_read_values(tree, path, column, NULL, err);
-    free(path);
-    return status;
-}
-
-/* Derives the fields that are asked for into the tree. */
-static Status join_fields(const ConvertOptions *options, const Parsed *parsed, Tree *tree, Err *err)
-{
-    if (!options->fields)
-        return blood_refuse(parsed, "needs --fields", err);
-    const TreeMeta said = blood_said(&options->blood);
-    TRY(blood_settle(&options->blood, parsed, tree, err));
-    return field_columns_add(tree, &said, options->fields, parsed->common.quiet, err);
-}
-
-/* An index for ParaView and the files that it names, none of which is read here. */
-static Status write_moments(const Tree *tree, Parsed *parsed, const char *to, Err *err)
-{
-    size_t n = 0;
-    Status status = tree_count_moments(tree, &n, err);
-    for (size_t k = 0; k < n && status == STATUS_OK; k++) {
-        char *path = NULL;
-        status = tree_moment_path(to, k, &path, err);
-        if (status == STATUS_OK)
-            status = files_write(&parsed->files, to, path, err);
-        free(path);
-    }
-    if (status == STATUS_OK)
-        return tree_write_moments(tree, to, err);
-    if (status == STATUS_INPUT)
-        err_prefix(err, "%s: ", parsed->operands[0]);
-    return status;
-}
-
-/* A tree in its normal form: parents before children, ids 1, 2, ... in that order. */
-static Status convert_tree(const ConvertOptions *options, Parsed *parsed, Err *err)
-{
-    const char *from = parsed->operands[0], *to = parsed->operands[1];
-    Tree tree;
-    TRY(reading_tree(parsed, from, &tree, NULL, err));
-    Status status = join_values(options, parsed, &tree, err);
-    if (status == STATUS_OK)
-        status = join_fields(options, parsed, &tree, err);
-    tree_renumber(&tree);
-    bool moments = strcasecmp(file_extension(to), "pvd") == 0;
-    if (status == STATUS_OK)
-        status = moments ? write_moments(&tree, parsed, to, err)
-                         : output_tree("convert", &tree, to, parsed->common.quiet, err);
-    tree_release(&tree);
-    return status;
 }
 
 /* What is transparent is laid on the background, if one is given. */
@@ -262,24 +178,39 @@ static Status check_press(const ConvertOptions *options, const char *to, const P
     return press_check(&options->press, to, parsed, err);
 }
 
-Status run_convert(void *options, Parsed *parsed, Err *err)
+static Status convert_tree(const ConvertOptions *options, Parsed *parsed, const char *to, Err *err)
+{
+    const OptionNeed needs[] = {
+        {"dpi", false, "is for pictures"}, {"background", false, "is for pictures"}, {0}};
+    Tree tree = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(options_check_needs(parsed, needs, err));
+    TRY_GOTO(press_refuse(parsed, "is for pictures", err));
+    TRY_GOTO(convert_tree_make(&options->tree, parsed, &tree, err));
+    status = convert_tree_write(&tree, parsed, to, err);
+done:
+    tree_release(&tree);
+    return status;
+}
+
+static FileKind kind_of_input(const Parsed *parsed)
+{
+    return parsed->given || parsed->reading.format ? FILE_TREE : kind_of(parsed->operands[0]);
+}
+
+Status convert_run(void *options, Parsed *parsed, Err *err)
 {
     const ConvertOptions *own_options = options;
     const char *from = parsed->operands[0], *to = parsed->operands[1];
-    FileKind kind = kind_of(to), kind_from = parsed->reading.format ? FILE_TREE : kind_of(from);
+    FileKind kind = kind_of(to), kind_from = kind_of_input(parsed);
     if (kind_from == FILE_UNKNOWN || kind == FILE_UNKNOWN)
         return unknown_kind(kind == FILE_UNKNOWN ? to : from, err);
     if ((kind_from == FILE_TREE) != (kind == FILE_TREE))
         return err_set(err, STATUS_USAGE,
                        "'%s' cannot become '%s': a tree and an image are different things", from,
                        to);
-    if (kind == FILE_TREE) {
-        const OptionNeed picture[] = {
-            {"dpi", false, "is for pictures"}, {"background", false, "is for pictures"}, {0}};
-        TRY(options_check_needs(parsed, picture, err));
-        TRY(press_refuse(parsed, "is for pictures", err));
-        return convert_tree(own_options, parsed, err);
-    }
+    if (kind == FILE_TREE)
+        return convert_tree(own_options, parsed, to, err);
     const OptionNeed needs[] = {
         {"values", false, "is for trees"}, {"fields", false, "is for trees"}, {0}};
     TRY(options_check_needs(parsed, needs, err));
@@ -309,7 +240,8 @@ const Command command_convert = {
     .reads_tree = true,
     .size = sizeof(ConvertOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0},
-               {&blood_table, offsetof(ConvertOptions, blood)},
+    .tables = {{&treeconversion_table, offsetof(ConvertOptions, tree)},
+               {&own_table, 0},
+               {&blood_table, offsetof(ConvertOptions, tree.blood)},
                {&press_table, offsetof(ConvertOptions, press)}},
 };

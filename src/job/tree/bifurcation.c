@@ -3,10 +3,8 @@
  * of radii follows from Murray's law, r_0^gamma = r_1^gamma + r_2^gamma; what is not said of
  * angles, from the least sum of length times radius^lambda: forces r_i^lambda along the vessels are
  * in balance at the branching point. */
-#include "cli/commands.h"
+#include "job/tree/makers.h"
 #include "options/output.h"
-#include "tree/tree.h"
-#include "treeio/treeio.h"
 #include <math.h>
 
 typedef struct BifurcationOptions {
@@ -122,7 +120,7 @@ static Status check(const BifurcationOptions *options, const Parsed *parsed, Err
                                 {"gamma", alone, "is for --radii with the parent's alone"},
                                 {"lambda", !options->has_angles, "has no effect beside --angles"},
                                 {0}};
-    TRY(tree_format_check(options->output, err));
+    TRY(tree_output_check(options->output, err));
     TRY(options_check_needs(parsed, needs, err));
     TRY(check_sizes("radii", &options->radii, err));
     TRY(check_sizes("lengths", &options->lengths, err));
@@ -169,23 +167,16 @@ static void fill(const double radii[3], const double lengths[3], const double an
     tree_renumber(tree);
 }
 
-Status run_bifurcation(void *options, Parsed *parsed, Err *err)
+Status bifurcation_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
 {
-    const BifurcationOptions *own_options = options;
     double radii[3], lengths[3], angles[2] = {0};
-    Tree tree;
-    TRY(check(own_options, parsed, err));
-    TRY(find_shape(own_options, radii, lengths, angles, err));
-    TRY(tree_init(&tree, 4, err));
-    fill(radii, lengths, angles, &tree);
-    Status status = command_describe(parsed, &tree.meta, err);
-    if (status == STATUS_OK)
-        status = output_tree("bifurcation", &tree, own_options->output, parsed->common.quiet, err);
-    if (status == STATUS_OK && !parsed->common.quiet)
-        fprintf(stderr, "radii %g, %g, %g mm, angles %.4g and %.4g degrees\n", radii[0], radii[1],
-                radii[2], angles[0], angles[1]);
-    tree_release(&tree);
-    return status;
+    TRY(check(options, parsed, err));
+    TRY(find_shape(options, radii, lengths, angles, err));
+    TRY(tree_init(&made->tree, 4, err));
+    fill(radii, lengths, angles, &made->tree);
+    talk_note(parsed->common.talk, "radii %g, %g, %g mm, angles %.4g and %.4g degrees", radii[0],
+              radii[1], radii[2], angles[0], angles[1]);
+    return command_describe(parsed, &made->tree.meta, err);
 }
 
 const Command command_bifurcation = {

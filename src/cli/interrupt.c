@@ -1,6 +1,6 @@
 /* The handler only sets a flag, and puts the old action back, so that a second SIGINT ends a
  * program that does not come to ask for the flag. */
-#include "base/interrupt.h"
+#include "cli/interrupt.h"
 
 #include <signal.h>
 #include <stddef.h>
@@ -30,8 +30,7 @@ void interrupt_release(void)
     sigaction(SIGINT, &before, NULL);
 }
 
-bool interrupt_asked(void *context)
+bool interrupt_asked(void)
 {
-    (void)context;
     return asked != 0;
 }
