@@ -5,18 +5,6 @@
 #include "job/tree/certify.h"
 #include "job/tree/info.h"
 #include "job/tree/makers.h"
-#include <stdlib.h>
-#include <string.h>
-
-/* Makes a report of JSON text. Errors: STATUS_MEMORY. */
-static Status report_of_text(const Text *text, corcast_report **report, Err *err)
-{
-    const char *chars = text_chars(text);
-    json_error_t wrong;
-    bool no_memory = false;
-    return report_new(chars ? json_read(chars, strlen(chars), 0, &wrong, &no_memory) : NULL, report,
-                      err);
-}
 
 /* ---- trees that are made --------------------------------------------------------------------- */
 
@@ -28,11 +16,10 @@ static Status make_tree(const RequestForm *form, MadeTree *made, corcast_report 
     Status status = STATUS_OK;
     TRY_GOTO(request_open(&request, form, call, err));
     Parsed *parsed = &request.parsed;
-    if (report) /* the job makes a report for a file of that name, which is not written */
-        TRY_GOTO(options_set(parsed, "json", "report.json", err));
+    made->wants_report = report != NULL;
     TRY_GOTO(tree_maker_find(parsed->command->name)->make(parsed->options, parsed, made, err));
     if (report)
-        status = report_of_text(&made->report, report, err);
+        status = report_new(json_incref(made->report), report, err);
 done:
     return request_close(&request, status, err);
 }
