@@ -5,8 +5,6 @@
 #include "job/tree/certify.h"
 #include "job/tree/info.h"
 #include "job/tree/makers.h"
-#include <stdlib.h>
-#include <string.h>
 
 /* ---- trees that are made --------------------------------------------------------------------- */
 
@@ -18,12 +16,11 @@ static Status make_tree(const RequestForm *form, MadeTree *made, corcast_report 
     Status status = STATUS_OK;
     TRY_GOTO(request_open(&request, form, call, err));
     Parsed *parsed = &request.parsed;
-    made->wants_report = report != NULL;
+    if (report) /* the job makes a report for a file of that name, which is not written */
+        TRY_GOTO(options_set(parsed, "json", "report.json", err));
     TRY_GOTO(tree_maker_find(parsed->command->name)->make(parsed->options, parsed, made, err));
-    if (report) {
-        status = report_new(made->report, report, err);
-        made->report = NULL;
-    }
+    if (report)
+        status = report_new(json_incref(made->report), report, err);
 done:
     return request_close(&request, status, err);
 }

@@ -16,8 +16,8 @@ typedef struct Asked {
     const char *options[12]; /* NULL ends them */
 } Asked;
 
-static const Asked growth = {"grow", {"terminals", "12", "seed", "4", NULL}};
-static const Asked refinement = {"refine", {"refine", "geometry", NULL}};
+static const Asked growth = {"grow", {"terminals", "12", "seed", "4", "json", "none.json", NULL}};
+static const Asked refinement = {"refine", {"refine", "geometry", "json", "none.json", NULL}};
 
 static void set_options(Parsed *parsed, const Asked *asked)
 {
@@ -31,7 +31,7 @@ static MadeTree made(const Asked *asked, const Tree *given, const char *name, co
 {
     const TreeMaker *maker = tree_maker_find(asked->command);
     Parsed parsed;
-    MadeTree result = {.wants_report = true};
+    MadeTree result = {.report = NULL};
     Err err = {""};
     must(parsed_init(&parsed, maker->command, &err), &err);
     parsed.in_memory = true;
@@ -55,7 +55,7 @@ static void written(const char *command, const char *arguments, const char *path
     for (char *word; (word = strsep(&rest, " "));)
         words[n++] = word;
     Parsed parsed;
-    MadeTree result = {.wants_report = false};
+    MadeTree result = {.report = NULL};
     Tree tree = {0};
     Err err = {""};
     must(parsed_init(&parsed, maker->command, &err), &err);

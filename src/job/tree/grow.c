@@ -164,7 +164,7 @@ Status grow_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
     TRY_GOTO(refine(own_options, parsed, &made->tree, &report, err));
     warn_of_size(talk, &report, &growing->domain);
     refining_warn_broken(talk, report.broken);
-    if (own_options->json || made->wants_report)
+    if (own_options->json)
         status = make_report(own_options, parsed->common.threads, &report, made, err);
 done:
     growing_release(growing);

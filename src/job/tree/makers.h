@@ -10,9 +10,8 @@ extern const Command command_grow, command_refine, command_bifurcation;
 
 /* Zero it before use; release it with madetree_release. */
 typedef struct MadeTree {
-    Tree tree;         /* its metadata names the command that made it */
-    json_t *report;    /* what was done; owned; NULL if nobody wants it */
-    bool wants_report; /* set by the caller: a report is made without the option json, too */
+    Tree tree;      /* its metadata names the command that made it */
+    json_t *report; /* what was done; owned; NULL if the option json was not given */
 } MadeTree;
 
 void madetree_release(MadeTree *made);

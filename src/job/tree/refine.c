@@ -122,7 +122,7 @@ Status refine_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
     TRY_GOTO(
         refining_apply(refining, parsed, has_domain ? &domain : NULL, &made->tree, &report, err));
     refining_warn_broken(parsed->common.talk, report.broken);
-    if (own_options->json || made->wants_report)
+    if (own_options->json)
         status = make_report(&report, made, err);
 done:
     domain_release(&domain);
