@@ -33,9 +33,9 @@ Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *sample
  * with B's. True where A has too little colour to tell. */
 bool cause_is_same_saturation(double aa, double ab);
 /* Moved by whole pixels: the shift leaves less than a fiftieth of the differences where both
- * pictures have pixels, and colours are as far from grey as before. O(pixels) where the samples say
- * so, else O(1). */
-void cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
+ * pictures have pixels, and colours are as far from grey as before. Returns true if a part of the
+ * picture was moved and another part was not. O(pixels) where the samples say so, else O(1). */
+bool cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
                  Sentence *out);
 /* Moved by parts of pixels (`start` is near), blurred or sharpened. O(1). */
 MUST_CHECK Status cause_warp(const Picture *a, const Picture *b, const Samples *samples,
