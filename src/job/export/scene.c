@@ -1,7 +1,6 @@
-/* The extension of the output chooses the emitter, whose row says what it can hold; options that a
- * format has no use for are refused. OpenSCAD has two: modules, which it unites for half a second
- * each, and one closed surface; where nothing that is asked for decides, the number of vessels
- * does. */
+/* The extension of the output selects the format. Models for OpenSCAD have two forms: modules,
+ * which OpenSCAD takes half a second each to unite, and one closed surface. If no option decides
+ * between them, the number of vessels does. */
 #include "job/export/scene.h"
 
 #include "job/export/meshing.h"
@@ -46,7 +45,7 @@ static void set_defaults(void *options)
     picture_set_defaults(&own_options->picture);
 }
 
-/* STATUS_USAGE for an option that has no effect on a file of this format. */
+/* Returns STATUS_USAGE if an option was given that has no effect on a file of this format. */
 static Status check_format(const Emitter *emitter, const PictureOptions *picture,
                            const Parsed *parsed, Err *err)
 {

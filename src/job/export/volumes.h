@@ -15,9 +15,10 @@ typedef struct VolumeOptions {
 
 extern const OptionTable volume_table; /* sets a VolumeOptions */
 
-/* STATUS_USAGE for an option about volumes where the file is none, or about colours where it is. */
+/* Returns STATUS_USAGE if an option about volumes was given and the file is none, or an option
+ * about colours was given and the file is a volume. */
 MUST_CHECK Status volumes_check_needs(bool is_volume, const Parsed *parsed, Err *err);
-/* Appends the extensions of volumes: ".nii.gz, .nii". */
+/* Appends the extensions of volume files: ".nii.gz, .nii". */
 void volumes_extensions(Text *out);
 
 /* Sets the paths and roles of the files that are written for `output`: volumes, and beside them the

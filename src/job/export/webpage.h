@@ -1,4 +1,4 @@
-/* A tree as a page for browsers. */
+/* A tree as a page for browsers, in which the user can rotate it. */
 #ifndef CORCAST_JOB_EXPORT_WEBPAGE_H
 #define CORCAST_JOB_EXPORT_WEBPAGE_H
 
@@ -7,12 +7,12 @@
 #include "job/work.h"
 #include "options/options.h"
 
-/* A page holds no more segments than this, which make a file of about 17 MB, and no more bytes of
- * values. */
+/* The largest number of segments in a page, which make a file of about 17 MB, and the largest
+ * number of bytes of field values. */
 enum { WEBPAGE_MOST_SEGMENTS = 200000, WEBPAGE_MOST_BYTES = 100000000 };
 
-/* STATUS_USAGE for an option of the command line about colours that has no effect on a page. Those
- * on blood have one, on the fields that it holds. */
+/* Returns STATUS_USAGE if a colour option was given that a page ignores. Options of the group
+ * "blood" are accepted: they change the fields stored in the page. */
 MUST_CHECK Status webpage_check_needs(const Coloring *coloring, const Parsed *parsed, Err *err);
 
 /* Writes a page about a tree, with all fields that can be derived, all columns of its file and all
