@@ -249,6 +249,43 @@ test_names_that_there_are_none_of() {
     expect_sentence "help.ini:1: 'help' is not an option of render that a recipe may give"
 }
 
+# All that a recipe may name: trees, values, maps, looks, domains, recipes of commands.
+test_paths_start_at_the_folder_of_the_recipe() {
+    mkdir f f/sub
+    run_ok corcast grow --terminals 12 --quiet -o f/sub/t.swc
+    printf '0 0\n30 0\n30 30\n0 30\n' >f/sub/square.csv
+    printf 'id,v\n' >f/sub/v.csv
+    awk '!/^#/ && $7 > 0 { print $1 ",", $1 % 5 }' f/sub/t.swc | tr -d ' ' >>f/sub/v.csv
+    printf '0 0 0\n1 0 0\n' >f/sub/map.txt
+    cp "$REPO/templates/looks/journal.ini" f/sub/look.ini
+    printf '[grow]\nterminals = 7\n' >f/sub/few.ini
+    cat >f/all.ini <<'END'
+[figure]
+size = 200x200
+columns = 2
+letters = none
+[panel values]
+tree = sub/t.swc
+color-by = sub/v.csv:v
+colormap = ./sub/map.txt
+look = ./sub/look.ini
+[panel recipe]
+grow = --recipe sub/few.ini
+[panel refined]
+refine = sub/t.swc
+[panel domain]
+grow = --domain polygon:sub/square.csv --terminals 9
+END
+    run_ok corcast figure f/all.ini --quiet -o outside.png
+    (cd f && corcast figure all.ini --quiet -o ../inside.png) || fail "expected a figure from inside of the folder"
+    pngtopnm outside.png >a.ppm
+    pngtopnm inside.png >b.ppm
+    expect_same a.ppm b.ppm
+    run corcast figure f/all.ini --quiet -o again.png --dump-recipe
+    grep -q '^tree = sub/t.swc$' stdout || fail "expected the recipe's own path, got $(cat stdout)"
+    grep -q '^color-by = sub/v.csv:v$' stdout || fail "expected the recipe's own path, got $(cat stdout)"
+}
+
 # One whose inset shows nothing is drawn without a word: the page shows where it lies.
 test_a_panel_that_shows_no_vessel_is_drawn_with_a_warning() {
     run_ok corcast grow --terminals 12 --quiet -o t.swc

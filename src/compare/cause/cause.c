@@ -13,26 +13,27 @@
 
 enum { REACH = 48, BLOCK = 64 };
 
-static void take_block(const Picture *a, const Picture *b, int x, int y, size_t step, size_t *seen,
-                       Samples *samples)
+/* Takes each `step`-th pixel that differs of a row. Blocks that are equal are skipped at once. */
+static void take_row(const Picture *a, const Picture *b, int y, size_t step, size_t *seen,
+                     Samples *samples)
 {
-    int end = x + BLOCK < a->width ? x + BLOCK : a->width;
-    if (picture_rows_equal(a, b, y, x, end - x))
-        return;
-    for (; x < end && samples->n < CAUSE_SAMPLES; x++)
-        if (!picture_rows_equal(a, b, y, x, 1) && (*seen)++ % step == 0)
-            samples->at[samples->n++] = (PixelPlace){.x = x, .y = y};
+    for (int x = 0, end; x < a->width; x = end) {
+        end = x + BLOCK < a->width ? x + BLOCK : a->width;
+        if (picture_rows_equal(a, b, y, x, end - x))
+            continue;
+        for (; x < end && samples->n < CAUSE_SAMPLES; x++)
+            if (!picture_rows_equal(a, b, y, x, 1) && (*seen)++ % step == 0)
+                samples->at[samples->n++] = (PixelPlace){.x = x, .y = y};
+    }
 }
 
 static void choose_samples(const Picture *a, const Picture *b, size_t differing, Samples *samples)
 {
     size_t step = (differing + CAUSE_SAMPLES - 1) / CAUSE_SAMPLES, seen = 0;
     samples->n = 0;
-    for (int y = 0; y < a->height; y++) {
-        bool equal = picture_rows_equal(a, b, y, 0, a->width);
-        for (int x = 0; x < a->width && !equal; x += BLOCK)
-            take_block(a, b, x, y, step, &seen, samples);
-    }
+    for (int y = 0; y < a->height; y++)
+        if (!picture_rows_equal(a, b, y, 0, a->width))
+            take_row(a, b, y, step, &seen, samples);
 }
 
 static int code_at(const Picture *picture, int x, int y, int c)
@@ -55,32 +56,31 @@ typedef struct Turn {
     const char *sentence;
 } Turn;
 
-/* Adds the differences of a pixel of B without the turn and with it. */
+/* Adds the differences of a pixel of B without the turn, sums[0], and with it, sums[1]. */
 static void add_turned(const Picture *a, const Picture *b, const Turn *turn, int x, int y,
-                       double *before, double *after)
+                       double sums[2])
 {
     int u = turn->mirrored ? a->width - 1 - x : x, v = turn->upended ? a->height - 1 - y : y;
     for (int c = 0; c < a->channels; c++) {
         int code = code_at(b, x, y, c);
-        *before += abs(code - code_at(a, x, y, c));
-        *after += abs(code - code_at(a, u, v, turn->from[c]));
+        sums[0] += abs(code - code_at(a, x, y, c));
+        sums[1] += abs(code - code_at(a, u, v, turn->from[c]));
     }
 }
 
 static bool is_turned(const Picture *a, const Picture *b, const Samples *samples, const Turn *turn)
 {
-    double before = 0, after = 0;
+    double few[2] = {0}, all[2] = {0};
     if (a->channels == 1 && turn->from[0] != 0)
         return false;
     for (int i = 0; i < samples->n; i++)
-        add_turned(a, b, turn, samples->at[i].x, samples->at[i].y, &before, &after);
-    if (!leaves(before, after, 0.05))
+        add_turned(a, b, turn, samples->at[i].x, samples->at[i].y, few);
+    if (!leaves(few[0], few[1], 0.05))
         return false;
-    before = after = 0;
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++)
-            add_turned(a, b, turn, x, y, &before, &after);
-    return leaves(before, after, 0.02);
+            add_turned(a, b, turn, x, y, all);
+    return leaves(all[0], all[1], 0.02);
 }
 
 static void find_turn(const Picture *a, const Picture *b, const Samples *samples, Sentence *out)
@@ -115,23 +115,24 @@ static bool differs_by(const Picture *a, const Picture *b, int x, int y, const S
 }
 
 /* A sample of A, with its codes. */
-typedef struct Sample {
+typedef struct ShiftSample {
     int x, y, codes[3];
     double off; /* from B, without a shift */
-} Sample;
+} ShiftSample;
 
 static int most_off_first(const void *left, const void *right)
 {
-    const Sample *a = left, *b = right;
+    const ShiftSample *a = left, *b = right;
     return (a->off < b->off) - (a->off > b->off);
 }
 
-static void take_samples(const Picture *a, const Picture *b, const Samples *samples, Sample *out)
+static void take_samples(const Picture *a, const Picture *b, const Samples *samples,
+                         ShiftSample *out)
 {
     static const Shift none = {0};
     for (int i = 0; i < samples->n; i++) {
         int x = samples->at[i].x, y = samples->at[i].y;
-        out[i] = (Sample){.x = x, .y = y};
+        out[i] = (ShiftSample){.x = x, .y = y};
         for (int c = 0; c < a->channels; c++)
             out[i].codes[c] = code_at(a, x, y, c);
         differs_by(a, b, x, y, &none, &out[i].off);
@@ -141,7 +142,7 @@ static void take_samples(const Picture *a, const Picture *b, const Samples *samp
 
 /* The mean over the samples that stay within the picture, infinite where fewer than three in four
  * do, or as soon as the sum is as large as `limit`. */
-static double off_when_shifted(const Picture *b, const Sample *samples, int n, int dx, int dy,
+static double off_when_shifted(const Picture *b, const ShiftSample *samples, int n, int dx, int dy,
                                double limit)
 {
     double sum = 0;
@@ -159,7 +160,7 @@ static double off_when_shifted(const Picture *b, const Sample *samples, int n, i
     return 4 * inside >= 3 * n && inside > 0 ? sum / inside : (double)INFINITY;
 }
 
-static Shift search_shifts(const Picture *b, const Sample *samples, int n)
+static Shift search_shifts(const Picture *b, const ShiftSample *samples, int n)
 {
     Shift best = {.off = off_when_shifted(b, samples, n, 0, 0, (double)INFINITY)};
     for (int dy = -REACH; dy <= REACH; dy++)
@@ -177,7 +178,7 @@ static Shift search_shifts(const Picture *b, const Sample *samples, int n)
 Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples)
 {
     enum { FEW = 64 };
-    Sample taken[CAUSE_SAMPLES], few[FEW];
+    ShiftSample taken[CAUSE_SAMPLES], few[FEW];
     take_samples(a, b, samples, taken);
     const Shift none = {.off = off_when_shifted(b, taken, samples->n, 0, 0, (double)INFINITY)};
     if (samples->n <= FEW)
