@@ -91,6 +91,26 @@ test_a_printed_recipe_makes_the_same_figure() {
     grep -q '^text-size = 6.5$' again/all.ini || fail "expected what the command line says in the recipe"
 }
 
+# Configurations of fontconfig: none, and one that asks for other smoothing and other fonts.
+test_a_figure_has_the_same_bytes_whatever_fontconfig_says() {
+    local form configuration
+    write_recipe
+    printf '%s\n' '<?xml version="1.0"?>' '<fontconfig><match target="font">' \
+        '<edit name="antialias" mode="assign"><bool>false</bool></edit>' \
+        '<edit name="hinting" mode="assign"><bool>true</bool></edit>' \
+        '<edit name="rgba" mode="assign"><const>rgb</const></edit></match></fontconfig>' >fonts.conf
+    for form in pdf svg png; do
+        run_ok corcast figure folder/all.ini --quiet --dpi 60 -o usual.$form
+        for configuration in /dev/null "$PWD/fonts.conf" "$PWD/none"; do
+            run env HOME="$PWD/none" XDG_CACHE_HOME="$PWD/none" FONTCONFIG_PATH="$PWD/none" FONTCONFIG_FILE="$configuration" \
+                "$CORCAST" figure folder/all.ini --quiet --dpi 60 -o other.$form
+            expect_status 0
+            [ ! -s stderr ] || fail "expected no message, got: $(head -1 stderr)"
+            expect_same usual.$form other.$form
+        done
+    done
+}
+
 test_a_printed_recipe_of_render_makes_the_same_picture() {
     run_ok corcast grow --terminals 40 --seed 5 --quiet -o tree.swc
     run_ok corcast render tree.swc --quiet --size 171x153 --color-by wss --range 5%,95% --legend --text-size 3 \

@@ -190,16 +190,27 @@ Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *sample
     return moved ? search_shifts(b, taken, samples->n) : none;
 }
 
-static double off_by(const Picture *a, const Picture *b, const Shift *shift, const Shift *common)
+/* Sums of |b - a| over the pixels that both pictures have with a shift and without. */
+typedef struct ShiftTrial {
+    double before, after; /* without the shift, and with it */
+    double made;          /* with the shift, of pixels that are equal without it */
+} ShiftTrial;
+
+static ShiftTrial try_shift(const Picture *a, const Picture *b, const Shift *shift)
 {
-    double sum = 0;
+    static const Shift none = {0};
+    ShiftTrial trial = {0};
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++) {
-            int u = x + common->dx, v = y + common->dy;
-            if (u >= 0 && u < b->width && v >= 0 && v < b->height)
-                differs_by(a, b, x, y, shift, &sum);
+            double after = 0, there = 0;
+            if (!differs_by(a, b, x, y, shift, &after))
+                continue;
+            differs_by(a, b, x, y, &none, &trial.before);
+            differs_by(a, b, x + shift->dx, y + shift->dy, &none, &there);
+            trial.after += after;
+            trial.made += there == 0 ? after : 0;
         }
-    return sum;
+    return trial;
 }
 
 bool cause_is_same_saturation(double aa, double ab)
@@ -230,7 +241,10 @@ static bool has_shifted_saturation(const Picture *a, const Picture *b, const Shi
     return cause_is_same_saturation(aa / (level * level), ab / (level * level));
 }
 
-void cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
+/* A part of the picture that was not moved contradicts a shift, however little the part shows:
+ * there the pictures are equal without the shift, and the shift makes them differ. So at most half
+ * of the differences that are left may be made by the shift. */
+bool cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
                  Sentence *out)
 {
     static const Shift none = {0};
@@ -238,13 +252,17 @@ void cause_shift(const Picture *a, const Picture *b, const Samples *samples, con
     for (int i = 0; i < samples->n; i++)
         differs_by(a, b, samples->at[i].x, samples->at[i].y, &none, &before);
     if (!leaves(before, shift->off * samples->n, 0.05))
-        return;
-    before = off_by(a, b, &none, shift);
-    double after = off_by(a, b, shift, shift);
-    if (leaves(before, after, 0.02) && (after == 0 || has_shifted_saturation(a, b, shift)))
+        return false;
+    const ShiftTrial trial = try_shift(a, b, shift);
+    if (!leaves(trial.before, trial.after, 0.02))
+        return false;
+    if (trial.made > trial.after / 2)
+        return true;
+    if (trial.after == 0 || has_shifted_saturation(a, b, shift))
         snprintf(out->text, out->size,
                  "B is %sA moved by (%d, %d) pixels, right and down being positive",
-                 after > 0 ? "nearly " : "", shift->dx, shift->dy);
+                 trial.after > 0 ? "nearly " : "", shift->dx, shift->dy);
+    return false;
 }
 
 /* ---- all of them ----------------------------------------------------------------------------- */
@@ -260,13 +278,12 @@ Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, 
     if (!*out.text)
         TRY(cause_background(a, b, &samples, &out, err));
     const Shift shift = *out.text ? (Shift){0} : cause_best_shift(a, b, &samples);
-    if (!*out.text)
-        cause_shift(a, b, &samples, &shift, &out);
+    const bool partly_moved = !*out.text && cause_shift(a, b, &samples, &shift, &out);
     if (!*out.text && result->values[MEASURE_MAX_CODE] <= 1)
         snprintf(out.text, out.size, "only rounding differs: no code is off by more than 1");
     if (!*out.text)
         TRY(cause_tone(a, b, &samples, &out, err));
-    if (!*out.text)
+    if (!*out.text && !partly_moved)
         TRY(cause_warp(a, b, &samples, &shift, &out, err));
     return *out.text ? STATUS_OK : cause_place(a, b, &samples, result, &out, err);
 }

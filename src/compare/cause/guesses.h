@@ -36,9 +36,9 @@ Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *sample
 bool cause_is_same_saturation(double aa, double ab);
 
 /* Moved by whole pixels: the shift leaves less than a fiftieth of the differences where both
- * pictures have pixels, and colours are as far from grey as before. Cost O(1), or O(pixels) if the
- * samples agree. */
-void cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
+ * pictures have pixels, and colours are as far from grey as before. Returns true if a part of the
+ * picture was moved and another part was not. Cost O(1), or O(pixels) if the samples agree. */
+bool cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
                  Sentence *out);
 /* Moved by fractions of pixels (`start` is near), blurred or sharpened. Cost O(1). Errors:
  * STATUS_MEMORY, as of all guesses below. */
