@@ -306,20 +306,8 @@ static Status write_picture(const Figure *figure, const Picture *picture, Err *e
 {
     const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", figure->sheet.notes.command}};
     const ImageNotes all = {.notes = notes, .count = 2, .dpi = figure->sheet.page.dpi};
-    const ImageForm form = {.width = picture->width,
-                            .height = picture->height,
-                            .channels = 3,
-                            .bits = picture->bits,
-                            .encoding = ENCODING_SRGB,
-                            .notes = &all,
-                            .packing = figure->press.packing};
-    ImageWriter *writer;
-    TRY(imagewriter_open(&writer, figure->options->output, &form, err));
-    Status status = imagewriter_codes(writer, picture, err);
-    if (status == STATUS_OK)
-        return imagewriter_commit(writer, err);
-    imagewriter_discard(writer);
-    return status;
+    return picture_write(picture, figure->options->output, ENCODING_SRGB, &all,
+                         &figure->press.packing, err);
 }
 
 /* The page as pixels. */
