@@ -12,7 +12,7 @@
 
 typedef struct CheckOptions {
     const char *preset;
-    FigureKind kind;
+    ContentKind kind;
     bool json;
 } CheckOptions;
 
@@ -23,7 +23,7 @@ static const Option own[] = {
      .help = "the publisher: a file of templates/presets, or a path"},
     {.name = "kind",
      SETS(CHOICE, CheckOptions, kind),
-     .choices = figure_kinds,
+     .choices = content_kinds,
      .help = "shades, shades with lines or letters in their pixels, or lines alone"},
     {.name = "json", SETS(FLAG, CheckOptions, json), .help = "on standard output"},
 };
@@ -33,7 +33,7 @@ static const OptionTable own_table = OPTION_TABLE(own);
 /* What has been found, a line each. */
 typedef struct Findings {
     const Preset *preset;
-    FigureKind kind;
+    ContentKind kind;
     const char *path;
     Text refused, unchecked;
     int n_refused;
@@ -74,7 +74,7 @@ static void check_resolution(Findings *all, double dpi, const char *of)
     double least = preset->least_dpi[all->kind];
     if (dpi < 0.99 * least)
         refuse(all, "resolution: %.4g dpi%s, less than %g for %s", dpi, of, least,
-               figure_kinds[all->kind]);
+               content_kinds[all->kind]);
     if (preset->most_dpi > 0 && dpi > 1.01 * preset->most_dpi)
         refuse(all, "resolution: %.4g dpi%s, more than %g", dpi, of, preset->most_dpi);
 }
@@ -259,7 +259,7 @@ static Status print_json(Findings *all, const CheckOptions *options, Err *err)
 {
     const JsonMember members[] = {{"file", json_text(file_name(all->path))},
                                   {"preset", json_text(options->preset)},
-                                  {"kind", json_text(figure_kinds[options->kind])},
+                                  {"kind", json_text(content_kinds[options->kind])},
                                   {"accepted", json_boolean(all->n_refused == 0)},
                                   {"refused", json_lines(&all->refused)},
                                   {"not_checked", json_lines(&all->unchecked)}};

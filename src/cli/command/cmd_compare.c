@@ -424,24 +424,16 @@ Status run_compare(void *options, Parsed *parsed, Err *err)
 {
     CompareOptions *own_options = options;
     bool agrees;
-    TRY(compare_check_folders(own_options, parsed, err));
     if (own_options->reference)
         return compare_folders(own_options, parsed, err);
+    if (parsed->n_operands != 2)
+        return err_set(err, STATUS_USAGE,
+                       "compare needs two files, A and B, or --reference and one folder");
     if (own_options->noise || own_options->variance)
         return compare_noisy(own_options, parsed, err);
     PlaneKind kind =
         own_options->kind == PLANE_KINDS ? kind_of(parsed->operands[0]) : own_options->kind;
-    bool color = kind == PLANE_COLOR;
-    const OptionNeed needs[] = {{"depth-mm", kind == PLANE_DEPTH, "is for two depth planes"},
-                                {"levels", color, "is for two pictures"},
-                                {"background", color, "is for two pictures"},
-                                {"pixelmatch", color, "is for two pictures"},
-                                {"bits", color, "is for two pictures"},
-                                {"layer", kind != PLANE_ID, "is for other planes than ids"},
-                                {"ids-a", kind != PLANE_ID, "is for other planes than ids"},
-                                {"ids-b", kind != PLANE_ID, "is for other planes than ids"},
-                                {0}};
-    TRY(options_check_needs(parsed, needs, err));
+    TRY(options_refuse(parsed, compare_unmet(kind), err));
     TRY(check_options(own_options, kind, err));
     TRY(command_line_text(parsed, &own_options->line, err));
     if (!own_options->has_metrics)

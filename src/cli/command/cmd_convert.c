@@ -30,12 +30,14 @@ static const Option own[] = {
      SETS(TEXT, ConvertOptions, values),
      .group = GROUP_FILES,
      .argument = "FILE[:COLUMN]",
+     .when = WHEN(TREE),
      .help = "values of the tree's segments by id, from a CSV or a folder of svOneDSolver"},
     {.name = "fields",
      SETS(TEXT, ConvertOptions, fields),
      .group = GROUP_FILES,
      .argument = "all|NAME,...",
      .list = "fields",
+     .when = WHEN(TREE),
      .help = "what follows from the tree, and is to be in its file as columns"},
     {.name = "dpi",
      SETS(NUMBER, ConvertOptions, dpi),
@@ -43,6 +45,7 @@ static const Option own[] = {
      .group = GROUP_PRESS,
      .argument = "N",
      .otherwise = "",
+     .when = WHEN(KEEPS_DPI),
      .help = "pixels an inch on paper, kept in a .png, .tif or .jpg"},
     {.name = "background",
      SETS(COLOR, ConvertOptions, background),
@@ -51,8 +54,6 @@ static const Option own[] = {
      .otherwise = "none",
      .help = "what a transparent picture is laid on"},
 };
-
-static const OptionTable own_table = OPTION_TABLE(own);
 
 static void set_defaults(void *options)
 {
@@ -84,7 +85,7 @@ static Status join_values(const ConvertOptions *options, Parsed *parsed, Tree *t
 static Status join_fields(const ConvertOptions *options, const Parsed *parsed, Tree *tree, Err *err)
 {
     if (!options->fields)
-        return blood_refuse(parsed, "needs --fields", err);
+        return STATUS_OK;
     const TreeMeta said = blood_said(&options->blood);
     TRY(blood_settle(&options->blood, parsed, tree, err));
     return field_columns_add(tree, &said, options->fields, parsed->common.quiet, err);
@@ -251,17 +252,6 @@ static Status unknown_kind(const char *path, Err *err)
     return status;
 }
 
-/* STATUS_USAGE for what has no effect on an image of this name. */
-static Status check_press(const ConvertOptions *options, const char *to, const Parsed *parsed,
-                          Err *err)
-{
-    const OptionNeed needs[] = {{"dpi", image_traits(to).keeps_dpi && !image_traits(to).floats,
-                                 "is for .png, .tif and .jpg"},
-                                {0}};
-    TRY(options_check_needs(parsed, needs, err));
-    return press_check(&options->press, to, parsed, err);
-}
-
 Status run_convert(void *options, Parsed *parsed, Err *err)
 {
     const ConvertOptions *own_options = options;
@@ -273,23 +263,27 @@ Status run_convert(void *options, Parsed *parsed, Err *err)
         return err_set(err, STATUS_USAGE,
                        "'%s' cannot become '%s': a tree and an image are different things", from,
                        to);
-    if (kind == FILE_TREE) {
-        const OptionNeed picture[] = {
-            {"dpi", false, "is for pictures"}, {"background", false, "is for pictures"}, {0}};
-        TRY(options_check_needs(parsed, picture, err));
-        TRY(press_refuse(parsed, "is for pictures", err));
+    if (kind == FILE_TREE)
         return convert_tree(own_options, parsed, err);
-    }
-    const OptionNeed needs[] = {
-        {"values", false, "is for trees"}, {"fields", false, "is for trees"}, {0}};
-    TRY(options_check_needs(parsed, needs, err));
-    TRY(reading_refuse(parsed, "is for trees", err));
-    TRY(blood_refuse(parsed, "is for trees", err));
-    TRY(check_press(own_options, to, parsed, err));
+    TRY(press_check(&own_options->press, to, err));
     return kind == FILE_PICTURE
                ? convert_picture(own_options, from, to, parsed->common.threads, err)
                : convert_plane(own_options, from, to, err);
 }
+
+/* The output's kind decides which options have an effect. */
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    const char *to = options_output(parsed);
+    if (!to || kind_of(to) == FILE_UNKNOWN)
+        return 0;
+    if (kind_of(to) == FILE_TREE)
+        return WHEN(PICTURE) | UNLESS(((const ConvertOptions *)set)->fields, FIELDS);
+    const ImageTraits traits = image_traits(to);
+    return WHEN(TREE) | UNLESS(traits.keeps_dpi && !traits.floats, KEEPS_DPI);
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
 
 const Command command_convert = {
     .name = "convert",

@@ -42,8 +42,10 @@ static const Option own[] = {
      SETS(SIZE, DiagramOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
+     .when = WHEN(PIXELS),
      .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
     {DPI_OF_SIZE(DiagramOptions, size), .group = GROUP_CAMERA,
+     .when = WHEN(PIXELS) | WHEN(ON_PAPER_OR_KEPT),
      .help = "pixels an inch on paper, which .png, .tif and .jpg keep"},
     {.name = "margin",
      SETS(NUMBER, DiagramOptions, margin),
@@ -61,7 +63,21 @@ static const Option own[] = {
      .help = "sRGB, each from 0 to 1"},
 };
 
-static const OptionTable own_table = OPTION_TABLE(own);
+static bool is_svg(const DiagramOptions *options)
+{
+    return strcmp(file_extension(options->output), "svg") == 0;
+}
+
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    const DiagramOptions *options = set;
+    if (!options->output)
+        return 0;
+    return is_svg(options) ? WHEN(PIXELS)
+                           : picture_unmet_dpi(&options->size, options_output(parsed));
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
 
 static void set_defaults(void *options)
 {
@@ -172,22 +188,11 @@ done:
     return status;
 }
 
-static bool is_svg(const DiagramOptions *options)
+static Status check(const DiagramOptions *options, Err *err)
 {
-    return strcmp(file_extension(options->output), "svg") == 0;
-}
-
-static Status check(const DiagramOptions *options, const Parsed *parsed, Err *err)
-{
-    static const char of_pixels[] = "is for pixels; an .svg is true to size";
-    const OptionNeed needs[] = {
-        {"size", !is_svg(options), of_pixels}, {"dpi", !is_svg(options), of_pixels}, {0}};
-    TRY(options_check_needs(parsed, needs, err));
-    TRY(coloring_check_needs(&options->coloring, parsed, err));
     if (is_svg(options))
-        return press_refuse(parsed, of_pixels, err);
-    TRY(picture_check_dpi(&options->size, options->output, parsed, err));
-    TRY(press_check(&options->press, options->output, parsed, err));
+        return STATUS_OK;
+    TRY(press_check(&options->press, options->output, err));
     return frames_check_output(options->output, false, err);
 }
 
@@ -198,7 +203,7 @@ Status run_diagram(void *options, Parsed *parsed, Err *err)
     char *command = NULL;
     Status status;
     Press press = {0};
-    TRY(check(own_options, parsed, err));
+    TRY(check(own_options, err));
     TRY(press_open(&own_options->press, own_options->output, parsed->common.threads, &press, err));
     TRY_GOTO(make_drawing(own_options, parsed, &drawing, err));
     TRY_GOTO(command_line_text(parsed, &command, err));

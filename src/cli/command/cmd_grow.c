@@ -113,6 +113,7 @@ static const Option own[] = {
     {.name = "bound",
      SETS(FLAG, GrowOptions, bound),
      .group = GROUP_OPTIMUM,
+     .needs = "json",
      .help = "--json also says how low the target of this topology can get, as certify proves"},
     {.name = "stages",
      SETS(INPUT, GrowOptions, stages),
@@ -166,9 +167,6 @@ Status run_grow(void *options, Parsed *parsed, Err *err)
         TRY_GOTO(err_set(err, STATUS_USAGE,
                          "--refine: would give --stages one law; use corcast refine afterwards"));
     TRY_GOTO(refining_check_growing(refining, growing, err));
-    const OptionNeed needs[] = {{"bound", own_options->json != NULL, "needs --json"}, {0}};
-    TRY_GOTO(options_check_needs(parsed, needs, err));
-    TRY_GOTO(refining_check(refining, parsed, err));
     TRY_GOTO(growing_prepare(growing, parsed, err));
     if (own_options->stages)
         TRY_GOTO(staging_grow(own_options->stages, growing, parsed, &tree, &report, &why, err));

@@ -128,6 +128,7 @@ static const Option own[] = {
     {.name = "bound",
      SETS(FLAG, InfoOptions, bound),
      .group = GROUP_OPTIMUM,
+     .needs = "json",
      .help = "with --json, how low the target of this topology can get, as certify proves"},
     {.name = "morphometry",
      SETS(LOOKUP, InfoOptions, morphometry),
@@ -193,8 +194,6 @@ Status run_info(void *options, Parsed *parsed, Err *err)
     Status status = STATUS_OK;
     Tree tree = {0};
     Findings found = {0};
-    const OptionNeed needs[] = {{"bound", own_options->json, "needs --json"}, {0}};
-    TRY(options_check_needs(parsed, needs, err));
     TRY(reading_tree(parsed, parsed->operands[0], &tree, &found.reading, err));
     TRY_GOTO(blood_settle(&own_options->blood, parsed, &tree, err));
     TRY_GOTO(find_out(own_options, &tree, &found, err));

@@ -254,13 +254,9 @@ static Status print(const PowerOptions *options, const Power *power, Err *err)
 }
 
 /* STATUS_USAGE unless the commands have their marks. */
-static Status check(const PowerOptions *options, const Parsed *parsed, Err *err)
+static Status check(const PowerOptions *options, Err *err)
 {
     const bool own_rule = options->verdict == NULL;
-    static const char instead[] = "and --verdict are two rules; one can be asked";
-    const OptionNeed needs[] = {{"tier", own_rule, instead},       {"tolerance", own_rule, instead},
-                                {"levels", own_rule, instead},     {"ppm", own_rule, instead},
-                                {"pixelmatch", own_rule, instead}, {0}};
     if (!options->render || !strstr(options->render, "{}"))
         return err_set(err, STATUS_USAGE,
                        "--render is a command with {} for the file that it draws into, as "
@@ -269,7 +265,7 @@ static Status check(const PowerOptions *options, const Parsed *parsed, Err *err)
         return err_set(err, STATUS_USAGE,
                        "--verdict is a command with {a} and {b} for the two pictures, as "
                        "--verdict 'idiff -fail 0.004 {a} {b}'");
-    return options_check_needs(parsed, needs, err);
+    return STATUS_OK;
 }
 
 Status run_power(void *options, Parsed *parsed, Err *err)
@@ -278,7 +274,7 @@ Status run_power(void *options, Parsed *parsed, Err *err)
     Place place = {0};
     Power power = {0};
     Status status = STATUS_OK;
-    TRY(check(own_options, parsed, err));
+    TRY(check(own_options, err));
     TRY_GOTO(open_place(&place, own_options->extension, err));
     TRY_GOTO(measure(own_options, &place, parsed, &power, err));
     TRY_GOTO(print(own_options, &power, err));

@@ -88,7 +88,6 @@ Status run_refine(void *options, Parsed *parsed, Err *err)
     const RefineOptions *own_options = options;
     const Refining *refining = &own_options->refining;
     TRY(tree_format_check(own_options->output, err));
-    TRY(refining_check(refining, parsed, err));
     Tree tree = {0};
     Domain domain = {0};
     bool has_domain;

@@ -297,13 +297,12 @@ static void set_defaults(void *options)
     own_options->kernels = KERNELS_FASTEST;
 }
 
-static Status check(const VerifyOptions *options, const Parsed *parsed, Err *err)
+static Status check(const VerifyOptions *options, Err *err)
 {
     const PictureOptions *picture = &options->picture;
     if (strcmp(options->folder, "-") == 0)
         return err_set(err, STATUS_USAGE, "-o: a report is a folder, not standard output");
     TRY(bits_check(options->bits, err));
-    TRY(picture_check_needs(picture, parsed, err));
     TRY(picture_check_povray(picture, err));
     if (options->witness == WITNESS_TACHYON)
         TRY(emit_check_model(emitter_find("tachyon", false), (SceneModel)picture->model, err));
@@ -375,7 +374,7 @@ Status run_verify(void *options, Parsed *parsed, Err *err)
                       .kernels = own_options->kernels,
                       .asks_witness = own_options->witness == WITNESS_TACHYON};
     Folder folder = {own_options->folder, -1};
-    TRY(check(own_options, parsed, err));
+    TRY(check(own_options, err));
     TRY_GOTO(verification_add_command(&v, &command, err));
     TRY_GOTO(command_line_text(parsed, command, err));
     own_options->picture.coloring.frame = 0; /* the scene for POV-Ray has all */

@@ -16,8 +16,6 @@ typedef struct VolumeOptions {
 
 extern const OptionTable volume_table; /* sets a VolumeOptions */
 
-/* STATUS_USAGE for an option about volumes where the file is none, or about colours where it is. */
-MUST_CHECK Status volumes_check_needs(bool is_volume, const Parsed *parsed, Err *err);
 /* Appends the extensions of volumes: ".nii.gz, .nii". */
 void volumes_extensions(Text *out);
 

@@ -11,10 +11,6 @@
  * values. */
 enum { WEBPAGE_MOST_SEGMENTS = 200000, WEBPAGE_MOST_BYTES = 100000000 };
 
-/* STATUS_USAGE for an option of the command line about colours that has no effect on a page. Those
- * on blood have one, on the fields that it holds. */
-MUST_CHECK Status webpage_check_needs(const Coloring *coloring, const Parsed *parsed, Err *err);
-
 /* Writes the page about a tree to `output`: with all fields that can be derived, all columns of its
  * file and all colour maps, opened with what the coloring asks for. Says on standard error, unless
  * quiet, which fields are left out. STATUS_INFEASIBLE when there are too many segments or

@@ -28,9 +28,12 @@ typedef struct Shard {
     HashText made_from;
 } Shard;
 
-/* STATUS_USAGE for options that fight each other, and for parts in a file that holds no notes;
- * `animated`: there are several pictures. */
-MUST_CHECK Status shard_check(const ShardOptions *options, bool animated, const FramesForm *form,
+/* Whether the file is a part of a picture, or may be kept as one. */
+bool shard_is_asked(const ShardOptions *options);
+/* Checks the file that is a part, and the number of tiles.
+ * Errors  STATUS_USAGE when the format of the file holds no notes, when the picture has fewer rows
+ *         than tiles need, and for commands about a tree from standard input. */
+MUST_CHECK Status shard_check(const ShardOptions *options, const FramesForm *form,
                               const Parsed *parsed, Err *err);
 
 /* The part that --tile asks for of a picture of `height` rows, without hash. All tiles together are

@@ -14,9 +14,6 @@ typedef struct Refining {
 
 extern const OptionTable refining_table; /* sets a Refining; a zeroed one is no refinement */
 
-/* STATUS_USAGE for bounds of a refinement that nobody asks for. */
-MUST_CHECK Status refining_check(const Refining *refining, const Parsed *parsed, Err *err);
-
 /* STATUS_USAGE for growth whose tree cannot be refined: refinement moves all nodes of a tree. */
 MUST_CHECK Status refining_check_growing(const Refining *refining, const Growing *growing,
                                          Err *err);

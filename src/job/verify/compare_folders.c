@@ -54,33 +54,3 @@ done:
     free(tier_name);
     return status;
 }
-
-Status compare_check_folders(const CompareOptions *options, const Parsed *parsed, Err *err)
-{
-    const bool pair = options->reference == NULL;
-    const OptionNeed needs[] = {
-        {"html", pair, "is for two pictures, not for --reference"},
-        {"report", pair, "is for two pictures, not for --reference"},
-        {"output", pair, "is for two pictures, not for --reference"},
-        {"difference", pair, "is for two pictures, not for --reference"},
-        {"flicker", pair, "is for two pictures, not for --reference"},
-        {"ledger", pair, "is for two pictures, not for --reference"},
-        {"ids-a", pair, "is for two pictures, not for --reference"},
-        {"ids-b", pair, "is for two pictures, not for --reference"},
-        {"kind", pair, "is for two files, not for --reference"},
-        {"layer", pair, "is for two files, not for --reference"},
-        {"bits", pair, "is for two files, not for --reference"},
-        {"metrics", pair, "is for two files, not for --reference"},
-        {"noise", pair, "is for two files, not for --reference"},
-        {"variance", pair, "is for two files, not for --reference"},
-        {"variance", !options->noise, "and --noise both give the variance"},
-        {"alarms", options->noise || options->variance, "needs --noise or --variance"},
-        {"accept", !pair, "needs --reference"},
-        {"reason", !pair, "needs --reference"},
-        {0}};
-    TRY(options_check_needs(parsed, needs, err));
-    if (pair && parsed->n_operands != 2)
-        return err_set(err, STATUS_USAGE,
-                       "compare needs two files, A and B, or --reference and one folder");
-    return STATUS_OK;
-}

@@ -34,6 +34,8 @@ typedef struct CompareOptions {
 
 extern const OptionTable compare_options;
 void compare_set_defaults(void *options);
+/* Returns the conditions of options that do not hold for two files of this kind. */
+ConditionSet compare_unmet(PlaneKind kind);
 
 /* The tier, then the file, then single limits, each over the one before; depth_mm, of depth planes,
  * 0 where it is not given. *name owns the tier's name
@@ -47,9 +49,5 @@ MUST_CHECK Status compare_noisy(const CompareOptions *options, const Parsed *par
 /* Holds a folder of pictures against that of references, or accepts a picture as one;
  * STATUS_DIFFERS when they disagree. */
 MUST_CHECK Status compare_folders(const CompareOptions *options, const Parsed *parsed, Err *err);
-
-/* STATUS_USAGE for options that folders do not have, or that only they have. */
-MUST_CHECK Status compare_check_folders(const CompareOptions *options, const Parsed *parsed,
-                                        Err *err);
 
 #endif
