@@ -8,6 +8,7 @@
 # CFLAGS, CPPFLAGS, LDFLAGS   further flags, from the environment or the command line; they follow the Makefile's own
 
 MODE ?= release
+comma := ,
 PREFIX ?= /usr/local
 CC ?= cc
 JOBS ?= $(shell nproc)
@@ -54,6 +55,10 @@ OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
 OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 OPTIMISE_fuzz := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+# Handles that were freed are found where speed does not matter [src/api/handle.c].
+FIND_FREED := $(if $(filter debug asan fuzz,$(MODE)),-DCORCAST_DEBUG)
+# A sanitizer's runtime is in the program.
+DEFINED := $(if $(filter release debug,$(MODE)),-Wl$(comma)-z$(comma)defs)
 OPTIMISE_tsan := -O1 -g -fsanitize=thread
 VECTORS_release := -O3 -fno-math-errno -fno-trapping-math
 PACKAGES := libpng libdeflate libisal zlib libtiff-4 libjpeg libwebp lcms2 jansson expat libmd cairo-ft freetype2 liblz4
@@ -77,15 +82,15 @@ $(error $(INEXACT) changes results, which are to be the same bytes everywhere: l
 endif
 # The Makefile's own flags; the caller's CFLAGS, CPPFLAGS and LDFLAGS follow them.
 VECTORS :=
-OWN_CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -fPIE $(WARNINGS)
-OWN_CPPFLAGS := -Isrc -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-config --cflags $(PACKAGES) $(HEADERS) 2>/dev/null)
+OWN_CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -fPIC -fvisibility=hidden $(WARNINGS)
+OWN_CPPFLAGS := -Isrc $(FIND_FREED) -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-config --cflags $(PACKAGES) $(HEADERS) 2>/dev/null)
 OWN_LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE))) -pie -Wl,-z,relro,-z,now,-z,noexecstack
 COMPILE = $(CC) $(OWN_CPPFLAGS) $(CPPFLAGS) $(OWN_CFLAGS) $(HARDEN_$(MODE)) $(VECTORS) $(CFLAGS) $(EXACT)
 LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := build/viewer/viewer.js
 LIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all deps demo figures gallery validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
+.PHONY: all lib deps demo figures gallery validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
 .DELETE_ON_ERROR:
@@ -220,6 +225,37 @@ $(BUILD)/corcast: $(CLI_OBJECTS) $(BUILD)/rooms.a
 $(BUILD)/rooms.a: $(ROOM_OBJECTS)
 	$(call say,AR,$@)
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
+
+# The library: all modules but cli. Everything is compiled with hidden visibility, so that only what corcast.h declares is
+# seen from outside; the static library hides the rest, too.
+SONAME := libcorcast.so.0
+$(BUILD)/$(SONAME): $(BUILD)/rooms.a src/api/libcorcast.map
+	$(call say,LINK,$@)
+	$(Q)$(filter-out -pie,$(LINK)) -shared -Wl,-soname,$(SONAME) -Wl,--version-script=src/api/libcorcast.map $(DEFINED) \
+		-o $@ -Wl,--whole-archive $(BUILD)/rooms.a -Wl,--no-whole-archive $(LIBS)
+
+$(BUILD)/libcorcast.a: $(BUILD)/rooms.a
+	$(call say,AR,$@)
+	$(Q)rm -f $@ $(@:.a=.o)
+	$(Q)ld -r -o $(@:.a=.o) --whole-archive $< && objcopy --localize-hidden $(@:.a=.o) && $(AR) rcs $@ $(@:.a=.o)
+	$(Q)rm -f $(@:.a=.o)
+
+$(BUILD)/corcast.pc: src/api/corcast.pc.in src/base/version.h Makefile
+	$(Q)mkdir -p $(@D)
+	$(Q)sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|; s|@PACKAGES@|$(PACKAGES)|; s|@LIBS@|-lOpenEXRCore -lnifti2 -lznz -lpthread -lm|' $< > $@
+
+lib: build/$(SONAME) build/libcorcast.a ## the library, build/libcorcast.so.0 and build/libcorcast.a
+
+ifeq ($(MODE),release)
+build/$(SONAME): $(BUILD)/$(SONAME)
+	$(Q)cp --remove-destination $< $@
+	$(Q)ln -sf $(SONAME) build/libcorcast.so
+build/libcorcast.a: $(BUILD)/libcorcast.a
+	$(Q)cp --remove-destination $< $@
+else
+build/$(SONAME) build/libcorcast.a:
+	$(Q)$(MAKE) MODE=release $@
+endif
 
 $(BUILD)/cli.a: $(filter-out %/main.o,$(CLI_OBJECTS))
 	$(call say,AR,$@)

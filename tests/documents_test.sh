@@ -171,9 +171,9 @@ moved by up to 48 whole pixels (less than 1/50 of the differences remain @ cause
 a twenty-fifth of the squares @ cause_warp.c @ 25 * after < before
 three quarters of its rim @ cause_place.c @ 4 * lack.background >= 3 * lack.rim
 by more than 2 levels off an outline @ cause_place.c @ SLIGHT = 2
-POV-Ray sees a later root, to 0.02 r @ settle.c @ same_root_radii = 0.02;
-(cosine to the normal below 0.1) @ settle.c @ grazing_cosine = 0.1;
-shadows that count from 10⁻³ on, which is corcast's, and from 10⁻⁴ on @ settle.c @ first_slack_mm = 1e-3, cached_slack_mm = 1e-4;
+POV-Ray sees a later root, to 0.02 r @ explain.c @ root_tolerance_radii = 0.02;
+(cosine to the normal below 0.1) @ explain.c @ max_grazing_cosine = 0.1;
+shadows that count from 10⁻³ on, which is corcast's, and from 10⁻⁴ on @ explain.c @ shadow_ray_start_mm = 1e-3, shadow_cache_start_mm = 1e-4;
 no neighbouring pixel differs | 40 ppm, or 6 pixels | @ settled.c @ [SETTLED_ROOT] = {"missed root", "pixels at which POV-Ray missed a root", 40, 6},
 so far before and behind | 40 ppm, or 6 pixels | @ settled.c @ "pixels at which POV-Ray's root is a little off", 40, 6},
 as many rays as graze | 200 ppm, or 12 pixels | @ settled.c @ "pixels at which POV-Ray missed a root on the way to a light", 200, 12},
@@ -258,7 +258,7 @@ Its hits are within 2 · 10⁻⁹ radii @ joints.inc @ accuracy 2e-9 open
 no tile has more than 400,000 cylinders @ povray.c @ {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
 200,000 pieces of a joined tree, 32,768 segments of a blob @ povray.c @ {MODEL_BLOB, find_painted, put_blob_macros, put_blob, 32768},
 of a mesh, or 100,000 cells @ povray.c @ {MODEL_POTENTIAL, find_cells, put_cell_macros, put_cells, 100000},
-tile is narrower than 8 pixels @ povray_side.c @ LEAST_SIDE = 8 };
+tile is narrower than 8 pixels @ povray_tiles.c @ MIN_TILE_SIDE = 8 };
 for at most 65,536 segments @ povray_blob.c @ GROUP = 256, MAX_PAINTED = GROUP * GROUP,
 END
     # The polynomial in tanh is half of what stands in the source.

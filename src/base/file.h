@@ -1,4 +1,4 @@
-/* Whole-file reading, and writing that never leaves half a file under the final name. */
+/* Reading files whole, and writing files that appear under their final name only when complete. */
 #ifndef CORCAST_BASE_FILE_H
 #define CORCAST_BASE_FILE_H
 
@@ -9,72 +9,85 @@
 #include <stdio.h>
 #include <sys/types.h>
 
-/* What a file that is read whole may be. */
+/* The kind of file that a reader accepts. */
 typedef struct FileForm {
     const char *name;                                /* "an SWC file" */
-    double most_bytes;                               /* a larger one is refused */
-    bool is_text;                                    /* it holds no zero byte */
-    bool (*begins)(const char *start, size_t count); /* whether one may begin so; NULL: anyhow */
+    double most_bytes;                               /* the largest size that is accepted */
+    bool is_text;                                    /* a text: without zero bytes */
+    bool (*begins)(const char *start, size_t count); /* returns true if a file of this kind may
+                                                      * start with these bytes; NULL: any may */
 } FileForm;
 
-/* Reads all of `path` ("-": standard input) into *bytes (owned), zero-terminated; *size does not
- * count that zero. Of a text the byte order mark is left out, and every line end (LF, CR or CRLF)
- * is LF. STATUS_INPUT when the file is missing, a folder, or not of its form: the sentence names
- * its size, its first bytes or the first zero byte of a text; STATUS_IO when it cannot be read;
- * STATUS_MEMORY naming the file. */
+/* Reads a whole file. In a text, the byte order mark is removed, and each line end (LF, CR or CRLF)
+ * becomes LF.
+ *
+ * path     "-" is standard input.
+ * bytes    receives the content, followed by a zero byte; the caller frees it with free().
+ * size     receives the number of bytes, without the zero byte.
+ * Errors   STATUS_INPUT if the file is missing, is a folder, or is not of this form; the sentence
+ *          names its size, its first bytes, or the position of a zero byte in a text. STATUS_IO if
+ *          reading fails. STATUS_MEMORY, naming the file. */
 MUST_CHECK Status file_read(const char *path, const FileForm *form, char **bytes, size_t *size,
                             Err *err);
-/* Adds the size and the bytes of a file to `hash`. Errors as file_read. */
+/* Does the same for a file in memory, the `from_size` bytes at `from`, which are copied. `name`
+ * stands for the path in error sentences. Errors: those of file_read. */
+MUST_CHECK Status file_read_memory(const void *from, size_t from_size, const char *name,
+                                   const FileForm *form, char **bytes, size_t *size, Err *err);
+/* Adds the size and the bytes of a file to `hash`. Errors: those of file_read. */
 MUST_CHECK Status file_hash(const char *path, Hash *hash, Err *err);
-/* Makes a text of what was read as bytes, as file_read does; `path` and `form` are for the
- * sentence. */
+/* Converts bytes in memory to a text, in place, like file_read. `path` and `form` are for the error
+ * sentence. Errors: STATUS_INPUT for a zero byte. */
 MUST_CHECK Status file_to_text(const char *path, const FileForm *form, char *bytes, size_t *size,
                                Err *err);
 
-/* STATUS_INPUT unless `path` is a regular file: opening a pipe or a device may block for ever. */
+/* Returns STATUS_INPUT unless `path` is a regular file: opening a pipe or device may block forever.
+ */
 MUST_CHECK Status file_check_regular(const char *path, Err *err);
 
-/* A file being written. What is written to `stream` goes to a temporary neighbour and takes the
- * final name only in outfile_commit; a signal that ends the program removes the neighbour. "-" is
- * standard output; a device or pipe is written directly. What is written over a file takes its
- * permissions and, where the system lets it, its owner; a symbolic link stays and its target is
- * written, also where that is not there yet. Other hard links of the file keep what they hold. */
+/* A file that is being written.
+ *
+ * The bytes go to a temporary file in the same folder, which outfile_commit renames. A signal that
+ * ends the program removes the temporary file. Standard output ("-"), devices and pipes are written
+ * directly. A file that replaces another one gets its permissions and, if the system allows it, its
+ * owner. A symbolic link stays; its target is written, also if the target does not exist yet. Other
+ * hard links to a replaced file keep the old content. */
 typedef struct OutFile {
     FILE *stream;
     char *path;      /* final name */
-    char *temporary; /* NULL when written directly */
+    char *temporary; /* path of the temporary file; NULL if the file is written directly */
 } OutFile;
 
-/* STATUS_IO when outfile_open would refuse `path`: no folder, no permission, a folder itself, a
- * link that leads to itself. Writes nothing. */
+/* Checks that outfile_open could open `path`, without writing. Errors: STATUS_IO if the folder is
+ * missing, permission is missing, `path` is a folder, or symbolic links form a circle. */
 MUST_CHECK Status outfile_check(const char *path, Err *err);
 
-/* Opens *file for writing to `path`. STATUS_IO as outfile_check. Every opened file ends with
- * exactly one of outfile_commit, which gives it its final name, and outfile_discard, which removes
- * it; both release `file`, also on failure. */
+/* Opens a file for writing. Follow with exactly one of outfile_commit, which gives the file its
+ * final name, and outfile_discard, which removes it; both release `file`, also on failure. Errors:
+ * those of outfile_check. */
 MUST_CHECK Status outfile_open(OutFile *file, const char *path, Err *err);
 MUST_CHECK Status outfile_commit(OutFile *file, Err *err);
 void outfile_discard(OutFile *file);
-/* Commits n files, all or none: what stood under their names before stands there again when one of
- * them cannot take its name (where the file system has no hard links, only if that is the first).
- * Releases all of them, also on failure. */
+/* Commits n files, all or none: if a file cannot get its final name, the files that had the names
+ * before are restored. On a file system without hard links they are restored only if the first file
+ * fails. Releases all files, also on failure. Errors: STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status outfiles_commit(OutFile *files, size_t n, Err *err);
 
-/* STATUS_IO when the disk that `file` goes to has fewer than `bytes` left; always STATUS_OK for
- * what is no file. */
+/* Returns STATUS_IO if the disk of `file` has fewer than `bytes` left; STATUS_OK for standard
+ * output, devices and pipes. */
 MUST_CHECK Status outfile_check_room(const OutFile *file, double bytes, Err *err);
 
 /* Writes all of `bytes` to `path` through an OutFile. */
 MUST_CHECK Status file_write(const char *path, const void *bytes, size_t size, Err *err);
-/* Likewise the characters of `text`, or STATUS_MEMORY when it failed. */
+/* Writes the string of `text` to `path`; returns STATUS_MEMORY if `text` has failed. */
 MUST_CHECK Status file_write_text(const char *path, const Text *text, Err *err);
 
-/* The file that writing to `path` writes, in *out (owned): the path with symbolic links of its last
- * component followed. STATUS_IO when they lead in a circle. */
+/* Finds the file that writing to `path` would write: follows symbolic links in the last component.
+ * The caller frees *out. Errors: STATUS_IO if the links form a circle; STATUS_MEMORY. */
 MUST_CHECK Status file_resolve(const char *path, char **out, Err *err);
 
-/* A new empty folder beside `path`, for another program to write to, in *folder (owned).
- * file_forget, or a signal that ends the program, removes it with all files in it. */
+/* Makes an empty temporary folder beside `path`, in which another program may write. The caller
+ * ends with file_forget(*folder), which removes the folder with its files; a signal that ends the
+ * program does so, too. Errors: STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status file_temporary_folder(const char *path, char **folder, Err *err);
 /* Registers `name` for clean-up: file_forget, or a signal that ends the program, removes the file
  * if it exists. Takes ownership of `name`, which is freed with free(), unless it fails: STATUS_IO
@@ -86,30 +99,34 @@ MUST_CHECK Status file_rename(char *temporary, const char *path, Err *err);
 /* Removes and frees a temporary name. NULL is allowed. */
 void file_forget(char *temporary);
 
-/* Makes a folder and its missing parents. */
+/* Makes a folder and its missing parents; does nothing if it exists. Errors: STATUS_IO,
+ * STATUS_MEMORY. */
 MUST_CHECK Status file_make_folder(const char *path, Err *err);
 
-/* Removes temporary files when SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU or SIGXFSZ ends
- * the program; signals that the caller ignores stay ignored. main calls it once; the table of
- * temporary names is a global, because a handler reaches nothing else. */
+/* Installs handlers that remove temporary files when SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE,
+ * SIGXCPU or SIGXFSZ ends the program. Signals that the parent process ignored stay ignored. Only
+ * main calls it, once. The table of temporary names is a global: a handler can reach nothing else.
+ */
 void file_clean_up_on_signals(void);
-/* Has a signal that ends the program kill this process group first, so that it makes no more files;
- * at most eight at a time. The other takes it out again. */
+/* Registers a process group, at most eight at a time: a signal that ends the program then kills the
+ * group first, so that the group makes no more files. file_spare_on_signal cancels it. */
 void file_kill_on_signal(pid_t group);
 void file_spare_on_signal(pid_t group);
-/* Occupies standard streams that the caller has closed, so that no file opened later takes their
- * place; using them fails. main calls it once, before any file is opened. */
+/* Opens /dev/null in place of standard streams that the parent process has closed, so that no file
+ * opened later gets their descriptors; using such a stream fails. Only main calls it, before any
+ * file is opened. */
 void file_hold_standard_streams(void);
 
-/* The text after the last '.' of the last component of `path`, "" when there is none. */
+/* Returns the part of the last component of `path` after its last '.', "" if there is none;
+ * borrowed from `path`. */
 const char *file_extension(const char *path);
-/* `path` without that '.' and extension, and with `suffix` appended, in *out (owned). */
+/* Replaces the extension of `path`, with its '.', by `suffix`. The caller frees *out. */
 MUST_CHECK Status file_with_suffix(const char *path, const char *suffix, char **out, Err *err);
-/* folder/name in *out (owned). */
+/* Joins a folder and a name: "folder/name". The caller frees *out. */
 MUST_CHECK Status file_join(const char *folder, const char *name, char **out, Err *err);
-/* The last component of `path`. Borrowed. */
+/* Returns the last component of `path`; borrowed from `path`. */
 const char *file_name(const char *path);
-/* The size of the file in bytes; 0 when there is none. */
+/* Returns the size of a file in bytes; 0 if there is no such file. */
 double file_bytes(const char *path);
 
 #endif

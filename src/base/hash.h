@@ -1,5 +1,4 @@
-/* SHA-256 of what is put in, by libmd: whoever has the same text has, for all purposes, the same
- * bytes. */
+/* SHA-256 digests [FIPS 180-4], computed by libmd: equal digests stand for equal data. */
 #ifndef CORCAST_BASE_HASH_H
 #define CORCAST_BASE_HASH_H
 
@@ -14,12 +13,15 @@ typedef struct HashText {
     char hex[SHA256_DIGEST_STRING_LENGTH]; /* 64 hexadecimal digits and the zero */
 } HashText;
 
+/* Starts a digest of no data. */
 void hash_begin(Hash *hash);
-/* `bytes` may be NULL when `size` is 0. */
+/* Adds `size` bytes to the data; `bytes` may be NULL if `size` is 0. */
 void hash_add(Hash *hash, const void *bytes, size_t size);
-/* The characters with their final zero, so that two texts are not one; NULL is as "". */
+/* Adds a string with its final zero, so that "a" and "bc" differ from "ab" and "c". NULL counts as
+ * "". */
 void hash_add_text(Hash *hash, const char *text);
-/* Of all that was added; ends the hash. */
+/* Returns the digest of all data added since hash_begin. Call hash_begin before using `hash` again.
+ */
 HashText hash_text(Hash *hash);
 
 #endif

@@ -1,4 +1,4 @@
-/* Memory and growable arrays whose failure is a Status, never an abort. */
+/* Memory and growable arrays. A failed allocation is a Status; it never ends the program. */
 #ifndef CORCAST_BASE_MEMORY_H
 #define CORCAST_BASE_MEMORY_H
 
@@ -6,51 +6,57 @@
 #include <stdarg.h>
 #include <stddef.h>
 
-/* Allocates `count` zeroed items of `size` bytes into *out (owned; free with free()). A count of
- * zero gives a pointer that may be freed. Fails with STATUS_MEMORY, `what` naming the thing. */
+/* Allocates an array of `count` zeroed items of `size` bytes. `out` is the address of the pointer
+ * that receives the array; release the array with free(). A count of 0 gives a pointer that free()
+ * accepts. `what` names the array in the error sentence: "radii". Errors: STATUS_MEMORY. */
 MUST_CHECK Status mem_calloc(void *out, size_t count, size_t size, const char *what, Err *err);
 
-/* As mem_calloc, of items that hold anything: for large arrays of which nothing is read that was
- * not written before. Memory that served before is not cleared, and of fresh memory only what is
- * used is ever touched. */
+/* Allocates like mem_calloc, but leaves the items uninitialized. For large arrays: no time is spent
+ * on clearing, and the system only provides the pages that are used. */
 MUST_CHECK Status mem_alloc(void *out, size_t count, size_t size, const char *what, Err *err);
 
-/* The bytes of memory that the machine has; infinity when it does not say. */
+/* Returns the size of the machine's memory in bytes; infinity if the size is unknown. */
 double mem_of_machine(void);
-/* STATUS_MEMORY, saying that `name` needs them, when the machine has fewer bytes. Linux grants more
- * memory than there is, and would end the program in the middle of a run. */
+/* Refuses work that does not fit the machine: returns STATUS_MEMORY, with a sentence that `name`
+ * needs `bytes`, if the machine has less memory. The check is needed because Linux grants more
+ * memory than there is, and then ends the program in the middle of a run. */
 MUST_CHECK Status mem_check(double bytes, const char *name, Err *err);
 
-/* As mem_reserve, of an array that has not room enough. */
+/* Enlarges an array whose capacity is below `needed`; called by mem_reserve. */
 MUST_CHECK Status mem_grow(void *items, size_t *capacity, size_t needed, size_t size,
                            const char *what, Err *err);
 
-/* Makes room for at least `needed` items of `size` bytes in the array *items, whose capacity is
- * *capacity items; doubles, so that appending is O(1) amortised. `items` is a pointer to the
- * array's pointer. Unchanged on failure. */
+/* Ensures that a growable array has the capacity for `needed` items of `size` bytes.
+ *
+ * items    the address of the array's pointer, which may move.
+ * capacity the capacity in items. It at least doubles when it grows, so that appending costs O(1)
+ *          amortized.
+ * Errors   STATUS_MEMORY; the array and *capacity are then unchanged. */
 MUST_CHECK static inline Status mem_reserve(void *items, size_t *capacity, size_t needed,
                                             size_t size, const char *what, Err *err)
 {
     return needed <= *capacity ? STATUS_OK : mem_grow(items, capacity, needed, size, what, err);
 }
 
-/* Hands memory that has been freed back to the system, which the C library keeps else where small
- * blocks lie about it. Milliseconds. */
+/* Returns freed memory to the system. Without this call, the C library keeps freed pages that lie
+ * between small blocks in use. Costs milliseconds. */
 void mem_trim(void);
 
-/* From now on the C library keeps all memory that is freed, large blocks too: what is asked for
- * anew picture by picture is not handed back in between, to be cleared page by page. */
+/* Makes the C library keep all freed memory from now on, also large blocks. For programs that draw
+ * picture after picture: buffers that are allocated anew for each picture then need no new pages,
+ * which the system would clear. */
 void mem_keep(void);
 
-/* STATUS_MEMORY with the sentence "out of memory: no room `purpose` `subject`", as in "to read", a
- * file. For what a library allocates: one that fails without telling why leaves ENOMEM in errno
- * where that was it. */
+/* Returns STATUS_MEMORY with the sentence "out of memory: no room PURPOSE SUBJECT": mem_out_of("to
+ * read", "t.png", err). For failed allocations inside a library: a library that does not report
+ * why it failed leaves ENOMEM in errno if memory was the reason. */
 MUST_CHECK Status mem_out_of(const char *purpose, const char *subject, Err *err);
 
-/* A copy of `text` in *out (owned). */
+/* Copies `text` to *out, which the caller frees with free(). Errors: STATUS_MEMORY. */
 MUST_CHECK Status mem_strdup(char **out, const char *text, Err *err);
 
-/* What vprintf would print, in *out (owned); `subject` is what it is for, as "a file's name". */
+/* Formats a text like vsnprintf, of any length, in *out, which the caller frees with free().
+ * `subject` names the text in the error sentence: "a file's name". Errors: STATUS_MEMORY. */
 MUST_CHECK Status mem_vprintf(char **out, const char *subject, Err *err, const char *format,
                               va_list values) PRINTF_LIKE(4, 0);
 

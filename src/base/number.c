@@ -9,7 +9,8 @@
  * -26 to 26, in the same arithmetic, five times as fast as strtod: the product with 5^k, or the
  * quotient to at least 64 bits and whether anything remains, is rounded once. All else is
  * strtod's, in number_parse.
- * The program never calls setlocale, so that printf and strtod use '.'. */
+ * The program never calls setlocale, and the library gives its threads the locale "C", so that
+ * printf and strtod use '.'. */
 #include "base/number.h"
 
 #include "base/text.h"

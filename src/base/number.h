@@ -1,4 +1,4 @@
-/* Numbers as text, and back. */
+/* Conversion of numbers to text, and of text to numbers. No function depends on the locale. */
 #ifndef CORCAST_BASE_NUMBER_H
 #define CORCAST_BASE_NUMBER_H
 
@@ -7,29 +7,30 @@
 
 enum { NUMBER_TEXT_SIZE = 32 };
 
-/* The shortest decimal text that reads back to the same double, always with '.' as its decimal
- * point whatever the locale ("nan", "inf" and "-inf" for what is not finite). Writes to `out` and
- * returns it. */
+/* Writes the shortest decimal text that converts back to the same double, with '.' as the decimal
+ * point; "nan", "inf" or "-inf" if the number is not finite. Returns `out`. */
 const char *number_text(double value, char out[NUMBER_TEXT_SIZE]);
-/* Likewise the shortest that reads back to the same float. */
+/* Writes the shortest decimal text that converts back to the same float. Returns `out`. */
 const char *number_text_float(float value, char out[NUMBER_TEXT_SIZE]);
 
 enum { BYTES_TEXT_SIZE = 32 };
 
-/* A number of bytes as a reader says it, "312 bytes", "4.3 GB". Writes to `out` and returns it. */
+/* Writes a size of memory or of a file for people: "312 bytes", "4.3 GB". Returns `out`. */
 const char *bytes_text(double bytes, char out[BYTES_TEXT_SIZE]);
 
-/* Reads the whole of `chars` (zero-terminated; blanks at either end are not allowed) as a number
- * in decimal or exponent form. False when anything is left over or nothing is there; "nan" and
- * "inf" are read as such, so callers check with isfinite. */
+/* Parses the whole string `chars`, without blanks at its ends, as a number in decimal or exponent
+ * form. Returns false if the string is empty or has other characters. Accepts "nan" and "inf", so
+ * callers check with isfinite. */
 bool number_parse(const char *chars, double *out);
-/* Takes the finite number that stands at *at off the text, whatever follows it, and moves *at
- * behind it. False, with *at where it was, when there is none, and for those of many digits or of a
- * large exponent, which number_parse may read. */
+/* Parses the finite number at the start of *at and moves *at behind it; any characters may follow.
+ * A fast path: returns false, and leaves *at unchanged, if there is no number, and also for numbers
+ * with many digits or a large exponent, which number_parse may accept. */
 bool number_take(const char **at, double *out);
-/* As number_parse, `count` numbers parted by blanks, which may also stand at either end. */
+/* Parses the whole string as `count` numbers, separated by blanks; blanks at the ends are allowed.
+ * Returns false for any other string. */
 bool numbers_parse(const char *chars, size_t count, double *out);
-/* As number_parse, a whole number in [minimum, maximum]. */
+/* Parses the whole string as an integer in [minimum, maximum]. Returns false for any other string.
+ */
 bool integer_parse(const char *chars, long long minimum, long long maximum, long long *out);
 
 #endif

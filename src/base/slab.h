@@ -1,20 +1,24 @@
-/* Memory for many small pieces that are freed together, taken from few large ones. */
+/* An arena: memory for many small blocks that are freed together. The arena takes memory from the
+ * system in a few large slabs. */
 #ifndef CORCAST_BASE_SLAB_H
 #define CORCAST_BASE_SLAB_H
 
 #include <stddef.h>
 
-/* Zeroed when it holds nothing. */
+/* An arena. Zeroed: empty. */
 typedef struct Slabs {
-    struct Slab *last; /* the one in use, and those before it */
-    size_t used, size; /* bytes of the one in use */
+    struct Slab *last; /* the current slab, linked to the slabs before it; owned */
+    size_t used, size; /* of the current slab: bytes in use, and bytes in all */
 } Slabs;
 
-/* Takes `size` bytes, a multiple of 4, aligned to 4 and of any content; where a new slab is needed
- * it has `slab` bytes or more. NULL when there is no memory. Valid until slabs_release. */
+/* Allocates a block of `size` bytes, which must be a multiple of 4. The block is aligned to 4 bytes
+ * and uninitialized; it is valid until slabs_release. If the current slab is full, a new slab of at
+ * least `slab` bytes is allocated. Returns NULL if memory runs out. */
 void *slabs_take(Slabs *slabs, size_t size, size_t slab);
-/* A copy of `text`, or NULL when there is no memory. Valid until slabs_release. */
+/* Copies a string into the arena. The copy is valid until slabs_release. Returns NULL if memory
+ * runs out. */
 char *slabs_text(Slabs *slabs, const char *text);
+/* Frees all blocks and empties the arena. */
 void slabs_release(Slabs *slabs);
 
 #endif

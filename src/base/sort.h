@@ -1,17 +1,18 @@
-/* Numbers in order. */
+/* Sorting and selecting numbers. */
 #ifndef CORCAST_BASE_SORT_H
 #define CORCAST_BASE_SORT_H
 
 #include <stddef.h>
 
-/* Sorts `n` numbers, none of them NaN, smallest first. O(n log n). */
+/* Sorts `n` numbers, smallest first. No number may be NaN. Cost: O(n log n). */
 void sort_numbers(double *numbers, size_t n);
 
-/* The number of rank `rank` < n (0: the smallest) of n, none of them NaN, which are reordered: none
- * before it is above it, none after it below. O(n) as a rule. */
+/* Returns the number of rank `rank` among `n` numbers; rank 0 is the smallest, and rank < n. No
+ * number may be NaN. Reorders the array: smaller or equal numbers come before position `rank`,
+ * larger or equal ones after it. Cost: O(n) on average. */
 double select_number(double *numbers, size_t n, size_t rank);
 
-/* Below 0, 0 or above 0 as a < b, a = b or a > b, for qsort. */
+/* Compares two numbers for qsort: returns -1 if a < b, 0 if a = b, 1 if a > b. */
 static inline int number_order(double a, double b)
 {
     return (a > b) - (a < b);

@@ -15,6 +15,11 @@ Status err_set(Err *err, Status status, const char *format, ...)
     return status;
 }
 
+Status err_cancelled(Err *err)
+{
+    return err_set(err, STATUS_CANCELLED, "stopped by the caller");
+}
+
 void err_prefix(Err *err, const char *format, ...)
 {
     if (!err)

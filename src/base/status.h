@@ -21,7 +21,8 @@
     X(IO, 3, "reading or writing failed")                                                          \
     X(MEMORY, 3, "memory ran out")                                                                 \
     X(TOOL, 3, "another program is missing or failed")                                             \
-    X(INTERRUPTED, 3, "stopped by a signal")
+    X(INTERRUPTED, 3, "stopped by a signal")                                                       \
+    X(CANCELLED, 3, "stopped by the caller")
 
 typedef enum Status {
 #define X(name, exit_status, meaning) STATUS_##name,
@@ -40,6 +41,9 @@ typedef struct Err {
 /* Writes the sentence, cut to the length of Err.text, and returns `status`. Used as `return
  * err_set(err, STATUS_INPUT, "...");`. `err` may be NULL. */
 Status err_set(Err *err, Status status, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* Fails with STATUS_CANCELLED: a progress callback asked to stop. `err` may be NULL. */
+Status err_cancelled(Err *err);
 
 /* Puts text in front of the sentence: err_prefix(err, "%s: ", path). `err` may be NULL. */
 void err_prefix(Err *err, const char *format, ...) PRINTF_LIKE(2, 3);

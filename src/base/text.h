@@ -1,4 +1,4 @@
-/* Growable text, exact number text, and what of a text is UTF-8. */
+/* Growable strings, output to streams, and conversion to UTF-8, shell words, XML and base64. */
 #ifndef CORCAST_BASE_TEXT_H
 #define CORCAST_BASE_TEXT_H
 
@@ -7,86 +7,94 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* Text that grows, or flows into a stream. A failed append is remembered in `failed` and reported
- * once by text_check, so that writers of long files need no check a line. What is made of a text
- * that failed fails, too: its characters are NULL, and what takes text to write takes NULL for a
- * failure. Initialise with TEXT_INIT or zeros, free with text_release. The members are for the room
- * base alone; others ask text_chars. */
+/* A growable string, or a buffer in front of a stream.
+ *
+ * A failed append sets `failed`, and later appends do nothing; text_check reports the failure once.
+ * So a writer of a long file needs no check after each line. A string built from a failed Text
+ * fails as well: text_chars returns NULL, and the functions below accept that NULL as a failure.
+ * Initialize with TEXT_INIT or zeros; release with text_release. Only the module base uses the
+ * members. */
 typedef struct Text {
-    char *chars; /* with a stream: what has not been written yet */
+    char *chars; /* the string; with a stream, the part that is not written yet; owned */
     size_t length;
     size_t capacity;
-    int failed;   /* errno of what failed first; 0: nothing has */
-    FILE *stream; /* borrowed; NULL: the text stays */
+    int failed;   /* errno of the first failure; 0: none */
+    FILE *stream; /* receives the characters; borrowed; NULL: the string stays in memory */
 } Text;
 
 #define TEXT_INIT ((Text){0})
-/* A text that goes to `stream` in large pieces, so that it takes little memory however long it is;
- * end it with text_flush. Bytes of any kind may be appended. */
+/* A Text whose characters go to `to`, a FILE, in large blocks, so that a text of any length takes
+ * little memory. Call text_flush at the end. Any bytes may be appended. */
 #define TEXT_TO(to) ((Text){.stream = (to)})
 
+/* Frees the string. The stream stays open. */
 void text_release(Text *text);
+/* Appends `length` bytes. */
 void text_append(Text *text, const char *chars, size_t length);
-/* Appends `chars`; NULL, from a text that failed, makes `text` fail. */
+/* Appends a string. NULL, the result of a failed Text, makes `text` fail. */
 void text_puts(Text *text, const char *chars);
-/* Appends a whole text; one that failed makes `text` fail. */
+/* Appends the string of another Text. If `part` has failed, `text` fails. */
 void text_add(Text *text, const Text *part);
+/* Appends formatted text. */
 void text_printf(Text *text, const char *format, ...) PRINTF_LIKE(2, 3);
-/* Appends text from outside, say a file's name, as part of one line of UTF-8: a control character,
- * also one of bidirectional text, becomes a blank, and a byte that is no UTF-8 becomes U+FFFD. */
+/* Appends foreign text, such as the name of a file, as a part of one line of UTF-8. Each control
+ * character, also those for bidirectional text, becomes a space. Each byte that is not part of a
+ * well-formed UTF-8 character becomes U+FFFD. */
 void text_put_line(Text *text, const char *chars);
-/* Appends a word as a shell reads it: in quotes where the shell would take it apart. */
+/* Appends a word for a shell, in quotes if the shell would split or expand it. */
 void text_put_shell_word(Text *text, const char *word);
-/* STATUS_MEMORY when an append has failed, STATUS_IO when the stream took no more, else
- * STATUS_OK. */
+/* Reports a failure of earlier appends. Errors: STATUS_MEMORY if memory ran out; STATUS_IO if
+ * writing to the stream failed. */
 MUST_CHECK Status text_check(const Text *text, Err *err);
-/* Hands the rest of a text with a stream over to it. As text_check. */
+/* Writes the rest of the string to the stream. Errors: those of text_check. */
 MUST_CHECK Status text_flush(Text *text, Err *err);
-/* The characters, zero-terminated, "" when none were appended; NULL when an append has failed.
- * Borrowed until the text changes. */
+/* Returns the string, "" if it is empty; NULL if an append has failed. The string is valid until
+ * `text` changes. */
 const char *text_chars(const Text *text);
-/* Hands the characters over in *out (owned), zero-terminated, and leaves the text empty; or
- * STATUS_MEMORY, and the text is to be released as ever. */
+/* Moves the string to *out, which the caller frees with free(), and leaves `text` empty. Errors:
+ * STATUS_MEMORY if an append has failed; the caller still releases `text`. */
 MUST_CHECK Status text_take(Text *text, char **out, Err *err);
-/* Takes `count` characters from the one numbered `at` on out of a text that has them. */
+/* Removes `count` characters that start at index `at`; the string must have them. */
 void text_cut(Text *text, size_t at, size_t count);
-/* Empties the text but keeps its room, and its failure. */
+/* Empties the string. The capacity and a failure stay. */
 void text_clear(Text *text);
 
-/* Blanks between the words of a line. */
+/* The characters that separate words of a line. */
 #define TEXT_BLANKS " \t\v\f"
-/* `text` without the blanks at both ends, cut off in place. */
+/* Removes the blanks (TEXT_BLANKS) at both ends, in place. Returns the start of the rest. */
 char *text_trim(char *text);
 /* Cuts the next line off the text at *rest, in place. Moves *rest to the start of the line after
  * it, or sets it to NULL after the last line. Returns the line, or NULL if there is none. Use: for
  * (char *rest = text, *line; (line = text_line(&rest));). */
 char *text_line(char **rest);
-/* Whether fields of a line stand on either side of it. By comparisons: strcspn makes a table of its
- * set each time, which takes longer than a field. */
+/* Returns true for a character that separates fields of a line: a blank, comma or semicolon. It
+ * uses comparisons because strcspn builds a table of its set in every call, which takes longer than
+ * reading a field. */
 static inline bool text_parts_fields(char c)
 {
     return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\v' || c == '\f';
 }
-/* Cuts the next field off the line at *rest in the same way; NULL when none is left. Fields stand
- * between blanks, commas and semicolons, any number of them. */
+/* Cuts the next field off the line at *rest, in place, and moves *rest behind it. Any number of
+ * separators may stand between two fields. Returns the field, or NULL if there is none. */
 char *text_field(char **rest);
 
-/* U+FFFD, which stands for what is not UTF-8. */
+/* U+FFFD, which replaces bytes that are not UTF-8. */
 #define UTF8_REPLACEMENT "\xEF\xBF\xBD"
-/* How many bytes the UTF-8 character at the start of `bytes` (zero-terminated) has, 1 to 4; 0 where
- * there is none, or one that XML does not take (U+FFFE, U+FFFF). */
+/* Returns the length in bytes, 1 to 4, of the UTF-8 character at the start of the string.
+ * Returns 0 for bytes that are not a well-formed character, and for U+FFFE and U+FFFF, which XML
+ * excludes. */
 size_t utf8_length(const char *bytes);
-/* Appends `chars` as UTF-8: each byte that is of no well-formed character becomes U+FFFD. For names
- * of files, which may be any bytes, where UTF-8 is promised. */
+/* Appends a string as UTF-8: each byte that is not part of a well-formed character becomes U+FFFD.
+ * For names of files, which may have any bytes, in outputs that promise UTF-8. */
 void text_utf8(Text *text, const char *chars);
-/* Appends `chars` with & < > " and ' as entities, without control characters, and with U+FFFD for
- * what is not UTF-8: for HTML and XML, in elements and attributes. */
+/* Appends a string for HTML and XML, in elements and attributes: & < > " and ' become entities,
+ * control characters are dropped, and bytes that are not UTF-8 become U+FFFD. */
 void text_escaped(Text *text, const char *chars);
 
-/* Appends `size` bytes in base64 [RFC 4648]. Pieces of one text of base64 have sizes that 3
- * divides, but for the last. */
+/* Appends `size` bytes in base64 [RFC 4648]. To append one long base64 text in several calls, every
+ * size except the last must be a multiple of 3. */
 void text_base64(Text *text, const void *bytes, size_t size);
-/* Appends it as number_text [base/number.h] writes it. */
+/* Appends a number as number_text [base/number.h] formats it. */
 void text_number(Text *text, double value);
 
 #endif

@@ -6,6 +6,7 @@
  * that one is preempted, longer than many loops take. */
 #include "base/threads.h"
 
+#include <locale.h>
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
@@ -32,8 +33,9 @@ typedef struct Loop {
     size_t count;
     void (*body)(size_t index, int worker, void *context);
     void *context;
-    bool spread; /* whether threads start on processors of their own; then they may run on
-                  * `allowed` */
+    locale_t locale; /* of the calling thread, for all */
+    bool spread;     /* whether threads start on processors of their own; then they may run on
+                      * `allowed` */
     cpu_set_t allowed;
 } Loop;
 
@@ -55,6 +57,7 @@ static void *run_thread(void *argument)
     const LoopWorker *worker = argument;
     if (worker->loop->spread)
         (void)sched_setaffinity(0, sizeof worker->loop->allowed, &worker->loop->allowed);
+    uselocale(worker->loop->locale);
     run(worker);
     return NULL;
 }
@@ -96,6 +99,7 @@ void threads_for(size_t count, int threads, void (*body)(size_t index, int worke
     if ((size_t)threads > count)
         threads = count ? (int)count : 1;
     Loop loop = {.count = count, .body = body, .context = context};
+    loop.locale = uselocale((locale_t)0);
     loop.spread = threads > 1 && allowed_processors(&loop.allowed) && sched_getcpu() >= 0;
     LoopWorker workers[MAX_THREADS];
     pthread_t handles[MAX_THREADS];

@@ -4,6 +4,8 @@
 
 #include "cli/help.h"
 #include "cli/screen.h"
+#include "job/export/export.h"
+#include "job/export/scene.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -15,8 +17,8 @@ const CommandRow command_rows[] = {
     {&command_info, run_info},
     {&command_certify, run_certify},
     {&command_convert, run_convert},
-    {&command_scene, run_scene},
-    {&command_export, run_export},
+    {&command_scene, scene_run},
+    {&command_export, export_run},
     {&command_povray, run_povray},
     {&command_render, run_render},
     {&command_merge, run_merge},

@@ -43,10 +43,9 @@ static void end_step(Screen *screen)
     screen->what = NULL;
 }
 
-static void show_progress(void *user, const char *what, double fraction)
+static void show(Screen *screen, const char *what, double fraction)
 {
     char left[32];
-    Screen *screen = user;
     if (!what) {
         end_step(screen);
         return;
@@ -61,6 +60,13 @@ static void show_progress(void *user, const char *what, double fraction)
     fprintf(stderr, screen->terminal ? "\r%s %3.0f %%%s\033[K" : "%s: %.0f %%%s\n", what,
             100 * fraction, time_left(now_s - screen->start_s, fraction, left));
     fflush(stderr);
+}
+
+/* Never stops the operation: a signal does. */
+static bool show_progress(void *user, const char *what, double fraction)
+{
+    show(user, what, fraction);
+    return true;
 }
 
 static void print_sentence(void *user, TalkKind kind, const char *sentence)

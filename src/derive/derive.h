@@ -36,23 +36,28 @@ typedef struct Field {
  *     level              bifurcations from the root to the segment's start
  *     strahler           1 at terminals; the largest order m of the daughters, m + 1 if at least
  *                        two have it [Strahler 1957]
- *     diameter-strahler  1 at terminals; else m, the largest of the daughters, or m + 1 if the
- *                        diameter is above (D_m + S_m + D_m+1 - S_m+1) / 2, D and S mean and
- *                        standard deviation of the diameters of all vessels of that order;
- * repeated, starting from Strahler orders, until at most 1 % of the vessels change. A vessel is the
- * path between two branchings [Jiang, Kassab & Fung, J. Appl. Physiol. 76 (1994) 882-892] branch
- * main branch, numbered from 1 in array order: at each bifurcation the thickest daughter (the first
- * of several) continues its parent's, and the others begin new ones, as do all segments that leave
- * a root tree               of a forest, numbered from 1 in the order of the roots
+ *     diameter-strahler  an order by diameters, see below
+ *     branch             index of the branch, from 1, see below
+ *     tree               index of the tree in a forest, from 1, in the order of the roots
+ *
+ * Diameter-defined Strahler orders are 1 at terminals. Elsewhere the order is m, the largest order
+ * of the daughters, or m + 1 if the diameter is above (D_m + S_m + D_m+1 - S_m+1) / 2. D and S are
+ * the mean and the standard deviation of the diameters of all vessels of an order; a vessel is the
+ * path between two bifurcations. The rule is repeated, starting from Strahler orders, until at most
+ * 1 % of the vessels change [Jiang, Kassab & Fung, J. Appl. Physiol. 76 (1994) 882-892].
+ *
+ * Branches are counted in array order. At a bifurcation, the thickest daughter (the first of
+ * several equal ones) continues the branch of its parent; every other daughter starts a branch, and
+ * so does every segment that leaves a root.
  *
  * Flow shares are the tree's, or those of tree/outlets.h. mu is the constant viscosity of the
  * blood, or viscosity_pries_pa_s of each segment's radius. Velocity, wall shear stress and Reynolds
  * number of a segment of radius 0 are NAN, and so are the pressures at and below it.
  *
- * said    values that the user specified; they take precedence over those of the tree.
- * field   is released with field_release. Its names are borrowed, from the tree if it is a column.
- * Errors  STATUS_USAGE for an unknown name; STATUS_INPUT if a value is missing that the field
- * needs, naming the option and the key of the file; STATUS_MEMORY. */
+ * said     values that the user specified; they take precedence over those of the tree.
+ * field    is released with field_release. Its names are borrowed, from the tree if it is a column.
+ * Errors   STATUS_USAGE for an unknown name; STATUS_INPUT if a value is missing that the field
+ *          needs, naming the option and the key of the file; STATUS_MEMORY. */
 MUST_CHECK Status derive_field(const Tree *tree, const TreeMeta *said, const char *name,
                                Field *field, Err *err);
 void field_release(Field *field);

@@ -1,4 +1,4 @@
-/* The door of the room domain: the piece of tissue that a tree perfuses.
+/* The public header of the module domain: the piece of tissue that a tree supplies with blood.
  *
  * Domains of dimension 2 lie in the plane z = 0. The texts that name a domain, `disc:R` and so on,
  * are described in docs/FORMATS.md. */
@@ -11,8 +11,8 @@
 
 enum { DOMAIN_MAX_SIZES = 5 };
 
-/* A nanometre and a kilometre: the range of the lengths in a text, and how far from the origin a
- * file's points may lie. */
+/* The range of lengths in the text of a domain, from a nanometre to a kilometre; DOMAIN_MAX_MM is
+ * also the largest coordinate of a file's points. */
 #define DOMAIN_MIN_MM 1e-6
 #define DOMAIN_MAX_MM 1e6
 
@@ -27,96 +27,112 @@ typedef struct DomainTube {
     double radius;
 } DomainTube;
 
-/* Constant once parsed, so that threads may share it. A copy shares what the original owns. */
+/* A domain. It is constant after construction, so that threads may share it. A copy of the struct
+ * shares what the original owns. */
 typedef struct Domain {
-    const struct DomainOps *ops;   /* what its kind supplies [domain/kinds.h]; borrowed */
+    const struct DomainOps *ops;   /* the functions of its kind [domain/kinds.h]; borrowed */
     int dimension;                 /* 2 or 3 */
-    int n_sizes;                   /* how many numbers the text has */
-    double size[DOMAIN_MAX_SIZES]; /* its numbers in order, mm; of a file: the mm of its unit */
-    char *file;                    /* owned; NULL for the kinds that read none */
-    bool unit_is_guessed;          /* neither the text nor the file says the file's unit */
-    union {                        /* what the file held; owned */
+    int n_sizes;                   /* count of numbers in the text */
+    double size[DOMAIN_MAX_SIZES]; /* the numbers of the text, mm; for a file, mm per unit */
+    char *file;                    /* path; NULL for kinds without a file; owned */
+    bool unit_is_guessed;          /* neither the text nor the file states the file's unit */
+    union {                        /* the content of the file; owned */
         Polygon *polygon;
         Mask *mask;
         Mesh *mesh;
         Hull *hull;
     };
-    struct Surface *surface; /* what surfaces know beside their mesh; owned */
-    bool is_placed;          /* by `at`, where its own coordinates have their origin, mm */
-    Vec3 at;                 /* in the plane z = 0 in two dimensions */
-    Box own_bounds;          /* the bounds in its own coordinates */
-    Box bounds;              /* the smallest box that holds it, mm; flat in two dimensions */
+    struct Surface *surface; /* data of surfaces beside their mesh; owned */
+    bool is_placed;          /* the text has a position, `at` */
+    Vec3 at;                 /* the origin of the domain's own coordinates, mm */
+    Box own_bounds;          /* bounding box in the domain's own coordinates */
+    Box bounds;              /* bounding box, mm; flat in two dimensions */
     double volume;           /* mm^3, or mm^2 in two dimensions */
-    Vec3 inlet;              /* where no other is asked for, mm: at its top, where y is largest */
+    Vec3 inlet;              /* the default inlet, mm: the boundary point with the largest y */
     Vec3 inner;              /* a point of the domain, mm */
-    double slack_mm;         /* 1e-6 of the diagonal of the bounds: a length that does not matter */
+    double slack_mm;         /* a negligible length: 1e-6 of the diagonal of the bounds */
 } Domain;
 
-/* Makes *domain from a text, reading the file it names. STATUS_USAGE,
- * naming `domain`, the text and what is allowed, for a wrong text, and for one that names a tree
- * (hull:), of which domain_of_tubes makes a domain; STATUS_INPUT, naming the file,
- * for a file that is missing, malformed or no domain (an empty mask, a mesh that is open or inside
- * out, a polygon that crosses itself). Both also for a domain that fills less than 1e-3 of its
- * bounds, masks excepted. Release with domain_release. */
+/* Makes a domain from its text, and reads the file that the text names.
+ *
+ * domain   receives the domain; release it with domain_release.
+ * Errors   STATUS_USAGE, naming `domain`, the text and the accepted texts, for a wrong text, and
+ *          for the hull of a tree (hull:), which domain_of_tubes makes. STATUS_INPUT, naming the
+ *          file, for a file that is missing or malformed, or that is no domain: an empty mask, a
+ *          mesh that is open or inside out, a polygon that crosses itself. Either of the two for a
+ *          domain, other than a mask, that fills less than 1e-3 of its bounding box.
+ *          STATUS_MEMORY. */
 MUST_CHECK Status domain_parse(Domain *domain, const char *spec, Err *err);
 
-/* Makes *domain of all that is within `mm` of the n > 0 tubes (borrowed), of two dimensions if they
- * all lie in the plane z = 0; `file` (copied) is what they were read from. Its inlet is where the
- * first begins. Release with domain_release. STATUS_USAGE as domain_parse, STATUS_MEMORY. */
+/* Makes the hull of vessels: the domain of all points within `mm` of one of n > 0 tubes.
+ *
+ * domain   receives the domain; release it with domain_release. It has two dimensions if all tubes
+ *          lie in the plane z = 0. Its inlet is the start of the first tube.
+ * tubes    borrowed during the call.
+ * file     the file that the tubes were read from, for domain_text; copied.
+ * Errors   STATUS_USAGE for a length out of range; STATUS_MEMORY. */
 MUST_CHECK Status domain_of_tubes(Domain *domain, const DomainTube *tubes, size_t n, double mm,
                                   const char *file, Err *err);
 
-/* A map of how much blood tissue asks for. */
+/* A map of the tissue's demand for blood. */
 typedef struct Demand Demand;
 
-/* Reads FILE,MM, a picture with pixels MM wide, or a NIfTI file, placed as masks are, into *demand
- * (owned; demand_release): what is not above 0 asks for nothing. STATUS_USAGE naming `demand`,
- * STATUS_INPUT naming the file, also when it asks for nothing anywhere. */
+/* Reads a demand map: "FILE,MM", a picture with pixels MM wide, or "FILE", a NIfTI volume. The map
+ * is placed like a mask [docs/FORMATS.md]. Values of 0 and below are no demand.
+ *
+ * demand   receives the map; release it with demand_release.
+ * Errors   STATUS_USAGE, naming `demand`; STATUS_INPUT, naming the file, also if there is no demand
+ *          anywhere; STATUS_MEMORY. */
 MUST_CHECK Status demand_read(Demand **demand, const char *spec, Err *err);
 void demand_release(Demand *demand);
-/* The map's file; borrowed. */
+/* Returns the path of the map's file; borrowed. */
 const char *demand_file(const Demand *demand);
-/* What the tissue at a point, mm, asks for, over the most that any does: from 0 to 1. O(1). */
+/* Returns the demand at a point, mm, over the largest demand of the map: 0 to 1. Cost: O(1). */
 double demand_at(const Demand *demand, Vec3 point);
-/* STATUS_INPUT unless the domain asks for something: 1e-4 of the most, in the mean. */
+/* Checks that the map covers the domain: returns STATUS_INPUT if the mean demand in the domain is
+ * below 1e-4 of the largest. */
 MUST_CHECK Status demand_check(const Demand *demand, const Domain *domain, Err *err);
 
 /* Frees what the domain owns. A zeroed or released domain is allowed. */
 void domain_release(Domain *domain);
 
-/* Appends the text that domain_parse reads back to the same domain. */
+/* Appends the text of the domain, from which domain_parse makes the same domain. */
 void domain_text(const Domain *domain, Text *text);
 
-/* Whether the domain is convex: a segment is inside if its ends are. */
+/* Returns true if the domain is known to be convex: a segment is inside if its ends are. */
 bool domain_is_convex(const Domain *domain);
 
-/* Whether `point`, mm, is in the domain or at most `tolerance_mm` >= 0 outside; where the boundary
- * is curved, points outside may be refused although they are within the tolerance. A point on the
- * boundary is inside, for the shapes that formulas describe; for a domain read from a file it may
- * be either. In two dimensions a point off the plane z = 0 is outside. O(1); for polygons and
- * meshes O(log n + m) in the n edges or triangles, of which a ray from the point passes by m. */
+/* Returns true if `point`, mm, is in the domain or at most `tolerance_mm` >= 0 outside it.
+ *
+ * Near a curved boundary, the result may be false for points outside that are within the tolerance.
+ * A point on the boundary is inside shapes that have a formula; for domains of files it may be
+ * inside or outside. In two dimensions, a point off the plane z = 0 is outside.
+ * Cost     O(1); for polygons and meshes of n edges or triangles O(log n + m), where m is the
+ * number of their bounding boxes that a ray from the point meets. */
 bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm);
 
-/* Whether the segment from `a` to `b`, mm, stays in the domain. It may leave it for stretches of up
- * to slack_mm, so that it can begin at an inlet on the boundary. O(log n) in the n edges or
- * triangles of a boundary, O(m) in the m voxels on the way through a mask. */
+/* Returns true if the segment from `a` to `b`, mm, stays in the domain. Stretches of up to slack_mm
+ * outside are ignored, so that a segment may start at an inlet on the boundary.
+ * Cost     O(log n) for n edges or triangles; for a mask O(m), the m voxels along the segment. */
 bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b);
 
-/* Whether forks are to be moved: the domain is a surface. */
+/* Returns true if bifurcations must be moved onto the domain, because the domain is a surface. */
 bool domain_settles(const Domain *domain);
-/* The place on the surface that is nearest to `point`, mm, which is in the domain. */
+/* Returns the point of the surface nearest to `point`, mm, which must be in the domain. */
 Vec3 domain_settle(const Domain *domain, Vec3 point);
 
-/* How far outside the domain the point is, mm, to a thousandth of it, at most `most`; 0 inside. */
+/* Returns the distance of a point from the domain, mm, accurate to a thousandth of the distance: 0
+ * inside, and `most` if the distance is larger than `most`. */
 double domain_distance(const Domain *domain, Vec3 point, double most);
 
-/* Returns a random point, mm, uniformly distributed in the domain; domain_inside at tolerance 0.
- * Draws at most 100,000 points; when none of them is inside, which e^100 calls do not see, it
- * returns `inner`. */
+/* Returns a random point, mm, uniformly distributed in the domain: domain_inside is true for it at
+ * tolerance 0. The function draws points in the bounding box until one is inside. After 100,000
+ * points it returns `inner`; a domain fills at least 1e-3 of its box, so that the probability is
+ * e^-100. */
 Vec3 domain_sample(const Domain *domain, Random *random);
 
-/* Name of shape `i`, from 0 on, "disc", and what stands behind its colon, "R"; NULL after the last.
- */
+/* Return the name of shape `i`, "disc", and the parameters after its colon, "R"; NULL if `i` is the
+ * number of shapes or larger. */
 const char *domain_shape_name(size_t i);
 const char *domain_shape_parameters(size_t i);
 

@@ -40,10 +40,12 @@ double potential_term_bound(const FieldSegment *segment, Box box);
 double segment_box_distance2(const FieldSegment *segment, const Box *box);
 
 /* Terms below these values are left out. If n terms below eps are left out, the surface of a lone
- * vessel moves by at most n eps r / (4 FIELD_LEVEL). CELL  a segment whose term is below it
- * everywhere in a cell of POV-Ray's scene. TILE  a segment whose term is below it on all rays of a
- * tile or packet, in single precision. A tile and a cell do not leave out the same segments. RAY a
- * segment on a ray, in double precision; the resulting surface is called exact. */
+ * vessel moves by at most n eps r / (4 FIELD_LEVEL).
+ *
+ * A cell of POV-Ray's scene leaves out a segment if the segment's term is below CELL_TERM_CUTOFF
+ * everywhere in the cell. A tile or packet leaves out a segment if its term is below
+ * TILE_TERM_CUTOFF, in single precision, on all rays. A ray in double precision uses
+ * RAY_TERM_CUTOFF; the surface that it finds is called exact. */
 #define CELL_TERM_CUTOFF 1e-6
 #define TILE_TERM_CUTOFF 1e-6
 #define RAY_TERM_CUTOFF 1e-9
@@ -75,7 +77,8 @@ typedef struct SurfaceSight {
  * seen     the hits of POV-Ray's root finder.
  * exact    the hits on the exact surface.
  * allowed  receives, per pixel, the maximum difference along the ray, mm: 0 where neither picture
- * has a hit, HUGE_VAL where the ray grazes a surface. Errors   STATUS_MEMORY. */
+ *          has a hit, HUGE_VAL where the ray grazes a surface.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status surface_tolerance(const Geometry *geometry, const Camera *camera, ErfForm erf,
                                     const SurfaceSight *seen, const SurfaceSight *exact,
                                     float *allowed, Err *err);

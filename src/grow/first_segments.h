@@ -20,8 +20,8 @@ typedef struct FirstTosses {
  *
  * Leaves right sums, and no radii.
  *
- * tosses   `distance` becomes the minimum distance that was asked for in the end; `count`
- * increases. Errors   STATUS_INFEASIBLE if there is no such point. */
+ * tosses   `distance` becomes the minimum distance that was required in the end; `count` increases.
+ * Errors   STATUS_INFEASIBLE if there is no such point. */
 MUST_CHECK Status first_segments_add(Site *site, FirstTosses *tosses, Err *err);
 
 #endif

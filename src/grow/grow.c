@@ -404,12 +404,17 @@ static Status check_apart(const GrowParams *params, const Tree *tree, double *ap
         "; lower `terminals` or `q_perf`, or choose a larger `domain`", apart, err);
 }
 
-static void report_progress(const Growth *growth, size_t before)
+/* The number of terminals from one report of progress to the next. */
+enum { TERMINALS_PER_REPORT = 256 };
+
+static Status report_progress(const Growth *growth, size_t before, Err *err)
 {
-    size_t terminals = growth->site.net.terminals;
-    if (growth->params->progress && terminals / 256 > before / 256)
-        growth->params->progress((double)terminals / (double)growth->params->terminals,
-                                 growth->params->progress_context);
+    const GrowParams *params = growth->params;
+    const size_t terminals = growth->site.net.terminals;
+    if (!params->progress || terminals / TERMINALS_PER_REPORT == before / TERMINALS_PER_REPORT)
+        return STATUS_OK;
+    const double fraction = (double)terminals / (double)params->terminals;
+    return params->progress(fraction, params->progress_context) ? STATUS_OK : err_cancelled(err);
 }
 
 static double target_of(const Tree *tree)
@@ -437,7 +442,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
         if (status == STATUS_INFEASIBLE && params->partial)
             break;
         TRY_GOTO(status);
-        report_progress(&growth, terminals);
+        TRY_GOTO(report_progress(&growth, terminals, err));
     }
     bool complete = status == STATUS_OK;
     size_t broken = 0;

@@ -71,7 +71,7 @@ typedef struct GrowParams {
     GrowToss toss;
     int threads;  /* 0: all processors. The tree does not depend on it */
     bool partial; /* a tree with fewer terminals is a result if no more find room */
-    void (*progress)(double fraction, void *context); /* NULL: none */
+    bool (*progress)(double fraction, void *context); /* false: stop; NULL: none */
     void *progress_context;
 } GrowParams;
 
@@ -182,7 +182,7 @@ typedef struct RefineParams {
     bool (*stop)(
         void *context); /* called after every move, by any thread; true stops; NULL: none */
     void *stop_context;
-    void (*progress)(double fraction, void *context); /* NULL: none */
+    bool (*progress)(double fraction, void *context); /* false: stop; NULL: none */
     void *progress_context;
 } RefineParams;
 
@@ -216,9 +216,9 @@ typedef struct RefineReport {
  * at the end; they must also keep it before, at the real thickness of their vessels.
  *
  * report   may be NULL.
- * Errors   *tree is unchanged. STATUS_USAGE for wrong parameters, STATUS_INPUT for a tree that
- * cannot be refined, STATUS_INFEASIBLE if the radii span more than a double can hold,
- *          STATUS_MEMORY.
+ * Errors   STATUS_USAGE for wrong parameters; STATUS_INPUT for a tree that cannot be refined;
+ *          STATUS_INFEASIBLE if the radii span more than a double can hold; STATUS_MEMORY. *tree is
+ *          then unchanged.
  * Threads  Without a limit of time, the result does not depend on the number of threads. */
 MUST_CHECK Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
                               RefineReport *report, Err *err);

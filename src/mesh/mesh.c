@@ -155,11 +155,12 @@ static Status build_junction(size_t index, int worker, void *context, Err *err)
         junctionworkspace_release(workspace);
     junctionplan_release(&plan);
     TRY(status);
-    size_t done = atomic_fetch_add(&build->done, 1) + 1;
-    if (build->params->progress && worker == 0)
-        build->params->progress((double)done / (double)build->junctions.n_junctions,
-                                build->params->context);
-    return STATUS_OK;
+    double done = (double)(atomic_fetch_add(&build->done, 1) + 1);
+    if (!build->params->progress || worker != 0)
+        return STATUS_OK;
+    bool goes_on = build->params->progress(done / (double)build->junctions.n_junctions,
+                                           build->params->context);
+    return goes_on ? STATUS_OK : err_cancelled(err);
 }
 
 static Status reserve_build(MeshBuild *build, Err *err)

@@ -31,10 +31,11 @@ MeshEstimate vesselmesh_estimate(const VesselTree *tree, const MeshParams *param
  * depend on the number of threads.
  *
  * mesh     receives the triangles, valid or not; release it with vesselmesh_release.
- * report   receives the facts; check them with meshreport_check, release them with
- * meshreport_release. Errors   STATUS_INPUT with a pair of ids if vessels overlap that do not
- * blend, or if the tree is too far from the origin; STATUS_INFEASIBLE if a junction region has no
- * valid surface with the finest cells; STATUS_MEMORY. */
+ * report   receives the facts; check them with meshreport_check, and release them with
+ *          meshreport_release.
+ * Errors   STATUS_INPUT, with a pair of ids, if vessels overlap that do not blend, or if the tree
+ *          is too far from the origin; STATUS_INFEASIBLE if a junction region has no valid surface
+ *          with the finest cells; STATUS_MEMORY. */
 MUST_CHECK Status vesselmesh_build(const VesselTree *tree, const MeshParams *params,
                                    VesselMesh *mesh, MeshReport *report, Err *err);
 

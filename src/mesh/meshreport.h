@@ -15,7 +15,7 @@ typedef struct MeshParams {
     int threads;      /* 0: all processors */
     double reach_mm;  /* 0, or a coordinate of another object that the mesh is to be joined with, so
                        * that both are on one grid */
-    void (*progress)(double fraction, void *context); /* NULL: none */
+    bool (*progress)(double fraction, void *context); /* false: stop; NULL: none */
     void *context;
 } MeshParams;
 

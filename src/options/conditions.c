@@ -56,6 +56,7 @@ static const ConditionRow rows[] = {
     [WHEN_CAMERA] = {"is for scenes with a camera (.pov, .tachyon); a solid has none"},
     [WHEN_POVRAY] = {"is for scenes of POV-Ray (.pov)"},
     [WHEN_VESSELS] = {"is for vessels; a polyhedron is the surface of all"},
+    [WHEN_MODELS] = {"is for vessels; a polyhedron is the surface of all"},
     [WHEN_OPENSCAD] = {"is for models of OpenSCAD (.scad)"},
     [WHEN_COLORS] = {"is for formats with colours"},
     [WHEN_MESH] = {"is for formats of triangles"},

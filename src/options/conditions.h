@@ -56,6 +56,7 @@ typedef enum Condition {
     WHEN_CAMERA,
     WHEN_POVRAY,
     WHEN_VESSELS,
+    WHEN_MODELS,
     WHEN_OPENSCAD,
     WHEN_COLORS,
     WHEN_MESH,

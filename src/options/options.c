@@ -370,7 +370,7 @@ static Status check_present(const Parsed *parsed, Err *err)
     if (command->needs_output && !parsed->in_memory && setting_count(output) == 0)
         return err_set(err, STATUS_USAGE, "-o %s is missing; usage: corcast %s %s",
                        output->option->argument, command->name, command->operands);
-    if (parsed->n_operands < command->min_operands)
+    if (!parsed->in_memory && parsed->n_operands < command->min_operands)
         return err_set(err, STATUS_USAGE, "a file is missing; usage: corcast %s %s", command->name,
                        command->operands);
     return STATUS_OK;

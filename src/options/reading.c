@@ -141,16 +141,30 @@ static void say_unit(const Talk *talk, const char *path, const TreeReading *read
                   path);
 }
 
-static Status read_file(const Parsed *parsed, const char *path, Tree *tree, TreeReading *reading,
-                        Err *err)
+static void say_found(const Talk *talk, const char *path, const TreeReading *reading)
 {
-    const Talk *talk = parsed->common.talk;
-    TRY(check(&parsed->reading, err));
-    TRY(tree_read_as(tree, path, &parsed->reading, reading, err));
     say_cuts(talk, reading);
     say_radii(talk, path, reading);
     say_near_ends(talk, path, reading);
     say_unit(talk, path, reading);
+}
+
+static Status read_file(const Parsed *parsed, const char *path, Tree *tree, TreeReading *reading,
+                        Err *err)
+{
+    TRY(check(&parsed->reading, err));
+    TRY(tree_read_as(tree, path, &parsed->reading, reading, err));
+    say_found(parsed->common.talk, path, reading);
+    return STATUS_OK;
+}
+
+Status reading_tree_bytes(const Parsed *parsed, const TreeBytes *file, Tree *tree, Err *err)
+{
+    TreeReading reading = {0};
+    TRY(check(&parsed->reading, err));
+    TRY(tree_read_bytes(tree, file, &parsed->reading, &reading, err));
+    say_found(parsed->common.talk, file->name, &reading);
+    reading_release(&reading);
     return STATUS_OK;
 }
 

@@ -5,6 +5,7 @@
 #include "base/base.h"
 #include "options/options.h"
 #include "tree/tree.h"
+#include "treeio/treeio.h"
 
 extern const OptionTable reading_table; /* sets a ReadOptions */
 
@@ -19,6 +20,10 @@ extern const OptionTable reading_table; /* sets a ReadOptions */
  * Errors   as tree_read_as; STATUS_USAGE for an option of reading if the tree is in memory. */
 MUST_CHECK Status reading_tree(const Parsed *parsed, const char *path, Tree *tree,
                                TreeReading *reading, Err *err);
+/* Reads a tree from the bytes of a file as the options say, with the notes of reading_tree. Errors:
+ * as tree_read_bytes. */
+MUST_CHECK Status reading_tree_bytes(const Parsed *parsed, const TreeBytes *file, Tree *tree,
+                                     Err *err);
 
 /* What was found, as lines of `info` and as JSON. */
 void reading_print(const TreeReading *reading);

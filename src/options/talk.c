@@ -43,21 +43,22 @@ void progress_start(Progress *progress, const char *what, const Talk *talk)
     progress_show(progress, 0);
 }
 
-void progress_show(const Progress *progress, double fraction)
+bool progress_show(Progress *progress, double fraction)
 {
     const Talk *talk = progress->talk;
-    if (talk && talk->progress)
-        talk->progress(talk->user, progress->what, fraction);
+    if (talk && talk->progress && !talk->progress(talk->user, progress->what, fraction))
+        progress->stopped = true;
+    return !progress->stopped;
 }
 
-void progress_report(double fraction, void *progress)
+bool progress_report(double fraction, void *progress)
 {
-    progress_show(progress, fraction);
+    return progress_show(progress, fraction);
 }
 
 void progress_end(const Progress *progress)
 {
     const Talk *talk = progress->talk;
     if (talk && talk->progress)
-        talk->progress(talk->user, NULL, 1);
+        (void)talk->progress(talk->user, NULL, 1);
 }

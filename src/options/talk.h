@@ -15,8 +15,9 @@ typedef struct Talk {
     /* Takes one sentence without a final newline; the sentence is borrowed during the call. */
     void (*say)(void *user, TalkKind kind, const char *sentence);
     /* Takes how much of the step `what` is done, in [0, 1]. A step begins with the fraction 0; a
-     * call with `what` NULL says that the step has ended, whether it is complete or has failed. */
-    void (*progress)(void *user, const char *what, double fraction);
+     * call with `what` NULL says that the step has ended, whether it is complete or has failed.
+     * Returns false to stop the operation, which then fails with STATUS_CANCELLED. */
+    bool (*progress)(void *user, const char *what, double fraction);
     void *user; /* passed to both callbacks; borrowed */
 } Talk;
 
@@ -25,18 +26,20 @@ typedef struct Talk {
 void talk_note(const Talk *talk, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void talk_warn(const Talk *talk, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* One step whose progress is told. */
+/* One step whose progress is reported. */
 typedef struct Progress {
     const Talk *talk; /* may be NULL; borrowed */
     const char *what; /* "growing"; borrowed */
+    bool stopped;     /* the caller asked to stop */
 } Progress;
 
 /* Begins a step. */
 void progress_start(Progress *progress, const char *what, const Talk *talk);
-/* Tells that `fraction` of the step, in [0, 1], is done. */
-void progress_show(const Progress *progress, double fraction);
+/* Reports that `fraction` of the step, in [0, 1], is done. Returns false once the caller has asked
+ * to stop. */
+bool progress_show(Progress *progress, double fraction);
 /* Does what progress_show does, for the callbacks of lower modules, whose context is a Progress. */
-void progress_report(double fraction, void *progress);
+bool progress_report(double fraction, void *progress);
 /* Ends a step. */
 void progress_end(const Progress *progress);
 

@@ -1,9 +1,10 @@
-/* One scene gives both planes: segments have flat colours, which Tachyon's low shading shows as
- * they are. In its medium shading, fog that grows linearly along the ray covers them; without light
- * they are black. Tachyon truncates codes, so a depth lies half a step beyond its code. */
+/* One scene gives both planes. Segments have flat colours, and Tachyon's low shading shows these
+ * colours unchanged: the id plane. In its medium shading segments are black, because there is no
+ * light, and fog covers them that grows linearly along the ray: the depth plane. Tachyon truncates
+ * codes, so a depth is half a step beyond its code. */
 #include "oracle/tachyon.h"
 
-#include "oracle/tool.h"
+#include "oracle/planes.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,12 +12,27 @@
 
 /* ---- the program ----------------------------------------------------------------------------- */
 
+typedef enum TachyonPlane { TACHYON_ID, TACHYON_DEPTH, TACHYON_PLANES } TachyonPlane;
+
+/* One run. All pointers are borrowed. */
+typedef struct TachyonPlaneRun {
+    const TachyonParams *params;
+    TachyonPlane plane;
+    const char *scene, *output; /* files */
+} TachyonPlaneRun;
+
+static const Camera *camera_of(const TachyonPlaneRun *run)
+{
+    return &run->params->emit.scene->view.camera;
+}
+
 static Status add_arguments(const void *context, const char *scene, const char *picture,
                             Arguments *arguments, Err *err)
 {
-    const WitnessParams *params = context;
-    const bool ids = params->plane == WITNESS_ID;
-    const char *const words[] = {params->program ? params->program : "tachyon",
+    const TachyonPlaneRun *run = context;
+    const TachyonParams *params = run->params;
+    const bool ids = run->plane == TACHYON_ID;
+    const char *const words[] = {params->program.path ? params->program.path : "tachyon",
                                  scene,
                                  ids ? "-lowshade" : "-mediumshade",
                                  "-format",
@@ -31,93 +47,125 @@ static Status add_arguments(const void *context, const char *scene, const char *
     return arguments_add(arguments, err, "%d", params->threads);
 }
 
-/* Whether what stands there is the picture that was asked for. */
-static bool is_whole_picture(const char *path, const WitnessParams *params)
+/* Returns true if the file is a picture of the expected size, channels and bits. */
+static bool is_whole_picture(const char *path, const TachyonPlaneRun *run)
 {
     Picture picture;
     Err ignored;
     if (picture_read(&picture, path, ALPHA_REFUSED, &ignored) != STATUS_OK)
         return false;
-    bool whole = picture.width == params->width && picture.height == params->height &&
-                 picture.channels == 3 && picture.bits == (params->plane == WITNESS_ID ? 8 : 16);
+    bool whole = picture.width == camera_of(run)->width &&
+                 picture.height == camera_of(run)->height && picture.channels == 3 &&
+                 picture.bits == (run->plane == TACHYON_ID ? 8 : 16);
     picture_release(&picture);
     return whole;
 }
 
-/* The last line in which it says that something is wrong; it exits with 0 even then. */
-static void reason_of_failure(const Text *said, char *reason, size_t size)
+/* Writes the line of the output that reports an error. Tachyon exits with 0 even then. */
+static void reason_of_failure(const Text *printed, char *reason, size_t size)
 {
     static const char *const marks[] = {"rror", "ailed", "ound"};
     snprintf(reason, size, "it gave no reason");
     for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
-        const char *at = strstr(text_chars(said), marks[i]);
+        const char *at = strstr(text_chars(printed), marks[i]);
         if (!at)
             continue;
-        while (at > text_chars(said) && at[-1] != '\n')
+        while (at > text_chars(printed) && at[-1] != '\n')
             at--;
         snprintf(reason, size, "%.*s", (int)strcspn(at, "\n"), at);
         return;
     }
 }
 
-static Status judge(const void *context, const Text *said, int exit_status, const char *picture,
+static Status judge(const void *context, const Text *printed, int exit_status, const char *picture,
                     Err *err)
 {
-    const WitnessParams *params = context;
+    const TachyonPlaneRun *run = context;
     char reason[200];
-    if (exit_status == 0 && is_whole_picture(picture, params))
+    if (exit_status == 0 && is_whole_picture(picture, run))
         return STATUS_OK;
-    reason_of_failure(said, reason, sizeof reason);
+    reason_of_failure(printed, reason, sizeof reason);
     return err_set(err, STATUS_TOOL, "Tachyon drew no picture of %s (exit status %d): %s",
-                   params->scene, exit_status, reason);
+                   run->scene, exit_status, reason);
 }
 
-Status witness_run(const WitnessParams *params, double *seconds, char version[16], Err *err)
+static void read_version(const Text *printed, char version[16])
 {
     static const char mark[] = "Version ";
-    Text said = TEXT_INIT;
-    const Tool tool = {.name = "Tachyon",
-                       .package = "tachyon",
-                       .scene = params->scene,
-                       .output = params->output,
-                       .patience = "CORCAST_POVRAY_PATIENCE",
-                       .patience_s = params->patience_s,
-                       .add_arguments = add_arguments,
-                       .judge = judge,
-                       .context = params};
-    Status status = tool_draw(&tool, &said, seconds, err);
-    const char *at = status == STATUS_OK ? strstr(text_chars(&said), mark) : NULL;
-    snprintf(version, 16, "%s", "unknown");
-    if (at)
-        snprintf(version, 16, "%.*s", (int)strspn(at + strlen(mark), "0123456789."),
-                 at + strlen(mark));
-    text_release(&said);
+    const char *at = strstr(text_chars(printed), mark);
+    const char *start = at ? at + strlen(mark) : "unknown";
+    snprintf(version, 16, "%.*s", (int)(at ? strspn(start, "0123456789.") : strlen(start)), start);
+}
+
+static Status draw_plane(const TachyonPlaneRun *run, TachyonRun *took, Err *err)
+{
+    Text printed = TEXT_INIT;
+    double seconds;
+    const Program program = {.name = "Tachyon",
+                             .package = "tachyon",
+                             .scene = run->scene,
+                             .output = run->output,
+                             .choice = run->params->program,
+                             .add_arguments = add_arguments,
+                             .judge = judge,
+                             .context = run};
+    Status status;
+    TRY_GOTO(program_draw(&program, &printed, &seconds, err));
+    took->seconds += seconds;
+    read_version(&printed, took->version);
+done:
+    text_release(&printed);
     return status;
 }
 
 /* ---- planes ---------------------------------------------------------------------------------- */
 
-Status witness_read_ids(IdPlane *ids, const char *path, Err *err)
+static Status take_depth(const Scene *scene, const Picture *picture, Frame *frame, Err *err)
+{
+    double near_mm, far_mm;
+    camera_depth_range(&scene->view.camera, scene->geometry.bounds, &near_mm, &far_mm);
+    TRY(plane_init(&frame->depth, picture->width, picture->height, 1, err));
+    size_t pixels = (size_t)picture->width * (size_t)picture->height;
+    for (size_t i = 0; i < pixels; i++) {
+        double fraction = (picture->codes16[3 * i] + 0.5) / 65535;
+        frame->depth.values[i] =
+            frame->id.ids[i] ? (float)(near_mm + fraction * (far_mm - near_mm)) : HUGE_VALF;
+    }
+    return STATUS_OK;
+}
+
+static Status take_plane(const TachyonPlaneRun *run, Frame *frame, Err *err)
 {
     Picture picture;
-    TRY(picture_read(&picture, path, ALPHA_REFUSED, err));
-    Status status = ids_take_picture(ids, &picture, err);
+    TRY(picture_read(&picture, run->output, ALPHA_REFUSED, err));
+    Status status = run->plane == TACHYON_ID
+                        ? ids_take_picture(&frame->id, &picture, err)
+                        : take_depth(run->params->emit.scene, &picture, frame, err);
     picture_release(&picture);
     return status;
 }
 
-Status witness_read_depth(Plane *depth, const char *path, const IdPlane *ids, double near_mm,
-                          double far_mm, Err *err)
+Status tachyon_draw(const TachyonParams *params, Frame *frame, TachyonRun *run, Err *err)
 {
-    Picture picture;
-    TRY(picture_read(&picture, path, ALPHA_REFUSED, err));
-    Status status = plane_init(depth, picture.width, picture.height, 1, err);
-    size_t pixels = (size_t)picture.width * (size_t)picture.height;
-    for (size_t i = 0; status == STATUS_OK && i < pixels; i++) {
-        double fraction = (picture.codes16[3 * i] + 0.5) / 65535;
-        depth->values[i] =
-            ids->ids[i] ? (float)(near_mm + fraction * (far_mm - near_mm)) : HUGE_VALF;
+    static const char *const names[TACHYON_PLANES] = {
+        [TACHYON_ID] = "tachyon.id.ppm", [TACHYON_DEPTH] = "tachyon.depth.ppm"};
+    EmitParams emit = params->emit;
+    char *scene = NULL, *path = NULL;
+    Status status;
+    run->seconds = 0;
+    emit.planes = true;
+    TRY_GOTO(file_join(params->folder, "scene.tachyon", &scene, err));
+    TRY_GOTO(planes_write_scene(&emit, "tachyon", scene, err));
+    for (TachyonPlane plane = 0; plane < TACHYON_PLANES; plane++) {
+        free(path);
+        path = NULL;
+        TRY_GOTO(file_join(params->folder, names[plane], &path, err));
+        const TachyonPlaneRun one = {params, plane, scene, path};
+        TRY_GOTO(draw_plane(&one, run, err));
+        TRY_GOTO(take_plane(&one, frame, err));
     }
-    picture_release(&picture);
+done:
+    free(scene);
+    free(path);
     return status;
 }

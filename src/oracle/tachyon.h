@@ -1,34 +1,36 @@
-/* Tachyon, a renderer that shares no code with corcast or POV-Ray: how it is run, and the planes
- * that it draws. It reads coordinates in single precision, computes in double precision, and gives
+/* Tachyon, a renderer that shares no code with corcast or POV-Ray: draws a scene with it and reads
+ * the planes. It reads coordinates in single precision, computes in double precision, and writes
  * depth in 65535 steps. */
 #ifndef CORCAST_ORACLE_TACHYON_H
 #define CORCAST_ORACLE_TACHYON_H
 
-#include "base/base.h"
+#include "emit/emit.h"
 #include "image/image.h"
+#include "oracle/program.h"
 
-/* What it is asked to draw of a scene written for it [EmitParams.planes]. */
-typedef enum WitnessPlane { WITNESS_DEPTH, WITNESS_ID } WitnessPlane;
+/* What Tachyon draws, and where. All pointers are borrowed. */
+typedef struct TachyonParams {
+    EmitParams emit;    /* the scene and how it is written; without file names */
+    const char *folder; /* an existing folder, for the scene and the planes */
+    int threads;        /* 0: Tachyon's own default */
+    ProgramChoice program;
+} TachyonParams;
 
-typedef struct WitnessParams {
-    const char *program; /* NULL: tachyon */
-    const char *scene;   /* a file under any name */
-    const char *output;  /* .ppm file, likewise */
-    int width, height;   /* pixels */
-    int threads;         /* 0: Tachyon's own choice */
-    double patience_s;   /* Tachyon is ended after this many seconds without output; 0: never */
-    WitnessPlane plane;
-} WitnessParams;
+/* What the runs report about themselves. */
+typedef struct TachyonRun {
+    char version[16]; /* "0.99"; "unknown" if Tachyon prints none */
+    double seconds;   /* wall-clock time of both planes */
+} TachyonRun;
 
-/* Has it draw a plane; `seconds` is the wall clock, `version` what it says of itself ("0.99").
- * STATUS_TOOL with its own words when it is missing or fails, or when it falls silent. */
-MUST_CHECK Status witness_run(const WitnessParams *params, double *seconds, char version[16],
-                              Err *err);
-
-/* Reads what witness_run wrote: ids, and depth in mm along the ray between `near_mm` and `far_mm`
- * as the scene has them, INFINITY where the ids (of the same scene) say that nothing is seen. */
-MUST_CHECK Status witness_read_ids(IdPlane *ids, const char *path, Err *err);
-MUST_CHECK Status witness_read_depth(Plane *depth, const char *path, const IdPlane *ids,
-                                     double near_mm, double far_mm, Err *err);
+/* Writes the scene, scene.tachyon, runs Tachyon once for the ids and once for the depth, and reads
+ * both planes: tachyon.id.ppm and tachyon.depth.ppm.
+ *
+ * frame   receives id and depth (mm along the ray; INFINITY where nothing is visible). Release it
+ *         with frame_release, also after an error.
+ * run     may be changed by a call that fails.
+ * Errors  as emit_files and program_draw; a failure of Tachyon has its own words in the sentence.
+ */
+MUST_CHECK Status tachyon_draw(const TachyonParams *params, Frame *frame, TachyonRun *run,
+                               Err *err);
 
 #endif

@@ -66,9 +66,11 @@ typedef struct FaceLoop {
 /* Fills a flat face with triangles.
  *
  * face     2 axis + 1 if the outside is towards the high end of the axis, 2 axis if it is towards
- * the low end. All points have the same coordinate along the axis. loops    The first is the face's
- * edge, counterclockwise seen from outside. The others are holes in it, clockwise. Loops do not
- * touch. Errors   STATUS_INFEASIBLE if loops touch, STATUS_MEMORY. Cost     O(n^2) for n points. */
+ *          the low end. All points have the same coordinate along the axis.
+ * loops    the first is the face's edge, counterclockwise seen from outside. The others are holes
+ *          in it, clockwise. Loops must not touch.
+ * Errors   STATUS_INFEASIBLE if loops touch; STATUS_MEMORY.
+ * Cost     O(n^2) for n points. */
 MUST_CHECK Status face_fill(Solid *solid, int face, const FaceLoop *loops, size_t n_loops,
                             uint32_t label, Err *err);
 

@@ -8,16 +8,17 @@ const char *const render_kernel_names[] = {[KERNELS_FASTEST] = "fastest",
                                            [KERNELS_AVX512] = "avx512",
                                            NULL};
 
-void band_progress(const Band *band, const RenderParams *params, int height, bool further,
-                   double part)
+Status band_progress(const Band *band, const RenderParams *params, int height, bool further,
+                     double part, Err *err)
 {
     if (!params->progress)
-        return;
+        return STATUS_OK;
     double more = params->want_color && params->antialias > 1
                       ? (double)params->antialias * params->antialias
                       : 0;
     double done = (further ? 1 + more * part : part) / (1 + more);
-    params->progress((band->first + done * band->rows) / height, params->progress_context);
+    const double fraction = (band->first + done * band->rows) / height;
+    return params->progress(fraction, params->progress_context) ? STATUS_OK : err_cancelled(err);
 }
 
 Rgb drawing_color(const Drawing *drawing, uint32_t segment, Vec3 point)

@@ -60,7 +60,8 @@ typedef struct RenderParams {
     bool codes_suffice; /* the frame may have 8-bit codes instead of float colours, if that is
                          * faster; a transparent view may have its background and no alpha */
     bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */
-    void (*progress)(double fraction, void *context);  /* called by one thread; may be NULL */
+    bool (*progress)(double fraction, void *context);  /* called by one thread; false: stop; may be
+                                                        * NULL */
     void *progress_context;
 } RenderParams;
 
@@ -104,12 +105,13 @@ typedef struct Drawing {
 /* Returns the linear colour of a segment at a point of its surface. */
 Rgb drawing_color(const Drawing *drawing, uint32_t segment, Vec3 point);
 
-/* Reports progress of the whole picture by params->progress, unless it is NULL.
+/* Reports progress of the whole picture by params->progress, unless it is NULL. Errors:
+ * STATUS_CANCELLED if the callback asks to stop.
  *
  * height   of the picture, pixels.
  * further  the pass draws the further samples of antialiasing; else the centre samples.
  * part     finished part of this pass over the band, 0..1. */
-void band_progress(const Band *band, const RenderParams *params, int height, bool further,
-                   double part);
+MUST_CHECK Status band_progress(const Band *band, const RenderParams *params, int height,
+                                bool further, double part, Err *err);
 
 #endif

@@ -7,6 +7,7 @@
 #include "geom/geom.h"
 #include "mesh/mesh.h"
 #include "scene/scene.h"
+#include "stage/fieldscale.h"
 #include "tree/tree.h"
 
 /* ---- looks ------------------------------------------------------------------------------------

@@ -1,8 +1,7 @@
-/* What is known of a tree beside its nodes: one table of the keys that carry a meaning, and their
- * values for one tree.
+/* Metadata of a tree: the table of all keys, and the values of one tree.
  *
- * Every file format writes the same keys, each in its own way: SWC and CSV as comments, others as
- * attributes or arrays. What a file says and no key of the table stands for is kept as a remark. */
+ * Every file format stores the same keys in its own way: SWC and CSV as comments, other formats as
+ * attributes or arrays. A line of a file that is not a key of the table is kept as a remark. */
 #ifndef CORCAST_TREE_META_H
 #define CORCAST_TREE_META_H
 
@@ -12,53 +11,53 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What the flow through each terminal was made after. */
+/* How the flow through each terminal was chosen. */
 typedef enum TerminalFlow {
-    TERMINAL_FLOW_EQUAL,     /* the same for all; the tree has no flow shares */
-    TERMINAL_FLOW_TERRITORY, /* the tissue that each supplies; the flow shares tell */
-    TERMINAL_FLOW_DEMAND     /* what that tissue asks for by a map; likewise */
+    TERMINAL_FLOW_EQUAL,     /* equal flow; the tree has no flow shares */
+    TERMINAL_FLOW_TERRITORY, /* proportional to the tissue nearest to it; stored as flow shares */
+    TERMINAL_FLOW_DEMAND     /* by the demand map of that tissue; stored as flow shares */
 } TerminalFlow;
 
-/* In the order in which a tree that the program makes is described. */
+/* The keys, in the order in which files of grown trees list them. */
 typedef enum MetaKey {
     META_GENERATOR,        /* program and version that made the tree */
-    META_COMMAND,          /* the command lines that made the tree, the last one last */
-    META_SEED,             /* of the random numbers */
+    META_COMMAND,          /* the command lines that made the tree, in order */
+    META_SEED,             /* seed of the random numbers */
     META_DIMENSION,        /* 2 or 3 */
-    META_DOMAIN,           /* the tissue, as domain_parse reads it */
+    META_DOMAIN,           /* text of the domain [domain_parse] */
     META_GAMMA,            /* Murray exponent */
-    META_GAMMA_BY_RADIUS,  /* the same where it follows the radius, mm, of the parent */
-    META_LAMBDA,           /* exponent of the target */
-    META_P_PERF,           /* mmHg, at the inlet */
-    META_P_TERM,           /* mmHg, at every terminal */
-    META_Q_PERF,           /* ml/min, through the inlet */
-    META_VISCOSITY,        /* cP, of the blood, by the constant law */
+    META_GAMMA_BY_RADIUS,  /* Murray exponent as a curve over the parent's radius, mm */
+    META_LAMBDA,           /* exponent of the radius in the target */
+    META_P_PERF,           /* pressure at the inlet, mmHg */
+    META_P_TERM,           /* pressure at all terminals, mmHg */
+    META_Q_PERF,           /* flow through the inlet, ml/min */
+    META_VISCOSITY,        /* viscosity of the blood in the constant law, cP */
     META_VISCOSITY_LAW,    /* a ViscosityLaw */
-    META_HEMATOCRIT,       /* discharge hematocrit, by Pries's law */
-    META_PLASMA_VISCOSITY, /* cP, by Pries's law */
+    META_HEMATOCRIT,       /* discharge hematocrit in Pries's law */
+    META_PLASMA_VISCOSITY, /* viscosity of the plasma in Pries's law, cP */
     META_TERMINAL_FLOW,    /* a TerminalFlow */
-    META_CLEARANCE,        /* mm, least distance of the walls of vessels of different trees */
-    META_KEYS              /* how many there are; also: no key */
+    META_CLEARANCE,        /* minimum distance between walls of different trees, mm */
+    META_KEYS              /* number of keys; as a key: none */
 } MetaKey;
 
 typedef enum MetaKind {
-    META_NUMBER, /* any number in the range */
-    META_WHOLE,  /* a whole number in the range */
-    META_BITS,   /* a whole number of 64 bits */
+    META_NUMBER, /* a number in the range */
+    META_WHOLE,  /* an integer in the range */
+    META_BITS,   /* a 64-bit unsigned integer */
     META_WORD,   /* one of the words */
     META_CURVE,  /* a curve of numbers in the range */
     META_TEXT,   /* a line of text */
-    META_LINES   /* lines of text, one for each time that a file says the key */
+    META_LINES   /* lines of text: the key may occur several times in a file */
 } MetaKind;
 
-/* What a key is. */
+/* The description of a key. */
 typedef struct MetaRow {
     const char *name;    /* in files */
-    const char *unit;    /* NULL for pure numbers and for what is no number */
+    const char *unit;    /* NULL for pure numbers and for texts */
     const char *meaning; /* "flow through the inlet" */
     MetaKind kind;
     Range range;              /* of META_NUMBER, META_WHOLE, META_CURVE */
-    const char *const *words; /* of META_WORD: those of the values 0, 1, ...; ends with NULL */
+    const char *const *words; /* of META_WORD: the words for 0, 1, ...; ends with NULL */
 } MetaRow;
 
 /* The words of a ViscosityLaw and of a TerminalFlow; NULL ends them. */
@@ -67,71 +66,75 @@ extern const char *const viscosity_law_names[], *const terminal_flow_names[];
 /* The table, by MetaKey. */
 extern const MetaRow meta_rows[META_KEYS];
 
-/* A line of a file: a key, whose value is elsewhere but for META_LINES, or a remark, which is a
- * line that no key stands for. */
+/* A line of a file: either a key, whose value is in TreeMeta unless it is of the kind META_LINES,
+ * or a remark. */
 typedef struct MetaLine {
     MetaKey key; /* META_KEYS: a remark */
-    char *text;  /* owned; of a remark and of META_LINES, without line ends; else NULL */
+    char
+        *text; /* the remark, or the value of a META_LINES; without line ends; otherwise NULL; owned
+                */
 } MetaLine;
 
-/* What is known of one tree, or what a user says of one. Zeroed: nothing. Numbers may be written
- * as they are, together with `known`; texts are set by meta_set_text and meta_add_text. */
+/* The metadata of one tree. Zeroed: none. A caller may set numbers directly, together with `known`;
+ * texts are set by meta_set_text and meta_add_text. */
 typedef struct TreeMeta {
     bool known[META_KEYS];
-    double number[META_KEYS]; /* of META_NUMBER, META_WHOLE; of META_WORD the word's value */
+    double number[META_KEYS]; /* of META_NUMBER and META_WHOLE; of META_WORD: index of the word */
     uint64_t seed;            /* of META_BITS */
     LogCurve gamma_by_radius; /* of META_CURVE */
-    char *text[META_KEYS];    /* of META_TEXT; owned, NULL when not known */
-    MetaLine *line;           /* owned; in the order of the file */
+    char *text[META_KEYS];    /* of META_TEXT; NULL if not known; owned */
+    MetaLine *line;           /* the lines in the order of the file; owned */
     size_t n_lines, lines_capacity;
 } TreeMeta;
 
-/* Frees what is owned and zeroes *meta. */
+/* Frees the texts and lines, and zeroes *meta. */
 void meta_release(TreeMeta *meta);
-/* A copy in *out (owned). */
+/* Copies the metadata; release *out with meta_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status meta_copy(TreeMeta *out, const TreeMeta *meta, Err *err);
 
-/* The key whose name are the first `length` characters of `name`; META_KEYS when there is none. */
+/* Finds the key whose name is the first `length` characters of `name`; META_KEYS if there is none.
+ */
 MetaKey meta_find(const char *name, size_t length);
 
-/* Whether a number may stand for a key of kind META_NUMBER, META_WHOLE or META_WORD. */
+/* Returns true if `value` is allowed for a key of kind META_NUMBER, META_WHOLE or META_WORD. */
 bool meta_allows(MetaKey key, double value);
 
-/* A number or a word's value; 0 when it is not known. */
+/* Returns the number of a key, or the index of its word; 0 if it is not known. */
 static inline double meta_number(const TreeMeta *meta, MetaKey key)
 {
     return meta->known[key] ? meta->number[key] : 0;
 }
 
-/* The Murray exponent by the radius, mm, of the parent, as the keys gamma_by_radius or gamma say
- * it; without points when it is not known. */
+/* Returns the Murray exponent as a curve over the parent's radius, mm, from the key gamma_by_radius
+ * or gamma. The curve has no points if neither is known. */
 LogCurve meta_gamma(const TreeMeta *meta);
 
-/* Sets a number or a word, which is not checked, the seed, or the Murray exponent: the one of its
- * two keys that it takes. */
+/* Set a number or the index of a word, without a check; the seed; and the Murray exponent, in the
+ * key gamma if it is constant, otherwise in gamma_by_radius. */
 void meta_set_number(TreeMeta *meta, MetaKey key, double value);
 void meta_set_seed(TreeMeta *meta, uint64_t seed);
 void meta_set_gamma(TreeMeta *meta, const LogCurve *gamma);
-/* Sets a META_TEXT (copied). STATUS_INPUT when it holds a line end. */
+/* Sets a key of the kind META_TEXT; the text is copied. Errors: STATUS_INPUT if the text has a line
+ * end; STATUS_MEMORY. */
 MUST_CHECK Status meta_set_text(TreeMeta *meta, MetaKey key, const char *text, Err *err);
-/* Appends a line (copied) of a META_LINES or, of META_KEYS, a remark. STATUS_INPUT when it holds a
- * line end. */
+/* Appends a line for a key of the kind META_LINES, or a remark if `key` is META_KEYS; the text is
+ * copied. Errors: STATUS_INPUT if the text has a line end; STATUS_MEMORY. */
 MUST_CHECK Status meta_add_text(TreeMeta *meta, MetaKey key, const char *text, Err *err);
 
-/* Sets a key from its value in a file, blanks at the value's ends left out, and gives it a line.
- * STATUS_INPUT, with a sentence that names neither file nor line, when the value is not allowed or
- * differs from the known one. */
+/* Sets a key from its text in a file and appends its line. Blanks at the ends of the text are
+ * ignored. Errors: STATUS_INPUT if the value is not allowed, or differs from the known value; the
+ * sentence names neither file nor line, which the caller adds. STATUS_MEMORY. */
 MUST_CHECK Status meta_parse(TreeMeta *meta, MetaKey key, const char *value, Err *err);
-/* Appends the known value of a key that is no META_LINES, as meta_parse reads it. */
+/* Appends the known value of a key, not of the kind META_LINES, as text for meta_parse. */
 void meta_put_value(const TreeMeta *meta, MetaKey key, Text *text);
 
-/* Gives all known keys that have no line yet a line each, so that what is added later comes behind
- * them. */
+/* Appends a line for each known key without one, so that lines added later follow them. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status meta_add_lines(TreeMeta *meta, Err *err);
 
-/* A walk over all that is known: the lines in order, each key where it stands first, then the
- * known keys without a line, in the order of the table. Begin with {.meta = meta}; false behind the
- * last. What *line holds is borrowed. */
+/* An iteration over the metadata: first the lines in order, each key once, at its first line; then
+ * the known keys without a line, in the order of the table. Start with {.meta = meta}. meta_walk
+ * stores the next line in *line, whose text is borrowed, and returns false at the end. */
 typedef struct MetaWalk {
     const TreeMeta *meta;
     size_t at;
@@ -139,12 +142,13 @@ typedef struct MetaWalk {
 } MetaWalk;
 bool meta_walk(MetaWalk *walk, MetaLine *line);
 
-/* Who says the values that constrained constructive optimization rests on. */
+/* The origin of the values, for error sentences: options name fields, a file has keys. */
 typedef enum MetaSource { META_OF_OPTIONS, META_OF_FILE } MetaSource;
 
-/* Checks that CCO has all it needs and can go by it: gamma, lambda, pressures, flow and what the
- * law of viscosity asks for, all known and in range, and p_term below p_perf. The sentence names
- * fields (STATUS_USAGE) or keys of the file (STATUS_INPUT). */
+/* Checks that the values that CCO needs are known and in range: gamma, lambda, pressures, flow and
+ * the parameters of the viscosity law; and that p_term is below p_perf. Errors: STATUS_USAGE with a
+ * sentence that names a field, if `source` is META_OF_OPTIONS; STATUS_INPUT with a sentence that
+ * names a key, if it is META_OF_FILE. */
 MUST_CHECK Status meta_check_cco(const TreeMeta *meta, MetaSource source, Err *err);
 
 #endif

@@ -1,10 +1,10 @@
-/* The door of the room tree: an arterial tree as flat arrays.
+/* The public header of the module tree: an arterial tree as flat arrays.
  *
- * Node i other than a root is the distal end of segment i, the straight tube from its parent's
- * position to its own, of radius radius_mm[i] throughout. A root is an inlet point, and its radius
- * that of the thickest segment that leaves it. Several roots make a forest. Parents come before
- * children, so a forward loop is a sweep from the roots and a backward loop one from the
- * terminals. */
+ * Node i, unless it is a root, is the distal end of segment i: the straight tube from its parent's
+ * position to its own position, with the radius radius_mm[i] along its whole length. A root is an
+ * inlet; its radius is that of the thickest segment that leaves it. A tree with several roots is a
+ * forest. Parents come before their children: a loop with increasing i visits nodes from the roots
+ * to the terminals, a loop with decreasing i from the terminals to the roots. */
 #ifndef CORCAST_TREE_TREE_H
 #define CORCAST_TREE_TREE_H
 
@@ -24,44 +24,45 @@
 
 enum { TREE_NO_PARENT = -1, TREE_MAX_ID = 100000000 };
 
-/* The SWC type code of nodes whose file has none, and of grown trees: SWC has no code for arteries,
- * and 3 is what files of arterial trees use. */
+/* The SWC type code of grown trees, and of nodes whose file states none. SWC has no code for
+ * arteries; files of arterial trees use 3. */
 enum { TREE_VESSEL_TYPE = 3 };
 
-/* Values of all segments under a name, as a file brought them. */
+/* A named array of values of the segments, from a file or computed. */
 typedef struct TreeColumn {
-    char *name;    /* owned; not empty, different from the others' */
-    char *unit;    /* owned; "" for pure numbers */
-    double *value; /* owned; one a node, that of its segment; NAN where there is none */
+    char *name;    /* not empty; unique in the tree; owned */
+    char *unit;    /* "" for pure numbers; owned */
+    double *value; /* per node: the value of its segment; NAN: none; owned */
 } TreeColumn;
 
 struct Tree {
-    size_t n;          /* nodes; at least 1 */
+    size_t n;          /* number of nodes; at least 1 */
     int32_t *id;       /* SWC id, in [1, TREE_MAX_ID] */
     int32_t *type;     /* SWC type code */
     int32_t *parent;   /* index of the parent, below the own index; TREE_NO_PARENT at a root */
     Vec3 *position;    /* mm */
     double *radius_mm; /* >= 0 */
-    /* The part of the flow that leaves the tree at each node, >= 0, relative to the others; NULL:
-     * the same at every terminal and none elsewhere. */
+    /* Per node: the flow that leaves the tree there, >= 0, in a unit common to all nodes. NULL: the
+     * flow is the same at all terminals, and 0 at other nodes. */
     double *flow_share;
     TreeColumn *column; /* owned */
     size_t n_columns;
     TreeMeta meta;
 };
 
-/* Room for n >= 1 zeroed nodes, parents TREE_NO_PARENT, in *tree (owned; tree_release).
- * STATUS_INFEASIBLE when there are more nodes than ids. */
+/* Makes a tree of n >= 1 zeroed nodes without parents; release it with tree_release. Errors:
+ * STATUS_INFEASIBLE if n exceeds TREE_MAX_ID; STATUS_MEMORY. */
 MUST_CHECK Status tree_init(Tree *tree, size_t n, Err *err);
-/* Frees the arrays, columns and meta, and zeroes *tree; a zeroed tree may be released. */
+/* Frees the arrays, columns and meta, and zeroes *tree. A zeroed tree is allowed. */
 void tree_release(Tree *tree);
 
+/* Returns true if node i is not a root. */
 static inline bool tree_is_segment(const Tree *tree, size_t i)
 {
     return tree->parent[i] != TREE_NO_PARENT;
 }
 
-/* Length of segment i, mm; 0 at a root. */
+/* Returns the length of segment i, mm; 0 for a root. */
 static inline double tree_segment_length(const Tree *tree, size_t i)
 {
     if (!tree_is_segment(tree, i))
@@ -69,56 +70,61 @@ static inline double tree_segment_length(const Tree *tree, size_t i)
     return vec3_distance(tree->position[tree->parent[i]], tree->position[i]);
 }
 
-/* The largest id. O(n). */
+/* Returns the largest id. Cost: O(n). */
 int32_t tree_last_id(const Tree *tree);
 
-/* The largest radius of the roots and of the segments that leave them, mm. O(n). */
+/* Returns the largest radius of roots and of segments that leave a root, mm. Cost: O(n). */
 double tree_root_radius(const Tree *tree);
 
-/* The number of children of every node, in *count (owned, n entries). A leaf that is not a root is
- * a terminal; a node with two children or more is a bifurcation. */
+/* Counts the children of each node in a new array of n entries, which the caller frees. A node that
+ * has no children and is not a root is a terminal; a node with two or more children is a
+ * bifurcation. Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_child_counts(const Tree *tree, int32_t **count, Err *err);
 
-/* Gives the tree, which has none, flow shares of 0 for the caller to fill. */
+/* Adds flow shares to a tree without them; all are 0, and the caller sets them. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status tree_add_flow_shares(Tree *tree, Err *err);
 
-/* Adds a column (name and unit copied) of NAN, for the caller to fill; *value is borrowed. */
+/* Adds a column of NAN, which the caller fills through *value; the tree owns the array. Name and
+ * unit are copied. Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_add_column(Tree *tree, const char *name, const char *unit, double **value,
                                   Err *err);
-/* The column of this name, for the caller to fill: the one there is, its unit now this one and its
- * values NAN, or else a new one. */
+/* Does the same as tree_add_column, but replaces the values and the unit if the tree has a column
+ * of this name. */
 MUST_CHECK Status tree_set_column(Tree *tree, const char *name, const char *unit, double **value,
                                   Err *err);
-/* NULL when there is none of this name. */
+/* Finds the column of this name; NULL if there is none. */
 const TreeColumn *tree_column(const Tree *tree, const char *name);
 
-/* The flow share of every node in *share (owned, n entries): tree->flow_share, or without it 1 at
- * terminals and 0 elsewhere. */
+/* Copies the flow shares to a new array of n entries, which the caller frees. For a tree without
+ * flow shares they are 1 at terminals and 0 at other nodes. Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_flow_shares(const Tree *tree, double **share, Err *err);
 
-/* Checks what the type promises: parents before children, finite positions and radii, radii and
- * flow shares not negative, ids in range and different. STATUS_INPUT naming the id of the node at
- * fault. */
+/* Checks the invariants of the type: parents come before children, positions and radii are finite,
+ * radii and flow shares are not negative, ids are unique and in range. Errors: STATUS_INPUT, naming
+ * the id of the first node that violates them; STATUS_MEMORY. */
 MUST_CHECK Status tree_check(const Tree *tree, Err *err);
 
-/* A new tree in *out (owned) without the segments thinner than `radius_mm` and without what hangs
- * on them; ids, order, columns and what is known are kept. A root always stays. What is left
- * carries the flow that it carried before: the flow shares of what is cut off go to the node it
- * hung on. */
+/* Makes a copy of the tree without the segments thinner than `radius_mm` and without their
+ * subtrees; release *out with tree_release. Roots always stay. Ids, order, columns and meta are
+ * kept. The flow shares of a removed subtree go to the node that it was attached to, so that the
+ * remaining segments keep their flow. Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err);
 
-/* A new tree in *out (owned): what of the tree lies within `part`, above 0, of the longest way
- * along the vessels from a root; segments that reach farther end there, with the radius they have.
- * Ids, order, columns and flow as tree_pruned has them; from 1 on, the tree itself. */
+/* Makes a copy of the part of the tree near its roots; release *out with tree_release. The path
+ * length from the root is at most `part` > 0 times the longest path in the tree; segments that
+ * reach farther are shortened, with their radius unchanged. Ids, order, columns and flow shares are
+ * treated as in tree_pruned. If `part` is 1 or more, the copy is complete. Errors: STATUS_MEMORY.
+ */
 MUST_CHECK Status tree_grown(const Tree *tree, double part, Tree *out, Err *err);
 
-/* Gives the nodes the ids 1 to n in array order. */
+/* Sets the ids to 1 to n, in the order of the arrays. */
 void tree_renumber(Tree *tree);
 
-/* Adds all of the tree, but the texts that are known of it, to what `hash` stands for. */
+/* Adds the content of the tree, except the texts in its meta, to `hash`. */
 void tree_hash(const Tree *tree, Hash *hash);
 
-/* The box of all nodes and of all segments with their radii, a segment rounded at its ends. */
+/* Returns the bounding box of all segments, drawn as tubes with hemispherical ends. */
 Box tree_bounds(const Tree *tree);
 
 #endif

@@ -523,7 +523,17 @@ typedef struct TreeSource {
     size_t size;
 } TreeSource;
 
-static Status open_source(TreeSource *source, const char *path, const char *called, Err *err)
+/* Takes the bytes of the source from `file`, or reads the file `path` if that is NULL. */
+static Status fill_source(TreeSource *source, const char *path, const TreeBytes *file, Err *err)
+{
+    const FileForm *form = source->format ? &source->format->form : &any_form;
+    return file ? file_read_memory(file->bytes, file->size, path, form, &source->bytes,
+                                   &source->size, err)
+                : file_read(path, form, &source->bytes, &source->size, err);
+}
+
+static Status open_source(TreeSource *source, const char *path, const TreeBytes *file,
+                          const char *called, Err *err)
 {
     const Format *format = NULL;
     char as[32] = "";
@@ -534,7 +544,7 @@ static Status open_source(TreeSource *source, const char *path, const char *call
     else if (count_formats(path) == 1)
         format = find_format(path, NULL);
     *source = (TreeSource){.name = is_standard(path) ? "standard input" : path, .format = format};
-    TRY(file_read(path, format ? &format->form : &any_form, &source->bytes, &source->size, err));
+    TRY(fill_source(source, path, file, err));
     if (format)
         return STATUS_OK;
     source->format = find_format(called ? as : path, source->bytes);
@@ -640,16 +650,19 @@ done:
     return status;
 }
 
-Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options, TreeReading *reading,
-                    Err *err)
+static Status read_any(Tree *tree, const char *path, const TreeBytes *file,
+                       const ReadOptions *options, TreeReading *reading, Err *err)
 {
     static const ReadOptions nothing = {0};
     const ReadOptions *said = options ? options : &nothing;
     TreeReading made = {0};
     TreeSource source = {0};
     Status status = STATUS_OK;
-    TRY_GOTO(open_source(&source, path, said->format, err));
+    TRY_GOTO(open_source(&source, path, file, said->format, err));
     made.format = source.format->name;
+    if (file && source.format->read == pvd_read)
+        TRY_GOTO(err_set(err, STATUS_USAGE, "%s: a PVD file in memory cannot name other files",
+                         path));
     TRY_GOTO(check_options(source.format, source.name, said, err));
     TRY_GOTO(read_source(&source, tree, said, &made, err));
     if (reading) {
@@ -660,6 +673,18 @@ done:
     reading_release(&made);
     free(source.bytes);
     return status;
+}
+
+Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options, TreeReading *reading,
+                    Err *err)
+{
+    return read_any(tree, path, NULL, options, reading, err);
+}
+
+Status tree_read_bytes(Tree *tree, const TreeBytes *file, const ReadOptions *options,
+                       TreeReading *reading, Err *err)
+{
+    return read_any(tree, file->name, file, options, reading, err);
 }
 
 Status tree_read(Tree *tree, const char *path, Err *err)

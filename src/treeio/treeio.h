@@ -49,14 +49,15 @@ void tree_format_list(Text *text);
 
 /* Reads a tree.
  *
- * path     the extension decides the format; that of standard input, "-", is recognised by its
- * first bytes. tree     receives the tree; release it with tree_release. Parents come first, and
- * nodes are otherwise in file order: an ancestor that the file names later moves to just before its
- * first descendant. Errors   STATUS_USAGE for an unknown extension. STATUS_INPUT, with file and
- * line, for a wrong field count, a value that is no number or out of range, a duplicate id, an
- * unknown parent, a cycle, a key with a bad value or with two values, a flow share given twice or
- * to no node, flow shares that terminal_flow contradicts, and a file without nodes. STATUS_IO,
- * STATUS_MEMORY. */
+ * path     the extension decides the format. The format of standard input, "-", is recognized by
+ *          its first bytes.
+ * tree     receives the tree; release it with tree_release. Nodes are in the order of the file,
+ *          except that a parent which the file names later moves to just before its first child.
+ * Errors   STATUS_USAGE for an unknown extension. STATUS_INPUT, with file and line, for a wrong
+ *          number of fields, a value that is no number or out of range, a duplicate id, an unknown
+ *          parent, a cycle, a key with a bad value or with two values, a flow share given twice or
+ *          to no node, flow shares that terminal_flow contradicts, and a file without nodes.
+ *          STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
 
 /* Reads a tree as the options say, and reports what was found.
@@ -67,6 +68,18 @@ MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
  *          take, and for an unknown format. */
 MUST_CHECK Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options,
                                TreeReading *reading, Err *err);
+
+/* A file in memory. */
+typedef struct TreeBytes {
+    const char *name; /* stands for the path */
+    const void *bytes;
+    size_t size;
+} TreeBytes;
+
+/* Reads a tree from the bytes of a file, as tree_read_as does. Errors: also STATUS_USAGE for an
+ * index of other files (PVD). */
+MUST_CHECK Status tree_read_bytes(Tree *tree, const TreeBytes *file, const ReadOptions *options,
+                                  TreeReading *reading, Err *err);
 
 /* ---- writing ---- */
 

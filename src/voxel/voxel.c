@@ -207,9 +207,9 @@ static Status make_chunks(VoxelWork *work, VoxelReport *report, Err *err)
             TRY(put_chunk(work, &work->chunks[i], report, err));
             release_chunk(&work->chunks[i]);
         }
-        if (params->progress)
-            params->progress(fmin(1, (double)(work->first_row + step) / (double)work->n_rows),
-                             params->context);
+        const double done = fmin(1, (double)(work->first_row + step) / (double)work->n_rows);
+        if (params->progress && !params->progress(done, params->context))
+            return err_cancelled(err);
     }
     return STATUS_OK;
 }

@@ -30,7 +30,7 @@ typedef struct VoxelParams {
                                * the voxel is not 0 in `values`; NULL: not wanted */
     VolumeStream *centreline; /* receives 1 where a vessel axis passes; NULL: not wanted */
     int threads;              /* 0: all processors */
-    void (*progress)(double fraction, void *context); /* NULL: none */
+    bool (*progress)(double fraction, void *context); /* false: stop; NULL: none */
     void *context;
 } VoxelParams;
 

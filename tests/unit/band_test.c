@@ -240,12 +240,13 @@ typedef struct Said {
     int calls;
 } Said;
 
-static void rises(double fraction, void *context)
+static bool rises(double fraction, void *context)
 {
     Said *said = context;
     assert_true(fraction >= said->last && fraction <= 1);
     said->last = fraction;
     said->calls++;
+    return true;
 }
 
 static void progress_rises_from_band_to_band(void **state)

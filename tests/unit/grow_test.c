@@ -289,11 +289,12 @@ static void the_header_tells_how_the_tree_was_made(void **state)
     tree_release(&tree);
 }
 
-static void note_progress(double fraction, void *context)
+static bool note_progress(double fraction, void *context)
 {
     double *last = context;
     assert_true(fraction > *last && fraction <= 1);
     *last = fraction;
+    return true;
 }
 
 static void progress_rises(void **state)

@@ -1,73 +1,14 @@
-/* Merges the reports that `verify` and `compare --report` left in folders; the exit status is the
- * worst of theirs. */
+/* Prints whether all cases agree. */
 #include "cli/commands.h"
-#include "compare/compare.h"
-#include "options/options.h"
-#include "options/templates.h"
+#include "job/verify/report.h"
 #include <stdio.h>
-#include <stdlib.h>
-
-/* What report_merge reads of a folder. */
-static Status note_case(const char *folder, Files *files, Err *err)
-{
-    static const char *const names[] = {"report.html", "report.json"};
-    for (int i = 0; i < 2; i++) {
-        char *path = NULL;
-        TRY(file_join(folder, names[i], &path, err));
-        Status status = files_read(files, "the case's", path, err);
-        free(path);
-        TRY(status);
-    }
-    return STATUS_OK;
-}
-
-typedef struct ReportOptions {
-    const char *page, *power;
-} ReportOptions;
-
-static const Option own[] = {
-    {.name = "output",
-     SETS(OUTPUT, ReportOptions, page),
-     .argument = "PAGE.html",
-     .help = "the page"},
-    {.name = "power",
-     SETS(INPUT, ReportOptions, power),
-     .argument = "FILE.json",
-     .help = "what `make power` measured, to be shown below the cases"},
-};
-
-static const OptionTable own_table = OPTION_TABLE(own);
 
 Status run_report(void *options, Parsed *parsed, Err *err)
 {
-    const ReportOptions *own_options = options;
-    char *folder = NULL;
-    bool agree = false;
-    Status status = STATUS_OK;
-    for (int i = 0; i < parsed->n_operands; i++)
-        TRY(note_case(parsed->operands[i], &parsed->files, err));
-    TRY_GOTO(templates_path("report", &folder, err));
-    TRY_GOTO(report_merge(parsed->operands, (size_t)parsed->n_operands, own_options->power, folder,
-                          own_options->page, &agree, err));
+    const ReportOptions *report = options;
+    bool agree;
+    TRY(report_run(report, parsed, &agree, err));
     if (!parsed->common.quiet)
-        printf("%s: %d cases; %s\n", agree ? "agree" : "differ", parsed->n_operands,
-               own_options->page);
-    status = agree ? STATUS_OK : STATUS_DIFFERS;
-done:
-    free(folder);
-    return status;
+        printf("%s: %d cases; %s\n", agree ? "agree" : "differ", parsed->n_operands, report->page);
+    return agree ? STATUS_OK : STATUS_DIFFERS;
 }
-
-const Command command_report = {
-    .name = "report",
-    .summary = "one page about several verifications and comparisons",
-    .operands = "DIR... -o PAGE.html",
-    .examples = "  corcast verify a.swc -o out/a; corcast verify b.swc -o out/b\n"
-                "  corcast compare mine.png theirs.png --report out/c\n"
-                "  corcast report out/a out/b out/c -o out/all.html\n",
-    .min_operands = 1,
-    .max_operands = MAX_OPERANDS,
-    .needs_output = true,
-    .size = sizeof(ReportOptions),
-    .tables = {{&own_table, 0}},
-};

@@ -29,6 +29,7 @@
 #include "grow/refine/refine_move.h"
 #include "grow/refine/refine_penalty.h"
 #include "grow/refine/refine_result.h"
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -66,6 +67,7 @@ typedef struct Refinement {
     double fraction;     /* of the budget that is spent */
     double shown, shows; /* the progress to tell of at first, and how much more at the end */
     bool stopped;
+    atomic_bool *cancelled; /* the progress callback asked to stop; shared by all cycles */
     LocalSearch search;
     Joints joints;
     size_t unclear; /* segments that broke a rule at first */
@@ -98,8 +100,9 @@ static bool is_over(Refinement *refinement)
 {
     const RefineParams *params = refinement->params;
     uint64_t tried = refinement->search.tried;
-    refinement->stopped =
-        refinement->stopped || (params->stop && params->stop(params->stop_context));
+    refinement->stopped = refinement->stopped ||
+                          atomic_load_explicit(refinement->cancelled, memory_order_relaxed) ||
+                          (params->stop && params->stop(params->stop_context));
     if (refinement->stopped || tried >= refinement->moves)
         return true;
     if (tried % MOVES_PER_LOOK != 0)
@@ -108,10 +111,13 @@ static bool is_over(Refinement *refinement)
     if (params->seconds > 0)
         fraction = fmax(fraction, (clock_seconds() - refinement->begun) / params->seconds);
     refinement->fraction = fraction;
-    if (params->progress)
-        params->progress(refinement->shown + refinement->shows * fmin(fraction, 1),
-                         params->progress_context);
-    return fraction >= 1;
+    if (params->progress &&
+        !params->progress(refinement->shown + refinement->shows * fmin(fraction, 1),
+                          params->progress_context)) {
+        atomic_store(refinement->cancelled, true);
+        refinement->stopped = true;
+    }
+    return refinement->stopped || fraction >= 1;
 }
 
 static Status sweep(Refinement *refinement, bool *over, Err *err)
@@ -513,7 +519,8 @@ static Status run_cycle(const Cycles *cycles, size_t number, const RefineParams 
                         Found *found, Err *err)
 {
     const Refinement *from = cycles->from;
-    Refinement cycle = {.params = params, .begun = from->begun, .shows = 1};
+    Refinement cycle = {
+        .params = params, .begun = from->begun, .shows = 1, .cancelled = from->cancelled};
     const Arbor *arbor = &cycle.search.arbor;
     Status status;
     if (!(params->seconds > 0)) {
@@ -639,13 +646,17 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
                    RefineReport *report, Err *err)
 {
     TRY(refine_check(params, domain, tree, err));
-    Refinement refinement = {.params = params, .begun = clock_seconds(), .shows = 1};
+    atomic_bool cancelled = false;
+    Refinement refinement = {
+        .params = params, .begun = clock_seconds(), .shows = 1, .cancelled = &cancelled};
     LocalSearch *search = &refinement.search;
     Tree made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(start(&refinement, domain, tree, err));
     double before = target_of(&search->arbor), after = before, apart;
     TRY_GOTO(refine(&refinement, domain, tree, err));
+    if (atomic_load(&cancelled))
+        TRY_GOTO(err_cancelled(err));
     TRY_GOTO(settle_for_good(&refinement, err));
     TRY_GOTO(result_make(&search->arbor, tree, &made, err));
     TRY_GOTO(prove_apart(&made, tree, &apart, err));

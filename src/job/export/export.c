@@ -169,7 +169,7 @@ static bool is_page(const ExportOptions *options)
     return strcmp(file_extension(options->output), "html") == 0;
 }
 
-Status run_export(void *options, Parsed *parsed, Err *err)
+Status export_run(void *options, Parsed *parsed, Err *err)
 {
     ExportOptions *own_options = options;
     const VolumeFormat *volume = volume_format_find(own_options->output);

@@ -22,4 +22,9 @@ extern const Command command_export;
 /* Runs the operation: checks the options, works and writes. Errors are in the sentences. */
 MUST_CHECK Status run_export(void *options, Parsed *parsed, Err *err);
 
+/* Checks the options, a pointer to an ExportOptions, makes what they ask for of the tree, and
+ * writes it.
+ */
+MUST_CHECK Status export_run(void *options, Parsed *parsed, Err *err);
+
 #endif

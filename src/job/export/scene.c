@@ -174,7 +174,7 @@ static Status write_source(const SceneOptions *options, const Emitter *emitter,
     return status;
 }
 
-Status run_scene(void *options, Parsed *parsed, Err *err)
+Status scene_run(void *options, Parsed *parsed, Err *err)
 {
     const SceneOptions *own_options = options;
     const Emitter *emitter;
@@ -213,11 +213,12 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
     if (!emitter)
         return 0;
     const PictureOptions *picture = &options->picture;
+    const bool mesh = model_has((SceneModel)picture->model, MODEL_TRIANGLES);
     return UNLESS(emitter->has_view, CAMERA) |
            UNLESS(emitter->has_view && size_is_on_paper(&picture->size), ON_PAPER) |
            UNLESS(strcmp(emitter->extension, "pov") == 0, POVRAY) |
            UNLESS(strcmp(emitter->extension, "scad") == 0, OPENSCAD) |
-           UNLESS(!emitter->of_meshes, VESSELS);
+           UNLESS(!emitter->of_meshes, VESSELS) | UNLESS(!emitter->of_meshes || mesh, MODELS);
 }
 
 static const OptionTable own_table = {OPTION_ROWS(own), .settle = settle, .unmet = unmet};

@@ -25,4 +25,9 @@ extern const Command command_scene;
 /* Runs the operation: checks the options, works and writes. Errors are in the sentences. */
 MUST_CHECK Status run_scene(void *options, Parsed *parsed, Err *err);
 
+/* Checks the options, a pointer to a SceneOptions, makes what they ask for of the tree, and writes
+ * it.
+ */
+MUST_CHECK Status scene_run(void *options, Parsed *parsed, Err *err);
+
 #endif

@@ -1,11 +1,10 @@
-/* Where the files of a scene go, and which POV-Ray draws them. */
+/* Where the files of a scene go. */
 #include "job/export/scenefiles.h"
 
 #include "job/export/volumes.h"
 #include "job/picture/picture.h"
 #include "options/output.h"
 #include "options/templates.h"
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -151,27 +150,4 @@ done:
     free(templates);
     beside_release(&beside);
     return status;
-}
-
-static Status read_patience(double *seconds, Err *err)
-{
-    const char *patience = getenv("CORCAST_POVRAY_PATIENCE");
-    *seconds = 600;
-    if (!patience || (number_parse(patience, seconds) && isfinite(*seconds) && *seconds >= 0))
-        return STATUS_OK;
-    return err_set(err, STATUS_USAGE,
-                   "CORCAST_POVRAY_PATIENCE: '%s' is not a number of seconds of at least 0",
-                   patience);
-}
-
-Status povray_from_environment(OracleParams *params, Err *err)
-{
-    params->program = getenv("CORCAST_POVRAY");
-    return read_patience(&params->patience_s, err);
-}
-
-Status tachyon_from_environment(WitnessParams *params, Err *err)
-{
-    params->program = getenv("CORCAST_TACHYON");
-    return read_patience(&params->patience_s, err);
 }

@@ -50,9 +50,6 @@ MUST_CHECK Status coloring_read_look(const char *name, Look *look, Err *err);
  * into *joined (owned; else unchanged). As tree_read_values. */
 MUST_CHECK Status coloring_join(const Coloring *coloring, Tree *tree, char **joined, Err *err);
 
-/* STATUS_USAGE unless `name` has a frame of this number, from 1 on. */
-MUST_CHECK Status coloring_check_frame(int frame, const char *name, size_t frames, Err *err);
-
 /* A tree that is coloured. */
 typedef struct ColoredTree {
     const char *path;   /* for sentences */

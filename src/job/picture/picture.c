@@ -42,7 +42,7 @@ static const Option rows[] = {
      SETS(CHOICE, PictureOptions, model),
      .choices = model_names,
      .group = GROUP_VESSELS,
-     .when = WHEN(VESSELS),
+     .when = WHEN(MODELS),
      .help = "how vessels are drawn"},
     {.name = "potential",
      SETS(CHOICE, PictureOptions, potential),
@@ -442,7 +442,7 @@ static Status prune(double radius_mm, bool keep_whole, PictureTree *of, Err *err
 Status picture_read_tree(const Coloring *coloring, double prune_radius_mm, const Parsed *parsed,
                          PictureTree *out, Err *err)
 {
-    PictureTree made = {.path = parsed->n_operands > 0 ? parsed->operands[0] : "the tree"};
+    PictureTree made = {.path = parsed->operands[0]};
     TRY(reading_tree(parsed, made.path, &made.tree, NULL, err));
     Status status = blood_settle(&coloring->blood, parsed, &made.tree, err);
     if (status == STATUS_OK)

@@ -170,7 +170,7 @@ static Status fill_sheet(Rendering *r, Err *err)
 
 /* Adds to the form what the files state and what lies over the pictures, and says what the scene
  * has lost. */
-static Status describe(Rendering *r, Err *err)
+Status rendering_describe(Rendering *r, Err *err)
 {
     TRY(command_line_text(r->parsed, &r->provenance, err));
     r->form.provenance = r->provenance;
@@ -180,8 +180,7 @@ static Status describe(Rendering *r, Err *err)
     return picture_say(&r->scene, &r->report, r->parsed->common.talk, err);
 }
 
-/* The report of --json. */
-static Status write_report(const Rendering *r, Err *err)
+json_t *rendering_json(const Rendering *r)
 {
     const Scene *scene = &r->scene;
     const StageReport *staged = &r->report.staged;
@@ -204,25 +203,29 @@ static Status write_report(const Rendering *r, Err *err)
     }
     if (scene->appearance.said)
         report = json_with(report, "color", coloring_json(&scene->appearance));
-    return json_write(report, r->options->json, err);
+    return report;
 }
 
 /* ---- into memory ----------------------------------------------------------------------------- */
 
-static Status draw_result(Rendering *r, RenderResult *made, Err *err)
+Status rendering_draw_result(Rendering *r, RenderResult *made, Err *err)
 {
     if (r->animation.first != r->animation.last)
         return err_set(err, STATUS_USAGE,
                        "--only K is missing: a picture in memory is one of the animation's %d",
                        r->animation.n);
-    TRY(describe(r, err));
     r->name = "the picture";
     TRY(rendering_draw(r, r->animation.first, &made->frame, err));
     made->dpi = r->form.dpi;
     made->engine = render_stats(r).engine;
-    if (r->form.colors)
-        TRY(mem_strdup(&made->colors, r->form.colors, err));
-    return r->options->json ? write_report(r, err) : STATUS_OK;
+    return r->form.colors ? mem_strdup(&made->colors, r->form.colors, err) : STATUS_OK;
+}
+
+/* Writes the report of --json, if it was given. */
+static Status write_report(const Rendering *r, Err *err)
+{
+    const char *path = r->options->json;
+    return path ? json_write(rendering_json(r), path, err) : STATUS_OK;
 }
 
 Status render_make(RenderOptions *options, Parsed *parsed, RenderResult *result, Err *err)
@@ -231,7 +234,11 @@ Status render_make(RenderOptions *options, Parsed *parsed, RenderResult *result,
     RenderResult made = {0};
     options->output = NULL;
     TRY(rendering_open(options, parsed, NULL, &r, err));
-    Status status = draw_result(&r, &made, err);
+    Status status = rendering_describe(&r, err);
+    if (status == STATUS_OK)
+        status = rendering_draw_result(&r, &made, err);
+    if (status == STATUS_OK)
+        status = write_report(&r, err);
     rendering_close(&r);
     if (status == STATUS_OK)
         *result = made;
@@ -318,12 +325,12 @@ static Status write_pictures(Rendering *r, Err *err)
     TRY(note_files(r, err));
     if (r->options->shard.commands)
         return print_commands(r, err);
-    TRY(describe(r, err));
+    TRY(rendering_describe(r, err));
     if (r->options->ink_mm > 0)
         return line_drawing_write(&r->scene, r->options->ink_mm, r->params.threads, &r->form, err);
     for (int k = r->animation.first; k <= r->animation.last; k++)
         TRY(rendering_draw(r, k, NULL, err));
-    return r->options->json ? write_report(r, err) : STATUS_OK;
+    return write_report(r, err);
 }
 
 Status render_run(RenderOptions *options, Parsed *parsed, Err *err)

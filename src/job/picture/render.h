@@ -74,6 +74,18 @@ MUST_CHECK Status rendering_open(RenderOptions *options, Parsed *parsed, const F
                                  Rendering *out, Err *err);
 void rendering_close(Rendering *rendering);
 
+/* Makes the command line for provenance, puts annotations on the sheet, and tells what the scene
+ * shows and what it has lost of its tree. Call it once, before anything is drawn. Errors:
+ * STATUS_USAGE if an annotation does not fit, STATUS_MEMORY. */
+MUST_CHECK Status rendering_describe(Rendering *rendering, Err *err);
+/* Draws the single picture of the options into *made, zeroed before; the caller releases it even
+ * after an error. Errors: STATUS_USAGE if the options are of several pictures; as rendering_draw.
+ */
+MUST_CHECK Status rendering_draw_result(Rendering *rendering, RenderResult *made, Err *err);
+/* Returns what --json reports of the pictures drawn so far. New reference, or NULL if memory runs
+ * out. */
+json_t *rendering_json(const Rendering *rendering);
+
 /* Draws picture `number` of the animation, 1 for a single picture. Pictures with the same geometry
  * share what the renderer has prepared.
  *

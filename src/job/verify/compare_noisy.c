@@ -1,13 +1,11 @@
 /* Compares pictures of path tracers. The variance of their noise comes from a file of variances or
  * from several renderings. */
-#include "job/verify/compare_options.h"
-#include "options/output.h"
+#include "job/verify/compare_parts.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Linear colours, whatever the file holds. */
+/* Reads a file of any kind as linear colours. */
 static Status read_colors(Plane *plane, const char *path, Err *err)
 {
     Image image = {0};
@@ -28,20 +26,21 @@ static Status variance_of_renderings(Plane *variance, const char *names, Err *er
     Plane planes[MOST] = {{0}};
     size_t n = 0;
     char *copy = NULL, *rest = NULL;
-    Status status = mem_strdup(&copy, names, err);
-    char *name = status == STATUS_OK ? strtok_r(copy, ",", &rest) : NULL;
-    for (; name && status == STATUS_OK; name = strtok_r(NULL, ",", &rest)) {
-        status = n < MOST ? read_colors(&planes[n], name, err)
-                          : err_set(err, STATUS_USAGE, "--noise takes at most %d files", MOST);
-        n += status == STATUS_OK;
+    Status status;
+    TRY(mem_strdup(&copy, names, err));
+    for (char *name = strtok_r(copy, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
+        if (n == MOST)
+            TRY_GOTO(err_set(err, STATUS_USAGE, "--noise takes at most %d files", MOST));
+        TRY_GOTO(read_colors(&planes[n], name, err));
+        n++;
     }
-    if (status == STATUS_OK && n < FEWEST)
-        status = err_set(err, STATUS_USAGE,
+    if (n < FEWEST)
+        TRY_GOTO(err_set(err, STATUS_USAGE,
                          "--noise is '%s'; it must name at least %d more renderings of the scene, "
                          "with commas between them; a file of variances is given by --variance",
-                         names, FEWEST);
-    if (status == STATUS_OK)
-        status = noise_of_renderings(planes, n, variance, err);
+                         names, FEWEST));
+    status = noise_of_renderings(planes, n, variance, err);
+done:
     for (size_t i = 0; i < n; i++)
         plane_release(&planes[i]);
     free(copy);
@@ -64,7 +63,7 @@ static Status read_variance(Plane *variance, const char *path, Err *err)
                    path, bits);
 }
 
-static Status print_noise(const NoiseResult *result, bool json, bool quiet, Err *err)
+json_t *noise_json(const NoiseResult *result)
 {
     const JsonMember members[] = {
         {"verdict", json_text(result->agrees ? "agree" : "differ")},
@@ -75,24 +74,24 @@ static Status print_noise(const NoiseResult *result, bool json, bool quiet, Err 
         {"tile_sigmas", json_number(result->tile_sigmas)},
         {"tile_sigmas_allowed", json_number(result->tile_limit)},
     };
-    json_t *object = json_with_members(json_object(), members, sizeof members / sizeof *members);
-    if (json)
-        return json_write(object, "-", err);
-    json_decref(object);
-    if (!quiet)
-        printf("%s (noise, false alarms %.3g): B is %.5g times as bright as A, %.3g sigmas, at "
-               "most %.3g allowed; the worst tile of 32 x 32 pixels, %.3g sigmas, at most %.3g "
-               "allowed, begins at (%d, %d)\n",
-               result->agrees ? "agree" : "differ", result->rate, result->gain, result->sigmas,
-               result->limit, result->tile_sigmas, result->tile_limit, result->tile.x,
-               result->tile.y);
-    return STATUS_OK;
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-Status compare_noisy(const CompareOptions *options, const Parsed *parsed, Err *err)
+void noise_text(const NoiseResult *result, Text *out)
+{
+    text_printf(out,
+                "%s (noise, false alarms %.3g): B is %.5g times as bright as A, %.3g sigmas, at "
+                "most %.3g allowed; the worst tile of 32 x 32 pixels, %.3g sigmas, at most %.3g "
+                "allowed, begins at (%d, %d)\n",
+                result->agrees ? "agree" : "differ", result->rate, result->gain, result->sigmas,
+                result->limit, result->tile_sigmas, result->tile_limit, result->tile.x,
+                result->tile.y);
+}
+
+Status compare_noisy(const CompareOptions *options, const Parsed *parsed, NoiseResult *result,
+                     Err *err)
 {
     Plane a = {0}, b = {0}, variance = {0};
-    NoiseResult result;
     Status status = STATUS_OK;
     TRY_GOTO(read_colors(&a, parsed->operands[0], err));
     TRY_GOTO(read_colors(&b, parsed->operands[1], err));
@@ -100,9 +99,7 @@ Status compare_noisy(const CompareOptions *options, const Parsed *parsed, Err *e
         TRY_GOTO(read_variance(&variance, options->variance, err));
     else
         TRY_GOTO(variance_of_renderings(&variance, options->noise, err));
-    TRY_GOTO(compare_noise(&a, &b, &variance, options->alarms, &result, err));
-    TRY_GOTO(print_noise(&result, options->json, parsed->common.quiet, err));
-    status = result.agrees ? STATUS_OK : STATUS_DIFFERS;
+    status = compare_noise(&a, &b, &variance, options->alarms, result, err);
 done:
     plane_release(&a);
     plane_release(&b);

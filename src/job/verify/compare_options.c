@@ -1,4 +1,4 @@
-/* What `compare` may be told, and the limits that this makes. */
+/* The rows of the options, and the tolerance that they state. */
 #include "job/verify/compare_options.h"
 
 #include <math.h>

@@ -1,50 +1,51 @@
-/* One scene, two renderers: POV-Ray draws it from files (povray_side.c) and corcast from memory, at
- * the same time, since POV-Ray first waits a quarter of a second for itself; then all four planes
- * of both are compared. An implicit surface takes two steps: corcast repeats POV-Ray's root finder,
- * whose picture must be POV-Ray's, and where that sees the surface is compared with where it is. */
+/* One scene, two renderers. POV-Ray draws it from files (oracle/povray_tiles.h) and corcast from
+ * memory. Both draw at the same time, because POV-Ray waits for itself for a quarter of a second.
+ * Then all planes are compared.
+ *
+ * An isosurface takes two steps. corcast repeats POV-Ray's root finder, and the resulting picture
+ * must equal POV-Ray's. Then the surface that this root finder sees is compared with the exact
+ * surface. */
 #include "job/verify/verification.h"
 
-#include "job/export/scenefiles.h"
 #include "job/picture/frames.h"
-#include "job/verify/povray_side.h"
-#include "oracle/settle.h"
+#include "options/output.h"
+#include "options/templates.h"
+#include "oracle/explain.h"
+#include "oracle/povray_tiles.h"
 #include "oracle/tachyon.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 void verification_release(Verification *v)
 {
-    if (v->frames.n_frames > 0)
-        v->scene.appearance = v->frames;
+    if (v->moments.n_frames > 0)
+        v->scene.appearance = v->moments;
     scene_release(&v->scene);
-    frame_release(&v->native);
-    frame_release(&v->povray);
+    planes_release(&v->povray);
+    planes_release(&v->native);
     frame_release(&v->exact);
     frame_release(&v->tachyon);
-    witness_release(&v->witness);
-    picture_release(&v->native_picture);
-    picture_release(&v->povray_picture);
-    picture_release(&v->native_alpha);
-    picture_release(&v->povray_alpha);
-    picture_release(&v->native_shown);
-    settled_release(&v->settled);
-    picture_release(&v->povray_shown);
+    picture_release(&v->shown[0]);
+    picture_release(&v->shown[1]);
+    settled_release(&v->found.settled);
+    witness_release(&v->found.witness);
     for (size_t i = 0; i < v->n_commands; i++)
         free(v->commands[i]);
     free(v->commands);
     free(v->name);
 }
 
-Status verification_add_command(Verification *v, char ***command, Err *err)
+Status verification_add_command(Verification *v, const char *command, Err *err)
 {
-    TRY(mem_reserve(&v->commands, &v->command_room, v->n_commands + 1, sizeof *v->commands,
+    TRY(mem_reserve(&v->commands, &v->command_capacity, v->n_commands + 1, sizeof *v->commands,
                     "commands", err));
-    *command = &v->commands[v->n_commands++];
-    **command = NULL;
+    TRY(mem_strdup(&v->commands[v->n_commands], command, err));
+    v->n_commands++;
     return STATUS_OK;
 }
 
-/* ---- the two sides --------------------------------------------------------------------------- */
+/* ---- corcast's side -------------------------------------------------------------------------- */
 
 bool verification_takes_two_steps(const Verification *v)
 {
@@ -53,10 +54,10 @@ bool verification_takes_two_steps(const Verification *v)
 
 static RenderParams render_params(const Verification *v, const CellParams *povray_cells)
 {
-    return (RenderParams){.kernels = v->kernels,
+    return (RenderParams){.kernels = v->options->kernels,
                           .threads = v->common->threads,
-                          .antialias = v->picture->antialias,
-                          .shadows = v->picture->stage.shadows,
+                          .antialias = v->options->picture.antialias,
+                          .shadows = v->options->picture.stage.shadows,
                           .povray_cells = povray_cells,
                           .want_color = true,
                           .want_depth = true,
@@ -64,28 +65,22 @@ static RenderParams render_params(const Verification *v, const CellParams *povra
                           .want_id = true};
 }
 
-static Status render_frame(Verification *v, const CellParams *povray_cells, Frame *frame, Err *err)
-{
-    RenderParams params = render_params(v, povray_cells);
-    return render(&v->scene, &params, frame, &v->stats, err);
-}
-
 static Encoding encoding_of(const Verification *v)
 {
-    return v->bits == 16 ? ENCODING_LINEAR : ENCODING_SRGB;
+    return v->options->bits == 16 ? ENCODING_LINEAR : ENCODING_SRGB;
 }
 
 static Status write_frame(const Verification *v, const Frame *frame, const char *name,
                           Encoding encoding, Err *err)
 {
     char *path = NULL;
-    TRY(file_join(v->folder, name, &path, err));
+    TRY(file_join(v->options->folder, name, &path, err));
     const FramesForm form = {.path = path,
-                             .bits = v->bits,
+                             .bits = v->options->bits,
                              .packing = {.threads = v->common->threads},
                              .encoding = encoding,
                              .picture = true,
-                             .dpi = v->picture->size.dpi,
+                             .dpi = v->options->picture.size.dpi,
                              .provenance = v->commands[0],
                              .colors = v->scene.appearance.said};
     Status status = frames_write(frame, &form, err);
@@ -93,120 +88,120 @@ static Status write_frame(const Verification *v, const Frame *frame, const char 
     return status;
 }
 
-/* Of an isosurface, where POV-Ray's root finder sees it. */
-static const CellParams *cells_of(const Verification *v)
+/* Draws one frame: of an isosurface with POV-Ray's root finder, unless `exact`. */
+static Status render_frame(Verification *v, bool exact, Frame *frame, Err *err)
 {
-    return verification_takes_two_steps(v) ? &v->cells : NULL;
+    const CellParams cells = picture_cells(&v->options->picture);
+    const RenderParams params =
+        render_params(v, verification_takes_two_steps(v) && !exact ? &cells : NULL);
+    return render(&v->scene, &params, frame, &v->stats, err);
 }
 
-/* Colours are judged before the look's background, as POV-Ray draws them, and alpha in a picture of
- * its own. */
+/* Draws alpha. Colours are compared in front of the look's background, as POV-Ray draws them; alpha
+ * is compared in a picture of its own. */
 static Status render_alpha(Verification *v, Err *err)
 {
-    RenderParams params = render_params(v, cells_of(v));
-    View view = v->scene.view;
+    const CellParams cells = picture_cells(&v->options->picture);
+    RenderParams params = render_params(v, verification_takes_two_steps(v) ? &cells : NULL);
     Scene scene = v->scene;
-    Frame frame;
-    Picture picture;
+    Frame frame = {0};
+    Picture picture = {0};
+    Status status;
     params.want_depth = params.want_normal = params.want_id = false;
-    view.transparent = true;
-    scene.view = view;
-    TRY(render(&scene, &params, &frame, NULL, err));
-    Status status =
-        picture_from_transparent(&picture, &frame.color, &frame.alpha, ENCODING_SRGB, 8, err);
+    scene.view.transparent = true;
+    TRY_GOTO(render(&scene, &params, &frame, NULL, err));
+    TRY_GOTO(picture_from_transparent(&picture, &frame.color, &frame.alpha, ENCODING_SRGB, 8, err));
+    status = picture_take_alpha(&v->native.alpha, &picture, err);
+done:
     frame_release(&frame);
-    TRY(status);
-    status = picture_take_alpha(&v->native_alpha, &picture, err);
     picture_release(&picture);
     return status;
 }
 
 static Status render_native(Verification *v, Err *err)
 {
-    TRY(render_frame(v, cells_of(v), &v->native, err));
+    OraclePlanes *native = &v->native;
+    TRY(render_frame(v, false, &native->frame, err));
     if (v->has_alpha)
         TRY(render_alpha(v, err));
-    TRY(picture_from_plane(&v->native_picture, &v->native.color, encoding_of(v), v->bits, err));
-    return verification_takes_two_steps(v) ? render_frame(v, NULL, &v->exact, err) : STATUS_OK;
+    TRY(picture_from_plane(&native->picture, &native->frame.color, encoding_of(v), v->options->bits,
+                           err));
+    return verification_takes_two_steps(v) ? render_frame(v, true, &v->exact, err) : STATUS_OK;
 }
 
 static Status write_native(const Verification *v, Err *err)
 {
-    TRY(write_frame(v, &v->native, "native.png", encoding_of(v), err));
+    TRY(write_frame(v, &v->native.frame, "native.png", encoding_of(v), err));
     return verification_takes_two_steps(v)
                ? write_frame(v, &v->exact, "exact.png", ENCODING_SRGB, err)
                : STATUS_OK;
 }
 
-/* What a screen shows of linear codes. */
-static Status show_both(Verification *v, Err *err)
-{
-    if (v->bits == 8)
-        return STATUS_OK;
-    TRY(picture_to_srgb(&v->povray_shown, &v->povray_picture, 8, err));
-    return picture_to_srgb(&v->native_shown, &v->native_picture, 8, err);
-}
-
-/* ---- the witness ----------------------------------------------------------------------------- */
-
-static Status write_witness_scene(const Verification *v, const char *scene, Err *err)
-{
-    const EmitParams params = {.scene = &v->scene, .command = v->commands[0], .planes = true};
-    return scene_files_write(emitter_find("tachyon", false), &params, v->tree, scene, false, NULL,
-                             err);
-}
-
-static Status draw_witness_plane(Verification *v, const char *scene, WitnessPlane plane, Err *err)
-{
-    static const char *const names[] = {
-        [WITNESS_DEPTH] = "tachyon.depth.ppm", [WITNESS_ID] = "tachyon.id.ppm"};
-    char *path = NULL;
-    double near_mm, far_mm, seconds = 0;
-    camera_depth_range(&v->scene.view.camera, v->scene.geometry.bounds, &near_mm, &far_mm);
-    TRY(file_join(v->folder, names[plane], &path, err));
-    WitnessParams params = {.scene = scene,
-                            .output = path,
-                            .width = v->picture->size.pixels[0],
-                            .height = v->picture->size.pixels[1],
-                            .threads = v->common->threads,
-                            .plane = plane};
-    Status status = tachyon_from_environment(&params, err);
-    if (status == STATUS_OK)
-        status = witness_run(&params, &seconds, v->witness.version, err);
-    v->witness.seconds += seconds;
-    if (status == STATUS_OK)
-        status = plane == WITNESS_ID ? witness_read_ids(&v->tachyon.id, path, err)
-                                     : witness_read_depth(&v->tachyon.depth, path, &v->tachyon.id,
-                                                          near_mm, far_mm, err);
-    free(path);
-    return status;
-}
-
-static Status ask_witness(Verification *v, Err *err)
-{
-    char *scene = NULL;
-    TRY(file_join(v->folder, "scene.tachyon", &scene, err));
-    Status status = write_witness_scene(v, scene, err);
-    if (status == STATUS_OK)
-        status = draw_witness_plane(v, scene, WITNESS_ID, err);
-    if (status == STATUS_OK)
-        status = draw_witness_plane(v, scene, WITNESS_DEPTH, err);
-    free(scene);
-    return status;
-}
+/* ---- the other programs ---------------------------------------------------------------------- */
 
 Status verification_pick_frame(Verification *v, int frame, Err *err)
 {
     const Appearance *all = &v->scene.appearance;
     size_t n = all->n_frames ? all->n_frames : 1;
     if (frame > 0)
-        TRY(coloring_check_frame(frame, all->name ? all->name : "the picture", n, err));
+        TRY(fieldscale_check_frame(frame, all->name ? all->name : "the picture", n, err));
     v->frame = frame ? frame : 1;
     if (all->n_frames == 0)
         return STATUS_OK;
-    v->frames = *all;
-    v->scene.appearance = appearance_frame(&v->frames, (size_t)v->frame - 1);
+    v->moments = *all;
+    v->scene.appearance = appearance_frame(&v->moments, (size_t)v->frame - 1);
     return STATUS_OK;
+}
+
+/* Returns the value of the scene's clock at the moment that is compared. */
+static double clock_of(const Verification *v)
+{
+    size_t n = v->moments.n_frames;
+    return n > 1 ? (double)(v->frame - 1) / (double)(n - 1) : 0;
+}
+
+/* Texts of scene files. All are owned. */
+typedef struct SceneTexts {
+    char *templates;
+    Text description;
+} SceneTexts;
+
+static void texts_release(SceneTexts *texts)
+{
+    free(texts->templates);
+    text_release(&texts->description);
+}
+
+static Status texts_init(const Verification *v, SceneTexts *texts, Err *err)
+{
+    *texts = (SceneTexts){.description = TEXT_INIT};
+    picture_description(&v->scene.geometry, v->tree, &texts->description);
+    if (v->scene.appearance.said)
+        text_printf(&texts->description, ", coloured by %s", v->scene.appearance.said);
+    TRY(text_check(&texts->description, err));
+    return templates_folder(&texts->templates, err);
+}
+
+static EmitParams emit_params(const Verification *v, const Scene *scene, const SceneTexts *texts)
+{
+    return (EmitParams){.scene = scene,
+                        .command = v->commands[0],
+                        .shadows = v->options->picture.stage.shadows,
+                        .cells = picture_cells(&v->options->picture),
+                        .templates = texts->templates,
+                        .description = text_chars(&texts->description),
+                        .generator = GENERATOR};
+}
+
+/* Draws POV-Ray's picture and writes its planes in corcast's formats, too. */
+static Status draw_povray(Verification *v, PovrayTiles *tiles, Err *err)
+{
+    char *picture = NULL;
+    TRY(povraytiles_draw(tiles, &v->povray, &v->run, err));
+    TRY(file_join(v->options->folder, "povray.png", &picture, err));
+    Status status = frames_write(&v->povray.frame, &(FramesForm){.path = picture}, err);
+    free(picture);
+    return status;
 }
 
 /* POV-Ray and corcast, which draw at the same time. */
@@ -214,65 +209,114 @@ typedef enum Side { SIDE_POVRAY, SIDE_NATIVE, SIDES } Side;
 
 typedef struct BothSides {
     Verification *v;
-    PovraySide *povray;
+    PovrayTiles *povray;
 } BothSides;
 
 static Status draw_side(size_t side, int worker, void *context, Err *err)
 {
     (void)worker;
     BothSides *both = context;
-    return side == SIDE_POVRAY ? povray_side_draw(both->povray, err) : render_native(both->v, err);
+    return side == SIDE_POVRAY ? draw_povray(both->v, both->povray, err)
+                               : render_native(both->v, err);
 }
 
-/* Fails as POV-Ray's side did, where both did. */
-static Status draw_sides(Verification *v, Err *err)
+/* Draws both sides. If both fail, the error is POV-Ray's. */
+static Status draw_both(Verification *v, const SceneTexts *texts, Err *err)
 {
+    Scene written = v->scene;
+    Progress progress;
+    if (v->moments.n_frames > 0)
+        written.appearance = v->moments;
+    const PovrayTilesParams params = {.emit = emit_params(v, &written, texts),
+                                      .folder = v->options->folder,
+                                      .clock = clock_of(v),
+                                      .antialias = v->options->picture.antialias,
+                                      .bits = v->options->bits,
+                                      .alpha = v->has_alpha,
+                                      .min_tiles = v->options->tiles,
+                                      .threads = v->common->threads,
+                                      .program = v->options->povray,
+                                      .progress = progress_report,
+                                      .progress_context = &progress};
     BothSides both = {.v = v};
-    TRY(povray_side_prepare(v, &both.povray, err));
-    Status status = threads_try(SIDES, v->common->threads, draw_side, &both, err);
-    povray_side_free(both.povray);
+    Status status;
+    TRY_GOTO(povraytiles_prepare(&params, &both.povray, err));
+    v->n_tiles = povraytiles_count(both.povray);
+    v->has_alpha = v->has_alpha && v->n_tiles == 1;
+    for (size_t i = 0; i < povraytiles_n_commands(both.povray); i++)
+        TRY_GOTO(verification_add_command(v, povraytiles_command(both.povray, i), err));
+    progress_start(&progress, "POV-Ray", v->common->talk);
+    status = threads_try(SIDES, v->common->threads, draw_side, &both, err);
+    progress_end(&progress);
+done:
+    povraytiles_free(both.povray);
     return status;
+}
+
+static Status draw_tachyon(Verification *v, const SceneTexts *texts, Err *err)
+{
+    const TachyonParams params = {.emit = emit_params(v, &v->scene, texts),
+                                  .folder = v->options->folder,
+                                  .threads = v->common->threads,
+                                  .program = v->options->tachyon};
+    TachyonRun run;
+    TRY(tachyon_draw(&params, &v->tachyon, &run, err));
+    Witness *witness = &v->found.witness;
+    witness->seconds = run.seconds;
+    snprintf(witness->version, sizeof witness->version, "%s", run.version);
+    return STATUS_OK;
+}
+
+/* Converts linear colours to what a screen shows. */
+static Status show_both(Verification *v, Err *err)
+{
+    if (v->options->bits == 8)
+        return STATUS_OK;
+    TRY(picture_to_srgb(&v->shown[0], &v->povray.picture, 8, err));
+    return picture_to_srgb(&v->shown[1], &v->native.picture, 8, err);
 }
 
 Status verification_draw(Verification *v, Err *err)
 {
-    v->cells = picture_cells(v->picture);
-    TRY(draw_sides(v, err));
-    if (v->asks_witness)
-        TRY(ask_witness(v, err));
-    TRY(write_native(v, err));
-    return show_both(v, err);
+    SceneTexts texts;
+    Status status;
+    TRY_GOTO(texts_init(v, &texts, err));
+    TRY_GOTO(draw_both(v, &texts, err));
+    if (v->options->witness == WITNESS_TACHYON)
+        TRY_GOTO(draw_tachyon(v, &texts, err));
+    TRY_GOTO(write_native(v, err));
+    status = show_both(v, err);
+done:
+    texts_release(&texts);
+    return status;
 }
 
 /* ---- comparison ------------------------------------------------------------------------------ */
 
-const Picture *verification_shown_by_povray(const Verification *v)
+const Picture *verification_shown(const Verification *v, int side)
 {
-    return v->bits == 8 ? &v->povray_picture : &v->povray_shown;
+    const OraclePlanes *planes = side ? &v->native : &v->povray;
+    return v->options->bits == 8 ? &planes->picture : &v->shown[side];
 }
 
-const Picture *verification_shown_natively(const Verification *v)
-{
-    return v->bits == 8 ? &v->native_picture : &v->native_shown;
-}
-
-/* Asks who is right where the sides differ; the tolerance then knows. */
+/* Explains pixels that differ. The tolerance then counts no settled pixel. */
 static Status settle_sides(Verification *v, const Rendering *a, const Rendering *b,
                            Tolerance *tolerance, Err *err)
 {
-    const RenderParams params = render_params(v, cells_of(v));
-    const SettleCase asked = {&v->scene, &params, a, b, encoding_of(v), tolerance};
-    v->asked = settle_applies(&asked);
-    if (!v->asked)
+    const CellParams cells = picture_cells(&v->options->picture);
+    const RenderParams params = render_params(v, verification_takes_two_steps(v) ? &cells : NULL);
+    const ExplainCase input = {&v->scene, &params, a, b, encoding_of(v), tolerance};
+    v->found.examined = explain_applies(&input);
+    if (!v->found.examined)
         return STATUS_OK;
-    TRY(settle_pixels(&asked, &v->settled, err));
-    tolerance->settled = v->settled.marks;
+    TRY(explain_pixels(&input, &v->found.settled, err));
+    tolerance->settled = v->found.settled.marks;
     return STATUS_OK;
 }
 
-/* Whether vessels are seen whole: their mean breadth, twice the area over the outline, is at most a
- * quarter of the picture. Along an edge between pixels an outline is pi / 4 long
- * [Cauchy-Crofton]. */
+/* Returns true if whole vessels are visible: their mean breadth, twice the area over the length of
+ * the outline, is at most a quarter of the picture. Each edge between pixels counts as an outline
+ * of length pi / 4 [Cauchy-Crofton]. */
 static bool sees_whole_vessels(const IdPlane *ids)
 {
     size_t width = (size_t)ids->width, height = (size_t)ids->height, seen = 0, sides = 0;
@@ -287,8 +331,10 @@ static bool sees_whole_vessels(const IdPlane *ids)
     return 2 * (double)seen * 4 <= side * PI / 4 * (double)sides;
 }
 
-/* Of a vessel from near by, POV-Ray's steps tilt all normals that are seen one way, by up to 0.1
- * degrees: what that makes of the colours averages out over the breadth of a vessel alone. */
+/* Returns the tolerance for the colours of the exact surface. POV-Ray's steps tilt normals by up to
+ * 0.1 degrees. The effect on the colours averages out over the breadth of a vessel. In a close
+ * view, where only one side of a vessel is visible, all normals are tilted one way, and the rules
+ * on means do not apply. */
 static Tolerance exact_tolerance(const IdPlane *ids)
 {
     Tolerance tolerance = tolerance_surface(0);
@@ -300,35 +346,37 @@ static Tolerance exact_tolerance(const IdPlane *ids)
     return tolerance;
 }
 
-/* Holds where POV-Ray's root finder sees the surface against where it is. */
+/* Compares the surface that POV-Ray's root finder sees with the exact surface. */
 static Status check_surface(Verification *v, Err *err)
 {
-    const Frame *seen = &v->native, *exact = &v->exact;
+    const Frame *seen = &v->native.frame, *exact = &v->exact;
     const SurfaceSight sight = {seen->depth.values, seen->normal.values, seen->id.ids};
     const SurfaceSight exact_sight = {exact->depth.values, exact->normal.values, exact->id.ids};
+    const ErfForm erf = picture_cells(&v->options->picture).erf;
     Plane allowed = {0};
-    TRY(plane_init(&allowed, seen->depth.width, seen->depth.height, 1, err));
-    Status status = surface_tolerance(&v->scene.geometry, &v->scene.view.camera, v->cells.erf,
-                                      &sight, &exact_sight, allowed.values, err);
-    if (status == STATUS_OK)
-        status = surface_check(&seen->depth, &exact->depth, &allowed, &v->surface, err);
+    Status status;
+    TRY_GOTO(plane_init(&allowed, seen->depth.width, seen->depth.height, 1, err));
+    TRY_GOTO(surface_tolerance(&v->scene.geometry, &v->scene.view.camera, erf, &sight, &exact_sight,
+                               allowed.values, err));
+    status = surface_check(&seen->depth, &exact->depth, &allowed, &v->found.surface, err);
+done:
     plane_release(&allowed);
     return status;
 }
 
-/* Holds the colours of the surface where it is against POV-Ray's, as they are shown. */
+/* Compares the colours of the exact surface with POV-Ray's, as a screen shows them. */
 static Status compare_exact(Verification *v, const Rendering *povray, Err *err)
 {
     Picture picture;
     const Tolerance tolerance = exact_tolerance(&v->exact.id);
     TRY(picture_from_plane(&picture, &v->exact.color, ENCODING_SRGB, 8, err));
     Rendering a = *povray;
-    a.picture = verification_shown_by_povray(v);
+    a.picture = verification_shown(v, 0);
     const Rendering b = {.picture = &picture,
                          .ids = &v->exact.id,
                          .depth = &v->exact.depth,
                          .normal = &v->exact.normal};
-    Status status = compare_pictures(&a, &b, &tolerance, &v->exact_color, NULL, err);
+    Status status = compare_pictures(&a, &b, &tolerance, &v->found.exact, NULL, err);
     picture_release(&picture);
     return status;
 }
@@ -337,50 +385,58 @@ static Status compare_alpha(Verification *v, const Tolerance *tolerance, Err *er
 {
     Tolerance of_alpha = *tolerance;
     of_alpha.title = "alpha";
-    const Rendering a = {.picture = &v->povray_alpha, .ids = &v->povray.id};
-    const Rendering b = {.picture = &v->native_alpha, .ids = &v->native.id};
-    return compare_pictures(&a, &b, &of_alpha, &v->alpha, NULL, err);
+    const Rendering a = {.picture = &v->povray.alpha, .ids = &v->povray.frame.id};
+    const Rendering b = {.picture = &v->native.alpha, .ids = &v->native.frame.id};
+    return compare_pictures(&a, &b, &of_alpha, &v->found.alpha, NULL, err);
 }
 
 static Status compare_witness(Verification *v, double depth_step_mm, Err *err)
 {
-    const Testimony three[] = {{"POV-Ray", &v->povray.id, &v->povray.depth},
-                               {"corcast", &v->native.id, &v->native.depth},
+    const Frame *povray = &v->povray.frame, *native = &v->native.frame;
+    const Testimony three[] = {{"POV-Ray", &povray->id, &povray->depth},
+                               {"corcast", &native->id, &native->depth},
                                {"Tachyon", &v->tachyon.id, &v->tachyon.depth}};
-    return witness_compare(three, depth_step_mm, &v->witness, err);
+    return witness_compare(three, depth_step_mm, &v->found.witness, err);
+}
+
+static Rendering rendering_of(const OraclePlanes *planes)
+{
+    return (Rendering){.picture = &planes->picture,
+                       .ids = &planes->frame.id,
+                       .depth = &planes->frame.depth,
+                       .normal = &planes->frame.normal};
+}
+
+static Status compare_colors_of(Verification *v, const Rendering *a, const Rendering *b,
+                                const Tolerance *tolerance, Err *err)
+{
+    CompareResult *color = &v->found.planes[PLANE_COLOR];
+    TRY(compare_pictures(a, b, tolerance, color, NULL, err));
+    TRY(compare_perception(verification_shown(v, 0), verification_shown(v, 1), color, err));
+    return color->agrees ? STATUS_OK : compare_cause(a->picture, b->picture, color, err);
 }
 
 Status verification_compare(Verification *v, Err *err)
 {
     double near_mm, far_mm;
     camera_depth_range(&v->scene.view.camera, v->scene.geometry.bounds, &near_mm, &far_mm);
-    Tolerance tolerance = tolerance_identity((far_mm - near_mm) / 65535);
-    const IdPlane *a = &v->povray.id, *b = &v->native.id;
-    const Rendering view_a = {.picture = &v->povray_picture,
-                              .ids = a,
-                              .depth = &v->povray.depth,
-                              .normal = &v->povray.normal};
-    const Rendering view_b = {.picture = &v->native_picture,
-                              .ids = b,
-                              .depth = &v->native.depth,
-                              .normal = &v->native.normal};
-    if (v->asks_witness)
-        TRY(compare_witness(v, (far_mm - near_mm) / 65535, err));
-    TRY(settle_sides(v, &view_a, &view_b, &tolerance, err));
-    TRY(compare_pictures(&view_a, &view_b, &tolerance, &v->results[PLANE_COLOR], NULL, err));
-    TRY(compare_perception(verification_shown_by_povray(v), verification_shown_natively(v),
-                           &v->results[PLANE_COLOR], err));
-    if (!v->results[PLANE_COLOR].agrees)
-        TRY(compare_cause(&v->povray_picture, &v->native_picture, &v->results[PLANE_COLOR], err));
-    TRY(compare_planes(PLANE_DEPTH, &v->povray.depth, &v->native.depth, a, b, &tolerance,
-                       &v->results[PLANE_DEPTH], err));
-    TRY(compare_planes(PLANE_NORMAL, &v->povray.normal, &v->native.normal, a, b, &tolerance,
-                       &v->results[PLANE_NORMAL], err));
-    TRY(compare_ids(a, b, &tolerance, &v->results[PLANE_ID], err));
+    const double depth_step_mm = (far_mm - near_mm) / 65535;
+    Tolerance tolerance = tolerance_identity(depth_step_mm);
+    const Rendering a = rendering_of(&v->povray), b = rendering_of(&v->native);
+    CompareResult *planes = v->found.planes;
+    if (v->options->witness == WITNESS_TACHYON)
+        TRY(compare_witness(v, depth_step_mm, err));
+    TRY(settle_sides(v, &a, &b, &tolerance, err));
+    TRY(compare_colors_of(v, &a, &b, &tolerance, err));
+    TRY(compare_planes(PLANE_DEPTH, a.depth, b.depth, a.ids, b.ids, &tolerance,
+                       &planes[PLANE_DEPTH], err));
+    TRY(compare_planes(PLANE_NORMAL, a.normal, b.normal, a.ids, b.ids, &tolerance,
+                       &planes[PLANE_NORMAL], err));
+    TRY(compare_ids(a.ids, b.ids, &tolerance, &planes[PLANE_ID], err));
     if (v->has_alpha)
         TRY(compare_alpha(v, &tolerance, err));
     if (!verification_takes_two_steps(v))
         return STATUS_OK;
-    TRY(compare_exact(v, &view_a, err));
+    TRY(compare_exact(v, &a, err));
     return check_surface(v, err);
 }

@@ -1,70 +1,91 @@
-/* A scene as POV-Ray and corcast draw it, and how the two compare. */
+/* One scene, drawn by POV-Ray and by corcast, and how the two pictures compare. */
 #ifndef CORCAST_JOB_VERIFY_VERIFICATION_H
 #define CORCAST_JOB_VERIFY_VERIFICATION_H
 
 #include "compare/compare.h"
 #include "job/picture/picture.h"
 #include "options/options.h"
-#include "oracle/oracle.h"
+#include "oracle/planes.h"
+#include "oracle/povray.h"
 #include "render/render.h"
 
+/* The third program that draws the scene. */
+typedef enum WitnessChoice { WITNESS_NONE, WITNESS_TACHYON } WitnessChoice;
+
+/* What the options of `verify` set. */
+typedef struct VerifyOptions {
+    const char *folder;
+    int bits;              /* of the colours that are compared: 8 (sRGB) or 16 (linear) */
+    RenderKernels kernels; /* with which corcast draws */
+    WitnessChoice witness;
+    int tiles; /* minimum number of tiles that POV-Ray draws the picture in */
+    bool json; /* for the command line: the report is printed as JSON */
+    PictureOptions picture;
+    ProgramChoice povray, tachyon; /* set by the caller; zeroed: the programs in PATH */
+} VerifyOptions;
+
+/* What the comparison found. Members that do not apply to the scene are zero. */
+typedef struct VerifyFindings {
+    CompareResult planes[PLANE_KINDS];
+    CompareResult alpha;  /* of a transparent picture */
+    CompareResult exact;  /* isosurfaces: POV-Ray's colours against those of the exact surface */
+    SurfaceCheck surface; /* isosurfaces: where POV-Ray's root finder puts the surface */
+    Settled settled;      /* of the pixels that differ: those that are explained */
+    bool examined;        /* `settled` applies to the scene */
+    Witness witness;      /* Tachyon's testimony, if it was asked */
+} VerifyFindings;
+
+/* Zeroed except options, common and tree, which are borrowed. All other members are owned. */
 typedef struct Verification {
-    const PictureOptions *picture;
+    const VerifyOptions *options;
     const Common *common;
-    const char *tree, *folder;
-    char *name; /* of the tree, for the report; owned */
-    Scene scene;
-    Appearance frames; /* owned; of all moments, where scene.appearance is one of them */
-    int frame;         /* its number, from 1 on */
-    CellParams cells;
-    Frame native, povray,
-        exact; /* `exact` of an isosurface, whose `native` is POV-Ray's view of it */
-    int bits;  /* of the colours that are compared */
-    RenderKernels kernels;
-    Picture native_picture, povray_picture; /* sRGB of 8 bits, or linear of 16 */
-    Picture native_shown, povray_shown;     /* of 16 bits, in sRGB of 8 bits */
-    RenderStats stats;                      /* of the exact frame, where there is one */
-    OracleRun run;                          /* of the colour plane; of its tiles, all together */
-    int least_tiles;                        /* that POV-Ray draws the picture in */
-    size_t n_tiles;                         /* that it did: 1 is the whole picture */
-    CompareResult results[PLANE_KINDS];
-    Settled settled;
-    bool asked; /* whether anything was settled, or nothing had to be */
-    SurfaceCheck surface;
-    CompareResult exact_color;
-    bool has_alpha;                     /* the picture is transparent, and alpha is judged */
-    Picture native_alpha, povray_alpha; /* grey, of 8 bits */
-    CompareResult alpha;
-    bool asks_witness; /* Tachyon draws the scene, too */
-    Frame tachyon;     /* depth and ids of it */
-    Witness witness;
-    char **commands; /* how to repeat it; owned */
-    size_t n_commands, command_room;
+    const char *tree;    /* path of the tree, for sentences */
+    char *name;          /* name of the tree, for the report */
+    Scene scene;         /* at the moment that is compared */
+    Appearance moments;  /* appearance at all moments if the colours change with time; the scene's
+                          * appearance is then a view of it */
+    int frame;           /* number of the moment, from 1 on */
+    OraclePlanes povray; /* POV-Ray's planes */
+    OraclePlanes native; /* corcast's planes; of an isosurface with POV-Ray's root finder */
+    Frame exact;         /* of an isosurface: corcast's planes of the exact surface */
+    Frame tachyon;       /* depth and ids */
+    Picture shown[2];    /* 16-bit colours of POV-Ray and corcast as 8-bit sRGB; empty for 8 bits */
+    RenderStats stats;   /* of corcast's last frame */
+    PovrayRun run;
+    size_t n_tiles;  /* in which POV-Ray drew the picture; 1: the whole picture */
+    bool has_alpha;  /* the picture is transparent, and alpha is compared */
+    char **commands; /* command lines that repeat the verification; the first is corcast's */
+    size_t n_commands, command_capacity;
+    VerifyFindings found;
+    bool agrees; /* everything agrees */
 } Verification;
 
 void verification_release(Verification *v);
 
-/* Room for one command more, at the end: *command. */
-MUST_CHECK Status verification_add_command(Verification *v, char ***command, Err *err);
+/* Appends a command line, which is copied. Errors: STATUS_MEMORY. */
+MUST_CHECK Status verification_add_command(Verification *v, const char *command, Err *err);
 
-/* Whether the model is an implicit surface, of which `exact` and `surface` are, too. */
+/* Returns true if the model is an isosurface. It is compared in two steps: corcast repeats
+ * POV-Ray's root finder, and then the surface that this finds is compared with the exact surface.
+ */
 bool verification_takes_two_steps(const Verification *v);
 
-/* Of a scene whose colours change with time, the moment that is verified, 0 for the first; the
- * scene for POV-Ray has all. STATUS_USAGE when there is no such frame. */
+/* Selects a moment of a scene whose colours change with time; 0 selects the first. POV-Ray's scene
+ * still contains all moments. Errors: STATUS_USAGE if there is no such moment. */
 MUST_CHECK Status verification_pick_frame(Verification *v, int frame, Err *err);
 
-/* Draws the scene with POV-Ray and natively, asks the witness, and writes scene and planes to the
- * folder, which is there; the first of the commands is in them. Errors as oracle_run, render and
- * frames_write have them. */
+/* Draws the scene with POV-Ray, corcast and, if asked, Tachyon. Writes scenes and planes into the
+ * existing folder. v->commands[0] must be set. Errors: as povraytiles_prepare, povraytiles_draw,
+ * tachyon_draw, render and frames_write. */
 MUST_CHECK Status verification_draw(Verification *v, Err *err);
 
-/* Compares what is drawn: results, settled, where there are two steps surface and exact_color, and
- * where one is asked, witness. */
+/* Compares what was drawn. Sets v->found. Errors: STATUS_MEMORY. */
 MUST_CHECK Status verification_compare(Verification *v, Err *err);
 
-/* A side's colours as a screen shows them. */
-const Picture *verification_shown_by_povray(const Verification *v);
-const Picture *verification_shown_natively(const Verification *v);
+/* Returns the colours of a side (0: POV-Ray, 1: corcast) as a screen shows them; borrowed. */
+const Picture *verification_shown(const Verification *v, int side);
+
+/* Returns everything that was found, as a report; borrowed from `v`. */
+ReportCase verification_report(const Verification *v);
 
 #endif

@@ -18,7 +18,8 @@ void refiner_release(Refiner *refiner);
  * change.
  *
  * off      is raised to the largest distance of a triangle from the surface after the splits,
- * measured at the middles of triangles and of their longest edges. Errors   STATUS_MEMORY. */
+ *          measured at the middles of triangles and of their longest edges.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status facerefine_apply(Refiner *refiner, const JunctionSurface *surface, double limit,
                                    MeshOff *off, Err *err);
 

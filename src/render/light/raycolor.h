@@ -1,18 +1,22 @@
-/* The colour that one ray of the camera sees. */
+/* The colour of one camera ray. */
 #ifndef CORCAST_RENDER_RAYCOLOR_H
 #define CORCAST_RENDER_RAYCOLOR_H
 
 #include "render/cast/caster.h"
 #include "render/job.h"
 
-/* Whether a picture needs ray_color: it has ambient occlusion, area lights with shadows, or ground,
- * of which the kernels of tiles know nothing. */
+/* Returns true if a picture needs ray_color: it has ambient occlusion, area lights with shadows, or
+ * a ground plane, which the kernels of tiles do not support. */
 bool raycolor_is_needed(const View *view, const RenderParams *params);
 
-/* The linear colour seen along the ray of the sample (i, j) of the drawing: of a vessel if
- * `surfel`, the first point of a vessel that the ray meets (NULL: none), is nearer than the ground;
- * else of the ground, or of the background. The drawing's caster may be NULL if neither shadows nor
- * occlusion are wanted; `worker` is the calling thread's number [caster.h]. */
+/* Returns the linear colour of the camera ray through the sample (i, j) of the drawing.
+ *
+ * surfel   the ray's first hit of a vessel; NULL: none. The vessel is drawn if it is nearer than
+ *          the ground plane; otherwise the ground is drawn, or the background if the ray misses
+ *          both.
+ * worker   index of the calling thread [caster.h].
+ *
+ * The drawing's caster may be NULL if neither shadows nor occlusion are wanted. */
 Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j,
               const Surfel *surfel);
 

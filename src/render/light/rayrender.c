@@ -41,19 +41,21 @@ static Rgb antialiased(const RayPicture *picture, int worker, int i, int j, Rgb 
                  resampling_mean(&picture->more, sum.b)};
 }
 
-static void report_progress(const RayPicture *picture, bool further, size_t row, int worker)
+static Status report_progress(const RayPicture *picture, bool further, size_t row, int worker,
+                              Err *err)
 {
-    if (worker == 0)
-        band_progress(&picture->drawing->band, picture->drawing->params,
-                      picture->drawing->view->camera.height, further,
-                      (double)row / picture->drawing->band.rows);
+    const Drawing *drawing = picture->drawing;
+    if (worker != 0)
+        return STATUS_OK;
+    return band_progress(&drawing->band, drawing->params, drawing->view->camera.height, further,
+                         (double)row / drawing->band.rows, err);
 }
 
-static void render_row(size_t row, int worker, void *context)
+static Status render_row(size_t row, int worker, void *context, Err *err)
 {
     const RayPicture *picture = context;
     const Camera *camera = &picture->drawing->view->camera;
-    report_progress(picture, false, row, worker);
+    TRY(report_progress(picture, false, row, worker, err));
     for (int i = 0; i < camera->width; i++) {
         size_t pixel = row * (size_t)camera->width + (size_t)i;
         Ray ray = camera_ray(camera, i, picture->drawing->band.first + (int)row);
@@ -70,13 +72,14 @@ static void render_row(size_t row, int worker, void *context)
                                          picture->drawing->band.first + (int)row,
                                          seen ? &surfel : NULL));
     }
+    return STATUS_OK;
 }
 
-static void resample_row(size_t row, int worker, void *context)
+static Status resample_row(size_t row, int worker, void *context, Err *err)
 {
     const RayPicture *picture = context;
     const Camera *camera = &picture->drawing->view->camera;
-    report_progress(picture, true, row, worker);
+    TRY(report_progress(picture, true, row, worker, err));
     for (int i = 0; i < camera->width; i++) {
         size_t pixel = row * (size_t)camera->width + (size_t)i;
         if (!resampling_wants(&picture->more, pixel))
@@ -86,6 +89,7 @@ static void resample_row(size_t row, int worker, void *context)
                            antialiased(picture, worker, i, picture->drawing->band.first + (int)row,
                                        (Rgb){center[0], center[1], center[2]}));
     }
+    return STATUS_OK;
 }
 
 static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Err *err)
@@ -96,13 +100,14 @@ static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Er
     RayPicture picture = {.drawing = drawing,
                           .frame = frame,
                           .more = resampling_for(frame->color.values ? params->antialias : 1)};
+    const size_t rows = (size_t)band->rows;
     Status status = STATUS_OK;
-    threads_for((size_t)band->rows, params->threads, render_row, &picture);
-    if (picture.more.side > 0)
-        status =
-            resampling_choose(&picture.more, params, band, &frame->color, params->threads, err);
-    if (status == STATUS_OK && picture.more.side > 0)
-        threads_for((size_t)band->rows, params->threads, resample_row, &picture);
+    TRY_GOTO(threads_try(rows, params->threads, render_row, &picture, err));
+    if (picture.more.side == 0)
+        goto done;
+    TRY_GOTO(resampling_choose(&picture.more, params, band, &frame->color, params->threads, err));
+    status = threads_try(rows, params->threads, resample_row, &picture, err);
+done:
     resampling_release(&picture.more);
     return status;
 }

@@ -1,34 +1,35 @@
-/* The one shading model: POV-Ray's finish under its lights, METHODS section 3. */
+/* The shading model: POV-Ray's finishes and lights [docs/METHODS.md section 3]. */
 #ifndef CORCAST_RENDER_SHADE_H
 #define CORCAST_RENDER_SHADE_H
 
 #include "geom/geom.h"
 #include "scene/scene.h"
 
-/* A surface is lit where the cosine between its normal and the direction to the light is at least
- * this [docs/METHODS.md section 3]. */
+/* The smallest cosine, between a surface's normal and the direction to a light, at which the light
+ * reaches the surface [docs/METHODS.md section 3]. */
 #define MIN_LIT_COSINE 1e-10
 
-/* Tells whether anything stands between `point` and one of a light's points, in direction `towards`
- * (unit) at `distance` mm. */
+/* Returns true if an object lies between `point` and a light: on the ray from `point` in the
+ * direction `towards` (a unit vector), nearer than `distance` mm. */
 typedef bool ShadowTest(void *context, Vec3 point, Vec3 towards, double distance);
 
-/* What is seen at a point. */
+/* A point to shade. */
 typedef struct ShadingInput {
     const Finish *finish;
     Rgb pigment;
     Vec3 point;
     Vec3 normal;        /* unit, facing the viewer */
-    Vec3 direction;     /* unit, of the ray that sees it */
-    double open;        /* the part of the ambient light that reaches it */
-    const float *parts; /* of each light the part that reaches it; below 0, or NULL: not known */
+    Vec3 direction;     /* unit, of the camera ray that hits the point */
+    double open;        /* ambient visibility, in [0, 1] */
+    const float *parts; /* visibility of each light, in [0, 1]; negative, or NULL: not known */
 } ShadingInput;
 
-/* The linear colour of a point: ambient light, and for each light of the view that the surface
- * faces the diffuse and specular light of its finish, times the part of the light's points for
- * which `shadow` is false, or that the point shares. `shadow` is asked only for lights that cast
- * shadows; NULL: nothing does.
- */
+/* Returns the linear colour of a point: the ambient light, and the diffuse and specular light of
+ * each light of the view that the surface faces.
+ *
+ * A light whose visibility is known [ShadingInput.parts] is multiplied by it. A light that casts
+ * shadows and whose visibility is not known is multiplied by the fraction of its points for which
+ * `shadow` returns false. `shadow` may be NULL: no object casts a shadow. */
 Rgb shade(const View *view, const ShadingInput *at, ShadowTest *shadow, void *context);
 
 #endif

@@ -1,4 +1,4 @@
-/* Primitives as a view sees them, sorted into the rows of tiles in which they may be seen. */
+/* Primitives in the frame of a view, sorted into the rows of tiles that they may touch. */
 #ifndef CORCAST_RENDER_RASTERBINS_H
 #define CORCAST_RENDER_RASTERBINS_H
 
@@ -8,40 +8,43 @@
 typedef struct RasterBins {
     const Geometry *geometry; /* borrowed */
     RasterView view;
-    void *item_memory;   /* holds the items */
-    RasterItem *items;   /* in a line of the cache each; in a light's view one a primitive */
-    RasterJoint *joints; /* of items that are joints, but in a light's view: */
-    RasterHull *hulls;
+    void *item_memory;   /* the memory of `items`; owned */
+    RasterItem *items;   /* each fills one cache line; a light view has one per primitive */
+    RasterJoint *joints; /* per joint; NULL in a light view */
+    RasterHull *hulls;   /* per joint, in a light view alone */
     int tile_columns, tile_rows;
-    size_t *row_offsets; /* into row_items; one more than there are rows */
-    uint32_t *row_items; /* ascending within a row */
-    RasterTiles *row_columns;
-    RasterBox *row_boxes; /* only in a light's view */
+    size_t *row_offsets;      /* row r owns row_items[row_offsets[r] .. row_offsets[r + 1]) */
+    uint32_t *row_items;      /* indices of items, ascending within a row */
+    RasterTiles *row_columns; /* per entry of row_items: the columns of tiles it may touch */
+    RasterBox *row_boxes;     /* per entry of row_items; in a light view alone */
 } RasterBins;
 
-/* How many primitives become items: cylinders have their round ends. */
+/* Returns the number of items: one per primitive, except spheres that are the round ends of
+ * cylinders, which belong to the cylinder's item. */
 static inline size_t rasterbins_items(const Geometry *geometry)
 {
     return geometry->n_primitives - geometry->n_ends;
 }
 
-/* Whether rasterbins_new takes a picture of this geometry and size. */
+/* Returns true if rasterbins_new supports this geometry and size of picture. */
 bool rasterbins_take(const Geometry *geometry, int width, int height);
-/* Whether rasterbins_new uses one thread for this geometry, however many it may use. */
+/* Returns true if the geometry is so small that rasterbins_new uses one thread. */
 bool rasterbins_are_small(const Geometry *geometry);
 
-/* Builds the bins (owned by the caller) of a geometry that is borrowed; `view` is copied.
- * O(primitives and the rows that they touch). STATUS_MEMORY; STATUS_USAGE when a side of the
- * picture has more than 65535 tiles. */
+/* Builds the bins; release them with rasterbins_free. They borrow `geometry` and copy `view`.
+ *
+ * Errors   STATUS_MEMORY; STATUS_USAGE if a side of the picture has more than 65535 tiles.
+ * Cost     O(primitives + rows of tiles that they touch). */
 MUST_CHECK Status rasterbins_new(const Geometry *geometry, const RasterView *view, int threads,
                                  RasterBins **out, Err *err);
 void rasterbins_free(RasterBins *bins);
-/* Frees row_items, row_columns and row_boxes: rasterbins_count and rasterbins_list must not be
- * called any more. */
+/* Frees row_items, row_columns and row_boxes, to save memory. rasterbins_count and rasterbins_list
+ * must not be called afterwards. */
 void rasterbins_forget_rows(RasterBins *bins);
 
-/* Sets offsets[tile_columns + 1] of the lists of one row's tiles: the list of column i takes up
- * [offsets[i], offsets[i + 1]). STATUS_MEMORY when 32 bits do not hold them. */
+/* Counts the items of each tile in row `number`. Sets the tile_columns + 1 offsets of their lists:
+ * the list of column i is [offsets[i], offsets[i + 1]). Errors: STATUS_MEMORY if the lists are too
+ * long for 32-bit offsets. */
 MUST_CHECK Status rasterbins_count(const RasterBins *bins, size_t number, uint32_t *offsets,
                                    Err *err);
 
@@ -49,16 +52,18 @@ MUST_CHECK Status rasterbins_count(const RasterBins *bins, size_t number, uint32
 MUST_CHECK Status rasterbins_list(const RasterBins *bins, size_t number, IndexLists *tiles,
                                   Err *err);
 
-/* The tile at (column, row) with its list of n items, borrowed, and its samples. */
+/* Returns the tile at (column, row). It borrows `bins`, `grid` and `list`, the indices of the n
+ * items that may touch the tile. */
 RasterTile rasterbins_tile(const RasterBins *bins, int column, int row, const uint32_t *list,
                            size_t n, const RasterGrid *grid);
 
-/* Makes the joint of an item of a light's view that is a RASTER_JOINT, anew from its primitive. */
+/* Computes the joint of item `number` of a light view, which must be a RASTER_JOINT, from its
+ * primitive: a light view stores no joints. */
 void raster_joint(const RasterBins *bins, uint32_t number, RasterJoint *joint);
 
-/* Intersects the line of sight at (x, y) of the view's plane with a primitive, in double precision.
- * Returns the depth of the hit along the view, mm, or INFINITY; if there is a hit and `normal` is
- * not NULL, sets *normal to the surface's unit normal in the view's frame. */
+/* Intersects the line of sight at (x, y) of the view's plane with primitive `number`, in double
+ * precision. Returns the depth of the hit along the view in mm, or INFINITY. If there is a hit,
+ * sets *normal to the unit normal in the view's frame; `normal` may be NULL. */
 double raster_decide(const RasterBins *bins, uint32_t number, double x, double y, Vec3 *normal);
 
 #endif

@@ -212,7 +212,7 @@ static void finish_pixel(const ZBuffers *buffers, const ZPoint *point, int i, in
             ray_color(drawing, worker, ray, i, drawing->band.first + j, seen ? &surfel : NULL));
 }
 
-static void draw_zbuffer_row(size_t number, int worker, void *context)
+static Status draw_zbuffer_row(size_t number, int worker, void *context, Err *err)
 {
     const ZBuffers *buffers = context;
     const Drawing *drawing = buffers->drawing;
@@ -222,8 +222,8 @@ static void draw_zbuffer_row(size_t number, int worker, void *context)
     const size_t row = (size_t)first / TILE_SIDE;
     ZPoint *points = buffers->points + (size_t)worker * TILE_SIDE * (size_t)width;
     if (worker == 0)
-        band_progress(&drawing->band, drawing->params, view->rows, false,
-                      (double)number * TILE_SIDE / drawing->band.rows);
+        TRY(band_progress(&drawing->band, drawing->params, view->rows, false,
+                          (double)number * TILE_SIDE / drawing->band.rows, err));
     for (int i = 0; i < TILE_SIDE * width; i++)
         points[i].z = HUGE_VAL;
     ZBrush brush = {.view = view, .points = points, .row = first};
@@ -233,6 +233,7 @@ static void draw_zbuffer_row(size_t number, int worker, void *context)
         for (int i = 0; i < width; i++)
             finish_pixel(buffers, &points[j * width + i], i, first - drawing->band.first + j,
                          worker);
+    return STATUS_OK;
 }
 
 static Status check_outside(const RasterBins *bins, Err *err)
@@ -273,10 +274,10 @@ static Status draw_zbuffer(const Drawing *drawing, void *prepared, Frame *frame,
     size_t workers = (size_t)drawing->params->threads;
     TRY(mem_calloc(&buffers.points, workers * TILE_SIDE * (size_t)drawing->view->camera.width,
                    sizeof *buffers.points, "depths", err));
-    threads_for(((size_t)drawing->band.rows + TILE_SIDE - 1) / TILE_SIDE, (int)workers,
-                draw_zbuffer_row, &buffers);
+    Status status = threads_try(((size_t)drawing->band.rows + TILE_SIDE - 1) / TILE_SIDE,
+                                (int)workers, draw_zbuffer_row, &buffers, err);
     free(buffers.points);
-    return STATUS_OK;
+    return status;
 }
 
 static bool can_draw_zbuffer(const Drawing *drawing)

@@ -49,7 +49,7 @@ void thinvessels_color(const Drawing *drawing, const ThinVessels *thin);
 void thinvessels_place(ThinVessels *thin);
 
 /* Draws the vessels over the colours of a frame that has depths along the rays. The frame has the
- * drawing's band, one sample per pixel. Errors   STATUS_MEMORY. */
+ * drawing's band, one sample per pixel. Errors: STATUS_MEMORY. */
 MUST_CHECK Status thinvessels_draw(const Drawing *drawing, const ThinVessels *thin, Frame *frame,
                                    Err *err);
 

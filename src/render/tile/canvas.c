@@ -468,8 +468,8 @@ static Status draw_rows(size_t number, int worker, void *context, Err *err)
     int done = (int)number * pass->at_once, row = band->first / TILE_SIDE + done;
     int n = pass->rows - done < pass->at_once ? pass->rows - done : pass->at_once;
     if (worker == 0)
-        band_progress(band, canvas->drawing->params, camera->height, pass->further,
-                      (double)done * TILE_SIDE / band->rows);
+        TRY(band_progress(band, canvas->drawing->params, camera->height, pass->further,
+                          (double)done * TILE_SIDE / band->rows, err));
     own->row = row * TILE_SIDE;
     own->column = 0;
     TRY(pass->draw(pass->context, row, n, worker, err));

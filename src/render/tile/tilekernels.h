@@ -1,6 +1,6 @@
-/* What is done to a tile several samples at once, in one version for each kind of processor.
- * Kernels read and write whole blocks of as many samples as a processor has lanes, 16 at most: what
- * an array holds for samples that see nothing does not matter, and may be overwritten. */
+/* Kernels that process several samples of a tile at once, compiled once for each kind of processor.
+ * A kernel reads and writes whole blocks of as many samples as the processor has lanes, at most 16.
+ * Array elements of samples that hit nothing are undefined and may be overwritten. */
 #ifndef CORCAST_RENDER_TILEKERNELS_H
 #define CORCAST_RENDER_TILEKERNELS_H
 
@@ -11,11 +11,13 @@
 
 /* A light in the camera's frame. */
 typedef struct TileLight {
-    float towards[3]; /* parallel: unit; else the light's place, mm from the camera's location */
+    float towards[3]; /* parallel light: unit direction to it; otherwise its position, mm from the
+                       * camera */
     float color[3];
     bool parallel;
 } TileLight;
 
+/* What shading needs beside the surface. */
 typedef struct TileLook {
     Finish finish;
     TileLight lights[VIEW_MAX_LIGHTS];
@@ -25,65 +27,66 @@ typedef struct TileLook {
 /* The visible points of a tile, in the camera's frame. */
 typedef struct TileSurface {
     const TileHits *hits;
-    float direction[3][TILE_SAMPLES]; /* unit, of the ray */
-    float point[3][TILE_SAMPLES];     /* mm from the camera's location; only for lights that are not
-                                       * parallel */
+    float direction[3][TILE_SAMPLES]; /* unit, of the camera ray */
+    float point[3][TILE_SAMPLES];     /* mm from the camera; set if a light is not parallel */
     float pigment[3][TILE_SAMPLES];
-    const uint8_t (*shadowed)[TILE_SAMPLES]; /* whether from each light; NULL: none is */
-    const float *open; /* the part of the ambient light that reaches each; NULL: all */
-    const float (*parts)[TILE_SAMPLES]; /* that of each light, where `is_shared`; NULL: of none */
+    const uint8_t (*shadowed)[TILE_SAMPLES]; /* per light and sample: 1 in shadow; NULL: none is */
+    const float *open; /* per sample: ambient visibility, 0 to 1; NULL: 1 for all */
+    const float (*parts)[TILE_SAMPLES]; /* per light and sample: visibility of the light, 0 to 1, if
+                                         * is_shared[light]; NULL: no light is shared */
     bool is_shared[VIEW_MAX_LIGHTS];
 } TileSurface;
 
-/* Where the samples of a tile see something, mm in the frame of the view; undefined for samples
- * that see nothing. */
+/* The points that the samples of a tile hit, mm in the view's frame; undefined for samples that hit
+ * nothing. */
 typedef struct SeenPlaces {
     double x[TILE_SAMPLES], y[TILE_SAMPLES], z[TILE_SAMPLES];
 } SeenPlaces;
 
-/* How a light looks at places in the frame of the camera. */
+/* The projection from the camera's frame to a light view: from points to their tile in the light
+ * view, and their depth. */
 typedef struct LightAim {
-    Vec3 axes[3], offset; /* the light's axes there, and the camera's location in the light's */
+    Vec3 axes[3], offset; /* the light's axes in the camera's frame; the camera in the light's */
     bool perspective;
-    double left, top, per_x, per_y; /* edge of the first tile, tiles per unit */
-    double columns, rows;           /* tiles */
-    double slack, z_middle;
+    double left, top, per_x, per_y; /* edges of the first tile; tiles per unit of the plane */
+    double columns, rows;           /* number of columns and rows of tiles */
+    double slack;                   /* depth by which a blocker must be nearer to the light */
+    double z_middle;                /* subtracted from depths, so that floats hold them well */
 } LightAim;
 
-/* Places as the light sees them. */
+/* Points of a tile, projected to a light view. */
 typedef struct AimedPlaces {
-    float x[TILE_SAMPLES], y[TILE_SAMPLES]; /* in the view's plane, from the middle of the tile */
-    double z[TILE_SAMPLES];                 /* before which a blocker must stand, less z_middle */
-    int32_t tile[TILE_SAMPLES];             /* row by row */
+    float x[TILE_SAMPLES], y[TILE_SAMPLES]; /* in the light view's plane, from the tile's middle */
+    double z[TILE_SAMPLES];                 /* depth limit of blockers, minus z_middle */
+    int32_t tile[TILE_SAMPLES];             /* index of the light's tile, row by row */
 } AimedPlaces;
 
 typedef struct TileKernels {
-    /* Colours of the hits as shade() gives, to 2e-5 of the light's colour. Reads of the surface
-     * what the look asks for, and sets the colours of other samples in the same block to anything.
-     */
+    /* Computes the colours of hits. They agree with shade() to 2e-5 of the light's colour. Sets the
+     * colours of other samples in the same block to undefined values. */
     void (*shade)(const TileLook *look, const TileSurface *surface, float color[3][TILE_SAMPLES]);
-    /* Gives the samples whose TileState is TILE_MISS the background. */
+    /* Sets the colour of the samples whose TileState is TILE_MISS to the background. */
     void (*clear)(const uint8_t *state, const float background[3], float color[3][TILE_SAMPLES]);
-    /* Stores a whole tile's colours as TILE_SIDE rows of pixels, `stride` floats from row to row.
-     */
+    /* Copies the colours of a whole tile to TILE_SIDE rows of pixels; `stride` is the number of
+     * floats from one row to the next. */
     void (*paint)(float color[3][TILE_SAMPLES], float *pixels, size_t stride);
-    /* Stores the 8-bit codes of a whole tile's colours as TILE_SIDE rows of pixels, `stride` bytes
-     * from row to row: the background's where a TileState is TILE_MISS. `state` NULL: none is.
-     * Colours that are not a number have code 0. */
+    /* Encodes the colours of a whole tile as 8-bit sRGB, in TILE_SIDE rows of pixels; `stride` is
+     * the number of bytes from one row to the next. Samples whose TileState is TILE_MISS get the
+     * background; `state` NULL: no sample is. NaN is encoded as 0. */
     void (*encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES], const uint8_t *state,
                    const uint8_t background[3], uint8_t *pixels, size_t stride);
-    /* Bit i: the visible side of the surface at place i faces the light; anything where nothing is
-     * seen. */
+    /* Returns a mask: bit i is set if the visible side of the surface at sample i faces the light.
+     * Bits of samples that hit nothing are undefined. */
     uint64_t (*face)(const SeenTile *seen, const SeenPlaces *places,
                      const float normal[3][TILE_SAMPLES], const TileLight *light);
-    /* Sets the places as the light sees them; where a sample sees nothing, to a tile of the light
-     * all the same. */
+    /* Projects the points to the light view. Points of samples that hit nothing get a valid tile,
+     * too. */
     void (*aim)(const LightAim *aim, const SeenPlaces *places, AimedPlaces *aimed);
-    /* Of the samples, as bits, those that lie in a tile. */
+    /* Returns a mask of the samples whose projected point lies in the light's tile `tile`. */
     uint64_t (*within)(const AimedPlaces *aimed, int32_t tile);
 } TileKernels;
 
-/* Kernels come in kinds: the portable ones first, then those for ever more able processors. */
+/* The kinds of kernels: first the portable one, then one for each newer instruction set. */
 extern const TileKernels tilekernels_portable;
 #ifdef __x86_64__
 enum { KINDS_OF_KERNELS = 3 };
@@ -91,9 +94,10 @@ extern const TileKernels tilekernels_avx2, tilekernels_avx512;
 #else
 enum { KINDS_OF_KERNELS = 1 };
 #endif
-/* How many of the kinds, from the first on, this processor can run; the last is the fastest. */
+/* Returns the number of kinds, from the first on, that this processor can run. The last of them is
+ * the fastest. */
 int kernels_usable(void);
-/* The kind that is asked for, which this processor can run: an index into the tables of kernels. */
+/* Returns the index of the requested kind, which this processor must be able to run. */
 int kernels_kind(RenderKernels kernels);
 
 extern const TileKernels *const tilekernels[KINDS_OF_KERNELS];

@@ -234,8 +234,8 @@ static Status draw_row(size_t row, int worker, void *context, Err *err)
     const Drawing *drawing = band->drawing;
     const Camera *camera = &drawing->view->camera;
     if (worker == 0)
-        band_progress(&drawing->band, drawing->params, camera->height, false,
-                      (double)row / drawing->band.rows);
+        TRY(band_progress(&drawing->band, drawing->params, camera->height, false,
+                          (double)row / drawing->band.rows, err));
     if (model_has(drawing->geometry->model, MODEL_PRIMITIVES))
         return draw_primitives(band, &band->rows[worker], row, err);
     for (int x = 0; x < camera->width; x++)

@@ -1,6 +1,6 @@
 /* When a POV-Ray is ended that has its picture. This program stands for POV-Ray when it is called
  * as such. */
-#include "oracle/oracle.h"
+#include "oracle/povray.h"
 
 #include "unit.h"
 #include <stdio.h>
@@ -53,9 +53,13 @@ static Status run_as(const char *name, Err *err)
     FILE *file = fopen(scene, "w");
     assert_non_null(file);
     fclose(file);
-    const OracleParams params = {
-        .program = program, .scene = scene, .output = output, .width = 2, .height = 2, .bits = 8};
-    Status status = oracle_run(&params, NULL, err);
+    const PovrayParams params = {.program = {.path = program},
+                                 .scene = scene,
+                                 .output = output,
+                                 .width = 2,
+                                 .height = 2,
+                                 .bits = 8};
+    Status status = povray_draw(&params, NULL, err);
     unlink(program);
     unlink(scene);
     unlink(output);

@@ -1,8 +1,9 @@
-/* POV-Ray writes all it has to say to standard error: progress as "Rendered 120 of 400 pixels
- * (30%)" ended by carriage returns, a banner with its version, and the reason of a failure
- * near the end, between statistics. */
-#include "oracle/oracle.h"
-#include "oracle/tool.h"
+/* POV-Ray's command line, its output and its planes.
+ *
+ * POV-Ray prints everything to standard error: progress as "Rendered 120 of 400 pixels (30%)" that
+ * ends in a carriage return, a banner with its version, and the reason of a failure near the end,
+ * between statistics. */
+#include "oracle/povray.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,22 +11,23 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* The banner begins with this, and the version follows. */
+/* The version follows this text in the banner. */
 static const char banner_mark[] = "Ray Tracer Version ";
 
-static int bits_of(const OracleParams *params)
+static int bits_of(const PovrayParams *params)
 {
-    if (params->plane == ORACLE_COLOR)
+    if (params->plane == POVRAY_COLOR)
         return params->bits;
-    return params->plane == ORACLE_ID || params->plane == ORACLE_ALPHA ? 8 : 16;
+    return params->plane == POVRAY_ID || params->plane == POVRAY_ALPHA ? 8 : 16;
 }
 
-static bool has_alpha(const OracleParams *params)
+static bool has_alpha(const PovrayParams *params)
 {
-    return params->plane == ORACLE_ALPHA || (params->plane == ORACLE_COLOR && params->alpha);
+    return params->plane == POVRAY_ALPHA || (params->plane == POVRAY_COLOR && params->alpha);
 }
 
-/* Rows and columns are counted from 1; a number of 1 or less that ends them is a part of all. */
+/* POV-Ray counts rows and columns from 1. It takes an end of 1 or less for a fraction of the
+ * picture. */
 static Status add_part(const PixelRect *part, Arguments *arguments, Err *err)
 {
     TRY(arguments_add(arguments, err, "+SC%d", part->left + 1));
@@ -34,14 +36,15 @@ static Status add_part(const PixelRect *part, Arguments *arguments, Err *err)
     return arguments_add(arguments, err, "+ER%d", part->top + part->height);
 }
 
-/* Every switch that a user's povray.ini could have set otherwise is given. */
+/* Specifies every switch that a user's povray.ini could set. */
 static Status add_arguments(const void *context, const char *scene, const char *output,
                             Arguments *arguments, Err *err)
 {
-    const OracleParams *params = context;
-    bool alpha = params->plane == ORACLE_ALPHA, color = params->plane == ORACLE_COLOR || alpha;
+    const PovrayParams *params = context;
+    bool alpha = params->plane == POVRAY_ALPHA, color = params->plane == POVRAY_COLOR || alpha;
     bool deep = bits_of(params) == 16;
-    TRY(arguments_add(arguments, err, "%s", params->program ? params->program : "povray"));
+    TRY(arguments_add(arguments, err, "%s",
+                      params->program.path ? params->program.path : "povray"));
     TRY(arguments_add(arguments, err, "+I%s", scene));
     TRY(arguments_add(arguments, err, "+O%s", output));
     TRY(arguments_add(arguments, err, "+W%d", params->width));
@@ -51,7 +54,7 @@ static Status add_arguments(const void *context, const char *scene, const char *
     TRY(arguments_add(arguments, err, "+FN%d", deep ? 16 : 8));
     TRY(arguments_add(arguments, err, "File_Gamma=%s", color && !deep ? "srgb" : "1.0"));
     TRY(arguments_add(arguments, err, "Declare=Corcast_Plane=%d",
-                      alpha ? (int)ORACLE_COLOR : (int)params->plane));
+                      alpha ? (int)POVRAY_COLOR : (int)params->plane));
     if (alpha)
         TRY(arguments_add(arguments, err, "Declare=Background_Transmit=1"));
     if (color && params->antialias > 1) {
@@ -75,7 +78,7 @@ static Status add_arguments(const void *context, const char *scene, const char *
     return STATUS_OK;
 }
 
-Status oracle_command(const OracleParams *params, char **out, Err *err)
+Status povray_command(const PovrayParams *params, char **out, Err *err)
 {
     Arguments arguments = {0};
     Text line = TEXT_INIT;
@@ -93,49 +96,50 @@ Status oracle_command(const OracleParams *params, char **out, Err *err)
 }
 
 /* Returns the start of the last line that holds `mark`, or NULL. */
-static const char *last_line_with(const char *said, const char *mark)
+static const char *last_line_with(const char *printed, const char *mark)
 {
     const char *found = NULL;
-    for (const char *at = said; (at = strstr(at, mark)); at++)
+    for (const char *at = printed; (at = strstr(at, mark)); at++)
         found = at;
-    while (found && found > said && found[-1] != '\n')
+    while (found && found > printed && found[-1] != '\n')
         found--;
     return found;
 }
 
 /* Returns the start of the last LAST_LINES lines that are not empty. */
-static const char *last_lines(const char *said)
+static const char *last_lines(const char *printed)
 {
     enum { LAST_LINES = 3 };
-    const char *start = said + strlen(said);
+    const char *start = printed + strlen(printed);
     int lines = 0;
-    while (start > said && lines < LAST_LINES) {
+    while (start > printed && lines < LAST_LINES) {
         const char *end = start;
         start--;
-        while (start > said && start[-1] != '\n')
+        while (start > printed && start[-1] != '\n')
             start--;
         lines += end - start > 1;
     }
     return start;
 }
 
-/* POV-Ray begins with complaints about its settings and a banner, which give no reason. The last
- * error is the one that ended it. Without an error, what it said last is all that is known. */
-static const char *start_of_reason(const char *said)
+/* Returns the start of the reason of a failure. Lines before the banner are about POV-Ray's
+ * settings and give no reason. The last error is the one that ended it. Without an error, the last
+ * lines are all that is known. */
+static const char *start_of_reason(const char *printed)
 {
     static const char *const marks[] = {"rror:", "Fatal error", "annot "};
-    const char *banner = strstr(said, banner_mark), *start = NULL;
+    const char *banner = strstr(printed, banner_mark), *start = NULL;
     for (size_t i = 0; !start && i < sizeof marks / sizeof *marks; i++)
-        start = last_line_with(banner ? banner : said, marks[i]);
-    return start ? start : last_lines(said);
+        start = last_line_with(banner ? banner : printed, marks[i]);
+    return start ? start : last_lines(printed);
 }
 
-/* Writes the reason of a failure as one sentence, with `scene` in the place of the name that
- * POV-Ray was given for it. */
+/* Writes the reason of a failure as one line. Replaces the name that POV-Ray was given for the
+ * scene by `scene`. */
 static void reason_of_failure(const Text *log, const char *scene, char *reason, size_t size)
 {
-    static const char given[] = TOOL_FOLDER TOOL_SCENE;
-    const char *said = text_chars(log), *start = said ? start_of_reason(said) : NULL;
+    static const char given[] = PROGRAM_FOLDER PROGRAM_SCENE;
+    const char *printed = text_chars(log), *start = printed ? start_of_reason(printed) : NULL;
     size_t length = 0;
     for (; start && *start && length + 1 < size; start++) {
         if (*start == '\n') {
@@ -169,8 +173,9 @@ static void read_version(const Text *log, char *version, size_t size)
     }
 }
 
-/* Whether a file is a PNG from signature to end mark, with colours of params->bits bits. */
-static bool is_whole_picture(const char *path, const OracleParams *params)
+/* Returns true if a file is a PNG of the expected size, channels and bits, complete up to its end
+ * mark. */
+static bool is_whole_picture(const char *path, const PovrayParams *params)
 {
     static const unsigned char begin[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
     static const unsigned char end[] = "\0\0\0\0IEND\xae\x42\x60\x82";
@@ -190,21 +195,21 @@ static bool is_whole_picture(const char *path, const OracleParams *params)
            header[BEGIN + 9] == (has_alpha(params) ? RGBA : RGB) && memcmp(tail, end, END) == 0;
 }
 
-/* POV-Ray writes the picture, says how long it took, and ends 0.3 s later. */
-static bool is_done(const void *context, const Text *said, const char *picture)
+/* POV-Ray writes the picture, prints how long it took, and exits 0.3 s later. */
+static bool is_done(const void *context, const Text *printed, const char *picture)
 {
     enum { LAST = 400 };
-    const char *chars = text_chars(said);
+    const char *chars = text_chars(printed);
     if (!chars)
         return false;
-    const char *last = chars + (said->length > LAST ? said->length - LAST : 0);
+    const char *last = chars + (printed->length > LAST ? printed->length - LAST : 0);
     return strstr(last, "Trace Time:") && is_whole_picture(picture, context);
 }
 
-static Status judge(const void *context, const Text *said, int exit_status, const char *picture,
+static Status judge(const void *context, const Text *printed, int exit_status, const char *picture,
                     Err *err)
 {
-    const OracleParams *params = context;
+    const PovrayParams *params = context;
     char reason[700];
     if (exit_status == 0 && is_whole_picture(picture, params))
         return STATUS_OK;
@@ -214,34 +219,33 @@ static Status judge(const void *context, const Text *said, int exit_status, cons
                        "%d x %d bits",
                        params->scene, params->width, params->height, has_alpha(params) ? 4 : 3,
                        bits_of(params));
-    reason_of_failure(said, file_name(params->scene), reason, sizeof reason);
+    reason_of_failure(printed, file_name(params->scene), reason, sizeof reason);
     return err_set(err, STATUS_TOOL, "POV-Ray failed on %s (exit status %d): %s", params->scene,
                    exit_status, reason[0] ? reason : "it gave no reason");
 }
 
-Status oracle_run(const OracleParams *params, OracleRun *run, Err *err)
+Status povray_draw(const PovrayParams *params, PovrayRun *run, Err *err)
 {
-    Text said = TEXT_INIT;
+    Text printed = TEXT_INIT;
     double seconds;
-    const Tool tool = {.name = "POV-Ray",
-                       .package = "povray",
-                       .scene = params->scene,
-                       .output = params->output,
-                       .patience = "CORCAST_POVRAY_PATIENCE",
-                       .patience_s = params->patience_s,
-                       .progress = params->progress,
-                       .progress_context = params->progress_context,
-                       .add_arguments = add_arguments,
-                       .judge = judge,
-                       .is_done = is_done,
-                       .process = "povray",
-                       .context = params};
-    Status status = tool_draw(&tool, &said, &seconds, err);
+    const Program program = {.name = "POV-Ray",
+                             .package = "povray",
+                             .scene = params->scene,
+                             .output = params->output,
+                             .choice = params->program,
+                             .progress = params->progress,
+                             .progress_context = params->progress_context,
+                             .add_arguments = add_arguments,
+                             .judge = judge,
+                             .is_done = is_done,
+                             .process = "povray",
+                             .context = params};
+    Status status = program_draw(&program, &printed, &seconds, err);
     if (status == STATUS_OK && run) {
         run->seconds = seconds;
-        read_version(&said, run->version, sizeof run->version);
+        read_version(&printed, run->version, sizeof run->version);
     }
-    text_release(&said);
+    text_release(&printed);
     return status;
 }
 
@@ -271,7 +275,7 @@ static Status take_depth(const Picture *picture, double near_mm, double far_mm, 
     return STATUS_OK;
 }
 
-Status oracle_read_depth(Plane *depth, const char *path, double near_mm, double far_mm, Err *err)
+Status povray_read_depth(Plane *depth, const char *path, double near_mm, double far_mm, Err *err)
 {
     Picture picture;
     TRY(read_deep(&picture, path, err));
@@ -280,7 +284,7 @@ Status oracle_read_depth(Plane *depth, const char *path, double near_mm, double 
     return status;
 }
 
-Status oracle_read_depth_ids(Plane *depth, IdPlane *ids, const char *path, double near_mm,
+Status povray_read_depth_ids(Plane *depth, IdPlane *ids, const char *path, double near_mm,
                              double far_mm, Err *err)
 {
     Picture picture;
@@ -295,7 +299,7 @@ Status oracle_read_depth_ids(Plane *depth, IdPlane *ids, const char *path, doubl
     return status;
 }
 
-Status oracle_read_normal(Plane *normal, const char *path, Err *err)
+Status povray_read_normal(Plane *normal, const char *path, Err *err)
 {
     Picture picture;
     TRY(read_deep(&picture, path, err));
@@ -317,7 +321,7 @@ Status oracle_read_normal(Plane *normal, const char *path, Err *err)
     return status;
 }
 
-Status oracle_read_ids(IdPlane *ids, const char *path, Err *err)
+Status povray_read_ids(IdPlane *ids, const char *path, Err *err)
 {
     Picture picture;
     TRY(picture_read(&picture, path, ALPHA_REFUSED, err));
@@ -336,7 +340,7 @@ Status picture_take_alpha(Picture *alpha, const Picture *picture, Err *err)
     return STATUS_OK;
 }
 
-Status oracle_read_alpha(Picture *alpha, const char *path, Err *err)
+Status povray_read_alpha(Picture *alpha, const char *path, Err *err)
 {
     Picture picture;
     TRY(picture_read(&picture, path, ALPHA_KEPT, err));

@@ -1,19 +1,21 @@
-/* All that the program has to say is read through a pipe, of which the beginning and the end are
- * kept.
+/* How another program is started, watched and ended.
  *
- * Programs take only some paths on their command lines: POV-Ray no letter beyond ASCII and no line
- * end, Tachyon no long ones. So they are given fixed names in a private folder beside the picture,
- * which they reach through an open handle: a link to the scene, the picture, and POV-Ray's restart
- * file. They run in the scene's folder, where they find what the scene includes. The picture takes
- * its final name when it is whole.
+ * Output: the program's output is read through a pipe. Only its beginning and its end are kept.
  *
- * A program that takes its time to end is ended once its picture is whole, if it is the program
- * itself: a script that stands for it may have more to do.
+ * Names: some programs do not accept every path on their command line. POV-Ray rejects line feeds
+ * and letters beyond ASCII, Tachyon long paths. Therefore all files have fixed names in a private
+ * folder beside the picture: a link to the scene, the picture, and POV-Ray's restart file. The
+ * program reaches this folder through an open file handle. It runs in the scene's folder, where it
+ * finds the files that the scene includes. The picture gets its final name when it is whole.
  *
- * The program is a process group of its own, a script that stands for it included. It is killed
- * when a signal ends this process, before its files are removed, when it falls silent, and when it
- * reports no progress for long; if this process is killed, the program itself dies with it. */
-#include "oracle/tool.h"
+ * Ending: POV-Ray exits a while after its picture is whole, so it is killed then. A script that
+ * stands for it may have more to do, so a script is waited for.
+ *
+ * The program, or the script and all that it starts, is a process group of its own. The group is
+ * killed when a signal ends this process, before the files are removed. It is also killed when it
+ * prints nothing, or reports no progress, for too long. If this process is killed, the kernel kills
+ * the program itself. */
+#include "oracle/program.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -48,7 +50,7 @@ Status arguments_add(Arguments *arguments, Err *err, const char *format, ...)
     return status;
 }
 
-/* The folder of `path`, where a program finds what the scene includes; in *out (owned). */
+/* Sets *out to the folder of `path` (owned). */
 static Status folder_of(const char *path, char **out, Err *err)
 {
     TRY(mem_strdup(out, path, err));
@@ -62,10 +64,11 @@ static Status folder_of(const char *path, char **out, Err *err)
 
 /* ---- the private folder ---------------------------------------------------------------------- */
 
-/* All names are owned and removed by file_forget or by a signal. */
+/* The private folder and the paths in it. All strings are owned. The files are removed by
+ * file_forget, or when a signal ends this process. */
 typedef struct Workplace {
     char *folder, *scene, *picture, *state;
-    int handle; /* of the folder, or -1 */
+    int handle; /* the open folder, or -1 */
 } Workplace;
 
 static Status add_name(Workplace *place, const char *name, char **out, Err *err)
@@ -80,11 +83,11 @@ static Status add_name(Workplace *place, const char *name, char **out, Err *err)
     return status;
 }
 
-/* `scene` is absolute, `picture` the final name. */
+/* Creates the folder. `scene` is an absolute path; `picture` is the final path of the picture. */
 static Status open_workplace(Workplace *place, const char *scene, const char *picture, Err *err)
 {
     TRY(file_temporary_folder(picture, &place->folder, err));
-    TRY(add_name(place, TOOL_SCENE, &place->scene, err));
+    TRY(add_name(place, PROGRAM_SCENE, &place->scene, err));
     TRY(add_name(place, PRIVATE_PICTURE, &place->picture, err));
     TRY(add_name(place, PRIVATE_STATE, &place->state, err));
     place->handle = open(place->folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
@@ -115,22 +118,24 @@ static void become_program(char *const *arguments, const char *folder, int priva
     dup2(log, STDOUT_FILENO);
     dup2(nothing, STDIN_FILENO);
     dup2(private_folder, PRIVATE_HANDLE);
-    fcntl(PRIVATE_HANDLE, F_SETFD, 0); /* also where the numbers are the same */
+    fcntl(PRIVATE_HANDLE, F_SETFD, 0); /* needed if both numbers are equal */
     if (chdir(folder) == 0)
         execvp(arguments[0], arguments);
     _exit(STATUS_NOT_STARTED);
 }
 
-/* The beginning of what a program says and the end, so that no flood of warnings fills the memory.
- */
+/* Bytes of output that are kept, from its beginning and from its end. The banner with the version
+ * is in the first, the reason of a failure in the last. */
 enum { LOG_BEGIN = 1 << 16, LOG_END = 1 << 20 };
-static const double log_most = 1e9; /* bytes, after which it is ended */
+/* A program that prints more bytes than this is ended. */
+static const double max_output_bytes = 1e9;
 
 typedef struct Log {
     Text text;         /* lines end in line feeds */
     double bytes;      /* number of bytes read so far */
     double heard_s;    /* time of the last output */
     double progress_s; /* time at which `progress` changed, or the program began */
+    bool cancelled;    /* the progress callback asked to stop */
     char progress[80]; /* the last line with a percentage, up to the percentage */
 } Log;
 
@@ -146,12 +151,13 @@ static void add_to_log(Log *log, char *block, size_t size)
         text_cut(text, LOG_BEGIN, text->length - LOG_BEGIN - LOG_END);
 }
 
-/* Notes whether the line that ends in the percentage at `at` is another one than the last. It also
- * holds the number of pixels, which changes in pictures that take hours for a percent. */
+/* Restarts the clock of progress if the line that ends in the percentage at `at` differs from the
+ * line before. The line also contains the number of pixels, which changes more often than the
+ * percentage. */
 static void note_progress(Log *log, const char *at)
 {
-    const char *start = at, *said = text_chars(&log->text);
-    while (start > said && start[-1] != '\n' && at - start < (ptrdiff_t)sizeof log->progress - 1)
+    const char *start = at, *printed = text_chars(&log->text);
+    while (start > printed && start[-1] != '\n' && at - start < (ptrdiff_t)sizeof log->progress - 1)
         start--;
     size_t length = (size_t)(at - start);
     if (strncmp(log->progress, start, length) != 0 || log->progress[length])
@@ -160,8 +166,8 @@ static void note_progress(Log *log, const char *at)
     log->progress[length] = '\0';
 }
 
-/* Reports the last "(30%)" among the `size` bytes that came last, or a little before them. */
-static void report_progress(const Tool *tool, Log *log, size_t size)
+/* Reports the last "(30%)" in the newest `size` bytes. It may begin a few bytes before them. */
+static void report_progress(const Program *program, Log *log, size_t size)
 {
     enum { LONGEST = 8 };
     const char *chars = text_chars(&log->text);
@@ -173,12 +179,12 @@ static void report_progress(const Tool *tool, Log *log, size_t size)
     if (at == first || sscanf(chars + at, "%d%%)", &percent) != 1)
         return;
     note_progress(log, chars + at);
-    if (tool->progress)
-        tool->progress(percent / 100.0, tool->progress_context);
+    if (program->progress && !program->progress(percent / 100.0, program->progress_context))
+        log->cancelled = true;
 }
 
-/* Reads once if there is something within `wait_ms`; false at the end of all. */
-static bool hear(const Tool *tool, int handle, int wait_ms, Log *log)
+/* Waits up to `wait_ms` for output and reads it once. Returns false at the end of the output. */
+static bool hear(const Program *program, int handle, int wait_ms, Log *log)
 {
     char block[1 << 14];
     struct pollfd event = {.fd = handle, .events = POLLIN};
@@ -188,7 +194,7 @@ static bool hear(const Tool *tool, int handle, int wait_ms, Log *log)
     if (count < 0)
         return errno == EINTR;
     add_to_log(log, block, (size_t)count);
-    report_progress(tool, log, (size_t)count);
+    report_progress(program, log, (size_t)count);
     log->heard_s = clock_seconds();
     return count > 0;
 }
@@ -201,44 +207,47 @@ static Status end_program(pid_t child, Status status)
     return status;
 }
 
-/* Whether the process is the program itself, and has only to end. */
-static bool is_done(const Tool *tool, pid_t child, const Text *said, const char *picture)
+/* Returns true if the process is the program itself, not a script, and has only to exit. */
+static bool is_done(const Program *program, pid_t child, const Text *printed, const char *picture)
 {
     char link[40], path[4096];
-    if (!tool->is_done || !tool->is_done(tool->context, said, picture))
+    if (!program->is_done || !program->is_done(program->context, printed, picture))
         return false;
     snprintf(link, sizeof link, "/proc/%d/exe", (int)child);
     ssize_t length = readlink(link, path, sizeof path - 1);
     path[length > 0 ? length : 0] = '\0';
-    return strcmp(file_name(path), tool->process) == 0;
+    return strcmp(file_name(path), program->process) == 0;
 }
 
-/* Returns an error for a program that has said too much, nothing for too long, or much that is no
- * progress for longer yet: a program that hangs may go on to talk. */
-static Status check_life(const Tool *tool, const Log *log, Err *err)
+/* Returns an error for a program that has printed too much, has printed nothing for too long, or
+ * has made no progress for even longer: a program that hangs may go on to print. */
+static Status check_life(const Program *program, const Log *log, Err *err)
 {
     enum { PATIENCE_WITHOUT_PROGRESS = 5 }; /* POV-Ray reports no progress while it parses */
-    double now_s = clock_seconds(), patience_s = tool->patience_s;
-    if (log->bytes > log_most)
+    double now_s = clock_seconds(), patience_s = program->choice.patience_s;
+    const char *patience = program->choice.patience ? program->choice.patience : "patience";
+    if (log->cancelled)
+        return err_cancelled(err);
+    if (log->bytes > max_output_bytes)
         return err_set(err, STATUS_TOOL, "%s was ended: it has said more than %.0f MB about %s",
-                       tool->name, log_most * 1e-6, tool->scene);
+                       program->name, max_output_bytes * 1e-6, program->scene);
     if (patience_s > 0 && now_s - log->heard_s > patience_s)
         return err_set(err, STATUS_TOOL,
                        "%s was ended: it has said nothing for %g s about %s; "
                        "%s=SECONDS gives it longer, 0 for ever",
-                       tool->name, patience_s, tool->scene, tool->patience);
+                       program->name, patience_s, program->scene, patience);
     if (patience_s > 0 && now_s - log->progress_s > PATIENCE_WITHOUT_PROGRESS * patience_s)
         return err_set(err, STATUS_TOOL,
                        "%s was ended: it has reported no progress for %g s on %s, although it goes "
                        "on to write; %s=SECONDS gives it %d times as many seconds, 0 for ever",
-                       tool->name, PATIENCE_WITHOUT_PROGRESS * patience_s, tool->scene,
-                       tool->patience, PATIENCE_WITHOUT_PROGRESS);
+                       program->name, PATIENCE_WITHOUT_PROGRESS * patience_s, program->scene,
+                       patience, PATIENCE_WITHOUT_PROGRESS);
     return STATUS_OK;
 }
 
-/* Waits for the program itself: what it has started may live on and keep the pipe open, and it may
- * close the pipe and live on. What is in the pipe when it ends is still read. */
-static Status attend(const Tool *tool, pid_t child, int handle, const char *picture, Log *log,
+/* Waits until the program itself has ended. A process that it has started may keep the pipe open
+ * longer, and the program may close the pipe earlier. Reads what is left in the pipe. */
+static Status attend(const Program *program, pid_t child, int handle, const char *picture, Log *log,
                      int *ended, Err *err)
 {
     enum { WAIT_MS = 100, SHORT_WAIT_MS = 2, LAST_READS = 8 };
@@ -246,40 +255,42 @@ static Status attend(const Tool *tool, pid_t child, int handle, const char *pict
     log->heard_s = log->progress_s = clock_seconds();
     while (waitpid(child, ended, WNOHANG) == 0) {
         if (open)
-            open = hear(tool, handle, WAIT_MS, log);
+            open = hear(program, handle, WAIT_MS, log);
         else
             poll(NULL, 0, SHORT_WAIT_MS);
-        if (is_done(tool, child, &log->text, picture)) {
+        if (is_done(program, child, &log->text, picture)) {
             *ended = 0;
             return end_program(child, text_check(&log->text, err));
         }
-        Status status = check_life(tool, log, err);
+        Status status = check_life(program, log, err);
         if (status != STATUS_OK)
             return end_program(child, status);
     }
     for (int i = 0; open && i < LAST_READS; i++)
-        open = hear(tool, handle, 0, log);
+        open = hear(program, handle, 0, log);
     return text_check(&log->text, err);
 }
 
-/* Starts the program and waits for it; *log holds what it said. */
-static Status run_program(const Tool *tool, char *const *arguments, const char *folder,
+/* Starts the program and waits for it. *log receives its output. */
+static Status run_program(const Program *program, char *const *arguments, const char *folder,
                           const Workplace *place, Log *log, int *exit_status, Err *err)
 {
     int pipe_ends[2], ended = 0;
     if (pipe2(pipe_ends, O_CLOEXEC) != 0)
-        return err_set(err, STATUS_TOOL, "%s cannot be started: %s", tool->name, strerror(errno));
+        return err_set(err, STATUS_TOOL, "%s cannot be started: %s", program->name,
+                       strerror(errno));
     pid_t child = fork();
     if (child == 0)
         become_program(arguments, folder, place->handle, pipe_ends[1]);
     if (child > 0) {
-        setpgid(child, child); /* here as in the child: whoever comes first */
+        setpgid(child, child); /* in both processes, because either may run first */
         file_kill_on_signal(child);
     }
     close(pipe_ends[1]);
-    Status status = child < 0 ? err_set(err, STATUS_TOOL, "%s cannot be started: %s", tool->name,
-                                        strerror(errno))
-                              : attend(tool, child, pipe_ends[0], place->picture, log, &ended, err);
+    Status status =
+        child < 0
+            ? err_set(err, STATUS_TOOL, "%s cannot be started: %s", program->name, strerror(errno))
+            : attend(program, child, pipe_ends[0], place->picture, log, &ended, err);
     if (child > 0)
         file_spare_on_signal(child);
     close(pipe_ends[0]);
@@ -287,17 +298,18 @@ static Status run_program(const Tool *tool, char *const *arguments, const char *
     return status;
 }
 
-/* The final name of the picture, links followed; a device or pipe cannot take its place. */
-static Status find_output(const Tool *tool, char **output, Err *err)
+/* Sets *output to the final path of the picture, with links followed. Refuses a device or a pipe,
+ * which cannot be replaced by a file. */
+static Status find_output(const Program *program, char **output, Err *err)
 {
     struct stat about;
-    TRY(outfile_check(tool->output, err));
-    if (stat(tool->output, &about) == 0 && !S_ISREG(about.st_mode))
-        return err_set(err, STATUS_IO, "%s: cannot be written: it is no file", tool->output);
-    return file_resolve(tool->output, output, err);
+    TRY(outfile_check(program->output, err));
+    if (stat(program->output, &about) == 0 && !S_ISREG(about.st_mode))
+        return err_set(err, STATUS_IO, "%s: cannot be written: it is no file", program->output);
+    return file_resolve(program->output, output, err);
 }
 
-Status tool_draw(const Tool *tool, Text *said, double *seconds, Err *err)
+Status program_draw(const Program *program, Text *printed, double *seconds, Err *err)
 {
     Arguments arguments = {0};
     Log log = {.text = TEXT_INIT};
@@ -305,25 +317,25 @@ Status tool_draw(const Tool *tool, Text *said, double *seconds, Err *err)
     char *scene = NULL, *folder = NULL, *output = NULL;
     double start_s = clock_seconds();
     int exit_status = 0;
-    TRY(file_check_regular(tool->scene, err));
-    scene = realpath(tool->scene, NULL);
+    TRY(file_check_regular(program->scene, err));
+    scene = realpath(program->scene, NULL);
     if (!scene)
         return err_set(err, errno == ENOMEM ? STATUS_MEMORY : STATUS_INPUT,
-                       "%s: cannot be read: %s", tool->scene, strerror(errno));
+                       "%s: cannot be read: %s", program->scene, strerror(errno));
     Status status = STATUS_OK;
     TRY_GOTO(folder_of(scene, &folder, err));
-    TRY_GOTO(find_output(tool, &output, err));
+    TRY_GOTO(find_output(program, &output, err));
     TRY_GOTO(open_workplace(&place, scene, output, err));
-    TRY_GOTO(tool->add_arguments(tool->context, TOOL_FOLDER TOOL_SCENE, TOOL_FOLDER PRIVATE_PICTURE,
-                                 &arguments, err));
-    TRY_GOTO(run_program(tool, arguments.list, folder, &place, &log, &exit_status, err));
+    TRY_GOTO(program->add_arguments(program->context, PROGRAM_FOLDER PROGRAM_SCENE,
+                                    PROGRAM_FOLDER PRIVATE_PICTURE, &arguments, err));
+    TRY_GOTO(run_program(program, arguments.list, folder, &place, &log, &exit_status, err));
     if (exit_status == STATUS_NOT_STARTED)
         TRY_GOTO(err_set(err, STATUS_TOOL,
                          "%s is needed and '%s' cannot be started; on Debian: apt install %s",
-                         tool->name, arguments.list[0], tool->package));
-    TRY_GOTO(tool->judge(tool->context, &log.text, exit_status, place.picture, err));
-    text_add(said, &log.text);
-    TRY_GOTO(text_check(said, err));
+                         program->name, arguments.list[0], program->package));
+    TRY_GOTO(program->judge(program->context, &log.text, exit_status, place.picture, err));
+    text_add(printed, &log.text);
+    TRY_GOTO(text_check(printed, err));
     status = file_rename(place.picture, output, err);
     place.picture = NULL;
     *seconds = clock_seconds() - start_s;

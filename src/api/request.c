@@ -1,0 +1,136 @@
+/* An operation works on a Parsed of its own, because jobs change it: the caller's options stay as
+ * they are and serve any number of operations. */
+#include "api/request.h"
+
+#include "job/job.h"
+#include <stdlib.h>
+#include <string.h>
+
+const Command *request_command(const char *name)
+{
+    for (const Command *const *command = job_commands; *command; command++)
+        if (strcmp((*command)->name, name) == 0)
+            return *command;
+    return NULL;
+}
+
+/* ---- what the caller hears ------------------------------------------------------------------- */
+
+static void say(void *user, TalkKind kind, const char *sentence)
+{
+    const Request *request = user;
+    if (!request->message || (kind == TALK_NOTE && request->parsed.common.quiet))
+        return;
+    locale_t own = callback_begin(request->before);
+    request->message(request->user, kind == TALK_WARNING, sentence);
+    callback_end(own);
+}
+
+static bool show_progress(void *user, const char *what, double fraction)
+{
+    const Request *request = user;
+    if (!request->progress)
+        return true;
+    locale_t own = callback_begin(request->before);
+    int stop = request->progress(request->user, what, fraction);
+    callback_end(own);
+    return stop == 0;
+}
+
+/* ---- opening --------------------------------------------------------------------------------- */
+
+/* Returns true if `name` is one of the words of `names`. */
+static bool is_word_of(const char *name, const char *names)
+{
+    const size_t length = strlen(name);
+    for (const char *word = names; *word; word += strspn(word, " ")) {
+        size_t n = strcspn(word, " ");
+        if (n == length && strncmp(word, name, n) == 0)
+            return true;
+        word += n;
+    }
+    return false;
+}
+
+static Status find_command(const RequestForm *form, const Command **command, Err *err)
+{
+    char first[32];
+    snprintf(first, sizeof first, "%.*s", (int)strcspn(form->commands, " "), form->commands);
+    *command = request_command(first);
+    if (!form->options && !form->needs_options)
+        return STATUS_OK;
+    TRY(handle_check(form->options, HANDLE_OPTIONS, "options", err));
+    *command = form->options->command;
+    if (is_word_of((*command)->name, form->commands))
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "options are of the command %s; this operation takes those of: %s",
+                   (*command)->name, form->commands);
+}
+
+/* Sets the caller's options, with `output` in place of their own. */
+static Status set_options(Parsed *parsed, const RequestForm *form, Err *err)
+{
+    for (size_t i = 0; form->options && i < form->options->texts.n; i++) {
+        const OptionText *text = &form->options->texts.items[i];
+        if (strcmp(text->name, "output") != 0)
+            TRY(options_set(parsed, text->name, text->value, err));
+    }
+    if (!form->output || !parsed_find(parsed, "output", strlen("output")))
+        return STATUS_OK;
+    return options_set(parsed, "output", form->output, err);
+}
+
+/* Takes over what the caller's options say besides options. */
+static Status take_surroundings(Request *request, const corcast_options *options, Err *err)
+{
+    request->talk = (Talk){.say = say, .progress = show_progress, .user = request};
+    request->parsed.common.talk = &request->talk;
+    if (!options)
+        return STATUS_OK;
+    request->progress = options->progress;
+    request->message = options->message;
+    request->user = options->user;
+    if (options->templates)
+        TRY(mem_strdup(&request->templates, options->templates, err));
+    return STATUS_OK;
+}
+
+static Status give_operand(Request *request, const RequestForm *form, Err *err)
+{
+    Parsed *parsed = &request->parsed;
+    if (form->operand) {
+        TRY(mem_strdup(&request->name, form->operand, err));
+        parsed->operands[parsed->n_operands++] = request->name;
+    }
+    if (!form->tree)
+        return STATUS_OK;
+    if (form->tree->name)
+        TRY(mem_strdup(&request->name, form->tree->name, err));
+    parsed_give(parsed, &form->tree->tree, request->name);
+    return STATUS_OK;
+}
+
+Status request_open(Request *request, const RequestForm *form, const Call *call, Err *err)
+{
+    const Command *command = NULL;
+    *request = (Request){.before = call->before};
+    TRY(find_command(form, &command, err));
+    TRY(parsed_init(&request->parsed, command, err));
+    request->parsed.find_command = request_command;
+    request->parsed.in_memory = form->output == NULL;
+    TRY(take_surroundings(request, form->options, err));
+    TRY(give_operand(request, form, err));
+    TRY(set_options(&request->parsed, form, err));
+    return options_finish(&request->parsed, err);
+}
+
+Status request_close(Request *request, Status status, Err *err)
+{
+    if (status != STATUS_OK && status != STATUS_DIFFERS && request->parsed.settings)
+        options_name_fields(&request->parsed, err);
+    parsed_release(&request->parsed);
+    free(request->name);
+    free(request->templates);
+    return status;
+}

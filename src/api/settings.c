@@ -1,0 +1,213 @@
+/* Options of a command, held as the texts that set them. A Parsed beside the texts checks each one
+ * and writes values back; operations make a Parsed of their own [api/request.h]. */
+#include "api/request.h"
+
+#include "job/job.h"
+#include "options/output.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Finds the command of an argument. Errors: STATUS_USAGE. */
+static Status find_command(const char *name, const Command **command, Err *err)
+{
+    TRY(argument_check(name, "command", err));
+    *command = request_command(name);
+    if (*command)
+        return STATUS_OK;
+    Suggestion suggestion = suggestion_for(name, strlen(name));
+    for (const Command *const *known = job_commands; *known; known++)
+        suggestion_offer(&suggestion, (*known)->name);
+    (void)err_set(err, STATUS_USAGE, "'%s' is not a command of the library", name);
+    suggestion_add(&suggestion, "", err);
+    return STATUS_USAGE;
+}
+
+static Status new_options(const char *name, corcast_options **out, Err *err)
+{
+    const Command *command = NULL;
+    corcast_options *made = NULL;
+    TRY(argument_check(out, "out", err));
+    TRY(find_command(name, &command, err));
+    TRY(handle_new(&made, HANDLE_OPTIONS, sizeof *made, err));
+    made->command = command;
+    Status status = parsed_init(&made->parsed, command, err);
+    if (status != STATUS_OK)
+        handle_free(made);
+    else
+        *out = made;
+    return status;
+}
+
+int corcast_options_new(const char *command, corcast_options **out, corcast_error *error)
+{
+    Call call = call_begin(error);
+    return call_end(&call, new_options(command, out, &call.err));
+}
+
+/* ---- setting --------------------------------------------------------------------------------- */
+
+/* Finds the row of an option that a program may set. */
+static Status find_option(const corcast_options *options, const char *name, const Option **option,
+                          Err *err)
+{
+    static const char *const printing[] = {"help", "dump-recipe", "commands", NULL};
+    TRY(argument_check(name, "name", err));
+    const Setting *setting = parsed_find(&options->parsed, name, strlen(name));
+    Text unused = TEXT_INIT;
+    if (!setting) /* for the sentence */
+        return options_get(&options->parsed, name, &unused, err);
+    *option = setting->option;
+    if (is_one_of(name, printing))
+        return err_set(err, STATUS_USAGE, "'%s' is an option of the command line alone", name);
+    return STATUS_OK;
+}
+
+static void remove_text(OptionTexts *texts, size_t at)
+{
+    free(texts->items[at].value);
+    memmove(&texts->items[at], &texts->items[at + 1], (--texts->n - at) * sizeof *texts->items);
+}
+
+/* Removes the texts of an option from [0, n). */
+static void remove_texts(OptionTexts *texts, const char *name, size_t n)
+{
+    for (size_t i = n; i-- > 0;)
+        if (strcmp(texts->items[i].name, name) == 0)
+            remove_text(texts, i);
+}
+
+/* Sets the Parsed anew from the texts, which are known to be right. */
+static Status parse_again(corcast_options *options, Err *err)
+{
+    Parsed made;
+    TRY(parsed_init(&made, options->command, err));
+    for (size_t i = 0; i < options->texts.n; i++) {
+        const OptionText *text = &options->texts.items[i];
+        Status status = options_set(&made, text->name, text->value, err);
+        if (status != STATUS_OK) {
+            parsed_release(&made);
+            return status;
+        }
+    }
+    parsed_release(&options->parsed);
+    options->parsed = made;
+    return STATUS_OK;
+}
+
+static Status unset(corcast_options *options, const Option *option, Err *err)
+{
+    OptionTexts kept = {0};
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < options->texts.n; i++)
+        if (strcmp(options->texts.items[i].name, option->name) != 0)
+            TRY_GOTO(ARRAY_PUSH(&kept, "options", err, options->texts.items[i]));
+    OptionTexts all = options->texts;
+    options->texts = kept;
+    status = parse_again(options, err);
+    options->texts = all;
+    if (status == STATUS_OK)
+        remove_texts(&options->texts, option->name, options->texts.n);
+done:
+    ARRAY_RELEASE(&kept);
+    return status;
+}
+
+/* A new text takes the place of the one before, unless the option collects values. */
+static Status set(corcast_options *options, const Option *option, const char *value, Err *err)
+{
+    OptionTexts *texts = &options->texts;
+    char *made = NULL;
+    if (option_is_path(option))
+        TRY(path_check(value, option->name, err));
+    TRY(ARRAY_RESERVE(texts, 1, "options", err));
+    TRY(mem_strdup(&made, value, err));
+    Status status = options_set(&options->parsed, option->name, value, err);
+    if (status != STATUS_OK) {
+        free(made);
+        return status;
+    }
+    texts->items[texts->n++] = (OptionText){option->name, made};
+    if (option->kind != OPTION_VECTORS)
+        remove_texts(texts, option->name, texts->n - 1);
+    return STATUS_OK;
+}
+
+static Status set_templates(corcast_options *options, const char *value, Err *err)
+{
+    char *made = NULL;
+    if (value) {
+        TRY(path_check(value, "templates", err));
+        TRY(mem_strdup(&made, value, err));
+    }
+    free(options->templates);
+    options->templates = made;
+    return STATUS_OK;
+}
+
+static Status set_option(corcast_options *options, const char *name, const char *value, Err *err)
+{
+    const Option *option = NULL;
+    TRY(handle_check(options, HANDLE_OPTIONS, "options", err));
+    if (name && strcmp(name, "templates") == 0)
+        return set_templates(options, value, err);
+    TRY(find_option(options, name, &option, err));
+    return value ? set(options, option, value, err) : unset(options, option, err);
+}
+
+int corcast_options_set(corcast_options *options, const char *name, const char *value,
+                        corcast_error *error)
+{
+    Call call = call_begin(error);
+    return call_end(&call, set_option(options, name, value, &call.err));
+}
+
+/* ---- reading back ---------------------------------------------------------------------------- */
+
+static Status get_option(corcast_options *options, const char *name, const char **value, Err *err)
+{
+    const Option *option = NULL;
+    TRY(handle_check(options, HANDLE_OPTIONS, "options", err));
+    TRY(argument_check(value, "value", err));
+    text_release(&options->shown);
+    if (name && strcmp(name, "templates") == 0) {
+        *value = options->templates;
+        return STATUS_OK;
+    }
+    TRY(find_option(options, name, &option, err));
+    TRY(options_get(&options->parsed, name, &options->shown, err));
+    *value = options->shown.length ? text_chars(&options->shown) : NULL;
+    return STATUS_OK;
+}
+
+int corcast_options_get(corcast_options *options, const char *name, const char **value,
+                        corcast_error *error)
+{
+    Call call = call_begin(error);
+    return call_end(&call, get_option(options, name, value, &call.err));
+}
+
+int corcast_options_callbacks(corcast_options *options, corcast_progress *progress,
+                              corcast_message *message, void *user, corcast_error *error)
+{
+    Call call = call_begin(error);
+    Status status = handle_check(options, HANDLE_OPTIONS, "options", &call.err);
+    if (status == STATUS_OK) {
+        options->progress = progress;
+        options->message = message;
+        options->user = user;
+    }
+    return call_end(&call, status);
+}
+
+void corcast_options_free(corcast_options *options)
+{
+    if (!handle_is(options, HANDLE_OPTIONS))
+        return;
+    parsed_release(&options->parsed);
+    while (options->texts.n > 0)
+        remove_text(&options->texts, options->texts.n - 1);
+    ARRAY_RELEASE(&options->texts);
+    text_release(&options->shown);
+    free(options->templates);
+    handle_free(options);
+}

@@ -1,0 +1,528 @@
+/* corcast.h: grow, read, draw, export and check arterial trees from a program.
+ *
+ * Link with `pkg-config --cflags --libs corcast`. The header is C11 and C++11 and includes nothing
+ * of corcast but itself.
+ *
+ * A program in eight lines (docs/LIBRARY.md has more):
+ *
+ *     corcast_error *error = corcast_error_new();
+ *     corcast_options *options = NULL;
+ *     corcast_tree *tree = NULL;
+ *     if (corcast_options_new("grow", &options, error) ||
+ *         corcast_options_set(options, "terminals", "1000", error) ||
+ *         corcast_grow(options, &tree, NULL, error) ||
+ *         corcast_tree_write(tree, "tree.swc", error))
+ *         fprintf(stderr, "%s\n", corcast_error_text(error));
+ *     corcast_tree_free(tree);
+ *     corcast_options_free(options);
+ *     corcast_error_free(error);
+ *
+ * HANDLES. All objects are opaque. A function whose last letters are _new, _read, _copy or the like
+ * stores a handle in its `out` argument; release it with the _free function of its type, which
+ * accepts NULL. A handle does not refer to another handle: a scene keeps what it needs of its tree,
+ * and may outlive it. In this header, a parameter is never NULL unless its comment says so; passing
+ * NULL, or a handle of another type, is an error with a sentence and not a crash. The use of a
+ * handle after it was freed is undefined; debug builds of the library report it as an error.
+ *
+ * ERRORS. A function that can fail returns an int: CORCAST_OK, or one of the other values of
+ * corcast_status, which are the exit statuses of the command line. A failed function leaves its
+ * `out` arguments and its handles unchanged. The last parameter `error` receives one English
+ * sentence that names the option, the file and the line, or the argument; what was found; and what
+ * is accepted. It may be NULL. Any function that allocates memory can fail with CORCAST_FAILED and
+ * the kind "memory"; no comment repeats this.
+ *
+ * OPTIONS. A corcast_options holds the options of one command of the command line, by the names of
+ * the command line: "terminals" for --terminals. docs/REFERENCE.md lists all commands and options;
+ * corcast_schema returns the same facts as JSON. An operation checks all options together before it
+ * begins, and refuses an option that would have no effect. With the same options and input the
+ * library makes the same bytes as the command line, also with any number of threads.
+ *
+ * THREADS. Two threads may use two handles at the same time. Two threads may pass one handle to two
+ * functions at the same time if both take it as a pointer to const. An operation may use several
+ * threads of its own: the option "threads", 0 for all processors. Callbacks are called by the
+ * thread that called the operation; those of corcast_verify, one at a time, by any thread.
+ *
+ * SURROUNDINGS. The library has no global state. It never writes to standard output or standard
+ * error, never reads standard input, never ends the process, and never reads or changes the
+ * environment, the locale, the umask, signal handlers or the working folder. The path "-", which
+ * names a standard stream on the command line, is refused. Results do not depend on the locale of
+ * the caller.
+ *
+ * LENGTHS are millimetres. Indices count from 0.
+ *
+ * STABILITY. Each function says one of:
+ *   stable        its meaning and binary interface stay until the SONAME libcorcast.so.0 changes.
+ *   provisional   it may change in a release; the change log then says how to adapt.
+ */
+#ifndef CORCAST_H
+#define CORCAST_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define CORCAST_API __attribute__((visibility("default")))
+#else
+#define CORCAST_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- version --------------------------------------------------------------------------------- */
+
+/* The version of this header. CORCAST_VERSION_NUMBER is MAJOR * 10000 + MINOR * 100 + PATCH. */
+#define CORCAST_VERSION_MAJOR 0
+#define CORCAST_VERSION_MINOR 1
+#define CORCAST_VERSION_PATCH 0
+#define CORCAST_VERSION_NUMBER                                                                     \
+    (CORCAST_VERSION_MAJOR * 10000 + CORCAST_VERSION_MINOR * 100 + CORCAST_VERSION_PATCH)
+
+/* Returns the version of the library that is loaded, "0.1.0". The string is static.
+ * Stability: stable. */
+CORCAST_API const char *corcast_version(void);
+
+/* ---- errors ---------------------------------------------------------------------------------- */
+
+typedef enum corcast_status {
+    CORCAST_OK = 0,
+    CORCAST_DIFFERS = 1, /* a comparison or verification found a difference */
+    CORCAST_WRONG = 2,   /* an argument, an option or an input is wrong, or cannot be met */
+    CORCAST_FAILED = 3   /* memory, a file, another program or a callback failed, or a callback
+                          * stopped the operation */
+} corcast_status;
+
+typedef struct corcast_error corcast_error;
+
+/* Makes an empty error, for use in any number of calls. Returns NULL if memory runs out; functions
+ * accept that NULL and then store no sentence.
+ * Stability: stable. */
+CORCAST_API corcast_error *corcast_error_new(void);
+
+/* Returns the sentence of the last call that failed with this error, without a final newline; ""
+ * if none failed or if `error` is NULL. A call that succeeds empties the error. The string belongs
+ * to the error and is valid until the error is used again or freed.
+ * Stability: stable. */
+CORCAST_API const char *corcast_error_text(const corcast_error *error);
+
+/* Returns the kind of the last failure, a static string: "usage" (an argument or option),
+ * "input" (a file or a tree), "infeasible", "io", "memory", "tool" (another program), "cancelled"
+ * (by a progress callback), "differs"; "" if none failed or if `error` is NULL. Later versions may
+ * add kinds.
+ * Stability: stable. */
+CORCAST_API const char *corcast_error_kind(const corcast_error *error);
+
+/* Frees an error. NULL is allowed.
+ * Stability: stable. */
+CORCAST_API void corcast_error_free(corcast_error *error);
+
+/* ---- options --------------------------------------------------------------------------------- */
+
+typedef struct corcast_options corcast_options;
+
+/* Makes the options of a command, all with their defaults.
+ *
+ * command  "grow", "refine", "certify", "info", "convert", "render", "scene", "export", "diagram",
+ *          "compare", "verify" or "figure": the operations of this header say which they take.
+ * Errors   CORCAST_WRONG for an unknown command.
+ * Stability: stable. */
+CORCAST_API int corcast_options_new(const char *command, corcast_options **out,
+                                    corcast_error *error);
+
+/* Sets one option.
+ *
+ * name     without dashes: "terminals". One name is not of the command line: "templates", the
+ *          folder with looks, fonts and templates. Default: templates/ of the installed library.
+ * value    as on the command line: "1000", "800x600", "on". The library copies it. A flag takes
+ *          "on" or "off". An option that may be given several times adds one value per call. NULL
+ *          sets the default again.
+ * Errors   CORCAST_WRONG for an unknown name, and for a value that is malformed or out of range;
+ *          the option then keeps its value. Conditions between options are checked by the operation
+ *          that takes the options.
+ * Stability: stable. */
+CORCAST_API int corcast_options_set(corcast_options *options, const char *name, const char *value,
+                                    corcast_error *error);
+
+/* Finds the value of an option, the default if it was not set.
+ *
+ * value    receives the text as corcast_options_set accepts it, one line per value of an option
+ *          that was given several times; NULL for an option without a value. It belongs to the
+ *          options and is valid until they are used again or freed.
+ * Errors   CORCAST_WRONG for an unknown name.
+ * Stability: stable. */
+CORCAST_API int corcast_options_get(corcast_options *options, const char *name, const char **value,
+                                    corcast_error *error);
+
+/* Receives the progress of an operation. `step` names what is done, "growing"; a step starts with
+ * fraction 0, and a call with step NULL ends it. `fraction` is in [0, 1]. Return 0 to continue.
+ * Any other value stops the operation soon: it fails with CORCAST_FAILED and the kind "cancelled",
+ * unless it ends before it notices. The callback must not use the handles of the operation that
+ * calls it. */
+typedef int corcast_progress(void *user, const char *step, double fraction);
+
+/* Receives a sentence about the work, without a final newline. `is_warning` is 0 for a fact, and 1
+ * for something the user should know, such as an assumed unit. `sentence` is valid during the call.
+ */
+typedef void corcast_message(void *user, int is_warning, const char *sentence);
+
+/* Sets the callbacks of all operations that take these options, in place of earlier ones. Each may
+ * be NULL: none. `user` is passed to both and may be NULL.
+ * Stability: stable. */
+CORCAST_API int corcast_options_callbacks(corcast_options *options, corcast_progress *progress,
+                                          corcast_message *message, void *user,
+                                          corcast_error *error);
+
+/* Frees options. NULL is allowed.
+ * Stability: stable. */
+CORCAST_API void corcast_options_free(corcast_options *options);
+
+/* ---- reports --------------------------------------------------------------------------------- */
+
+/* Facts and numbers that an operation found: a JSON document, the one that the command line writes
+ * for --json. Operations have a parameter `report` that receives one; NULL there: none is made.
+ * docs/REFERENCE.md and docs/FORMATS.md describe the members. */
+typedef struct corcast_report corcast_report;
+
+/* Returns the report as JSON text in UTF-8. The string belongs to the report. Returns "" if
+ * `report` is NULL.
+ * Stability: stable; members may be added to a report. */
+CORCAST_API const char *corcast_report_json(const corcast_report *report);
+
+/* Finds one number of a report.
+ *
+ * key      names of members separated by dots: "summary.volume_mm3". Items of arrays are numbers
+ *          from 0 on: "cases.0.ssim".
+ * value    receives the number; 1 or 0 for true or false; NAN for null.
+ * Errors   CORCAST_WRONG if there is no such member, or if it is neither a number, nor true, false
+ *          or null.
+ * Stability: stable. */
+CORCAST_API int corcast_report_number(const corcast_report *report, const char *key, double *value,
+                                      corcast_error *error);
+
+/* Finds one text of a report, by a key as corcast_report_number takes it. The string is UTF-8 and
+ * belongs to the report; NULL for null. Errors: CORCAST_WRONG if there is no such member, or if it
+ * is neither a text nor null.
+ * Stability: stable. */
+CORCAST_API int corcast_report_text(const corcast_report *report, const char *key,
+                                    const char **value, corcast_error *error);
+
+/* Frees a report. NULL is allowed.
+ * Stability: stable. */
+CORCAST_API void corcast_report_free(corcast_report *report);
+
+/* Makes a report that describes commands and their options for programs: names, kinds, ranges,
+ * units, defaults, choices and sentences. `command` is the name of one command, or NULL for all.
+ * Errors: CORCAST_WRONG for an unknown command.
+ * Stability: provisional. */
+CORCAST_API int corcast_schema(const char *command, corcast_report **out, corcast_error *error);
+
+/* ---- trees ----------------------------------------------------------------------------------- */
+
+/* An arterial tree, or a forest of several. Node i other than a root is the distal end of segment
+ * i: the straight tube from its parent's position to its own, with one radius. Parents come before
+ * their children. */
+typedef struct corcast_tree corcast_tree;
+
+/* The nodes of a tree as arrays with an entry per node; positions has three. */
+typedef struct corcast_nodes {
+    size_t n;                /* number of nodes, at least 1 */
+    const double *positions; /* x, y, z of node 0, x, y, z of node 1, ... in mm */
+    const double *radii;     /* radius of segment i in mm; of a root, the radius at the inlet */
+    const int32_t *parents;  /* index of the parent, below i; -1 at a root */
+    const int32_t *ids;      /* number of the node in files, 1 or more; they need not be in order */
+} corcast_nodes;
+
+/* Receives the bytes of files in memory. `name` is the file's name without a folder. Large files
+ * come in several calls, in order; the calls of two files do not mix. Return 0 to continue. Any
+ * other value stops the operation: it fails with CORCAST_FAILED and the kind "io". */
+typedef int corcast_sink(void *user, const char *name, const void *bytes, size_t size);
+
+/* Reads a tree from a file in one of the formats of docs/FORMATS.md, by the extension of `path`.
+ *
+ * options  NULL, or options of any command that reads a tree ("info"): those of the group "input",
+ *          such as "input-unit", are used and the others are ignored.
+ * Errors   CORCAST_WRONG for an unknown extension, and, with the line, for a file that is missing,
+ *          malformed, or without a tree.
+ * Stability: stable. */
+CORCAST_API int corcast_tree_read(const char *path, const corcast_options *options,
+                                  corcast_tree **out, corcast_error *error);
+
+/* Reads a tree from the bytes of a file. `name` stands for the path: its extension decides the
+ * format, and sentences name it. A format that refers to other files is not read from bytes.
+ * Otherwise as corcast_tree_read.
+ * Stability: stable. */
+CORCAST_API int corcast_tree_read_bytes(const void *bytes, size_t size, const char *name,
+                                        const corcast_options *options, corcast_tree **out,
+                                        corcast_error *error);
+
+/* Makes a tree of arrays, which are copied.
+ *
+ * nodes    ids may be NULL: nodes get the ids 1, 2, ... in order.
+ * Errors   CORCAST_WRONG, with the id of the node, unless there are 1 to 100,000,000 nodes, parents
+ *          come before children, positions are finite, radii are finite and 0 or more, and ids are
+ *          different and in [1, 100,000,000].
+ * Stability: stable. */
+CORCAST_API int corcast_tree_from_nodes(const corcast_nodes *nodes, corcast_tree **out,
+                                        corcast_error *error);
+
+/* Copies a tree.
+ * Stability: stable. */
+CORCAST_API int corcast_tree_copy(const corcast_tree *tree, corcast_tree **out,
+                                  corcast_error *error);
+
+/* Stores pointers to the arrays of a tree in *nodes. The arrays belong to the tree and are valid
+ * until it is freed or passed to a function that changes it: corcast_refine.
+ * Stability: stable. */
+CORCAST_API int corcast_tree_nodes(const corcast_tree *tree, corcast_nodes *nodes,
+                                   corcast_error *error);
+
+/* Finds the values of a field: a column that the tree's file had, or a quantity computed from the
+ * tree: radius, length, flow, velocity, pressure, wss, reynolds, level, strahler,
+ * diameter-strahler, tree, branch (docs/METHODS.md has the definitions).
+ *
+ * options  NULL, or options of "info", whose group "blood" says what the tree does not: "p-perf".
+ * values   receives an array with an entry per node; NAN at roots, and wherever there is no value.
+ *          It belongs to the tree and is valid until the tree is freed or changed, or the same
+ *          field is found again.
+ * unit     receives the unit, "" for a pure number, valid as long as `values`. May be NULL.
+ * Errors   CORCAST_WRONG for an unknown name, and for a field that needs a number that neither the
+ *          tree nor the options have; the sentence names the option.
+ * Stability: stable. */
+CORCAST_API int corcast_tree_field(corcast_tree *tree, const char *name,
+                                   const corcast_options *options, const double **values,
+                                   const char **unit, corcast_error *error);
+
+/* Writes a tree to a file, in the format of the extension of `path`, as the command that made it
+ * does. The file appears under its name when it is complete.
+ * Errors   CORCAST_WRONG for an unknown extension; CORCAST_FAILED if the file cannot be written.
+ * Stability: stable. */
+CORCAST_API int corcast_tree_write(const corcast_tree *tree, const char *path,
+                                   corcast_error *error);
+
+/* Passes the bytes that corcast_tree_write would write to `sink`. The extension of `name` decides
+ * the format.
+ * Stability: stable. */
+CORCAST_API int corcast_tree_write_bytes(const corcast_tree *tree, const char *name,
+                                         corcast_sink *sink, void *user, corcast_error *error);
+
+/* Frees a tree. NULL is allowed.
+ * Stability: stable. */
+CORCAST_API void corcast_tree_free(corcast_tree *tree);
+
+/* ---- operations on trees --------------------------------------------------------------------- */
+
+/* Grows a tree by constrained constructive optimization.
+ *
+ * options  of "grow". "output" and "json" are not used: the tree and the report are returned.
+ * report   NULL, or receives what `grow --json` writes: terminals, target, seconds, ...
+ * Errors   CORCAST_WRONG also if the domain is too small for the terminals.
+ * Stability: stable. */
+CORCAST_API int corcast_grow(const corcast_options *options, corcast_tree **out,
+                             corcast_report **report, corcast_error *error);
+
+/* Optimizes a tree as a whole, in place. Arrays borrowed from the tree become invalid.
+ *
+ * options  NULL, or options of "refine".
+ * report   NULL, or receives what `refine --json` writes: the target before and after, moves, ...
+ * Errors   CORCAST_WRONG for a tree without the numbers that refinement needs, such as gamma.
+ * Stability: stable. */
+CORCAST_API int corcast_refine(corcast_tree *tree, const corcast_options *options,
+                               corcast_report **report, corcast_error *error);
+
+/* Proves a lower bound of the target that any tree of this topology can reach.
+ *
+ * options  NULL, or options of "certify".
+ * report   receives what `certify --json` writes: bound, target, above (their distance over the
+ *          bound), ...
+ * Stability: provisional. */
+CORCAST_API int corcast_certify(const corcast_tree *tree, const corcast_options *options,
+                                corcast_report **report, corcast_error *error);
+
+/* Measures a tree.
+ *
+ * options  NULL, or options of "info": "stats" and "morphometry" add statistics.
+ * report   receives what `info --json` writes: counts, lengths, volume, pressures, ...
+ * Stability: stable. */
+CORCAST_API int corcast_info(const corcast_tree *tree, const corcast_options *options,
+                             corcast_report **report, corcast_error *error);
+
+/* ---- pictures -------------------------------------------------------------------------------- */
+
+/* A picture, with planes that may lie beside it. */
+typedef struct corcast_image corcast_image;
+
+typedef enum corcast_plane {
+    CORCAST_COLOR = 0,  /* 1, 3 or 4 channels: grey; red, green, blue; with alpha */
+    CORCAST_DEPTH = 1,  /* 1 channel: distance from the camera in mm, INFINITY at the background */
+    CORCAST_NORMAL = 2, /* 3 channels: unit normal towards the viewer, 0 0 0 at the background */
+    CORCAST_ID = 3      /* 1 channel: id of the visible segment, 0 at the background */
+} corcast_plane;
+
+typedef enum corcast_type {
+    CORCAST_U8 = 1,  /* uint8_t, sRGB */
+    CORCAST_U16 = 2, /* uint16_t, sRGB */
+    CORCAST_F32 = 3, /* float, linear light; colours are multiplied by alpha */
+    CORCAST_U32 = 4  /* uint32_t, of CORCAST_ID */
+} corcast_type;
+
+/* The geometry, appearance and view of a tree that is drawn. It keeps no reference to its tree. */
+typedef struct corcast_scene corcast_scene;
+
+/* Makes the scene of a tree.
+ *
+ * options  NULL, or options of "render": model, view, size, colours, light, look, and the planes
+ *          that corcast_render makes ("planes" = "depth,id"). Options about files, animations,
+ *          tiles and annotations have no effect on a picture in memory and are refused;
+ *          corcast_export takes them.
+ * Stability: stable. */
+CORCAST_API int corcast_scene_new(const corcast_tree *tree, const corcast_options *options,
+                                  corcast_scene **out, corcast_error *error);
+
+/* Draws a scene with the native renderer.
+ *
+ * out      receives the picture: its colours, and the planes that the scene's options name.
+ * report   NULL, or receives what `render --json` writes: engine, seconds, rays, ...
+ * Errors   CORCAST_FAILED, kind "memory", for a picture that is larger than memory; corcast_export
+ *          writes such pictures band by band.
+ * Stability: stable. */
+CORCAST_API int corcast_render(corcast_scene *scene, corcast_image **out, corcast_report **report,
+                               corcast_error *error);
+
+/* Frees a scene. NULL is allowed.
+ * Stability: stable. */
+CORCAST_API void corcast_scene_free(corcast_scene *scene);
+
+/* Reads a picture or plane from a file: PNG, TIFF, JPEG, WebP, PNM, PFM or OpenEXR, recognized by
+ * its first bytes. Floats of one channel are read as CORCAST_COLOR of one channel; corcast_compare
+ * learns from its options what they are.
+ * Stability: stable. */
+CORCAST_API int corcast_image_read(const char *path, corcast_image **out, corcast_error *error);
+
+/* Makes a picture of pixels in memory, which are copied.
+ *
+ * channels 1, 3 or 4; 4 are red, green, blue and alpha, of CORCAST_U8 and CORCAST_U16 alone.
+ * type     CORCAST_U8, CORCAST_U16 or CORCAST_F32.
+ * pixels   rows from the top down, pixels from left to right, channels interleaved, no padding.
+ * size     of `pixels` in bytes: width * height * channels * bytes per number.
+ * Errors   CORCAST_WRONG for other channels, types or sizes, and for sides outside [1, 1048576].
+ * Stability: stable. */
+CORCAST_API int corcast_image_from_pixels(int width, int height, int channels, corcast_type type,
+                                          const void *pixels, size_t size, corcast_image **out,
+                                          corcast_error *error);
+
+/* Finds the width, height and number of channels of a plane. All three are 0 if the image does not
+ * have the plane.
+ * Stability: stable. */
+CORCAST_API int corcast_image_shape(const corcast_image *image, corcast_plane plane, int *width,
+                                    int *height, int *channels, corcast_error *error);
+
+/* Copies the pixels of a plane to a buffer of the caller's, in the layout that
+ * corcast_image_from_pixels describes. Colours are converted to `type`.
+ *
+ * type     CORCAST_U8, CORCAST_U16 or CORCAST_F32 for colours, CORCAST_F32 for depth and normals,
+ *          CORCAST_U32 for ids.
+ * buffer   aligned for the type.
+ * size     of the buffer in bytes: at least width * height * channels * bytes per number.
+ * Errors   CORCAST_WRONG if the image does not have the plane, for another type, and for a buffer
+ *          that is too small; the sentence states the size that is needed.
+ * Stability: stable. */
+CORCAST_API int corcast_image_pixels(const corcast_image *image, corcast_plane plane,
+                                     corcast_type type, void *buffer, size_t size,
+                                     corcast_error *error);
+
+/* Writes a plane of an image to a file, in the format of the extension of `path`. Colours go to
+ * .png, .tif, .jpg, .ppm and .pgm as CORCAST_U8 or CORCAST_U16, and to .exr and .pfm as
+ * CORCAST_F32. Depth and normals go to .exr and .pfm, ids to .png and .ppm.
+ * Errors   CORCAST_WRONG for what the format cannot hold; CORCAST_FAILED if writing fails.
+ * Stability: stable. */
+CORCAST_API int corcast_image_write(const corcast_image *image, corcast_plane plane,
+                                    corcast_type type, const char *path, corcast_error *error);
+
+/* Frees an image. NULL is allowed.
+ * Stability: stable. */
+CORCAST_API void corcast_image_free(corcast_image *image);
+
+/* Compares the colours of two images of the same size; and their ids, if both have them.
+ *
+ * a        the reference.
+ * options  NULL, or options of "compare" that are about numbers and not about files: "tier",
+ *          "tolerance", "metrics", ...
+ * report   NULL, or receives what `compare --json` writes: "agrees", "cause" and the measures.
+ * Returns  CORCAST_OK if the images agree, CORCAST_DIFFERS if they do not. In both cases *report is
+ *          set, and `error` then holds the cause, or is empty.
+ * Stability: stable. */
+CORCAST_API int corcast_compare(const corcast_image *a, const corcast_image *b,
+                                const corcast_options *options, corcast_report **report,
+                                corcast_error *error);
+
+/* ---- meshes and files ------------------------------------------------------------------------ */
+
+/* The surface of a tree as triangles. */
+typedef struct corcast_mesh corcast_mesh;
+
+/* The arrays of a mesh. */
+typedef struct corcast_triangles {
+    size_t n_vertices, n_triangles;
+    const double *vertices;   /* x, y, z of each vertex, in mm */
+    const uint32_t *indices;  /* three vertices of each triangle, counter-clockwise from outside */
+    const uint32_t *segments; /* node index of the segment that each triangle belongs to */
+} corcast_triangles;
+
+/* Makes the closed surface of a tree, as `export` writes it. `options` is NULL or options of
+ * "export" about the surface: "model", "tolerance", "lod", "print", ...
+ * Stability: provisional. */
+CORCAST_API int corcast_mesh_new(const corcast_tree *tree, const corcast_options *options,
+                                 corcast_mesh **out, corcast_error *error);
+
+/* Stores pointers to the arrays of a mesh in *triangles. The arrays belong to the mesh and are
+ * valid until it is freed.
+ * Stability: provisional. */
+CORCAST_API int corcast_mesh_triangles(const corcast_mesh *mesh, corcast_triangles *triangles,
+                                       corcast_error *error);
+
+/* Frees a mesh. NULL is allowed.
+ * Stability: provisional. */
+CORCAST_API void corcast_mesh_free(corcast_mesh *mesh);
+
+/* Writes what a command makes of a tree to files, with the bytes of the command line.
+ *
+ * options  of "export" (meshes, curves, volumes, pages), "scene" (POV-Ray, OpenSCAD, Tachyon),
+ *          "render" (pictures, planes, animations, pages), "diagram" or "convert". The option
+ *          "output" is not used: `path` is the output. Its extension decides the format. Some
+ *          commands write further files, whose names begin like `path`.
+ * Errors   CORCAST_WRONG if a file would be written over one that is read.
+ * Stability: stable. */
+CORCAST_API int corcast_export(const corcast_tree *tree, const corcast_options *options,
+                               const char *path, corcast_error *error);
+
+/* Passes the bytes of the files that corcast_export would write to `sink`. `name` is the name of
+ * the output, without a folder. The files are made in a temporary folder in /tmp, which is removed.
+ * Stability: provisional. */
+CORCAST_API int corcast_export_bytes(const corcast_tree *tree, const corcast_options *options,
+                                     const char *name, corcast_sink *sink, void *user,
+                                     corcast_error *error);
+
+/* Draws a tree with POV-Ray and with the native renderer, and compares the pictures and planes.
+ * POV-Ray must be installed.
+ *
+ * options  of "verify".
+ * folder   the scene, all pictures and the report are written to it; it is made if it is missing.
+ * report   NULL, or receives the content of report.json.
+ * Returns  CORCAST_OK if the renderers agree, CORCAST_DIFFERS if they do not.
+ * Stability: provisional. */
+CORCAST_API int corcast_verify(const corcast_tree *tree, const corcast_options *options,
+                               const char *folder, corcast_report **report, corcast_error *error);
+
+/* Makes a figure of several panels. `options` is NULL or options of "figure", `recipe` the path of
+ * the recipe that describes the panels (docs/FORMATS.md), and `path` the output: .pdf, .svg, .png,
+ * .tif or .jpg.
+ * Stability: provisional. */
+CORCAST_API int corcast_figure(const char *recipe, const corcast_options *options, const char *path,
+                               corcast_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

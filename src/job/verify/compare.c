@@ -1,0 +1,310 @@
+/* What is compared, and how, follows from the options and from what the files hold: integers or
+ * floats, colours or planes of geometry. */
+#include "job/verify/compare.h"
+
+#include "job/picture/coloring.h"
+#include "job/verify/compare_parts.h"
+#include "options/talk.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void comparison_release(Comparison *comparison)
+{
+    sides_release(comparison->sides);
+    ledger_release(&comparison->ledger);
+    suite_release(&comparison->suite);
+    free(comparison->tier);
+}
+
+/* Returns true if options ask for pictures of the difference, or a page with pictures. */
+static bool wants_pictures(const CompareOptions *options)
+{
+    return options->heat || options->difference || options->flicker || options->page ||
+           options->report;
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static bool is_given(const CompareOptions *options)
+{
+    return options->given[0].image || options->given[0].ids;
+}
+
+/* Returns what a file holds, by its name as `render --planes` writes it. */
+static PlaneKind plane_of_name(const char *path)
+{
+    static const struct {
+        const char *part;
+        PlaneKind plane;
+    } names[] = {{".id.", PLANE_ID}, {"normal.", PLANE_NORMAL}, {"depth.", PLANE_DEPTH}};
+    const char *name = file_name(path), *extension = file_extension(path);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        size_t length = strlen(names[i].part), tail = strlen(extension);
+        if (strlen(name) >= length + tail &&
+            strncmp(name + strlen(name) - tail - length, names[i].part, length) == 0)
+            return names[i].plane;
+    }
+    return PLANE_COLOR;
+}
+
+static PlaneKind plane_of(const CompareOptions *options, const Parsed *parsed)
+{
+    if (options->kind != PLANE_KINDS)
+        return options->kind;
+    if (is_given(options))
+        return options->given[0].image ? PLANE_COLOR : PLANE_ID;
+    return plane_of_name(parsed->operands[0]);
+}
+
+static Status check_operands(const CompareOptions *options, const Parsed *parsed, Err *err)
+{
+    if (options->reference && parsed->n_operands != 1)
+        return err_set(err, STATUS_USAGE,
+                       "--reference takes one folder of pictures, not two files");
+    if (!options->reference && !is_given(options) && parsed->n_operands != 2)
+        return err_set(err, STATUS_USAGE,
+                       "compare needs two files, A and B, or --reference and one folder");
+    if (!options->accept != !options->reason || (options->reason && !*options->reason))
+        return err_set(err, STATUS_USAGE, "--accept and --reason go together; one is missing");
+    return STATUS_OK;
+}
+
+static Status check_pair(const CompareOptions *options, PlaneKind plane, const Parsed *parsed,
+                         Err *err)
+{
+    const bool color = plane == PLANE_COLOR;
+    TRY(options_refuse(parsed, compare_unmet(plane), err));
+    if (!options->ids_a != !options->ids_b)
+        return err_set(err, STATUS_USAGE, "--ids-a and --ids-b go together; one is missing");
+    if (options->ledger && !options->ids_a && !options->given[0].ids)
+        return err_set(err, STATUS_USAGE, "--ledger needs --ids-a and --ids-b, to tell segments");
+    if (!color && (options->ledger || wants_pictures(options)))
+        return err_set(err, STATUS_USAGE,
+                       "-o, --difference, --flicker, --ledger, --html and --report are of two "
+                       "pictures, not "
+                       "of two %s planes",
+                       plane_kind_name(plane));
+    return STATUS_OK;
+}
+
+/* ---- two images ------------------------------------------------------------------------------ */
+
+/* The ids of both sides, or NULL for both. */
+static const IdPlane *ids_of(const Comparison *made, int side)
+{
+    return made->sides[0].ids.ids && made->sides[1].ids.ids ? &made->sides[side].ids : NULL;
+}
+
+static Rendering rendering_of(const Comparison *made, int side)
+{
+    const Image *image = &made->sides[side].image;
+    return (Rendering){
+        .picture = &image->picture, .transparent = &image->transparent, .ids = ids_of(made, side)};
+}
+
+static Status compare_codes(const CompareOptions *options, const Tolerance *tolerance,
+                            Comparison *made, Err *err)
+{
+    const Rendering a = rendering_of(made, 0), b = rendering_of(made, 1);
+    ComparedSide *sides = made->sides;
+    CompareResult *result = &made->result;
+    const bool perception = options->metrics || options->page || options->report;
+    TRY(compare_pictures(&a, &b, tolerance, result, &made->ledger, err));
+    TRY(alpha_judge(&sides[0].alpha, &sides[1].alpha, result, err));
+    if (!result->agrees && !*result->cause)
+        TRY(compare_cause(a.picture, b.picture, result, err));
+    for (int i = 0; i < 2 && a.picture->gamma != 0; i++)
+        TRY(picture_to_srgb(&sides[i].shown, &sides[i].image.picture, 16, err));
+    return perception
+               ? compare_perception(side_shown(&sides[0]), side_shown(&sides[1]), result, err)
+               : STATUS_OK;
+}
+
+static Status compare_linear(const CompareOptions *options, const Tolerance *tolerance,
+                             Comparison *made, Err *err)
+{
+    ComparedSide *sides = made->sides;
+    CompareResult *result = &made->result;
+    if (options->ledger)
+        return err_set(err, STATUS_USAGE,
+                       "--ledger is of two pictures of 8 or 16 bits and one gamma");
+    TRY(compare_colors(&sides[0].image.plane, &sides[1].image.plane, ids_of(made, 0),
+                       ids_of(made, 1), tolerance,
+                       options->metrics || options->page || options->report, result, err));
+    TRY(alpha_judge(&sides[0].alpha, &sides[1].alpha, result, err));
+    const bool asks_cause =
+        !result->agrees && !*result->cause && result->nan_pixels_a + result->nan_pixels_b == 0;
+    for (int i = 0; i < 2 && (asks_cause || wants_pictures(options)); i++)
+        TRY(picture_from_plane(&sides[i].shown, &sides[i].image.plane, ENCODING_SRGB, 16, err));
+    return asks_cause ? compare_cause(&sides[0].shown, &sides[1].shown, result, err) : STATUS_OK;
+}
+
+/* Compares depths or normals. */
+static Status compare_geometry(const Tolerance *tolerance, Comparison *made, Err *err)
+{
+    const ComparedSide *sides = made->sides;
+    for (int i = 0; i < 2; i++)
+        if (!sides[i].image.plane.values)
+            return err_set(
+                err, STATUS_INPUT,
+                "%s: holds whole numbers; a %s plane is of floats (PFM, OpenEXR or TIFF)",
+                sides[i].name, plane_kind_name(made->plane));
+    return compare_planes(made->plane, &sides[0].image.plane, &sides[1].image.plane,
+                          ids_of(made, 0), ids_of(made, 1), tolerance, &made->result, err);
+}
+
+static Status compare_sides(const CompareOptions *options, const Tolerance *tolerance,
+                            Comparison *made, Err *err)
+{
+    if (made->plane == PLANE_ID)
+        return compare_ids(&made->sides[0].ids, &made->sides[1].ids, tolerance, &made->result, err);
+    if (made->plane != PLANE_COLOR)
+        return compare_geometry(tolerance, made, err);
+    return made->sides[0].image.plane.values ? compare_linear(options, tolerance, made, err)
+                                             : compare_codes(options, tolerance, made, err);
+}
+
+/* Tells which files had lost something before they were compared. */
+static void note_losses(const ComparedSide sides[2], const Talk *talk)
+{
+    for (int i = 0; i < 2; i++)
+        if (sides[i].image.lossy)
+            talk_note(talk, "%s is lossy (%s): its colours are off by what was compressed away",
+                      sides[i].name, sides[i].image.lossy);
+}
+
+static Status compare_pair(CompareOptions *options, const Parsed *parsed, Comparison *made,
+                           Err *err)
+{
+    Tolerance tolerance;
+    made->kind = COMPARED_PAIR;
+    made->plane = plane_of(options, parsed);
+    TRY(check_pair(options, made->plane, parsed, err));
+    if (!options->has_metrics)
+        options->metrics = options->json;
+    TRY(compare_tolerance(&options->judge, options->depth_mm, &tolerance, &made->tier, err));
+    TRY(sides_read(options, parsed, made->plane, made->sides, err));
+    TRY(compare_sides(options, &tolerance, made, err));
+    note_losses(made->sides, parsed->common.talk);
+    made->agrees = made->result.agrees;
+    return STATUS_OK;
+}
+
+/* ---- folders and noise ----------------------------------------------------------------------- */
+
+static Status compare_folders(const CompareOptions *options, const Parsed *parsed, Comparison *made,
+                              Err *err)
+{
+    const char *folder = parsed->operands[0];
+    const Rgb ground = rgb_of_option(options->background);
+    const float background[3] = {ground.r, ground.g, ground.b};
+    Tolerance tolerance;
+    made->agrees = true;
+    made->kind = options->accept ? COMPARED_NOTHING : COMPARED_SUITES;
+    if (options->accept)
+        return suite_accept(options->reference, folder, options->accept, options->reason, err);
+    TRY(compare_tolerance(&options->judge, options->depth_mm, &tolerance, &made->tier, err));
+    TRY(suite_judge(&made->suite, options->reference, folder, &tolerance, background,
+                    parsed->common.threads, err));
+    made->agrees = made->suite.agrees;
+    return STATUS_OK;
+}
+
+static Status compare_any(CompareOptions *options, const Parsed *parsed, Comparison *made, Err *err)
+{
+    if (options->reference)
+        return compare_folders(options, parsed, made, err);
+    if (!options->noise && !options->variance)
+        return compare_pair(options, parsed, made, err);
+    made->kind = COMPARED_NOISE;
+    TRY(compare_noisy(options, parsed, &made->noise, err));
+    made->agrees = made->noise.agrees;
+    return STATUS_OK;
+}
+
+Status compare_make(CompareOptions *options, Parsed *parsed, Comparison *comparison, Err *err)
+{
+    Comparison made = {0};
+    const double start_s = clock_seconds();
+    TRY(check_operands(options, parsed, err));
+    Status status = compare_any(options, parsed, &made, err);
+    made.seconds = clock_seconds() - start_s;
+    if (status == STATUS_OK)
+        *comparison = made;
+    else
+        comparison_release(&made);
+    return status;
+}
+
+/* ---- output ---------------------------------------------------------------------------------- */
+
+static void pair_text(const CompareOptions *options, const CompareResult *result, Text *out)
+{
+    Text all = TEXT_INIT;
+    compare_text(result, &all);
+    const size_t line = text_chars(&all) ? strcspn(text_chars(&all), "\n") + 1 : 0;
+    if (!options->metrics && line < all.length)
+        text_cut(&all, line, all.length - line);
+    text_add(out, &all);
+    text_release(&all);
+}
+
+void comparison_text(const CompareOptions *options, const Comparison *comparison, Text *out)
+{
+    switch (comparison->kind) {
+    case COMPARED_PAIR:
+        pair_text(options, &comparison->result, out);
+        break;
+    case COMPARED_NOISE:
+        noise_text(&comparison->noise, out);
+        break;
+    case COMPARED_SUITES:
+        suite_text(&comparison->suite, out);
+        break;
+    case COMPARED_NOTHING:
+        break;
+    }
+}
+
+json_t *comparison_json(const Comparison *comparison)
+{
+    switch (comparison->kind) {
+    case COMPARED_PAIR:
+        return compare_json(&comparison->result);
+    case COMPARED_NOISE:
+        return noise_json(&comparison->noise);
+    case COMPARED_SUITES:
+        return suite_json(&comparison->suite);
+    case COMPARED_NOTHING:
+        break;
+    }
+    return NULL;
+}
+
+const Command command_compare = {
+    .name = "compare",
+    .summary = "compare two images or planes",
+    .operands = "A B",
+    .examples =
+        "  corcast compare reference.png mine.png\n"
+        "  corcast compare a.ppm b.ppm --ids-a a.id.ppm --ids-b b.id.ppm --tier B --json\n"
+        "  corcast compare a.exr b.exr --metrics on --tolerance mine.ini\n"
+        "  corcast compare a.depth.pfm b.depth.pfm --depth-mm 0.01\n"
+        "  corcast compare reference.png mine.png --html page.html\n"
+        "  corcast compare --reference references drawn --tier B --junit junit.xml\n"
+        "  corcast compare --reference references drawn --accept a.png --reason 'new lamp'\n"
+        "\ntiers of agreement:\n"
+        "  A        identity: on all but 2 pixels in a million the same colours, ids and depths;\n"
+        "           fewer than 500,000 pixels: on all, except for one pixel by one 8-bit level\n"
+        "  B        what a renderer in single precision keeps: a few pixels at edges, no bias,\n"
+        "           no segment missing, moved or of another colour\n"
+        "  surface  what iteration towards a surface keeps: 99.5 % of colours within 2 levels,\n"
+        "           99 % of depths within 0.01 mm, nothing missing\n"
+        "  none     everything is measured, nothing is judged but numbers that are none\n",
+    .min_operands = 1,
+    .max_operands = 2,
+    .size = sizeof(CompareOptions),
+    .set_defaults = compare_set_defaults,
+    .tables = {{&compare_options, 0}, {&judge_options, offsetof(CompareOptions, judge)}},
+};

@@ -1,0 +1,27 @@
+/* Parts of the operation `compare`; private to it. */
+#ifndef CORCAST_JOB_VERIFY_COMPARE_PARTS_H
+#define CORCAST_JOB_VERIFY_COMPARE_PARTS_H
+
+#include "job/verify/compare.h"
+
+/* Reads or copies both images and their ids, composites transparent images over
+ * options->background, and converts them so that they have one encoding and depth.
+ *
+ * sides   zeroed before; the caller releases them even after an error.
+ * Errors  STATUS_INPUT if a file is bad, or one image holds floats and the other integers;
+ *         STATUS_IO; STATUS_MEMORY. If several files fail, the error is that of the first. */
+MUST_CHECK Status sides_read(const CompareOptions *options, const Parsed *parsed, PlaneKind plane,
+                             ComparedSide sides[2], Err *err);
+void sides_release(ComparedSide sides[2]);
+
+/* Returns the image of a side as sRGB; borrowed. */
+const Picture *side_shown(const ComparedSide *side);
+
+/* Tests whether two noisy images have the same mean. Errors: STATUS_USAGE, STATUS_INPUT,
+ * STATUS_MEMORY. */
+MUST_CHECK Status compare_noisy(const CompareOptions *options, const Parsed *parsed,
+                                NoiseResult *result, Err *err);
+void noise_text(const NoiseResult *result, Text *out);
+json_t *noise_json(const NoiseResult *result);
+
+#endif

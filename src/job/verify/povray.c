@@ -1,0 +1,135 @@
+/* POV-Ray with the switches that `verify` gives it, for any scene. */
+#include "job/verify/povray.h"
+
+#include "job/picture/frames.h"
+#include "job/picture/picture.h"
+#include "options/talk.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Reads the size from the comment "// Size: WxH" of a scene that corcast has written. */
+static Status size_of_scene(const char *path, PictureSize *size, Err *err)
+{
+    static const FileForm form = {.name = "a scene", .most_bytes = 4e9, .is_text = true};
+    char *text = NULL;
+    size_t length;
+    int *side = size->pixels;
+    TRY(file_read(path, &form, &text, &length, err));
+    const char *line = strstr(text, "// Size: ");
+    bool found = line && sscanf(line, "// Size: %dx%d", &side[0], &side[1]) == 2 && side[0] > 0 &&
+                 side[1] > 0 && side[0] <= IMAGE_MAX_SIDE && side[1] <= IMAGE_MAX_SIDE;
+    free(text);
+    if (found)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "%s has no line '// Size: WxH'; give --size", path);
+}
+
+static const char *const planes[] = {"color", "depth", "normal", "id", "depth-id", NULL};
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, PovrayOptions, output),
+     .argument = "P.png",
+     .help = "the picture"},
+    {.name = "size",
+     SETS(SIZE, PovrayOptions, size),
+     GIVEN(PovrayOptions, has_size),
+     FROM_TO(1, IMAGE_MAX_SIDE),
+     .group = GROUP_CAMERA,
+     .otherwise = "what the scene says",
+     .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
+    {DPI_OF_SIZE(PovrayOptions, size), .group = GROUP_CAMERA, .when = WHEN(ON_PAPER),
+     .help = "pixels an inch of a size on paper"},
+    {.name = "antialias",
+     SETS(WHOLE, PovrayOptions, antialias),
+     .range = &antialias_range,
+     .group = GROUP_LIGHT,
+     .when = WHEN(COLOR_PLANE),
+     .help = "N x N samples a pixel"},
+    {.name = "bits",
+     SETS(WHOLE, PovrayOptions, bits),
+     .range = &bits_range,
+     .argument = "8|16",
+     .when = WHEN(COLOR_PLANE),
+     .help = "of the colours: 8, sRGB, or 16, linear"},
+    {.name = "alpha",
+     SETS(FLAG, PovrayOptions, alpha),
+     .group = GROUP_LIGHT,
+     .when = WHEN(COLOR_PLANE),
+     .help = "transparent where the scene's background is: of a scene of --background none"},
+    {.name = "plane",
+     SETS(CHOICE, PovrayOptions, plane),
+     .choices = planes,
+     .help = "what a scene of ours shows"},
+};
+
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    (void)parsed;
+    const PovrayOptions *options = set;
+    return UNLESS(options->plane == POVRAY_COLOR, COLOR_PLANE) |
+           UNLESS(size_is_on_paper(&options->size), ON_PAPER);
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
+
+static void set_defaults(void *options)
+{
+    *(PovrayOptions *)options = (PovrayOptions){
+        .antialias = 1, .bits = 8, .plane = POVRAY_COLOR, .program.patience_s = PROGRAM_PATIENCE_S};
+}
+
+static Status check(PovrayOptions *options, const Parsed *parsed, Err *err)
+{
+    if (strcmp(file_extension(options->output), "png") != 0)
+        return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png", options->output);
+    TRY(bits_check(options->bits, err));
+    TRY(file_check_regular(parsed->operands[0], err));
+    return options->has_size ? STATUS_OK : size_of_scene(parsed->operands[0], &options->size, err);
+}
+
+Status povray_run(PovrayOptions *options, Parsed *parsed, PovrayRun *run, Err *err)
+{
+    Progress progress;
+    TRY(check(options, parsed, err));
+    const PovrayParams params = {.program = options->program,
+                                 .scene = parsed->operands[0],
+                                 .output = options->output,
+                                 .width = options->size.pixels[0],
+                                 .height = options->size.pixels[1],
+                                 .antialias = options->antialias,
+                                 .threads = parsed->common.threads,
+                                 .plane = options->plane,
+                                 .bits = options->bits,
+                                 .alpha = options->alpha,
+                                 .progress = progress_report,
+                                 .progress_context = &progress};
+    progress_start(&progress, "POV-Ray", parsed->common.talk);
+    Status status = povray_draw(&params, run, err);
+    progress_end(&progress);
+    if (status == STATUS_OK)
+        talk_note(parsed->common.talk, "POV-Ray %s took %.1f s", run->version, run->seconds);
+    return status;
+}
+
+const Command command_povray = {
+    .name = "povray",
+    .summary = "run POV-Ray on a scene",
+    .operands = "S.pov -o P.png",
+    .examples = "  corcast povray tree.pov -o tree.png\n"
+                "  corcast povray tree.pov --size 4000x4000 --antialias 3 -o large.png\n"
+                "  corcast povray tree.pov --plane depth -o depth.png\n"
+                "environment, here and for verify:\n"
+                "  CORCAST_POVRAY           the program, or a script that stands for it (povray)\n"
+                "  CORCAST_POVRAY_PATIENCE  seconds without a word after which it is ended (600; "
+                "0: never)\n"
+                "  CORCAST_TACHYON          likewise the witness of verify, with the same patience "
+                "(tachyon)\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .size = sizeof(PovrayOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}},
+};

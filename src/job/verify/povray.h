@@ -1,0 +1,29 @@
+/* The operation `povray`: runs POV-Ray on a scene file. */
+#ifndef CORCAST_JOB_VERIFY_POVRAY_H
+#define CORCAST_JOB_VERIFY_POVRAY_H
+
+#include "options/options.h"
+#include "oracle/povray.h"
+
+/* What the options of `povray` set. */
+typedef struct PovrayOptions {
+    const char *output;
+    PictureSize size;
+    bool has_size; /* false: the size is read from the scene */
+    int antialias, bits;
+    bool alpha;
+    PovrayPlane plane;
+    ProgramChoice program; /* set by the caller; zeroed: "povray" in PATH */
+} PovrayOptions;
+
+/* Describes the operation. Its options set a PovrayOptions. */
+extern const Command command_povray;
+
+/* Runs POV-Ray on the scene that is the first operand, and tells how long it took. The picture is a
+ * file in any case.
+ *
+ * Errors  STATUS_USAGE if an option has no effect, or if there is no size; STATUS_INPUT if the
+ * scene cannot be read; and as povray_draw. */
+MUST_CHECK Status povray_run(PovrayOptions *options, Parsed *parsed, PovrayRun *run, Err *err);
+
+#endif

@@ -1,0 +1,276 @@
+/* The renderer runs twice, and the faults are planted in the second picture. If the renderer does
+ * not repeat itself exactly, the rule has to bear its noise, too. */
+#include "job/verify/power.h"
+
+#include "job/picture/coloring.h"
+#include "oracle/shell.h"
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const Option own[] = {
+    {.name = "render",
+     SETS(TEXT, PowerOptions, render),
+     .argument = "COMMAND",
+     .help = "draws a picture into the file {}; run twice by the shell"},
+    {.name = "verdict",
+     SETS(TEXT, PowerOptions, verdict),
+     .group = GROUP_JUDGE,
+     .argument = "COMMAND",
+     .otherwise = "",
+     .help = "a tolerance of another program: exit status 0 where the PNGs {a} and {b} agree"},
+    {.name = "extension",
+     SETS(TEXT, PowerOptions, extension),
+     .argument = "EXT",
+     .help = "of the file {}: png, exr, tif, ppm and others that compare reads"},
+    {.name = "background",
+     SETS(COLOR, PowerOptions, background),
+     .help = "what transparent pictures are laid on"},
+    {.name = "output",
+     SETS(FOLDER, PowerOptions, folder),
+     .argument = "DIR",
+     .help = "a folder for the pictures whose fault is missed"},
+    {.name = "json", SETS(FLAG, PowerOptions, json), .help = "as JSON, every fault and rule"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    PowerOptions *power = options;
+    power->extension = "png";
+    power->background = vec3(1, 1, 1);
+}
+
+/* ---- files ----------------------------------------------------------------------------------- */
+
+enum { FILE_DRAWN, FILE_A, FILE_B, POWER_FILES };
+
+/* The files of the commands, in a folder below the current one. Paths are owned, and absolute,
+ * because commands may change the folder. */
+typedef struct PowerFiles {
+    char *folder, *files[POWER_FILES];
+} PowerFiles;
+
+static Status make_folder(char **folder, Err *err)
+{
+    char *here = realpath(".", NULL), *beside = NULL;
+    if (!here)
+        return err_set(err, STATUS_IO, "the current folder is gone");
+    Status status;
+    TRY_GOTO(file_join(here, "power", &beside, err));
+    status = file_temporary_folder(beside, folder, err);
+done:
+    free(here);
+    free(beside);
+    return status;
+}
+
+static Status open_place(PowerFiles *place, const char *extension, Err *err)
+{
+    Text name = TEXT_INIT;
+    text_printf(&name, "drawn.%s", extension);
+    const char *const names[POWER_FILES] = {
+        [FILE_DRAWN] = text_chars(&name), [FILE_A] = "a.png", [FILE_B] = "b.png"};
+    char *path = NULL;
+    Status status;
+    TRY_GOTO(make_folder(&place->folder, err));
+    for (int i = 0; i < POWER_FILES; i++) {
+        TRY_GOTO(file_join(place->folder, names[i], &path, err));
+        TRY_GOTO(file_remove_on_signal(path, err));
+        place->files[i] = path;
+        path = NULL;
+    }
+done:
+    free(path);
+    text_release(&name);
+    return status;
+}
+
+static void close_place(PowerFiles *place)
+{
+    for (int i = 0; i < POWER_FILES; i++)
+        file_forget(place->files[i]);
+    file_forget(place->folder);
+}
+
+/* ---- the renderer ---------------------------------------------------------------------------- */
+
+/* Reads a picture as sRGB of its own depth; floats become 16-bit codes. */
+static Status read_drawn(const PowerOptions *options, const char *path, Picture *picture, Err *err)
+{
+    const Rgb ground = rgb_of_option(options->background);
+    const float background[3] = {ground.r, ground.g, ground.b};
+    Image image;
+    TRY(image_read(&image, path, ALPHA_KEPT, NULL, err));
+    Status status;
+    TRY_GOTO(image_lay_on(&image, background, err));
+    status = image.plane.values ? picture_from_plane(picture, &image.plane, ENCODING_SRGB, 16, err)
+                                : picture_to_srgb(picture, &image.picture, image.picture.bits, err);
+done:
+    image_release(&image);
+    return status;
+}
+
+static Status draw(const PowerOptions *options, const PowerFiles *place, bool heard,
+                   Picture *picture, Err *err)
+{
+    Text command = TEXT_INIT;
+    int exit_status = 0;
+    Status status = STATUS_OK;
+    shell_fill(options->render, "{}", place->files[FILE_DRAWN], &command);
+    TRY_GOTO(text_check(&command, err));
+    remove(place->files[FILE_DRAWN]); /* an old file is not what this run draws */
+    TRY_GOTO(shell_run(text_chars(&command), heard, &exit_status, err));
+    if (exit_status != 0)
+        TRY_GOTO(err_set(err, STATUS_TOOL, "--render: the command fails (exit status %d): %s",
+                         exit_status, options->render));
+    status = read_drawn(options, place->files[FILE_DRAWN], picture, err);
+    if (status == STATUS_INPUT) { /* the file is the renderer's */
+        status = STATUS_TOOL;
+        err_prefix(err, "--render: ");
+    }
+done:
+    text_release(&command);
+    return status;
+}
+
+/* ---- the rules ------------------------------------------------------------------------------- */
+
+static Status tolerance_differs(void *context, const Picture *reference, const Picture *picture,
+                                bool *differs, Err *err)
+{
+    CompareResult result;
+    const Rendering a = {.picture = reference}, b = {.picture = picture};
+    TRY(compare_pictures(&a, &b, context, &result, NULL, err));
+    *differs = !result.agrees;
+    return STATUS_OK;
+}
+
+/* The rule of another program. */
+typedef struct VerdictCommand {
+    const PowerFiles *place;
+    char *command; /* owned; both files filled in */
+} VerdictCommand;
+
+static Status command_differs(void *context, const Picture *reference, const Picture *picture,
+                              bool *differs, Err *err)
+{
+    const VerdictCommand *verdict = context;
+    int exit_status = 0;
+    TRY(picture_write(reference, verdict->place->files[FILE_A], ENCODING_SRGB, NULL, NULL, err));
+    TRY(picture_write(picture, verdict->place->files[FILE_B], ENCODING_SRGB, NULL, NULL, err));
+    TRY(shell_run(verdict->command, false, &exit_status, err));
+    *differs = exit_status != 0;
+    return STATUS_OK;
+}
+
+static Status fill_verdict(const PowerOptions *options, const PowerFiles *place,
+                           VerdictCommand *verdict, Err *err)
+{
+    Text half = TEXT_INIT, whole = TEXT_INIT;
+    Status status;
+    verdict->place = place;
+    shell_fill(options->verdict, "{a}", place->files[FILE_A], &half);
+    TRY_GOTO(text_check(&half, err));
+    shell_fill(text_chars(&half), "{b}", place->files[FILE_B], &whole);
+    status = text_take(&whole, &verdict->command, err);
+done:
+    text_release(&half);
+    text_release(&whole);
+    return status;
+}
+
+/* Writes a picture whose fault is missed; the name is that of the fault and its size:
+ * "picture-shifted-0.03.png". */
+static Status keep_missed(void *context, const PowerCase *missed, const Picture *picture, Err *err)
+{
+    const char *folder = context;
+    char name[80], size[24] = "", *path = NULL;
+    if (missed->fault->unit)
+        snprintf(size, sizeof size, "-%g", missed->size);
+    snprintf(name, sizeof name, "%s%s.png", missed->fault->name, size);
+    for (char *at = name; *at; at++)
+        *at = isspace((unsigned char)*at) ? '-' : *at;
+    TRY(file_join(folder, name, &path, err));
+    Status status = picture_write(picture, path, ENCODING_SRGB, NULL, NULL, err);
+    free(path);
+    return status;
+}
+
+/* ---- the operation --------------------------------------------------------------------------- */
+
+static Status measure(const PowerOptions *options, const PowerFiles *place, const Parsed *parsed,
+                      Power *power, Err *err)
+{
+    Picture drawings[2] = {{0}, {0}};
+    Tolerance tolerance;
+    VerdictCommand verdict = {0};
+    char *tier_name = NULL;
+    const bool asks = options->verdict != NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(compare_tolerance(&options->judge, 0, &tolerance, &tier_name, err));
+    if (asks)
+        TRY_GOTO(fill_verdict(options, place, &verdict, err));
+    for (int i = 0; i < 2; i++)
+        TRY_GOTO(draw(options, place, !parsed->common.quiet, &drawings[i], err));
+    if (options->folder)
+        TRY_GOTO(file_make_folder(options->folder, err));
+    const PowerRule rule = {.name = "yours",
+                            .differs = asks ? command_differs : tolerance_differs,
+                            .context = asks ? (void *)&verdict : (void *)&tolerance};
+    status = power_measure(&drawings[0], &drawings[1], &rule, asks ? 1 : parsed->common.threads,
+                           options->folder ? keep_missed : NULL, (void *)(uintptr_t)options->folder,
+                           power, err);
+done:
+    picture_release(&drawings[0]);
+    picture_release(&drawings[1]);
+    free(verdict.command);
+    free(tier_name);
+    return status;
+}
+
+/* Checks that the commands have their marks. */
+static Status check(const PowerOptions *options, Err *err)
+{
+    if (!options->render || !strstr(options->render, "{}"))
+        return err_set(err, STATUS_USAGE,
+                       "--render is a command with {} for the file that it draws into, as "
+                       "--render 'povray scene.pov +O{} -D'");
+    if (options->verdict && (!strstr(options->verdict, "{a}") || !strstr(options->verdict, "{b}")))
+        return err_set(err, STATUS_USAGE,
+                       "--verdict is a command with {a} and {b} for the two pictures, as "
+                       "--verdict 'idiff -fail 0.004 {a} {b}'");
+    return STATUS_OK;
+}
+
+Status power_run(const PowerOptions *options, Parsed *parsed, Power *power, Err *err)
+{
+    PowerFiles place = {0};
+    Status status;
+    TRY(check(options, err));
+    TRY_GOTO(open_place(&place, options->extension, err));
+    status = measure(options, &place, parsed, power, err);
+done:
+    close_place(&place);
+    return status;
+}
+
+const Command command_power = {
+    .name = "power",
+    .summary = "what a tolerance would miss in a renderer's pictures",
+    .operands = "--render COMMAND",
+    .examples =
+        "  corcast power --render 'povray scene.pov +O{} -D +W320 +H240' --levels 2 --ppm 100\n"
+        "  corcast power --render 'blender -b s.blend -o //{}' --verdict 'idiff -fail 0.016 "
+        "-failpercent 1 {a} {b}'\n"
+        "  corcast power --render 'cp picture.png {}' --pixelmatch 0.1 -o missed\n"
+        "\nFaults of 22 kinds, each of several sizes, are planted in the picture; the table says "
+        "from\nwhich size on the tolerance finds each, beside tolerances that others publish. Exit "
+        "status 1\nwhen the tolerance calls two drawings of the same scene different.\n",
+    .max_operands = 0,
+    .size = sizeof(PowerOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}, {&judge_options, offsetof(PowerOptions, judge)}},
+};

@@ -1,0 +1,29 @@
+/* The operation `power`: measures which faults of a renderer's picture a tolerance fails to
+ * detect. */
+#ifndef CORCAST_JOB_VERIFY_POWER_H
+#define CORCAST_JOB_VERIFY_POWER_H
+
+#include "job/verify/compare_options.h"
+
+/* What the options of `power` set. */
+typedef struct PowerOptions {
+    const char *render;    /* shell command that draws a picture into the file {} */
+    const char *verdict;   /* shell command that compares {a} and {b}; NULL: `judge` is the rule */
+    const char *extension; /* of the file {} */
+    const char *folder;    /* for pictures whose fault is missed; NULL: they are not kept */
+    bool json;             /* for the command line: the result is printed as JSON */
+    Vec3 background;       /* transparent pictures are composited over it; sRGB in [0, 1] */
+    JudgeOptions judge;
+} PowerOptions;
+
+/* Describes the operation. Its options set a PowerOptions. */
+extern const Command command_power;
+
+/* Runs the renderer twice, plants faults in the second picture, and asks the rule about each.
+ *
+ * power   set on success; release it with power_release.
+ * Errors  STATUS_USAGE if a command lacks its marks, or options exclude each other; STATUS_TOOL if
+ *         the renderer fails; STATUS_INPUT; STATUS_IO; STATUS_MEMORY. */
+MUST_CHECK Status power_run(const PowerOptions *options, Parsed *parsed, Power *power, Err *err);
+
+#endif

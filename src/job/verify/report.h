@@ -1,0 +1,21 @@
+/* The operation `report`: one page about several verifications and comparisons. */
+#ifndef CORCAST_JOB_VERIFY_REPORT_H
+#define CORCAST_JOB_VERIFY_REPORT_H
+
+#include "options/options.h"
+
+/* What the options of `report` set. */
+typedef struct ReportOptions {
+    const char *page;  /* the HTML file that is written */
+    const char *power; /* result of `make power` as JSON, shown below the cases; NULL: none */
+} ReportOptions;
+
+/* Describes the operation. Its options set a ReportOptions. */
+extern const Command command_report;
+
+/* Writes the page about the folders that are the operands, as `verify` and `compare --report` leave
+ * them. Sets *agree to whether all of them agree. Errors: STATUS_INPUT if a folder has no report,
+ * STATUS_USAGE if a file would be read and written, STATUS_IO, STATUS_MEMORY. */
+MUST_CHECK Status report_run(const ReportOptions *options, Parsed *parsed, bool *agree, Err *err);
+
+#endif

@@ -1,0 +1,168 @@
+/* The folder, the scene that is compared, and the order of the steps. */
+#include "job/verify/verify.h"
+
+#include "emit/emit.h"
+#include "job/picture/frames.h"
+#include "job/verify/verify_folder.h"
+#include "options/output.h"
+#include "options/templates.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const witnesses[] = {
+    [WITNESS_NONE] = "none", [WITNESS_TACHYON] = "tachyon", NULL};
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(FOLDER, VerifyOptions, folder),
+     .argument = "DIR",
+     .is_told = true,
+     .help = "folder for the report, the scene and all planes"},
+    {.name = "bits",
+     SETS(WHOLE, VerifyOptions, bits),
+     .range = &bits_range,
+     .group = GROUP_JUDGE,
+     .argument = "8|16",
+     .help = "of the colours compared: 8, sRGB, or 16, linear"},
+    {.name = "kernels",
+     SETS(CHOICE, VerifyOptions, kernels),
+     .choices = render_kernel_names,
+     .group = GROUP_RUN,
+     .help = "instructions that the exact isosurface is drawn with, for tests"},
+    {.name = "witness",
+     SETS(CHOICE, VerifyOptions, witness),
+     .choices = witnesses,
+     .group = GROUP_JUDGE,
+     .help = "a third program that draws the scene: what is seen where and how far away must be "
+             "the same in all three"},
+    {.name = "tiles",
+     SETS(WHOLE, VerifyOptions, tiles),
+     FROM_TO(1, 10000),
+     .group = GROUP_RUN,
+     .help = "POV-Ray draws the picture in so many parts at least, each from a scene of what its "
+             "rays can meet; in more where it can hold no more"},
+    {.name = "json", SETS(FLAG, VerifyOptions, json), .help = "the report on standard output"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    VerifyOptions *verify_options = options;
+    picture_set_defaults(&verify_options->picture);
+    verify_options->bits = 8;
+    verify_options->tiles = 1;
+    verify_options->kernels = KERNELS_FASTEST;
+    verify_options->povray.patience_s = verify_options->tachyon.patience_s = PROGRAM_PATIENCE_S;
+}
+
+static Status check(const VerifyOptions *options, Err *err)
+{
+    const PictureOptions *picture = &options->picture;
+    if (strcmp(options->folder, "-") == 0)
+        return err_set(err, STATUS_USAGE, "-o: a report is a folder, not standard output");
+    TRY(bits_check(options->bits, err));
+    TRY(picture_check_povray(picture, err));
+    if (options->witness == WITNESS_TACHYON)
+        TRY(emit_check_model(emitter_find("tachyon", false), (SceneModel)picture->model, err));
+    return picture_fits(picture->size.pixels[0], picture->size.pixels[1], 120, err);
+}
+
+/* Moves a camera that was not specified by a fraction of a pixel. In trees with integer
+ * coordinates, outlines, cuts and equally near surfaces are exactly at pixel centres of a framed
+ * picture. There the rounding of either renderer decides what is visible. The fractions are not
+ * near a multiple of the distance between antialiasing samples, and neither are their sum and their
+ * difference. */
+static void move_off_ties(Camera *camera)
+{
+    static const double right_px = 0.137, up_px = 0.291;
+    camera->location =
+        vec3_add(camera->location, vec3_add(vec3_scale(camera->right, right_px / camera->width),
+                                            vec3_scale(camera->up, up_px / camera->height)));
+}
+
+/* Returns STATUS_INPUT if neither side shows a vessel: their agreement would prove nothing. */
+static Status check_shows_something(const Verification *v, Err *err)
+{
+    const CompareResult *ids = &v->found.planes[PLANE_ID];
+    if (ids->common_pixels + ids->missing_pixels + ids->extra_pixels + ids->settled_pixels > 0)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "neither POV-Ray nor corcast shows a vessel of %s in this view, so nothing is "
+                   "verified: the camera looks past the tree, or the vessels are too small to be "
+                   "drawn",
+                   v->tree);
+}
+
+/* Reads the tree, creates the folder, draws with both programs and compares. */
+static Status verify(Verification *v, VerifyFolder *folder, Parsed *parsed, Err *err)
+{
+    const PictureOptions *picture = &v->options->picture;
+    PictureOptions all_moments = *picture; /* POV-Ray's scene contains all moments */
+    PictureReport made;
+    all_moments.coloring.frame = 0;
+    TRY(verifyfolder_claim(folder, &parsed->files, err));
+    TRY(picture_scene(&all_moments, parsed, &v->scene, &made, err));
+    TRY(picture_check_ids(&v->scene.geometry, v->tree, err));
+    TRY(picture_say(&v->scene, &made, parsed->common.talk, err));
+    TRY(picture_say_effects(picture, &v->scene.view, "left out on both sides", parsed->common.talk,
+                            err));
+    v->scene.view.effects = (Effects){0};
+    if (!picture->stage.has_location)
+        move_off_ties(&v->scene.view.camera);
+    v->has_alpha = v->scene.view.transparent;
+    v->scene.view.transparent = false; /* shown in front of the look's background */
+    TRY(verification_pick_frame(v, picture->coloring.frame, err));
+    TRY(file_make_folder(v->options->folder, err));
+    TRY(verifyfolder_claim(folder, &parsed->files, err));
+    TRY(shown_name(v->tree, &v->name, err));
+    TRY(verification_draw(v, err));
+    TRY(verification_compare(v, err));
+    return check_shows_something(v, err);
+}
+
+static Status write_report(Verification *v, Err *err)
+{
+    const ReportCase report = verification_report(v);
+    char *page = NULL;
+    v->agrees = report_agrees(&report);
+    TRY(templates_path("report", &page, err));
+    Status status = report_write(&report, page, v->options->folder, err);
+    free(page);
+    return status;
+}
+
+Status verify_run(VerifyOptions *options, Parsed *parsed, Verification *result, Err *err)
+{
+    Verification v = {.options = options, .common = &parsed->common, .tree = parsed->operands[0]};
+    VerifyFolder folder = {options->folder, -1};
+    char *command = NULL;
+    Status status;
+    TRY_GOTO(check(options, err));
+    TRY_GOTO(command_line_text(parsed, &command, err));
+    TRY_GOTO(verification_add_command(&v, command, err));
+    TRY_GOTO(verify(&v, &folder, parsed, err));
+    TRY_GOTO(write_report(&v, err));
+    *result = v;
+    v = (Verification){0};
+done:
+    free(command);
+    verifyfolder_release(&folder);
+    verification_release(&v);
+    return status;
+}
+
+const Command command_verify = {
+    .name = "verify",
+    .summary = "prove that POV-Ray and the native renderer agree",
+    .operands = "T.swc -o DIR",
+    .examples = "  corcast verify tree.swc -o check\n"
+                "  corcast verify tree.swc --model isosurface --size 400x400 -o check\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .reads_tree = true,
+    .size = sizeof(VerifyOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}, PICTURE_TABLES(VerifyOptions, picture)},
+};

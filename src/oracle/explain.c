@@ -1,0 +1,618 @@
+/* Explains pixels at which POV-Ray's image (A) differs from the native renderer's (B).
+ *
+ * Blobs: the visible point, its normal, its segment and its shadows are computed from the field
+ * along the pixel's ray. Of the renderer only the shading function is used. Its colours equal
+ * POV-Ray's at all other pixels.
+ *
+ * Other models: the renderer draws the pixel twice more, with a camera of one pixel. The first time
+ * shadow rays ignore hits nearer than 1e-3 mm, as POV-Ray's shadow rays do. The second time they
+ * ignore hits nearer than 1e-4 mm, as POV-Ray's shadow cache does. */
+#include "oracle/explain.h"
+
+#include "field/field.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Maximum number of differing pixels that are examined. The others are only counted. */
+enum { MAX_EXAMINED = 500 };
+
+/* POV-Ray's limits: shadow rays, and the shadow cache, ignore nearer hits. */
+static const double shadow_ray_start_mm = 1e-3, shadow_cache_start_mm = 1e-4;
+/* Distance from a root, in units of the vessel's radius, at which A's visible point still counts as
+ * this root. It is not zero because POV-Ray loses precision where it misses a root. */
+static const double root_tolerance_radii = 0.02;
+/* A ray whose cosine to the surface normal is at most this is grazing. POV-Ray misses roots mostly
+ * along grazing rays, then also along neighbouring ones. Where the field is steep, it misses a root
+ * of one ray alone. */
+static const double max_grazing_cosine = 0.1;
+/* Length of the difference of two unit normals. A's normals come from 16-bit codes. */
+static const double normal_tolerance = 2e-4;
+
+/* What blocks a light from one shading point. "The grazing ray" is, of the shadow rays that vessels
+ * block, the one with the smallest cosine to the surface normal. */
+typedef struct LightBlockage {
+    double visibility; /* fraction of the light that arrives, 0..1 */
+    double blocker_mm; /* from the shading point along the grazing ray to the surface; NAN: no ray
+                        * is blocked by a vessel */
+    double cosine;     /* between the grazing ray and the surface's normal; NAN: no such ray */
+    int n_grazing;     /* points of the light whose rays graze the first surface that they hit */
+} LightBlockage;
+
+/* The state of one examination. */
+typedef struct Examiner {
+    const ExplainCase *input; /* borrowed */
+    View view;                /* the scene's view, changed: a camera of one pixel, or, for a blob,
+                               * the lights dimmed by their visibility */
+    Renderer *ray_renderer;   /* shadow rays begin at shadow_ray_start_mm; NULL: a blob */
+    Renderer *cache_renderer; /* shadow rays begin at shadow_cache_start_mm; NULL: a blob */
+    TermMean *color_mean;     /* colours of a blob whose colours blend; otherwise NULL */
+    LightBlockage blockages[VIEW_MAX_LIGHTS]; /* per light, for the last shading point queried */
+} Examiner;
+
+/* Returns how the scene's model can be examined: PROOF_FIELD for a blob. */
+static ModelProof proof_method(const ExplainCase *input)
+{
+    return models[input->scene->geometry.model].proof;
+}
+
+static void examiner_release(Examiner *examiner)
+{
+    renderer_free(examiner->ray_renderer);
+    renderer_free(examiner->cache_renderer);
+    termmean_free(examiner->color_mean);
+}
+
+/* Creates a renderer whose shadow rays ignore hits nearer than `shadow_from_mm`. It has one thread,
+ * because it draws one pixel at a time. */
+static Status create_renderer(Examiner *examiner, double shadow_from_mm, Renderer **out, Err *err)
+{
+    RenderParams params = *examiner->input->params;
+    params.threads = 1;
+    params.shadow_from_mm = shadow_from_mm;
+    return renderer_new(&examiner->input->scene->geometry, &params, out, err);
+}
+
+static Status examiner_init(Examiner *examiner, const ExplainCase *input, Err *err)
+{
+    examiner->input = input;
+    examiner->view = input->scene->view;
+    if (proof_method(input) == PROOF_FIELD)
+        return input->scene->appearance.places
+                   ? termmean_new(&input->scene->geometry, &examiner->color_mean, err)
+                   : STATUS_OK;
+    TRY(create_renderer(examiner, shadow_ray_start_mm, &examiner->ray_renderer, err));
+    return create_renderer(examiner, shadow_cache_start_mm, &examiner->cache_renderer, err);
+}
+
+/* ---- the shadow cache ------------------------------------------------------------------------ */
+
+static Status draw_one(const Examiner *examiner, Renderer *renderer, Rgb *color, Err *err)
+{
+    Frame frame;
+    TRY(renderer_rows(renderer, &examiner->view, &examiner->input->scene->appearance, 0, 1, &frame,
+                      err));
+    const float *values = frame.color.values;
+    *color = (Rgb){values[0], values[1], values[2]};
+    frame_release(&frame);
+    return STATUS_OK;
+}
+
+/* Returns true if an image's colour lies between two others, channel by channel. 16-bit codes may
+ * be off by one. */
+static bool lies_between(const Examiner *examiner, const Rendering *side, Rgb low, Rgb high,
+                         size_t pixel)
+{
+    const Picture *picture = side->picture;
+    const float lows[3] = {low.r, low.g, low.b}, highs[3] = {high.r, high.g, high.b};
+    int slack = picture->bits == 16;
+    for (size_t c = 0; c < 3; c++) {
+        int code = picture_code(picture, 3 * pixel + c);
+        if (code < image_code(lows[c], examiner->input->encoding, picture->bits) - slack ||
+            code > image_code(highs[c], examiner->input->encoding, picture->bits) + slack)
+            return false;
+    }
+    return true;
+}
+
+static bool has_color(const Examiner *examiner, const Rendering *side, Rgb color, size_t pixel)
+{
+    return lies_between(examiner, side, color, color, pixel);
+}
+
+static Status examine_shadow_cache(Examiner *examiner, size_t pixel, SettledPixel *found, Err *err)
+{
+    Rgb first, cached;
+    examiner->view.camera =
+        camera_of_pixel(&examiner->input->scene->view.camera, found->x, found->y);
+    TRY(draw_one(examiner, examiner->ray_renderer, &first, err));
+    TRY(draw_one(examiner, examiner->cache_renderer, &cached, err));
+    if (has_color(examiner, examiner->input->b, first, pixel) &&
+        lies_between(examiner, examiner->input->a, cached, first, pixel))
+        found->cause = SETTLED_SHADOW_CACHE;
+    return STATUS_OK;
+}
+
+/* ---- the field of a blob --------------------------------------------------------------------- */
+
+static Status examine_field(const Examiner *examiner, Ray ray, double t_min, double t_max,
+                            BlobRoots *roots, Err *err)
+{
+    const Geometry *geometry = &examiner->input->scene->geometry;
+    return blob_roots(geometry->segments, geometry->n_segments, ray, t_min, t_max, roots, err);
+}
+
+/* Finds the field's normal at `x`, turned against the ray. Returns the segment of the largest term
+ * at `x`. */
+static const FieldSegment *find_wall(const Examiner *examiner, Ray ray, Vec3 x, Vec3 *normal)
+{
+    const Geometry *geometry = &examiner->input->scene->geometry;
+    const FieldSegment *largest = &geometry->segments[0];
+    Vec3 sum = vec3(0, 0, 0);
+    double most = -HUGE_VAL;
+    for (size_t i = 0; i < geometry->n_segments; i++) {
+        BlobComponent components[BLOB_COMPONENTS];
+        Vec3 gradient;
+        Ball ball = blob_ball(&geometry->segments[i]);
+        if (vec3_distance(ball.center, x) > ball.radius)
+            continue;
+        blob_components(&blob_shape, &geometry->segments[i], components);
+        double term = blob_components_at(components, x, &gradient);
+        sum = vec3_add(sum, gradient);
+        if (term > most) {
+            most = term;
+            largest = &geometry->segments[i];
+        }
+    }
+    *normal = vec3_scale(vec3_normalized(sum), vec3_dot(sum, ray.direction) > 0 ? -1 : 1);
+    return largest;
+}
+
+/* Finds whether a shadow ray from `place` to a light is free: neither the ground nor a root of the
+ * field is in its way. Updates `found` if a vessel blocks it. */
+static Status examine_shadow_ray(const Examiner *examiner, Vec3 place, LightWay way, bool *free,
+                                 LightBlockage *found, Err *err)
+{
+    Ray ray = {place, way.towards};
+    double far = way.distance - shadow_ray_start_mm, t;
+    BlobRoots roots;
+    Vec3 normal;
+    *free = !ground_hit(&examiner->input->scene->view.ground, ray, shadow_ray_start_mm, far, &t);
+    if (!*free)
+        return STATUS_OK;
+    TRY(examine_field(examiner, ray, render_nearest_mm(&examiner->input->scene->geometry), far,
+                      &roots, err));
+    *free = roots.n == 0;
+    if (*free)
+        return STATUS_OK;
+    find_wall(examiner, ray, ray_at(ray, roots.t[0]), &normal);
+    double cosine = fabs(vec3_dot(normal, way.towards));
+    found->n_grazing += cosine <= max_grazing_cosine;
+    if (!(cosine >= found->cosine)) {
+        found->cosine = cosine;
+        found->blocker_mm = roots.t[0];
+    }
+    return STATUS_OK;
+}
+
+static Status examine_light(const Examiner *examiner, const Light *light, Vec3 place,
+                            LightBlockage *found, Err *err)
+{
+    int n = light_points(light), reach = 0;
+    *found = (LightBlockage){1, (double)NAN, (double)NAN, 0};
+    if (!examiner->input->params->shadows || !light->casts_shadows)
+        return STATUS_OK;
+    for (int k = 0; k < n; k++) {
+        bool free;
+        TRY(examine_shadow_ray(examiner, place, light_way_to_point(light, k, place), &free, found,
+                               err));
+        reach += free;
+    }
+    found->visibility = (double)reach / n;
+    return STATUS_OK;
+}
+
+static Status examine_lights(Examiner *examiner, Vec3 place, Err *err)
+{
+    const View *view = &examiner->input->scene->view;
+    for (size_t i = 0; i < view->n_lights; i++)
+        TRY(examine_light(examiner, &view->lights[i], place, &examiner->blockages[i], err));
+    return STATUS_OK;
+}
+
+/* Dims the lights of examiner->view to the part that arrives. Light `brighter`, if there is one,
+ * arrives by `more` of its points more. */
+static void set_lights(Examiner *examiner, size_t brighter, int more)
+{
+    const View *view = &examiner->input->scene->view;
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
+        double part = examiner->blockages[i].visibility;
+        if (i == brighter)
+            part += (double)more / light_points(light);
+        examiner->view.lights[i].color =
+            (Rgb){(float)((double)light->color.r * part), (float)((double)light->color.g * part),
+                  (float)((double)light->color.b * part)};
+    }
+}
+
+/* What a ray hits. */
+typedef struct RayHit {
+    double t; /* INFINITY: neither vessel nor ground */
+    ShadingInput at;
+    uint32_t id; /* 0: the ground or nothing */
+    Rgb color;
+} RayHit;
+
+/* Returns the colour of a hit in the light that arrives there, with `more` points of light
+ * `brighter` added. */
+static Rgb lit(Examiner *examiner, const RayHit *seen, size_t brighter, int more)
+{
+    if (seen->t == HUGE_VAL)
+        return examiner->input->scene->view.background;
+    set_lights(examiner, brighter, more);
+    return shade(&examiner->view, &seen->at, NULL, NULL);
+}
+
+/* Returns the hit of the surface at `t`, without its colour. */
+static RayHit wall_at(const Examiner *examiner, Ray ray, double t)
+{
+    const Scene *scene = examiner->input->scene;
+    RayHit seen = {.t = t, .at = {.point = ray_at(ray, t), .direction = ray.direction, .open = 1}};
+    const FieldSegment *wall = find_wall(examiner, ray, seen.at.point, &seen.at.normal);
+    seen.id = scene->geometry.ids[wall->segment];
+    seen.at.finish = &scene->appearance.finish;
+    seen.at.pigment = examiner->color_mean
+                          ? appearance_blended(&scene->appearance,
+                                               termmean_at(examiner->color_mean,
+                                                           scene->appearance.places, seen.at.point))
+                          : appearance_color(&scene->appearance, wall->segment);
+    return seen;
+}
+
+/* Finds what a ray hits whose first hit of a vessel is at `t`. Sets examiner->blockages for that
+ * point. */
+static Status look_to(Examiner *examiner, Ray ray, double t, RayHit *seen, Err *err)
+{
+    const Ground *ground = &examiner->input->scene->view.ground;
+    if (ground_hit(ground, ray, shadow_cache_start_mm, t, &t)) {
+        bool below = vec3_dot(ground->normal, ray.direction) > 0;
+        *seen = (RayHit){t,
+                         {.finish = &ground->finish,
+                          .pigment = ground->color,
+                          .point = ray_at(ray, t),
+                          .normal = vec3_scale(ground->normal, below ? -1 : 1),
+                          .direction = ray.direction,
+                          .open = 1},
+                         0,
+                         {0, 0, 0}};
+    } else if (t < HUGE_VAL) {
+        *seen = wall_at(examiner, ray, t);
+    } else {
+        *seen = (RayHit){.t = HUGE_VAL};
+    }
+    if (t < HUGE_VAL)
+        TRY(examine_lights(examiner, seen->at.point, err));
+    seen->color = lit(examiner, seen, SIZE_MAX, 0);
+    return STATUS_OK;
+}
+
+static double root_of(const BlobRoots *roots, int number)
+{
+    return number < roots->n ? roots->t[number] : HUGE_VAL;
+}
+
+/* One ray of a pixel. */
+typedef struct Sample {
+    Ray ray;
+    BlobRoots roots;
+    RayHit truth;
+} Sample;
+
+static int samples_of(const Examiner *examiner)
+{
+    int n = examiner->input->params->antialias;
+    return n > 1 ? n * n + 1 : 1;
+}
+
+/* Returns the ray of a sample. Sample 0 is the pixel's centre. */
+static Ray sample_ray(const Examiner *examiner, int i, int j, int sample)
+{
+    const Camera *camera = &examiner->input->scene->view.camera;
+    int n = examiner->input->params->antialias;
+    if (sample == 0)
+        return camera_ray(camera, i, j);
+    return camera_ray(camera, i - 0.5 + ((sample - 1) % n + 0.5) / n,
+                      j - 0.5 + ((sample - 1) / n + 0.5) / n);
+}
+
+/* Returns the pixel's colour if sample `changed` had `color`. */
+static Rgb mean_with(const Examiner *examiner, const Sample *samples, int changed, Rgb color)
+{
+    int n = samples_of(examiner);
+    Rgb sum = {0, 0, 0};
+    for (int s = 0; s < n; s++) {
+        Rgb of = s == changed ? color : samples[s].truth.color;
+        sum = (Rgb){sum.r + of.r, sum.g + of.g, sum.b + of.b};
+    }
+    double count = n;
+    return (Rgb){(float)((double)sum.r / count), (float)((double)sum.g / count),
+                 (float)((double)sum.b / count)};
+}
+
+/* Returns true if A's pixel is explained by sample `changed` having `color`. */
+static bool explains(const Examiner *examiner, const Sample *samples, int changed, Rgb color,
+                     size_t pixel)
+{
+    return has_color(examiner, examiner->input->a, mean_with(examiner, samples, changed, color),
+                     pixel);
+}
+
+static Status examine_sample(Examiner *examiner, Sample *sample, Err *err)
+{
+    TRY(examine_field(examiner, sample->ray, render_nearest_mm(&examiner->input->scene->geometry),
+                      HUGE_VAL, &sample->roots, err));
+    return look_to(examiner, sample->ray, root_of(&sample->roots, 0), &sample->truth, err);
+}
+
+static Vec3 normal_at(const Rendering *side, size_t pixel)
+{
+    const float *n = &side->normal->values[3 * pixel];
+    return vec3((double)n[0], (double)n[1], (double)n[2]);
+}
+
+/* Returns true if B shows what the field gives: point, normal, segment and colour. */
+static bool native_is_right(const Examiner *examiner, const Sample *samples, size_t pixel)
+{
+    const Rendering *b = examiner->input->b;
+    double t = (double)b->depth->values[pixel], root = root_of(&samples[0].roots, 0);
+    if (isfinite(t) != isfinite(root))
+        return false;
+    if (isfinite(t)) {
+        RayHit wall = wall_at(examiner, samples[0].ray, root);
+        if (!(fabs(t - root) <= 1e-6 + root * (double)FLT_EPSILON) ||
+            !(vec3_distance(wall.at.normal, normal_at(b, pixel)) <= normal_tolerance) ||
+            b->ids->ids[pixel] != wall.id)
+            return false;
+    }
+    return has_color(examiner, b, mean_with(examiner, samples, 0, samples[0].truth.color), pixel);
+}
+
+static double radius_of(const Examiner *examiner, uint32_t id)
+{
+    const Geometry *geometry = &examiner->input->scene->geometry;
+    for (size_t i = 0; i < geometry->n_segments; i++)
+        if (geometry->ids[geometry->segments[i].segment] == id)
+            return geometry->segments[i].radius_mm;
+    return 0;
+}
+
+/* Returns true if A shows the surface at root `number`, within root_tolerance_radii. */
+static bool sees_root(const Examiner *examiner, const Sample *sample, int number, size_t pixel)
+{
+    double t = (double)examiner->input->a->depth->values[pixel];
+    if (number >= sample->roots.n || !isfinite(t))
+        return false;
+    RayHit wall = wall_at(examiner, sample->ray, t);
+    double radius = radius_of(examiner, wall.id), rounding = t * (double)FLT_EPSILON / radius;
+    return fabs(t - sample->roots.t[number]) <= root_tolerance_radii * radius &&
+           vec3_distance(wall.at.normal, normal_at(examiner->input->a, pixel)) <=
+               normal_tolerance + rounding;
+}
+
+/* Returns the cosine between the ray of a sample and the normal at its first root; NAN without a
+ * root. */
+static double grazing_of(const Examiner *examiner, const Sample *sample)
+{
+    if (sample->roots.n == 0)
+        return (double)NAN;
+    RayHit wall = wall_at(examiner, sample->ray, sample->roots.t[0]);
+    return fabs(vec3_dot(wall.at.normal, sample->ray.direction));
+}
+
+/* Returns true if none of the eight neighbours of the pixel differs. */
+static bool is_alone(const Examiner *examiner, const SettledPixel *found)
+{
+    const Camera *camera = &examiner->input->scene->view.camera;
+    for (int y = found->y - 1; y <= found->y + 1; y++)
+        for (int x = found->x - 1; x <= found->x + 1; x++) {
+            bool inside = x >= 0 && x < camera->width && y >= 0 && y < camera->height;
+            if (!inside || (x == found->x && y == found->y))
+                continue;
+            size_t pixel = (size_t)y * (size_t)camera->width + (size_t)x;
+            if (pixel_beyond(examiner->input->a, examiner->input->b, pixel,
+                             examiner->input->tolerance))
+                return false;
+        }
+    return true;
+}
+
+/* Returns true if POV-Ray may miss a root at a pixel whose ray has this cosine. */
+static bool may_miss(const Examiner *examiner, const SettledPixel *found, double cosine)
+{
+    return cosine <= max_grazing_cosine || (isfinite(cosine) && is_alone(examiner, found));
+}
+
+/* Settles the pixel if A shows a later root or nothing, and POV-Ray may have missed the first root.
+ */
+static void find_missed(const Examiner *examiner, const Sample *sample, size_t pixel,
+                        SettledPixel *found)
+{
+    double cosine = grazing_of(examiner, sample);
+    bool later = !isfinite(examiner->input->a->depth->values[pixel]);
+    for (int k = 1; k < sample->roots.n && !later; k++)
+        later = sees_root(examiner, sample, k, pixel);
+    if (!later || !may_miss(examiner, found, cosine))
+        return;
+    found->cause = SETTLED_ROOT;
+    found->cosine = cosine;
+}
+
+/* Settles the pixel if A shows the surface a little before or behind the first root, with the
+ * normal and colour of that point. */
+static Status examine_inexact(Examiner *examiner, const Sample *sample, size_t pixel,
+                              SettledPixel *found, Err *err)
+{
+    double t = (double)examiner->input->a->depth->values[pixel];
+    if (samples_of(examiner) > 1 || !sees_root(examiner, sample, 0, pixel))
+        return STATUS_OK;
+    double root = sample->roots.t[0], by = fabs(t - root) + 2 * t * (double)FLT_EPSILON;
+    Rgb low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    TRY(examine_lights(examiner, ray_at(sample->ray, root), err));
+    for (int k = -1; k <= 1; k++) {
+        RayHit wall = wall_at(examiner, sample->ray, root + k * by);
+        Rgb color = lit(examiner, &wall, SIZE_MAX, 0);
+        low = (Rgb){fminf(low.r, color.r), fminf(low.g, color.g), fminf(low.b, color.b)};
+        high = (Rgb){fmaxf(high.r, color.r), fmaxf(high.g, color.g), fmaxf(high.b, color.b)};
+    }
+    if (lies_between(examiner, examiner->input->a, low, high, pixel))
+        found->cause = SETTLED_INEXACT_ROOT;
+    return STATUS_OK;
+}
+
+/* Returns true if more points of this light would explain A: up to those whose rays graze a
+ * surface, at least one. */
+static bool misses_of_light(Examiner *examiner, const Sample *samples, int s, size_t pixel,
+                            const RayHit *seen, size_t light)
+{
+    int most = examiner->blockages[light].n_grazing > 1 ? examiner->blockages[light].n_grazing : 1;
+    for (int more = 1; more <= most; more++)
+        if (explains(examiner, samples, s, lit(examiner, seen, light, more), pixel))
+            return true;
+    return false;
+}
+
+/* Settles the pixel if A is lit as if shadow rays of sample `s` to one light had missed a root. */
+static Status examine_shadows(Examiner *examiner, const Sample *samples, int s, size_t pixel,
+                              SettledPixel *found, Err *err)
+{
+    const Sample *sample = &samples[s];
+    RayHit seen;
+    TRY(look_to(examiner, sample->ray, root_of(&sample->roots, 0), &seen, err));
+    for (size_t i = 0; i < examiner->input->scene->view.n_lights && seen.t < HUGE_VAL; i++) {
+        const LightBlockage *blockage = &examiner->blockages[i];
+        if (!may_miss(examiner, found, blockage->cosine) ||
+            !misses_of_light(examiner, samples, s, pixel, &seen, i))
+            continue;
+        found->cause = SETTLED_SHADOW_ROOT;
+        found->distance_mm = blockage->blocker_mm;
+        found->cosine = blockage->cosine;
+        return STATUS_OK;
+    }
+    return STATUS_OK;
+}
+
+/* Settles the pixel if A's colour is explained by sample `s` having missed its first roots. */
+static Status examine_later_roots(Examiner *examiner, const Sample *samples, int s, size_t pixel,
+                                  SettledPixel *found, Err *err)
+{
+    const Sample *sample = &samples[s];
+    double cosine = grazing_of(examiner, sample);
+    for (int k = 1; k <= sample->roots.n && may_miss(examiner, found, cosine); k++) {
+        RayHit seen;
+        TRY(look_to(examiner, sample->ray, root_of(&sample->roots, k), &seen, err));
+        if (!explains(examiner, samples, s, seen.color, pixel))
+            continue;
+        found->cause = SETTLED_ROOT;
+        found->cosine = cosine;
+        return STATUS_OK;
+    }
+    return STATUS_OK;
+}
+
+static Status examine_samples(Examiner *examiner, Sample *samples, size_t pixel, unsigned beyond,
+                              SettledPixel *found, Err *err)
+{
+    int n = samples_of(examiner);
+    for (int s = 0; s < n; s++) {
+        samples[s].ray = sample_ray(examiner, found->x, found->y, s);
+        TRY(examine_sample(examiner, &samples[s], err));
+        if (!samples[s].roots.sure)
+            return STATUS_OK;
+    }
+    if (samples[0].roots.n > 0)
+        found->root_mm = samples[0].roots.t[0];
+    if (!native_is_right(examiner, samples, pixel))
+        return STATUS_OK;
+    if (beyond & BEYOND_GEOMETRY)
+        find_missed(examiner, &samples[0], pixel, found);
+    if (found->cause == SETTLED_NOT)
+        TRY(examine_inexact(examiner, &samples[0], pixel, found, err));
+    if (beyond & BEYOND_GEOMETRY)
+        return STATUS_OK;
+    for (int s = 0; s < n && found->cause == SETTLED_NOT; s++)
+        TRY(examine_shadows(examiner, samples, s, pixel, found, err));
+    for (int s = 1; s < n && found->cause == SETTLED_NOT; s++)
+        TRY(examine_later_roots(examiner, samples, s, pixel, found, err));
+    return STATUS_OK;
+}
+
+static Status examine_blob(Examiner *examiner, size_t pixel, unsigned beyond, SettledPixel *found,
+                           Err *err)
+{
+    Sample *samples;
+    TRY(mem_calloc(&samples, (size_t)samples_of(examiner), sizeof *samples, "samples", err));
+    Status status = examine_samples(examiner, samples, pixel, beyond, found, err);
+    free(samples);
+    return status;
+}
+
+/* ---- all pixels ------------------------------------------------------------------------------ */
+
+bool explain_applies(const ExplainCase *input)
+{
+    return proof_method(input) == PROOF_FIELD || input->params->shadows;
+}
+
+static Status examine_pixel(Examiner *examiner, size_t pixel, unsigned beyond, Settled *settled,
+                            Err *err)
+{
+    const ExplainCase *input = examiner->input;
+    int width = input->scene->view.camera.width;
+    SettledPixel found = {.x = (int)(pixel % (size_t)width),
+                          .y = (int)(pixel / (size_t)width),
+                          .id = input->b->ids->ids[pixel],
+                          .a_mm = (double)input->a->depth->values[pixel],
+                          .b_mm = (double)input->b->depth->values[pixel],
+                          .root_mm = (double)NAN,
+                          .distance_mm = (double)NAN,
+                          .cosine = (double)NAN};
+    if (proof_method(input) == PROOF_FIELD)
+        TRY(examine_blob(examiner, pixel, beyond, &found, err));
+    else if (!(beyond & BEYOND_GEOMETRY))
+        TRY(examine_shadow_cache(examiner, pixel, &found, err));
+    settled_note(settled, pixel, &found);
+    return STATUS_OK;
+}
+
+Status explain_pixels(const ExplainCase *input, Settled *settled, Err *err)
+{
+    const Camera *camera = &input->scene->view.camera;
+    size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    Examiner examiner = {0};
+    Settled made = {0};
+    Status status;
+    bool blob = proof_method(input) == PROOF_FIELD;
+    TRY_GOTO(settled_init(&made, pixels, blob ? SETTLED_ROOT : SETTLED_SHADOW_CACHE,
+                          blob ? SETTLED_SHADOW_ROOT : SETTLED_SHADOW_CACHE, err));
+    for (size_t i = 0; i < pixels; i++) {
+        unsigned beyond = pixel_beyond(input->a, input->b, i, input->tolerance);
+        if (!beyond)
+            continue;
+        if (made.asked == MAX_EXAMINED) {
+            made.unasked++;
+            continue;
+        }
+        if (!examiner.input)
+            TRY_GOTO(examiner_init(&examiner, input, err));
+        TRY_GOTO(examine_pixel(&examiner, i, beyond, &made, err));
+    }
+    settled_judge(&made);
+    *settled = made;
+    made = (Settled){0};
+done:
+    examiner_release(&examiner);
+    settled_release(&made);
+    return status;
+}

@@ -1,0 +1,22 @@
+/* What a program has drawn of a scene, plane by plane. */
+#ifndef CORCAST_ORACLE_PLANES_H
+#define CORCAST_ORACLE_PLANES_H
+
+#include "emit/emit.h"
+#include "image/image.h"
+
+/* Zeroed: nothing is drawn yet. All members are owned. */
+typedef struct OraclePlanes {
+    Picture picture; /* colours: 8-bit sRGB or 16-bit linear */
+    Picture alpha;   /* 8-bit grey; empty if alpha is not drawn */
+    Frame frame;     /* depth, normals and ids; of corcast also linear colours */
+} OraclePlanes;
+
+void planes_release(OraclePlanes *planes);
+
+/* Writes a scene as a file for the program that reads the extension of `path`, and beside it the
+ * second file if the format has one. Ignores the file names in `params`. Errors: as emit_files. */
+MUST_CHECK Status planes_write_scene(const EmitParams *params, const char *extension,
+                                     const char *path, Err *err);
+
+#endif

@@ -1,0 +1,74 @@
+/* POV-Ray: runs it on a scene file that corcast has written, and reads the planes that it drew. */
+#ifndef CORCAST_ORACLE_POVRAY_H
+#define CORCAST_ORACLE_POVRAY_H
+
+#include "image/image.h"
+#include "oracle/program.h"
+
+/* What a run of POV-Ray draws. Scenes of corcast read the value from Corcast_Plane. */
+typedef enum PovrayPlane {
+    POVRAY_COLOR,
+    POVRAY_DEPTH,
+    POVRAY_NORMAL,
+    POVRAY_ID,
+    POVRAY_DEPTH_ID, /* depth, and ids of at most POVRAY_MAX_ID, in one picture */
+    POVRAY_ALPHA,    /* 8-bit colours with alpha in front of a transparent background */
+    POVRAY_PLANES
+} PovrayPlane;
+
+enum { POVRAY_MAX_ID = 65535 };
+
+/* One run of POV-Ray. All pointers are borrowed. */
+typedef struct PovrayParams {
+    ProgramChoice program;     /* default: "povray" */
+    const char *scene;         /* a .pov file */
+    const char *output;        /* the .png file that is written */
+    int width, height;         /* pixels of the whole picture */
+    PixelRect part;            /* only these pixels are drawn, the others are black; width 0: all */
+    int antialias;             /* of POVRAY_COLOR and POVRAY_ALPHA: 1, or N for +A0.0 +AM1 +RN -J */
+    int threads;               /* 0: POV-Ray's own default */
+    PovrayPlane plane;         /* POVRAY_ID is 8-bit linear; depth and normals are 16-bit linear */
+    int bits;                  /* of POVRAY_COLOR: 8 (sRGB) or 16 (linear) */
+    bool alpha;                /* POVRAY_COLOR is transparent where the scene's background is */
+    double clock;              /* the scene's clock, in [0, 1] */
+    ProgramProgress *progress; /* may be NULL */
+    void *progress_context;
+} PovrayParams;
+
+/* What a run reports about itself. */
+typedef struct PovrayRun {
+    char version[64]; /* "3.7.0.10.unofficial" */
+    double seconds;   /* wall-clock time, parsing included */
+} PovrayRun;
+
+/* Runs POV-Ray in the scene's folder, without a window. The picture gets its name only if it is a
+ * whole PNG of the requested size and depth.
+ *
+ * run     may be NULL.
+ * Errors  as program_draw; a failure of POV-Ray has its own words in the sentence. */
+MUST_CHECK Status povray_draw(const PovrayParams *params, PovrayRun *run, Err *err);
+
+/* Formats the command line of such a run, for reports and scripts. File names have no folders. Sets
+ * *out (owned). Errors: STATUS_MEMORY. */
+MUST_CHECK Status povray_command(const PovrayParams *params, char **out, Err *err);
+
+/* Read a picture that povray_draw wrote. Each fills in new planes, owned by the caller.
+ *
+ * depth    mm along the ray; INFINITY where nothing is visible.
+ * normal   unit vectors; 0 0 0 where nothing is visible.
+ * near_mm, far_mm  the depths that the scene encodes as the codes 0 and 65535.
+ * Errors   STATUS_INPUT if the file is not such a plane, STATUS_IO, STATUS_MEMORY. */
+MUST_CHECK Status povray_read_depth(Plane *depth, const char *path, double near_mm, double far_mm,
+                                    Err *err);
+MUST_CHECK Status povray_read_normal(Plane *normal, const char *path, Err *err);
+MUST_CHECK Status povray_read_ids(IdPlane *ids, const char *path, Err *err);
+MUST_CHECK Status povray_read_depth_ids(Plane *depth, IdPlane *ids, const char *path,
+                                        double near_mm, double far_mm, Err *err);
+/* Reads the alpha of a picture file as a grey 8-bit picture. Errors as above. */
+MUST_CHECK Status povray_read_alpha(Picture *alpha, const char *path, Err *err);
+
+/* Extracts the alpha of an 8-bit picture as a new grey 8-bit picture. A picture without alpha gives
+ * white. Errors: STATUS_MEMORY. */
+MUST_CHECK Status picture_take_alpha(Picture *alpha, const Picture *picture, Err *err);
+
+#endif

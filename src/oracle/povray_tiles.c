@@ -1,0 +1,504 @@
+/* POV-Ray's drawing of a scene.
+ *
+ * POV-Ray reads a scene once for each plane. Several of these runs go on side by side.
+ *
+ * A scene that is too large for POV-Ray is drawn in tiles. The picture is halved across its longer
+ * side, then the heaviest tile is halved, until POV-Ray can read each tile's scene in good time
+ * [emit.h, povray_load]. A tile's scene contains only what rays of the tile can hit. Which vessels
+ * it leaves out depends on their positions alone, never on what corcast has drawn.
+ *
+ * POV-Ray is asked for the tile's rows and columns of the whole picture. Its rays are therefore
+ * those of the whole picture to the last bit, and what they hit is the same piece by piece. So the
+ * pixels are those of the whole picture. */
+#include "oracle/povray_tiles.h"
+
+#include "field/field.h"
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Tiles are not narrower or lower than this, in pixels: smaller ones cost more in parsing than they
+ * save. Reason of the number not recorded. */
+enum { MIN_TILE_SIDE = 8 };
+
+/* The sum of the loads [emit.h, povray_load] of the scenes that are in memory at one time: about
+ * 2 GB. */
+static const double max_load_at_once = 2;
+
+static const char *const plane_names[POVRAY_PLANES] = {
+    [POVRAY_COLOR] = "povray",
+    [POVRAY_DEPTH] = "povray.depth",
+    [POVRAY_NORMAL] = "povray.normal",
+    [POVRAY_ID] = "povray.id",
+    [POVRAY_DEPTH_ID] = "povray.depth-id",
+    [POVRAY_ALPHA] = "povray.alpha",
+};
+
+/* The planes that are drawn. The colours are the first. */
+typedef struct PlaneList {
+    PovrayPlane plane[POVRAY_PLANES];
+    size_t n;
+} PlaneList;
+
+/* Depth and ids share a picture if the ids are small enough. That saves a run of POV-Ray. */
+static PlaneList planes_of(const Geometry *geometry, bool alpha)
+{
+    uint32_t most = 0;
+    for (size_t i = 0; i < geometry->n_ids; i++)
+        most = geometry->ids[i] > most ? geometry->ids[i] : most;
+    PlaneList planes = {{POVRAY_COLOR, POVRAY_DEPTH, POVRAY_NORMAL, POVRAY_ID}, 4};
+    if (most <= POVRAY_MAX_ID)
+        planes = (PlaneList){{POVRAY_COLOR, POVRAY_DEPTH_ID, POVRAY_NORMAL}, 3};
+    if (alpha)
+        planes.plane[planes.n++] = POVRAY_ALPHA;
+    return planes;
+}
+
+/* ---- tiles ----------------------------------------------------------------------------------- */
+
+/* A part of the picture, or all of it, with its scenes. */
+typedef struct SceneTile {
+    PixelRect rect;
+    double load;
+    char *scene, *ids; /* paths; `ids` is NULL if `scene` paints ids; owned */
+} SceneTile;
+
+typedef struct SceneTiles {
+    SceneTile *tile; /* owned; from the top and the left */
+    size_t n, capacity;
+    bool cut; /* scenes contain only what the rays of their tile can hit */
+} SceneTiles;
+
+static void tiles_release(SceneTiles *tiles)
+{
+    for (size_t i = 0; i < tiles->n; i++) {
+        free(tiles->tile[i].scene);
+        free(tiles->tile[i].ids);
+    }
+    free(tiles->tile);
+}
+
+/* What scenes are written from. */
+typedef struct SceneSource {
+    const PovrayTilesParams *params;
+    CellTree cells; /* owned; of a model that has cells, else empty */
+} SceneSource;
+
+static SceneModel model_of(const PovrayTilesParams *params)
+{
+    return params->emit.scene->geometry.model;
+}
+
+/* Returns true if POV-Ray needs a separate scene to paint ids. */
+static bool has_id_scene(const PovrayTilesParams *params)
+{
+    return model_has(model_of(params), MODEL_FIELD);
+}
+
+static bool has_cells(const PovrayTilesParams *params)
+{
+    return models[model_of(params)].proof == PROOF_STEPS;
+}
+
+/* Returns how a scene is written. It has no anatomy, which changes no picture and makes POV-Ray
+ * read each tree of a field twice. */
+static EmitParams emit_params(const SceneSource *source, bool ids, const PixelRect *part)
+{
+    EmitParams params = source->params->emit;
+    params.ids = ids;
+    params.built = has_cells(source->params) ? &source->cells : NULL;
+    params.part = part;
+    return params;
+}
+
+/* Finds the load of what the rays of a part can hit; of the whole scene if `part` is NULL. */
+static Status weigh(const SceneSource *source, const PixelRect *part, double *load, Err *err)
+{
+    const EmitParams params = emit_params(source, has_id_scene(source->params), part);
+    return povray_load(&params, load, err);
+}
+
+static bool can_be_halved(const SceneTile *tile)
+{
+    return tile->rect.width >= 2 * MIN_TILE_SIDE || tile->rect.height >= 2 * MIN_TILE_SIDE;
+}
+
+/* Returns the tile of the largest load among those that can be halved; on a tie, the one with the
+ * most pixels. Returns NULL if no tile can be halved. */
+static SceneTile *heaviest(const SceneTiles *tiles)
+{
+    SceneTile *found = NULL;
+    for (size_t i = 0; i < tiles->n; i++) {
+        SceneTile *tile = &tiles->tile[i];
+        int pixels = tile->rect.width * tile->rect.height;
+        if (can_be_halved(tile) &&
+            (!found || tile->load > found->load ||
+             (tile->load == found->load && pixels > found->rect.width * found->rect.height)))
+            found = tile;
+    }
+    return found;
+}
+
+/* Replaces a tile by its halves. */
+static Status halve(const SceneSource *source, SceneTiles *tiles, size_t place, Err *err)
+{
+    TRY(mem_reserve(&tiles->tile, &tiles->capacity, tiles->n + 1, sizeof *tiles->tile, "tiles",
+                    err));
+    SceneTile *first = &tiles->tile[place], *second = first + 1;
+    memmove(second, first, (tiles->n - place) * sizeof *first);
+    tiles->n++;
+    if (first->rect.width > first->rect.height) {
+        first->rect.width /= 2;
+        second->rect.left += first->rect.width;
+        second->rect.width -= first->rect.width;
+    } else {
+        first->rect.height /= 2;
+        second->rect.top += first->rect.height;
+        second->rect.height -= first->rect.height;
+    }
+    TRY(weigh(source, &first->rect, &first->load, err));
+    return weigh(source, &second->rect, &second->load, err);
+}
+
+static Status check_tiles(const PovrayTilesParams *params, const SceneTiles *tiles, Err *err)
+{
+    for (size_t i = 0; i < tiles->n; i++) {
+        const SceneTile *tile = &tiles->tile[i];
+        if (tile->load > 1)
+            return err_set(
+                err, STATUS_INFEASIBLE,
+                "what may be seen in %d x %d pixels at (%d, %d) is %.0f %% of what POV-Ray "
+                "reads in good time, and tiles are no smaller; draw a larger picture, or "
+                "leave out thin vessels (`prune_radius`)",
+                tile->rect.width, tile->rect.height, tile->rect.left, tile->rect.top,
+                100 * tile->load);
+    }
+    const Camera *camera = &params->emit.scene->view.camera;
+    if (tiles->n < (size_t)params->min_tiles)
+        return err_set(err, STATUS_USAGE,
+                       "--tiles: a picture of %d x %d pixels has at most %zu tiles, none of them "
+                       "narrower than %d pixels; not %d",
+                       camera->width, camera->height, tiles->n, MIN_TILE_SIDE, params->min_tiles);
+    return STATUS_OK;
+}
+
+static Status find_tiles(const SceneSource *source, SceneTiles *tiles, Err *err)
+{
+    const size_t min_tiles = (size_t)source->params->min_tiles;
+    const Camera *camera = &source->params->emit.scene->view.camera;
+    TRY(mem_reserve(&tiles->tile, &tiles->capacity, 1, sizeof *tiles->tile, "tiles", err));
+    SceneTile *whole = &tiles->tile[tiles->n++];
+    *whole = (SceneTile){.rect = {0, 0, camera->width, camera->height}};
+    TRY(weigh(source, NULL, &whole->load, err));
+    tiles->cut = whole->load > 1 || min_tiles > 1;
+    if (tiles->cut)
+        TRY(weigh(source, &whole->rect, &whole->load, err));
+    for (;;) {
+        SceneTile *next = heaviest(tiles);
+        if (!next || (next->load <= 1 && tiles->n >= min_tiles))
+            return check_tiles(source->params, tiles, err);
+        TRY(halve(source, tiles, (size_t)(next - tiles->tile), err));
+    }
+}
+
+/* Sets *path (owned) to "scene.pov" in the folder, or with several tiles to "scene.tile-07.pov". */
+static Status tile_path(const PovrayTilesParams *params, const SceneTiles *tiles, size_t index,
+                        const char *name, const char *extension, char **path, Err *err)
+{
+    char file[80];
+    int digits = snprintf(NULL, 0, "%zu", tiles->n);
+    if (tiles->n == 1)
+        snprintf(file, sizeof file, "%s.%s", name, extension);
+    else
+        snprintf(file, sizeof file, "%s.tile-%0*zu.%s", name, digits, index + 1, extension);
+    return file_join(params->folder, file, path, err);
+}
+
+/* ---- scenes ---------------------------------------------------------------------------------- */
+
+/* Writes the scene of a tile, or the scene that paints its ids. The ids of an implicit surface have
+ * a scene of their own, because they make up most of it. */
+static Status write_scene(const SceneSource *source, const SceneTiles *tiles, size_t index,
+                          bool ids, Err *err)
+{
+    SceneTile *tile = &tiles->tile[index];
+    char **path = ids ? &tile->ids : &tile->scene;
+    TRY(tile_path(source->params, tiles, index, ids ? "ids" : "scene", "pov", path, err));
+    const EmitParams params = emit_params(source, ids, tiles->cut ? &tile->rect : NULL);
+    return planes_write_scene(&params, "pov", *path, err);
+}
+
+/* All scenes of all tiles: the scene of a tile, then the scene of its ids if there is one. */
+typedef struct SceneList {
+    const SceneSource *source;
+    const SceneTiles *tiles;
+    size_t each; /* scenes per tile */
+} SceneList;
+
+static Status write_one(size_t index, int worker, void *context, Err *err)
+{
+    (void)worker;
+    const SceneList *list = context;
+    return write_scene(list->source, list->tiles, index / list->each, index % list->each == 1, err);
+}
+
+/* Divides the picture into tiles and writes their scenes. */
+static Status prepare_tiles(const PovrayTilesParams *params, SceneTiles *tiles, Err *err)
+{
+    SceneSource source = {.params = params};
+    SceneList list = {.source = &source, .tiles = tiles, .each = has_id_scene(params) ? 2 : 1};
+    Status status = STATUS_OK;
+    if (has_cells(params))
+        TRY(celltree_build(&params->emit.scene->geometry, &params->emit.cells, &source.cells, err));
+    TRY_GOTO(find_tiles(&source, tiles, err));
+    status = threads_try(list.each * tiles->n, params->threads, write_one, &list, err);
+done:
+    celltree_release(&source.cells);
+    return status;
+}
+
+/* ---- runs ------------------------------------------------------------------------------------ */
+
+/* One run of POV-Ray: a plane of a tile. */
+typedef struct PlaneRun {
+    PovrayParams params;
+    char *output;  /* owned */
+    char *command; /* owned */
+    PovrayRun took;
+    double fraction; /* how much of it is drawn */
+    PovrayTiles *all;
+} PlaneRun;
+
+struct PovrayTiles {
+    PovrayTilesParams params;
+    SceneTiles tiles;
+    PlaneList planes;
+    PlaneRun *run; /* owned; the planes of the first tile, then those of the second, ... */
+    size_t n_runs;
+    int at_once;          /* runs that go on side by side */
+    pthread_mutex_t lock; /* of the fractions, and of params.progress */
+};
+
+static bool report_plane(double fraction, void *context)
+{
+    PlaneRun *run = context;
+    PovrayTiles *all = run->all;
+    double sum = 0;
+    if (!all->params.progress)
+        return true;
+    pthread_mutex_lock(&all->lock);
+    run->fraction = fraction;
+    for (size_t i = 0; i < all->n_runs; i++)
+        sum += all->run[i].fraction;
+    bool goes_on =
+        all->params.progress(sum / (double)all->n_runs, all->params.progress_context);
+    pthread_mutex_unlock(&all->lock);
+    return goes_on;
+}
+
+/* Returns how many runs go on side by side. Each gets its share of the processors. */
+static int runs_at_once(const PovrayTiles *all)
+{
+    int threads = all->params.threads, most = (int)all->planes.n;
+    double load = 0;
+    if (threads > 0 && threads < most)
+        most = threads;
+    for (size_t i = 0; i < all->tiles.n; i++)
+        load = fmax(load, all->tiles.tile[i].load);
+    return load * most <= max_load_at_once ? most : (int)fmax(1, max_load_at_once / load);
+}
+
+static Status prepare_run(PovrayTiles *all, size_t index, Err *err)
+{
+    const PovrayTilesParams *params = &all->params;
+    const Camera *camera = &params->emit.scene->view.camera;
+    const size_t tile_index = index / all->planes.n;
+    const SceneTile *tile = &all->tiles.tile[tile_index];
+    const PovrayPlane plane = all->planes.plane[index % all->planes.n];
+    bool ids = tile->ids && (plane == POVRAY_ID || plane == POVRAY_DEPTH_ID);
+    PlaneRun *run = &all->run[index];
+    TRY(tile_path(params, &all->tiles, tile_index, plane_names[plane], "png", &run->output, err));
+    run->all = all;
+    run->params =
+        (PovrayParams){.program = params->program,
+                       .scene = ids ? tile->ids : tile->scene,
+                       .output = run->output,
+                       .width = camera->width,
+                       .height = camera->height,
+                       .part = all->tiles.n > 1 ? tile->rect : (PixelRect){0},
+                       .antialias = params->antialias,
+                       .threads = params->threads > all->at_once ? params->threads / all->at_once
+                                                                 : params->threads > 0,
+                       .plane = plane,
+                       .bits = params->bits,
+                       .clock = params->clock,
+                       .progress = report_plane,
+                       .progress_context = run};
+    return povray_command(&run->params, &run->command, err);
+}
+
+static Status prepare_runs(PovrayTiles *all, Err *err)
+{
+    all->n_runs = all->tiles.n * all->planes.n;
+    TRY(mem_calloc(&all->run, all->n_runs, sizeof *all->run, "runs", err));
+    for (size_t i = 0; i < all->n_runs; i++)
+        TRY(prepare_run(all, i, err));
+    return STATUS_OK;
+}
+
+static Status run_one(size_t index, int worker, void *context, Err *err)
+{
+    (void)worker;
+    PlaneRun *run = &((PovrayTiles *)context)->run[index];
+    TRY(povray_draw(&run->params, &run->took, err));
+    report_plane(1, run);
+    return STATUS_OK;
+}
+
+/* ---- planes ---------------------------------------------------------------------------------- */
+
+static void copy_pixels(const Picture *from, const PixelRect *rect, Picture *to)
+{
+    size_t pixel = (size_t)to->channels * (size_t)to->bits / 8;
+    for (int y = rect->top; y < rect->top + rect->height; y++) {
+        size_t at = ((size_t)y * (size_t)to->width + (size_t)rect->left) * pixel;
+        const void *row = to->bits == 8 ? (void *)from->codes8 : (void *)from->codes16;
+        void *out = to->bits == 8 ? (void *)to->codes8 : (void *)to->codes16;
+        memcpy((char *)out + at, (const char *)row + at, (size_t)rect->width * pixel);
+    }
+}
+
+/* Copies the pixels of a tile into the plane. The picture of the first tile becomes the plane. */
+static Status add_tile(const char *path, const PixelRect *rect, Picture *plane, Err *err)
+{
+    Picture tile;
+    if (!plane->width)
+        return picture_read(plane, path, ALPHA_REFUSED, err);
+    TRY(picture_read(&tile, path, ALPHA_REFUSED, err));
+    copy_pixels(&tile, rect, plane);
+    picture_release(&tile);
+    return STATUS_OK;
+}
+
+/* Puts the tiles of a plane together at `path`, and removes the files of the tiles. `place` is the
+ * index of the plane in PovrayTiles.planes. */
+static Status join_plane(const PovrayTiles *all, size_t place, const char *path, Err *err)
+{
+    bool srgb = all->planes.plane[place] == POVRAY_COLOR && all->params.bits == 8;
+    size_t each = all->planes.n;
+    Picture joined = {0};
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < all->tiles.n; i++)
+        TRY_GOTO(
+            add_tile(all->run[i * each + place].output, &all->tiles.tile[i].rect, &joined, err));
+    status = picture_write(&joined, path, srgb ? ENCODING_SRGB : ENCODING_LINEAR, NULL, NULL, err);
+done:
+    for (size_t i = 0; i < all->tiles.n; i++)
+        unlink(all->run[i * each + place].output);
+    picture_release(&joined);
+    return status;
+}
+
+static Status read_plane(const Scene *scene, PovrayPlane plane, const char *path,
+                         OraclePlanes *planes, Err *err)
+{
+    double near_mm, far_mm;
+    Frame *frame = &planes->frame;
+    camera_depth_range(&scene->view.camera, scene->geometry.bounds, &near_mm, &far_mm);
+    switch (plane) {
+    case POVRAY_COLOR:
+        return picture_read(&planes->picture, path, ALPHA_REFUSED, err);
+    case POVRAY_DEPTH:
+        return povray_read_depth(&frame->depth, path, near_mm, far_mm, err);
+    case POVRAY_NORMAL:
+        return povray_read_normal(&frame->normal, path, err);
+    case POVRAY_ID:
+        return povray_read_ids(&frame->id, path, err);
+    case POVRAY_DEPTH_ID:
+        return povray_read_depth_ids(&frame->depth, &frame->id, path, near_mm, far_mm, err);
+    case POVRAY_ALPHA:
+        return povray_read_alpha(&planes->alpha, path, err);
+    case POVRAY_PLANES:
+        break;
+    }
+    return STATUS_OK;
+}
+
+static Status take_plane(const PovrayTiles *all, size_t place, OraclePlanes *planes, Err *err)
+{
+    PovrayPlane plane = all->planes.plane[place];
+    char file[40], *path = NULL;
+    Status status;
+    snprintf(file, sizeof file, "%s.png", plane_names[plane]);
+    TRY_GOTO(file_join(all->params.folder, file, &path, err));
+    if (all->tiles.n > 1)
+        TRY_GOTO(join_plane(all, place, path, err));
+    status = read_plane(all->params.emit.scene, plane, path, planes, err);
+done:
+    free(path);
+    return status;
+}
+
+/* ---- all of it ------------------------------------------------------------------------------- */
+
+void povraytiles_free(PovrayTiles *tiles)
+{
+    if (!tiles)
+        return;
+    for (size_t i = 0; tiles->run && i < tiles->n_runs; i++) {
+        free(tiles->run[i].output);
+        free(tiles->run[i].command);
+    }
+    free(tiles->run);
+    pthread_mutex_destroy(&tiles->lock);
+    tiles_release(&tiles->tiles);
+    free(tiles);
+}
+
+Status povraytiles_prepare(const PovrayTilesParams *params, PovrayTiles **tiles, Err *err)
+{
+    PovrayTiles *made;
+    Status status;
+    TRY(mem_calloc(&made, 1, sizeof *made, "runs", err));
+    made->params = *params;
+    pthread_mutex_init(&made->lock, NULL);
+    TRY_GOTO(prepare_tiles(params, &made->tiles, err));
+    made->planes = planes_of(&params->emit.scene->geometry, params->alpha && made->tiles.n == 1);
+    made->at_once = runs_at_once(made);
+    TRY_GOTO(prepare_runs(made, err));
+    *tiles = made;
+    made = NULL;
+done:
+    povraytiles_free(made);
+    return status;
+}
+
+size_t povraytiles_count(const PovrayTiles *tiles)
+{
+    return tiles->tiles.n;
+}
+
+size_t povraytiles_n_commands(const PovrayTiles *tiles)
+{
+    return tiles->n_runs;
+}
+
+const char *povraytiles_command(const PovrayTiles *tiles, size_t run)
+{
+    return tiles->run[run].command;
+}
+
+Status povraytiles_draw(PovrayTiles *tiles, OraclePlanes *planes, PovrayRun *run, Err *err)
+{
+    Status status;
+    TRY_GOTO(threads_try(tiles->n_runs, tiles->at_once, run_one, tiles, err));
+    *run = tiles->run[0].took;
+    for (size_t i = tiles->planes.n; i < tiles->n_runs; i += tiles->planes.n)
+        run->seconds += tiles->run[i].took.seconds;
+    for (size_t place = 0; place < tiles->planes.n; place++)
+        TRY_GOTO(take_plane(tiles, place, planes, err));
+done:
+    return status == STATUS_INPUT ? STATUS_TOOL : status; /* the files are POV-Ray's */
+}

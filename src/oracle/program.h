@@ -1,0 +1,78 @@
+/* Runs another program that draws a scene into a picture, without a window, and watches it. Private
+ * to the module oracle, except ProgramChoice. */
+#ifndef CORCAST_ORACLE_PROGRAM_H
+#define CORCAST_ORACLE_PROGRAM_H
+
+#include "base/base.h"
+
+/* Which executable to run, and how long to wait for it. All strings are borrowed. */
+typedef struct ProgramChoice {
+    const char
+        *path; /* executable; without a slash it is searched in PATH; NULL: the default name */
+    double patience_s;    /* the program is ended after this many seconds without output, and after
+                           * five times as many seconds without progress; 0: never */
+    const char *patience; /* what error sentences call patience_s: the name of a setting that users
+                           * can change; NULL: "patience" */
+} ProgramChoice;
+
+/* The seconds of patience that users get if they choose none. POV-Ray prints nothing while it
+ * parses a large scene, which takes minutes. */
+#define PROGRAM_PATIENCE_S 600
+
+/* Called with the fraction of the picture that is drawn, in [0, 1]. */
+/* Returns false to end the program, whose run then fails with STATUS_CANCELLED. */
+typedef bool ProgramProgress(double fraction, void *context);
+
+/* The folder in which the program finds the scene, as the program must name it. */
+#define PROGRAM_FOLDER "/proc/self/fd/3/"
+/* The name of the scene in that folder. */
+#define PROGRAM_SCENE "scene.pov"
+
+enum { MAX_ARGUMENTS = 28 };
+
+/* The words of a command line. The first is the executable. Zeroed: none. */
+typedef struct Arguments {
+    char *list[MAX_ARGUMENTS + 1]; /* owned; NULL ends the list */
+    int n;
+} Arguments;
+
+/* Appends one formatted word; there must be fewer than MAX_ARGUMENTS. Errors: STATUS_MEMORY. */
+MUST_CHECK Status arguments_add(Arguments *arguments, Err *err, const char *format, ...)
+    PRINTF_LIKE(3, 4);
+void arguments_release(Arguments *arguments);
+
+/* A program, and the picture that it is to draw. All pointers are borrowed. */
+typedef struct Program {
+    const char *name;    /* for sentences: "POV-Ray" */
+    const char *package; /* the Debian package that contains it */
+    ProgramChoice choice;
+    const char *scene;         /* path of the scene, a regular file with any name */
+    const char *output;        /* path of the picture, with any name */
+    ProgramProgress *progress; /* called for each "(30%)" in the output; may be NULL */
+    void *progress_context;
+    /* Appends the executable and its arguments. `scene` and `picture` are the paths that the
+     * program is given. */
+    Status (*add_arguments)(const void *context, const char *scene, const char *picture,
+                            Arguments *arguments, Err *err);
+    /* Decides, after the program has ended, whether the file `picture` is the whole picture.
+     * Errors: STATUS_TOOL, with the reason found in `output`, if it is not. */
+    Status (*judge)(const void *context, const Text *output, int exit_status, const char *picture,
+                    Err *err);
+    /* Returns true if the picture is whole and the program has only to exit. A process whose
+     * executable is called `process` is then killed; a script is waited for. May be NULL. */
+    bool (*is_done)(const void *context, const Text *output, const char *picture);
+    const char *process;
+    const void *context; /* passed to the three functions */
+} Program;
+
+/* Runs the program in the folder of the scene. The picture gets its final name only if `judge`
+ * accepts it.
+ *
+ * output   what the program printed is appended, with line feeds as line ends.
+ * seconds  receives the wall-clock time, parsing included.
+ * Errors   STATUS_TOOL if the program is not installed, fails, prints nothing or makes no progress
+ *          for too long, or prints more than 1 GB. STATUS_INPUT if the scene is not a regular file.
+ *          STATUS_IO if the picture cannot be written. STATUS_MEMORY. */
+MUST_CHECK Status program_draw(const Program *program, Text *output, double *seconds, Err *err);
+
+#endif

@@ -1,0 +1,639 @@
+"""corcast: grow, read, draw, export and check arterial trees.
+
+    import corcast
+    tree = corcast.grow(terminals=1000, seed=4, domain="ball:30")
+    tree.positions, tree.radii, tree.parents       # numpy arrays; lengths are millimetres
+    tree.field("wss")                              # one value for each node
+    tree.refine(level="topology")
+    tree.render(model="isosurface", size=(800, 800), ao=16).save("tree.png")
+    tree.export("tree.stl")
+    corcast.compare("a.png", "b.png").cause
+
+Keyword arguments are the options of the corcast command of the same name, with `_` for `-`:
+docs/REFERENCE.md lists them, and corcast.schema("grow") returns them with ranges, units and
+defaults. A value is a string as on the command line, a number, True or False, or a sequence of
+numbers; a list of strings or of sequences gives the option several times; None leaves the default.
+Two keyword arguments are not options: `progress`, a function of (step, fraction) that returns False
+to stop, and `message`, a function of (sentence, is_warning). Without `message`, warnings of the
+library become Python warnings.
+
+A failure raises corcast.Error with the library's sentence. The module needs the shared library
+libcorcast.so.0 and numpy. It finds the library beside itself, in the installed prefix, in the build
+folder of a source tree, or under the path in the environment variable CORCAST_LIBRARY.
+"""
+
+import collections.abc
+import ctypes
+import json
+import numbers
+import os
+import pathlib
+import sys
+import warnings
+from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_void_p
+
+import numpy
+
+__all__ = ["Error", "Image", "Mesh", "Page", "Report", "Scene", "Tree", "compare", "figure", "grow",
+           "read", "schema", "version"]
+
+
+class Error(Exception):
+    """A failure of the library; the text is one sentence.
+
+    exit_status: that of the command line: 1 differs, 2 wrong input or options, 3 the outside world.
+    kind: "usage", "input", "infeasible", "io", "memory", "tool", "cancelled" or "differs".
+    """
+
+    def __init__(self, sentence, exit_status, kind):
+        super().__init__(sentence)
+        self.exit_status = exit_status
+        self.kind = kind
+
+
+# ---- the library ---------------------------------------------------------------------------------
+
+_PROGRESS = ctypes.CFUNCTYPE(c_int, c_void_p, c_char_p, c_double)
+_MESSAGE = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_char_p)
+_SINK = ctypes.CFUNCTYPE(c_int, c_void_p, c_char_p, c_void_p, c_size_t)
+
+
+class _Nodes(ctypes.Structure):
+    _fields_ = [("n", c_size_t), ("positions", POINTER(c_double)), ("radii", POINTER(c_double)),
+                ("parents", POINTER(ctypes.c_int32)), ("ids", POINTER(ctypes.c_int32))]
+
+
+class _Triangles(ctypes.Structure):
+    _fields_ = [("n_vertices", c_size_t), ("n_triangles", c_size_t),
+                ("vertices", POINTER(c_double)), ("indices", POINTER(ctypes.c_uint32)),
+                ("segments", POINTER(ctypes.c_uint32))]
+
+
+# The parameters of the functions of corcast.h that return a status, but the last, the error:
+# h handle, H where a handle is stored, s text, i int, z size, p pointer, f function.
+_FUNCTIONS = {
+    "options_new": "sH", "options_set": "hss", "options_callbacks": "hffp",
+    "schema": "sH", "tree_read": "shH", "tree_from_nodes": "pH", "tree_copy": "hH",
+    "tree_nodes": "hp", "tree_field": "hshpp", "tree_write": "hs", "grow": "hHH",
+    "refine": "hhH", "certify": "hhH", "info": "hhH", "scene_new": "hhH", "render": "hHH",
+    "image_read": "sH", "image_from_pixels": "iiiipzH", "image_shape": "hippp",
+    "image_pixels": "hiipz", "image_write": "hiis", "compare": "hhhH", "mesh_new": "hhH",
+    "mesh_triangles": "hp", "export": "hhs", "export_bytes": "hhsfp", "verify": "hhsH",
+    "figure": "shs",
+}
+_TYPES = {"h": c_void_p, "H": c_void_p, "s": c_char_p, "i": c_int, "z": c_size_t, "p": c_void_p,
+          "f": c_void_p}
+
+
+def _library_paths():
+    """The places where the library may be, the most particular first."""
+    here = pathlib.Path(__file__).resolve().parent
+    name = "libcorcast.so.0"
+    if os.environ.get("CORCAST_LIBRARY"):
+        yield pathlib.Path(os.environ["CORCAST_LIBRARY"])
+        return
+    yield here / name
+    yield here.parent.parent / name                # PREFIX/lib/python3/dist-packages/corcast.py
+    yield here.parent.parent / "build" / name      # src/python/corcast.py of a source tree
+    yield pathlib.Path(sys.prefix) / "lib" / name
+
+
+def _load():
+    paths = [path for path in _library_paths() if path.exists()]
+    library = ctypes.CDLL(str(paths[0]) if paths else "libcorcast.so.0")
+    for name, parameters in _FUNCTIONS.items():
+        function = getattr(library, "corcast_" + name)
+        function.argtypes = [_TYPES[letter] for letter in parameters] + [c_void_p]
+        function.restype = c_int
+    for name in ("version", "error_text", "error_kind", "report_json"):
+        function = getattr(library, "corcast_" + name)
+        function.argtypes = [] if name == "version" else [c_void_p]
+        function.restype = c_char_p
+    library.corcast_error_new.restype = c_void_p
+    for name in ("error", "options", "report", "tree", "scene", "image", "mesh"):
+        free = getattr(library, "corcast_" + name + "_free")
+        free.argtypes = [c_void_p]
+        free.restype = None
+    return library
+
+
+_library = _load()
+
+
+def _text(value):
+    return None if value is None else os.fsencode(value)
+
+
+def _call(name, *arguments, accept=(0,)):
+    """Calls corcast_NAME with an error; returns its status, or raises Error."""
+    error = _library.corcast_error_new()
+    try:
+        status = getattr(_library, "corcast_" + name)(*arguments, error)
+        if status not in accept:
+            sentence = _library.corcast_error_text(error).decode("utf-8", "replace")
+            raise Error(sentence, status, _library.corcast_error_kind(error).decode())
+        return status
+    finally:
+        _library.corcast_error_free(error)
+
+
+class _Handle:
+    """Owns a handle of the library, and frees it when the last reference goes."""
+
+    _kind = None  # "tree"
+
+    def __init__(self, handle=None):
+        self._handle = c_void_p(handle)
+
+    def __del__(self):
+        if getattr(self, "_handle", None):
+            getattr(_library, "corcast_" + self._kind + "_free")(self._handle)
+            self._handle = c_void_p()
+
+
+class _ReportHandle(_Handle):
+    _kind = "report"
+
+    def content(self):
+        return json.loads(_library.corcast_report_json(self._handle) or b"{}")
+
+
+class Report(dict):
+    """What an operation found: the JSON of the command line as a dict, members also as attributes.
+    """
+
+    def __getattr__(self, name):
+        try:
+            value = self[name]
+        except KeyError:
+            raise AttributeError(f"the report has no member {name!r}; it has "
+                                 f"{', '.join(self)}") from None
+        return Report(value) if isinstance(value, dict) else value
+
+
+# ---- options -------------------------------------------------------------------------------------
+
+def _number(value):
+    return str(int(value)) if isinstance(value, numbers.Integral) else repr(float(value))
+
+
+def _is_sequence(value):
+    return isinstance(value, (collections.abc.Sequence, numpy.ndarray)) and \
+        not isinstance(value, (str, bytes))
+
+
+def _value(name, value):
+    """One value as the command line has it."""
+    if isinstance(value, (bool, numpy.bool_)):
+        return "on" if value else "off"
+    if isinstance(value, numbers.Real):
+        return _number(value)
+    if _is_sequence(value):
+        return ("x" if name == "size" else ",").join(_value(name, item) for item in value)
+    return os.fspath(value)
+
+
+def _values(name, value):
+    """The values of an option that is given once, or several times by a list."""
+    if isinstance(value, list) and value and \
+            (_is_sequence(value[0]) or isinstance(value[0], str)):
+        return [_value(name, item) for item in value]
+    return [_value(name, value)]
+
+
+class _Options(_Handle):
+    """The options of a command, and the callbacks of an operation."""
+
+    _kind = "options"
+
+    def __init__(self, command, arguments):
+        super().__init__()
+        arguments = dict(arguments)
+        self._progress = arguments.pop("progress", None)
+        self._message = arguments.pop("message", None)
+        self._raised = None
+        _call("options_new", command.encode(), byref(self._handle))
+        if os.environ.get("CORCAST_TEMPLATES"):
+            arguments.setdefault("templates", os.environ["CORCAST_TEMPLATES"])
+        for name, value in arguments.items():
+            name = name.rstrip("_").replace("_", "-")
+            for one in [] if value is None else _values(name, value):
+                _call("options_set", self._handle, name.encode(), _text(one))
+        self._callbacks = (_PROGRESS(self._show), _MESSAGE(self._say))
+        _call("options_callbacks", self._handle, *[ctypes.cast(f, c_void_p)
+                                                   for f in self._callbacks], None)
+
+    def _show(self, _user, step, fraction):
+        """Stops the operation when the caller's function does, or raises, or at Ctrl-C."""
+        try:
+            if self._progress and step is not None:
+                return int(self._progress(step.decode(), fraction) is False)
+        except BaseException as raised:  # it must not cross the library; `run` raises it again
+            self._raised = raised
+            return 1
+        return 0
+
+    def _say(self, _user, is_warning, sentence):
+        sentence = sentence.decode("utf-8", "replace")
+        try:
+            if self._message:
+                self._message(sentence, bool(is_warning))
+            elif is_warning:
+                warnings.warn(sentence, stacklevel=4)
+        except BaseException as raised:
+            self._raised = raised
+
+    def run(self, name, *arguments, accept=(0,)):
+        """Calls an operation, and raises what a callback raised meanwhile."""
+        try:
+            status = _call(name, *arguments, accept=accept)
+        except Error:
+            if self._raised:
+                raise self._raised from None
+            raise
+        if self._raised:
+            raise self._raised
+        return status
+
+
+def version():
+    """Returns the version of the library, "0.1.0"."""
+    return _library.corcast_version().decode()
+
+
+def schema(command=None):
+    """Returns the commands, or one command, with all options: kinds, ranges, units, defaults."""
+    report = _ReportHandle()
+    _call("schema", _text(command), byref(report._handle))
+    return Report(report.content())
+
+
+# ---- trees ---------------------------------------------------------------------------------------
+
+def _copy(pointer, shape, dtype):
+    count = int(numpy.prod(shape))
+    if count == 0:
+        return numpy.empty(shape, dtype)
+    return numpy.ctypeslib.as_array(pointer, (count,)).astype(dtype, copy=True).reshape(shape)
+
+
+class Tree(_Handle):
+    """An arterial tree, or a forest of several.
+
+    Node i, unless it is a root, is the distal end of segment i, a straight tube of one radius from
+    the position of its parent. Parents come before their children. Arrays are copies.
+    """
+
+    _kind = "tree"
+
+    @classmethod
+    def from_arrays(cls, positions, radii, parents, ids=None):
+        """Makes a tree of arrays: positions (n, 3) and radii (n) in mm, parents (n), -1 at a root,
+        and ids (n), 1 or more; without ids, nodes get 1, 2, and so on."""
+        positions = numpy.ascontiguousarray(positions, numpy.float64)
+        radii = numpy.ascontiguousarray(radii, numpy.float64)
+        parents = numpy.ascontiguousarray(parents, numpy.int32)
+        n = len(radii)
+        if positions.shape != (n, 3) or parents.shape != (n,) or radii.shape != (n,):
+            raise ValueError(f"positions {positions.shape}, radii {radii.shape} and parents "
+                             f"{parents.shape} are not (n, 3), (n,) and (n,)")
+        nodes = _Nodes(n, positions.ctypes.data_as(POINTER(c_double)),
+                       radii.ctypes.data_as(POINTER(c_double)),
+                       parents.ctypes.data_as(POINTER(ctypes.c_int32)))
+        if ids is not None:
+            ids = numpy.ascontiguousarray(ids, numpy.int32)
+            if ids.shape != (n,):
+                raise ValueError(f"ids {ids.shape} is not ({n},)")
+            nodes.ids = ids.ctypes.data_as(POINTER(ctypes.c_int32))
+        tree = cls()
+        _call("tree_from_nodes", byref(nodes), byref(tree._handle))
+        return tree
+
+    def copy(self):
+        """Returns a copy."""
+        tree = Tree()
+        _call("tree_copy", self._handle, byref(tree._handle))
+        return tree
+
+    def _nodes(self):
+        nodes = _Nodes()
+        _call("tree_nodes", self._handle, byref(nodes))
+        return nodes
+
+    def __len__(self):
+        """Returns the number of nodes."""
+        return self._nodes().n
+
+    @property
+    def positions(self):
+        """Positions of the nodes in mm: an array (n, 3) of float64."""
+        nodes = self._nodes()
+        return _copy(nodes.positions, (nodes.n, 3), numpy.float64)
+
+    @property
+    def radii(self):
+        """Radii of the segments in mm; of a root, the radius at the inlet."""
+        nodes = self._nodes()
+        return _copy(nodes.radii, (nodes.n,), numpy.float64)
+
+    @property
+    def parents(self):
+        """Indices of the parents; -1 at a root."""
+        nodes = self._nodes()
+        return _copy(nodes.parents, (nodes.n,), numpy.int32)
+
+    @property
+    def ids(self):
+        """Numbers of the nodes in files."""
+        nodes = self._nodes()
+        return _copy(nodes.ids, (nodes.n,), numpy.int32)
+
+    def _field(self, name, options):
+        options = _Options("info", options)
+        values, unit = POINTER(c_double)(), c_char_p()
+        _call("tree_field", self._handle, name.encode(), options._handle, byref(values),
+              byref(unit))
+        return values, unit.value.decode()
+
+    def field(self, name, **options):
+        """Returns one value for each node: a column of the file, or a computed field such as
+        "flow" (ml/min), "pressure" (mmHg), "wss" (Pa), "strahler"; NaN where there is none.
+        Options are those of `corcast info`: p_perf=100."""
+        return _copy(self._field(name, options)[0], (len(self),), numpy.float64)
+
+    def unit(self, name, **options):
+        """Returns the unit of a field, "" for a pure number."""
+        return self._field(name, options)[1]
+
+    def save(self, path):
+        """Writes the tree to a file; the extension decides the format."""
+        _call("tree_write", self._handle, _text(path))
+
+    def refine(self, **options):
+        """Optimizes the tree in place; returns the report of `corcast refine`."""
+        return self._report("refine", options)
+
+    def certify(self, **options):
+        """Proves how low the target of this topology can get; `gap` of the report is the distance
+        of the tree's target above that bound, over the bound."""
+        report = self._report("certify", options)
+        report.setdefault("gap", report.get("above"))
+        return report
+
+    def info(self, **options):
+        """Returns what `corcast info --json` writes: counts, lengths, volume, pressures."""
+        return self._report("info", options)
+
+    def _report(self, command, options):
+        options = _Options(command, options)
+        report = _ReportHandle()
+        options.run(command, self._handle, options._handle, byref(report._handle))
+        return Report(report.content())
+
+    def scene(self, **options):
+        """Makes the scene that `render` draws; options are those of `corcast render`."""
+        return Scene(self, options)
+
+    def render(self, **options):
+        """Draws the tree; options are those of `corcast render`. Returns an Image."""
+        return self.scene(**options).render()
+
+    def mesh(self, **options):
+        """Makes the closed surface of the tree; options are those of `corcast export`."""
+        return Mesh(self, options)
+
+    def export(self, path, command="export", **options):
+        """Writes files of other programs; the extension of `path` decides the format. `command` is
+        "export" (meshes, volumes, pages), "scene" (POV-Ray, OpenSCAD), "render", "diagram" or
+        "convert"."""
+        options = _Options(command, options)
+        options.run("export", self._handle, options._handle, _text(path))
+
+    def export_bytes(self, name, command="export", **options):
+        """Returns the files that `export` would write, a dict of name and bytes."""
+        files = {}
+        options = _Options(command, options)
+
+        def take(_user, file, data, size):
+            files.setdefault(os.fsdecode(file), bytearray()).extend(ctypes.string_at(data, size))
+            return 0
+
+        sink = _SINK(take)
+        options.run("export_bytes", self._handle, options._handle, _text(name),
+                    ctypes.cast(sink, c_void_p), None)
+        return {file: bytes(data) for file, data in files.items()}
+
+    def page(self, **options):
+        """Makes the page that `corcast export T -o P.html` writes: the tree in three dimensions
+        with its numbers. A notebook shows it."""
+        return Page(self.export_bytes("tree.html", **options)["tree.html"])
+
+    def verify(self, folder, **options):
+        """Draws the tree with POV-Ray and with corcast, and compares both; `folder` receives the
+        scene, the pictures and the report. `agrees` of the result is the verdict."""
+        options = _Options("verify", options)
+        report = _ReportHandle()
+        status = options.run("verify", self._handle, options._handle, _text(folder),
+                             byref(report._handle), accept=(0, 1))
+        result = Report(report.content())
+        result.setdefault("agrees", status == 0)
+        return result
+
+    def __repr__(self):
+        return f"<corcast.Tree of {len(self)} nodes>"
+
+    def _repr_png_(self):
+        """A notebook shows the tree as a picture."""
+        return self.export_bytes("tree.png", command="render", size=(480, 480))["tree.png"]
+
+
+def grow(**options):
+    """Grows a tree; options are those of `corcast grow`: grow(terminals=1000, seed=4)."""
+    options = _Options("grow", options)
+    tree = Tree()
+    options.run("grow", options._handle, byref(tree._handle), None)
+    return tree
+
+
+def read(path, **options):
+    """Reads a tree from a file; options are those of reading: read(path, input_unit="um")."""
+    options = _Options("info", options)
+    tree = Tree()
+    options.run("tree_read", _text(path), options._handle, byref(tree._handle))
+    return tree
+
+
+# ---- pictures ------------------------------------------------------------------------------------
+
+_PLANES = {"color": 0, "depth": 1, "normal": 2, "id": 3}
+_U8, _U16, _F32, _U32 = 1, 2, 3, 4
+_DTYPES = {_U8: numpy.uint8, _U16: numpy.uint16, _F32: numpy.float32, _U32: numpy.uint32}
+
+
+def _type_of(dtype):
+    for code, known in _DTYPES.items():
+        if numpy.dtype(dtype) == known:
+            return code
+    raise ValueError(f"{numpy.dtype(dtype)} is not one of uint8, uint16, float32, uint32")
+
+
+class Image(_Handle):
+    """A picture, with planes that may lie beside it.
+
+    Arrays have the shape (height, width) or (height, width, channels). Colours of uint8 and uint16
+    are sRGB, those of float32 are linear.
+    """
+
+    _kind = "image"
+
+    @classmethod
+    def read(cls, path):
+        """Reads a picture: PNG, TIFF, JPEG, WebP, PNM, PFM or OpenEXR."""
+        image = cls()
+        _call("image_read", _text(path), byref(image._handle))
+        return image
+
+    @classmethod
+    def from_array(cls, pixels):
+        """Makes a picture of an array (height, width), (height, width, 3) or (height, width, 4) of
+        uint8, uint16 or float32."""
+        pixels = numpy.ascontiguousarray(pixels)
+        if pixels.ndim not in (2, 3):
+            raise ValueError(f"an array of shape {pixels.shape} is no picture")
+        channels = pixels.shape[2] if pixels.ndim == 3 else 1
+        image = cls()
+        _call("image_from_pixels", pixels.shape[1], pixels.shape[0], channels,
+              _type_of(pixels.dtype), pixels.ctypes.data, pixels.nbytes, byref(image._handle))
+        return image
+
+    def _shape(self, plane):
+        sides = [c_int(), c_int(), c_int()]
+        _call("image_shape", self._handle, _PLANES[plane], *[byref(side) for side in sides])
+        return [side.value for side in sides]
+
+    def plane(self, name, dtype=None):
+        """Returns "color", "depth" (mm), "normal" or "id" as an array, or None when the image does
+        not have the plane. `dtype` of colours is uint8, uint16 or float32."""
+        width, height, channels = self._shape(name)
+        if width == 0:
+            return None
+        kind = {"color": _U8, "id": _U32}.get(name, _F32) if dtype is None else _type_of(dtype)
+        out = numpy.empty((height, width, channels), _DTYPES[kind])
+        _call("image_pixels", self._handle, _PLANES[name], kind, out.ctypes.data, out.nbytes)
+        return out[:, :, 0] if channels == 1 else out
+
+    @property
+    def size(self):
+        """Width and height in pixels."""
+        return tuple(self._shape("color")[:2])
+
+    @property
+    def pixels(self):
+        """Colours as uint8."""
+        return self.plane("color")
+
+    def __array__(self, dtype=None, copy=None):
+        return self.pixels if dtype is None else self.pixels.astype(dtype)
+
+    def save(self, path, plane="color", dtype=None):
+        """Writes a plane to a file; the extension decides the format."""
+        extension = os.fspath(path).rsplit(".", 1)[-1].lower()
+        kind = {"depth": _F32, "normal": _F32, "id": _U32}.get(plane)
+        if kind is None:
+            kind = _type_of(dtype or (numpy.float32 if extension in ("exr", "pfm")
+                                      else numpy.uint8))
+        _call("image_write", self._handle, _PLANES[plane], kind, _text(path))
+
+    def __repr__(self):
+        return "<corcast.Image of {} x {} pixels>".format(*self.size)
+
+    def _repr_png_(self):
+        """A notebook shows the picture."""
+        import tempfile
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "image.png"
+            self.save(path)
+            return path.read_bytes()
+
+
+class Scene(_Handle):
+    """The geometry, appearance and view of a tree; Tree.scene makes it."""
+
+    _kind = "scene"
+
+    def __init__(self, tree, options):
+        super().__init__()
+        self._options = _Options("render", options)
+        self._options.run("scene_new", tree._handle, self._options._handle, byref(self._handle))
+        self.report = None  # of the last picture: engine, seconds, rays
+
+    def render(self):
+        """Draws the scene; returns an Image."""
+        image, report = Image(), _ReportHandle()
+        self._options.run("render", self._handle, byref(image._handle), byref(report._handle))
+        self.report = Report(report.content())
+        return image
+
+
+def _image(picture):
+    if isinstance(picture, Image):
+        return picture
+    return Image.from_array(picture) if isinstance(picture, numpy.ndarray) else Image.read(picture)
+
+
+def compare(a, b, **options):
+    """Compares two pictures, B against A: paths, Images or arrays; options are those of `corcast
+    compare`. Returns a report with `agrees` and `cause`."""
+    options = _Options("compare", options)
+    a, b, report = _image(a), _image(b), _ReportHandle()
+    status = options.run("compare", a._handle, b._handle, options._handle, byref(report._handle),
+                         accept=(0, 1))
+    result = Report(report.content())
+    result.setdefault("agrees", status == 0)
+    return result
+
+
+class Mesh(_Handle):
+    """The surface of a tree as triangles; Tree.mesh makes it.
+
+    vertices: (n, 3) of float64, mm. triangles: (m, 3) of uint32, counter-clockwise seen from
+    outside. segments: (m) of uint32, the node index of the segment that a triangle belongs to.
+    """
+
+    _kind = "mesh"
+
+    def __init__(self, tree, options):
+        super().__init__()
+        options = _Options("export", options)
+        options.run("mesh_new", tree._handle, options._handle, byref(self._handle))
+        arrays = _Triangles()
+        _call("mesh_triangles", self._handle, byref(arrays))
+        self.vertices = _copy(arrays.vertices, (arrays.n_vertices, 3), numpy.float64)
+        self.triangles = _copy(arrays.indices, (arrays.n_triangles, 3), numpy.uint32)
+        self.segments = _copy(arrays.segments, (arrays.n_triangles,), numpy.uint32)
+
+    def __repr__(self):
+        return f"<corcast.Mesh of {len(self.triangles)} triangles>"
+
+
+class Page:
+    """A page for browsers in one file; a notebook shows it in a frame."""
+
+    def __init__(self, data):
+        self.html = data.decode("utf-8")
+
+    def save(self, path):
+        """Writes the page to a file."""
+        pathlib.Path(path).write_text(self.html, encoding="utf-8")
+
+    def _repr_html_(self):
+        from html import escape
+        return ('<iframe style="width:100%;height:640px;border:0" srcdoc="'
+                + escape(self.html, quote=True) + '"></iframe>')
+
+
+def figure(recipe, path, **options):
+    """Makes a figure of several panels: `recipe` describes them, `path` is the output (.pdf, .svg,
+    .png, .tif or .jpg); options are those of `corcast figure`."""
+    options = _Options("figure", options)
+    options.run("figure", _text(recipe), options._handle, _text(path))
