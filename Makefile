@@ -53,7 +53,7 @@ WARNINGS += $(if $(findstring clang,$(CC)),-Wno-double-promotion)
 WARNINGS += $(if $(strip $(CFLAGS)),,-Werror)
 OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
-OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+OPTIMISE_asan := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 OPTIMISE_fuzz := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 # Handles that were freed are found where speed does not matter [src/api/handle.c].
 FIND_FREED := $(if $(filter debug asan fuzz,$(MODE)),-DCORCAST_DEBUG)

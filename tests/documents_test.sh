@@ -240,7 +240,7 @@ test_formats_lists_the_keys_of_a_tree() {
 test_formats_lists_the_keys_of_a_tolerance() {
     sed -n '/^## Tolerances/,/^## /p' "$REPO/docs/FORMATS.md" | tr '\n' ' ' | sed 's/.*The keys: `\([^`]*\)`.*/\1/; s/\. .*//' |
         tr ' ' '\n' | grep . | sort >listed
-    sed -n 's/^    \(NUMBER(\|COUNT(\|{"\)\([a-z0-9_]*\).*/\2/p' "$REPO/src/compare/rules/tolerance.c" | sort >known
+    sed -n 's/^    \[LIMIT_[A-Z0-9_]*\] = {"\([a-z0-9_]*\)".*/\1/p' "$REPO/src/compare/rules/tolerance.c" | sort >known
     expect_same listed known
 }
 

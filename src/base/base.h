@@ -6,11 +6,11 @@
 #include "base/clock.h"      // IWYU pragma: export
 #include "base/elementary.h" // IWYU pragma: export
 #include "base/file.h"       // IWYU pragma: export
+#include "base/fileset.h"    // IWYU pragma: export
 #include "base/firstfail.h"  // IWYU pragma: export
 #include "base/hash.h"       // IWYU pragma: export
 #include "base/heap.h"       // IWYU pragma: export
 #include "base/ini.h"        // IWYU pragma: export
-#include "base/interrupt.h"  // IWYU pragma: export
 #include "base/isolated.h"   // IWYU pragma: export
 #include "base/json.h"       // IWYU pragma: export
 #include "base/keymap.h"     // IWYU pragma: export

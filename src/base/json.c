@@ -19,6 +19,14 @@ json_t *json_count(uint64_t n)
     return json_integer((json_int_t)n);
 }
 
+json_t *json_numbers(const double *values, size_t n)
+{
+    json_t *all = json_array();
+    for (size_t i = 0; i < n; i++)
+        all = json_with_item(all, json_number(values[i]));
+    return all;
+}
+
 json_t *json_text(const char *chars)
 {
     if (!chars)

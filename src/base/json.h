@@ -13,6 +13,8 @@
 json_t *json_number(double value);
 /* A number of things. */
 json_t *json_count(uint64_t n);
+/* An array of json_number, of `n` values. */
+json_t *json_numbers(const double *values, size_t n);
 /* A JSON string; what of `chars` is not UTF-8 is replaced as text_utf8 does. NULL when `chars` is
  * NULL, as the characters of a text that failed are. */
 json_t *json_text(const char *chars);

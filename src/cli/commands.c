@@ -6,17 +6,18 @@
 #include "cli/screen.h"
 #include "job/export/export.h"
 #include "job/export/scene.h"
+#include "job/picture/convert.h"
 #include <stdio.h>
 #include <string.h>
 
 const CommandRow command_rows[] = {
-    {&command_grow, run_grow},
-    {&command_refine, run_refine},
-    {&command_bifurcation, run_bifurcation},
+    {&command_grow, run_tree_maker},
+    {&command_refine, run_tree_maker},
+    {&command_bifurcation, run_tree_maker},
     {&command_study, run_study},
     {&command_info, run_info},
     {&command_certify, run_certify},
-    {&command_convert, run_convert},
+    {&command_convert, convert_run},
     {&command_scene, scene_run},
     {&command_export, export_run},
     {&command_povray, run_povray},
@@ -71,8 +72,7 @@ Status command_unknown(const char *name, Err *err)
 /* What is printed may be what is written, too. */
 static Status check_dump(const Parsed *parsed, Err *err)
 {
-    const Setting *output = parsed_find(parsed, "output", strlen("output"));
-    const char *path = output ? *(const char *const *)(output->base + output->option->where) : NULL;
+    const char *path = parsed_text(parsed, "output");
     if (!parsed->common.dump || (path && strcmp(path, "-") != 0))
         return STATUS_OK;
     return err_set(err, STATUS_USAGE, "--dump-recipe prints a recipe, so it needs -o FILE");
@@ -109,6 +109,7 @@ Status command_run(const Command *command, int argc, char **argv, Err *err)
     parsed.common.talk = &talk;
     if (status == STATUS_OK)
         status = run(&parsed, err);
+    (status_exit(status) < 2 ? screen_print_held : screen_drop_held)(&screen);
     if (status != STATUS_OK)
         options_name_fields(&parsed, err);
     parsed_release(&parsed);

@@ -11,10 +11,9 @@ extern const Command command_study, command_view, command_models, command_fields
 /* Works and prints; `options` are parsed->options. Errors are the command's. */
 typedef Status RunCommand(void *options, Parsed *parsed, Err *err);
 
-RunCommand run_grow, run_refine, run_bifurcation, run_study, run_info, run_certify, run_convert,
-    run_povray, run_render, run_merge, run_diagram, run_figure, run_view, run_verify, run_compare,
-    run_report, run_power, run_check_figure, run_models, run_list, run_colormaps, run_help,
-    run_version;
+RunCommand run_tree_maker, run_study, run_info, run_certify, run_render, run_povray, run_merge,
+    run_diagram, run_figure, run_view, run_verify, run_compare, run_report, run_power,
+    run_check_figure, run_models, run_list, run_colormaps, run_help, run_version;
 
 typedef struct CommandRow {
     const Command *command;

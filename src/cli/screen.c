@@ -3,7 +3,10 @@
 #include "cli/screen.h"
 
 #include "base/base.h"
+#include "cli/interrupt.h"
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 /* ", 12 s left" once there is something to tell it by, else nothing: after a hundredth of the work,
@@ -40,6 +43,9 @@ static void clear_line(Screen *screen)
 static void end_step(Screen *screen)
 {
     clear_line(screen);
+    if (screen->catches)
+        interrupt_release();
+    screen->catches = false;
     screen->what = NULL;
 }
 
@@ -55,11 +61,22 @@ static void show(Screen *screen, const char *what, double fraction)
     double now_s = clock_seconds();
     if (screen->quiet || now_s - screen->last_s < (screen->terminal ? 0.1 : 10))
         return;
+    screen_print_held(screen);
     screen->last_s = now_s;
     screen->shown = screen->terminal;
     fprintf(stderr, screen->terminal ? "\r%s %3.0f %%%s\033[K" : "%s: %.0f %%%s\n", what,
             100 * fraction, time_left(now_s - screen->start_s, fraction, left));
     fflush(stderr);
+}
+
+/* From the first question on, SIGINT does not end the program until the step has ended. */
+static bool is_enough(void *user)
+{
+    Screen *screen = user;
+    if (!screen->catches)
+        interrupt_catch();
+    screen->catches = true;
+    return interrupt_asked();
 }
 
 /* Never stops the operation: a signal does. */
@@ -69,16 +86,57 @@ static bool show_progress(void *user, const char *what, double fraction)
     return true;
 }
 
-static void print_sentence(void *user, TalkKind kind, const char *sentence)
+/* Takes the first sentence that is held back; the caller frees it. */
+static HeldSentence *take_held(Screen *screen)
+{
+    HeldSentence *first = screen->held;
+    if (first)
+        screen->held = first->next;
+    return first;
+}
+
+void screen_print_held(Screen *screen)
+{
+    screen->prompt = true;
+    if (screen->held)
+        clear_line(screen);
+    for (HeldSentence *held; (held = take_held(screen)); free(held))
+        fprintf(stderr, "corcast: %s\n", held->text);
+}
+
+void screen_drop_held(Screen *screen)
+{
+    for (HeldSentence *held; (held = take_held(screen)); free(held))
+        ;
+}
+
+/* Adds a copy of a sentence to those that are held back. Returns false without memory for it. */
+static bool hold(Screen *screen, const char *sentence)
+{
+    HeldSentence **end = &screen->held;
+    while (*end)
+        end = &(*end)->next;
+    *end = malloc(sizeof **end + strlen(sentence) + 1);
+    if (!*end)
+        return false;
+    (*end)->next = NULL;
+    strcpy((*end)->text, sentence);
+    return true;
+}
+
+static void take_sentence(void *user, TalkKind kind, const char *sentence)
 {
     Screen *screen = user;
+    if ((kind == TALK_NOTE && screen->quiet) || (!screen->prompt && hold(screen, sentence)))
+        return;
+    screen_print_held(screen);
     clear_line(screen);
-    if (kind == TALK_WARNING || !screen->quiet)
-        fprintf(stderr, "corcast: %s\n", sentence);
+    fprintf(stderr, "corcast: %s\n", sentence);
 }
 
 Talk screen_talk(Screen *screen, bool quiet)
 {
     *screen = (Screen){.quiet = quiet, .terminal = isatty(STDERR_FILENO)};
-    return (Talk){.say = print_sentence, .progress = show_progress, .user = screen};
+    return (Talk){
+        .say = take_sentence, .progress = show_progress, .enough = is_enough, .user = screen};
 }

@@ -1,7 +1,4 @@
-/* A format is a row: its name, what it can hold, and a function that appends it to texts. The texts
- * are written to temporary files, which get their final names together when all is written. After a
- * failure the user's files are therefore unchanged. Text for standard output is held back until
- * then, so that its reader gets all or nothing. */
+/* A format is a row: its name, what it can hold, and a function that appends it to texts. */
 #include "emit/rows.h"
 
 #include <string.h>
@@ -97,91 +94,12 @@ Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err)
                    emitter->description, models_of(emitter->elements).text);
 }
 
-/* What is written: the file, the second one, the settings, and what stands beside. Those that there
- * are stand in `files` one after another. */
-enum { SETTINGS = 2, BESIDE = 3, OUTPUTS = BESIDE + BESIDES };
-
-typedef struct Outputs {
-    Text text[OUTPUTS];
-    const char *path[OUTPUTS]; /* NULL: there is none */
-    OutFile files[OUTPUTS];
-    size_t n;
-} Outputs;
-
-static Status open_outputs(Outputs *outputs, Err *err)
+Status emit_write(const Emitter *emitter, const EmitParams *params, EmitOutput *to, Err *err)
 {
-    for (size_t i = 0; i < OUTPUTS; i++) {
-        OutFile *file = &outputs->files[outputs->n];
-        if (!outputs->path[i])
-            continue;
-        TRY(outfile_open(file, outputs->path[i], err));
-        outputs->text[i] = file->stream == stdout ? TEXT_INIT : TEXT_TO(file->stream);
-        outputs->n++;
-    }
-    return STATUS_OK;
-}
-
-/* Names the file that could not be written in a failure of I/O. Returns `status`. */
-static Status with_path(Status status, const Outputs *outputs, Err *err)
-{
-    size_t i = 0;
-    while (i + 1 < outputs->n && !ferror(outputs->files[i].stream))
-        i++;
-    if (status == STATUS_IO)
-        err_prefix(err, "%s: ", outputs->files[i].path);
-    return status;
-}
-
-/* Hands what has not flowed yet over to the text's stream. */
-static Status end_output(Text *text, FILE *stream, Err *err)
-{
-    Text held = TEXT_TO(stream);
-    if (stream != stdout)
-        return text_flush(text, err);
-    text_add(&held, text);
-    Status status = text_flush(&held, err);
-    text_release(&held);
-    return status;
-}
-
-static Status fill_outputs(const Emitter *emitter, const EmitParams *params, Outputs *outputs,
-                           EmitReport *report, Err *err)
-{
-    Text *text = outputs->text;
-    EmitOutput to = {&text[0], &text[1], report};
-    TRY(emitter->write(params, &to, err));
-    if (params->settings)
-        TRY(emitter->write_settings(params, &text[SETTINGS], err));
-    for (size_t i = 0; i < BESIDES; i++)
-        if (params->beside[i])
-            text_add(&text[BESIDE + i], params->beside[i]);
-    for (size_t i = 0, n = 0; i < OUTPUTS; i++)
-        if (outputs->path[i])
-            TRY(end_output(&text[i], outputs->files[n++].stream, err));
-    return STATUS_OK;
-}
-
-Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
-                  const char *second_path, EmitReport *report, Err *err)
-{
-    Outputs outputs = {.path = {path, second_path, params->settings_path}};
-    EmitReport written = {0};
-    Status status;
     if (is_of_scenes(emitter))
         TRY(emit_check_model(emitter, params->scene->geometry.model, err));
-    if (second_path && emitter->check_name)
+    if (params->second_file && emitter->check_name)
         TRY(emitter->check_name(params->second_file, err));
-    for (size_t i = 0; i < BESIDES; i++)
-        outputs.path[BESIDE + i] = params->beside_path[i];
-    TRY_GOTO(open_outputs(&outputs, err));
-    TRY_GOTO(with_path(fill_outputs(emitter, params, &outputs, &written, err), &outputs, err));
-    TRY_GOTO(outfiles_commit(outputs.files, outputs.n, err));
-    if (report)
-        *report = written;
-done:
-    for (size_t i = 0; i < OUTPUTS; i++) {
-        text_release(&outputs.text[i]);
-        outfile_discard(&outputs.files[i]);
-    }
-    return status;
+    TRY(emitter->write(params, to, err));
+    return params->settings ? emitter->write_settings(params, to->settings, err) : STATUS_OK;
 }

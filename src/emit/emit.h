@@ -12,15 +12,6 @@
  * model. */
 #define OPENSCAD_QUICK 100
 
-/* Files that may be written beside a mesh. */
-typedef enum EmitBeside {
-    BESIDE_MANIFEST,
-    BESIDE_ENDS,       /* a table of its ends */
-    BESIDE_CENTERLINE, /* its tree */
-    BESIDE_GMSH,       /* its surfaces and volumes by name, for gmsh */
-    BESIDES
-} EmitBeside;
-
 /* What an emitter writes. All pointers are borrowed. */
 typedef struct EmitParams {
     const Scene *scene;           /* for emitters of scenes */
@@ -29,19 +20,16 @@ typedef struct EmitParams {
     const VesselTree *vessels;    /* for emitters of curves; and for emitters of meshes, where the
                                    * labels of the mesh are indices of its segments */
     const Appearance *appearance; /* for emitters with has_colors */
-    const double *orders; /* for emitters with has_colors: Strahler order per segment index */
-    const MeshEnds *ends; /* for emitters with has_parts */
-    const Text *beside[BESIDES];      /* content of the files beside the mesh; NULL: none */
-    const char *beside_path[BESIDES]; /* their paths; NULL: the file is not written */
-    const char *templates;            /* the folder of templates, with a folder for each language */
-    const char *file;          /* name of the file as the file mentions it, without folders */
-    const char *second_file;   /* name of the second file; NULL: its content is in the first */
-    const char *description;   /* what the scene shows; line ends in it become blanks */
-    const char *settings;      /* name of the settings file; NULL: it is not written */
-    const char *settings_path; /* NULL if and only if `settings` is */
-    int antialias;             /* samples along a side of a pixel; 1: the program's default */
-    const char *generator;     /* program and version */
-    const char *command;       /* the command that makes the scene, in one line */
+    const double *orders;    /* for emitters with has_colors: Strahler order per segment index */
+    const MeshEnds *ends;    /* for emitters with has_parts */
+    const char *templates;   /* the folder of templates, with a folder for each language */
+    const char *file;        /* name of the file as the file mentions it, without folders */
+    const char *second_file; /* name of the second file; NULL: its content is in the first */
+    const char *description; /* what the scene shows; line ends in it become blanks */
+    const char *settings;    /* name of the settings file; NULL: it is not written */
+    int antialias;           /* samples along a side of a pixel; 1: the program's default */
+    const char *generator;   /* program and version */
+    const char *command;     /* the command that makes the scene, in one line */
     bool shadows;
     bool ids;              /* fields: adds the paint that the id plane needs */
     bool planes;           /* Tachyon: colours encode depth and segment */
@@ -63,6 +51,7 @@ typedef struct EmitReport {
 typedef struct EmitOutput {
     Text *file, *second; /* the second is used if params->second_file is not NULL */
     EmitReport *report;  /* zeroed before */
+    Text *settings;      /* used if params->settings is not NULL */
 } EmitOutput;
 
 /* A file format: one row of `emitters`. */
@@ -109,15 +98,10 @@ void emitter_extensions(bool of_meshes, Text *out);
  * it can hold. */
 MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err);
 
-/* Writes all files of a format: the file, the second file, the settings, and the files beside a
- * mesh. Either all of them appear under their final names, or none does.
- *
- * path         "-" is standard output.
- * second_path  NULL if and only if params->second_file is.
- * report       may be NULL.
- * Errors       as emit_check_model and Emitter.write. */
-MUST_CHECK Status emit_files(const Emitter *emitter, const EmitParams *params, const char *path,
-                             const char *second_path, EmitReport *report, Err *err);
+/* Appends the file, the second file and the settings file to the texts of *to. Errors: those of
+ * emit_check_model, Emitter.check_name, Emitter.write and Emitter.write_settings. */
+MUST_CHECK Status emit_write(const Emitter *emitter, const EmitParams *params, EmitOutput *to,
+                             Err *err);
 
 /* Estimates the load of a scene for POV-Ray from the number of its pieces. POV-Ray reads a scene of
  * load 1 in about ten seconds and 1 GB, if its vessels lie as in grown trees; it can hold a load of

@@ -107,9 +107,16 @@ const char parsed_memory[] = "the tree";
 
 void parsed_give(Parsed *parsed, const Tree *tree, const char *name)
 {
+    const Setting *from = parsed_find(parsed, "from", strlen("from"));
     parsed->given = tree;
-    parsed->operands[0] = name ? name : parsed_memory;
-    parsed->n_operands = 1;
+    parsed->given_name = name ? name : parsed_memory;
+    if (parsed->command->max_operands > 0) {
+        parsed->operands[0] = parsed->given_name;
+        parsed->n_operands = 1;
+    } else if (from) {
+        parsed->given_name = name ? name : from->option->argument;
+        *(const char **)(void *)(from->base + from->option->where) = parsed->given_name;
+    }
 }
 
 static Setting *find(const Parsed *parsed, const char *name, size_t length)
@@ -130,6 +137,12 @@ bool setting_is_common(const Parsed *parsed, const Setting *setting)
 const Setting *parsed_find(const Parsed *parsed, const char *name, size_t length)
 {
     return find(parsed, name, length);
+}
+
+const char *parsed_text(const Parsed *parsed, const char *name)
+{
+    const Setting *setting = parsed_find(parsed, name, strlen(name));
+    return setting ? *(const char *const *)(setting->base + setting->option->where) : NULL;
 }
 
 /* STATUS_USAGE with the sentence that is there already and the option that may have been meant. */

@@ -255,18 +255,20 @@ struct Parsed {
     Files files;      /* that operands and options name */
     const char *operands[MAX_OPERANDS];
     int n_operands;
-    const Tree *given; /* stands in for the first operand (parsed_give); borrowed; NULL: none */
-    bool in_memory;    /* the caller takes the result in memory: --output may be missing */
+    const Tree *given;      /* set by parsed_give; borrowed; NULL: none */
+    const char *given_name; /* set by parsed_give; borrowed; NULL: none */
+    bool in_memory;         /* the caller takes the result in memory: --output may be missing */
 };
 
 /* The command's options with their defaults, in *parsed (parsed_release). */
 MUST_CHECK Status parsed_init(Parsed *parsed, const Command *command, Err *err);
 void parsed_release(Parsed *parsed);
 
-/* Makes `tree` the first operand, in place of a file. The operand is then `name`, which sentences
- * and provenance contain: the path that the tree was read from. NULL calls the tree parsed_memory
- * in sentences, and names it in provenance as the help names the operand. Tree and name are
- * borrowed until parsed_release. Call it before operands are added. */
+/* Makes `tree` what the command reads: its first operand or, for a command without operands, the
+ * value of --from. `name` then stands for the tree in sentences and in provenance: the path that
+ * the tree was read from. NULL calls the tree parsed_memory in sentences, and names it in
+ * provenance as the help names the operand. Tree and name are borrowed until parsed_release. Call
+ * it before operands are added. */
 void parsed_give(Parsed *parsed, const Tree *tree, const char *name);
 extern const char parsed_memory[]; /* "the tree" */
 
@@ -332,6 +334,9 @@ void options_name_fields(const Parsed *parsed, Err *err);
 
 /* The option of this name, which may be longer than `length`; NULL when there is none. */
 const Setting *parsed_find(const Parsed *parsed, const char *name, size_t length);
+
+/* The text of an option whose value is a text or a path; NULL without one, or such an option. */
+const char *parsed_text(const Parsed *parsed, const char *name);
 
 /* ---- values ------------------------------------------------------------------------------------
  */

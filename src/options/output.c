@@ -4,7 +4,6 @@
 #include "options/output.h"
 
 #include "options/templates.h"
-#include "treeio/treeio.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -232,72 +231,19 @@ Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err)
     return status;
 }
 
-void print_columns_left_out(const char *command, const Tree *tree, const char *why)
+Status json_put(json_t *object, Text *text, Err *err)
 {
-    size_t left_out = 0;
-    for (size_t k = 0; k < tree->n_columns; k++) {
-        if (strcmp(tree->column[k].name, tree_pairs_name) == 0)
-            continue;
-        if (left_out++ == 0)
-            fprintf(stderr, "corcast %s: the columns ", command);
-        fprintf(stderr, "%s%.40s", left_out > 1 ? ", " : "", tree->column[k].name);
-    }
-    if (left_out > 0)
-        fprintf(stderr, " are left out: %s\n", why);
-}
-
-/* Nothing is allocated, which could fail: the file has been written. */
-static void print_left_out(const char *command, const Tree *tree, const char *path,
-                           const TreeLosses *lost)
-{
-    const struct {
-        bool is_lost;
-        const char *what;
-    } others[] = {{lost->types, "the types"},
-                  {lost->flow_shares, "the flow shares"},
-                  {lost->terminal_flow, "the key terminal_flow"},
-                  {lost->root_values, "the roots' values"},
-                  {lost->root_radii, "the roots' own radii"},
-                  {lost->lone_roots, "the roots without segments"}};
-    if (!lost->columns && !lost->types && !lost->flow_shares && !lost->terminal_flow &&
-        !lost->root_values && !lost->root_radii && !lost->lone_roots)
-        return;
-    fprintf(stderr, "corcast %s: ", command);
-    for (size_t k = 0, n = 0; k < tree->n_columns; k++)
-        if (!tree_format_keeps(path, &tree->column[k]))
-            fprintf(stderr, "%s%.40s", n++ ? ", " : "the columns ", tree->column[k].name);
-    for (size_t i = 0, n = lost->columns; i < sizeof others / sizeof *others; i++)
-        if (others[i].is_lost)
-            fprintf(stderr, "%s%s", n++ ? " and " : "", others[i].what);
-    fprintf(stderr, " are left out: the format has no place for them\n");
-}
-
-static void print_merged(const char *command, const TreeLosses *lost)
-{
-    if (lost->merged)
-        fprintf(stderr,
-                "corcast %s: nodes that lie where others do: %zu; the format tells nodes by their "
-                "places, so that such a segment may come back as none\n",
-                command, lost->merged);
-}
-
-Status output_tree(const char *command, const Tree *tree, const char *path, bool quiet, Err *err)
-{
-    TreeLosses lost = {0};
-    if (!quiet)
-        TRY(tree_format_losses(path, tree, &lost, err));
-    TRY(tree_write(tree, path, err));
-    print_left_out(command, tree, path, &lost);
-    print_merged(command, &lost);
-    return STATUS_OK;
+    text_json(text, object, 2);
+    text_puts(text, "\n");
+    return text_check(text, err);
 }
 
 Status json_write(json_t *object, const char *path, Err *err)
 {
     Text text = TEXT_INIT;
-    text_json(&text, object, 2);
-    text_puts(&text, "\n");
-    Status status = file_write_text(path, &text, err);
+    Status status = json_put(object, &text, err);
+    if (status == STATUS_OK)
+        status = file_write_text(path, &text, err);
     text_release(&text);
     return status;
 }

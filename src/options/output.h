@@ -1,5 +1,4 @@
-/* What the output of all commands has in common: provenance, JSON, and what is said of what a
- * format has no place for. */
+/* What the output of all commands has in common: provenance and JSON. */
 #ifndef CORCAST_OPTIONS_OUTPUT_H
 #define CORCAST_OPTIONS_OUTPUT_H
 
@@ -39,14 +38,9 @@ MUST_CHECK Status hash_option_files(const Parsed *parsed, Hash *hash, Err *err);
 /* Adds the command line to those that a tree's file says. */
 MUST_CHECK Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err);
 
-/* Says on standard error that the tree's columns but its pairs, if there are any, are not in what a
- * command writes, and why. */
-void print_columns_left_out(const char *command, const Tree *tree, const char *why);
-/* Writes a tree [tree_write] and, unless `quiet`, says likewise what the format of the file `path`
- * has no place for. STATUS_MEMORY, too. */
-MUST_CHECK Status output_tree(const char *command, const Tree *tree, const char *path, bool quiet,
-                              Err *err);
-
+/* Appends `object` to `text` as indented JSON with a final newline, and releases the reference,
+ * also after an error. Errors: STATUS_MEMORY, also if `object` is NULL or `text` has failed. */
+MUST_CHECK Status json_put(json_t *object, Text *text, Err *err);
 /* Writes `object` to `path` ("-": standard output) as indented JSON with a final newline, and lets
  * go of it. Numbers that are not finite must have been left out or set to null. */
 MUST_CHECK Status json_write(json_t *object, const char *path, Err *err);

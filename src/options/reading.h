@@ -9,13 +9,11 @@
 
 extern const OptionTable reading_table; /* sets a ReadOptions */
 
-/* Reads a tree as the options say, or copies the tree in memory that stands in for the first
- * operand.
+/* Reads a tree as the options say. If `path` is parsed->given_name, copies the tree in memory.
  *
  * Notes tell where loops were cut, which radii were replaced, which ends nearly touch, and which
  * unit the radii look like if it is another than the one used.
  *
- * path     parsed->operands[0] for the first operand.
  * reading  receives what was found; release it with reading_release. NULL: not wanted.
  * Errors   as tree_read_as; STATUS_USAGE for an option of reading if the tree is in memory. */
 MUST_CHECK Status reading_tree(const Parsed *parsed, const char *path, Tree *tree,
@@ -24,9 +22,5 @@ MUST_CHECK Status reading_tree(const Parsed *parsed, const char *path, Tree *tre
  * as tree_read_bytes. */
 MUST_CHECK Status reading_tree_bytes(const Parsed *parsed, const TreeBytes *file, Tree *tree,
                                      Err *err);
-
-/* What was found, as lines of `info` and as JSON. */
-void reading_print(const TreeReading *reading);
-json_t *reading_json(const TreeReading *reading);
 
 #endif

@@ -5,7 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static void say(const Talk *talk, TalkKind kind, const char *format, va_list values)
+__attribute__((format(printf, 3, 0))) static void say(const Talk *talk, TalkKind kind,
+                                                      const char *format, va_list values)
 {
     va_list again;
     if (!talk || !talk->say)
@@ -54,6 +55,12 @@ bool progress_show(Progress *progress, double fraction)
 bool progress_report(double fraction, void *progress)
 {
     return progress_show(progress, fraction);
+}
+
+bool progress_enough(void *progress)
+{
+    const Talk *talk = ((const Progress *)progress)->talk;
+    return talk && talk->enough && talk->enough(talk->user);
 }
 
 void progress_end(const Progress *progress)

@@ -10,7 +10,8 @@ typedef enum TalkKind {
     TALK_WARNING /* a fact that every user must know */
 } TalkKind;
 
-/* Both callbacks may be NULL. They are called by the thread that started the operation. */
+/* Each callback may be NULL. If not stated otherwise, the thread that started the
+ * operation calls it. */
 typedef struct Talk {
     /* Takes one sentence without a final newline; the sentence is borrowed during the call. */
     void (*say)(void *user, TalkKind kind, const char *sentence);
@@ -18,7 +19,11 @@ typedef struct Talk {
      * call with `what` NULL says that the step has ended, whether it is complete or has failed.
      * Returns false to stop the operation, which then fails with STATUS_CANCELLED. */
     bool (*progress)(void *user, const char *what, double fraction);
-    void *user; /* passed to both callbacks; borrowed */
+    /* Returns true if the caller wants the best result so far of an operation that improves one
+     * until it is stopped. The thread that started the operation calls it first, and any thread
+     * after every move. */
+    bool (*enough)(void *user);
+    void *user; /* passed to all callbacks; borrowed */
 } Talk;
 
 /* Formats a sentence, of any length, and passes it to `talk`, which may be NULL: then nobody
@@ -40,6 +45,9 @@ void progress_start(Progress *progress, const char *what, const Talk *talk);
 bool progress_show(Progress *progress, double fraction);
 /* Does what progress_show does, for the callbacks of lower modules, whose context is a Progress. */
 bool progress_report(double fraction, void *progress);
+/* Returns what Talk.enough does, false without one. For the stop callbacks of lower modules, whose
+ * context is a Progress. */
+bool progress_enough(void *progress);
 /* Ends a step. */
 void progress_end(const Progress *progress);
 

@@ -238,16 +238,16 @@ static void set_lights(Examiner *examiner, size_t brighter, int more)
 }
 
 /* What a ray hits. */
-typedef struct RayHit {
+typedef struct VisiblePoint {
     double t; /* INFINITY: neither vessel nor ground */
     ShadingInput at;
     uint32_t id; /* 0: the ground or nothing */
     Rgb color;
-} RayHit;
+} VisiblePoint;
 
 /* Returns the colour of a hit in the light that arrives there, with `more` points of light
  * `brighter` added. */
-static Rgb lit(Examiner *examiner, const RayHit *seen, size_t brighter, int more)
+static Rgb lit(Examiner *examiner, const VisiblePoint *seen, size_t brighter, int more)
 {
     if (seen->t == HUGE_VAL)
         return examiner->input->scene->view.background;
@@ -256,10 +256,11 @@ static Rgb lit(Examiner *examiner, const RayHit *seen, size_t brighter, int more
 }
 
 /* Returns the hit of the surface at `t`, without its colour. */
-static RayHit wall_at(const Examiner *examiner, Ray ray, double t)
+static VisiblePoint wall_at(const Examiner *examiner, Ray ray, double t)
 {
     const Scene *scene = examiner->input->scene;
-    RayHit seen = {.t = t, .at = {.point = ray_at(ray, t), .direction = ray.direction, .open = 1}};
+    VisiblePoint seen = {.t = t,
+                         .at = {.point = ray_at(ray, t), .direction = ray.direction, .open = 1}};
     const FieldSegment *wall = find_wall(examiner, ray, seen.at.point, &seen.at.normal);
     seen.id = scene->geometry.ids[wall->segment];
     seen.at.finish = &scene->appearance.finish;
@@ -273,24 +274,24 @@ static RayHit wall_at(const Examiner *examiner, Ray ray, double t)
 
 /* Finds what a ray hits whose first hit of a vessel is at `t`. Sets examiner->blockages for that
  * point. */
-static Status look_to(Examiner *examiner, Ray ray, double t, RayHit *seen, Err *err)
+static Status look_to(Examiner *examiner, Ray ray, double t, VisiblePoint *seen, Err *err)
 {
     const Ground *ground = &examiner->input->scene->view.ground;
     if (ground_hit(ground, ray, shadow_cache_start_mm, t, &t)) {
         bool below = vec3_dot(ground->normal, ray.direction) > 0;
-        *seen = (RayHit){t,
-                         {.finish = &ground->finish,
-                          .pigment = ground->color,
-                          .point = ray_at(ray, t),
-                          .normal = vec3_scale(ground->normal, below ? -1 : 1),
-                          .direction = ray.direction,
-                          .open = 1},
-                         0,
-                         {0, 0, 0}};
+        *seen = (VisiblePoint){t,
+                               {.finish = &ground->finish,
+                                .pigment = ground->color,
+                                .point = ray_at(ray, t),
+                                .normal = vec3_scale(ground->normal, below ? -1 : 1),
+                                .direction = ray.direction,
+                                .open = 1},
+                               0,
+                               {0, 0, 0}};
     } else if (t < HUGE_VAL) {
         *seen = wall_at(examiner, ray, t);
     } else {
-        *seen = (RayHit){.t = HUGE_VAL};
+        *seen = (VisiblePoint){.t = HUGE_VAL};
     }
     if (t < HUGE_VAL)
         TRY(examine_lights(examiner, seen->at.point, err));
@@ -304,11 +305,11 @@ static double root_of(const BlobRoots *roots, int number)
 }
 
 /* One ray of a pixel. */
-typedef struct Sample {
+typedef struct PixelSample {
     Ray ray;
     BlobRoots roots;
-    RayHit truth;
-} Sample;
+    VisiblePoint truth;
+} PixelSample;
 
 static int samples_of(const Examiner *examiner)
 {
@@ -316,7 +317,7 @@ static int samples_of(const Examiner *examiner)
     return n > 1 ? n * n + 1 : 1;
 }
 
-/* Returns the ray of a sample. Sample 0 is the pixel's centre. */
+/* Returns the ray of a sample. PixelSample 0 is the pixel's centre. */
 static Ray sample_ray(const Examiner *examiner, int i, int j, int sample)
 {
     const Camera *camera = &examiner->input->scene->view.camera;
@@ -328,7 +329,7 @@ static Ray sample_ray(const Examiner *examiner, int i, int j, int sample)
 }
 
 /* Returns the pixel's colour if sample `changed` had `color`. */
-static Rgb mean_with(const Examiner *examiner, const Sample *samples, int changed, Rgb color)
+static Rgb mean_with(const Examiner *examiner, const PixelSample *samples, int changed, Rgb color)
 {
     int n = samples_of(examiner);
     Rgb sum = {0, 0, 0};
@@ -342,14 +343,14 @@ static Rgb mean_with(const Examiner *examiner, const Sample *samples, int change
 }
 
 /* Returns true if A's pixel is explained by sample `changed` having `color`. */
-static bool explains(const Examiner *examiner, const Sample *samples, int changed, Rgb color,
+static bool explains(const Examiner *examiner, const PixelSample *samples, int changed, Rgb color,
                      size_t pixel)
 {
     return has_color(examiner, examiner->input->a, mean_with(examiner, samples, changed, color),
                      pixel);
 }
 
-static Status examine_sample(Examiner *examiner, Sample *sample, Err *err)
+static Status examine_sample(Examiner *examiner, PixelSample *sample, Err *err)
 {
     TRY(examine_field(examiner, sample->ray, render_nearest_mm(&examiner->input->scene->geometry),
                       HUGE_VAL, &sample->roots, err));
@@ -363,14 +364,14 @@ static Vec3 normal_at(const Rendering *side, size_t pixel)
 }
 
 /* Returns true if B shows what the field gives: point, normal, segment and colour. */
-static bool native_is_right(const Examiner *examiner, const Sample *samples, size_t pixel)
+static bool native_is_right(const Examiner *examiner, const PixelSample *samples, size_t pixel)
 {
     const Rendering *b = examiner->input->b;
     double t = (double)b->depth->values[pixel], root = root_of(&samples[0].roots, 0);
     if (isfinite(t) != isfinite(root))
         return false;
     if (isfinite(t)) {
-        RayHit wall = wall_at(examiner, samples[0].ray, root);
+        VisiblePoint wall = wall_at(examiner, samples[0].ray, root);
         if (!(fabs(t - root) <= 1e-6 + root * (double)FLT_EPSILON) ||
             !(vec3_distance(wall.at.normal, normal_at(b, pixel)) <= normal_tolerance) ||
             b->ids->ids[pixel] != wall.id)
@@ -389,12 +390,12 @@ static double radius_of(const Examiner *examiner, uint32_t id)
 }
 
 /* Returns true if A shows the surface at root `number`, within root_tolerance_radii. */
-static bool sees_root(const Examiner *examiner, const Sample *sample, int number, size_t pixel)
+static bool sees_root(const Examiner *examiner, const PixelSample *sample, int number, size_t pixel)
 {
     double t = (double)examiner->input->a->depth->values[pixel];
     if (number >= sample->roots.n || !isfinite(t))
         return false;
-    RayHit wall = wall_at(examiner, sample->ray, t);
+    VisiblePoint wall = wall_at(examiner, sample->ray, t);
     double radius = radius_of(examiner, wall.id), rounding = t * (double)FLT_EPSILON / radius;
     return fabs(t - sample->roots.t[number]) <= root_tolerance_radii * radius &&
            vec3_distance(wall.at.normal, normal_at(examiner->input->a, pixel)) <=
@@ -403,11 +404,11 @@ static bool sees_root(const Examiner *examiner, const Sample *sample, int number
 
 /* Returns the cosine between the ray of a sample and the normal at its first root; NAN without a
  * root. */
-static double grazing_of(const Examiner *examiner, const Sample *sample)
+static double grazing_of(const Examiner *examiner, const PixelSample *sample)
 {
     if (sample->roots.n == 0)
         return (double)NAN;
-    RayHit wall = wall_at(examiner, sample->ray, sample->roots.t[0]);
+    VisiblePoint wall = wall_at(examiner, sample->ray, sample->roots.t[0]);
     return fabs(vec3_dot(wall.at.normal, sample->ray.direction));
 }
 
@@ -436,7 +437,7 @@ static bool may_miss(const Examiner *examiner, const SettledPixel *found, double
 
 /* Settles the pixel if A shows a later root or nothing, and POV-Ray may have missed the first root.
  */
-static void find_missed(const Examiner *examiner, const Sample *sample, size_t pixel,
+static void find_missed(const Examiner *examiner, const PixelSample *sample, size_t pixel,
                         SettledPixel *found)
 {
     double cosine = grazing_of(examiner, sample);
@@ -451,7 +452,7 @@ static void find_missed(const Examiner *examiner, const Sample *sample, size_t p
 
 /* Settles the pixel if A shows the surface a little before or behind the first root, with the
  * normal and colour of that point. */
-static Status examine_inexact(Examiner *examiner, const Sample *sample, size_t pixel,
+static Status examine_inexact(Examiner *examiner, const PixelSample *sample, size_t pixel,
                               SettledPixel *found, Err *err)
 {
     double t = (double)examiner->input->a->depth->values[pixel];
@@ -461,7 +462,7 @@ static Status examine_inexact(Examiner *examiner, const Sample *sample, size_t p
     Rgb low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     TRY(examine_lights(examiner, ray_at(sample->ray, root), err));
     for (int k = -1; k <= 1; k++) {
-        RayHit wall = wall_at(examiner, sample->ray, root + k * by);
+        VisiblePoint wall = wall_at(examiner, sample->ray, root + k * by);
         Rgb color = lit(examiner, &wall, SIZE_MAX, 0);
         low = (Rgb){fminf(low.r, color.r), fminf(low.g, color.g), fminf(low.b, color.b)};
         high = (Rgb){fmaxf(high.r, color.r), fmaxf(high.g, color.g), fmaxf(high.b, color.b)};
@@ -473,8 +474,8 @@ static Status examine_inexact(Examiner *examiner, const Sample *sample, size_t p
 
 /* Returns true if more points of this light would explain A: up to those whose rays graze a
  * surface, at least one. */
-static bool misses_of_light(Examiner *examiner, const Sample *samples, int s, size_t pixel,
-                            const RayHit *seen, size_t light)
+static bool misses_of_light(Examiner *examiner, const PixelSample *samples, int s, size_t pixel,
+                            const VisiblePoint *seen, size_t light)
 {
     int most = examiner->blockages[light].n_grazing > 1 ? examiner->blockages[light].n_grazing : 1;
     for (int more = 1; more <= most; more++)
@@ -484,11 +485,11 @@ static bool misses_of_light(Examiner *examiner, const Sample *samples, int s, si
 }
 
 /* Settles the pixel if A is lit as if shadow rays of sample `s` to one light had missed a root. */
-static Status examine_shadows(Examiner *examiner, const Sample *samples, int s, size_t pixel,
+static Status examine_shadows(Examiner *examiner, const PixelSample *samples, int s, size_t pixel,
                               SettledPixel *found, Err *err)
 {
-    const Sample *sample = &samples[s];
-    RayHit seen;
+    const PixelSample *sample = &samples[s];
+    VisiblePoint seen;
     TRY(look_to(examiner, sample->ray, root_of(&sample->roots, 0), &seen, err));
     for (size_t i = 0; i < examiner->input->scene->view.n_lights && seen.t < HUGE_VAL; i++) {
         const LightBlockage *blockage = &examiner->blockages[i];
@@ -504,13 +505,13 @@ static Status examine_shadows(Examiner *examiner, const Sample *samples, int s, 
 }
 
 /* Settles the pixel if A's colour is explained by sample `s` having missed its first roots. */
-static Status examine_later_roots(Examiner *examiner, const Sample *samples, int s, size_t pixel,
-                                  SettledPixel *found, Err *err)
+static Status examine_later_roots(Examiner *examiner, const PixelSample *samples, int s,
+                                  size_t pixel, SettledPixel *found, Err *err)
 {
-    const Sample *sample = &samples[s];
+    const PixelSample *sample = &samples[s];
     double cosine = grazing_of(examiner, sample);
     for (int k = 1; k <= sample->roots.n && may_miss(examiner, found, cosine); k++) {
-        RayHit seen;
+        VisiblePoint seen;
         TRY(look_to(examiner, sample->ray, root_of(&sample->roots, k), &seen, err));
         if (!explains(examiner, samples, s, seen.color, pixel))
             continue;
@@ -521,8 +522,8 @@ static Status examine_later_roots(Examiner *examiner, const Sample *samples, int
     return STATUS_OK;
 }
 
-static Status examine_samples(Examiner *examiner, Sample *samples, size_t pixel, unsigned beyond,
-                              SettledPixel *found, Err *err)
+static Status examine_samples(Examiner *examiner, PixelSample *samples, size_t pixel,
+                              unsigned beyond, SettledPixel *found, Err *err)
 {
     int n = samples_of(examiner);
     for (int s = 0; s < n; s++) {
@@ -551,7 +552,7 @@ static Status examine_samples(Examiner *examiner, Sample *samples, size_t pixel,
 static Status examine_blob(Examiner *examiner, size_t pixel, unsigned beyond, SettledPixel *found,
                            Err *err)
 {
-    Sample *samples;
+    PixelSample *samples;
     TRY(mem_calloc(&samples, (size_t)samples_of(examiner), sizeof *samples, "samples", err));
     Status status = examine_samples(examiner, samples, pixel, beyond, found, err);
     free(samples);

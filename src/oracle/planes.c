@@ -2,7 +2,6 @@
 #include "oracle/planes.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 void planes_release(OraclePlanes *planes)
 {
@@ -16,14 +15,23 @@ Status planes_write_scene(const EmitParams *params, const char *extension, const
 {
     const Emitter *emitter = emitter_find(extension, false);
     EmitParams named = *params;
-    char suffix[24], *second = NULL;
+    EmitReport report = {0};
+    FileSet files = {0};
+    FileSlot *at = files.at;
+    EmitOutput to = {&at[0].text, &at[1].text, &report, NULL};
+    char suffix[24];
+    Status status;
+    TRY_GOTO(mem_strdup(&at[0].path, path, err));
+    named.file = file_name(path);
     if (emitter->second_extension) {
         snprintf(suffix, sizeof suffix, ".%s", emitter->second_extension);
-        TRY(file_with_suffix(path, suffix, &second, err));
-        named.second_file = file_name(second);
+        TRY_GOTO(file_with_suffix(path, suffix, &at[1].path, err));
+        named.second_file = file_name(at[1].path);
     }
-    named.file = file_name(path);
-    Status status = emit_files(emitter, &named, path, second, NULL, err);
-    free(second);
+    TRY_GOTO(fileset_open(&files, err));
+    TRY_GOTO(fileset_failed(&files, emit_write(emitter, &named, &to, err), err));
+    status = fileset_commit(&files, err);
+done:
+    fileset_release(&files);
     return status;
 }

@@ -15,7 +15,8 @@ typedef struct OraclePlanes {
 void planes_release(OraclePlanes *planes);
 
 /* Writes a scene as a file for the program that reads the extension of `path`, and beside it the
- * second file if the format has one. Ignores the file names in `params`. Errors: as emit_files. */
+ * second file if the format has one. Ignores the file names in `params`. Errors: those of
+ * emit_write, fileset_open and fileset_commit. */
 MUST_CHECK Status planes_write_scene(const EmitParams *params, const char *extension,
                                      const char *path, Err *err);
 

@@ -251,19 +251,10 @@ Status povray_draw(const PovrayParams *params, PovrayRun *run, Err *err)
 
 /* ---- planes ---------------------------------------------------------------------------------- */
 
-static Status read_deep(Picture *picture, const char *path, Err *err)
+static Status take_depth(const Picture *picture, const Scene *scene, Plane *depth, Err *err)
 {
-    TRY(picture_read(picture, path, ALPHA_REFUSED, err));
-    if (picture->channels == 3 && picture->bits == 16)
-        return STATUS_OK;
-    picture_release(picture);
-    return err_set(err, STATUS_INPUT, "%s: is not a plane of POV-Ray's: it has not 3 x 16 bits",
-                   path);
-}
-
-static Status take_depth(const Picture *picture, double near_mm, double far_mm, Plane *depth,
-                         Err *err)
-{
+    double near_mm, far_mm;
+    camera_depth_range(&scene->view.camera, scene->geometry.bounds, &near_mm, &far_mm);
     TRY(plane_init(depth, picture->width, picture->height, 1, err));
     size_t pixels = (size_t)picture->width * (size_t)picture->height;
     for (size_t i = 0; i < pixels; i++) {
@@ -275,40 +266,24 @@ static Status take_depth(const Picture *picture, double near_mm, double far_mm, 
     return STATUS_OK;
 }
 
-Status povray_read_depth(Plane *depth, const char *path, double near_mm, double far_mm, Err *err)
+/* Takes the ids from the blue channel of a picture of depth and ids. */
+static Status take_blue_ids(const Picture *picture, IdPlane *ids, Err *err)
 {
-    Picture picture;
-    TRY(read_deep(&picture, path, err));
-    Status status = take_depth(&picture, near_mm, far_mm, depth, err);
-    picture_release(&picture);
-    return status;
+    TRY(idplane_init(ids, picture->width, picture->height, err));
+    size_t pixels = (size_t)picture->width * (size_t)picture->height;
+    for (size_t i = 0; i < pixels; i++)
+        ids->ids[i] = picture->codes16[3 * i + 2];
+    return STATUS_OK;
 }
 
-Status povray_read_depth_ids(Plane *depth, IdPlane *ids, const char *path, double near_mm,
-                             double far_mm, Err *err)
+static Status take_normal(const Picture *picture, Plane *normal, Err *err)
 {
-    Picture picture;
-    TRY(read_deep(&picture, path, err));
-    Status status = take_depth(&picture, near_mm, far_mm, depth, err);
-    if (status == STATUS_OK)
-        status = idplane_init(ids, picture.width, picture.height, err);
-    size_t pixels = (size_t)picture.width * (size_t)picture.height;
-    for (size_t i = 0; status == STATUS_OK && i < pixels; i++)
-        ids->ids[i] = picture.codes16[3 * i + 2];
-    picture_release(&picture);
-    return status;
-}
-
-Status povray_read_normal(Plane *normal, const char *path, Err *err)
-{
-    Picture picture;
-    TRY(read_deep(&picture, path, err));
-    Status status = plane_init(normal, picture.width, picture.height, 3, err);
-    size_t pixels = (size_t)picture.width * (size_t)picture.height;
-    for (size_t i = 0; status == STATUS_OK && i < pixels; i++) {
-        const uint16_t *code = &picture.codes16[3 * i];
+    TRY(plane_init(normal, picture->width, picture->height, 3, err));
+    size_t pixels = (size_t)picture->width * (size_t)picture->height;
+    for (size_t i = 0; i < pixels; i++) {
+        const uint16_t *code = &picture->codes16[3 * i];
         if (code[0] == 0 && code[1] == 0 && code[2] == 0)
-            continue; /* nothing seen: no unit vector is (-1, -1, -1) */
+            continue; /* nothing is visible: no unit vector is (-1, -1, -1) */
         double xyz[3], square = 0;
         for (int c = 0; c < 3; c++) {
             xyz[c] = 2 * code[c] / 65535.0 - 1;
@@ -317,17 +292,7 @@ Status povray_read_normal(Plane *normal, const char *path, Err *err)
         for (int c = 0; c < 3; c++)
             normal->values[3 * i + (size_t)c] = (float)(xyz[c] / sqrt(square));
     }
-    picture_release(&picture);
-    return status;
-}
-
-Status povray_read_ids(IdPlane *ids, const char *path, Err *err)
-{
-    Picture picture;
-    TRY(picture_read(&picture, path, ALPHA_REFUSED, err));
-    Status status = ids_take_picture(ids, &picture, err);
-    picture_release(&picture);
-    return status;
+    return STATUS_OK;
 }
 
 Status picture_take_alpha(Picture *alpha, const Picture *picture, Err *err)
@@ -340,11 +305,31 @@ Status picture_take_alpha(Picture *alpha, const Picture *picture, Err *err)
     return STATUS_OK;
 }
 
-Status povray_read_alpha(Picture *alpha, const char *path, Err *err)
+Status povray_take_plane(PovrayPlane plane, Picture *picture, const Scene *scene,
+                         OraclePlanes *planes, Err *err)
 {
-    Picture picture;
-    TRY(picture_read(&picture, path, ALPHA_KEPT, err));
-    Status status = picture_take_alpha(alpha, &picture, err);
-    picture_release(&picture);
-    return status;
+    const bool deep = plane == POVRAY_DEPTH || plane == POVRAY_NORMAL || plane == POVRAY_DEPTH_ID;
+    Frame *frame = &planes->frame;
+    if (deep && (picture->channels != 3 || picture->bits != 16))
+        return err_set(err, STATUS_INPUT, "is not a plane of POV-Ray's: it has not 3 x 16 bits");
+    switch (plane) {
+    case POVRAY_COLOR:
+        planes->picture = *picture;
+        *picture = (Picture){0};
+        return STATUS_OK;
+    case POVRAY_DEPTH_ID:
+        TRY(take_blue_ids(picture, &frame->id, err));
+        return take_depth(picture, scene, &frame->depth, err);
+    case POVRAY_DEPTH:
+        return take_depth(picture, scene, &frame->depth, err);
+    case POVRAY_NORMAL:
+        return take_normal(picture, &frame->normal, err);
+    case POVRAY_ID:
+        return ids_take_picture(&frame->id, picture, err);
+    case POVRAY_ALPHA:
+        return picture_take_alpha(&planes->alpha, picture, err);
+    case POVRAY_PLANES:
+        break;
+    }
+    return STATUS_OK;
 }

@@ -2,7 +2,7 @@
 #ifndef CORCAST_ORACLE_POVRAY_H
 #define CORCAST_ORACLE_POVRAY_H
 
-#include "image/image.h"
+#include "oracle/planes.h"
 #include "oracle/program.h"
 
 /* What a run of POV-Ray draws. Scenes of corcast read the value from Corcast_Plane. */
@@ -52,20 +52,17 @@ MUST_CHECK Status povray_draw(const PovrayParams *params, PovrayRun *run, Err *e
  * *out (owned). Errors: STATUS_MEMORY. */
 MUST_CHECK Status povray_command(const PovrayParams *params, char **out, Err *err);
 
-/* Read a picture that povray_draw wrote. Each fills in new planes, owned by the caller.
+/* Decodes the picture of a run into new members of `planes`: the colours; depth in mm along the
+ * ray, INFINITY where nothing is visible; unit normals, 0 0 0 where nothing is visible; ids; or
+ * alpha.
  *
- * depth    mm along the ray; INFINITY where nothing is visible.
- * normal   unit vectors; 0 0 0 where nothing is visible.
- * near_mm, far_mm  the depths that the scene encodes as the codes 0 and 65535.
- * Errors   STATUS_INPUT if the file is not such a plane, STATUS_IO, STATUS_MEMORY. */
-MUST_CHECK Status povray_read_depth(Plane *depth, const char *path, double near_mm, double far_mm,
-                                    Err *err);
-MUST_CHECK Status povray_read_normal(Plane *normal, const char *path, Err *err);
-MUST_CHECK Status povray_read_ids(IdPlane *ids, const char *path, Err *err);
-MUST_CHECK Status povray_read_depth_ids(Plane *depth, IdPlane *ids, const char *path,
-                                        double near_mm, double far_mm, Err *err);
-/* Reads the alpha of a picture file as a grey 8-bit picture. Errors as above. */
-MUST_CHECK Status povray_read_alpha(Picture *alpha, const char *path, Err *err);
+ * picture  is emptied if its codes become the colours. Release it in any case.
+ * scene    tells the depths that the codes 0 and 65535 stand for.
+ * planes   release them with planes_release, also after an error.
+ * Errors   STATUS_INPUT if it is not such a picture, STATUS_MEMORY. The sentence has no file
+ *          name. */
+MUST_CHECK Status povray_take_plane(PovrayPlane plane, Picture *picture, const Scene *scene,
+                                    OraclePlanes *planes, Err *err);
 
 /* Extracts the alpha of an 8-bit picture as a new grey 8-bit picture. A picture without alpha gives
  * white. Errors: STATUS_MEMORY. */

@@ -28,12 +28,12 @@ enum { MIN_TILE_SIDE = 8 };
 static const double max_load_at_once = 2;
 
 static const char *const plane_names[POVRAY_PLANES] = {
-    [POVRAY_COLOR] = "povray",
-    [POVRAY_DEPTH] = "povray.depth",
-    [POVRAY_NORMAL] = "povray.normal",
-    [POVRAY_ID] = "povray.id",
-    [POVRAY_DEPTH_ID] = "povray.depth-id",
-    [POVRAY_ALPHA] = "povray.alpha",
+    [POVRAY_COLOR] = "povray.png",
+    [POVRAY_DEPTH] = "povray.depth.png",
+    [POVRAY_NORMAL] = "povray.normal.png",
+    [POVRAY_ID] = "povray.id.png",
+    [POVRAY_DEPTH_ID] = "povray.depth-id.png",
+    [POVRAY_ALPHA] = "povray.alpha.png",
 };
 
 /* The planes that are drawn. The colours are the first. */
@@ -203,16 +203,20 @@ static Status find_tiles(const SceneSource *source, SceneTiles *tiles, Err *err)
     }
 }
 
-/* Sets *path (owned) to "scene.pov" in the folder, or with several tiles to "scene.tile-07.pov". */
+/* Sets *path (owned) to the file `name` of a tile: in the folder "scene.pov", or with several tiles
+ * "scene.tile-07.pov". */
 static Status tile_path(const PovrayTilesParams *params, const SceneTiles *tiles, size_t index,
-                        const char *name, const char *extension, char **path, Err *err)
+                        const char *name, char **path, Err *err)
 {
     char file[80];
-    int digits = snprintf(NULL, 0, "%zu", tiles->n);
+    const char *extension = file_extension(name);
+    const int digits = snprintf(NULL, 0, "%zu", tiles->n);
+    const int length = (int)(extension - name) - 1;
     if (tiles->n == 1)
-        snprintf(file, sizeof file, "%s.%s", name, extension);
+        snprintf(file, sizeof file, "%s", name);
     else
-        snprintf(file, sizeof file, "%s.tile-%0*zu.%s", name, digits, index + 1, extension);
+        snprintf(file, sizeof file, "%.*s.tile-%0*zu.%s", length, name, digits, index + 1,
+                 extension);
     return file_join(params->folder, file, path, err);
 }
 
@@ -225,7 +229,7 @@ static Status write_scene(const SceneSource *source, const SceneTiles *tiles, si
 {
     SceneTile *tile = &tiles->tile[index];
     char **path = ids ? &tile->ids : &tile->scene;
-    TRY(tile_path(source->params, tiles, index, ids ? "ids" : "scene", "pov", path, err));
+    TRY(tile_path(source->params, tiles, index, ids ? "ids.pov" : "scene.pov", path, err));
     const EmitParams params = emit_params(source, ids, tiles->cut ? &tile->rect : NULL);
     return planes_write_scene(&params, "pov", *path, err);
 }
@@ -292,8 +296,7 @@ static bool report_plane(double fraction, void *context)
     run->fraction = fraction;
     for (size_t i = 0; i < all->n_runs; i++)
         sum += all->run[i].fraction;
-    bool goes_on =
-        all->params.progress(sum / (double)all->n_runs, all->params.progress_context);
+    bool goes_on = all->params.progress(sum / (double)all->n_runs, all->params.progress_context);
     pthread_mutex_unlock(&all->lock);
     return goes_on;
 }
@@ -319,7 +322,7 @@ static Status prepare_run(PovrayTiles *all, size_t index, Err *err)
     const PovrayPlane plane = all->planes.plane[index % all->planes.n];
     bool ids = tile->ids && (plane == POVRAY_ID || plane == POVRAY_DEPTH_ID);
     PlaneRun *run = &all->run[index];
-    TRY(tile_path(params, &all->tiles, tile_index, plane_names[plane], "png", &run->output, err));
+    TRY(tile_path(params, &all->tiles, tile_index, plane_names[plane], &run->output, err));
     run->all = all;
     run->params =
         (PovrayParams){.program = params->program,
@@ -382,61 +385,41 @@ static Status add_tile(const char *path, const PixelRect *rect, Picture *plane, 
     return STATUS_OK;
 }
 
-/* Puts the tiles of a plane together at `path`, and removes the files of the tiles. `place` is the
- * index of the plane in PovrayTiles.planes. */
-static Status join_plane(const PovrayTiles *all, size_t place, const char *path, Err *err)
+/* Puts the tiles of a plane together, writes the whole to `path`, and removes the files of the
+ * tiles. `place` is the index of the plane in PovrayTiles.planes. */
+static Status join_plane(const PovrayTiles *all, size_t place, const char *path, Picture *joined,
+                         Err *err)
 {
     bool srgb = all->planes.plane[place] == POVRAY_COLOR && all->params.bits == 8;
     size_t each = all->planes.n;
-    Picture joined = {0};
     Status status = STATUS_OK;
     for (size_t i = 0; i < all->tiles.n; i++)
         TRY_GOTO(
-            add_tile(all->run[i * each + place].output, &all->tiles.tile[i].rect, &joined, err));
-    status = picture_write(&joined, path, srgb ? ENCODING_SRGB : ENCODING_LINEAR, NULL, NULL, err);
+            add_tile(all->run[i * each + place].output, &all->tiles.tile[i].rect, joined, err));
+    status = picture_write(joined, path, srgb ? ENCODING_SRGB : ENCODING_LINEAR, NULL, NULL, err);
 done:
     for (size_t i = 0; i < all->tiles.n; i++)
         unlink(all->run[i * each + place].output);
-    picture_release(&joined);
     return status;
-}
-
-static Status read_plane(const Scene *scene, PovrayPlane plane, const char *path,
-                         OraclePlanes *planes, Err *err)
-{
-    double near_mm, far_mm;
-    Frame *frame = &planes->frame;
-    camera_depth_range(&scene->view.camera, scene->geometry.bounds, &near_mm, &far_mm);
-    switch (plane) {
-    case POVRAY_COLOR:
-        return picture_read(&planes->picture, path, ALPHA_REFUSED, err);
-    case POVRAY_DEPTH:
-        return povray_read_depth(&frame->depth, path, near_mm, far_mm, err);
-    case POVRAY_NORMAL:
-        return povray_read_normal(&frame->normal, path, err);
-    case POVRAY_ID:
-        return povray_read_ids(&frame->id, path, err);
-    case POVRAY_DEPTH_ID:
-        return povray_read_depth_ids(&frame->depth, &frame->id, path, near_mm, far_mm, err);
-    case POVRAY_ALPHA:
-        return povray_read_alpha(&planes->alpha, path, err);
-    case POVRAY_PLANES:
-        break;
-    }
-    return STATUS_OK;
 }
 
 static Status take_plane(const PovrayTiles *all, size_t place, OraclePlanes *planes, Err *err)
 {
-    PovrayPlane plane = all->planes.plane[place];
-    char file[40], *path = NULL;
+    const PovrayPlane plane = all->planes.plane[place];
+    char *path = NULL;
+    Picture picture = {0};
     Status status;
-    snprintf(file, sizeof file, "%s.png", plane_names[plane]);
-    TRY_GOTO(file_join(all->params.folder, file, &path, err));
+    TRY_GOTO(file_join(all->params.folder, plane_names[plane], &path, err));
     if (all->tiles.n > 1)
-        TRY_GOTO(join_plane(all, place, path, err));
-    status = read_plane(all->params.emit.scene, plane, path, planes, err);
+        TRY_GOTO(join_plane(all, place, path, &picture, err));
+    else
+        TRY_GOTO(
+            picture_read(&picture, path, plane == POVRAY_ALPHA ? ALPHA_KEPT : ALPHA_REFUSED, err));
+    status = povray_take_plane(plane, &picture, all->params.emit.scene, planes, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", path);
 done:
+    picture_release(&picture);
     free(path);
     return status;
 }

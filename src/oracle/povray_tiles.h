@@ -32,7 +32,7 @@ typedef struct PovrayTiles PovrayTiles;
  *
  * tiles   set on success; release it with povraytiles_free.
  * Errors  STATUS_INFEASIBLE if POV-Ray cannot hold the smallest tile, STATUS_USAGE if the picture
- *         is too small for `min_tiles`; and as emit_files. */
+ *         is too small for `min_tiles`; and as emit_write. */
 MUST_CHECK Status povraytiles_prepare(const PovrayTilesParams *params, PovrayTiles **tiles,
                                       Err *err);
 

@@ -74,12 +74,13 @@ typedef struct Workplace {
 static Status add_name(Workplace *place, const char *name, char **out, Err *err)
 {
     char *path = NULL;
-    TRY(file_join(place->folder, name, &path, err));
-    Status status = file_remove_on_signal(path, err);
-    if (status == STATUS_OK)
-        *out = path;
-    else
-        free(path);
+    Status status;
+    TRY_GOTO(file_join(place->folder, name, &path, err));
+    TRY_GOTO(file_remove_on_signal(path, err));
+    *out = path;
+    path = NULL;
+done:
+    free(path);
     return status;
 }
 
@@ -245,56 +246,68 @@ static Status check_life(const Program *program, const Log *log, Err *err)
     return STATUS_OK;
 }
 
+/* One run of the program. */
+typedef struct ProgramProcess {
+    const Program *program;
+    char *const *arguments; /* ends with NULL */
+    const char *folder;     /* the working folder */
+    const Workplace *place;
+    Log log;
+    pid_t child;
+    int ended; /* as waitpid has it; 0 if the program was killed after its picture was whole */
+} ProgramProcess;
+
 /* Waits until the program itself has ended. A process that it has started may keep the pipe open
  * longer, and the program may close the pipe earlier. Reads what is left in the pipe. */
-static Status attend(const Program *program, pid_t child, int handle, const char *picture, Log *log,
-                     int *ended, Err *err)
+static Status attend(ProgramProcess *process, int handle, Err *err)
 {
     enum { WAIT_MS = 100, SHORT_WAIT_MS = 2, LAST_READS = 8 };
+    const Program *program = process->program;
+    Log *log = &process->log;
     bool open = true;
     log->heard_s = log->progress_s = clock_seconds();
-    while (waitpid(child, ended, WNOHANG) == 0) {
+    while (waitpid(process->child, &process->ended, WNOHANG) == 0) {
         if (open)
             open = hear(program, handle, WAIT_MS, log);
         else
             poll(NULL, 0, SHORT_WAIT_MS);
-        if (is_done(program, child, &log->text, picture)) {
-            *ended = 0;
-            return end_program(child, text_check(&log->text, err));
+        if (is_done(program, process->child, &log->text, process->place->picture)) {
+            process->ended = 0;
+            return end_program(process->child, text_check(&log->text, err));
         }
         Status status = check_life(program, log, err);
         if (status != STATUS_OK)
-            return end_program(child, status);
+            return end_program(process->child, status);
     }
     for (int i = 0; open && i < LAST_READS; i++)
         open = hear(program, handle, 0, log);
     return text_check(&log->text, err);
 }
 
-/* Starts the program and waits for it. *log receives its output. */
-static Status run_program(const Program *program, char *const *arguments, const char *folder,
-                          const Workplace *place, Log *log, int *exit_status, Err *err)
+static Status not_started(const Program *program, Err *err)
 {
-    int pipe_ends[2], ended = 0;
+    return err_set(err, STATUS_TOOL, "%s cannot be started: %s", program->name, strerror(errno));
+}
+
+/* Starts the program and waits for it. */
+static Status run_program(ProgramProcess *process, Err *err)
+{
+    int pipe_ends[2];
     if (pipe2(pipe_ends, O_CLOEXEC) != 0)
-        return err_set(err, STATUS_TOOL, "%s cannot be started: %s", program->name,
-                       strerror(errno));
-    pid_t child = fork();
+        return not_started(process->program, err);
+    const pid_t child = process->child = fork();
     if (child == 0)
-        become_program(arguments, folder, place->handle, pipe_ends[1]);
+        become_program(process->arguments, process->folder, process->place->handle, pipe_ends[1]);
     if (child > 0) {
         setpgid(child, child); /* in both processes, because either may run first */
         file_kill_on_signal(child);
     }
     close(pipe_ends[1]);
     Status status =
-        child < 0
-            ? err_set(err, STATUS_TOOL, "%s cannot be started: %s", program->name, strerror(errno))
-            : attend(program, child, pipe_ends[0], place->picture, log, &ended, err);
+        child < 0 ? not_started(process->program, err) : attend(process, pipe_ends[0], err);
     if (child > 0)
         file_spare_on_signal(child);
     close(pipe_ends[0]);
-    *exit_status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
     return status;
 }
 
@@ -312,11 +325,12 @@ static Status find_output(const Program *program, char **output, Err *err)
 Status program_draw(const Program *program, Text *printed, double *seconds, Err *err)
 {
     Arguments arguments = {0};
-    Log log = {.text = TEXT_INIT};
     Workplace place = {.handle = -1};
+    ProgramProcess process = {
+        .program = program, .arguments = arguments.list, .place = &place, .log.text = TEXT_INIT};
+    const Text *log = &process.log.text;
     char *scene = NULL, *folder = NULL, *output = NULL;
-    double start_s = clock_seconds();
-    int exit_status = 0;
+    const double start_s = clock_seconds();
     TRY(file_check_regular(program->scene, err));
     scene = realpath(program->scene, NULL);
     if (!scene)
@@ -328,13 +342,15 @@ Status program_draw(const Program *program, Text *printed, double *seconds, Err 
     TRY_GOTO(open_workplace(&place, scene, output, err));
     TRY_GOTO(program->add_arguments(program->context, PROGRAM_FOLDER PROGRAM_SCENE,
                                     PROGRAM_FOLDER PRIVATE_PICTURE, &arguments, err));
-    TRY_GOTO(run_program(program, arguments.list, folder, &place, &log, &exit_status, err));
+    process.folder = folder;
+    TRY_GOTO(run_program(&process, err));
+    const int exit_status = WIFEXITED(process.ended) ? WEXITSTATUS(process.ended) : -1;
     if (exit_status == STATUS_NOT_STARTED)
         TRY_GOTO(err_set(err, STATUS_TOOL,
                          "%s is needed and '%s' cannot be started; on Debian: apt install %s",
                          program->name, arguments.list[0], program->package));
-    TRY_GOTO(program->judge(program->context, &log.text, exit_status, place.picture, err));
-    text_add(printed, &log.text);
+    TRY_GOTO(program->judge(program->context, log, exit_status, place.picture, err));
+    text_add(printed, log);
     TRY_GOTO(text_check(printed, err));
     status = file_rename(place.picture, output, err);
     place.picture = NULL;
@@ -342,7 +358,7 @@ Status program_draw(const Program *program, Text *printed, double *seconds, Err 
 done:
     close_workplace(&place);
     arguments_release(&arguments);
-    text_release(&log.text);
+    text_release(&process.log.text);
     free(output);
     free(folder);
     free(scene);

@@ -1,4 +1,4 @@
-/* The command is a process group of its own, for a signal to end whole. */
+/* The command is a process group, so that a signal can end all of it. */
 #include "oracle/shell.h"
 
 #include <errno.h>
@@ -38,7 +38,7 @@ Status shell_run(const char *command, bool heard, int *exit_status, Err *err)
         become_command(command, heard);
     if (child < 0)
         return err_set(err, STATUS_TOOL, "no command can be started: %s", strerror(errno));
-    setpgid(child, child); /* here as in the child: whoever comes first */
+    setpgid(child, child); /* in both processes, because either may run first */
     file_kill_on_signal(child);
     while (waitpid(child, &ended, 0) < 0 && errno == EINTR)
         ;

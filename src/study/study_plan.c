@@ -1,7 +1,6 @@
-/* Each value goes through the option it is for, alone, when the plan is read, so that what is wrong
- * is said with its line before anything grows; what comes out is the value as the option writes it,
- * so that 2.50 and 2.5 are one. A run's number is its values' places, the last key's counting
- * fastest. */
+/* When the plan is read, each value is read by its option and written again. Errors are thus
+ * reported with their line before anything grows, and 2.50 equals 2.5. The index of a run is a
+ * number whose digits are the indices of its values; the last key is the lowest digit. */
 #include "study/study_plan.h"
 
 #include "options/output.h"
@@ -33,32 +32,33 @@ static const Command growth_command = {
 
 /* ---- values ---------------------------------------------------------------------------------- */
 
-/* The value as the option writes it, in *written (owned). */
+/* Sets *written to the value as the option writes it (owned). */
 static Status rewrite(const char *name, const char *value, char **written, Err *err)
 {
     Parsed parsed;
     Text text = TEXT_INIT;
     TRY(parsed_init(&parsed, &growth_command, err));
     const Setting *setting = parsed_find(&parsed, name, strlen(name));
-    Status status = setting_read(setting, value, err);
-    if (status == STATUS_OK) {
-        setting_put(setting, 0, &text);
-        status = text_take(&text, written, err);
-    }
+    Status status;
+    TRY_GOTO(setting_read(setting, value, err));
+    setting_put(setting, 0, &text);
+    status = text_take(&text, written, err);
+done:
     text_release(&text);
     parsed_release(&parsed);
     return status;
 }
 
-/* Takes `written`, also on failure. */
+/* Takes ownership of `written`, also on failure. */
 static Status add_written(StudyKey *key, char *written, Err *err)
 {
-    Status status =
-        mem_reserve(&key->value, &key->capacity, key->n + 1, sizeof *key->value, "values", err);
-    if (status == STATUS_OK)
-        key->value[key->n++] = written;
-    else
-        free(written);
+    Status status;
+    TRY_GOTO(
+        mem_reserve(&key->value, &key->capacity, key->n + 1, sizeof *key->value, "values", err));
+    key->value[key->n++] = written;
+    written = NULL;
+done:
+    free(written);
     return status;
 }
 
@@ -69,7 +69,7 @@ static Status add_value(StudyKey *key, const char *value, Err *err)
     return add_written(key, written, err);
 }
 
-/* A..B of an option that takes whole numbers; false for any other value. */
+/* Returns true for a range A..B of an option that takes integers. */
 static bool is_range(const Option *option, const char *value, long long *from, long long *to)
 {
     const char *dots = strstr(value, "..");
@@ -83,7 +83,8 @@ static bool is_range(const Option *option, const char *value, long long *from, l
            integer_parse(dots + 2, 0, 1000000000000, to);
 }
 
-/* Of a range, the ends are checked against what the option takes. */
+/* Adds all values of a range. Only its ends are read by the option: if it takes both, it takes all.
+ */
 static Status add_range(StudyKey *key, const char *range, long long from, long long to, Err *err)
 {
     if (to < from)
@@ -109,7 +110,8 @@ static Status add_values(StudyKey *key, const Option *option, const char *value,
                                                : add_value(key, value, err);
 }
 
-/* The comma that ends the first value of a list, before a blank or the end; NULL: there is none. */
+/* Returns the comma that ends the first value of a list: one before a blank or the end. NULL: there
+ * is none. */
 static char *end_of_value(char *list)
 {
     char *comma = strchr(list, ',');
@@ -123,15 +125,17 @@ static Status add_list(StudyKey *key, const Option *option, const char *list, Er
     char *copy = NULL;
     TRY(mem_strdup(&copy, list, err));
     Status status = STATUS_OK;
-    for (char *rest = copy; rest && status == STATUS_OK;) {
+    for (char *rest = copy; rest;) {
         char *comma = end_of_value(rest);
         if (comma)
             *comma = '\0';
         char *value = text_trim(rest);
-        status = *value ? add_values(key, option, value, err)
-                        : err_set(err, STATUS_INPUT, "%s: a value is missing", key->name);
+        if (!*value)
+            TRY_GOTO(err_set(err, STATUS_INPUT, "%s: a value is missing", key->name));
+        TRY_GOTO(add_values(key, option, value, err));
         rest = comma ? comma + 1 : NULL;
     }
+done:
     free(copy);
     return status;
 }
@@ -148,23 +152,25 @@ static Status check_different(const StudyKey *key, Err *err)
     memcpy(sorted, key->value, key->n * sizeof *sorted);
     qsort(sorted, key->n, sizeof *sorted, by_text);
     Status status = STATUS_OK;
-    for (size_t i = 1; i < key->n && status == STATUS_OK; i++)
+    for (size_t i = 1; i < key->n; i++)
         if (strcmp(sorted[i - 1], sorted[i]) == 0)
-            status = err_set(err, STATUS_INPUT, "%s: %s stands twice", key->name, sorted[i]);
+            TRY_GOTO(err_set(err, STATUS_INPUT, "%s: %s stands twice", key->name, sorted[i]));
+done:
     free(sorted);
     return status;
 }
 
 /* ---- the file -------------------------------------------------------------------------------- */
 
-typedef struct Reading {
+typedef struct PlanReading {
     StudyPlan *plan;
-    const Parsed *options; /* that there are */
+    const Parsed *options; /* of `grow` */
     bool in_section;
-} Reading;
+} PlanReading;
 
-/* The option of a key. STATUS_USAGE when there is none that a plan may vary. */
-static Status find_option(const Reading *reading, const char *name, const Option **option, Err *err)
+/* Finds the option of a key. Errors: STATUS_USAGE if there is none that a plan may set. */
+static Status find_option(const PlanReading *reading, const char *name, const Option **option,
+                          Err *err)
 {
     static const char *const others[] = {"output", "refine-seconds", "recipe", "threads",
                                          "quiet",  "help",           NULL};
@@ -200,7 +206,7 @@ static Status add_key(StudyPlan *plan, const char *name, StudyKey **key, Err *er
 static Status take_line(void *user, const char *section, const char *name, const char *value,
                         Err *err)
 {
-    Reading *reading = user;
+    PlanReading *reading = user;
     StudyPlan *plan = reading->plan;
     const Option *option = NULL;
     StudyKey *key = NULL;
@@ -243,18 +249,18 @@ Status study_plan_read(const char *path, StudyPlan *plan, Err *err)
     StudyPlan made = {.runs = 1};
     Parsed options;
     TRY(parsed_init(&options, &growth_command, err));
-    Reading reading = {.plan = &made, .options = &options};
-    Status status = ini_read(path, "a plan", take_line, &reading, NULL, err);
-    if (status == STATUS_OK && made.n == 0)
-        status = err_set(err, STATUS_INPUT, "%s: sets no option of grow", path);
-    parsed_release(&options);
-    if (status != STATUS_OK) {
-        study_plan_release(&made);
-        return status;
-    }
+    PlanReading reading = {.plan = &made, .options = &options};
+    Status status;
+    TRY_GOTO(ini_read(path, "a plan", take_line, &reading, NULL, err));
+    if (made.n == 0)
+        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: sets no option of grow", path));
     made.hash = hash_of(&made);
     *plan = made;
-    return STATUS_OK;
+    made = (StudyPlan){0};
+done:
+    parsed_release(&options);
+    study_plan_release(&made);
+    return status;
 }
 
 void study_plan_release(StudyPlan *plan)
@@ -280,16 +286,17 @@ const char *study_plan_value(const StudyPlan *plan, size_t run, size_t k)
 
 Status study_plan_options(const StudyPlan *plan, size_t run, int threads, Parsed *parsed, Err *err)
 {
-    TRY(parsed_init(parsed, &growth_command, err)); /* in its place: settings point into it */
+    TRY(parsed_init(parsed, &growth_command, err)); /* in its final place: settings point into it */
     parsed->common.quiet = true;
     parsed->common.threads = threads;
     Status status = STATUS_OK;
-    for (size_t k = 0; k < plan->n && status == STATUS_OK; k++) {
+    for (size_t k = 0; k < plan->n; k++) {
         const char *name = plan->key[k].name;
-        status = setting_read(parsed_find(parsed, name, strlen(name)),
-                              study_plan_value(plan, run, k), err);
+        TRY_GOTO(setting_read(parsed_find(parsed, name, strlen(name)),
+                              study_plan_value(plan, run, k), err));
     }
-    if (status != STATUS_OK)
-        parsed_release(parsed);
+    return STATUS_OK;
+done:
+    parsed_release(parsed);
     return status;
 }

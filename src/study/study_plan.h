@@ -1,4 +1,4 @@
-/* A study: trees grown for all combinations of some values of the options of `grow`. */
+/* The plan of a study: values of options of `grow`, and the runs, one for each combination. */
 #ifndef CORCAST_STUDY_STUDY_PLAN_H
 #define CORCAST_STUDY_STUDY_PLAN_H
 
@@ -7,41 +7,50 @@
 #include "job/tree/refining.h"
 #include "options/options.h"
 
+/* Maximum number of runs of a plan. */
 enum { STUDY_MOST_RUNS = 1000000 };
 
-/* An option and the values that it takes in turn, as the option writes them. */
+/* An option and its values, as the option writes them. */
 typedef struct StudyKey {
     char *name;   /* owned */
-    char **value; /* owned */
+    char **value; /* owned, with the n strings */
     size_t n, capacity;
 } StudyKey;
 
 typedef struct StudyPlan {
-    StudyKey *key; /* owned; in the order of the file */
+    StudyKey *key; /* in the order of the file; owned */
     size_t n, capacity;
-    size_t runs;   /* all combinations; those of the last key follow each other */
-    HashText hash; /* of program, keys and values */
+    size_t runs;   /* number of combinations; the value of the last key changes first */
+    HashText hash; /* of program version, keys and values */
 } StudyPlan;
 
 /* What the options of a run set. */
 typedef struct StudyGrowth {
-    const char *output; /* "T.swc", for the command that a tree tells */
+    const char *output; /* "T.swc", for the command line that the tree's file states */
     Growing growing;
     Refining refining;
 } StudyGrowth;
 
-/* Reads an INI file whose only section is [grow]: `seed = 1..20` or `gamma = 2.5, 3`, a comma and a
- * blank between two values, so that a value may have commas; A..B stands for whole numbers.
- * STATUS_INPUT or STATUS_USAGE, naming file and line, for what is no option of growth, no value of
- * it, there twice, or more than STUDY_MOST_RUNS combinations. Release with study_plan_release. */
+/* Reads a plan, an INI file with the section [grow]: `seed = 1..20` or `gamma = 2.5, 3`. Values are
+ * separated by a comma and a blank, so that a value may contain commas. A..B are integers.
+ *
+ * plan    set on success; release it with study_plan_release.
+ * Errors  STATUS_INPUT or STATUS_USAGE, with file and line, for an unknown option, a bad value, a
+ *         repeated key or value, or more than STUDY_MOST_RUNS combinations; STATUS_IO;
+ *         STATUS_MEMORY. */
 MUST_CHECK Status study_plan_read(const char *path, StudyPlan *plan, Err *err);
 void study_plan_release(StudyPlan *plan);
 
-/* The value of key `k` in a run, 0 <= run < plan->runs; borrowed. */
+/* Returns the value of key `k` (below plan->n) in a run (below plan->runs); borrowed. */
 const char *study_plan_value(const StudyPlan *plan, size_t run, size_t k);
 
-/* The options of a run, as `corcast grow` would have them, in *parsed (parsed_release), a
- * StudyGrowth among them; `threads` as --threads. */
+/* Makes the options of a run, as the command line `corcast grow` would make them. parsed->options
+ * is a StudyGrowth.
+ *
+ * run      0 <= run < plan->runs.
+ * threads  as --threads.
+ * parsed   set on success; release it with parsed_release.
+ * Errors   STATUS_USAGE, STATUS_MEMORY. */
 MUST_CHECK Status study_plan_options(const StudyPlan *plan, size_t run, int threads, Parsed *parsed,
                                      Err *err);
 

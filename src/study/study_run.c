@@ -1,8 +1,9 @@
-/* A file is right when it holds the hash of what it would be made from: program, command line, and
- * the bytes of the files that it names. Its place in the plan is no part of that, so that a plan
- * may get more values, or others in front, and what has been grown stays.
+/* A file of a run is valid if it contains the hash of everything that the run is made from: program
+ * version, command line, and the bytes of the files that this names. The place of the run in the
+ * plan is not part of the hash. So a plan may get more values, or others in front, and what has
+ * been grown stays valid.
  *
- * Nothing in the file depends on time, machine or the number of threads. */
+ * Nothing in the file depends on time, machine or number of threads. */
 #include "study/study_run.h"
 
 #include "job/tree/summary_json.h"
@@ -13,17 +14,17 @@
 
 enum { NAME_DIGITS = 16 };
 
-/* What is known of a run before it has grown. */
-typedef struct Run {
+/* A run before it has grown. */
+typedef struct StudyRun {
     Parsed parsed;
-    StudyGrowth *growth; /* in parsed */
-    size_t number;       /* from 1 */
+    StudyGrowth *growth; /* parsed.options */
+    size_t number;       /* counted from 1 */
     HashText made_from;
     char *command;       /* owned */
-    char *report, *tree; /* names of files; owned */
-} Run;
+    char *report, *tree; /* paths of the JSON and the SWC file; owned */
+} StudyRun;
 
-static void release(Run *run)
+static void release(StudyRun *run)
 {
     if (run->growth)
         growing_release(&run->growth->growing);
@@ -33,7 +34,7 @@ static void release(Run *run)
     free(run->tree);
 }
 
-static Status hash_run(Run *run, Err *err)
+static Status hash_run(StudyRun *run, Err *err)
 {
     const Growing *growing = &run->growth->growing;
     Hash hash;
@@ -51,7 +52,7 @@ static Status hash_run(Run *run, Err *err)
     return STATUS_OK;
 }
 
-static Status name_file(const Run *run, const char *folder, const char *extension, char **path,
+static Status name_file(const StudyRun *run, const char *folder, const char *extension, char **path,
                         Err *err)
 {
     char name[NAME_DIGITS + 8];
@@ -59,7 +60,7 @@ static Status name_file(const Run *run, const char *folder, const char *extensio
     return file_join(folder, name, path, err);
 }
 
-static Status prepare(const StudyRunParams *params, size_t index, Run *run, Err *err)
+static Status prepare(const StudyRunParams *params, size_t index, StudyRun *run, Err *err)
 {
     TRY(study_plan_options(params->plan, index, params->threads, &run->parsed, err));
     run->growth = run->parsed.options;
@@ -72,9 +73,9 @@ static Status prepare(const StudyRunParams *params, size_t index, Run *run, Err 
     return name_file(run, params->folder, "swc", &run->tree, err);
 }
 
-/* ---- what is there --------------------------------------------------------------------------- */
+/* ---- existing files -------------------------------------------------------------------------- */
 
-/* The hash of a file; that of nothing when it cannot be read. */
+/* Hashes a file. If it cannot be read, *text is the hash of nothing. */
 static Status hash_of_tree(const char *path, HashText *text, Err *err)
 {
     Hash hash;
@@ -104,9 +105,9 @@ static json_t *read_report(const char *path)
     return report;
 }
 
-/* What the file holds if it is right; NULL when it is not, is not there, or memory ran out to read
- * it: then it is made again. */
-static json_t *read_right(const StudyRunParams *params, const Run *run)
+/* Returns the content of the run's file if it is valid. Returns NULL if it is not, if there is no
+ * file, or if memory runs out; the file is then made again. */
+static json_t *read_right(const StudyRunParams *params, const StudyRun *run)
 {
     HashText tree;
     json_t *report = read_report(run->report);
@@ -123,23 +124,16 @@ static json_t *read_right(const StudyRunParams *params, const Run *run)
 
 /* ---- growing --------------------------------------------------------------------------------- */
 
-static Status grow(Run *run, Tree *tree, GrowReport *report, Err *err)
+static Status grow(StudyRun *run, Tree *tree, GrowReport *report, Err *err)
 {
     const Growing *growing = &run->growth->growing;
     const Refining *refining = &run->growth->refining;
-    const RefineParams params = {.level = refining->level,
-                                 .moves = refining->moves,
-                                 .seed = run->parsed.common.seed,
-                                 .threads = run->parsed.common.threads};
     RefineReport refined;
     TRY(grow_tree(&growing->params, &growing->domain, tree, report, err));
-    if (refining->level != GROW_REFINE_NONE)
-        TRY(refine_tree(&params, &growing->domain, tree, &refined, err));
-    TRY(command_describe(&run->parsed, &tree->meta, err));
-    return refining_describe(refining, &refined, &tree->meta, err);
+    return refining_apply(refining, &run->parsed, &growing->domain, tree, &refined, err);
 }
 
-/* The values of the plan, as numbers where they are. */
+/* Returns the values of the run; numbers are JSON numbers. */
 static json_t *values_json(const StudyPlan *plan, size_t index)
 {
     json_t *values = json_object();
@@ -167,8 +161,8 @@ static json_t *measured_json(const Tree *tree, const GrowReport *report, Err *er
     return json_with_members(summary_json(&summary), grown, sizeof grown / sizeof *grown);
 }
 
-/* Writes the tree if it is kept; its hash, or null. */
-static Status keep_tree(const StudyRunParams *params, const Run *run, const Tree *tree,
+/* Writes the tree if trees are kept, and sets *hash to the hash of the file, or to JSON null. */
+static Status keep_tree(const StudyRunParams *params, const StudyRun *run, const Tree *tree,
                         json_t **hash, Err *err)
 {
     HashText text;
@@ -182,31 +176,36 @@ static Status keep_tree(const StudyRunParams *params, const Run *run, const Tree
     return STATUS_OK;
 }
 
-/* What there is to say of a tree, or why there is none, in *said; the hash of its file in *hash. */
-static Status grow_and_measure(const StudyRunParams *params, Run *run, json_t **said, json_t **hash,
-                               Err *err)
+/* Grows and measures. Sets *said to the measures, or to the reason why there is no tree, and *hash
+ * as keep_tree. */
+static Status grow_and_measure(const StudyRunParams *params, StudyRun *run, json_t **said,
+                               json_t **hash, Err *err)
 {
     Tree tree = {0};
     GrowReport report;
-    Status status = grow(run, &tree, &report, err);
-    if (status == STATUS_INFEASIBLE) {
+    const Status grown = grow(run, &tree, &report, err);
+    if (grown == STATUS_INFEASIBLE) {
         options_name_fields(&run->parsed, err);
         *hash = json_null();
         *said = json_with(json_object(), "error", json_text(err->text));
         return STATUS_OK;
     }
-    if (status == STATUS_OK)
-        status = keep_tree(params, run, &tree, hash, err);
-    if (status == STATUS_OK)
+    Status status = grown;
+    if (grown == STATUS_OK)
+        TRY_GOTO(keep_tree(params, run, &tree, hash, err));
+    if (grown == STATUS_OK)
         *said = measured_json(&tree, &report, err);
+done:
     tree_release(&tree);
     return status;
 }
 
 /* ---- the file -------------------------------------------------------------------------------- */
 
-/* The line: place and values first, then what was found; NULL when that is. Takes `hash`. */
-static json_t *line_json(const StudyRunParams *params, const Run *run, json_t *said, json_t *hash)
+/* Returns the content of the file: place and values, then the members of `said` that are not there
+ * yet. Returns NULL if `said` is NULL or memory runs out. Takes ownership of `hash`. */
+static json_t *line_json(const StudyRunParams *params, const StudyRun *run, json_t *said,
+                         json_t *hash)
 {
     const StudyPlan *plan = params->plan;
     const char *key;
@@ -241,7 +240,7 @@ static Status write_line(const char *path, json_t *line, Err *err)
     return status;
 }
 
-static Status find_or_grow(const StudyRunParams *params, Run *run, bool *kept, Err *err)
+static Status find_or_grow(const StudyRunParams *params, StudyRun *run, bool *kept, Err *err)
 {
     json_t *hash = NULL, *said = read_right(params, run);
     *kept = said != NULL;
@@ -258,19 +257,18 @@ static Status find_or_grow(const StudyRunParams *params, Run *run, bool *kept, E
     return STATUS_OK;
 }
 
-Status study_run(const StudyRunParams *params, size_t index, char **path, bool *kept, Err *err)
+Status study_grow_run(const StudyRunParams *params, size_t index, char **path, bool *kept, Err *err)
 {
-    Run run = {0};
-    Status status = prepare(params, index, &run, err);
-    if (status == STATUS_OK)
-        status = find_or_grow(params, &run, kept, err);
-    if (status != STATUS_OK)
+    StudyRun run = {0};
+    Status status;
+    TRY_GOTO(prepare(params, index, &run, err));
+    TRY_GOTO(find_or_grow(params, &run, kept, err));
+    *path = run.report;
+    run.report = NULL;
+done:
+    if (status != STATUS_OK) {
         options_name_fields(&run.parsed, err);
-    if (status != STATUS_OK)
         err_prefix(err, "run %zu of %zu: ", index + 1, params->plan->runs);
-    if (status == STATUS_OK) {
-        *path = run.report;
-        run.report = NULL;
     }
     release(&run);
     return status;

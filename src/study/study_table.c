@@ -1,5 +1,5 @@
-/* Rows are JSON objects; a table is made of them in two passes over flat copies, the first of which
- * finds the columns. Objects keep the order of their members, and so do columns. */
+/* CSV is made in two passes over flat copies of the rows. The first pass finds the columns. Objects
+ * keep the order of their members, and so do columns. */
 #include "study/study_table.h"
 
 #include "options/files.h"
@@ -30,24 +30,23 @@ static bool is_shard(const json_t *json)
            json_string_value(json_object_get(shard, "plan"));
 }
 
-/* Takes `json`, also on failure. */
+/* Takes ownership of `json`, also on failure. */
 static Status add_row(StudyTable *table, const char *path, json_t *json, Err *err)
 {
     StudyRow row = {.json = json};
-    Status status = mem_strdup(&row.path, path, err);
-    if (status == STATUS_OK)
-        status = mem_reserve(&table->row, &table->capacity, table->n + 1, sizeof *table->row,
-                             "rows", err);
-    if (status != STATUS_OK) {
-        free(row.path);
-        json_decref(json);
-        return status;
-    }
+    Status status;
+    TRY_GOTO(mem_strdup(&row.path, path, err));
+    TRY_GOTO(
+        mem_reserve(&table->row, &table->capacity, table->n + 1, sizeof *table->row, "rows", err));
     table->row[table->n++] = row;
     return STATUS_OK;
+done:
+    free(row.path);
+    json_decref(json);
+    return status;
 }
 
-/* Takes `json`, also on failure. */
+/* Takes ownership of `json`, also on failure. */
 static Status take_object(StudyTable *table, const char *path, bool named, json_t *json, Err *err)
 {
     bool taken = json_is_object(json) && (!table->shards || is_shard(json));
@@ -140,7 +139,7 @@ Status study_table_check(StudyTable *table, Err *err)
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-/* Adds the members of an object that are no arrays to `flat`; NULL when memory ran out. */
+/* Adds the members of an object, except arrays, to `flat`. Returns NULL if memory runs out. */
 static json_t *flatten(json_t *flat, const char *prefix, json_t *object)
 {
     const char *key;
@@ -173,7 +172,7 @@ static json_t *flat_row(const StudyRow *row)
     return flatten(flat, "", row->json);
 }
 
-/* All keys of all rows, in order, with null. */
+/* Returns an object with all keys of all rows, in the order of their first appearance. */
 static json_t *find_columns(const StudyTable *table)
 {
     json_t *columns = json_object();
@@ -192,7 +191,7 @@ static json_t *find_columns(const StudyTable *table)
     return columns;
 }
 
-/* In quotes where CSV needs them [RFC 4180]. */
+/* Appends a text, in quotes if CSV needs them [RFC 4180]. */
 static void put_text(Text *text, const char *chars)
 {
     if (!strpbrk(chars, ",\"\r\n")) {
@@ -219,7 +218,7 @@ static void put_value(Text *text, const json_t *value)
         text_puts(text, json_is_true(value) ? "true" : "false");
 }
 
-static void put_csv(Text *text, const StudyTable *table)
+void study_table_csv(const StudyTable *table, Text *text)
 {
     json_t *columns = find_columns(table), *none;
     const char *key, *comma = "";
@@ -248,7 +247,7 @@ Status study_table_write(const StudyTable *table, const char *path, Err *err)
 {
     Text text = TEXT_INIT;
     if (strcmp(file_extension(path), "jsonl") != 0)
-        put_csv(&text, table);
+        study_table_csv(table, &text);
     else
         for (size_t i = 0; i < table->n; i++) {
             text_json(&text, json_incref(table->row[i].json), 0);

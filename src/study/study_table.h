@@ -1,34 +1,39 @@
-/* Tables of what JSON files say: the runs of a study, or the output of info --json. */
+/* Tables of JSON objects: the runs of a study, or the output of `info --json`. */
 #ifndef CORCAST_STUDY_STUDY_TABLE_H
 #define CORCAST_STUDY_STUDY_TABLE_H
 
 #include "base/base.h"
 
 typedef struct StudyRow {
-    char *path;   /* owned; of the file */
-    json_t *json; /* owned; an object */
+    char *path;   /* the file that contains the object; owned */
+    json_t *json; /* an object; owned */
 } StudyRow;
 
+/* Zeroed: no rows. Release it with study_table_release. */
 typedef struct StudyTable {
     StudyRow *row; /* owned */
     size_t n, capacity;
-    bool shards; /* only runs of studies are taken */
+    bool shards; /* only runs of studies are rows */
 } StudyTable;
 
-/* Adds all objects of a JSON or JSON Lines file, or of those in a folder, whose objects are passed
- * over where they are not taken. STATUS_INPUT, naming the file, when it is missing or no JSON, or
- * holds what is not taken. */
+/* Adds a row for each object in a JSON or JSON Lines file, or in the .json files of a folder.
+ *
+ * Errors  STATUS_INPUT if a file is missing or is not JSON, or if a named file contains something
+ *         else than rows of this table; files of a folder may. STATUS_MEMORY. */
 MUST_CHECK Status study_table_add(StudyTable *table, const char *path, Err *err);
 void study_table_release(StudyTable *table);
 
-/* Puts runs in order. STATUS_INPUT when they are of several plans, or one is missing or there
- * twice. */
+/* Sorts the rows of a table of runs by the number of the run. Errors: STATUS_INPUT if the runs are
+ * of several plans, or a run is missing or there twice. */
 MUST_CHECK Status study_table_check(StudyTable *table, Err *err);
 
-/* Writes the table as CSV or, as .jsonl, a line an object; "-" is standard output and CSV. A column
- * for each member of any object, "a.b" for those of inner ones, in the order in which they come up;
- * arrays and what is there for merge alone, `shard`, are left out. Objects without `run` get the
- * name of their file as `file`. */
+/* Appends the table as CSV. There is a column for each member of any object, in the order of their
+ * first appearance; members of inner objects are called "a.b". Arrays are left out, and so is the
+ * member `shard`. An object without the member `run` gets a column `file`, the name of its file
+ * without extension. */
+void study_table_csv(const StudyTable *table, Text *out);
+/* Writes the table as CSV or, if the extension is jsonl, as one object per line. "-" is standard
+ * output. Errors: STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status study_table_write(const StudyTable *table, const char *path, Err *err);
 
 #endif

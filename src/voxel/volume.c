@@ -229,14 +229,14 @@ static Status make_header(const VolumeStream *stream, const VoxelGrid *grid, boo
 {
     FILE *memory = open_memstream(&made->bytes, &made->size);
     if (!memory)
-        return mem_out_of("for", stream->path, err);
+        return mem_out_of("for", "the header of a volume", err);
     Text header = TEXT_TO(memory);
     stream->format->put_header(grid, stream->type, parts, about, &header);
     Status status = text_flush(&header, err);
     text_release(&header);
     /* Closing tells only by NULL that there was no room for the bytes. */
     if ((fclose(memory) != 0 || !made->bytes) && status == STATUS_OK)
-        status = mem_out_of("for", stream->path, err);
+        status = mem_out_of("for", "the header of a volume", err);
     return status;
 }
 
@@ -331,7 +331,7 @@ Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n, Volum
 Status volume_put(VolumeStream *stream, const VolumePart *part, Err *err)
 {
     if (fwrite(part->bytes, 1, part->n, stream->to) != part->n)
-        return err_set(err, STATUS_IO, "%s: cannot be written: %s", stream->path, strerror(errno));
+        return err_set(err, STATUS_IO, "cannot be written: %s", strerror(errno));
     stream->crc = (uint32_t)crc32_combine(stream->crc, part->crc, (z_off_t)part->plain);
     stream->plain += part->plain;
     return STATUS_OK;

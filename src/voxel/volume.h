@@ -47,14 +47,13 @@ const VolumeFormat *volume_format_find(const char *path);
 MUST_CHECK Status volume_check(const VolumeFormat *format, const VoxelGrid *grid, SampleType type,
                                bool parts, Err *err);
 
-/* A file that is being written. The caller sets the first four members; all are borrowed. */
+/* A file that is being written. The caller sets the first three members; all are borrowed. */
 typedef struct VolumeStream {
     const VolumeFormat *format;
     SampleType type;
     FILE *to;
-    const char *path; /* for messages */
-    uint32_t crc;     /* checksum of what was compressed so far */
-    uint64_t plain;   /* its size before compression */
+    uint32_t crc;   /* checksum of what was compressed so far */
+    uint64_t plain; /* its size before compression */
 } VolumeStream;
 
 /* Writes the header. `parts` and `about` as VolumeFormat.put_header. Errors: STATUS_MEMORY. */
@@ -76,7 +75,7 @@ typedef struct VolumePart {
  * Errors: STATUS_MEMORY. */
 MUST_CHECK Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n,
                               VolumePart *out, Err *err);
-/* Appends the next part to the file. Errors: STATUS_IO. */
+/* Appends the next part to the file. Errors: STATUS_IO; the sentence does not name the file. */
 MUST_CHECK Status volume_put(VolumeStream *stream, const VolumePart *part, Err *err);
 
 #endif

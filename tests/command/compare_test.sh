@@ -44,6 +44,19 @@ test_a_difference_is_measured_and_gives_exit_status_1() {
     expect_json stdout '(.psnr_db - 20 * (255 / (55 * 55 / 20 | sqrt) | log10) | fabs) < 1e-6'
 }
 
+# One pixel of twenty differs: weights by error do not count most of the nineteen others.
+test_flip_is_summed_up_with_and_without_weights() {
+    picture 100 >a.ppm
+    picture 155 >b.ppm
+    run corcast compare a.ppm b.ppm --json
+    expect_json stdout '.flip_mean > 0 and .flip_p95 <= .flip_max + 1e-5 and .flip_mean < .flip_weighted_mean'
+    expect_json stdout '.flip_weighted_mean <= .flip_max and .flip_weighted_median <= .flip_weighted_p95'
+    run_ok corcast compare a.ppm a.ppm --json
+    expect_json stdout '[.flip_p95, .flip_weighted_mean, .flip_weighted_median, .flip_weighted_p95] == [0, 0, 0, 0]'
+    run corcast compare a.ppm b.ppm --metrics on
+    expect_stdout 'FLIP, 95th percentile weighted by error'
+}
+
 test_the_order_of_the_pictures_does_not_matter() {
     picture 100 >a.ppm
     picture 155 >b.ppm

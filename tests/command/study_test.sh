@@ -59,7 +59,7 @@ test_what_is_there_and_right_is_kept() {
     : >"$(run_of 7).json"
     cp -r runs broken
     run_ok corcast study plan.ini -o runs --trees
-    grep -qx '8 runs: 3 grown, 5 there already' stderr || fail "expected 3 to be grown, got: $(cat stderr)"
+    grep -qx 'corcast: 8 runs: 3 grown, 5 there already' stderr || fail "expected 3 to be grown, got: $(cat stderr)"
     [ "$(stat -c '%n %i' runs/*.swc | comm -13 before - | wc -l)" -eq 3 ] || fail "expected 3 new trees"
     run_ok corcast study plan.ini -o fresh --trees --quiet
     diff -r runs fresh >&2 || fail "expected the files of a study that was not broken"
@@ -77,10 +77,10 @@ grown_anew() {
     { printf '[grow]\nterminals = 12\n'; printf '%s\n' "$@"; } >anew.ini
     run_ok corcast study anew.ini -o anew
     run_ok corcast study anew.ini -o anew
-    grep -qx '1 run: 0 grown, 1 there already' stderr || fail "expected the run to be kept before: $change"
+    grep -qx 'corcast: 1 run: 0 grown, 1 there already' stderr || fail "expected the run to be kept before: $change"
     eval "$change"
     run_ok corcast study anew.ini -o anew
-    grep -qx '1 run: 1 grown, 0 there already' stderr || fail "expected a new run after: $change"
+    grep -qx 'corcast: 1 run: 1 grown, 0 there already' stderr || fail "expected a new run after: $change"
 }
 
 test_a_run_is_grown_anew_when_a_file_has_changed() {
@@ -102,7 +102,7 @@ test_a_plan_may_grow() {
     mv runs/study.csv small.csv
     sed -i 's/^seed.*/seed = 0..3, 7/' plan.ini
     run_ok corcast study plan.ini -o runs
-    grep -qx '10 runs: 2 grown, 8 there already' stderr || fail "expected 2 to be grown, got: $(cat stderr)"
+    grep -qx 'corcast: 10 runs: 2 grown, 8 there already' stderr || fail "expected 2 to be grown, got: $(cat stderr)"
     diff <(tail -n +2 small.csv | cut -d, -f2-) <(tail -n +4 runs/study.csv | cut -d, -f2-) >&2 ||
         fail "expected the old rows below the new"
 }
@@ -114,7 +114,7 @@ test_a_tree_that_finds_no_room_is_a_row_that_says_so() {
     expect_json "$(run_of 2).json" '(.error | test("no room for terminal 2")) and .terminals == null'
     grep -q '^2,50,100,0.05,.*no room for terminal 2' runs/study.csv || fail "expected the reason, got: $(cat runs/study.csv)"
     run_ok corcast study plan.ini -o runs --trees
-    grep -qx '2 runs: 0 grown, 2 there already' stderr || fail "expected both to be kept, got: $(cat stderr)"
+    grep -qx 'corcast: 2 runs: 0 grown, 2 there already' stderr || fail "expected both to be kept, got: $(cat stderr)"
 }
 
 # refuses PLAN SENTENCE: a study of the plan fails so, and writes nothing.

@@ -172,21 +172,21 @@ test_what_a_format_has_no_place_for_is_said() {
     printf '%s\n' id,parent,x_mm,y_mm,z_mm,radius_mm,type,flow_share,age 1,,0,9,0,1,3,0, 2,1,0,4,0,1,3,0,41 \
         3,2,-4,0,0,0.5,5,0.75,37.5 4,2,4,0,0,0.5,3,1.5, >tree.csv
     run_ok corcast convert tree.csv tree.vmv
-    expect_sentence '^corcast convert: the columns age and the types and the flow shares are left out: the format has no place for them$'
+    expect_sentence '^corcast: the columns age and the types and the flow shares are left out: the format has no place for them$'
     run_ok corcast convert tree.csv tree.segments.csv
-    expect_sentence '^corcast convert: the types and the flow shares are left out: '
+    expect_sentence '^corcast: the types and the flow shares are left out: '
     run_ok corcast convert tree.csv tree.gxl
     [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
     sed -i 's/^1,.*/&2.385/' tree.csv
     run_ok corcast convert tree.csv tree.gxl
-    expect_sentence "^corcast convert: the roots' values are left out: "
+    expect_sentence "^corcast: the roots' values are left out: "
     run_ok corcast convert tree.csv tree.vtp
     [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
     printf '%s\n' '1 3 0 9 0 1.5 -1' '2 3 0 4 0 0.9 1' '3 3 0 4 0 0.8 2' '4 3 -4 0 0 0.5 3' '5 3 0 4 0 0.4 4' >tree.swc
     for extension in vmv segments.csv in; do
         run_ok corcast convert tree.swc "tree.$extension"
-        grep -q "^corcast convert: the roots' own radii are left out: " stderr || fail "got of $extension: $(cat stderr)"
-        grep -q '^corcast convert: nodes that lie where others do: 2; ' stderr || fail "got of $extension: $(cat stderr)"
+        grep -q "^corcast: the roots' own radii are left out: " stderr || fail "got of $extension: $(cat stderr)"
+        grep -q '^corcast: nodes that lie where others do: 2; ' stderr || fail "got of $extension: $(cat stderr)"
         run_ok corcast info --json "tree.$extension"
         expect_json stdout '.segments == 4'
         run_ok corcast convert tree.swc "tree.$extension" --quiet
@@ -214,7 +214,7 @@ test_derived_fields_become_columns_of_what_is_written() {
     sed -n '4p' tree.segments.csv | awk -F, '{ exit !(($11 - 79.57747) ^ 2 < 1e-8 && ($12 - 0.5570423) ^ 2 < 1e-12) }' ||
         fail "expected velocity and shear stress, got $(sed -n '4p' tree.segments.csv)"
     run_ok corcast convert tree.swc tree.csv --fields all
-    expect_sentence '^corcast convert: pressure are? left out: neither the tree nor an option says what they? needs?$'
+    expect_sentence '^corcast: pressure are? left out: neither the tree nor an option says what they? needs?$'
     run_ok corcast convert tree.swc tree.csv --fields all --p-perf 90
     [ ! -s stderr ] || fail "expected all fields: $(cat stderr)"
     run_ok corcast convert tree.swc other.csv --fields strahler --quiet

@@ -129,7 +129,7 @@ test_a_column_of_a_csv_colours_its_segments() {
     run corcast render tree.csv --color-by aeg --size 40x30 -o weight.ppm
     expect_sentence "did you mean age?"
     run_ok corcast convert tree.csv tree.swc
-    grep -q "^corcast convert: the columns age are left out: the format has no place" stderr || fail "got $(cat stderr)"
+    grep -q "^corcast: the columns age are left out: the format has no place" stderr || fail "got $(cat stderr)"
     run_ok corcast convert tree.csv other.csv
     [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
 }
@@ -142,9 +142,9 @@ test_growing_on_keeps_columns_and_refining_says_that_they_go() {
         fail "expected the given ages to stay: $(cat grown.csv)"
     [ "$(grep -c ',age$\|,"age"$' grown.csv)" = 1 ] || fail "expected the column: $(head -20 grown.csv)"
     run_ok corcast grow --from tree.csv --terminals 6 --q-perf 3 -o grown.swc
-    grep -q "^corcast grow: the columns age are left out" stderr || fail "got $(cat stderr)"
+    grep -q "^corcast: the columns age are left out" stderr || fail "got $(cat stderr)"
     run_ok corcast refine grown.csv -o refined.csv
-    grep -q "^corcast refine: the columns age are left out: their segments move$" stderr || fail "got $(cat stderr)"
+    grep -q "^corcast: the columns age are left out: their segments move$" stderr || fail "got $(cat stderr)"
     ! grep -q age refined.csv || fail "expected no ages"
 }
 

@@ -83,18 +83,19 @@ static bool rule_differs(Lab *lab, JudgeRule rule, const Subject *a, const Subje
                                         : tolerance_tolerant(depth_step(a));
         return tier_differs(lab, a, b, &tolerance);
     }
-    tolerance.color_levels = 0.016 * 255;
+    tolerance.limits[LIMIT_COLOR_LEVELS] = 0.016 * 255;
     must(lab, compare_pictures(&ra, &rb, &tolerance, &result, NULL, &lab->err));
     switch (rule) {
     case RULE_PIXELMATCH:
         return pixelmatch_count(&a->picture, &b->picture, 0.1) > 0;
     case RULE_BLENDER:
-        return (double)result.beyond_pixels > 0.01 * (double)result.pixels;
+        return result.values[MEASURE_BEYOND_PIXELS] > 0.01 * result.values[MEASURE_PIXELS];
     case RULE_PSNR:
-        return result.psnr_db < 40;
+        return result.values[MEASURE_PSNR_DB] < 40;
     default:
         must(lab, compare_perception(&a->picture, &b->picture, &result, &lab->err));
-        return rule == RULE_FLIP ? result.flip_mean > 0.01 : result.ssim < 0.99;
+        return rule == RULE_FLIP ? result.values[MEASURE_FLIP_MEAN] > 0.01
+                                 : result.values[MEASURE_SSIM] < 0.99;
     }
 }
 

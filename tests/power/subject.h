@@ -3,6 +3,7 @@
 #define CORCAST_POWER_SUBJECT_H
 
 #include "compare/compare.h"
+#include "compare/measures/perception.h"
 #include "render/render.h"
 #include "scene/scene.h"
 

@@ -33,7 +33,7 @@ static void erf_is_as_exact_as_it_says(void **state)
     (void)state;
     for (int form = ERF_FAST; form <= ERF_EXACT; form++) {
         double worst = 0, before = 0;
-        for (double u = 0; u < 30; u += 1e-4) {
+        for (double u = 0; u < 30; u += 1e-4 * SHARE) {
             double value = tanh(odd_polynomial((ErfForm)form, u));
             worst = fmax(worst, fabs(value - erf(u)));
             assert_true(value >= before); /* it does not turn back */
@@ -62,7 +62,7 @@ static double axial_steepness(ErfForm form, double least)
 {
     double worst = 0, slope, other_slope;
     for (double length = 0.02; length < 40; length *= 1.07)
-        for (double t = length / 2; t < length + 7; t += 4e-3) {
+        for (double t = length / 2; t < length + 7; t += 4e-3 * SHARE) {
             double value = step(form, t, &slope) + step(form, length - t, &other_slope) - 1;
             if (value >= least && value < 1 - 1e-9)
                 worst = fmax(worst,
@@ -85,7 +85,7 @@ static void a_term_in_its_form_is_the_term(void **state)
     (void)state;
     Random random;
     random_seed(&random, 51);
-    for (int i = 0; i < 20000; i++) {
+    for (int i = 0; i < 20000 / SHARE; i++) {
         double radius = pow(10, uniform(&random, -1.4, 0.6));
         Vec3 a = random_point(&random, 70);
         if (i % 3 == 0)
@@ -187,7 +187,7 @@ static void hold_cells_to_surface(const TestScene *test, double beta, ErfForm er
 {
     CellTree cells = cells_of(test, beta, erf);
     int found = 0;
-    for (int i = 0; i < 1500; i++) {
+    for (int i = 0; i < 1500 / SHARE; i++) {
         const FieldSegment *segment =
             &test->segments[random_bits(random) % test->geometry.n_segments];
         Vec3 x, from = vec3_add_scaled(segment->a, vec3_sub(segment->b, segment->a),
@@ -211,7 +211,7 @@ static void hold_cells_to_surface(const TestScene *test, double beta, ErfForm er
         assert_true(cells_there > 0);
         found++;
     }
-    assert_true(found > 50);
+    assert_true(found > 50 / SHARE);
     celltree_release(&cells);
 }
 
@@ -276,7 +276,7 @@ static void gradient_in_a_cell_never_exceeds_its_bound(void **state)
         TestScene test;
         make_test_scene((SceneKind)(run % N_TAME_KINDS), &random, &test);
         CellTree cells = cells_of(&test, betas[run % 3], (ErfForm)(run / N_TAME_KINDS));
-        for (int i = 0; i < 60000; i++) {
+        for (int i = 0; i < 60000 / SHARE; i++) {
             const Cell *cell = &cells.cells[random_bits(&random) % cells.n_cells];
             double ratio = steepness(&cells, cell, random_place_in(cell, &random));
             worst = fmax(worst, ratio);

@@ -43,7 +43,7 @@ static void equal_images_agree(void **state)
     Comparison comparison = compare_codes(7, 7, false);
     assert_int_equal(comparison.kind, COMPARED_PAIR);
     assert_true(comparison.agrees);
-    assert_int_equal(comparison.result.differing_pixels, 0);
+    assert_int_equal(result_count(&comparison.result, MEASURE_DIFFERING_PIXELS), 0);
     comparison_release(&comparison);
 }
 
@@ -52,7 +52,7 @@ static void one_pixel_is_found(void **state)
     (void)state;
     Comparison comparison = compare_codes(7, 9, true);
     assert_false(comparison.agrees);
-    assert_int_equal(comparison.result.differing_pixels, 1);
+    assert_int_equal(result_count(&comparison.result, MEASURE_DIFFERING_PIXELS), 1);
     json_t *json = comparison_json(&comparison);
     assert_string_equal(json_string_value(json_object_get(json, "verdict")), "differ");
     json_decref(json);
@@ -94,11 +94,34 @@ static void ids_tell_segments(void **state)
     }
     assert_int_equal(compare_make(options, &parsed, &comparison, &err), STATUS_OK);
     assert_int_equal(comparison.plane, PLANE_ID);
-    assert_int_equal(comparison.result.differing_pixels, 1);
+    assert_int_equal(result_count(&comparison.result, MEASURE_DIFFERING_PIXELS), 1);
     comparison_release(&comparison);
     idplane_release(&ids[0]);
     idplane_release(&ids[1]);
     parsed_release(&parsed);
+}
+
+/* One side is missing, or is not what is compared, or options ask for files. */
+static void incomplete_images_are_refused(void **state)
+{
+    (void)state;
+    enum { MISSING, NO_IDS, NOISE, CASES };
+    for (int k = 0; k < CASES; k++) {
+        Parsed parsed;
+        Comparison comparison;
+        Err err;
+        Image a = make_image(0);
+        assert_int_equal(parsed_init(&parsed, &command_compare, &err), STATUS_OK);
+        CompareOptions *options = parsed.options;
+        options->given[0].image = &a;
+        options->given[1].image = k == MISSING ? NULL : &a;
+        options->kind = k == NO_IDS ? PLANE_ID : PLANE_KINDS;
+        options->noise = k == NOISE ? "a.png,b.png" : NULL;
+        assert_int_equal(compare_make(options, &parsed, &comparison, &err), STATUS_USAGE);
+        assert_true(err.text[0] != '\0');
+        image_release(&a);
+        parsed_release(&parsed);
+    }
 }
 
 int main(void)
@@ -108,6 +131,7 @@ int main(void)
         cmocka_unit_test(one_pixel_is_found),
         cmocka_unit_test(images_of_two_sizes_are_refused),
         cmocka_unit_test(ids_tell_segments),
+        cmocka_unit_test(incomplete_images_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -98,16 +98,16 @@ static void agrees_with_itself(void **state)
             CompareResult r = compare(&pair, with_ids, tolerance_identity(0));
             assert_true(r.agrees);
             assert_string_equal(r.reason, "");
-            assert_int_equal(r.pixels, W * H);
-            assert_int_equal(r.differing_pixels, 0);
+            assert_int_equal(r.values[MEASURE_PIXELS], W * H);
+            assert_int_equal(r.values[MEASURE_DIFFERING_PIXELS], 0);
             assert_int_equal(r.classes[PIXEL_IDENTICAL], W * H);
-            assert_int_equal(r.missing_pixels + r.extra_pixels, 0);
-            assert_float_equal(r.max_abs, 0, 0);
-            assert_float_equal(r.rmse, 0, 0);
-            assert_true(isinf(r.psnr_db));
-            assert_float_equal(r.flip_mean, 0, 0);
-            assert_float_equal(r.ssim, 1, 1e-12);
-            assert_float_equal(r.edge_mismatch_fraction, 0, 0);
+            assert_int_equal(r.values[MEASURE_MISSING_PIXELS] + r.values[MEASURE_EXTRA_PIXELS], 0);
+            assert_float_equal(r.values[MEASURE_MAX_ABS], 0, 0);
+            assert_float_equal(r.values[MEASURE_RMSE], 0, 0);
+            assert_true(isinf(r.values[MEASURE_PSNR_DB]));
+            assert_float_equal(r.values[MEASURE_FLIP_MEAN], 0, 0);
+            assert_float_equal(r.values[MEASURE_SSIM], 1, 1e-12);
+            assert_float_equal(r.values[MEASURE_EDGE_MISMATCH], 0, 0);
             pair_release(&pair);
         }
 }
@@ -134,12 +134,12 @@ static void counts_exactly_the_pixels_that_were_edited(void **state)
             done++;
         }
         CompareResult r = compare(&pair, true, tolerance_identity(0));
-        assert_int_equal(r.differing_pixels, n);
-        assert_int_equal(r.beyond_pixels, n);
+        assert_int_equal(r.values[MEASURE_DIFFERING_PIXELS], n);
+        assert_int_equal(r.values[MEASURE_BEYOND_PIXELS], n);
         assert_int_equal(r.classes[PIXEL_IDENTICAL], W * H - n);
         assert_int_equal(r.classes[PIXEL_ROUNDING] + r.classes[PIXEL_SHADING], n);
-        assert_float_equal(r.rmse, sqrt(squares / (3 * W * H)), 1e-12);
-        assert_float_equal(r.mean_abs, sum / (3 * W * H), 1e-12);
+        assert_float_equal(r.values[MEASURE_RMSE], sqrt(squares / (3 * W * H)), 1e-12);
+        assert_float_equal(r.values[MEASURE_MEAN_ABS], sum / (3 * W * H), 1e-12);
         assert_int_equal(r.agrees, n == 0);
         pair_release(&pair);
     }
@@ -153,15 +153,15 @@ static void is_symmetric_but_for_missing_and_extra(void **state)
     Pair back = {pair.b, pair.a, pair.id_b, pair.id_a};
     CompareResult r = compare(&pair, true, tolerance_identity(0));
     CompareResult s = compare(&back, true, tolerance_identity(0));
-    assert_true(r.missing_pixels > 0);
-    assert_int_equal(r.missing_pixels, s.extra_pixels);
-    assert_int_equal(r.extra_pixels, s.missing_pixels);
-    assert_int_equal(r.largest_region, s.largest_region);
-    assert_int_equal(r.differing_pixels, s.differing_pixels);
+    assert_true(r.values[MEASURE_MISSING_PIXELS] > 0);
+    assert_int_equal(r.values[MEASURE_MISSING_PIXELS], s.values[MEASURE_EXTRA_PIXELS]);
+    assert_int_equal(r.values[MEASURE_EXTRA_PIXELS], s.values[MEASURE_MISSING_PIXELS]);
+    assert_int_equal(r.values[MEASURE_LARGEST_REGION], s.values[MEASURE_LARGEST_REGION]);
+    assert_int_equal(r.values[MEASURE_DIFFERING_PIXELS], s.values[MEASURE_DIFFERING_PIXELS]);
     assert_int_equal(r.classes[PIXEL_EDGE], s.classes[PIXEL_EDGE]);
-    assert_float_equal(r.rmse, s.rmse, 0);
-    assert_float_equal(r.flip_mean, s.flip_mean, 0);
-    assert_float_equal(r.ssim, s.ssim, 1e-15);
+    assert_float_equal(r.values[MEASURE_RMSE], s.values[MEASURE_RMSE], 0);
+    assert_float_equal(r.values[MEASURE_FLIP_MEAN], s.values[MEASURE_FLIP_MEAN], 0);
+    assert_float_equal(r.values[MEASURE_SSIM], s.values[MEASURE_SSIM], 1e-15);
     pair_release(&pair);
 }
 
@@ -181,24 +181,24 @@ static void tells_surface_from_edge_from_missing(void **state)
     change(&pair.b, 14, 11, 0, 1);
     change(&pair.b, 13, 11, 2, 5);
     CompareResult r = compare(&pair, true, tolerance_identity(0));
-    assert_int_equal(r.missing_pixels, 7);
-    assert_int_equal(r.extra_pixels, 0);
-    assert_int_equal(r.largest_region, 6);
-    assert_int_equal(r.largest_region_at.x, 20);
-    assert_int_equal(r.largest_region_at.y, 8);
-    assert_int_equal(r.largest_region_at.id_a, 17);
-    assert_int_equal(r.largest_region_at.id_b, 0);
+    assert_int_equal(r.values[MEASURE_MISSING_PIXELS], 7);
+    assert_int_equal(r.values[MEASURE_EXTRA_PIXELS], 0);
+    assert_int_equal(r.values[MEASURE_LARGEST_REGION], 6);
+    assert_int_equal(r.places[PLACE_REGION].x, 20);
+    assert_int_equal(r.places[PLACE_REGION].y, 8);
+    assert_int_equal(r.places[PLACE_REGION].id_a, 17);
+    assert_int_equal(r.places[PLACE_REGION].id_b, 0);
     /* The hole's pixels touch its own boundary in B, so they are edge pixels. */
     assert_int_equal(r.classes[PIXEL_EDGE], 7);
     assert_int_equal(r.classes[PIXEL_ROUNDING], 1);
     assert_int_equal(r.classes[PIXEL_SHADING], 1);
-    assert_float_equal(r.interior_max_abs, 5, 0);
-    assert_true(r.edge_mismatch_fraction > 0);
+    assert_float_equal(r.values[MEASURE_INTERIOR_MAX_ABS], 5, 0);
+    assert_true(r.values[MEASURE_EDGE_MISMATCH] > 0);
     /* The background's colour tells the same. */
     CompareResult s = compare(&pair, false, tolerance_identity(0));
     assert_true(s.has_mask && !s.has_ids);
-    assert_int_equal(s.missing_pixels, 7);
-    assert_int_equal(s.largest_region, 6);
+    assert_int_equal(s.values[MEASURE_MISSING_PIXELS], 7);
+    assert_int_equal(s.values[MEASURE_LARGEST_REGION], 6);
     pair_release(&pair);
 }
 
@@ -211,9 +211,10 @@ static void finds_missing_interior_off_the_band(void **state)
     CompareResult r;
     Tolerance tolerance = tolerance_identity(0);
     assert_int_equal(compare_ids(&pair.id_a, &pair.id_b, &tolerance, &r, &err), STATUS_OK);
-    assert_int_equal(r.missing_pixels, r.differing_pixels);
-    assert_int_equal(r.largest_region, r.missing_pixels);
-    assert_int_equal(r.classes[PIXEL_MISSING] + r.classes[PIXEL_EDGE], r.missing_pixels);
+    assert_int_equal(r.values[MEASURE_MISSING_PIXELS], r.values[MEASURE_DIFFERING_PIXELS]);
+    assert_int_equal(r.values[MEASURE_LARGEST_REGION], r.values[MEASURE_MISSING_PIXELS]);
+    assert_int_equal(r.classes[PIXEL_MISSING] + r.classes[PIXEL_EDGE],
+                     r.values[MEASURE_MISSING_PIXELS]);
     assert_true(r.classes[PIXEL_MISSING] > 100);
     assert_int_equal(r.classes[PIXEL_MISSING] + r.classes[PIXEL_EDGE] + r.classes[PIXEL_IDENTICAL],
                      W * H);
@@ -254,8 +255,8 @@ static void knows_no_mask_without_a_background(void **state)
     change(&pair.b, W - 1, H - 1, 0, 9);
     CompareResult r = compare(&pair, false, tolerance_identity(0));
     assert_false(r.has_mask);
-    assert_true(isnan(r.interior_max_abs));
-    assert_int_equal(r.differing_pixels, 2);
+    assert_true(isnan(r.values[MEASURE_INTERIOR_MAX_ABS]));
+    assert_int_equal(r.values[MEASURE_DIFFERING_PIXELS], 2);
     json_t *json = compare_json(&r);
     assert_true(json_is_null(json_object_get(json, "missing_pixels")));
     assert_true(json_is_null(json_object_get(json, "interior_max_abs")));
@@ -306,7 +307,7 @@ static void allows_no_pixel_off_the_edges_more_than_a_level(void **state)
         Pair pair = make_pair(8);
         change(&pair.b, 14, 11, 1, levels);
         Tolerance tolerance = tolerance_identity(0);
-        tolerance.color_ppm = 5000;
+        tolerance.limits[LIMIT_COLOR_PPM] = 5000;
         CompareResult r = compare(&pair, true, tolerance);
         assert_int_equal(r.agrees, levels == 1);
         if (!r.agrees)
@@ -323,9 +324,10 @@ static void judges_surfaces_by_levels_off_the_edges(void **state)
         change(&pair.b, 22, 11, 0, levels);
         change(&pair.b, 21, 12, 1, -levels);
         Tolerance surface = tolerance_surface(0);
-        surface.gain = surface.offset_levels = (double)INFINITY; /* much depends on 197 pixels */
+        surface.limits[LIMIT_GAIN] = surface.limits[LIMIT_OFFSET_LEVELS] =
+            (double)INFINITY; /* much depends on 197 pixels */
         CompareResult r = compare(&pair, true, surface);
-        assert_int_equal(r.interior_beyond, levels == 2 ? 0 : 2);
+        assert_int_equal(r.values[MEASURE_INTERIOR_BEYOND], levels == 2 ? 0 : 2);
         assert_int_equal(r.agrees, levels == 2);
         pair_release(&pair);
     }
@@ -389,9 +391,9 @@ static void repeated_pixels_are_one_measurement(void **state)
             /* A residual of 1 code, and codes that are spread evenly over a range of 3 SIDE. */
             double alike = 1 / (3 * SIDE / sqrt(12) * sqrt(3 * SIDE));
             double lengths = i < 2 ? 1 : 2 / sqrt(3); /* diagonals are of all lengths to SIDE */
-            assert_true(r.gain_error > 0.8 * alike / lengths &&
-                        r.gain_error < 1.2 * alike * lengths);
-            assert_true(r.offset_error > r.gain_error * 100);
+            assert_true(r.values[MEASURE_GAIN_ERROR] > 0.8 * alike / lengths &&
+                        r.values[MEASURE_GAIN_ERROR] < 1.2 * alike * lengths);
+            assert_true(r.values[MEASURE_OFFSET_ERROR] > r.values[MEASURE_GAIN_ERROR] * 100);
             pair_release(&pair);
         }
 }
@@ -404,7 +406,7 @@ static void refuses_a_surface_with_a_hole_of_three_pixels(void **state)
         for (int x = 20; x < 20 + size; x++)
             pair.id_b.ids[11 * W + x] = 0;
         CompareResult r = compare(&pair, true, tolerance_surface(0));
-        assert_int_equal(r.largest_region, size);
+        assert_int_equal(r.values[MEASURE_LARGEST_REGION], size);
         assert_int_equal(r.agrees, size == 2);
         pair_release(&pair);
     }
@@ -417,13 +419,13 @@ static void reports_sixteen_bit_pictures_in_eight_bit_levels(void **state)
     change(&pair.b, 18, 11, 0, 1);
     change(&pair.b, 19, 11, 0, 514);
     CompareResult r = compare(&pair, true, tolerance_identity(0));
-    assert_float_equal(r.max_abs, 2, 1e-12);
-    assert_float_equal(r.max_code, 514, 0);
-    assert_int_equal(r.differing_pixels, 2);
-    assert_int_equal(r.beyond_pixels, 1); /* one code is identity */
+    assert_float_equal(r.values[MEASURE_MAX_ABS], 2, 1e-12);
+    assert_float_equal(r.values[MEASURE_MAX_CODE], 514, 0);
+    assert_int_equal(r.values[MEASURE_DIFFERING_PIXELS], 2);
+    assert_int_equal(r.values[MEASURE_BEYOND_PIXELS], 1); /* one code is identity */
     assert_int_equal(r.classes[PIXEL_ROUNDING], 1);
     r = compare(&pair, true, tolerance_surface(0));
-    assert_int_equal(r.beyond_pixels, 0);
+    assert_int_equal(r.values[MEASURE_BEYOND_PIXELS], 0);
     pair_release(&pair);
 }
 
@@ -440,10 +442,10 @@ static void compares_single_pixels(void **state)
     b.codes8[2] = 255;
     assert_int_equal(compare_plain(&a, &b, &tolerance, &r), STATUS_OK);
     assert_false(r.agrees);
-    assert_int_equal(r.differing_pixels, 1);
+    assert_int_equal(r.values[MEASURE_DIFFERING_PIXELS], 1);
     assert_int_equal(compare_perception(&a, &b, &r, &err), STATUS_OK);
-    assert_true(r.flip_mean > 0.5);
-    assert_true(isnan(r.ssim));
+    assert_true(r.values[MEASURE_FLIP_MEAN] > 0.5);
+    assert_true(isnan(r.values[MEASURE_SSIM]));
     picture_release(&a);
     picture_release(&b);
 }
@@ -452,7 +454,7 @@ static void refuses_images_of_different_shape(void **state)
 {
     (void)state;
     Picture a, wide, deep, grey;
-    CompareResult r = {.pixels = 7};
+    CompareResult r = {.values = {[MEASURE_PIXELS] = 7}};
     Tolerance tolerance = tolerance_identity(0);
     assert_int_equal(picture_init(&a, 4, 3, 3, 8, &err), STATUS_OK);
     assert_int_equal(picture_init(&wide, 5, 3, 3, 8, &err), STATUS_OK);
@@ -470,7 +472,7 @@ static void refuses_images_of_different_shape(void **state)
                      STATUS_INPUT);
     assert_int_equal(compare_pictures(&with_ids, &without, &tolerance, &r, NULL, &err),
                      STATUS_INPUT);
-    assert_int_equal(r.pixels, 7);
+    assert_int_equal(r.values[MEASURE_PIXELS], 7);
     idplane_release(&ids);
     picture_release(&a);
     picture_release(&wide);
@@ -506,15 +508,15 @@ static void measures_depth_in_mm_over_common_pixels(void **state)
     b.values[11 * W + 18] = INFINITY;
     a.values[0] = 3;
     CompareResult r = compare_depth(&a, &b, tolerance_identity(0.01));
-    assert_int_equal(r.missing_pixels, 2);
-    assert_int_equal(r.extra_pixels, 0);
-    assert_int_equal(r.common_pixels, 196);
-    assert_float_equal(r.median, 0, 0);
-    assert_float_equal(r.p99, 0.5, 0);
-    assert_float_equal(r.max, 0.5, 0);
-    assert_int_equal(r.beyond_pixels, r.differing_pixels - 2);
-    assert_int_equal(r.worst.y, 5);
-    assert_int_equal(r.worst.x, 13);
+    assert_int_equal(r.values[MEASURE_MISSING_PIXELS], 2);
+    assert_int_equal(r.values[MEASURE_EXTRA_PIXELS], 0);
+    assert_int_equal(r.values[MEASURE_COMMON_PIXELS], 196);
+    assert_float_equal(r.values[MEASURE_MEDIAN], 0, 0);
+    assert_float_equal(r.values[MEASURE_P99], 0.5, 0);
+    assert_float_equal(r.values[MEASURE_MAX], 0.5, 0);
+    assert_int_equal(r.values[MEASURE_BEYOND_PIXELS], r.values[MEASURE_DIFFERING_PIXELS] - 2);
+    assert_int_equal(r.places[PLACE_WORST].y, 5);
+    assert_int_equal(r.places[PLACE_WORST].x, 13);
     assert_false(r.agrees);
     assert_non_null(strstr(r.reason, "pixels seen in only one image"));
     plane_release(&a);
@@ -532,12 +534,12 @@ static void takes_percentiles_by_nearest_rank(void **state)
         b.values[i] = (float)(i * 77 % 200 + 1001); /* farther by 1 to 200 in another order */
     }
     CompareResult r = compare_depth(&a, &b, tolerance_surface(0.01));
-    assert_float_equal(r.median, 100, 0);
-    assert_float_equal(r.p99, 198, 0);
-    assert_float_equal(r.max, 200, 0);
+    assert_float_equal(r.values[MEASURE_MEDIAN], 100, 0);
+    assert_float_equal(r.values[MEASURE_P99], 198, 0);
+    assert_float_equal(r.values[MEASURE_MAX], 200, 0);
     assert_string_equal(r.reason, "depth: 99th percentile of differences: 198 mm, at most 0.01 "
                                   "allowed; the worst, 200 mm, is at (7, 9)");
-    assert_float_equal(r.p99_part, 0.198, 0);
+    assert_float_equal(r.values[MEASURE_P99_PART], 0.198, 0);
     r = compare_depth(&a, &b, tolerance_surface(0));
     assert_string_equal(r.reason,
                         "depth: 99th percentile of differences: 0.198 of the depth, at most 0.0001 "
@@ -556,11 +558,10 @@ static void counts_nan_and_never_averages_it_in(void **state)
     a.values[10 * W + 17] = -INFINITY;
     a.values[0] = b.values[0] = NAN;
     CompareResult r = compare_depth(&a, &b, tolerance_identity(0.01));
-    assert_int_equal(r.nan_pixels_a, 2);
-    assert_int_equal(r.nan_pixels_b, 2);
-    assert_int_equal(r.common_pixels, 195);
-    assert_int_equal(r.missing_pixels + r.extra_pixels, 0);
-    assert_float_equal(r.max, 0, 0);
+    assert_int_equal(r.values[MEASURE_NAN_PIXELS], 4);
+    assert_int_equal(r.values[MEASURE_COMMON_PIXELS], 195);
+    assert_int_equal(r.values[MEASURE_MISSING_PIXELS] + r.values[MEASURE_EXTRA_PIXELS], 0);
+    assert_float_equal(r.values[MEASURE_MAX], 0, 0);
     assert_false(r.agrees);
     assert_string_equal(r.reason, "depth: values that are not a number: 4 pixels, at most 0 "
                                   "allowed; the first is at (0, 0)");
@@ -583,15 +584,15 @@ static void measures_normals_by_their_angle(void **state)
     memcpy(b.values, normals_b, sizeof normals_b);
     assert_int_equal(compare_planes(PLANE_NORMAL, &a, &b, NULL, NULL, &tolerance, &r, &err),
                      STATUS_OK);
-    assert_int_equal(r.common_pixels, 2);
-    assert_float_equal(r.max, 36.8698976, 1e-5);
-    assert_float_equal(r.median, 0.0057295780, 1e-9);
-    assert_int_equal(r.beyond_pixels, 1);
+    assert_int_equal(r.values[MEASURE_COMMON_PIXELS], 2);
+    assert_float_equal(r.values[MEASURE_MAX], 36.8698976, 1e-5);
+    assert_float_equal(r.values[MEASURE_MEDIAN], 0.0057295780, 1e-9);
+    assert_int_equal(r.values[MEASURE_BEYOND_PIXELS], 1);
     b.values[0] = NAN;
     assert_int_equal(compare_planes(PLANE_NORMAL, &a, &b, NULL, NULL, &tolerance, &r, &err),
                      STATUS_OK);
-    assert_int_equal(r.nan_pixels_b, 1);
-    assert_int_equal(r.common_pixels, 1);
+    assert_int_equal(r.values[MEASURE_NAN_PIXELS], 1);
+    assert_int_equal(r.values[MEASURE_COMMON_PIXELS], 1);
     assert_int_equal(compare_planes(PLANE_DEPTH, &a, &b, NULL, NULL, &tolerance, &r, &err),
                      STATUS_INPUT);
     plane_release(&a);
@@ -607,8 +608,8 @@ static void finds_nothing_in_common_with_an_empty_plane(void **state)
     for (int i = 0; i < W * H; i++)
         b.values[i] = INFINITY;
     CompareResult r = compare_depth(&a, &b, tolerance_surface(0));
-    assert_int_equal(r.common_pixels, 0);
-    assert_true(isnan(r.median));
+    assert_int_equal(r.values[MEASURE_COMMON_PIXELS], 0);
+    assert_true(isnan(r.values[MEASURE_MEDIAN]));
     assert_false(r.agrees);
     assert_non_null(strstr(r.reason, "largest missing or extra region: 197 pixels"));
     plane_release(&a);
@@ -679,10 +680,13 @@ static void measures_are_levels_of_255_to_the_last_digit(void **state)
             squares += d * d;
         }
         assert_int_equal(compare_pictures(&in_a, &in_b, &tolerance, &r, NULL, &err), STATUS_OK);
-        assert_true(fabs(r.gain - 1.5) < 1e-9 && fabs(r.offset_levels - 7) < 1e-7);
-        assert_true(fabs(r.mean_abs - sum / n) < 1e-9 && fabs(r.bias_levels - sum / n) < 1e-9);
-        assert_true(fabs(r.rmse - sqrt(squares / n)) < 1e-9 && r.max_abs == 67);
-        assert_true(fabs(r.psnr_db - 10 * log10(255 * 255 / (squares / n))) < 1e-9);
+        assert_true(fabs(r.values[MEASURE_GAIN] - 1.5) < 1e-9 &&
+                    fabs(r.values[MEASURE_OFFSET_LEVELS] - 7) < 1e-7);
+        assert_true(fabs(r.values[MEASURE_MEAN_ABS] - sum / n) < 1e-9 &&
+                    fabs(r.values[MEASURE_BIAS_LEVELS] - sum / n) < 1e-9);
+        assert_true(fabs(r.values[MEASURE_RMSE] - sqrt(squares / n)) < 1e-9 &&
+                    r.values[MEASURE_MAX_ABS] == 67);
+        assert_true(fabs(r.values[MEASURE_PSNR_DB] - 10 * log10(255 * 255 / (squares / n))) < 1e-9);
         idplane_release(&ids);
         picture_release(&a);
         picture_release(&b);

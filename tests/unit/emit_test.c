@@ -5,7 +5,6 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include <stdio.h>
 
@@ -86,7 +85,7 @@ static Status write_povray(const Scene *scene, const EmitParams *params, Emitted
 {
     EmitParams all = *params;
     all.scene = scene;
-    EmitOutput to = {&out->scene, &out->geometry, &out->report};
+    EmitOutput to = {&out->scene, &out->geometry, &out->report, NULL};
     return emitter_find("pov", false)->write(&all, &to, err);
 }
 
@@ -366,9 +365,10 @@ static void a_forest_of_primitives_is_the_union_of_its_trees(void **state)
 static void a_tree_of_a_field_is_made_of_its_own_segments(void **state)
 {
     (void)state;
-    const Blend by_tree = {.n_groups = 2,
-                           .members = {(uint32_t[]){0, 2, 3}, (uint32_t[]){0, 2, 1}},
-                           .groups = {(uint32_t[]){0, 1, 2, 3}, (uint32_t[]){0, 1, 0}}};
+    const Blend by_tree = {
+        .n_groups = 2,
+        .members = {.first = (uint32_t[]){0, 2, 3}, .items = (uint32_t[]){0, 2, 1}},
+        .groups = {.first = (uint32_t[]){0, 1, 2, 3}, .items = (uint32_t[]){0, 1, 0}}};
     for (int grouped = 0; grouped < 2; grouped++) {
         Scene scene = make_scene(SCENE_ISOSURFACE);
         EmitParams params = two_files;
@@ -554,72 +554,6 @@ static void a_geometry_that_cannot_be_included_is_refused(void **state)
     assert_int_equal(povray->check_name("-a b;c&d'e%f\\g.inc", &err), STATUS_OK);
 }
 
-static Status write_files(SceneModel model, const char *path, const char *second, Err *err)
-{
-    const Scene scene = make_scene(model);
-    EmitParams params = two_files;
-    params.scene = &scene;
-    return emit_files(emitter_find("pov", false), &params, path, second, NULL, err);
-}
-
-static void expect_file(const char *path, const char *expected)
-{
-    static const FileForm form = {.name = "a scene", .most_bytes = 1e7, .is_text = true};
-    char *text = NULL;
-    size_t size;
-    assert_int_equal(file_read(path, &form, &text, &size, NULL), STATUS_OK);
-    assert_string_equal(text, expected);
-    free(text);
-}
-
-static void files_hold_what_a_text_holds(void **state)
-{
-    (void)state;
-    for (SceneModel model = SCENE_CYLINDERS; model <= SCENE_BLOB; model++) {
-        const Scene scene = make_scene(model);
-        Emitted out = emit(&scene, &two_files);
-        assert_int_equal(write_files(model, "build/e.pov", "build/e.inc", NULL), STATUS_OK);
-        expect_file("build/e.pov", text_chars(&out.scene));
-        expect_file("build/e.inc", text_chars(&out.geometry));
-        release(&out);
-    }
-    remove("build/e.pov");
-    remove("build/e.inc");
-}
-
-/* The second cannot take its name, which a folder has. */
-static void of_two_files_both_are_put_in_place_or_neither(void **state)
-{
-    (void)state;
-    OutFile files[2];
-    Err err;
-    for (int old = 0; old < 2; old++) {
-        remove("build/e.pov");
-        if (old)
-            assert_int_equal(file_write("build/e.pov", "old", 3, NULL), STATUS_OK);
-        assert_int_equal(outfile_open(&files[0], "build/e.pov", NULL), STATUS_OK);
-        assert_int_equal(outfile_open(&files[1], "build/e.inc", NULL), STATUS_OK);
-        fputs("new", files[0].stream);
-        assert_int_equal(file_make_folder("build/e.inc", NULL), STATUS_OK);
-        assert_int_equal(outfiles_commit(files, 2, &err), STATUS_IO);
-        assert_non_null(strstr(err.text, "e.inc"));
-        remove("build/e.inc");
-        if (old)
-            expect_file("build/e.pov", "old");
-        else
-            assert_int_not_equal(access("build/e.pov", F_OK), 0);
-    }
-    remove("build/e.pov");
-}
-
-static void a_full_disk_is_said(void **state)
-{
-    (void)state;
-    Err err;
-    assert_int_equal(write_files(SCENE_ROUNDED, "/dev/full", NULL, &err), STATUS_IO);
-    assert_non_null(strstr(err.text, "No space left on device"));
-}
-
 /* What guards a geometry against being included twice. */
 static void long_names_have_guards_of_their_own_that_fit_an_identifier(void **state)
 {
@@ -661,9 +595,6 @@ int main(void)
         cmocka_unit_test(a_missing_template_is_named),
         cmocka_unit_test(names_stay_in_their_comments),
         cmocka_unit_test(a_geometry_that_cannot_be_included_is_refused),
-        cmocka_unit_test(files_hold_what_a_text_holds),
-        cmocka_unit_test(of_two_files_both_are_put_in_place_or_neither),
-        cmocka_unit_test(a_full_disk_is_said),
         cmocka_unit_test(long_names_have_guards_of_their_own_that_fit_an_identifier),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

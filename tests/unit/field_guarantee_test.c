@@ -35,14 +35,14 @@ typedef struct Answer {
     Viewpoint eye;
 } Answer;
 
-static void keep_answer(const SeenTile *seen, Answer *answer)
+static void keep_answer(const TracedTile *seen, Answer *answer)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         answer->hit[sample] = seen->hits && seen->hits->state[sample] == TILE_HIT;
         if (!answer->hit[sample])
             continue;
         const TileHits *hits = seen->hits;
-        answer->t[sample] = seen_depth(seen, sample);
+        answer->t[sample] = tile_hit_distance(seen, sample);
         answer->segment[sample] = hits->segment[sample];
         answer->normal[sample] = viewpoint_to_world(
             &answer->eye, vec3((double)hits->normal[0][sample], (double)hits->normal[1][sample],
@@ -60,7 +60,7 @@ static void ask(const Geometry *geometry, const Camera *camera, int kernel, Answ
                                      .kernels = (RenderKernels)(KERNELS_PORTABLE + kernel)};
     FieldTiles *tiles;
     TileHits hits;
-    SeenTile seen = {
+    TracedTile seen = {
         .n_columns = 8, .n_rows = 8, .perspective = camera->projection == PROJECTION_PERSPECTIVE};
     assert_int_equal(fieldtiles_new(&params, &tiles, NULL), STATUS_OK);
     assert_int_equal(fieldtiles_list(tiles, 0, 0, NULL), STATUS_OK);

@@ -28,17 +28,17 @@ typedef struct Tally {
 /* What a camera sees in 8 x 8 pixels, and which of that lies in the shadow of a light. */
 typedef struct Sight {
     uint64_t seen;
-    SeenPlaces places;
+    HitPoints places;
     Vec3 normal[TILE_SAMPLES];
     uint8_t shadowed[TILE_SAMPLES];
 } Sight;
 
-static void keep_sight(const SeenTile *tile, Sight *sight)
+static void keep_sight(const TracedTile *tile, Sight *sight)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (!tile->hits || tile->hits->state[sample] != TILE_HIT)
             continue;
-        Vec3 place = seen_place(tile, sample);
+        Vec3 place = tile_hit_point(tile, sample);
         const float(*normal)[TILE_SAMPLES] = tile->hits->normal;
         sight->seen |= (uint64_t)1 << sample;
         sight->places.x[sample] = place.x;
@@ -58,7 +58,7 @@ static void look(const Geometry *geometry, const Camera *camera, Sight *sight)
                                      .workers = 1};
     FieldTiles *tiles;
     TileHits hits;
-    SeenTile seen = {
+    TracedTile seen = {
         .n_columns = 8, .n_rows = 8, .perspective = camera->projection == PROJECTION_PERSPECTIVE};
     *sight = (Sight){.seen = 0};
     assert_int_equal(fieldtiles_new(&params, &tiles, NULL), STATUS_OK);

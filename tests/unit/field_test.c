@@ -231,7 +231,7 @@ static void agrees_with_brute_force_in_long_double(void **state)
     random_seed(&random, 51);
     for (int kind = 0; kind < N_KINDS; kind++) {
         Tally tally = {0};
-        for (int run = 0; run < 4; run++) {
+        for (int run = 0; run < (SHARE > 1 ? 1 : 4); run++) {
             Setup setup;
             make_test_scene((SceneKind)kind, &random, &setup.test);
             start(&setup);

@@ -6,17 +6,6 @@
 #include "field_scenes.h"
 #include <stdlib.h>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SHARE 10 /* sanitizers are slow: one camera in so many */
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SHARE 10
-#endif
-#endif
-#ifndef SHARE
-#define SHARE 1
-#endif
-
 /* Potential by which the picture may be off: a millionth for each term that the ray passes, all of
  * which may be left out somewhere along it, and for single precision. */
 static inline long double epsilon_of(size_t n_terms)

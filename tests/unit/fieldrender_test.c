@@ -285,7 +285,7 @@ static void all_kernels_agree(void **state)
         params.kernels = (RenderKernels)(KERNELS_PORTABLE + k);
         assert_int_equal(fieldtiles_new(&params, &field, NULL), STATUS_OK);
         for (int n = 0; n < 64; n++) {
-            SeenTile seen = {.column = n % 8 * 8, .row = n / 8 * 8, .n_columns = 8, .n_rows = 8};
+            TracedTile seen = {.column = n % 8 * 8, .row = n / 8 * 8, .n_columns = 8, .n_rows = 8};
             memset(&tiles[k][n], 0, sizeof tiles[k][n]);
             assert_int_equal(fieldtiles_list(field, n / 8, 0, NULL), STATUS_OK);
             assert_int_equal(fieldtiles_trace(field, 0, &seen, &tiles[k][n].hits, NULL), STATUS_OK);

@@ -1,5 +1,6 @@
 #include "any_file.h"
 #include "base/base.h"
+#include "cli/interrupt.h"
 #include "unit.h"
 
 #include <stdint.h>

@@ -1,6 +1,7 @@
 /* The pairs and the values of NVIDIA's FLIP 1.6 come with the shared data; without it those tests
  * are skipped. */
 #include "compare/compare.h"
+#include "compare/measures/perception.h"
 #include "unit.h"
 #include <math.h>
 #include <stdint.h>
@@ -84,11 +85,11 @@ static void reproduces_the_values_of_reference_tools(void **state)
         assert_int_equal(compare_pictures(&of_a, &of_b, &tolerance, &result, NULL, &err),
                          STATUS_OK);
         assert_int_equal(compare_perception(&a, &b, &result, &err), STATUS_OK);
-        assert_near(result.flip_mean, e->flip, 2e-5);
-        assert_near(result.flip_max, e->flip_max, 1e-3);
-        assert_near(result.ssim, e->ssim, 1e-5);
-        assert_near(result.psnr_db, e->psnr_db, 1e-4);
-        assert_near(result.de2000_mean, e->de2000, 1e-4);
+        assert_near(result.values[MEASURE_FLIP_MEAN], e->flip, 2e-5);
+        assert_near(result.values[MEASURE_FLIP_MAX], e->flip_max, 1e-3);
+        assert_near(result.values[MEASURE_SSIM], e->ssim, 1e-5);
+        assert_near(result.values[MEASURE_PSNR_DB], e->psnr_db, 1e-4);
+        assert_near(result.values[MEASURE_DE2000_MEAN], e->de2000, 1e-4);
         if (e->pixelmatch != SIZE_MAX)
             assert_int_equal(pixelmatch_count(&a, &b, 0.1), e->pixelmatch);
         picture_release(&a);
@@ -185,16 +186,17 @@ static void finds_nothing_between_a_picture_and_itself(void **state)
         Picture a;
         Plane map;
         FlipSummary summary;
-        double ssim;
+        double values[MEASURES];
         make(&a, shapes[i][0], shapes[i][1], shapes[i][2], shapes[i][3], 7);
         assert_int_equal(flip_compute(&a, &a, &map, &summary, &err), STATUS_OK);
         assert_float_equal(summary.mean, 0, 0);
-        assert_float_equal(summary.max, 0, 0);
-        assert_int_equal(ssim_compute(&a, &a, &ssim, &err), STATUS_OK);
+        assert_near(summary.p95 + summary.max, 0, 0);
+        assert_near(summary.weighted_mean + summary.weighted_median, 0, 0);
+        assert_int_equal(ssim_find(&a, &a, values, &err), STATUS_OK);
         if (a.width >= 11 && a.height >= 11)
-            assert_float_equal(ssim, 1, 1e-12);
+            assert_float_equal(values[MEASURE_SSIM], 1, 1e-12);
         else
-            assert_true(isnan(ssim));
+            assert_true(isnan(values[MEASURE_SSIM]));
         plane_release(&map);
         picture_release(&a);
     }
@@ -225,12 +227,60 @@ static void is_symmetric_and_zero_beyond_the_reach_of_a_difference(void **state)
     picture_release(&b);
 }
 
+/* Sums over a map of errors, made without counting: the percentile by nearest rank, of weights. */
+static double percentile_of_map(const float *errors, size_t n, double fraction, bool weighted)
+{
+    double *sorted, all = 0, sum = 0, found = 1;
+    assert_int_equal(mem_calloc(&sorted, n, sizeof *sorted, "errors", &err), STATUS_OK);
+    for (size_t i = 0; i < n; i++) {
+        sorted[i] = (double)errors[i];
+        all += weighted ? sorted[i] : 1;
+    }
+    for (size_t i = 0; i < n && sum < fraction * all; i++) {
+        found = select_number(sorted, n, i);
+        sum += weighted ? found : 1;
+    }
+    free(sorted);
+    return found;
+}
+
+static void sums_up_errors_with_and_without_weights(void **state)
+{
+    (void)state;
+    enum { WIDTH = 103, HEIGHT = 61, N = WIDTH * HEIGHT };
+    Picture a, b;
+    Plane map;
+    FlipSummary summary;
+    double sum = 0, squares = 0, values[MEASURES];
+    make(&a, WIDTH, HEIGHT, 3, 8, 11);
+    make(&b, WIDTH, HEIGHT, 3, 8, 11);
+    for (int i = 0; i < 300; i++) /* a few rows; the other tiles are equal */
+        b.codes8[i] = (uint8_t)(255 - b.codes8[i]);
+    assert_int_equal(flip_compute(&a, &b, &map, &summary, &err), STATUS_OK);
+    for (int i = 0; i < N; i++) {
+        sum += (double)map.values[i];
+        squares += (double)(map.values[i] * map.values[i]);
+    }
+    assert_near(summary.mean, sum / N, 1e-9);
+    assert_near(summary.weighted_mean, squares / sum, 1e-6);
+    assert_near(summary.p95, percentile_of_map(map.values, N, 0.95, false), 1e-5);
+    assert_near(summary.weighted_median, percentile_of_map(map.values, N, 0.5, true), 1e-5);
+    assert_near(summary.weighted_p95, percentile_of_map(map.values, N, 0.95, true), 1e-5);
+    assert_true(summary.weighted_mean > 2 * summary.mean && summary.weighted_p95 < summary.max);
+    assert_int_equal(flip_find(&a, &b, values, &err), STATUS_OK);
+    assert_near(values[MEASURE_FLIP_P95], summary.p95, 0);
+    assert_near(values[MEASURE_FLIP_WEIGHTED_MEAN], summary.weighted_mean, 0);
+    plane_release(&map);
+    picture_release(&a);
+    picture_release(&b);
+}
+
 static void sees_the_same_in_eight_and_sixteen_bits(void **state)
 {
     (void)state;
     Picture a[2], b[2];
     FlipSummary summary[2];
-    double ssim[2];
+    double values[2][MEASURES];
     for (int i = 0; i < 2; i++) {
         make(&a[i], 40, 30, 3, i ? 16 : 8, 3);
         make(&b[i], 40, 30, 3, i ? 16 : 8, 4);
@@ -241,12 +291,13 @@ static void sees_the_same_in_eight_and_sixteen_bits(void **state)
     }
     for (int i = 0; i < 2; i++) {
         assert_int_equal(flip_compute(&a[i], &b[i], NULL, &summary[i], &err), STATUS_OK);
-        assert_int_equal(ssim_compute(&a[i], &b[i], &ssim[i], &err), STATUS_OK);
+        assert_int_equal(ssim_find(&a[i], &b[i], values[i], &err), STATUS_OK);
         picture_release(&a[i]);
         picture_release(&b[i]);
     }
     assert_float_equal(summary[0].mean, summary[1].mean, 1e-6);
-    assert_float_equal(ssim[0], ssim[1], 1e-4); /* luma is rounded to whole codes */
+    assert_float_equal(values[0][MEASURE_SSIM], values[1][MEASURE_SSIM],
+                       1e-4); /* luma is rounded to whole codes */
 }
 
 int main(void)
@@ -258,6 +309,7 @@ int main(void)
         cmocka_unit_test(counts_what_pixelmatch_counts_up_to_the_threshold),
         cmocka_unit_test(finds_nothing_between_a_picture_and_itself),
         cmocka_unit_test(is_symmetric_and_zero_beyond_the_reach_of_a_difference),
+        cmocka_unit_test(sums_up_errors_with_and_without_weights),
         cmocka_unit_test(sees_the_same_in_eight_and_sixteen_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

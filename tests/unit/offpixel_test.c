@@ -15,7 +15,7 @@
 #include "test_grow.h"
 #include "test_stage.h"
 
-enum { SIDE = 240, TERMINALS = 3000 };
+enum { SIDE = 240, TERMINALS = 3000 / (SHARE > 1 ? 3 : 1) };
 
 static Err err;
 static Tree tree;
@@ -137,7 +137,7 @@ static void have_the_shadows_of_rays(SceneModel model, Projection projection,
         }
     }
     print_message("%zu of %zu dark, %zu off\n", dark, asked, off);
-    assert_true(asked > 20000 && dark > asked / 50 && dark < asked / 2);
+    assert_true(asked > 20000 / SHARE && dark > asked / 50 && dark < asked / 2);
     assert_true(off * 1000000 <= most * asked);
     offpixel_release(&seen);
     offpixel_release(&cast);
@@ -236,7 +236,7 @@ static void looks_as_by_rays(SceneModel model, size_t number)
         off += fabsf(traced.color.values[3 * i] - color) > 1e-5f;
     }
     print_message("%zu of %zu pixels darker, %zu off\n", dark, thin, off);
-    assert_true(thin > 3000 && dark * 50 > thin && off * 2000 <= thin);
+    assert_true(thin > 3000 / SHARE && dark * 50 > thin && off * 2000 <= thin);
     frame_release(&depths);
     frame_release(&traced);
     frame_release(&drawn);

@@ -24,7 +24,7 @@ static void collect_end(FILE *log, int kept, char out[80])
     fclose(log);
 }
 
-static void told(bool quiet, char out[80])
+static void told(bool quiet, bool failed, char out[80])
 {
     Screen screen;
     Talk talk = screen_talk(&screen, quiet);
@@ -32,6 +32,8 @@ static void told(bool quiet, char out[80])
     int kept = collect_begin(&log);
     talk_note(&talk, "%d segments", 2);
     talk_warn(&talk, "no %s", "room");
+    (failed ? screen_drop_held : screen_print_held)(&screen);
+    screen_print_held(&screen);
     collect_end(log, kept, out);
 }
 
@@ -80,10 +82,37 @@ static void a_note_is_said_unless_quiet_and_a_warning_always(void **state)
 {
     (void)state;
     char said[80];
-    told(false, said);
+    told(false, false, said);
     assert_string_equal(said, "corcast: 2 segments\ncorcast: no room\n");
-    told(true, said);
+    told(true, false, said);
     assert_string_equal(said, "corcast: no room\n");
+}
+
+static void a_command_that_fails_prints_no_sentence(void **state)
+{
+    (void)state;
+    char said[80];
+    told(false, true, said);
+    assert_string_equal(said, "");
+}
+
+static void sentences_are_printed_before_progress_is(void **state)
+{
+    (void)state;
+    char said[80];
+    Screen screen;
+    Talk talk = screen_talk(&screen, false);
+    Progress progress;
+    FILE *log;
+    int kept = collect_begin(&log);
+    talk_note(&talk, "%d segments", 2);
+    progress_start(&progress, "growing", &talk);
+    screen.start_s -= 12;
+    screen.last_s -= 12;
+    progress_show(&progress, 0.3);
+    screen_drop_held(&screen);
+    collect_end(log, kept, said);
+    assert_string_equal(said, "corcast: 2 segments\ngrowing: 30 %, 28 s left\n");
 }
 
 static void work_of_days_says_so_after_ten_seconds(void **state)
@@ -101,6 +130,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_log_gets_a_line_of_progress_every_ten_seconds),
         cmocka_unit_test(a_note_is_said_unless_quiet_and_a_warning_always),
+        cmocka_unit_test(a_command_that_fails_prints_no_sentence),
+        cmocka_unit_test(sentences_are_printed_before_progress_is),
         cmocka_unit_test(work_of_days_says_so_after_ten_seconds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

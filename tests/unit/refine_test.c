@@ -129,8 +129,8 @@ static void trees_of_little_length_come_near_the_spanning_tree(void **state)
         const char *domain;
         uint64_t seed;
         double limit;
-    } cases[] = {{"disc:50", 1, 1.07}, {"disc:50", 4, 1.07}, {"ball:50", 1, 1.005}};
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    } cases[] = {{"ball:50", 1, 1.005}, {"disc:50", 1, 1.07}, {"disc:50", 4, 1.07}};
+    for (size_t k = 0; k < (SHARE > 1 ? 1 : sizeof cases / sizeof *cases); k++) {
         Domain domain;
         Tree tree = grown(1000, 0, cases[k].seed, cases[k].domain, &domain);
         RefineReport report = refine(&tree, &domain, GROW_REFINE_TOPOLOGY, 0);

@@ -1,7 +1,7 @@
 #include "any_file.h"
-#include "compare/rules/check.h"
 #include "compare/compare.h"
-#include "compare/measures/result.h"
+#include "compare/report/check.h"
+#include "compare/rules/judge.h"
 #include "unit.h"
 #include <math.h>
 #include <stdint.h>
@@ -184,7 +184,7 @@ static void writes_numbers_that_read_back_to_the_same_double(void **state)
     back = json_object_get(json_object_get(json, "native"), "seconds");
     assert_true(json_real_value(back) == 2.0 / 7);
     back = json_object_get(json_object_get(json_object_get(json, "planes"), "color"), "psnr_db");
-    assert_true(json_real_value(back) == scene.color.psnr_db);
+    assert_true(json_real_value(back) == scene.color.values[MEASURE_PSNR_DB]);
     json_decref(json);
     free(text);
     scene_release(&scene);

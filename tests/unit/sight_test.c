@@ -62,7 +62,7 @@ static void what_rays_through_the_part_meet_is_in_sight(void **state)
 }
 
 /* Where a ray may start towards a light: somewhere before it leaves the bounds, or the ground. */
-static Vec3 seen_place(const View *view, Random *random)
+static Vec3 tile_hit_point(const View *view, Random *random)
 {
     for (;;) {
         double t;
@@ -86,7 +86,7 @@ static void what_stands_between_that_and_a_light_is_in_sight_of_shadows(void **s
         size_t between = 0;
         for (int n = 0; n < 60000; n++) {
             const Light *light = &view.lights[n % 3];
-            Vec3 from = seen_place(&view, &random);
+            Vec3 from = tile_hit_point(&view, &random);
             int k = (int)(light_points(light) * random_uniform(&random));
             LightWay way = light_way_to_point(light, k, from);
             double part_of_way = random_uniform(&random);

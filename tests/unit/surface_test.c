@@ -335,12 +335,13 @@ static void the_mean_of_groups_is_that_of_the_largest(void **state)
     FieldSegment segments[] = {{{-9, 0, 0}, {0, 0, 0}, 1.3, 0},
                                {{0, 0, 0}, {9, 2, 0}, 1.1, 1},
                                {{1, -7, 1.8}, {-1, 8, 1.7}, 0.9, 2}};
-    const Geometry geometry = {.model = SCENE_ISOSURFACE,
-                               .segments = segments,
-                               .n_segments = 3,
-                               .blend = {2,
-                                         {(uint32_t[]){0, 2, 3}, (uint32_t[]){0, 1, 2}},
-                                         {(uint32_t[]){0, 1, 2, 3}, (uint32_t[]){0, 0, 1}}}};
+    const Geometry geometry = {
+        .model = SCENE_ISOSURFACE,
+        .segments = segments,
+        .n_segments = 3,
+        .blend = {2,
+                  {.first = (uint32_t[]){0, 2, 3}, .items = (uint32_t[]){0, 1, 2}},
+                  {.first = (uint32_t[]){0, 1, 2, 3}, .items = (uint32_t[]){0, 0, 1}}}};
     const double numbers[] = {0.25, 2.385, 7};
     TermMean *mean;
     assert_int_equal(termmean_new(&geometry, &mean, NULL), STATUS_OK);

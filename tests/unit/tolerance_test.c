@@ -1,6 +1,7 @@
 /* Tiers, the ledger of segments, float colours, and tolerances as files. */
 #include "compare/compare.h"
-#include "compare/measures/result.h"
+#include "compare/pixels.h"
+#include "compare/rules/judge.h"
 #include "unit.h"
 #include <math.h>
 #include <stdint.h>
@@ -152,9 +153,9 @@ static void measures_by_how_much_an_outline_has_moved(void **state)
     }
     CompareResult r = compare(&a, &b, tolerance_tolerant(0), &ledger);
     double outline = 2 * (40 + 32) * 0.78539816339744831;
-    assert_near(r.silhouette_px, 32 / outline, 1e-12);
+    assert_near(r.values[MEASURE_SILHOUETTE_PX], 32 / outline, 1e-12);
     assert_near(ledger.entries[1].moved_px, 32 / (104 * 0.78539816339744831), 1e-12);
-    assert_int_equal(r.extra_pixels, 32);
+    assert_int_equal(r.values[MEASURE_EXTRA_PIXELS], 32);
     assert_false(rule_named(&r, "outline of what is seen")->met);
     assert_false(rule_named(&r, "outline of a segment")->met);
     ledger_release(&ledger);
@@ -172,10 +173,10 @@ static void names_a_segment_that_is_gone(void **state)
         if (b.ids.ids[i] == 23)
             b.ids.ids[i] = 85;
     CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
-    assert_int_equal(r.segments, 2);
-    assert_int_equal(r.segments_missing, 1);
-    assert_int_equal(r.segment_missing_at.id_a, 23);
-    assert_int_equal(r.segment_missing_at.id_b, 0);
+    assert_int_equal(r.values[MEASURE_SEGMENTS], 2);
+    assert_int_equal(r.values[MEASURE_SEGMENTS_MISSING], 1);
+    assert_int_equal(r.places[PLACE_SEGMENT_MISSING].id_a, 23);
+    assert_int_equal(r.places[PLACE_SEGMENT_MISSING].id_b, 0);
     assert_int_equal(r.classes[PIXEL_WRONG_SEGMENT] + r.classes[PIXEL_EDGE], 640);
     assert_non_null(strstr(r.reason, "segments seen in only one image"));
     side_release(&a);
@@ -192,8 +193,9 @@ static void fits_gain_and_offset(void **state)
         if (a.ids.ids[i / 3])
             b.picture.codes8[i] = (uint8_t)((a.picture.codes8[i] * 5) / 4 + 7);
     CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
-    assert_true(fabs(r.gain - 1.25) < 2e-3);
-    assert_true(fabs(r.offset_levels - 6.6) < 0.3); /* the quotient is rounded down */
+    assert_true(fabs(r.values[MEASURE_GAIN] - 1.25) < 2e-3);
+    assert_true(fabs(r.values[MEASURE_OFFSET_LEVELS] - 6.6) <
+                0.3); /* the quotient is rounded down */
     assert_false(rule_named(&r, "gain")->met);
     assert_false(rule_named(&r, "offset")->met);
     side_release(&a);
@@ -264,7 +266,7 @@ static void segments_too_small_to_judge_are_not_judged(void **state)
             if (b.ids.ids[i] == 7)
                 b.picture.codes8[3 * i] += 5;
         CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
-        assert_near(r.segment_levels, n < 64 ? 0 : 5, 1e-12);
+        assert_near(r.values[MEASURE_SEGMENT_LEVELS], n < 64 ? 0 : 5, 1e-12);
         side_release(&a);
         side_release(&b);
     }
@@ -274,7 +276,7 @@ static void segments_too_small_to_judge_are_not_judged(void **state)
         side_init(&b, 0);
         put_small(&a, n, 7);
         CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
-        assert_int_equal(r.segments_missing, n == 3);
+        assert_int_equal(r.values[MEASURE_SEGMENTS_MISSING], n == 3);
         side_release(&a);
         side_release(&b);
     }
@@ -287,7 +289,7 @@ static void segments_too_small_to_judge_are_not_judged(void **state)
         put_small(&a, n, 7);
         put_small(&b, n + 1, 7);
         CompareResult r = compare(&a, &b, tolerance_tolerant(0), NULL);
-        assert_int_equal(r.segment_px > 0.1, n == 5);
+        assert_int_equal(r.values[MEASURE_SEGMENT_PX] > 0.1, n == 5);
         side_release(&a);
         side_release(&b);
     }
@@ -315,12 +317,12 @@ static void sums_do_not_depend_on_where_the_bands_lie(void **state)
     }
     for (int i = 0; i < 2; i++)
         r[i] = compare(&a[i], &b[i], tolerance_tolerant(0), NULL);
-    assert_int_equal(r[0].differing_pixels, r[1].differing_pixels);
-    assert_int_equal(r[0].band_pixels, r[1].band_pixels);
-    assert_int_equal(r[0].worst.y + 5, r[1].worst.y);
-    assert_near(r[0].rmse, r[1].rmse, 0);
-    assert_near(r[0].gain, r[1].gain, 1e-15);
-    assert_near(r[0].silhouette_px, r[1].silhouette_px, 0);
+    assert_int_equal(r[0].values[MEASURE_DIFFERING_PIXELS], r[1].values[MEASURE_DIFFERING_PIXELS]);
+    assert_int_equal(r[0].values[MEASURE_BAND_PIXELS], r[1].values[MEASURE_BAND_PIXELS]);
+    assert_int_equal(r[0].places[PLACE_WORST].y + 5, r[1].places[PLACE_WORST].y);
+    assert_near(r[0].values[MEASURE_RMSE], r[1].values[MEASURE_RMSE], 0);
+    assert_near(r[0].values[MEASURE_GAIN], r[1].values[MEASURE_GAIN], 1e-15);
+    assert_near(r[0].values[MEASURE_SILHOUETTE_PX], r[1].values[MEASURE_SILHOUETTE_PX], 0);
     for (int i = 0; i < 2; i++) {
         side_release(&a[i]);
         side_release(&b[i]);
@@ -343,13 +345,12 @@ static void never_averages_in_what_is_not_finite(void **state)
     Tolerance tolerance = tolerance_none();
     CompareResult r;
     assert_int_equal(compare_colors(&a, &b, NULL, NULL, &tolerance, true, &r, &err), STATUS_OK);
-    assert_int_equal(r.nan_pixels_a, 1);
-    assert_int_equal(r.nan_pixels_b, 2);
-    assert_int_equal(r.nan_at.x, 7);
-    assert_int_equal(r.judged_pixels, 298);
-    assert_int_equal(r.differing_pixels, 0);
-    assert_near(r.rmse, 0, 0);
-    assert_near(r.hdr_flip_mean, 0, 0);
+    assert_int_equal(r.values[MEASURE_NAN_PIXELS], 3);
+    assert_int_equal(r.places[PLACE_NAN].x, 7);
+    assert_int_equal(r.values[MEASURE_JUDGED_PIXELS], 298);
+    assert_int_equal(r.values[MEASURE_DIFFERING_PIXELS], 0);
+    assert_near(r.values[MEASURE_RMSE], 0, 0);
+    assert_near(r.values[MEASURE_HDR_FLIP_MEAN], 0, 0);
     assert_false(r.agrees);
     assert_non_null(strstr(r.reason, "colours that are not finite: 3 pixels"));
     plane_release(&a);
@@ -370,14 +371,15 @@ static void sees_differences_beyond_white_and_below_a_code(void **state)
     b.values[30] = 5.5f;
     b.values[60] = nextafterf(0.5f, 1);
     assert_int_equal(compare_colors(&a, &b, NULL, NULL, &tolerance, true, &r, &err), STATUS_OK);
-    assert_int_equal(r.differing_pixels, 2);
-    assert_int_equal(r.beyond_pixels, 1);
-    assert_int_equal(r.worst.x, 10);
-    assert_near(r.max_abs, 255 * 1.055 * (pow(5.5, 1 / 2.4) - pow(5, 1 / 2.4)), 1e-9);
-    assert_true(r.hdr_flip_mean > 0);
-    tolerance.color_levels = 0;
+    assert_int_equal(r.values[MEASURE_DIFFERING_PIXELS], 2);
+    assert_int_equal(r.values[MEASURE_BEYOND_PIXELS], 1);
+    assert_int_equal(r.places[PLACE_WORST].x, 10);
+    assert_near(r.values[MEASURE_MAX_ABS], 255 * 1.055 * (pow(5.5, 1 / 2.4) - pow(5, 1 / 2.4)),
+                1e-9);
+    assert_true(r.values[MEASURE_HDR_FLIP_MEAN] > 0);
+    tolerance.limits[LIMIT_COLOR_LEVELS] = 0;
     assert_int_equal(compare_colors(&a, &b, NULL, NULL, &tolerance, false, &r, &err), STATUS_OK);
-    assert_int_equal(r.beyond_pixels, 2);
+    assert_int_equal(r.values[MEASURE_BEYOND_PIXELS], 2);
     plane_release(&a);
     plane_release(&b);
 }
@@ -403,9 +405,11 @@ static void reads_limits_of_all_kinds(void **state)
                                "segments_missing = inf\npixelmatch = 0.2\n"),
                      STATUS_OK);
     assert_string_equal(read.tier, "ours");
-    assert_true(read.color_levels == 2.385 && isinf(read.band_ppm) && read.color_common_only);
-    assert_true(read.region_pixels == 17 && read.segments_missing == SIZE_MAX);
-    assert_true(read.pixelmatch == 0.2 && read.depth_p99_mm == 0.00251);
+    assert_true(read.limits[LIMIT_COLOR_LEVELS] == 2.385 && isinf(read.limits[LIMIT_BAND_PPM]) &&
+                read.limits[LIMIT_COLOR_COMMON_ONLY]);
+    assert_true(read.limits[LIMIT_REGION_PIXELS] == 17 &&
+                isinf(read.limits[LIMIT_SEGMENTS_MISSING]));
+    assert_true(read.limits[LIMIT_PIXELMATCH] == 0.2 && read.limits[LIMIT_DEPTH_P99_MM] == 0.00251);
     free(name);
 }
 
@@ -567,10 +571,10 @@ static void no_limit_counts_a_settled_pixel(void **state)
         assert_int_equal(compare_ids(&a.ids, &b.ids, &identity, &ids, &err), STATUS_OK);
         assert_true(color.agrees == settled && depth.agrees == settled &&
                     normal.agrees == settled && ids.agrees == settled);
-        assert_int_equal(color.differing_pixels, 1);
-        assert_int_equal(ids.differing_pixels, 1);
+        assert_int_equal(color.values[MEASURE_DIFFERING_PIXELS], 1);
+        assert_int_equal(ids.values[MEASURE_DIFFERING_PIXELS], 1);
         assert_int_equal(color.classes[PIXEL_SETTLED], settled);
-        assert_int_equal(color.settled_pixels, settled);
+        assert_int_equal(color.values[MEASURE_SETTLED_PIXELS], settled);
         free(marks);
         side_release(&a);
         side_release(&b);
@@ -680,43 +684,18 @@ static void every_cause_of_settled_pixels_is_limited(void **state)
 /* What a comparison found that every limit of 10 allows. */
 static CompareResult found_nothing(PlaneKind kind)
 {
-    const Tolerance none = tolerance_none();
     static const IdPlane ids = {.width = 1000, .height = 1000};
-    CompareResult result = result_start(kind, 1000, 1000, &ids, &none);
-    Tolerance *tolerance = &result.tolerance;
-    *tolerance = (Tolerance){.tier = "all", .pixelmatch = 0.1, .color_levels = 1};
-    double *const limits[] = {&tolerance->color_ppm,
-                              &tolerance->interior_levels,
-                              &tolerance->interior_ppm,
-                              &tolerance->band_ppm,
-                              &tolerance->bias_levels,
-                              &tolerance->sign_sigma,
-                              &tolerance->gain,
-                              &tolerance->offset_levels,
-                              &tolerance->silhouette_px,
-                              &tolerance->segment_levels,
-                              &tolerance->segment_px,
-                              &tolerance->id_ppm,
-                              &tolerance->id_interior_ppm,
-                              &tolerance->id_band_ppm,
-                              &tolerance->depth_ppm,
-                              &tolerance->depth_p99_mm,
-                              &tolerance->depth_p99_part,
-                              &tolerance->normal_ppm,
-                              &tolerance->normal_median_deg,
-                              &tolerance->coverage_ppm,
-                              &tolerance->pixelmatch_ppm};
-    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++)
-        *limits[i] = 10;
-    tolerance->segments_missing = tolerance->region_pixels = 10;
-    result.bits = kind == PLANE_COLOR ? 8 : 32;
+    Tolerance tolerance = tolerance_none();
+    for (Limit i = LIMIT_NAN + 1; i < LIMIT_COLOR_LEVELS; i++)
+        tolerance.limits[i] = 10;
+    tolerance.limits[LIMIT_COLOR_LEVELS] = 1;
+    tolerance.limits[LIMIT_PIXELMATCH] = 0.1;
+    CompareResult result = result_start(kind, 1000, 1000, &ids, &tolerance);
+    for (MeasureId i = 0; i < MEASURES; i++)
+        result.values[i] = isnan(result.values[i]) ? 0 : result.values[i];
     result.has_mask = true;
-    result.band_pixels = 500 * 1000;
-    result.gain = 1;
-    result.offset_levels = result.gain_error = result.offset_error = 0;
-    result.max_abs = result.unsettled_max_abs = result.interior_max_abs = result.bias_levels = 0;
-    result.sign_sigma = result.silhouette_px = result.segment_levels = result.segment_px = 0;
-    result.pixelmatch_pixels = result.median = result.p99 = result.p99_part = result.max = 0;
+    result.values[MEASURE_BITS] = kind == PLANE_COLOR ? 8 : 32;
+    result.values[MEASURE_BAND_PIXELS] = result.values[MEASURE_INTERIOR_PIXELS] = 500 * 1000;
     return result;
 }
 
@@ -724,59 +703,50 @@ static CompareResult found_nothing(PlaneKind kind)
 static void each_rule_of_a_tolerance_refuses_what_no_other_does(void **state)
 {
     (void)state;
-    enum { COUNT, NUMBER };
     static const struct {
         PlaneKind kind;
-        int type;
-        size_t at;
+        MeasureId id;
         double within, beyond;
     } cases[] = {
-        {PLANE_COLOR, COUNT, offsetof(CompareResult, largest_region), 10, 11},
-        {PLANE_COLOR, COUNT, offsetof(CompareResult, segments_missing), 10, 11},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, silhouette_px), 10, 10.1},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, silhouette_px), -10, -10.1},
-        {PLANE_COLOR, COUNT, offsetof(CompareResult, beyond_pixels), 10, 11},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, interior_max_abs), 10, 10.1},
-        {PLANE_COLOR, COUNT, offsetof(CompareResult, interior_beyond), 5, 6},
-        {PLANE_COLOR, COUNT, offsetof(CompareResult, band_beyond), 5, 6},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, segment_px), 10, 10.1},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, segment_levels), 10, 10.1},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, gain), 11, 11.1},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, gain), -9, -9.1},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, offset_levels), 10, 10.1},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, offset_levels), -10, -10.1},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, bias_levels), 10, 10.1},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, bias_levels), -10, -10.1},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, sign_sigma), 10, 10.1},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, sign_sigma), -10, -10.1},
-        {PLANE_COLOR, NUMBER, offsetof(CompareResult, pixelmatch_pixels), 10, 11},
-        {PLANE_DEPTH, COUNT, offsetof(CompareResult, nan_pixels_a), 0, 1},
-        {PLANE_DEPTH, COUNT, offsetof(CompareResult, nan_pixels_b), 0, 1},
-        {PLANE_DEPTH, COUNT, offsetof(CompareResult, largest_region), 10, 11},
-        {PLANE_DEPTH, COUNT, offsetof(CompareResult, missing_pixels), 10, 11},
-        {PLANE_DEPTH, COUNT, offsetof(CompareResult, extra_pixels), 10, 11},
-        {PLANE_DEPTH, COUNT, offsetof(CompareResult, beyond_pixels), 10, 11},
-        {PLANE_DEPTH, NUMBER, offsetof(CompareResult, p99), 10, 10.1},
-        {PLANE_DEPTH, NUMBER, offsetof(CompareResult, p99_part), 10, 10.1},
-        {PLANE_NORMAL, COUNT, offsetof(CompareResult, nan_pixels_b), 0, 1},
-        {PLANE_NORMAL, COUNT, offsetof(CompareResult, extra_pixels), 10, 11},
-        {PLANE_NORMAL, COUNT, offsetof(CompareResult, beyond_pixels), 10, 11},
-        {PLANE_NORMAL, NUMBER, offsetof(CompareResult, median), 10, 10.1},
-        {PLANE_ID, COUNT, offsetof(CompareResult, beyond_pixels), 10, 11},
-        {PLANE_ID, COUNT, offsetof(CompareResult, interior_beyond), 5, 6},
-        {PLANE_ID, COUNT, offsetof(CompareResult, band_beyond), 5, 6},
-        {PLANE_ID, COUNT, offsetof(CompareResult, largest_region), 10, 11},
+        {PLANE_COLOR, MEASURE_NOT_FINITE, 0, 1},
+        {PLANE_COLOR, MEASURE_LARGEST_REGION, 10, 11},
+        {PLANE_COLOR, MEASURE_SEGMENTS_MISSING, 10, 11},
+        {PLANE_COLOR, MEASURE_SILHOUETTE_PX, 10, 10.1},
+        {PLANE_COLOR, MEASURE_SILHOUETTE_PX, -10, -10.1},
+        {PLANE_COLOR, MEASURE_BEYOND_PIXELS, 10, 11},
+        {PLANE_COLOR, MEASURE_INTERIOR_MAX_ABS, 10, 10.1},
+        {PLANE_COLOR, MEASURE_INTERIOR_BEYOND, 5, 6},
+        {PLANE_COLOR, MEASURE_BAND_BEYOND, 5, 6},
+        {PLANE_COLOR, MEASURE_SEGMENT_PX, 10, 10.1},
+        {PLANE_COLOR, MEASURE_SEGMENT_LEVELS, 10, 10.1},
+        {PLANE_COLOR, MEASURE_GAIN_EXCESS, 10, 10.1},
+        {PLANE_COLOR, MEASURE_OFFSET_EXCESS, 10, 10.1},
+        {PLANE_COLOR, MEASURE_BIAS_LEVELS, 10, 10.1},
+        {PLANE_COLOR, MEASURE_BIAS_LEVELS, -10, -10.1},
+        {PLANE_COLOR, MEASURE_SIGN_SIGMA, 10, 10.1},
+        {PLANE_COLOR, MEASURE_SIGN_SIGMA, -10, -10.1},
+        {PLANE_COLOR, MEASURE_PIXELMATCH_PIXELS, 10, 11},
+        {PLANE_DEPTH, MEASURE_NAN_PIXELS, 0, 1},
+        {PLANE_DEPTH, MEASURE_LARGEST_REGION, 10, 11},
+        {PLANE_DEPTH, MEASURE_UNCOMMON_PIXELS, 10, 11},
+        {PLANE_DEPTH, MEASURE_BEYOND_PIXELS, 10, 11},
+        {PLANE_DEPTH, MEASURE_P99, 10, 10.1},
+        {PLANE_DEPTH, MEASURE_P99_PART, 10, 10.1},
+        {PLANE_NORMAL, MEASURE_NAN_PIXELS, 0, 1},
+        {PLANE_NORMAL, MEASURE_UNCOMMON_PIXELS, 10, 11},
+        {PLANE_NORMAL, MEASURE_BEYOND_PIXELS, 10, 11},
+        {PLANE_NORMAL, MEASURE_MEDIAN, 10, 10.1},
+        {PLANE_ID, MEASURE_BEYOND_PIXELS, 10, 11},
+        {PLANE_ID, MEASURE_INTERIOR_BEYOND, 5, 6},
+        {PLANE_ID, MEASURE_BAND_BEYOND, 5, 6},
+        {PLANE_ID, MEASURE_LARGEST_REGION, 10, 11},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         for (int beyond = 0; beyond < 2; beyond++) {
             CompareResult result = found_nothing(cases[i].kind);
-            char *field = (char *)&result + cases[i].at;
             double value = beyond ? cases[i].beyond : cases[i].within;
             int broken = 0;
-            if (cases[i].type == COUNT)
-                *(size_t *)(void *)field = (size_t)value;
-            else
-                *(double *)(void *)field = value;
+            result.values[cases[i].id] = value;
             result_finish(&result, NULL, NULL);
             for (int k = 0; k < result.n_rules; k++)
                 broken += !result.rules[k].met;

@@ -1,18 +1,12 @@
-/* One summary, and the statistics on request, as text or as JSON of the same numbers. What options
- * say of the blood is laid over what the tree's file says. */
+/* What `info` found, for people. */
 #include "cli/commands.h"
-#include "derive/derive.h"
-#include "job/tree/blood.h"
-#include "job/tree/certifying.h"
-#include "job/tree/info_morphometry.h"
-#include "job/tree/info_statistics.h"
-#include "job/tree/summary_json.h"
-#include "options/options.h"
+#include "job/tree/info.h"
 #include "options/output.h"
-#include "options/reading.h"
-#include "treeio/treeio.h"
 #include <stdio.h>
 #include <stdlib.h>
+
+/* ---- summary
+ * ------------------------------------------------------------------------------------- */
 
 static void print_gamma(const LogCurve *gamma)
 {
@@ -48,16 +42,6 @@ static void print_summary(const char *path, const TreeSummary *summary)
                summary->terminal_pressure_max_mmhg);
     printf("  extent        x %.4g to %.4g, y %.4g to %.4g, z %.4g to %.4g mm\n", box->low.x,
            box->high.x, box->low.y, box->high.y, box->low.z, box->high.z);
-}
-
-static json_t *columns_json(const Tree *tree)
-{
-    json_t *rows = json_array();
-    for (size_t k = 0; k < tree->n_columns; k++) {
-        json_t *row = json_with(json_object(), "name", json_text(tree->column[k].name));
-        rows = json_with_item(rows, json_with(row, "unit", json_text(tree->column[k].unit)));
-    }
-    return rows;
 }
 
 /* The series that column `k` is of, as one: "pressure (mmHg): 24 frames, 0 to 0.8", its columns
@@ -105,119 +89,216 @@ static Status print_columns(const Tree *tree, Err *err)
     return status;
 }
 
-typedef struct InfoOptions {
-    bool json, stats, bound;
-    const char *morphometry; /* NULL: beside none */
-    BloodOptions blood;
-} InfoOptions;
+/* ---- reading
+ * ------------------------------------------------------------------------------------- */
 
-/* What is said of the tree, as far as it is asked for; owned. */
-typedef struct Findings {
-    TreeReading reading;
-    TreeSummary summary;
-    TreeStatistics statistics;
-    Morphometry table;
-    MorphometryComparison comparison;
-} Findings;
-
-static const Option own[] = {
-    {.name = "json", SETS(FLAG, InfoOptions, json), .help = "as JSON"},
-    {.name = "stats",
-     SETS(FLAG, InfoOptions, stats),
-     .help = "radius and length by level and order, branching ratios"},
-    {.name = "bound",
-     SETS(FLAG, InfoOptions, bound),
-     .group = GROUP_OPTIMUM,
-     .needs = "json",
-     .help = "with --json, how low the target of this topology can get, as certify proves"},
-    {.name = "morphometry",
-     SETS(LOOKUP, InfoOptions, morphometry),
-     .list = "morphometries",
-     .help = "a published table to stand beside: a file of templates/morphometry, or a path"},
-    {.name = "lambda",
-     SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
-     .group = GROUP_OPTIMUM,
-     .otherwise = "the tree's",
-     .help = "exponent of the target"},
-};
-
-static const OptionTable own_table = OPTION_TABLE(own);
-
-static Status show(const InfoOptions *options, const char *path, const Tree *tree,
-                   const Findings *found, Err *err)
+/* Returns the ending of the word behind a count. */
+static const char *ending(size_t count)
 {
-    json_t *bound = NULL;
-    const TreeMeta said = blood_said(&options->blood);
-    if (options->bound)
-        TRY(certified_json(tree, &said, &bound, err));
-    if (options->json) {
-        json_t *json = summary_json(&found->summary);
-        if (tree_column(tree, tree_pairs_name))
-            json = json_with(json, "terminal_pairs", pairs_json(tree));
-        if (tree->n_columns > 0)
-            json = json_with(json, "columns", columns_json(tree));
-        if (options->stats)
-            json = json_with(json, "stats", statistics_json(&found->statistics));
-        if (options->morphometry)
-            json =
-                json_with(json, "morphometry", morphometry_json(&found->table, &found->comparison));
-        json = json_with(json, "reading", reading_json(&found->reading));
-        if (options->bound)
-            json = json_with(json, "bound", bound);
-        return json_write(json, "-", err);
-    }
-    print_summary(path, &found->summary);
-    TRY(print_columns(tree, err));
-    reading_print(&found->reading);
-    if (options->stats)
-        statistics_print(&found->statistics);
-    if (options->morphometry)
-        morphometry_print(&found->table, &found->comparison);
-    return STATUS_OK;
+    return count == 1 ? "" : "s";
 }
 
-static Status find_out(const InfoOptions *options, const Tree *tree, Findings *found, Err *err)
+/* Prints what of a network did not become part of the tree. */
+static void print_left_out(const NetworkReading *network)
 {
-    const TreeMeta said = blood_said(&options->blood);
-    TRY(derive_summary(tree, &said, &found->summary, err));
-    if (options->stats || options->morphometry)
-        TRY(derive_statistics(tree, &found->statistics, err));
-    if (!options->morphometry)
-        return STATUS_OK;
-    return morphometry_beside(&found->statistics, options->morphometry, &found->table,
-                              &found->comparison, err);
+    const struct {
+        size_t count;
+        const char *one, *more;
+    } rows[] = {
+        {network->merged, "point merged into another", "points merged into others"},
+        {network->unused, "point that no line uses", "points that no line uses"},
+        {network->without_length, "line without length", "lines without length"},
+        {network->repeated, "line given before", "lines given before"},
+        {network->loops, "line cut where a loop closed", "lines cut where loops closed"},
+    };
+    const char *title = "left out     ";
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (rows[i].count == 0)
+            continue;
+        printf("  %s %zu %s\n", title, rows[i].count,
+               rows[i].count == 1 ? rows[i].one : rows[i].more);
+        title = "             ";
+    }
+}
+
+static void print_network(const TreeReading *reading)
+{
+    printf("  read as       %s, %zu point%s and %zu line%s\n", reading->format,
+           reading->network.points, ending(reading->network.points), reading->network.lines,
+           ending(reading->network.lines));
+    print_left_out(&reading->network);
+    for (size_t i = 0; i < reading->network.n_cuts && i < 3; i++)
+        printf("  cut at        %g, %g, %g mm, radius %g mm\n", reading->network.cut[i].position.x,
+               reading->network.cut[i].position.y, reading->network.cut[i].position.z,
+               reading->network.cut[i].radius_mm);
+    if (reading->network.n_cuts > 3)
+        printf("                and %zu more place%s\n", reading->network.loops - 3,
+               ending(reading->network.loops - 3));
+    if (reading->network.against > 0)
+        printf("  directions    %zu line%s given towards the root\n", reading->network.against,
+               reading->network.against == 1 ? " is" : "s are");
+}
+
+static void print_roots(const TreeReading *reading)
+{
+    enum { SHOWN = 5 };
+    printf("  components    %zu\n", reading->n_roots);
+    for (size_t i = 0; i < reading->n_roots && i < SHOWN; i++)
+        printf("  root          %d, %s; %zu node%s\n", reading->root[i].id,
+               root_reason_texts[reading->root[i].reason], reading->root[i].nodes,
+               ending(reading->root[i].nodes));
+    if (reading->n_roots > SHOWN)
+        printf("                and %zu more\n", reading->n_roots - SHOWN);
+}
+
+static void print_degrees(const TreeReading *reading)
+{
+    const char *before = "  degrees       ";
+    for (int degree = 0; degree <= READ_MAX_DEGREE; degree++)
+        if (reading->degree[degree] > 0) {
+            printf("%s%d%s: %zu", before, degree, degree == READ_MAX_DEGREE ? "+" : "",
+                   reading->degree[degree]);
+            before = ", ";
+        }
+    printf("\n");
+}
+
+static void print_unit(const TreeReading *reading)
+{
+    if (reading->median_radius_mm > 0)
+        printf("  median radius %.6g mm\n", reading->median_radius_mm);
+    printf("  unit          %s, %s", length_unit_names[reading->unit],
+           reading->unit_said ? "as is said" : "assumed");
+    if (reading->median_radius_mm > 0)
+        printf("; radii look like %s",
+               reading->believes ? length_unit_names[reading->believed] : "no vessel's");
+    printf("%s\n", reading->looks_like_voxels ? ", and coordinates like voxels" : "");
+    if (reading->without_radius > 0)
+        printf("  no radius     %zu segment%s\n", reading->without_radius,
+               ending(reading->without_radius));
+}
+
+static void print_reading(const TreeReading *reading)
+{
+    if (reading->is_network)
+        print_network(reading);
+    print_roots(reading);
+    print_degrees(reading);
+    print_unit(reading);
+    for (size_t i = 0; i < reading->n_notes; i++)
+        printf("  %s %s\n", i ? "             " : "assumed      ", reading->note[i]);
+}
+
+/* ---- statistics
+ * ---------------------------------------------------------------------------------- */
+
+static void print_table(const char *title, const char *number, const StatisticsTable *table)
+{
+    printf("\n%s\n  %5s %9s %9s  %-23s %-23s\n", title, number, "vessels", "elements", "radius, mm",
+           "length, mm");
+    for (size_t i = 0; i < table->n; i++) {
+        const StatisticsRow *row = &table->row[i];
+        printf("  %5d %9zu %9zu  %10.4g +- %-9.3g %10.4g +- %-9.3g\n", row->number, row->vessels,
+               row->elements, row->radius_mm.mean, row->radius_mm.sd, row->length_mm.mean,
+               row->length_mm.sd);
+    }
+}
+
+static void print_ratios(const OrderRatios *ratios)
+{
+    printf("  from order to order: number / %.3f, diameter * %.3f, length * %.3f\n", ratios->number,
+           ratios->diameter, ratios->length);
+}
+
+static void print_connectivity(const TreeStatistics *statistics)
+{
+    size_t n = statistics->by_diameter_strahler.n;
+    printf("\nElements that spring from an element of each diameter-defined order\n  order");
+    for (size_t k = 0; k < n; k++)
+        printf(" %8zu", k + 1);
+    for (size_t i = 0; i < n; i++) {
+        printf("\n  %5zu", i + 1);
+        for (size_t k = 0; k <= i; k++)
+            printf(" %8.3f", statistics->daughters[i * n + k]);
+    }
+    printf("\n");
+}
+
+static void print_spread(const char *title, const BifurcationSpread *spread)
+{
+    printf("  %-33s %.3f +- %.3f, median %.3f (%zu)\n", title, spread->mean, spread->sd,
+           spread->median, spread->count);
+}
+
+static void print_statistics(const TreeStatistics *statistics)
+{
+    print_table("By bifurcation level (mean +- standard deviation of the vessels)", "level",
+                &statistics->by_level);
+    print_table("By Strahler order (of the elements)", "order", &statistics->by_strahler);
+    print_ratios(&statistics->strahler_ratios);
+    print_table("By diameter-defined Strahler order (of the elements)", "order",
+                &statistics->by_diameter_strahler);
+    print_ratios(&statistics->diameter_strahler_ratios);
+    print_connectivity(statistics);
+    if (!statistics->diameter_orders_converged)
+        printf("  the orders still changed after %d rounds\n", statistics->diameter_rounds);
+    printf("\nBifurcations (mean +- standard deviation)\n");
+    print_spread("symmetry, r_thinnest / r_thickest", &statistics->symmetry);
+    print_spread("area ratio, sum of r^2 / r_parent^2", &statistics->area_ratio);
+    printf("  total volume %.6g mm^3 in %zu vessels\n", statistics->volume_mm3,
+           statistics->vessels);
+}
+
+/* ---- morphometry
+ * --------------------------------------------------------------------------------- */
+
+static void print_pair(const MorphometryPair *pair)
+{
+    const char *name = morphometry_names[pair->measure].name;
+    if (pair->order > 0)
+        printf("  %-27s %5d %9d", name, pair->order, pair->published_order);
+    else
+        printf("  %-27s %5s %9s", name, "all", "all");
+    printf("  %10.4g  %10.4g +- %-9.3g %s\n", pair->value, pair->published.mean, pair->room,
+           pair->agrees ? "pass" : "fail");
+}
+
+static void print_morphometry(const Morphometry *table, const MorphometryComparison *comparison)
+{
+    printf("\nBeside %s\n", table->source);
+    printf(
+        "  (+- the published standard deviation or, where there is none, %g %%; lengths in mm)\n",
+        100 * MORPHOMETRY_ROOM);
+    printf("  %-27s %5s %9s  %10s  %s\n", "of the elements", "order", "published", "this tree",
+           "published");
+    for (size_t i = 0; i < comparison->n; i++)
+        print_pair(&comparison->pair[i]);
+    printf("  %zu of %zu pass\n", comparison->agreeing, comparison->n);
+}
+
+/* ---- the command
+ * --------------------------------------------------------------------------------- */
+
+static Status print(const InfoReport *report, Err *err)
+{
+    print_summary(report->name, &report->summary);
+    TRY(print_columns(&report->tree, err));
+    print_reading(&report->reading);
+    if (report->has_statistics)
+        print_statistics(&report->statistics);
+    if (report->has_morphometry)
+        print_morphometry(&report->table, &report->comparison);
+    return STATUS_OK;
 }
 
 Status run_info(void *options, Parsed *parsed, Err *err)
 {
-    const InfoOptions *own_options = options;
+    InfoReport report;
     Status status = STATUS_OK;
-    Tree tree = {0};
-    Findings found = {0};
-    TRY(reading_tree(parsed, parsed->operands[0], &tree, &found.reading, err));
-    TRY_GOTO(blood_settle(&own_options->blood, parsed, &tree, err));
-    TRY_GOTO(find_out(own_options, &tree, &found, err));
-    status = show(own_options, parsed->operands[0], &tree, &found, err);
+    TRY_GOTO(info_make(options, parsed, &report, err));
+    status = options_said(parsed, "json") ? json_write(inforeport_json(&report), "-", err)
+                                          : print(&report, err);
 done:
-    reading_release(&found.reading);
-    statistics_release(&found.statistics);
-    morphometry_release(&found.table);
-    free(found.comparison.pair);
-    tree_release(&tree);
+    inforeport_release(&report);
     return status;
 }
-
-const Command command_info = {
-    .name = "info",
-    .summary = "count, measure and check a tree",
-    .operands = "T.swc [--stats] [--json]",
-    .examples = "  corcast info tree.swc\n"
-                "  corcast info tree.swc --json | jq .volume_mm3\n"
-                "  corcast info tree.swc --stats --json | jq .stats.by_strahler\n"
-                "  corcast info coronary.swc --morphometry kassab-lad\n",
-    .min_operands = 1,
-    .max_operands = 1,
-    .reads_tree = true,
-    .size = sizeof(InfoOptions),
-    .tables = {{&own_table, 0}, {&blood_table, offsetof(InfoOptions, blood)}},
-};

@@ -1,6 +1,7 @@
 /* A window on a tree. What it shows is the picture that `render` draws with the options that key o
  * prints: the same scene, the same renderer, the same camera, moved by moving its options. */
 #include "cli/commands.h"
+#include "cli/screen.h"
 #include "cli/window/display.h"
 #include "cli/window/window.h"
 #include "job/picture/picture.h"
@@ -411,6 +412,7 @@ static Status open_viewer(Viewer *viewer, Err *err)
     TRY(window_open(&viewer->window, file_name(viewer->tree), options->size.pixels[0],
                     options->size.pixels[1], err));
     set_title(viewer);
+    screen_print_held(viewer->common->talk->user); /* the window stays open */
     return STATUS_OK;
 }
 

@@ -5,6 +5,8 @@
  * all. Two faults at once have no sentence, unless one of them is a fiftieth of the other. */
 #include "compare/cause/cause.h"
 
+#include "compare/cause/guesses.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -249,17 +251,17 @@ void cause_shift(const Picture *a, const Picture *b, const Samples *samples, con
 Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, Err *err)
 {
     Sentence out = {result->cause, sizeof result->cause};
-    if (result->differing_pixels == 0)
+    if (result->values[MEASURE_DIFFERING_PIXELS] == 0)
         return STATUS_OK;
     Samples samples;
-    choose_samples(a, b, result->differing_pixels, &samples);
+    choose_samples(a, b, result_count(result, MEASURE_DIFFERING_PIXELS), &samples);
     find_turn(a, b, &samples, &out);
     if (!*out.text)
         TRY(cause_background(a, b, &samples, &out, err));
     const Shift shift = *out.text ? (Shift){0} : cause_best_shift(a, b, &samples);
     if (!*out.text)
         cause_shift(a, b, &samples, &shift, &out);
-    if (!*out.text && result->max_code <= 1)
+    if (!*out.text && result->values[MEASURE_MAX_CODE] <= 1)
         snprintf(out.text, out.size, "only rounding differs: no code is off by more than 1");
     if (!*out.text)
         TRY(cause_tone(a, b, &samples, &out, err));

@@ -2,7 +2,9 @@
  * as a shift of a hundredth of a pixel in flat colour, is none, and is counted nowhere. */
 #include "compare/cause/power.h"
 
-#include "compare/compare.h"
+#include "compare/measures/perception.h"
+#include "compare/measures/planes.h"
+#include "compare/rules/tolerance.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,11 +43,12 @@ static Status published_differs(const PublishedRule *rule, const Picture *a, con
     }
     CompareResult result;
     Tolerance tolerance = tolerance_none();
-    tolerance.color_levels = rule->levels;
+    tolerance.limits[LIMIT_COLOR_LEVELS] = rule->levels;
     const Rendering of_a = {.picture = a}, of_b = {.picture = b};
     TRY(compare_pictures(&of_a, &of_b, &tolerance, &result, NULL, err));
-    *differs = (double)result.beyond_pixels > rule->ppm * 1e-6 * (double)result.pixels ||
-               result.max_abs > rule->most_levels;
+    *differs =
+        result.values[MEASURE_BEYOND_PIXELS] > rule->ppm * 1e-6 * result.values[MEASURE_PIXELS] ||
+        result.values[MEASURE_MAX_ABS] > rule->most_levels;
     return STATUS_OK;
 }
 

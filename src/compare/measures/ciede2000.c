@@ -4,7 +4,7 @@
  * Hues are unit vectors here, not angles: sums and multiples of angles then need no more than
  * products, but for one distance of hues that is squared under an exponential. So no step branches
  * or calls a function, and stretches of a row become vectors. */
-#include "compare/compare.h"
+#include "compare/measures/perception.h"
 
 #include "compare/measures/wide.h"
 #include <math.h>
@@ -190,7 +190,7 @@ static float decode(double encoded)
                                      : encoded / 12.92);
 }
 
-Status de2000_compute(const Picture *a, const Picture *b, double *mean, double *max, Err *err)
+Status de2000_find(const Picture *a, const Picture *b, double values[MEASURES], Err *err)
 {
     De2000 self = {.pictures = {a, b}};
     size_t height = (size_t)a->height, levels = (size_t)1 << a->bits;
@@ -206,8 +206,8 @@ Status de2000_compute(const Picture *a, const Picture *b, double *mean, double *
         sum += self.sums[y];
         largest = fmax(largest, self.maxs[y]);
     }
-    *mean = sum / ((double)height * a->width);
-    *max = largest;
+    values[MEASURE_DE2000_MEAN] = sum / ((double)height * a->width);
+    values[MEASURE_DE2000_MAX] = largest;
 done:
     free(self.linear);
     free(self.sums);

@@ -49,14 +49,25 @@ typedef struct Workspace {
     Rows rows[2];                                /* and one row of it vertically */
     Features features[2];
     float errors[TILE];
+    float largest[TILE][TILE];
 } Workspace;
+
+/* Percentiles are of errors that are rounded to 1 / STEPS: counts are exact, and the same for any
+ * number of threads. */
+enum { STEPS = 65536 };
+
+/* Sums over the pixels of a tile. */
+typedef struct TileErrors {
+    double sum, squares, max;
+} TileErrors;
 
 typedef struct Flip {
     const FlipPair *pair;
     FlipKernel kernels[FLIP_FILTERS];
     float color_max, color_knee; /* cmax, and pc of it */
     int tiles_across;
-    double *sums, *maxs;   /* owned; of each tile */
+    TileErrors *tiles;     /* owned; of each tile */
+    uint32_t *counts;      /* owned; STEPS + 1 for each worker: pixels by rounded error */
     Workspace *workspaces; /* owned; one for each worker */
     Plane map;             /* owned; without values when nobody wants it */
 } Flip;
@@ -246,37 +257,45 @@ static bool tile_equal(const FlipPair *pair, int left, int top, int columns, int
     return true;
 }
 
+/* Finds the largest error of each pixel of a tile over all exposures. */
+static void find_largest(const Flip *flip, int left, int top, int rows, Workspace *work)
+{
+    memset(work->largest, 0, sizeof work->largest);
+    for (int exposure = 0; exposure < flip->pair->exposures; exposure++) {
+        filter_rows(flip, exposure, left, top, rows, work);
+        for (int row = 0; row < rows; row++) {
+            find_errors(flip, row, work);
+            for (int x = 0; x < TILE; x++)
+                work->largest[row][x] = larger(work->largest[row][x], work->errors[x]);
+        }
+    }
+}
+
 static void do_tile(size_t index, int worker, void *context)
 {
     Flip *flip = context;
     const FlipPair *pair = flip->pair;
     Workspace *work = &flip->workspaces[worker];
+    uint32_t *counts = flip->counts + (size_t)worker * (STEPS + 1);
+    TileErrors *tile = &flip->tiles[index];
     int left = (int)(index % (size_t)flip->tiles_across) * TILE;
     int top = (int)(index / (size_t)flip->tiles_across) * TILE;
     int columns = pair->width - left < TILE ? pair->width - left : TILE;
     int rows = pair->height - top < TILE ? pair->height - top : TILE;
     if (tile_equal(pair, left, top, columns, rows))
         return;
-    float largest[TILE][TILE] = {{0}};
-    for (int exposure = 0; exposure < pair->exposures; exposure++) {
-        filter_rows(flip, exposure, left, top, rows, work);
-        for (int row = 0; row < rows; row++) {
-            find_errors(flip, row, work);
-            for (int x = 0; x < columns; x++)
-                largest[row][x] = larger(largest[row][x], work->errors[x]);
-        }
-    }
-    double sum = 0, max = 0;
+    find_largest(flip, left, top, rows, work);
     for (int row = 0; row < rows; row++)
         for (int x = 0; x < columns; x++) {
-            sum += (double)largest[row][x];
-            max = fmax(max, (double)largest[row][x]);
+            double error = (double)work->largest[row][x];
+            tile->sum += error;
+            tile->squares += error * error;
+            tile->max = fmax(tile->max, error);
+            counts[(int)(error * STEPS + 0.5)]++;
         }
-    flip->sums[index] = sum;
-    flip->maxs[index] = max;
     for (int row = 0; row < rows && flip->map.values; row++)
         memcpy(flip->map.values + (size_t)(top + row) * (size_t)pair->width + (size_t)left,
-               largest[row], (size_t)columns * sizeof(float));
+               work->largest[row], (size_t)columns * sizeof(float));
 }
 
 WIDE static void do_tile_wide(size_t index, int worker, void *context)
@@ -291,10 +310,56 @@ static Status flip_init(Flip *flip, size_t tiles, int threads, bool with_map, Er
     flip_kernels(flip->kernels);
     flip->color_max = color_distance(hunt_lab((Triple){0, 1, 0}), hunt_lab((Triple){0, 0, 1}));
     flip->color_knee = 0.4f * flip->color_max;
-    TRY(mem_calloc(&flip->sums, tiles, sizeof *flip->sums, "sums of tiles", err));
-    TRY(mem_calloc(&flip->maxs, tiles, sizeof *flip->maxs, "maxima of tiles", err));
+    TRY(mem_calloc(&flip->tiles, tiles, sizeof *flip->tiles, "sums of tiles", err));
+    TRY(mem_calloc(&flip->counts, (size_t)threads * (STEPS + 1), sizeof *flip->counts,
+                   "counts of errors", err));
     return mem_calloc(&flip->workspaces, (size_t)threads, sizeof *flip->workspaces,
                       "values of FLIP's tiles", err);
+}
+
+/* Returns the smallest rounded error up to which at least `fraction` of all weight lies. */
+static double percentile_of(const double weights[STEPS + 1], double fraction)
+{
+    double all = 0, sum = 0;
+    for (int i = 0; i <= STEPS; i++)
+        all += weights[i];
+    for (int i = 0; i <= STEPS; i++) {
+        sum += weights[i];
+        if (sum >= fraction * all)
+            return (double)i / STEPS;
+    }
+    return 1;
+}
+
+/* Sums up all tiles. Pixels of tiles that are equal in both images have no error. */
+static Status summarise(const Flip *flip, size_t n_tiles, int threads, FlipSummary *summary,
+                        Err *err)
+{
+    const double pixels = (double)flip->pair->width * flip->pair->height;
+    TileErrors all = {0};
+    double *counts, *weights, counted = 0;
+    TRY(mem_calloc(&counts, 2 * (STEPS + 1), sizeof *counts, "counts of errors", err));
+    weights = counts + STEPS + 1;
+    for (size_t i = 0; i < n_tiles; i++) {
+        all.sum += flip->tiles[i].sum;
+        all.squares += flip->tiles[i].squares;
+        all.max = fmax(all.max, flip->tiles[i].max);
+    }
+    for (int i = 0; i <= STEPS; i++) {
+        for (int worker = 0; worker < threads; worker++)
+            counts[i] += flip->counts[(size_t)worker * (STEPS + 1) + (size_t)i];
+        counted += counts[i];
+        weights[i] = counts[i] * i;
+    }
+    counts[0] += pixels - counted;
+    *summary = (FlipSummary){.mean = all.sum / pixels,
+                             .p95 = percentile_of(counts, 0.95),
+                             .max = all.max,
+                             .weighted_mean = all.sum > 0 ? all.squares / all.sum : 0,
+                             .weighted_median = percentile_of(weights, 0.5),
+                             .weighted_p95 = percentile_of(weights, 0.95)};
+    free(counts);
+    return STATUS_OK;
 }
 
 Status flip_run(const FlipPair *pair, Plane *map, FlipSummary *summary, Err *err)
@@ -302,22 +367,18 @@ Status flip_run(const FlipPair *pair, Plane *map, FlipSummary *summary, Err *err
     Flip flip = {.pair = pair, .tiles_across = (pair->width + TILE - 1) / TILE};
     size_t tiles = (size_t)flip.tiles_across * (size_t)((pair->height + TILE - 1) / TILE);
     int threads = threads_available();
-    Status status = flip_init(&flip, tiles, threads, map != NULL, err);
-    if (status == STATUS_OK) {
-        threads_for(tiles, threads, wide_usable() ? do_tile_wide : do_tile, &flip);
-        double sum = 0, max = 0;
-        for (size_t i = 0; i < tiles; i++) {
-            sum += flip.sums[i];
-            max = fmax(max, flip.maxs[i]);
-        }
-        *summary = (FlipSummary){.mean = sum / ((double)pair->width * pair->height), .max = max};
-        if (map)
-            *map = flip.map;
-    } else {
-        plane_release(&flip.map);
+    Status status = STATUS_OK;
+    TRY_GOTO(flip_init(&flip, tiles, threads, map != NULL, err));
+    threads_for(tiles, threads, wide_usable() ? do_tile_wide : do_tile, &flip);
+    TRY_GOTO(summarise(&flip, tiles, threads, summary, err));
+    if (map) {
+        *map = flip.map;
+        flip.map = (Plane){0};
     }
-    free(flip.sums);
-    free(flip.maxs);
+done:
+    plane_release(&flip.map);
+    free(flip.tiles);
+    free(flip.counts);
     free(flip.workspaces);
     return status;
 }
@@ -365,4 +426,17 @@ Status flip_compute(const Picture *a, const Picture *b, Plane *map, FlipSummary 
     Status status = flip_run(&pair, map, summary, err);
     free(self.linear);
     return status;
+}
+
+Status flip_find(const Picture *a, const Picture *b, double values[MEASURES], Err *err)
+{
+    FlipSummary summary;
+    TRY(flip_compute(a, b, NULL, &summary, err));
+    values[MEASURE_FLIP_MEAN] = summary.mean;
+    values[MEASURE_FLIP_P95] = summary.p95;
+    values[MEASURE_FLIP_MAX] = summary.max;
+    values[MEASURE_FLIP_WEIGHTED_MEAN] = summary.weighted_mean;
+    values[MEASURE_FLIP_WEIGHTED_MEDIAN] = summary.weighted_median;
+    values[MEASURE_FLIP_WEIGHTED_P95] = summary.weighted_p95;
+    return STATUS_OK;
 }

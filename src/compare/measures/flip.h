@@ -2,7 +2,7 @@
 #ifndef CORCAST_COMPARE_MEASURES_FLIP_H
 #define CORCAST_COMPARE_MEASURES_FLIP_H
 
-#include "compare/compare.h"
+#include "compare/measures/perception.h"
 
 /* ceil(3 sqrt(0.04 / (2 pi^2)) ppd) */
 enum { FLIP_RADIUS = 10, FLIP_TAPS = 2 * FLIP_RADIUS + 1 };

@@ -2,7 +2,7 @@
 #ifndef CORCAST_COMPARE_MEASURES_LABELS_H
 #define CORCAST_COMPARE_MEASURES_LABELS_H
 
-#include "compare/compare.h"
+#include "compare/result.h"
 
 /* The length of an outline, in pixels, for each pixel side on it: pi / 4, right on average over all
  * directions [Cauchy-Crofton]. */
@@ -64,9 +64,10 @@ PixelClass labels_class(uint32_t a, uint32_t b, bool band);
 /* Of each pixel: whether both images show something or neither does, and which one if not. */
 typedef enum Coverage { COVERED_ALIKE, COVERED_MISSING, COVERED_EXTRA } Coverage;
 
-/* The largest 8-connected region of missing, or of extra, pixels: its size and its first pixel. 0
- * and (-1, -1) when there is none. `coverage`, one byte a pixel, is used up. */
-MUST_CHECK Status largest_region(uint8_t *coverage, int width, int height, size_t *size,
-                                 PixelPlace *at, Err *err);
+/* Adds to the result the largest 8-connected region of missing, or of extra, pixels, and the sum of
+ * both; the result has their counts. `coverage`, one Coverage per pixel, is cleared. Errors:
+ * STATUS_MEMORY. */
+MUST_CHECK Status region_take(uint8_t *coverage, const Labels *labels, CompareResult *result,
+                              Err *err);
 
 #endif

@@ -246,23 +246,25 @@ static void keep_worst(CompareResult *result, const LedgerEntry *entry)
 
 void ledger_summarise(const Ledger *ledger, CompareResult *result)
 {
-    result->segments = ledger->n;
-    result->segment_levels = result->segment_px = 0;
+    double *values = result->values;
+    PixelPlace *places = result->places;
+    values[MEASURE_SEGMENTS] = (double)ledger->n;
+    values[MEASURE_SEGMENT_LEVELS] = values[MEASURE_SEGMENT_PX] = 0;
     for (size_t i = 0; i < ledger->n; i++) {
         const LedgerEntry *entry = &ledger->entries[i];
         double levels = fabs(ledger_entry_levels(entry)), moved = fabs(entry->moved_px);
         keep_worst(result, entry);
         size_t area = entry->area_a > entry->area_b ? entry->area_a : entry->area_b;
         if ((entry->area_a == 0 || entry->area_b == 0) && area >= MISSING_MIN_PIXELS) {
-            if (result->segments_missing++ == 0)
-                result->segment_missing_at = middle_of(entry);
-        } else if (entry->outline_px >= OUTLINE_MIN_PX && moved > result->segment_px) {
-            result->segment_px = moved;
-            result->segment_px_at = middle_of(entry);
+            if (values[MEASURE_SEGMENTS_MISSING]++ == 0)
+                places[PLACE_SEGMENT_MISSING] = middle_of(entry);
+        } else if (entry->outline_px >= OUTLINE_MIN_PX && moved > values[MEASURE_SEGMENT_PX]) {
+            values[MEASURE_SEGMENT_PX] = moved;
+            places[PLACE_SEGMENT_PX] = middle_of(entry);
         }
-        if (entry->common >= LEVELS_MIN_PIXELS && levels > result->segment_levels) {
-            result->segment_levels = levels;
-            result->segment_levels_at = middle_of(entry);
+        if (entry->common >= LEVELS_MIN_PIXELS && levels > values[MEASURE_SEGMENT_LEVELS]) {
+            values[MEASURE_SEGMENT_LEVELS] = levels;
+            places[PLACE_SEGMENT_LEVELS] = middle_of(entry);
         }
     }
 }

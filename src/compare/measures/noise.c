@@ -6,7 +6,7 @@
  * itself an estimate of few renderings: its errors average out. T is asked of each channel and of
  * all, of the whole picture and of tiles of 32 x 32 pixels, the rate shared by halves and then
  * evenly [Bonferroni]. */
-#include "compare/compare.h"
+#include "compare/measures/noise.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,8 +3,8 @@
  * pictures and both labels take a short path, because equal pictures are what is hoped for. */
 #include "compare/measures/pixel_counts.h"
 
-#include "compare/measures/result.h"
 #include "compare/measures/wide.h"
+#include "compare/pixels.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
  * order of evaluation is that of its source, so that the same pixels are counted. Two pixels are
  * equal if their codes and their alpha are; where one of two is transparent, both are blended with
  * a checkerboard. */
-#include "compare/compare.h"
+#include "compare/measures/perception.h"
 
 #include <math.h>
 

@@ -2,6 +2,7 @@
  * a pixel leaves the map when it is pushed, so that it is pushed once. Missing and extra pixels
  * make separate regions: a shifted edge is missing on one side and extra on the other. */
 #include "compare/measures/labels.h"
+#include "compare/pixels.h"
 
 #include <stdlib.h>
 
@@ -49,24 +50,24 @@ static Status region_size(Fill *fill, size_t start, size_t *size, Err *err)
     return STATUS_OK;
 }
 
-Status largest_region(uint8_t *coverage, int width, int height, size_t *size, PixelPlace *at,
-                      Err *err)
+Status region_take(uint8_t *coverage, const Labels *labels, CompareResult *result, Err *err)
 {
-    Fill fill = {.width = width, .height = height, .coverage = coverage};
-    size_t n = (size_t)width * (size_t)height;
+    double *values = result->values;
+    size_t n = (size_t)labels->width * (size_t)labels->height, found = 0, largest = 0;
+    Fill fill = {.width = labels->width, .height = labels->height, .coverage = coverage};
     Status status = STATUS_OK;
-    *size = 0;
-    *at = (PixelPlace){.x = -1, .y = -1};
-    for (size_t i = 0; i < n && status == STATUS_OK; i++) {
+    values[MEASURE_UNCOMMON_PIXELS] = values[MEASURE_MISSING_PIXELS] + values[MEASURE_EXTRA_PIXELS];
+    for (size_t i = 0; i < n && values[MEASURE_UNCOMMON_PIXELS] > 0; i++) {
         if (coverage[i] == COVERED_ALIKE)
             continue;
-        size_t found;
-        status = region_size(&fill, i, &found, err);
-        if (status == STATUS_OK && found > *size) {
-            *size = found;
-            *at = (PixelPlace){.x = (int)(i % (size_t)width), .y = (int)(i / (size_t)width)};
-        }
+        TRY_GOTO(region_size(&fill, i, &found, err));
+        if (found <= largest)
+            continue;
+        largest = found;
+        result->places[PLACE_REGION] = place_of(i, labels->width);
     }
+    values[MEASURE_LARGEST_REGION] = (double)largest;
+done:
     free(fill.stack);
     return status;
 }

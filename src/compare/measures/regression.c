@@ -124,6 +124,12 @@ static Status raise_by_runs(const Counting *counting, const Line *line, LineErro
     return STATUS_OK;
 }
 
+/* Returns what is left of a distance beyond two of its standard errors. */
+static double beyond_error(double distance, double error)
+{
+    return fmax(0, fabs(distance) - 2 * error);
+}
+
 Status regression_take(const Counting *counting, double code_levels, CompareResult *result,
                        Err *err)
 {
@@ -140,9 +146,14 @@ Status regression_take(const Counting *counting, double code_levels, CompareResu
     LineError error = error_of_samples(sums, &line);
     if (sums->dd > 0)
         TRY(raise_by_runs(counting, &line, &error, err));
-    result->gain = 1 + line.slope;
-    result->offset_levels = (line.mean_d - line.slope * line.mean_a) * code_levels;
-    result->gain_error = sqrt(error.slope);
-    result->offset_error = sqrt(error.offset) * code_levels;
+    double *values = result->values;
+    values[MEASURE_GAIN] = 1 + line.slope;
+    values[MEASURE_OFFSET_LEVELS] = (line.mean_d - line.slope * line.mean_a) * code_levels;
+    values[MEASURE_GAIN_ERROR] = sqrt(error.slope);
+    values[MEASURE_OFFSET_ERROR] = sqrt(error.offset) * code_levels;
+    values[MEASURE_GAIN_EXCESS] =
+        beyond_error(values[MEASURE_GAIN] - 1, values[MEASURE_GAIN_ERROR]);
+    values[MEASURE_OFFSET_EXCESS] =
+        beyond_error(values[MEASURE_OFFSET_LEVELS], values[MEASURE_OFFSET_ERROR]);
     return STATUS_OK;
 }

@@ -3,7 +3,7 @@
  * rows, so that the luma of no more than a band is held; the sums of rows are added in order. A
  * window that is equal in both pictures is 1 by its definition, so only stretches of a row about
  * pixels that differ are blurred. */
-#include "compare/compare.h"
+#include "compare/measures/perception.h"
 
 #include "compare/measures/wide.h"
 #include <math.h>
@@ -177,12 +177,11 @@ static Status ssim_init(Ssim *ssim, int threads, Err *err)
                       "luma of a band", err);
 }
 
-Status ssim_compute(const Picture *a, const Picture *b, double *ssim, Err *err)
+Status ssim_find(const Picture *a, const Picture *b, double values[MEASURES], Err *err)
 {
-    if (a->width < TAPS || a->height < TAPS) {
-        *ssim = NAN;
+    values[MEASURE_SSIM] = (double)NAN;
+    if (a->width < TAPS || a->height < TAPS)
         return STATUS_OK;
-    }
     Ssim self = {.pictures = {a, b},
                  .width = a->width,
                  .rows = a->height - TAPS + 1,
@@ -195,7 +194,7 @@ Status ssim_compute(const Picture *a, const Picture *b, double *ssim, Err *err)
         double sum = 0;
         for (int row = 0; row < self.rows; row++)
             sum += self.row_sums[row];
-        *ssim = sum / ((double)self.rows * self.columns);
+        values[MEASURE_SSIM] = sum / ((double)self.rows * self.columns);
     }
     free(self.row_sums);
     free(self.workspaces);

@@ -1,5 +1,6 @@
 /* Pictures of a difference: Magma's colours at six fixed steps, and a signed one. */
-#include "compare/measures/result.h"
+#include "compare/pixels.h"
+#include "compare/report/pictures.h"
 
 enum { SIGNED_GAIN = 8, SIGNED_MIDDLE = 128 };
 

@@ -1,7 +1,7 @@
 /* An animated PNG [APNG 1.0, now in PNG 3] of two frames, put together from the two PNG files that
  * the pictures make: the first with its animation chunks in front of its data, then the data of the
  * second as fdAT chunks, which are IDAT chunks behind a sequence number. */
-#include "compare/compare.h"
+#include "compare/report/pictures.h"
 
 #include <libdeflate.h>
 #include <string.h>

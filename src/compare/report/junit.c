@@ -1,10 +1,10 @@
 /* JUnit XML for build servers, which read every dialect of it that keeps to testsuite, testcase,
  * properties and failure. A comparison has a test case for each rule, a report one for each check
  * with its rules as properties. */
-#include "compare/rules/check.h"
-#include "compare/report/report.h"
-#include "compare/measures/result.h"
+#include "compare/report/check.h"
+#include "compare/report/page.h"
 #include "compare/report/rounded.h"
+#include "compare/rules/judge.h"
 #include "compare/suite/suite.h"
 
 #include <math.h>

@@ -1,7 +1,8 @@
 /* The files of a report: JSON as compare_json and its neighbours make it, JUnit XML (junit.c), the
  * heat map, and the page for people (report_page.c). */
-#include "compare/report/report.h"
-#include "compare/rules/check.h"
+#include "compare/report/check.h"
+#include "compare/report/page.h"
+#include "compare/report/pictures.h"
 
 #include <stdlib.h>
 

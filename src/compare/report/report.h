@@ -1,60 +1,79 @@
-/* The parts of a report; private to the room compare. */
+/* What was found, as JSON, text, JUnit XML, and as a page with the pictures. */
 #ifndef CORCAST_COMPARE_REPORT_REPORT_H
 #define CORCAST_COMPARE_REPORT_REPORT_H
 
-#include "compare/compare.h"
+#include "compare/checks/settled.h"
+#include "compare/checks/surface_check.h"
+#include "compare/checks/witness.h"
+#include "compare/result.h"
 
-/* Appends the JUnit XML: a test case for each plane. */
-void report_junit(const ReportCase *report, Text *out);
+/* ---- one comparison -------------------------------------------------------------------------- */
 
-/* The worst segments of a comparison as compare_json has them. New reference. */
-json_t *worst_segments_json(const CompareResult *result);
+/* Returns the result with the keys of `compare --json`; NAN and infinity are null. The caller
+ * releases it. Returns NULL if memory runs out. */
+json_t *compare_json(const CompareResult *result);
+/* Appends the result as text: verdict, rules, measures, worst segments, one per line. */
+void compare_text(const CompareResult *result, Text *out);
+/* Appends the result as JUnit XML, a test case for each rule. They share the time.
+ *
+ * name      of the test suite.
+ * seconds   that the comparison took. */
+void compare_junit(const CompareResult *result, const char *name, double seconds, Text *out);
 
-/* Appends the rows of the page's table of rules, and its tables of measures. */
-MUST_CHECK Status report_tables(const ReportCase *report, const char *templates, Text *rules,
-                                Text *measures, Err *err);
+/* ---- reports of one scene -------------------------------------------------------------------- */
 
-/* Appends the depths and normals of both sides as data: URIs for the page's script, "data:," for
- * what is not known or larger than 4 million pixels. Depth: 0 for nothing, else 1 to 65534 over
- * range_mm, in red and green; normals: 128 + 127 n; the angle between them in 0.001 degrees, in red
- * and green. B is less A, modulo the range of the codes. */
-typedef enum ReportPlane {
-    REPORT_DEPTH_A,
-    REPORT_DEPTH_B,
-    REPORT_NORMAL_A,
-    REPORT_NORMAL_B,
-    REPORT_ANGLES,
-    REPORT_PLANES
-} ReportPlane;
-MUST_CHECK Status report_planes(const ReportSide *a, const ReportSide *b,
-                                Text *parts[REPORT_PLANES], double range_mm[2], Err *err);
-/* A small copy of a picture, at most 96 pixels across, each the mean of a box. */
-MUST_CHECK Status report_thumbnail(Picture *out, const Picture *picture, Err *err);
+/* One of the two programs that rendered a scene, or one of two files. All members are borrowed. */
+typedef struct ReportSide {
+    const char *name;    /* "POV-Ray" */
+    const char *key;     /* in JSON: "povray", "native", "a", "b" */
+    const char *version; /* "3.7.0.10"; "": none */
+    double seconds;      /* wall-clock time of the colour picture, sum over tiles; NAN: unknown */
+    size_t tiles;        /* tiles that the picture was drawn in; 0: unknown */
+    const Picture *picture;
+    const IdPlane *ids;          /* NULL, in both sides: unknown */
+    const Plane *depth, *normal; /* NULL, in both sides: unknown */
+} ReportSide;
 
-/* How the templates case.html and row.html call their case, where they have room for its folder,
- * and what marks them in a page, for report_merge to find. */
-#define REPORT_FIRST_CASE "case-1"
-#define REPORT_FOLDER "<!-- folder -->"
-#define REPORT_ROW_BEGIN "<!-- row: begin -->\n"
-#define REPORT_ROW_END "<!-- row: end -->\n"
-#define REPORT_CASE_BEGIN "<!-- case: begin -->\n"
-#define REPORT_CASE_END "<!-- case: end -->\n"
+/* One scene as A, the reference, and B have it. All members are borrowed. */
+typedef struct ReportCase {
+    const char *name;  /* of the scene: "demo"; one line */
+    const char *model; /* "rounded"; "": none */
+    ReportSide a, b;
+    const char *const *commands; /* how to repeat the report, one per line */
+    size_t n_commands;
+    const CompareResult *planes[PLANE_KINDS]; /* NULL: not compared; PLANE_COLOR is required */
+    const SurfaceCheck *surface;              /* of an implicit model; NULL: of another model */
+    const CompareResult *alpha;               /* of a transparent picture; NULL: it is opaque */
+    /* Colours of an implicit surface where it is, compared with A's. NULL: of another model. */
+    const CompareResult *exact;
+    const Settled *settled; /* NULL: no pixel was examined */
+    const Witness *witness; /* NULL: there is none */
+} ReportCase;
 
-/* A page about cases. `title`, `heading` and `sentence` are text, `rows`, `cases` and `power`
- * markup; all is borrowed. */
-typedef struct ReportFrame {
-    const char *title, *heading, *sentence;
-    const Text *rows, *cases, *power;
-    size_t n_cases;
-    bool agrees;
-} ReportFrame;
+/* Returns true if all planes, the surface and the witness agree, and not too much is settled. */
+bool report_agrees(const ReportCase *report);
+/* Returns the report with the keys of `verify --json`. The caller releases it. Returns NULL if
+ * memory runs out. */
+json_t *report_json(const ReportCase *report);
 
-/* Writes the page to `path`; `templates` is the folder with report.html and the templates of its
- * parts. */
-MUST_CHECK Status report_write_frame(const ReportFrame *frame, const char *templates,
-                                     const char *path, Err *err);
-/* Writes the page to `path`; `heat` is the difference picture. */
-MUST_CHECK Status report_page(const ReportCase *report, const Picture *heat, const char *templates,
-                              const char *path, Err *err);
+/* Writes report.html, report.json, junit.xml and diff.png into `folder`, which exists. The page
+ * holds its pictures and needs no network.
+ *
+ * templates   the folder with the templates of the page.
+ * Errors      STATUS_INPUT for a template; STATUS_IO; STATUS_MEMORY. */
+MUST_CHECK Status report_write(const ReportCase *report, const char *templates, const char *folder,
+                               Err *err);
+/* Writes the page alone, to `path`. */
+MUST_CHECK Status report_write_page(const ReportCase *report, const char *templates,
+                                    const char *path, Err *err);
+
+/* Writes one page about all cases that report_write wrote about, worst first, to `path`.
+ *
+ * folders     of report_write.
+ * power       the file that `make power` writes; NULL: none.
+ * all_agree   receives whether all cases agree.
+ * Errors      STATUS_INPUT if a folder has no report of this version; STATUS_IO; STATUS_MEMORY. */
+MUST_CHECK Status report_merge(const char *const *folders, size_t n, const char *power,
+                               const char *templates, const char *path, bool *all_agree, Err *err);
 
 #endif

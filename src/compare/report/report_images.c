@@ -1,6 +1,6 @@
 /* Thumbnails, each of whose pixels is the mean of a square of the picture's, so that thin vessels
  * stay visible. */
-#include "compare/report/report.h"
+#include "compare/report/page.h"
 
 enum { THUMBNAIL_WIDTH = 96 };
 

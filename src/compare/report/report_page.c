@@ -1,8 +1,10 @@
 /* The page for people. The templates have the markup, the look and the viewer; what repeats or
  * depends on the case is filled in here, from the inside out: rows, the case, the page. Pictures go
  * in as data: URIs, because a page opened from disk may not read the pixels of a file beside it. */
-#include "compare/rules/check.h"
-#include "compare/report/report.h"
+#include "compare/measures/planes.h"
+#include "compare/report/check.h"
+#include "compare/report/page.h"
+#include "compare/report/pictures.h"
 #include "compare/report/rounded.h"
 #include "tmpl/tmpl.h"
 
@@ -38,13 +40,14 @@ static void put_settled(const ReportCase *report, Text *sentence)
 static void put_agreement(const ReportCase *report, int compared, Text *sentence)
 {
     const CompareResult *color = report->planes[PLANE_COLOR];
-    if (color->differing_pixels == 0)
+    if (color->values[MEASURE_DIFFERING_PIXELS] == 0)
         text_printf(sentence, "All %zu pixels have the same colour in both pictures. ",
-                    color->pixels);
+                    result_count(color, MEASURE_PIXELS));
     else
         text_printf(sentence,
                     "%zu of %zu pixels differ in colour, the worst by %.3g of 255 levels. ",
-                    color->differing_pixels, color->pixels, color->max_abs);
+                    result_count(color, MEASURE_DIFFERING_PIXELS),
+                    result_count(color, MEASURE_PIXELS), color->values[MEASURE_MAX_ABS]);
     text_printf(sentence, compared == 1 ? "The %d plane compared is" : "The %d planes compared are",
                 compared);
     text_puts(sentence, " within tolerance.");
@@ -228,7 +231,8 @@ static void fill_words(const ReportCase *report, Markup *parts)
     text_puts(markup_text(parts, "verdict"), verdict_of(agrees));
     put_sentence(report, markup_text(parts, "sentence"));
     text_puts(markup_text(parts, "options"), options_of(report));
-    text_printf(markup_text(parts, "size"), "%d × %d", color->width, color->height);
+    text_printf(markup_text(parts, "size"), "%d × %d", report->a.picture->width,
+                report->a.picture->height);
     text_puts(markup_text(parts, "tier"), color->tolerance.tier);
     text_puts(markup_text(parts, "name_a"), report->a.name);
     text_puts(markup_text(parts, "name_b"), report->b.name);
@@ -288,10 +292,10 @@ static Status put_row(const ReportCase *report, const char *templates, Text *row
     text_puts(markup_text(&parts, "class"), class_of(agrees));
     text_puts(markup_text(&parts, "verdict"), agrees ? "✓ agree" : "✗ differ");
     text_printf(markup_text(&parts, "severity"), "%.9g", report_severity(report));
-    put_cell(&parts, "differing_value", "differing", (double)color->differing_pixels);
-    put_cell(&parts, "largest_value", "largest", color->max_abs);
-    put_cell(&parts, "flip_value", "flip", color->flip_mean);
-    put_cell(&parts, "ssim_value", "ssim", color->ssim);
+    put_cell(&parts, "differing_value", "differing", color->values[MEASURE_DIFFERING_PIXELS]);
+    put_cell(&parts, "largest_value", "largest", color->values[MEASURE_MAX_ABS]);
+    put_cell(&parts, "flip_value", "flip", color->values[MEASURE_FLIP_MEAN]);
+    put_cell(&parts, "ssim_value", "ssim", color->values[MEASURE_SSIM]);
     if (status == STATUS_OK)
         status = markup_put(&parts, templates, "row.html", row, err);
     markup_release(&parts);

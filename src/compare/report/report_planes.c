@@ -1,7 +1,7 @@
 /* Planes as pictures of a page, of eight bits a channel; the page's script makes numbers of them
  * again. B holds only what it adds to A, so that it is nearly empty. */
-#include "compare/report/report.h"
-#include "compare/measures/result.h"
+#include "compare/pixels.h"
+#include "compare/report/page.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* The tables of a case on the page: a row for each rule; and for each check its measures, a table
  * for each heading, under a line with the first of them. Checks that differ are open. */
-#include "compare/rules/check.h"
-#include "compare/report/report.h"
+#include "compare/report/check.h"
+#include "compare/report/page.h"
 #include "compare/report/rounded.h"
 #include "tmpl/tmpl.h"
 
@@ -43,7 +43,7 @@ static Status put_measures(const Check *check, const char *templates, Text *out,
     Text rows = TEXT_INIT;
     Status status = STATUS_OK;
     for (int i = 0; i < check->n_measures; i++) {
-        const Measure *measure = &check->measures[i];
+        const CheckMeasure *measure = &check->measures[i];
         Markup parts = {0};
         text_puts(markup_text(&parts, "name"), measure->name);
         text_puts(markup_text(&parts, "class"), measure->value == 0 ? "zero" : "");
@@ -87,7 +87,7 @@ static Status put_measured(const ReportCase *report, const Check *check, const c
     text_puts(markup_text(&parts, "verdict"), check->agrees ? "✓ agree" : "✗ differ");
     text_puts(markup_text(&parts, "open"), check->agrees ? "" : " open");
     for (int i = 0; i < check->n_measures && i < FIRST_MEASURES; i++) {
-        const Measure *measure = &check->measures[i];
+        const CheckMeasure *measure = &check->measures[i];
         text_printf(first, "%s%s ", i ? ", " : "", measure->name);
         text_rounded(first, measure->value, measure->unit);
     }

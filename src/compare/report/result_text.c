@@ -1,6 +1,6 @@
 /* A comparison in words, for people at a terminal: the verdict, the rules, then the measures of the
  * check, each table under its heading. */
-#include "compare/rules/check.h"
+#include "compare/report/check.h"
 
 static void put_segments(const CompareResult *result, Text *out)
 {
@@ -21,7 +21,8 @@ void compare_text(const CompareResult *result, Text *out)
     bool cause_known = *result->cause;
     if (result->agrees)
         text_printf(out, "agree (tier %s): %zu of %zu pixels differ\n", result->tolerance.tier,
-                    result->differing_pixels, result->pixels);
+                    result_count(result, MEASURE_DIFFERING_PIXELS),
+                    result_count(result, MEASURE_PIXELS));
     else
         text_printf(out, "differ (tier %s): %s%s%s\n", result->tolerance.tier, result->reason,
                     cause_known || result->kind == PLANE_COLOR ? "; " : "",
@@ -34,7 +35,7 @@ void compare_text(const CompareResult *result, Text *out)
                     rule->measured, rule->allowed, rule->unit);
     }
     for (int i = 0; i < check.n_measures; i++) {
-        const Measure *measure = &check.measures[i];
+        const CheckMeasure *measure = &check.measures[i];
         if (measure->table != table)
             text_printf(out, "  %s\n", measure->table);
         table = measure->table;

@@ -1,181 +1,158 @@
-/* Every number of a tolerance stands once in a table, by which files are read. */
-#include "compare/compare.h"
+/* Tiers are tables of limits; files are read by the keys of the limits. */
+#include "compare/rules/tolerance.h"
 
-#include <ctype.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-typedef enum FieldKind { FIELD_NUMBER, FIELD_COUNT, FIELD_SWITCH, FIELD_THRESHOLD } FieldKind;
+typedef enum LimitKind { LIMIT_NUMBER, LIMIT_COUNT, LIMIT_SWITCH, LIMIT_THRESHOLD } LimitKind;
 
-typedef struct Field {
-    const char *key;
-    FieldKind kind;
-    size_t offset;
-} Field;
-
-#define NUMBER(name)                                                                               \
-    {                                                                                              \
-#name, FIELD_NUMBER, offsetof(Tolerance, name)                                             \
-    }
-#define COUNT(name)                                                                                \
-    {                                                                                              \
-#name, FIELD_COUNT, offsetof(Tolerance, name)                                              \
-    }
-static const Field fields[] = {
-    NUMBER(color_levels),
-    NUMBER(color_ppm),
-    {"color_common_only", FIELD_SWITCH, offsetof(Tolerance, color_common_only)},
-    NUMBER(interior_levels),
-    NUMBER(interior_ppm),
-    NUMBER(band_ppm),
-    NUMBER(bias_levels),
-    NUMBER(sign_sigma),
-    NUMBER(gain),
-    NUMBER(offset_levels),
-    NUMBER(silhouette_px),
-    NUMBER(segment_levels),
-    NUMBER(segment_px),
-    COUNT(segments_missing),
-    NUMBER(id_ppm),
-    NUMBER(id_interior_ppm),
-    NUMBER(id_band_ppm),
-    NUMBER(depth_max_mm),
-    NUMBER(depth_ppm),
-    NUMBER(depth_p99_mm),
-    NUMBER(depth_p99_part),
-    NUMBER(normal_max_deg),
-    NUMBER(normal_ppm),
-    NUMBER(normal_median_deg),
-    NUMBER(coverage_ppm),
-    COUNT(region_pixels),
-    {"pixelmatch", FIELD_THRESHOLD, offsetof(Tolerance, pixelmatch)},
-    NUMBER(pixelmatch_ppm),
+/* Limits that a file may name. */
+static const struct {
+    const char *key; /* NULL: no file may name the limit */
+    LimitKind kind;
+} limit_keys[LIMITS] = {
+    [LIMIT_COLOR_LEVELS] = {"color_levels", LIMIT_NUMBER},
+    [LIMIT_COLOR_PPM] = {"color_ppm", LIMIT_NUMBER},
+    [LIMIT_COLOR_COMMON_ONLY] = {"color_common_only", LIMIT_SWITCH},
+    [LIMIT_INTERIOR_LEVELS] = {"interior_levels", LIMIT_NUMBER},
+    [LIMIT_INTERIOR_PPM] = {"interior_ppm", LIMIT_NUMBER},
+    [LIMIT_BAND_PPM] = {"band_ppm", LIMIT_NUMBER},
+    [LIMIT_BIAS_LEVELS] = {"bias_levels", LIMIT_NUMBER},
+    [LIMIT_SIGN_SIGMA] = {"sign_sigma", LIMIT_NUMBER},
+    [LIMIT_GAIN] = {"gain", LIMIT_NUMBER},
+    [LIMIT_OFFSET_LEVELS] = {"offset_levels", LIMIT_NUMBER},
+    [LIMIT_SILHOUETTE_PX] = {"silhouette_px", LIMIT_NUMBER},
+    [LIMIT_SEGMENT_LEVELS] = {"segment_levels", LIMIT_NUMBER},
+    [LIMIT_SEGMENT_PX] = {"segment_px", LIMIT_NUMBER},
+    [LIMIT_SEGMENTS_MISSING] = {"segments_missing", LIMIT_COUNT},
+    [LIMIT_ID_PPM] = {"id_ppm", LIMIT_NUMBER},
+    [LIMIT_ID_INTERIOR_PPM] = {"id_interior_ppm", LIMIT_NUMBER},
+    [LIMIT_ID_BAND_PPM] = {"id_band_ppm", LIMIT_NUMBER},
+    [LIMIT_DEPTH_MAX_MM] = {"depth_max_mm", LIMIT_NUMBER},
+    [LIMIT_DEPTH_PPM] = {"depth_ppm", LIMIT_NUMBER},
+    [LIMIT_DEPTH_P99_MM] = {"depth_p99_mm", LIMIT_NUMBER},
+    [LIMIT_DEPTH_P99_PART] = {"depth_p99_part", LIMIT_NUMBER},
+    [LIMIT_NORMAL_MAX_DEG] = {"normal_max_deg", LIMIT_NUMBER},
+    [LIMIT_NORMAL_PPM] = {"normal_ppm", LIMIT_NUMBER},
+    [LIMIT_NORMAL_MEDIAN_DEG] = {"normal_median_deg", LIMIT_NUMBER},
+    [LIMIT_COVERAGE_PPM] = {"coverage_ppm", LIMIT_NUMBER},
+    [LIMIT_REGION_PIXELS] = {"region_pixels", LIMIT_COUNT},
+    [LIMIT_PIXELMATCH] = {"pixelmatch", LIMIT_THRESHOLD},
+    [LIMIT_PIXELMATCH_PPM] = {"pixelmatch_ppm", LIMIT_NUMBER},
 };
-enum { FIELDS = sizeof fields / sizeof *fields };
 
-static void *field_of(Tolerance *tolerance, const Field *field)
-{
-    return (char *)tolerance + field->offset;
-}
+/* ---- tiers ----------------------------------------------------------------------------------- */
+
+typedef struct LimitValue {
+    Limit limit;
+    double value;
+} LimitValue;
 
 Tolerance tolerance_none(void)
 {
-    Tolerance none = {.tier = "none", .depth_max_mm = 0};
-    for (int i = 0; i < FIELDS; i++) {
-        if (fields[i].kind == FIELD_NUMBER)
-            *(double *)field_of(&none, &fields[i]) = (double)INFINITY;
-        else if (fields[i].kind == FIELD_COUNT)
-            *(size_t *)field_of(&none, &fields[i]) = SIZE_MAX;
-    }
-    none.color_levels = 0;
-    none.pixelmatch = (double)NAN;
+    Tolerance none = {.tier = "none"};
+    for (Limit i = 0; i < LIMITS; i++)
+        none.limits[i] = (double)INFINITY;
+    none.limits[LIMIT_NAN] = none.limits[LIMIT_COLOR_LEVELS] = 0;
+    none.limits[LIMIT_COLOR_COMMON_ONLY] = 0;
+    none.limits[LIMIT_PIXELMATCH] = (double)NAN;
     return none;
+}
+
+static Tolerance tier_of(const char *name, const LimitValue *values, size_t n)
+{
+    Tolerance tolerance = tolerance_none();
+    tolerance.tier = name;
+    for (size_t i = 0; i < n; i++)
+        tolerance.limits[values[i].limit] = values[i].value;
+    return tolerance;
 }
 
 Tolerance tolerance_identity(double depth_step_mm)
 {
-    Tolerance tolerance = tolerance_none();
-    tolerance.tier = "A";
-    tolerance.color_levels = 1 / 257.0;
-    tolerance.color_ppm = 2;
-    tolerance.interior_levels = 1;
+    const LimitValue values[] = {{LIMIT_COLOR_LEVELS, 1 / 257.0},
+                                 {LIMIT_COLOR_PPM, 2},
+                                 {LIMIT_INTERIOR_LEVELS, 1},
+                                 {LIMIT_ID_PPM, 2},
+                                 {LIMIT_DEPTH_PPM, 2},
+                                 {LIMIT_DEPTH_MAX_MM, depth_step_mm},
+                                 {LIMIT_NORMAL_MAX_DEG, 0.03},
+                                 {LIMIT_NORMAL_PPM, 2},
+                                 {LIMIT_COVERAGE_PPM, 2}};
+    Tolerance tolerance = tier_of("A", values, sizeof values / sizeof *values);
     tolerance.spare_levels = 1;
-    tolerance.id_ppm = 2;
-    tolerance.depth_max_mm = depth_step_mm;
-    tolerance.depth_ppm = 2;
-    tolerance.normal_max_deg = 0.03;
-    tolerance.normal_ppm = 2;
-    tolerance.coverage_ppm = 2;
     return tolerance;
 }
 
 Tolerance tolerance_tolerant(double depth_step_mm)
 {
-    Tolerance tolerance = tolerance_none();
-    tolerance.tier = "B";
-    tolerance.color_levels = 2;
-    tolerance.interior_ppm = 2000;
-    tolerance.band_ppm = 10000;
-    tolerance.bias_levels = 0.01;
-    tolerance.sign_sigma = 6;
-    tolerance.gain = 0.0005;
-    tolerance.offset_levels = 0.0255;
-    tolerance.silhouette_px = 0.002;
-    tolerance.segment_levels = 0.12;
-    tolerance.segment_px = 0.15;
-    tolerance.segments_missing = 0;
-    tolerance.id_interior_ppm = 0;
-    tolerance.id_band_ppm = 2000;
-    tolerance.depth_p99_mm = depth_step_mm;
-    tolerance.normal_max_deg = 0.1;
-    tolerance.normal_ppm = 10000;
-    tolerance.normal_median_deg = 0.02;
-    return tolerance;
+    const LimitValue values[] = {
+        {LIMIT_COLOR_LEVELS, 2},        {LIMIT_INTERIOR_PPM, 2000},
+        {LIMIT_BAND_PPM, 10000},        {LIMIT_BIAS_LEVELS, 0.01},
+        {LIMIT_SIGN_SIGMA, 6},          {LIMIT_GAIN, 0.0005},
+        {LIMIT_OFFSET_LEVELS, 0.0255},  {LIMIT_SILHOUETTE_PX, 0.002},
+        {LIMIT_SEGMENT_LEVELS, 0.12},   {LIMIT_SEGMENT_PX, 0.15},
+        {LIMIT_SEGMENTS_MISSING, 0},    {LIMIT_ID_INTERIOR_PPM, 0},
+        {LIMIT_ID_BAND_PPM, 2000},      {LIMIT_DEPTH_P99_MM, depth_step_mm},
+        {LIMIT_NORMAL_MAX_DEG, 0.1},    {LIMIT_NORMAL_PPM, 10000},
+        {LIMIT_NORMAL_MEDIAN_DEG, 0.02}};
+    return tier_of("B", values, sizeof values / sizeof *values);
 }
 
 Tolerance tolerance_surface(double depth_mm)
 {
-    Tolerance tolerance = tolerance_none();
-    tolerance.tier = "surface";
-    tolerance.color_levels = 2;
-    tolerance.interior_ppm = 2000;
-    tolerance.band_ppm = 15000;
-    tolerance.gain = 0.0005;
-    tolerance.offset_levels = 0.15;
-    tolerance.segment_levels = 1;
-    tolerance.segment_px = 0.15;
-    tolerance.segments_missing = 0;
-    tolerance.region_pixels = 2;
-    if (depth_mm > 0)
-        tolerance.depth_p99_mm = depth_mm;
-    else
-        tolerance.depth_p99_part = 1e-4;
-    return tolerance;
+    const LimitValue values[] = {
+        {LIMIT_COLOR_LEVELS, 2},
+        {LIMIT_INTERIOR_PPM, 2000},
+        {LIMIT_BAND_PPM, 15000},
+        {LIMIT_GAIN, 0.0005},
+        {LIMIT_OFFSET_LEVELS, 0.15},
+        {LIMIT_SEGMENT_LEVELS, 1},
+        {LIMIT_SEGMENT_PX, 0.15},
+        {LIMIT_SEGMENTS_MISSING, 0},
+        {LIMIT_REGION_PIXELS, 2},
+        {depth_mm > 0 ? LIMIT_DEPTH_P99_MM : LIMIT_DEPTH_P99_PART, depth_mm > 0 ? depth_mm : 1e-4}};
+    return tier_of("surface", values, sizeof values / sizeof *values);
 }
 
-/* --------------------------------------------------------------------------------------- files */
+/* ---- files ----------------------------------------------------------------------------------- */
 
 typedef struct ToleranceReader {
     Tolerance tolerance;
     char *name; /* owned */
 } ToleranceReader;
 
-static Status set_field(Tolerance *tolerance, const Field *field, const char *value, Err *err)
+static Status set_limit(Tolerance *tolerance, Limit limit, const char *value, Err *err)
 {
     static const char *const allowed[] = {
-        [FIELD_NUMBER] = "a number of at least 0, or inf",
-        [FIELD_COUNT] = "a whole number of at least 0, or inf",
-        [FIELD_SWITCH] = "on or off",
-        [FIELD_THRESHOLD] = "a number from 0 to 1",
+        [LIMIT_NUMBER] = "a number of at least 0, or inf",
+        [LIMIT_COUNT] = "a whole number of at least 0, or inf",
+        [LIMIT_SWITCH] = "on or off",
+        [LIMIT_THRESHOLD] = "a number from 0 to 1",
     };
-    void *out = field_of(tolerance, field);
-    FieldKind kind = field->kind;
-    bool unjudged = strcmp(value, "inf") == 0, on = strcmp(value, "on") == 0, valid;
-    double number = 0;
+    LimitKind kind = limit_keys[limit].kind;
+    bool on = strcmp(value, "on") == 0, valid;
+    double number = on;
     long long count = 0;
-    if (kind == FIELD_SWITCH)
+    if (kind == LIMIT_SWITCH) {
         valid = on || strcmp(value, "off") == 0;
-    else if (kind == FIELD_COUNT)
-        valid = unjudged || integer_parse(value, 0, 1ll << 40, &count);
-    else
+    } else if (kind == LIMIT_COUNT) {
+        valid = strcmp(value, "inf") == 0 || integer_parse(value, 0, 1ll << 40, &count);
+        number = strcmp(value, "inf") == 0 ? (double)INFINITY : (double)count;
+    } else {
         valid =
-            number_parse(value, &number) && number >= 0 && (kind == FIELD_NUMBER || number <= 1);
+            number_parse(value, &number) && number >= 0 && (kind == LIMIT_NUMBER || number <= 1);
+    }
     if (!valid)
-        return err_set(err, STATUS_INPUT, "%s is '%s'; it must be %s", field->key, value,
+        return err_set(err, STATUS_INPUT, "%s is '%s'; it must be %s", limit_keys[limit].key, value,
                        allowed[kind]);
-    if (kind == FIELD_SWITCH)
-        *(bool *)out = on;
-    else if (kind == FIELD_COUNT)
-        *(size_t *)out = unjudged ? SIZE_MAX : (size_t)count;
-    else
-        *(double *)out = number;
+    tolerance->limits[limit] = number;
     return STATUS_OK;
 }
 
-/* The name is one that reads back to itself: control characters become blanks, and blanks neither
- * begin nor end it, nor begin a comment in it. */
+/* The name reads back to itself: control characters become blanks, and blanks neither begin nor end
+ * it, nor begin a comment in it. */
 static Status take_name(char **name, const char *value, Err *err)
 {
     Text text = TEXT_INIT;
@@ -184,8 +161,7 @@ static Status take_name(char **name, const char *value, Err *err)
     text_put_line(&text, value);
     Status status = text_take(&text, name, err);
     text_release(&text);
-    if (status != STATUS_OK)
-        return status;
+    TRY(status);
     char *comment = strstr(*name, " ;");
     if (comment)
         *comment = '\0';
@@ -202,25 +178,24 @@ static Status take_line(void *user, const char *section, const char *key, const 
         return err_set(err, STATUS_INPUT, "a tolerance has no sections, and here is [%s]", section);
     if (strcmp(key, "tier") == 0)
         return take_name(&reader->name, value, err);
-    for (int i = 0; i < FIELDS; i++)
-        if (strcmp(key, fields[i].key) == 0)
-            return set_field(&reader->tolerance, &fields[i], value, err);
+    for (Limit i = 0; i < LIMITS; i++)
+        if (limit_keys[i].key && strcmp(key, limit_keys[i].key) == 0)
+            return set_limit(&reader->tolerance, i, value, err);
     return err_set(err, STATUS_INPUT, "'%s' is not a limit of a tolerance", key);
 }
 
 Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *err)
 {
     ToleranceReader reader = {.tolerance = *tolerance};
-    Status status = ini_read(path, "a tolerance", take_line, &reader, NULL, err);
-    if (status == STATUS_OK && !reader.name)
-        status = mem_strdup(&reader.name, "given", err);
-    if (status != STATUS_OK) {
-        free(reader.name);
-        return status;
-    }
+    Status status = STATUS_OK;
+    TRY_GOTO(ini_read(path, "a tolerance", take_line, &reader, NULL, err));
+    if (!reader.name)
+        TRY_GOTO(mem_strdup(&reader.name, "given", err));
     *tolerance = reader.tolerance;
     tolerance->spare_levels = 0; /* the file says how many pixels may be off */
-    tolerance->tier = reader.name;
-    *name = reader.name;
-    return STATUS_OK;
+    tolerance->tier = *name = reader.name;
+    reader.name = NULL;
+done:
+    free(reader.name);
+    return status;
 }

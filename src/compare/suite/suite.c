@@ -3,7 +3,8 @@
  * Files of the same bytes are not decoded. What is masked takes the reference's codes before the
  * comparison, so that nothing behind it knows of masks. */
 #include "compare/suite/suite.h"
-#include "compare/measures/result.h"
+#include "compare/cause/cause.h"
+#include "compare/measures/planes.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -301,12 +302,11 @@ static Status compare_pair(const Judging *judging, const Held *held, SuiteCase *
     }
     TRY(status);
     TRY(alpha_judge(&held->alphas[0], &held->alphas[1], &result, err));
-    entry->differing = result.differing_pixels;
-    entry->pixels = result.pixels;
-    entry->state = !result.agrees            ? SUITE_CHANGED
-                   : result.differing_pixels ? SUITE_WITHIN
-                   : entry->masked           ? SUITE_WITHIN
-                                             : SUITE_SAME;
+    entry->differing = result_count(&result, MEASURE_DIFFERING_PIXELS);
+    entry->pixels = result_count(&result, MEASURE_PIXELS);
+    entry->state = !result.agrees                      ? SUITE_CHANGED
+                   : entry->differing || entry->masked ? SUITE_WITHIN
+                                                       : SUITE_SAME;
     if (result.agrees)
         return STATUS_OK;
     if (!*result.cause)

@@ -142,24 +142,63 @@ static Status read_print(ExportOptions *options, const Emitter *emitter, Err *er
     return STATUS_OK;
 }
 
-static Status export_volume(const ExportOptions *options, const VolumeFormat *format,
-                            Parsed *parsed, Err *err)
+/* Finds the format of the mesh or the lines, and checks the options against it. Without an output,
+ * a mesh in memory has what a PLY file holds. */
+static Status plan_mesh(ExportOptions *options, const Emitter **emitter, Err *err)
 {
+    if (options->output)
+        TRY(find_emitter(options, emitter, err));
+    else
+        *emitter = emitter_find("ply", true);
+    if ((*emitter)->has_parts && options->meshing.body == BODY_ROUND)
+        return err_set(err, STATUS_USAGE,
+                       "`model` rounded has no flat ends that could be named parts");
+    return read_print(options, *emitter, err);
+}
+
+Status mesh_make(ExportOptions *options, const Parsed *parsed, MeshResult *mesh, Err *err)
+{
+    const Emitter *emitter;
     PictureTree of;
-    TRY(volumes_note(&options->volume, format, options->output, &parsed->files, err));
+    TRY(plan_mesh(options, &emitter, err));
     TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, &of, err));
-    Status status = volumes_write(&options->volume, format, &of, options->output, parsed, err);
+    return meshing_make(emitter, &options->meshing, &of, &parsed->common, mesh, err);
+}
+
+static Status export_mesh(ExportOptions *options, Parsed *parsed, FileSet *files, Err *err)
+{
+    const Emitter *emitter;
+    MeshResult mesh;
+    TRY(plan_mesh(options, &emitter, err));
+    TRY(scene_files_name(emitter, options->output, false, files, err));
+    TRY(work_note_files(files, &parsed->files, err));
+    TRY(mesh_make(options, parsed, &mesh, err));
+    Status status = meshing_write(&mesh, files, parsed, err);
+    meshing_release(&mesh);
+    return status;
+}
+
+static Status export_volume(const ExportOptions *options, Parsed *parsed, FileSet *files, Err *err)
+{
+    const VolumeFormat *format = volume_format_find(options->output);
+    const Coloring *coloring = &options->meshing.coloring;
+    PictureTree of;
+    TRY(volumes_name(&options->volume, format, options->output, files, err));
+    TRY(work_note_files(files, &parsed->files, err));
+    TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
+    Status status = volumes_write(&options->volume, format, &of, files, parsed, err);
     picture_tree_release(&of);
     return status;
 }
 
-static Status export_page(const ExportOptions *options, const Parsed *parsed, Err *err)
+static Status export_page(const ExportOptions *options, const Parsed *parsed, FileSet *files,
+                          Err *err)
 {
     const Coloring *coloring = &options->meshing.coloring;
     PictureTree of;
+    TRY(mem_strdup(&files->at[0].path, options->output, err));
     TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
-    Status status =
-        webpage_write(coloring, options->meshing.look, &of, options->output, parsed, err);
+    Status status = webpage_write(coloring, options->meshing.look, &of, files, parsed, err);
     picture_tree_release(&of);
     return status;
 }
@@ -169,36 +208,32 @@ static bool is_page(const ExportOptions *options)
     return strcmp(file_extension(options->output), "html") == 0;
 }
 
+Status export_write(ExportOptions *options, Parsed *parsed, const FileTaker *taker, Err *err)
+{
+    FileSet files = {.taker = taker};
+    Status status;
+    if (is_page(options))
+        status = export_page(options, parsed, &files, err);
+    else if (volume_format_find(options->output))
+        status = export_volume(options, parsed, &files, err);
+    else
+        status = export_mesh(options, parsed, &files, err);
+    fileset_release(&files);
+    return status;
+}
+
 Status export_run(void *options, Parsed *parsed, Err *err)
 {
-    ExportOptions *own_options = options;
-    const VolumeFormat *volume = volume_format_find(own_options->output);
-    const Emitter *emitter;
-    PictureTree of;
-    if (is_page(own_options))
-        return export_page(own_options, parsed, err);
-    if (volume)
-        return export_volume(own_options, volume, parsed, err);
-    TRY(find_emitter(own_options, &emitter, err));
-    if (emitter->has_parts && own_options->meshing.body == BODY_ROUND)
-        return err_set(err, STATUS_USAGE,
-                       "`model` rounded has no flat ends that could be named parts");
-    TRY(read_print(own_options, emitter, err));
-    TRY(scene_files_note(emitter, own_options->output, false, &parsed->files, err));
-    TRY(picture_read_tree(&own_options->meshing.coloring, own_options->prune_radius_mm, parsed, &of,
-                          err));
-    Status status =
-        meshing_write(emitter, &own_options->meshing, &of, own_options->output, parsed, err);
-    picture_tree_release(&of);
-    return status;
+    return export_write(options, parsed, NULL, err);
 }
 
 /* Finds the emitter for the output; NULL for a volume, a page, or a file that is refused later. */
 static const Emitter *emitter_of(const ExportOptions *options)
 {
     const Emitter *emitter;
-    const bool found = options->output && !is_page(options) &&
-                       !volume_format_find(options->output) &&
+    if (!options->output)
+        return emitter_find("ply", true);
+    const bool found = !is_page(options) && !volume_format_find(options->output) &&
                        find_emitter(options, &emitter, NULL) == STATUS_OK;
     return found ? emitter : NULL;
 }
@@ -221,11 +256,9 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
     (void)parsed;
     const ExportOptions *options = set;
     const Emitter *emitter = emitter_of(options);
-    if (!options->output)
-        return 0;
-    if (is_page(options))
+    if (options->output && is_page(options))
         return WHEN(VOLUME) | WHEN(NO_PAGE) | WHEN(STEPS) | WHEN(ONE_MOMENT) | WHEN(WHOLE_RANGE);
-    if (volume_format_find(options->output))
+    if (options->output && volume_format_find(options->output))
         return WHEN(COLORS) | WHEN(NO_VOLUME);
     return WHEN(VOLUME) |
            (emitter ? UNLESS(emitter->has_colors, COLORS) | UNLESS(emitter->of_meshes, MESH) |

@@ -19,12 +19,27 @@ typedef struct ExportOptions {
 
 /* Describes the operation. Its options set an ExportOptions. */
 extern const Command command_export;
-/* Runs the operation: checks the options, works and writes. Errors are in the sentences. */
-MUST_CHECK Status run_export(void *options, Parsed *parsed, Err *err);
 
-/* Checks the options, a pointer to an ExportOptions, makes what they ask for of the tree, and
- * writes it.
- */
+/* Makes the surface of a tree in memory, in the form that the format of options->output needs. If
+ * there is no output, the result has no named parts, and has colours.
+ *
+ * options  `print` or `wall_mm` sets further members.
+ * mesh     borrows from `options` and `parsed`; release it with meshing_release.
+ * Errors   STATUS_USAGE if an option has no effect on the format, or if the output has no known
+ *          extension; those of picture_read_tree and meshing_make. */
+MUST_CHECK Status mesh_make(ExportOptions *options, const Parsed *parsed, MeshResult *mesh,
+                            Err *err);
+
+/* Exports a tree to options->output and to the files beside it.
+ *
+ * options  as for mesh_make.
+ * taker    receives the files instead of the file system; NULL: they are written.
+ * Errors   those of mesh_make, meshing_write, volumes_write and webpage_write. If the operation
+ *          fails, all files are as before. */
+MUST_CHECK Status export_write(ExportOptions *options, Parsed *parsed, const FileTaker *taker,
+                               Err *err);
+
+/* Exports a tree to files: export_write for an ExportOptions, without a taker. */
 MUST_CHECK Status export_run(void *options, Parsed *parsed, Err *err);
 
 #endif

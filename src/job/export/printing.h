@@ -1,59 +1,46 @@
-/* `export --print`: vessels made fit for a printer, and what is to be known of the print. */
+/* The vessels of `export --print`: they are made fit for a printer, and the print is described. */
 #ifndef CORCAST_JOB_EXPORT_PRINTING_H
 #define CORCAST_JOB_EXPORT_PRINTING_H
 
-#include "base/base.h"
-#include "options/options.h"
-#include "print/print.h"
-
-typedef struct PrintSettings {
-    double scale;           /* factor of all lengths, > 0 */
-    double min_diameter_mm; /* of vessels, after scaling; 0: any */
-    bool prunes;            /* thinner vessels are cut off, else thickened */
-    double nozzle_mm;       /* 0: not known */
-    double bed_mm[3];       /* sides of the space that the printer has; 0: not known */
-    PrintParams params;
-} PrintSettings;
-
-/* Reads "KEY=VALUE,KEY,...", in any order, into *out. STATUS_USAGE naming `print`, the key and what
- * it takes. */
-MUST_CHECK Status printing_parse(const char *text, PrintSettings *out, Err *err);
+#include "job/export/print_settings.h"
+#include "options/talk.h"
 
 /* What was done to vessels before their surface is made. */
 typedef struct PrintChanges {
     size_t thickened;   /* segments that were thinner than min_diameter_mm */
     size_t below_two;   /* segments that are still thinner than two widths of the nozzle */
     double trunk_mm;    /* diameter of the widest segment, scaled */
-    double thinnest_mm; /* diameter of the thinnest one, scaled and thickened */
+    double thinnest_mm; /* diameter of the thinnest segment, scaled and thickened */
 } PrintChanges;
 
-/* Scales and thickens the vessels. STATUS_INPUT when the nozzle is wider than the trunk or the
- * wall. */
+/* Scales and thickens the vessels. Errors: STATUS_INPUT if the nozzle is wider than the trunk or
+ * the wall. */
 MUST_CHECK Status printing_prepare(const PrintSettings *settings, VesselTree *vessels,
                                    PrintChanges *changes, Err *err);
 
-/* STATUS_INPUT, with the sizes of both, when the mesh does not fit the bed, as it stands or turned
- * by 90 degrees. */
+/* Checks that a mesh fits the bed, as it is or rotated by 90 degrees. Errors: STATUS_INPUT with the
+ * sizes of both. */
 MUST_CHECK Status printing_check_bed(const PrintSettings *settings, const VesselMesh *mesh,
                                      Err *err);
 
-/* A print that was made; all borrowed. */
+/* A finished print. All members are borrowed. */
 typedef struct Printing {
     const PrintSettings *settings;
     const PrintChanges *changes;
-    size_t pruned; /* segments that were cut off before */
+    size_t pruned; /* number of segments that were removed because they are thin */
     const VesselTree *vessels;
     const PrintReport *report;
     const VesselMesh *mesh;
 } Printing;
 
-/* Says on standard error what was made. */
-void printing_say(const Printing *print);
+/* Reports the facts about a print as notes. */
+void printing_say(const Printing *print, const Talk *talk);
 
-/* What the manifest says of the print. NULL when memory runs out. */
+/* Makes the part of a manifest that describes a print. Returns NULL if memory runs out. */
 json_t *printing_json(const Printing *print);
 
-/* The ids of `n` segments, listed by their indices. NULL when memory runs out. */
+/* Makes a list of the ids of `n` segments, which `list` has by their indices. Returns NULL if
+ * memory runs out. */
 json_t *segment_ids(const VesselTree *vessels, const uint32_t *list, size_t n);
 
 #endif

@@ -52,72 +52,13 @@ static Status check(const SceneOptions *options, const Emitter *emitter, Err *er
     const PictureOptions *picture = &options->picture;
     const SceneModel model =
         picture->as_mesh ? model_with(MODEL_TRIANGLES) : (SceneModel)picture->model;
-    if (options->ini && strcmp(options->output, "-") == 0)
+    if (options->ini && options->output && strcmp(options->output, "-") == 0)
         return err_set(err, STATUS_USAGE, "--ini is a file beside S.pov; standard output has none");
     TRY(picture_check_povray(picture, err));
     return emit_check_model(emitter, model, err);
 }
 
-/* What the user should know of the file besides. */
-static void say_limits(const Emitter *emitter, const EmitReport *report, const Scene *scene,
-                       const char *tree)
-{
-    Err misfit;
-    if (emitter->has_view && picture_check_ids(&scene->geometry, tree, &misfit) != STATUS_OK)
-        fprintf(stderr, "corcast: %s\n", misfit.text);
-    if (report->joint_sides > 0)
-        fprintf(stderr,
-                "corcast: more joints than POV-Ray holds exactly; they are meshes of %d sides, of "
-                "more with Declare=Joint_Sides=N\n",
-                report->joint_sides);
-    if (report->openscad_s > 0 && scene->geometry.drawn > OPENSCAD_QUICK)
-        fprintf(stderr,
-                "corcast: OpenSCAD takes about %.2g s to make a solid of %zu vessels, and its "
-                "preview a moment; --scad polyhedron is a solid at once\n",
-                report->openscad_s, scene->geometry.drawn);
-}
-
-static Status write_scene(const SceneOptions *options, const Emitter *emitter,
-                          const PictureSource *source, const char *line, const Parsed *parsed,
-                          Err *err)
-{
-    const PictureOptions *picture = &options->picture;
-    const char *tree = source->of.path;
-    Scene scene = {0};
-    Anatomy anatomy = {0};
-    EmitReport report = {0};
-    PictureReport made;
-    TRY(picture_scene_of(picture, source, parsed, &scene, &anatomy, &made, err));
-    Status status = picture_say(&scene, &made, parsed->common.talk, err);
-    if (status == STATUS_OK && emitter->has_view)
-        status = picture_say_effects(picture, &scene.view, "the scene is without them",
-                                     parsed->common.talk, err);
-    const EmitParams params = {.scene = &scene,
-                               .anatomy = &anatomy,
-                               .command = line,
-                               .antialias = picture->antialias,
-                               .shadows = picture->stage.shadows,
-                               .ids = options->ids,
-                               .cells = picture_cells(picture)};
-    if (status == STATUS_OK)
-        status =
-            scene_files_write(emitter, &params, tree, options->output, options->ini, &report, err);
-    if (status == STATUS_OK && !parsed->common.quiet)
-        say_limits(emitter, &report, &scene, tree);
-    anatomy_release(&anatomy);
-    scene_release(&scene);
-    return status;
-}
-
-static Status write_surface(const SceneOptions *options, const Emitter *emitter,
-                            const PictureSource *source, const Parsed *parsed, Err *err)
-{
-    const MeshingOptions meshing = {.tolerance = options->picture.tolerance,
-                                    .part_overlaps = options->picture.part_overlaps};
-    return meshing_write(emitter, &meshing, &source->of, options->output, parsed, err);
-}
-
-/* The form of a model for OpenSCAD, as far as the options decide. */
+/* Returns the form of a model for OpenSCAD, or SCAD_AUTO if the options do not decide. */
 static ScadForm asked_form(const SceneOptions *options, const Parsed *parsed)
 {
     if (options->scad != SCAD_AUTO)
@@ -129,61 +70,159 @@ static ScadForm asked_form(const SceneOptions *options, const Parsed *parsed)
     return of_vessels ? SCAD_PARAMETRIC : SCAD_AUTO;
 }
 
-/* The emitter of a form; of SCAD_AUTO, and of other files, that of scenes. Standard output gets
- * POV-Ray's. */
+/* Finds the emitter of a form. SCAD_AUTO, and other files, have the emitter of scenes. Standard
+ * output, and a scene in memory, have POV-Ray's. */
 static Status find_emitter(const char *output, ScadForm form, const Emitter **emitter, Err *err)
 {
-    const char *name = strcmp(output, "-") ? output : "scene.pov";
+    const char *name = output && strcmp(output, "-") ? output : "scene.pov";
     bool scad = strcmp(file_extension(name), "scad") == 0;
     return scene_files_find(name, scad && form == SCAD_POLYHEDRON, emitter, err);
 }
 
-/* By the number of vessels, which is said. */
-static ScadForm form_by_size(const Tree *tree, const SceneOptions *options, bool quiet)
+/* Selects the form by the number of vessels, and reports the selection of a surface. */
+static ScadForm form_by_size(const Tree *tree, const char *output, const Talk *talk)
 {
     size_t n = 0;
     for (size_t i = 0; i < tree->n; i++)
         n += tree_is_segment(tree, i);
     if (n <= OPENSCAD_QUICK)
         return SCAD_PARAMETRIC;
-    if (!quiet)
-        fprintf(stderr,
-                "corcast: %zu vessels are more than OpenSCAD unites in good time, %d: %s is one "
-                "closed surface; --scad parametric writes modules\n",
-                n, OPENSCAD_QUICK, options->output);
+    talk_note(talk,
+              "%zu vessels are more than OpenSCAD unites in good time, %d: %s is one closed "
+              "surface; --scad parametric writes modules",
+              n, OPENSCAD_QUICK, output);
     return SCAD_POLYHEDRON;
 }
 
-/* Settles on an emitter and writes by it. */
-static Status write_source(const SceneOptions *options, const Emitter *emitter,
-                           const PictureSource *source, Parsed *parsed, Err *err)
+/* ---- the scene in memory --------------------------------------------------------------------- */
+
+static Status make_scene(const PictureOptions *picture, const Parsed *parsed, SceneResult *made,
+                         Err *err)
 {
-    char *line = NULL;
+    PictureReport report;
+    TRY(picture_scene_of(picture, &made->source, parsed, &made->scene, &made->anatomy, &report,
+                         err));
+    TRY(picture_say(&made->scene, &report, parsed->common.talk, err));
+    return made->emitter->has_view
+               ? picture_say_effects(picture, &made->scene.view, "the scene is without them",
+                                     parsed->common.talk, err)
+               : STATUS_OK;
+}
+
+static Status make_surface(const PictureOptions *picture, const Common *common, SceneResult *made,
+                           Err *err)
+{
+    const MeshingOptions meshing = {.tolerance = picture->tolerance,
+                                    .part_overlaps = picture->part_overlaps};
+    return meshing_make(made->emitter, &meshing, &made->source.of, common, &made->mesh, err);
+}
+
+/* Selects the emitter for a tree whose number of vessels is known, and notes its files. */
+static Status settle_format(const SceneOptions *options, Parsed *parsed, SceneResult *made,
+                            Err *err)
+{
     bool is_open =
-        strcmp(emitter->extension, "scad") == 0 && asked_form(options, parsed) == SCAD_AUTO;
+        strcmp(made->emitter->extension, "scad") == 0 && asked_form(options, parsed) == SCAD_AUTO;
     if (is_open)
         TRY(find_emitter(options->output,
-                         form_by_size(&source->of.tree, options, parsed->common.quiet), &emitter,
-                         err));
-    TRY(scene_files_note(emitter, options->output, options->ini, &parsed->files, err));
-    if (emitter->of_meshes)
-        return write_surface(options, emitter, source, parsed, err);
-    TRY(command_line_text(parsed, &line, err));
-    Status status = write_scene(options, emitter, source, line, parsed, err);
-    free(line);
+                         form_by_size(&made->source.of.tree, options->output, parsed->common.talk),
+                         &made->emitter, err));
+    if (!options->output)
+        return STATUS_OK;
+    TRY(scene_files_name(made->emitter, options->output, options->ini, &made->files, err));
+    return work_note_files(&made->files, &parsed->files, err);
+}
+
+Status scene_make(const SceneOptions *options, Parsed *parsed, const FileTaker *taker,
+                  SceneResult *out, Err *err)
+{
+    const PictureOptions *picture = &options->picture;
+    SceneResult made = {.files.taker = taker};
+    Status status;
+    TRY_GOTO(find_emitter(options->output, asked_form(options, parsed), &made.emitter, err));
+    TRY_GOTO(check(options, made.emitter, err));
+    TRY_GOTO(picture_read_source(picture, parsed, &made.source, err));
+    TRY_GOTO(settle_format(options, parsed, &made, err));
+    TRY_GOTO(made.emitter->of_meshes ? make_surface(picture, &parsed->common, &made, err)
+                                     : make_scene(picture, parsed, &made, err));
+    *out = made;
+    return STATUS_OK;
+done:
+    sceneresult_release(&made);
     return status;
+}
+
+void sceneresult_release(SceneResult *scene)
+{
+    picture_source_release(&scene->source);
+    scene_release(&scene->scene);
+    anatomy_release(&scene->anatomy);
+    meshing_release(&scene->mesh);
+    fileset_release(&scene->files);
+}
+
+/* ---- its files ------------------------------------------------------------------------------- */
+
+/* A scene that is written. All pointers are borrowed. */
+typedef struct SceneWriting {
+    const SceneOptions *options;
+    const SceneResult *made;
+    EmitReport *report;
+} SceneWriting;
+
+static Status put_scene(const void *job, const char *command, FileSlot files[], Err *err)
+{
+    const SceneWriting *writing = job;
+    const SceneResult *made = writing->made;
+    const PictureOptions *picture = &writing->options->picture;
+    const EmitParams params = {.scene = &made->scene,
+                               .anatomy = &made->anatomy,
+                               .command = command,
+                               .antialias = picture->antialias,
+                               .shadows = picture->stage.shadows,
+                               .ids = writing->options->ids,
+                               .cells = picture_cells(picture)};
+    return scene_files_put(made->emitter, &params, made->source.of.path, files, writing->report,
+                           err);
+}
+
+/* Reports what the user should know about the file. */
+static void say_limits(const SceneResult *made, const EmitReport *report, const Talk *talk)
+{
+    Err misfit;
+    const Geometry *geometry = &made->scene.geometry;
+    if (made->emitter->has_view &&
+        picture_check_ids(geometry, made->source.of.path, &misfit) != STATUS_OK)
+        talk_note(talk, "%s", misfit.text);
+    if (report->joint_sides > 0)
+        talk_note(talk,
+                  "more joints than POV-Ray holds exactly; they are meshes of %d sides, of more "
+                  "with Declare=Joint_Sides=N",
+                  report->joint_sides);
+    if (report->openscad_s > 0 && geometry->drawn > OPENSCAD_QUICK)
+        talk_note(talk,
+                  "OpenSCAD takes about %.2g s to make a solid of %zu vessels, and its preview a "
+                  "moment; --scad polyhedron is a solid at once",
+                  report->openscad_s, geometry->drawn);
+}
+
+Status scene_write(const SceneOptions *options, const Parsed *parsed, SceneResult *scene, Err *err)
+{
+    EmitReport report = {0};
+    const SceneWriting writing = {options, scene, &report};
+    if (scene->emitter->of_meshes)
+        return meshing_write(&scene->mesh, &scene->files, parsed, err);
+    TRY(work_write(&scene->files, put_scene, &writing, parsed, err));
+    say_limits(scene, &report, parsed->common.talk);
+    return STATUS_OK;
 }
 
 Status scene_run(void *options, Parsed *parsed, Err *err)
 {
-    const SceneOptions *own_options = options;
-    const Emitter *emitter;
-    PictureSource source;
-    TRY(find_emitter(own_options->output, asked_form(own_options, parsed), &emitter, err));
-    TRY(check(own_options, emitter, err));
-    TRY(picture_read_source(&own_options->picture, parsed, &source, err));
-    Status status = write_source(own_options, emitter, &source, parsed, err);
-    picture_source_release(&source);
+    SceneResult scene;
+    TRY(scene_make(options, parsed, NULL, &scene, err));
+    Status status = scene_write(options, parsed, &scene, err);
+    sceneresult_release(&scene);
     return status;
 }
 
@@ -191,9 +230,9 @@ Status scene_run(void *options, Parsed *parsed, Err *err)
 static const Emitter *emitter_of(const SceneOptions *options, const Parsed *parsed)
 {
     const Emitter *emitter;
-    const bool found = options->output && find_emitter(options->output, asked_form(options, parsed),
-                                                       &emitter, NULL) == STATUS_OK;
-    return found ? emitter : NULL;
+    return find_emitter(options->output, asked_form(options, parsed), &emitter, NULL) == STATUS_OK
+               ? emitter
+               : NULL;
 }
 
 static Status settle(void *set, const Parsed *parsed, Err *err)

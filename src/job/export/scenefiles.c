@@ -1,4 +1,5 @@
-/* Where the files of a scene go. */
+/* The files beside the first one take its name with another extension. Which there are follows from
+ * the emitter; a table has their names. */
 #include "job/export/scenefiles.h"
 
 #include "job/export/volumes.h"
@@ -29,125 +30,105 @@ Status scene_files_find(const char *output, bool of_meshes, const Emitter **emit
     return status;
 }
 
-/* What stands beside a mesh: what is known of it, and of one of parts how it may be used. */
+/* The files beside the first one, by SceneFile. */
 static const struct {
-    const char *role, *suffix;
-    bool keeps_extension; /* of the mesh, before the suffix */
-    bool of_parts;
+    const char *role;
+    const char *suffix; /* after the path's stem, or its extension; NULL: the emitter's */
+    bool keeps_extension;
+    bool of_mesh, of_parts;
     const char *of_extension; /* only beside a mesh of this extension; NULL: of any */
-} besides[BESIDES] = {
-    [BESIDE_MANIFEST] = {"the manifest", ".json", .keeps_extension = true},
-    [BESIDE_ENDS] = {"the table of ends", ".ends.csv", .of_parts = true},
-    [BESIDE_CENTERLINE] = {"the centreline", ".centreline.vtp", .of_parts = true},
-    [BESIDE_GMSH] = {"the geometry for gmsh", ".geo", .of_parts = true, .of_extension = "stl"},
+} beside[SCENE_FILES] = {
+    [SCENE_SETTINGS] = {"the settings", NULL},
+    [MESH_MANIFEST] = {"the manifest", ".json", .keeps_extension = true, .of_mesh = true},
+    [MESH_ENDS] = {"the table of ends", ".ends.csv", .of_mesh = true, .of_parts = true},
+    [MESH_CENTERLINE] = {"the centreline", ".centreline.vtp", .of_mesh = true, .of_parts = true},
+    [MESH_GMSH] = {"the geometry for gmsh", ".geo", .of_mesh = true, .of_parts = true,
+                   .of_extension = "stl"},
 };
 
-/* The files beside a scene or mesh; NULL where there is none. */
-typedef struct Beside {
-    char *second, *settings, *of_mesh[BESIDES]; /* owned */
-} Beside;
-
-static void beside_release(Beside *beside)
+/* Returns true if the emitter writes this file beside its first one. */
+static bool is_beside(const Emitter *emitter, bool settings, SceneFile file)
 {
-    free(beside->second);
-    free(beside->settings);
-    for (size_t i = 0; i < BESIDES; i++)
-        free(beside->of_mesh[i]);
-}
-
-/* Whether this stands beside a mesh of the emitter. */
-static bool is_beside(const Emitter *emitter, size_t i)
-{
-    const char *extension = besides[i].of_extension;
-    return emitter->of_meshes && (emitter->has_parts || !besides[i].of_parts) &&
+    const char *extension = beside[file].of_extension;
+    if (file == SCENE_SECOND)
+        return emitter->second_extension != NULL;
+    if (file == SCENE_SETTINGS)
+        return settings;
+    return emitter->of_meshes && (emitter->has_parts || !beside[file].of_parts) &&
            (!extension || strcmp(emitter->extension, extension) == 0);
 }
 
-static Status find_beside(const Emitter *emitter, const char *path, bool settings, Beside *beside,
+static Status name_beside(const Emitter *emitter, const char *path, SceneFile file, FileSlot *named,
                           Err *err)
 {
     char suffix[24];
-    if (strcmp(path, "-") == 0)
-        return STATUS_OK;
-    for (size_t i = 0; i < BESIDES; i++) {
-        bool keeps = besides[i].keeps_extension;
-        snprintf(suffix, sizeof suffix, "%s%s%s", keeps ? "." : "", keeps ? emitter->extension : "",
-                 besides[i].suffix);
-        if (is_beside(emitter, i))
-            TRY(file_with_suffix(path, suffix, &beside->of_mesh[i], err));
-    }
-    snprintf(suffix, sizeof suffix, ".%s", emitter->settings_extension);
-    if (settings)
-        TRY(file_with_suffix(path, suffix, &beside->settings, err));
-    if (!emitter->second_extension)
-        return STATUS_OK;
-    snprintf(suffix, sizeof suffix, ".%s", emitter->second_extension);
-    return file_with_suffix(path, suffix, &beside->second, err);
+    const char *own =
+        file == SCENE_SECOND ? emitter->second_extension : emitter->settings_extension;
+    named->role = file == SCENE_SECOND ? emitter->second_holds : beside[file].role;
+    if (!beside[file].suffix)
+        snprintf(suffix, sizeof suffix, ".%s", own);
+    else if (beside[file].keeps_extension)
+        snprintf(suffix, sizeof suffix, ".%s%s", emitter->extension, beside[file].suffix);
+    else
+        snprintf(suffix, sizeof suffix, "%s", beside[file].suffix);
+    return file_with_suffix(path, suffix, &named->path, err);
 }
 
-Status scene_files_note(const Emitter *emitter, const char *path, bool settings, Files *files,
+Status scene_files_name(const Emitter *emitter, const char *path, bool settings, FileSet *files,
                         Err *err)
 {
-    Beside beside = {0};
-    Status status;
-    TRY_GOTO(find_beside(emitter, path, settings, &beside, err));
-    if (beside.second && emitter->check_name)
-        TRY_GOTO(emitter->check_name(file_name(beside.second), err));
-    if (beside.second)
-        TRY_GOTO(files_write(files, emitter->second_holds, beside.second, err));
-    for (size_t i = 0; i < BESIDES; i++)
-        if (beside.of_mesh[i])
-            TRY_GOTO(files_write(files, besides[i].role, beside.of_mesh[i], err));
-    if (beside.settings)
-        TRY_GOTO(files_write(files, "the settings", beside.settings, err));
-done:
-    beside_release(&beside);
-    return status;
+    TRY(mem_strdup(&files->at[SCENE_FILE].path, path, err));
+    if (strcmp(path, "-") == 0)
+        return STATUS_OK;
+    for (SceneFile file = SCENE_SECOND; file < SCENE_FILES; file++)
+        if (is_beside(emitter, settings, file))
+            TRY(name_beside(emitter, path, file, &files->at[file], err));
+    const char *second = files->at[SCENE_SECOND].path;
+    return second && emitter->check_name ? emitter->check_name(file_name(second), err) : STATUS_OK;
 }
 
-static void export_description(const char *tree_path, bool of_lines, Text *out)
-{
-    text_puts(out, "arterial tree ");
-    text_put_line(out, file_name(tree_path));
-    text_puts(out, of_lines ? ", its vessels" : ", its surface");
-}
-
-/* What the colours mean, or NULL. */
-static const char *said_of(const EmitParams *params)
+/* Appends what is drawn, of which tree, and what its colours mean. */
+static void put_description(const Emitter *emitter, const EmitParams *params, const char *tree_path,
+                            Text *out)
 {
     const Appearance *appearance = params->scene ? &params->scene->appearance : params->appearance;
-    return appearance ? appearance->said : NULL;
+    if (params->scene) {
+        picture_description(&params->scene->geometry, tree_path, out);
+    } else {
+        text_puts(out, "arterial tree ");
+        text_put_line(out, file_name(tree_path));
+        text_puts(out, emitter->of_lines ? ", its vessels" : ", its surface");
+    }
+    if (appearance && appearance->said)
+        text_printf(out, ", coloured by %s", appearance->said);
 }
 
-Status scene_files_write(const Emitter *emitter, const EmitParams *params, const char *tree_path,
-                         const char *path, bool settings, EmitReport *report, Err *err)
+static const char *name_of(const FileSlot *file)
+{
+    return file->path ? file_name(file->path) : NULL;
+}
+
+Status scene_files_put(const Emitter *emitter, const EmitParams *params, const char *tree_path,
+                       FileSlot files[], EmitReport *report, Err *err)
 {
     Text description = TEXT_INIT;
     char *templates = NULL;
-    Beside beside = {0};
     Status status;
+    EmitReport unread = {0};
+    EmitOutput to = {&files[SCENE_FILE].text, &files[SCENE_SECOND].text, report ? report : &unread,
+                     &files[SCENE_SETTINGS].text};
     TRY_GOTO(templates_folder(&templates, err));
-    TRY_GOTO(find_beside(emitter, path, settings, &beside, err));
-    if (params->scene)
-        picture_description(&params->scene->geometry, tree_path, &description);
-    else
-        export_description(tree_path, emitter->of_lines, &description);
-    if (said_of(params))
-        text_printf(&description, ", coloured by %s", said_of(params));
+    put_description(emitter, params, tree_path, &description);
     EmitParams all = *params;
     all.templates = templates;
-    all.file = strcmp(path, "-") == 0 ? "scene.pov" : file_name(path);
-    all.second_file = beside.second ? file_name(beside.second) : NULL;
-    for (size_t i = 0; i < BESIDES; i++)
-        all.beside_path[i] = beside.of_mesh[i];
-    all.settings = beside.settings ? file_name(beside.settings) : NULL;
-    all.settings_path = beside.settings;
+    all.file = strcmp(files[SCENE_FILE].path, "-") ? name_of(&files[SCENE_FILE]) : "scene.pov";
+    all.second_file = name_of(&files[SCENE_SECOND]);
+    all.settings = name_of(&files[SCENE_SETTINGS]);
     all.description = text_chars(&description);
     all.generator = GENERATOR;
-    status = emit_files(emitter, &all, path, beside.second, report, err);
+    status = emit_write(emitter, &all, &to, err);
 done:
     text_release(&description);
     free(templates);
-    beside_release(&beside);
     return status;
 }

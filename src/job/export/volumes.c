@@ -57,7 +57,7 @@ void volumes_extensions(Text *out)
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-/* The volumes, and what stands beside them. */
+/* Positions in FileSet. The first three are volumes. */
 typedef enum VolumeFile {
     FILE_VALUES,
     FILE_LABELS,
@@ -65,94 +65,68 @@ typedef enum VolumeFile {
     FILE_TREE,
     FILE_SCENE, /* of a density file */
     FILE_MANIFEST,
-    FILES
+    VOLUMES = FILE_TREE
 } VolumeFile;
 
-typedef struct Paths {
-    char *of[FILES]; /* owned; NULL: there is none */
-} Paths;
-
-static void paths_release(Paths *paths)
-{
-    for (int i = 0; i < FILES; i++)
-        free(paths->of[i]);
-}
-
-/* `output` with `suffix` in the place of the format's, or behind it. */
-static Status beside(const char *output, const VolumeFormat *format, bool behind,
-                     const char *suffix, char **out, Err *err)
+/* Names a file `output` with `suffix` in place of the format's own, or after it. */
+static Status name_beside(const char *output, const char *replaced, const char *suffix,
+                          const char *role, FileSlot *file, Err *err)
 {
     Text path = TEXT_INIT;
-    text_append(&path, output, strlen(output) - (behind ? 0 : strlen(format->suffix)));
+    file->role = role;
+    text_append(&path, output, strlen(output) - strlen(replaced));
     text_puts(&path, suffix);
-    Status status = text_take(&path, out, err);
+    Status status = text_take(&path, &file->path, err);
     text_release(&path);
     return status;
 }
 
-static Status find_paths(const VolumeOptions *options, const VolumeFormat *format,
-                         const char *output, Paths *paths, Err *err)
+Status volumes_name(const VolumeOptions *options, const VolumeFormat *format, const char *output,
+                    FileSet *files, Err *err)
 {
+    FileSlot *at = files->at;
+    const char *own = format->suffix;
     char labels[32];
-    snprintf(labels, sizeof labels, ".labels%s", format->suffix);
-    TRY(mem_strdup(&paths->of[FILE_VALUES], output, err));
+    snprintf(labels, sizeof labels, ".labels%s", own);
+    TRY(mem_strdup(&at[FILE_VALUES].path, output, err));
     if (options->labels)
-        TRY(beside(output, format, false, labels, &paths->of[FILE_LABELS], err));
+        TRY(name_beside(output, own, labels, "the labels", &at[FILE_LABELS], err));
     if (options->centreline)
-        TRY(mem_strdup(&paths->of[FILE_CENTRELINE], options->centreline, err));
+        TRY(mem_strdup(&at[FILE_CENTRELINE].path, options->centreline, err));
     if (format->is_density)
-        TRY(beside(output, format, false, ".pov", &paths->of[FILE_SCENE], err));
-    TRY(beside(output, format, false, ".csv", &paths->of[FILE_TREE], err));
-    return beside(output, format, true, ".json", &paths->of[FILE_MANIFEST], err);
+        TRY(name_beside(output, own, ".pov", "the scene", &at[FILE_SCENE], err));
+    TRY(name_beside(output, own, ".csv", "the tree beside it", &at[FILE_TREE], err));
+    return name_beside(output, "", ".json", "the manifest", &at[FILE_MANIFEST], err);
 }
 
-Status volumes_note(const VolumeOptions *options, const VolumeFormat *format, const char *output,
-                    Files *files, Err *err)
-{
-    Paths paths = {0};
-    Status status;
-    TRY_GOTO(find_paths(options, format, output, &paths, err));
-    if (paths.of[FILE_LABELS])
-        TRY_GOTO(files_write(files, "the labels", paths.of[FILE_LABELS], err));
-    if (paths.of[FILE_SCENE])
-        TRY_GOTO(files_write(files, "the scene", paths.of[FILE_SCENE], err));
-    TRY_GOTO(files_write(files, "the tree beside it", paths.of[FILE_TREE], err));
-    TRY_GOTO(files_write(files, "the manifest", paths.of[FILE_MANIFEST], err));
-done:
-    paths_release(&paths);
-    return status;
-}
+/* ---- the work -------------------------------------------------------------------------------- */
 
-/* ---- what is written ------------------------------------------------------------------------- */
-
+/* Volumes that are being made. */
 typedef struct Volumes {
     const VolumeOptions *options;
     const PictureTree *of;
     Geometry geometry;
-    size_t within;    /* segments that have both ends of thicker ones */
-    uint32_t *labels; /* of segments; owned */
+    size_t within;    /* segments that lie between both ends of thicker ones */
+    uint32_t *labels; /* per segment index; owned */
     uint32_t most_label;
     VoxelParams params;
     VoxelReport report;
-    VolumeStream streams[3]; /* by VolumeFile */
-    Paths paths;
-    OutFile files[FILES];
+    VolumeStream streams[VOLUMES];
 } Volumes;
 
-static Status take_geometry(Volumes *made, Err *err)
+static Status take_geometry(Volumes *made, const Talk *talk, Err *err)
 {
     StageReport report;
     const GeometryParams rounded = {.model = model_with(MODEL_VOXELS)};
     TRY(stage_geometry(&made->of->tree, &rounded, &made->geometry, &report, err));
     if (report.dropped)
-        fprintf(stderr, "corcast: %zu segments have no length or no radius and are left out\n",
-                report.dropped);
+        talk_warn(talk, "%zu segments have no length or no radius and are left out",
+                  report.dropped);
     made->within = made->geometry.drawn;
     for (size_t i = 0; i < made->geometry.n_primitives; i++)
         made->within -= made->geometry.primitives[i].kind == PRIMITIVE_CYLINDER;
     if (made->within)
-        fprintf(stderr, "corcast: %zu segments have both ends of thicker ones and no voxels\n",
-                made->within);
+        talk_warn(talk, "%zu segments have both ends of thicker ones and no voxels", made->within);
     return STATUS_OK;
 }
 
@@ -192,95 +166,76 @@ static Status make_grid(Volumes *made, Err *err)
     return voxelgrid_make(&made->geometry, step, &made->params.grid, err);
 }
 
-static Status choose_formats(Volumes *made, const VolumeFormat *format, Err *err)
+/* Sets what the volumes hold, and checks that their formats can hold it. */
+static Status choose_formats(Volumes *made, const VolumeFormat *format, const FileSet *files,
+                             Err *err)
 {
     const char *centreline = made->options->centreline;
-    const SampleType types[] = {(SampleType)made->options->depth,
-                                made->most_label > UINT16_MAX ? SAMPLE_32 : SAMPLE_16, SAMPLE_8};
-    for (int i = 0; i < 3; i++)
-        made->streams[i] = (VolumeStream){.format = format, .type = types[i]};
-    if (centreline && !(made->streams[2].format = volume_format_find(centreline)))
+    VolumeStream *streams = made->streams;
+    VoxelParams *params = &made->params;
+    const SampleType types[VOLUMES] = {(SampleType)made->options->depth,
+                                       made->most_label > UINT16_MAX ? SAMPLE_32 : SAMPLE_16,
+                                       SAMPLE_8};
+    for (int i = 0; i < VOLUMES; i++)
+        streams[i] = (VolumeStream){.format = format, .type = types[i]};
+    if (centreline && !(streams[FILE_CENTRELINE].format = volume_format_find(centreline)))
         return err_set(err, STATUS_USAGE,
                        "--centreline: '%s' does not end as a volume does, in .nii.gz", centreline);
-    for (int i = 0; i < 3; i++)
-        if (made->paths.of[i])
-            TRY(volume_check(made->streams[i].format, &made->params.grid, types[i],
-                             i == FILE_VALUES, err));
-    made->params.values = &made->streams[0];
-    made->params.label = made->labels ? &made->streams[1] : NULL;
-    made->params.labels = made->labels;
-    made->params.centreline = centreline ? &made->streams[2] : NULL;
+    for (int i = 0; i < VOLUMES; i++)
+        if (files->at[i].path)
+            TRY(volume_check(streams[i].format, &params->grid, types[i], i == FILE_VALUES, err));
+    params->values = &streams[FILE_VALUES];
+    params->label = made->labels ? &streams[FILE_LABELS] : NULL;
+    params->labels = made->labels;
+    params->centreline = centreline ? &streams[FILE_CENTRELINE] : NULL;
     return STATUS_OK;
 }
 
-/* Says before the work how much of it there is, and whether there is room for it. */
-static Status say_estimate(const Volumes *made, bool quiet, Err *err)
+static WorkCost estimate_volumes(const void *job, const Talk *talk)
 {
-    VoxelEstimate estimate = voxels_estimate(&made->geometry, &made->params);
+    const Volumes *made = job;
+    const VoxelEstimate estimate = voxels_estimate(&made->geometry, &made->params);
     const int64_t *n = made->params.grid.n;
     char bytes[BYTES_TEXT_SIZE], memory[BYTES_TEXT_SIZE];
-    if (!quiet)
-        fprintf(stderr,
-                "corcast: %lld x %lld x %lld voxels, which take about %.*f s, %s of memory and %s "
-                "of disk\n",
-                (long long)n[0], (long long)n[1], (long long)n[2], estimate.seconds < 10,
-                estimate.seconds, bytes_text(estimate.memory, memory),
-                bytes_text(estimate.bytes, bytes));
-    TRY(mem_check(estimate.memory, "the volume", err));
-    return outfile_check_room(&made->files[FILE_VALUES], estimate.bytes, err);
+    talk_note(
+        talk, "%lld x %lld x %lld voxels, which take about %.*f s, %s of memory and %s of disk",
+        (long long)n[0], (long long)n[1], (long long)n[2], estimate.seconds < 10, estimate.seconds,
+        bytes_text(estimate.memory, memory), bytes_text(estimate.bytes, bytes));
+    return (WorkCost){estimate.memory, estimate.bytes};
 }
 
-/* Vessels that are thin for the samples weigh more than they should. */
-static void say_result(const Volumes *made, bool quiet)
+static Status fill_streams(void *job, Progress *progress, Err *err)
+{
+    Volumes *made = job;
+    made->params.progress = progress_report;
+    made->params.context = progress;
+    for (int i = 0; i < VOLUMES; i++)
+        if (made->streams[i].to)
+            TRY(volume_begin(&made->streams[i], &made->params.grid, i == FILE_VALUES, GENERATOR,
+                             err));
+    return voxels_write(&made->geometry, &made->params, &made->report, err);
+}
+
+/* Reports the result. Vessels that are thin for the samples weigh more than they should. */
+static void say_result(const Volumes *made, const Talk *talk)
 {
     const VoxelReport *report = &made->report;
     double more = 100 * (report->volume_mm3 / report->union_mm3 - 1);
     if (fabs(more) > 0.1)
-        fprintf(stderr,
-                "corcast: rounded to %s bits, voxels hold %.3g %% %s than the vessels; take a "
-                "--depth of more\n",
-                depths[made->options->depth], fabs(more), more > 0 ? "more" : "less");
+        talk_warn(talk,
+                  "rounded to %s bits, voxels hold %.3g %% %s than the vessels; take a --depth of "
+                  "more",
+                  depths[made->options->depth], fabs(more), more > 0 ? "more" : "less");
     if (report->claimed)
-        fprintf(stderr,
-                "corcast: %zu labels fill the most of no voxel, and each has one that it meets\n",
-                report->claimed);
-    if (!quiet)
-        fprintf(stderr, "corcast: %lld voxels hold vessels, %.6g mm^3\n", (long long)report->filled,
-                report->volume_mm3);
+        talk_warn(talk, "%zu labels fill the most of no voxel, and each has one that it meets",
+                  report->claimed);
+    talk_note(talk, "%lld voxels hold vessels, %.6g mm^3", (long long)report->filled,
+              report->volume_mm3);
 }
 
-static Status begin_streams(Volumes *made, Err *err)
+static json_t *json_vector(Vec3 v)
 {
-    for (int i = 0; i < FILES; i++)
-        if (made->paths.of[i])
-            TRY(outfile_open(&made->files[i], made->paths.of[i], err));
-    for (int i = 0; i < 3; i++) {
-        made->streams[i].to = made->files[i].stream;
-        made->streams[i].path = made->paths.of[i];
-    }
-    return STATUS_OK;
-}
-
-static Status fill_streams(Volumes *made, const Common *common, Err *err)
-{
-    Progress progress;
-    made->params.threads = common->threads;
-    made->params.progress = progress_report;
-    made->params.context = &progress;
-    for (int i = 0; i < 3; i++)
-        if (made->streams[i].to)
-            TRY(volume_begin(&made->streams[i], &made->params.grid, i == FILE_VALUES, GENERATOR,
-                             err));
-    progress_start(&progress, "filling voxels", common->talk);
-    Status status = voxels_write(&made->geometry, &made->params, &made->report, err);
-    progress_end(&progress);
-    return status;
-}
-
-static json_t *triple(double x, double y, double z)
-{
-    json_t *list = json_with_item(json_array(), json_number(x));
-    return json_with_item(json_with_item(list, json_number(y)), json_number(z));
+    return json_numbers((const double[]){v.x, v.y, v.z}, 3);
 }
 
 static json_t *manifest(const Volumes *made, const char *command)
@@ -295,8 +250,8 @@ static json_t *manifest(const Volumes *made, const char *command)
         {"unit", json_text("mm")},
         {"voxels", json_pack("[I,I,I]", (json_int_t)grid->n[0], (json_int_t)grid->n[1],
                              (json_int_t)grid->n[2])},
-        {"voxel_mm", triple(grid->step.x, grid->step.y, grid->step.z)},
-        {"first_voxel_mm", triple(first.x, first.y, first.z)},
+        {"voxel_mm", json_vector(grid->step)},
+        {"first_voxel_mm", json_vector(first)},
         {"full", json_number(sample_full(made->streams[0].type))},
         {"segments", json_count(made->geometry.drawn)},
         {"segments_within_others", json_count(made->within)},
@@ -309,103 +264,80 @@ static json_t *manifest(const Volumes *made, const char *command)
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-/* Appends a scene in which the volume glows. */
-static Status put_scene(const Volumes *made, const char *command, Text *out, Err *err)
+/* Returns the box of the volume for a scene. */
+static DensityBox density_box(const Volumes *made)
 {
     const VoxelGrid *grid = &made->params.grid;
-    Vec3 low = vec3_add_scaled(grid->first, grid->step, -0.5), size = grid->step;
-    DensityBox density = {.origin = grid->origin};
+    const Vec3 low = vec3_add_scaled(grid->first, grid->step, -0.5);
+    const Vec3 size = vec3((double)grid->n[0] * grid->step.x, (double)grid->n[1] * grid->step.y,
+                           (double)grid->n[2] * grid->step.z);
+    DensityBox density = {.origin = grid->origin, .box = {low, vec3_add(low, size)}};
+    for (int axis = 0; axis < 3; axis++)
+        density.n[axis] = grid->n[axis];
+    for (size_t i = 0; i < made->geometry.n_primitives; i++)
+        density.thickest_mm = fmax(density.thickest_mm, 2 * made->geometry.primitives[i].radius_mm);
+    return density;
+}
+
+/* Appends a scene in which the volume glows. */
+static Status put_scene(const Volumes *made, const char *command, FileSlot files[], Err *err)
+{
+    const DensityBox density = density_box(made);
     Text description = TEXT_INIT;
     char *templates = NULL;
     Status status;
-    for (int axis = 0; axis < 3; axis++)
-        density.n[axis] = grid->n[axis];
-    size =
-        vec3((double)grid->n[0] * size.x, (double)grid->n[1] * size.y, (double)grid->n[2] * size.z);
-    density.box = (Box){low, vec3_add(low, size)};
-    for (size_t i = 0; i < made->geometry.n_primitives; i++)
-        density.thickest_mm = fmax(density.thickest_mm, 2 * made->geometry.primitives[i].radius_mm);
     TRY_GOTO(templates_folder(&templates, err));
     picture_description(&made->geometry, made->of->path, &description);
     const EmitParams params = {.templates = templates,
-                               .file = file_name(made->paths.of[FILE_SCENE]),
-                               .second_file = file_name(made->paths.of[FILE_VALUES]),
+                               .file = file_name(files[FILE_SCENE].path),
+                               .second_file = file_name(files[FILE_VALUES].path),
                                .description = text_chars(&description),
                                .generator = GENERATOR,
                                .command = command};
-    status = emit_density(&params, &density, out, err);
+    status = emit_density(&params, &density, &files[FILE_SCENE].text, err);
 done:
     text_release(&description);
     free(templates);
     return status;
 }
 
-/* The tree, the manifest and the scene. */
-static Status write_beside(Volumes *made, const Parsed *parsed, Err *err)
+/* The volumes have been written while they were filled. */
+static Status put_beside(const void *job, const char *command, FileSlot files[], Err *err)
 {
-    Text said[FILES];
-    char *line = NULL;
-    Status status;
-    for (int i = 0; i < FILES; i++)
-        said[i] = TEXT_TO(made->files[i].stream);
-    TRY_GOTO(command_line_text(parsed, &line, err));
-    TRY_GOTO(tree_write_text(&made->of->tree, made->paths.of[FILE_TREE], &said[FILE_TREE], err));
-    if (made->paths.of[FILE_SCENE])
-        TRY_GOTO(put_scene(made, line, &said[FILE_SCENE], err));
-    text_json(&said[FILE_MANIFEST], manifest(made, line), 2);
-    text_puts(&said[FILE_MANIFEST], "\n");
-    for (int i = FILE_TREE; i < FILES; i++)
-        if (said[i].stream)
-            TRY_GOTO(text_flush(&said[i], err));
-done:
-    free(line);
-    for (int i = 0; i < FILES; i++)
-        text_release(&said[i]);
-    return status;
-}
-
-static Status make(Volumes *made, const VolumeFormat *format, const char *output,
-                   const Parsed *parsed, Err *err)
-{
-    const Common *common = &parsed->common;
-    TRY(find_paths(made->options, format, output, &made->paths, err));
-    TRY(take_geometry(made, err));
-    TRY(label_segments(made, err));
-    TRY(make_grid(made, err));
-    TRY(choose_formats(made, format, err));
-    TRY(begin_streams(made, err));
-    TRY(say_estimate(made, common->quiet, err));
-    TRY(fill_streams(made, common, err));
-    TRY(write_beside(made, parsed, err));
-    say_result(made, common->quiet);
+    const Volumes *made = job;
+    TRY(tree_write_text(&made->of->tree, files[FILE_TREE].path, &files[FILE_TREE].text, err));
+    if (files[FILE_SCENE].path)
+        TRY(put_scene(made, command, files, err));
+    work_put_json(&files[FILE_MANIFEST], manifest(made, command));
     return STATUS_OK;
 }
 
-/* Moves the files that there are to the front: how many. */
-static size_t close_ranks(OutFile files[FILES])
+static Status prepare(Volumes *made, const VolumeFormat *format, FileSet *files, const Talk *talk,
+                      Err *err)
 {
-    size_t n = 0;
-    for (int i = 0; i < FILES; i++)
-        if (files[i].stream) {
-            OutFile file = files[i];
-            files[i] = (OutFile){0};
-            files[n++] = file;
-        }
-    return n;
+    TRY(take_geometry(made, talk, err));
+    TRY(label_segments(made, err));
+    TRY(make_grid(made, err));
+    TRY(choose_formats(made, format, files, err));
+    TRY(fileset_open(files, err));
+    for (int i = 0; i < VOLUMES; i++)
+        made->streams[i].to = files->at[i].stream;
+    return STATUS_OK;
 }
 
 Status volumes_write(const VolumeOptions *options, const VolumeFormat *format,
-                     const PictureTree *of, const char *output, const Parsed *parsed, Err *err)
+                     const PictureTree *of, FileSet *files, const Parsed *parsed, Err *err)
 {
-    Volumes made = {.options = options, .of = of};
+    static const Work work = {"filling voxels", "the volume", estimate_volumes, fill_streams};
+    const Talk *talk = parsed->common.talk;
+    Volumes made = {.options = options, .of = of, .params.threads = parsed->common.threads};
     Status status;
-    TRY_GOTO(make(&made, format, output, parsed, err));
-    TRY_GOTO(outfiles_commit(made.files, close_ranks(made.files), err));
+    TRY_GOTO(prepare(&made, format, files, talk, err));
+    TRY_GOTO(work_make(&work, &made, files, talk, err));
+    TRY_GOTO(work_write(files, put_beside, &made, parsed, err));
+    say_result(&made, talk);
 done:
-    for (int i = 0; i < FILES; i++)
-        outfile_discard(&made.files[i]);
     geometry_release(&made.geometry);
     free(made.labels);
-    paths_release(&made.paths);
     return status;
 }

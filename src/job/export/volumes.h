@@ -1,10 +1,9 @@
-/* The vessels of a tree as volumes, for the command that writes them: the options of `export` about
- * voxels. */
+/* The vessels of a tree as volumes of voxels, and the options about them. */
 #ifndef CORCAST_JOB_EXPORT_VOLUMES_H
 #define CORCAST_JOB_EXPORT_VOLUMES_H
 
-#include "base/base.h"
 #include "job/picture/picture.h"
+#include "job/work.h"
 #include "options/options.h"
 #include "voxel/voxel.h"
 
@@ -19,16 +18,19 @@ extern const OptionTable volume_table; /* sets a VolumeOptions */
 /* Appends the extensions of volumes: ".nii.gz, .nii". */
 void volumes_extensions(Text *out);
 
-/* Takes note of the files beside `output`. */
-MUST_CHECK Status volumes_note(const VolumeOptions *options, const VolumeFormat *format,
-                               const char *output, Files *files, Err *err);
+/* Sets the paths and roles of the files that are written for `output`: volumes, and beside them the
+ * tree as CSV, a manifest and, of a density file, a scene. `files` is zeroed, except for the taker;
+ * fileset_release releases it, also after an error. Errors: STATUS_MEMORY. */
+MUST_CHECK Status volumes_name(const VolumeOptions *options, const VolumeFormat *format,
+                               const char *output, FileSet *files, Err *err);
 
-/* Writes the volumes, and beside them the tree as CSV and a manifest: all take their names, or none
- * does. Says on standard error, unless quiet, how much work it is, and what is to be known of them.
- * STATUS_USAGE when a format cannot hold what is asked, STATUS_INFEASIBLE, STATUS_IO and
- * STATUS_MEMORY when that is too much, before the work; else as stage_geometry and voxels_write. */
+/* Writes the volumes and what is beside them. Reports the expected cost, and the result.
+ *
+ * files   volumes_name has named them.
+ * Errors  STATUS_USAGE if a format cannot hold what is wanted; those of stage_geometry,
+ *         voxelgrid_make, volume_check, work_make, voxels_write and work_write. */
 MUST_CHECK Status volumes_write(const VolumeOptions *options, const VolumeFormat *format,
-                                const PictureTree *of, const char *output, const Parsed *parsed,
+                                const PictureTree *of, FileSet *files, const Parsed *parsed,
                                 Err *err);
 
 #endif

@@ -140,7 +140,7 @@ static Status add_columns(Webpage *page, const TreeMeta *said, Err *err)
     return STATUS_OK;
 }
 
-static Status add_fields(const Coloring *coloring, bool quiet, Webpage *page, Err *err)
+static Status add_fields(const Coloring *coloring, const Talk *talk, Webpage *page, Err *err)
 {
     const TreeMeta said = blood_said(&coloring->blood);
     Text lacking = TEXT_INIT;
@@ -149,10 +149,9 @@ static Status add_fields(const Coloring *coloring, bool quiet, Webpage *page, Er
     TRY_GOTO(add_derived(page, &said, &lacking, err));
     TRY_GOTO(add_columns(page, &said, err));
     TRY_GOTO(text_check(&lacking, err));
-    if (!quiet && *text_chars(&lacking))
-        fprintf(stderr,
-                "corcast: %s are left out: neither the tree nor an option says what they need\n",
-                text_chars(&lacking));
+    if (*text_chars(&lacking))
+        talk_note(talk, "%s are left out: neither the tree nor an option says what they need",
+                  text_chars(&lacking));
 done:
     text_release(&lacking);
     if (status == STATUS_INPUT)
@@ -278,37 +277,23 @@ static Status find_viewer(const char *templates, char **path, Err *err)
                    "esbuild (`make deps FOR=page`) and run `make` again");
 }
 
-static Status put_file(const PageParams *params, const char *output, Err *err)
-{
-    OutFile file;
-    TRY(outfile_open(&file, output, err));
-    Text text = TEXT_TO(file.stream);
-    Status status = page_put(params, &text, err);
-    if (status == STATUS_OK)
-        status = text_flush(&text, err);
-    text_release(&text);
-    if (status == STATUS_IO)
-        err_prefix(err, "%s: ", output);
-    if (status == STATUS_OK)
-        return outfile_commit(&file, err);
-    outfile_discard(&file);
-    return status;
-}
+/* What a page is made of, besides its fields and maps. */
+typedef struct PageFrame {
+    const Webpage *page;
+    const Coloring *coloring;
+    const char *look;
+    char *templates, *viewer, *name; /* owned */
+} PageFrame;
 
-static Status write_page(const Coloring *coloring, const char *look, const Webpage *page,
-                         const char *output, const Parsed *parsed, Err *err)
+static Status put_page(const void *job, const char *command, FileSlot files[], Err *err)
 {
-    char *templates = NULL, *viewer = NULL, *name = NULL, *command = NULL;
+    const PageFrame *frame = job;
+    const Webpage *page = frame->page;
     const Tree *tree = &page->of->tree;
-    Status status;
-    TRY_GOTO(templates_folder(&templates, err));
-    TRY_GOTO(find_viewer(templates, &viewer, err));
-    TRY_GOTO(shown_name(page->of->path, &name, err));
-    TRY_GOTO(command_line_text(parsed, &command, err));
     const Box box = tree_bounds(tree);
-    const PageParams params = {.templates = templates,
-                               .viewer = viewer,
-                               .title = name,
+    const PageParams params = {.templates = frame->templates,
+                               .viewer = frame->viewer,
+                               .title = frame->name,
                                .generator = GENERATOR,
                                .command = command,
                                .tree = tree,
@@ -318,32 +303,41 @@ static Status write_page(const Coloring *coloring, const char *look, const Webpa
                                .maps = page->maps,
                                .n_maps = page->n_maps,
                                .look = &page->look,
-                               .look_name = look,
+                               .look_name = frame->look,
                                .scale = page->appearance.colors ? &page->appearance.scale : NULL,
-                               .map = file_name(coloring->colormap)};
-    status = put_file(&params, output, err);
+                               .map = file_name(frame->coloring->colormap)};
+    return page_put(&params, &files[0].text, err);
+}
+
+static Status write_page(const Coloring *coloring, const char *look, const Webpage *page,
+                         FileSet *files, const Parsed *parsed, Err *err)
+{
+    PageFrame frame = {page, coloring, look, NULL, NULL, NULL};
+    Status status;
+    TRY_GOTO(templates_folder(&frame.templates, err));
+    TRY_GOTO(find_viewer(frame.templates, &frame.viewer, err));
+    TRY_GOTO(shown_name(page->of->path, &frame.name, err));
+    status = work_write(files, put_page, &frame, parsed, err);
 done:
-    free(templates);
-    free(viewer);
-    free(name);
-    free(command);
+    free(frame.templates);
+    free(frame.viewer);
+    free(frame.name);
     return status;
 }
 
 Status webpage_write(const Coloring *coloring, const char *look, const PictureTree *of,
-                     const char *output, const Parsed *parsed, Err *err)
+                     FileSet *files, const Parsed *parsed, Err *err)
 {
-    const bool quiet = parsed->common.quiet;
     const ColoredTree tree = picture_colored_tree(of);
     Webpage page = {.of = of};
     Status status;
     TRY_GOTO(check_count(of, err));
     TRY_GOTO(coloring_read_look(look, &page.look, err));
     TRY_GOTO(coloring_appearance(coloring, &tree, &page.look, &page.appearance, err));
-    TRY_GOTO(add_fields(coloring, quiet, &page, err));
+    TRY_GOTO(add_fields(coloring, parsed->common.talk, &page, err));
     TRY_GOTO(check_bytes(&page, err));
     TRY_GOTO(read_maps(coloring->colormap, &page, err));
-    status = write_page(coloring, look, &page, output, parsed, err);
+    status = write_page(coloring, look, &page, files, parsed, err);
 done:
     webpage_release(&page);
     return status;

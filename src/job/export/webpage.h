@@ -2,21 +2,23 @@
 #ifndef CORCAST_JOB_EXPORT_WEBPAGE_H
 #define CORCAST_JOB_EXPORT_WEBPAGE_H
 
-#include "base/base.h"
 #include "job/picture/coloring.h"
 #include "job/picture/picture.h"
+#include "job/work.h"
 #include "options/options.h"
 
 /* A page holds no more segments than this, which make a file of about 17 MB, and no more bytes of
  * values. */
 enum { WEBPAGE_MOST_SEGMENTS = 200000, WEBPAGE_MOST_BYTES = 100000000 };
 
-/* Writes the page about a tree to `output`: with all fields that can be derived, all columns of its
- * file and all colour maps, opened with what the coloring asks for. Says on standard error, unless
- * quiet, which fields are left out. STATUS_INFEASIBLE when there are too many segments or
- * moments, STATUS_TOOL when the viewer was not built; errors as coloring_appearance and page_put
- * have them. */
+/* Writes a page about a tree, with all fields that can be derived, all columns of its file and all
+ * colour maps. The page opens with the colours that `coloring` selects. Reports which fields are
+ * left out.
+ *
+ * files   the first one has the path.
+ * Errors  STATUS_INFEASIBLE if there are too many segments or moments, STATUS_TOOL if the viewer
+ *         was not built; those of coloring_appearance, page_put and work_write. */
 MUST_CHECK Status webpage_write(const Coloring *coloring, const char *look, const PictureTree *of,
-                                const char *output, const Parsed *parsed, Err *err);
+                                FileSet *files, const Parsed *parsed, Err *err);
 
 #endif

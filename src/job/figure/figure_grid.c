@@ -1,6 +1,6 @@
 /* The grid: columns of one width, rows of one height. Places are whole pixels of the page, so that
  * no picture is resampled. */
-#include "job/figure/figure_making.h"
+#include "job/figure/figure.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* An inset is a picture of its own, drawn by the camera of its panel's, cropped; two lines lead
  * from the part that it shows to it. */
-#include "job/figure/figure_making.h"
+#include "job/figure/figure.h"
 
 #include <math.h>
 #include <string.h>

@@ -150,20 +150,6 @@ static Status unknown_key(const char *name, const char *section, const Parsed *a
     return STATUS_USAGE;
 }
 
-/* The command of this name that writes a tree, or NULL. */
-static const Command *find_maker(FindCommand *find_command, const char *name)
-{
-    const Command *command = find_command(name);
-    for (int t = 0; command && t < MAX_TABLES && command->tables[t].table; t++) {
-        const OptionTable *table = command->tables[t].table;
-        for (size_t i = 0; i < table->n; i++)
-            if (strcmp(table->options[i].name, "output") == 0 && table->options[i].argument &&
-                strcmp(table->options[i].argument, "T.swc") == 0)
-                return command;
-    }
-    return NULL;
-}
-
 /* The sentence is about keys of a file, not options. */
 static Status read_value(Setting *setting, const char *value, bool twice, Err *err)
 {
@@ -176,7 +162,7 @@ static Status read_value(Setting *setting, const char *value, bool twice, Err *e
 
 /* A panel's own tree takes precedence over that of [panels], and is one of two: a file, or what a
  * command makes. */
-static Status take_tree(Section *section, const Command *maker, const char *value, Err *err)
+static Status take_tree(Section *section, const TreeMaker *maker, const char *value, Err *err)
 {
     PanelOptions *panel = section->own.options;
     Setting *tree = find_key(&section->own, is_own, "tree");
@@ -185,6 +171,8 @@ static Status take_tree(Section *section, const Command *maker, const char *valu
     section->maker = maker;
     section->arguments = maker ? value : NULL;
     section->made = maker != NULL;
+    snprintf(section->tree_name, sizeof section->tree_name, "the tree of %.20s",
+             maker ? maker->command->name : "");
     panel->tree = maker ? NULL : value;
     tree->typed = !maker;
     return STATUS_OK;
@@ -193,7 +181,7 @@ static Status take_tree(Section *section, const Command *maker, const char *valu
 static Status take_key(Section *section, const char *name, const char *value, Err *err)
 {
     const bool panel = section->kind == SECTION_PANEL;
-    const Command *maker = panel ? find_maker(section->render.find_command, name) : NULL;
+    const TreeMaker *maker = panel ? tree_maker_find(name) : NULL;
     if (maker || (panel && strcmp(name, "tree") == 0))
         return take_tree(section, maker, value, err);
     Setting *setting = find_key(&section->own, is_own, name);
@@ -399,7 +387,7 @@ void figureplan_put(const FigurePlan *plan, const Parsed *figure, Text *text)
         const Section *section = plan->sections[i];
         text_printf(text, "\n[%s %s]\n", kinds[section->kind].name, section->name);
         if (section->maker)
-            text_printf(text, "%s = %s\n", section->maker->name, section->arguments);
+            text_printf(text, "%s = %s\n", section->maker->command->name, section->arguments);
         options_put_keys(&section->own, is_own, text);
         if (section->kind == SECTION_PANEL)
             options_put_keys(&section->render, is_of_panels, text);

@@ -3,6 +3,7 @@
 #define CORCAST_JOB_FIGURE_FIGURE_PLAN_H
 
 #include "figure/figure.h"
+#include "job/tree/makers.h"
 #include "options/options.h"
 
 /* What a panel is beside a picture of `render`. */
@@ -34,12 +35,13 @@ typedef enum SectionKind { SECTION_PANEL, SECTION_INSET, SECTION_TEXT } SectionK
 
 typedef struct Section {
     SectionKind kind;
-    const char *name;      /* borrowed from the plan's text */
-    Parsed own;            /* of PanelOptions, InsetOptions or TextOptions */
-    Parsed render;         /* of a panel: those of `render` */
-    const Command *maker;  /* of a panel's tree; NULL: it is a file */
-    const char *arguments; /* of the maker; borrowed from the plan's text */
-    bool made;             /* the panel itself says by what, not [panels] */
+    const char *name;       /* borrowed from the plan's text */
+    Parsed own;             /* of PanelOptions, InsetOptions or TextOptions */
+    Parsed render;          /* of a panel: those of `render` */
+    const TreeMaker *maker; /* makes the panel's tree; NULL: the tree is a file */
+    const char *arguments;  /* of the maker; borrowed from the plan's text */
+    char tree_name[40];     /* "the tree of grow"; meaningless without a maker */
+    bool made;              /* the panel itself says by what, not [panels] */
 } Section;
 
 typedef struct FigurePlan {

@@ -3,6 +3,7 @@
  * memory, to files or to a page. */
 #include "job/picture/render.h"
 
+#include "job/job.h"
 #include "job/picture/line_drawing.h"
 #include "job/picture/render_bands.h"
 #include "options/output.h"
@@ -311,20 +312,20 @@ static Status note_files(Rendering *r, Err *err)
     return STATUS_OK;
 }
 
-/* Prints a command for each tile, or for each picture of the animation. */
-static Status print_commands(const Rendering *r, Err *err)
+/* Makes a command for each tile, or for each picture of the animation. */
+static Status put_commands(const Rendering *r, Err *err)
 {
     const ShardOptions *options = &r->options->shard;
     const int tiles = options->tiles;
-    return shard_print_commands(options, r->parsed, r->form.path, tiles ? 1 : r->animation.first,
-                                tiles ? tiles : r->animation.last, err);
+    return shard_put_commands(options, r->parsed, r->form.path, tiles ? 1 : r->animation.first,
+                              tiles ? tiles : r->animation.last, err);
 }
 
 static Status write_pictures(Rendering *r, Err *err)
 {
     TRY(note_files(r, err));
     if (r->options->shard.commands)
-        return print_commands(r, err);
+        return put_commands(r, err);
     TRY(rendering_describe(r, err));
     if (r->options->ink_mm > 0)
         return line_drawing_write(&r->scene, r->options->ink_mm, r->params.threads, &r->form, err);
@@ -333,7 +334,7 @@ static Status write_pictures(Rendering *r, Err *err)
     return write_report(r, err);
 }
 
-Status render_run(RenderOptions *options, Parsed *parsed, Err *err)
+Status render_run(void *options, Parsed *parsed, Err *err)
 {
     Rendering r;
     TRY(rendering_open(options, parsed, NULL, &r, err));
@@ -341,3 +342,25 @@ Status render_run(RenderOptions *options, Parsed *parsed, Err *err)
     rendering_close(&r);
     return status;
 }
+
+const Command command_render = {
+    .name = "render",
+    .summary = "render a tree with the native renderer",
+    .operands = "T.swc -o P.png",
+    .examples = "  corcast render tree.swc -o tree.png\n"
+                "  corcast render tree.swc --model isosurface --shadows on -o tree.ppm\n"
+                "  corcast render tree.swc --planes depth,normal,id -o tree.png\n"
+                "  corcast render tree.swc --turntable 120 -o turn%03d.png\n"
+                "  corcast render tree.swc --color-by pulse.csv --frames all -o f%04d.png\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .reads_tree = true,
+    .size = sizeof(RenderOptions),
+    .set_defaults = render_set_defaults,
+    .tables = {{&render_table, 0},
+               {&shard_table, offsetof(RenderOptions, shard)},
+               {&annotation_table, offsetof(RenderOptions, annotation)},
+               PICTURE_TABLES(RenderOptions, picture),
+               {&press_table, offsetof(RenderOptions, press)}},
+};

@@ -35,8 +35,9 @@ void render_release(RenderResult *result);
 
 /* Draws all pictures that the options ask for and writes each band before it draws the next, so
  * that a picture needs the memory of one band. With --json writes a report. All errors of the user
- * are found before the first ray. Errors: as render_make; STATUS_IO. */
-MUST_CHECK Status render_run(RenderOptions *options, Parsed *parsed, Err *err);
+ * are found before the first ray. `options` are the
+ * RenderOptions of `parsed`. Errors: as render_make; STATUS_IO. */
+MUST_CHECK Status render_run(void *options, Parsed *parsed, Err *err);
 
 /* ---- a scene that is drawn several times ---------------------------------------------------- */
 

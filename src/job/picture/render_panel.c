@@ -70,13 +70,9 @@ Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
     panel->in_lines = options->ink_mm > 0;
     if (panel->n_insets > 0 && options->picture.projection == PROJECTION_PERSPECTIVE)
         return err_set(err, STATUS_USAGE, "an inset is a part of an orthographic picture");
-    const bool quiet = parsed->common.quiet;
-    parsed->common.quiet = quiet || panel->made_tree;
-    Status status = rendering_open(options, parsed, panel->fonts, &r, err);
-    parsed->common.quiet = quiet;
-    TRY(status);
+    TRY(rendering_open(options, parsed, panel->fonts, &r, err));
     r.name = panel->name;
-    status = draw_views(&r, panel, err);
+    Status status = draw_views(&r, panel, err);
     panel->scene = r.scene;
     panel->report = r.report;
     panel->annotation = options->annotation;

@@ -21,11 +21,10 @@ typedef struct Panel {
     const FigureFonts *fonts; /* of the page; borrowed */
     PanelInset *insets;       /* borrowed */
     size_t n_insets;
-    bool made_tree;  /* the tree was made by a command: nothing is said about how it was read */
-    bool in_lines;   /* result: --ink was given */
-    Picture picture; /* result, of 8 bits, unless it is in lines; owned */
-    Strokes strokes; /* result, if it is in lines; owned */
-    Scene scene;     /* result; owned */
+    bool in_lines;         /* result: --ink was given */
+    Picture picture;       /* result, of 8 bits, unless it is in lines; owned */
+    Strokes strokes;       /* result, if it is in lines; owned */
+    Scene scene;           /* result; owned */
     PictureReport report;  /* result: what the scene has lost; the caller says it */
     Annotation annotation; /* result: legend, scale bar and letter, which the caller draws */
 } Panel;

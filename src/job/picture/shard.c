@@ -1,9 +1,9 @@
-/* Tiles are whole rows: a renderer holds no more of a picture than a band of rows anyway, and rows
- * that are drawn by themselves have the bytes that they have in the whole picture [render.h], so
- * that nothing is asked of a tile but where it begins. Tiles begin where bands do.
+/* A tile is a range of whole rows, because a renderer has only a band of rows in memory anyway.
+ * Rows that are drawn alone have the same bytes as in the whole picture [render.h]. Tiles begin
+ * where bands begin.
  *
- * What a file is right for is decided by one text, its note, which holds its place and the hash:
- * --resume makes the note that the file should have and compares. */
+ * A file is valid if its note is the expected text, which states the rows and the hash: --resume
+ * makes the note that the file should have, and compares. */
 #include "job/picture/shard.h"
 
 #include "figure/figure.h"
@@ -86,7 +86,7 @@ Status shard_check(const ShardOptions *options, const FramesForm *form, const Pa
     return STATUS_OK;
 }
 
-/* Where tile `number`, counted from 0, begins. */
+/* Returns the first row of tile `number`, counted from 0. */
 static int tile_begin(int number, int count, int height)
 {
     int row = (int)((long long)number * most_tiles(height) / count) * RENDER_BAND_STEP;
@@ -122,7 +122,7 @@ Status shard_of_tile(const char *tile, int height, Shard *shard, Err *err)
     return STATUS_OK;
 }
 
-/* ---- what it was made from ------------------------------------------------------------------- */
+/* ---- the hash ------------------------------------------------------------------------------- */
 
 /* Adds the bytes of the fonts, whose letters are pixels of the picture. */
 static Status hash_fonts(Hash *hash, Err *err)
@@ -164,7 +164,7 @@ void shard_put(const Shard *shard, Text *text)
                 shard->kernels, shard->made_from.hex);
 }
 
-/* What is read is written again and compared, so that nothing but a note is one. */
+/* The rows are computed from the other numbers, and must equal those of the note. */
 bool shard_parse(const char *note, Shard *shard)
 {
     Shard made = {0};
@@ -181,7 +181,7 @@ bool shard_parse(const char *note, Shard *shard)
     return made.rows > 0 && first == made.first && last == made.first + made.rows - 1;
 }
 
-/* ---- what is there already ------------------------------------------------------------------- */
+/* ---- existing files -------------------------------------------------------------------------- */
 
 static Status read_all(ImageReader *reader, Err *err)
 {
@@ -195,7 +195,7 @@ static Status read_all(ImageReader *reader, Err *err)
     return status;
 }
 
-/* A file that is no picture, or broken, is as good as none. */
+/* A file that is broken, or not a picture, is treated like a missing one. */
 Status shard_is_there(const char *path, const Shard *shard, bool *there, Err *err)
 {
     ImageReader *reader = NULL;
@@ -217,7 +217,7 @@ Status shard_is_there(const char *path, const Shard *shard, bool *there, Err *er
 
 /* ---- commands -------------------------------------------------------------------------------- */
 
-/* P.tile-07.png of P.png, in *path (owned). */
+/* Sets *path to the file of a tile: P.tile-07.png of P.png (owned). */
 static Status tile_path(const char *output, int number, int count, char **path, Err *err)
 {
     char suffix[64];
@@ -226,7 +226,7 @@ static Status tile_path(const char *output, int number, int count, char **path, 
     return file_with_suffix(output, suffix, path, err);
 }
 
-/* What a line has besides what all have: the part, and where it goes. */
+/* Appends the end of a command: which part it draws, and the output. */
 static Status put_part(const ShardOptions *options, const char *output, int number, Text *line,
                        Err *err)
 {
@@ -243,20 +243,21 @@ static Status put_part(const ShardOptions *options, const char *output, int numb
     return STATUS_OK;
 }
 
-Status shard_print_commands(const ShardOptions *options, const Parsed *parsed, const char *output,
-                            int first, int last, Err *err)
+Status shard_put_commands(const ShardOptions *options, const Parsed *parsed, const char *output,
+                          int first, int last, Err *err)
 {
     static const char *const without[] = {"commands", "tiles", "only", "resume", NULL};
-    Text same = TEXT_INIT, lines = TEXT_TO(stdout);
-    Status status = command_again(parsed, without, &same, err);
-    for (int k = first; k <= last && status == STATUS_OK; k++) {
-        text_add(&lines, &same);
-        status = put_part(options, output, k, &lines, err);
-        text_puts(&lines, "\n");
+    Text same = TEXT_INIT;
+    Status status;
+    if (!options->lines)
+        return err_set(err, STATUS_USAGE, "--commands has no place to go to");
+    TRY_GOTO(command_again(parsed, without, &same, err));
+    for (int k = first; k <= last; k++) {
+        text_add(options->lines, &same);
+        TRY_GOTO(put_part(options, output, k, options->lines, err));
+        text_puts(options->lines, "\n");
     }
-    if (status == STATUS_OK)
-        status = text_flush(&lines, err);
+done:
     text_release(&same);
-    text_release(&lines);
     return status;
 }

@@ -1,5 +1,6 @@
-/* Parts of a picture in files of their own, tiles of whole rows, and what such a file says of
- * itself: which part of what it is, and a hash of all that it was made from. */
+/* Tiles of a picture in separate files. A tile is a range of whole rows. Its file has a note that
+ * states which rows of which picture it contains, and a hash of everything that it was made from.
+ */
 #ifndef CORCAST_JOB_PICTURE_SHARD_H
 #define CORCAST_JOB_PICTURE_SHARD_H
 
@@ -11,20 +12,20 @@
 
 typedef struct ShardOptions {
     const char *tile; /* "I/N"; NULL: the whole picture */
-    int tiles;        /* commands for this many are printed; 0: none */
-    int only;         /* this picture of an animation; 0: all */
-    bool commands;    /* are printed, and nothing is drawn */
-    bool resume;      /* what is there and right is not drawn again */
+    int tiles;        /* number of tiles that commands are made for; 0: none */
+    int only;         /* number of the picture of an animation that is drawn; 0: all */
+    bool commands;    /* nothing is drawn; a command is made for each part */
+    bool resume;      /* a file that exists and is valid is not drawn again */
+    Text *lines;      /* receives the commands; set by the caller; borrowed; NULL: none are made */
 } ShardOptions;
 
 extern const OptionTable shard_table; /* sets a ShardOptions */
 
-/* Tile `number` of `count`: the rows first .. first + rows - 1 of the picture's `height`. A whole
- * picture is tile 1 of 1. */
+/* What a tile's note states. A whole picture is tile 1 of 1. */
 typedef struct Shard {
-    int number, count;
-    int first, rows, height;
-    char kernels[16]; /* the instructions that it was drawn with */
+    int number, count;       /* tile `number`, from 1 on, of `count` tiles */
+    int first, rows, height; /* the rows first .. first + rows - 1 of the picture's `height` rows */
+    char kernels[16];        /* the instructions that it was drawn with: "avx2" */
     HashText made_from;
 } Shard;
 
@@ -36,37 +37,41 @@ bool shard_is_asked(const ShardOptions *options);
 MUST_CHECK Status shard_check(const ShardOptions *options, const FramesForm *form,
                               const Parsed *parsed, Err *err);
 
-/* The part that --tile asks for of a picture of `height` rows, without hash. All tiles together are
- * the picture, and each is at least RENDER_BAND_STEP rows, or all there are. STATUS_USAGE, naming
- * what is allowed, when there is no such tile. */
+/* Finds the tile that --tile selects, of a picture of `height` rows. Does not set the hash and the
+ * kernels. All tiles together are the picture. Each has RENDER_BAND_STEP rows or more, unless the
+ * picture has fewer.
+ *
+ * tile    "I/N", or NULL for the whole picture.
+ * Errors  STATUS_USAGE, with what is allowed, if there is no such tile. */
 MUST_CHECK Status shard_of_tile(const char *tile, int height, Shard *shard, Err *err);
 
-/* What the pictures of one command are made from, besides the files that options name. All is
- * borrowed. */
+/* What the pictures of one command are made from, besides the files that options name. All pointers
+ * are borrowed. */
 typedef struct ShardSource {
     const char *line; /* the command line */
     const Tree *tree; /* as it was read, with the values and flows that options name */
-    Box domain;       /* that is framed; zeros if the domain is not framed */
+    Box domain;       /* the box of the domain that is framed; zeros: the domain is not framed */
     bool has_text;    /* letters are drawn */
 } ShardSource;
 
-/* Hashes what picture `number` is made from into the shard: program, command line, instructions,
- * source, the files that options name, templates that they choose by name, and the fonts if there
- * is text. STATUS_INPUT when a file cannot be read. */
+/* Sets shard->made_from, the hash of everything that picture `number` is made from: program
+ * version, command line, kernels, source, the files and templates that options name, and the fonts
+ * if there is text. Errors: STATUS_INPUT if a file cannot be read, STATUS_MEMORY. */
 MUST_CHECK Status shard_hash(Shard *shard, const Parsed *parsed, const ShardSource *source,
                              int number, Err *err);
 
-/* Appends the note of a file, "Shard". */
+/* Appends the text of the note, which files call "Shard". */
 void shard_put(const Shard *shard, Text *text);
-/* Reads such a note; false when it is none. */
+/* Reads the text of a note. Returns false, and leaves *shard alone, if it is not one. */
 bool shard_parse(const char *note, Shard *shard);
 
-/* Whether the file `path` holds this shard, sound to its last row. STATUS_MEMORY. */
+/* Sets *there to whether the file `path` contains this tile, sound to its last row. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status shard_is_there(const char *path, const Shard *shard, bool *there, Err *err);
 
-/* Prints a command a line on standard output for all tiles, or for the pictures first .. last of an
- * animation. */
-MUST_CHECK Status shard_print_commands(const ShardOptions *options, const Parsed *parsed,
-                                       const char *output, int first, int last, Err *err);
+/* Appends a command line for each tile, or for each picture first .. last of an animation, to
+ * options->lines. Errors: STATUS_USAGE if there is no such text, STATUS_MEMORY, STATUS_IO. */
+MUST_CHECK Status shard_put_commands(const ShardOptions *options, const Parsed *parsed,
+                                     const char *output, int first, int last, Err *err);
 
 #endif

@@ -230,10 +230,18 @@ Status growing_read_demand(Growing *growing, Err *err)
     return STATUS_OK;
 }
 
-Status growing_run(Growing *growing, const Talk *talk, Tree *tree, GrowReport *report, Err *why,
-                   Err *err)
+/* Tells why a tree is not complete, in the words of the options. */
+static void warn_of_partial(const Parsed *parsed, const Err *why)
+{
+    Err named = *why;
+    options_name_fields(parsed, &named);
+    talk_warn(parsed->common.talk, "%s", named.text);
+}
+
+Status growing_run(Growing *growing, const Parsed *parsed, Tree *tree, GrowReport *report, Err *err)
 {
     Progress progress;
+    const Talk *talk = parsed->common.talk;
     TRY(grow_params_check(&growing->params, &growing->domain, err));
     if (growing->params.pair_mm > 0 && growing->domain.dimension == 2)
         talk_note(talk, "two trees that must not cross soon shut each other out in the plane: as a "
@@ -243,8 +251,9 @@ Status growing_run(Growing *growing, const Talk *talk, Tree *tree, GrowReport *r
     growing->params.progress_context = &progress;
     progress_start(&progress, "growing", talk);
     Status status = grow_tree(&growing->params, &growing->domain, tree, report, err);
-    *why = *err;
     progress_end(&progress);
+    if (status == STATUS_OK && !report->complete)
+        warn_of_partial(parsed, err);
     return status;
 }
 
@@ -253,4 +262,6 @@ void growing_release(Growing *growing)
     domain_release(&growing->domain);
     demand_release(growing->demand);
     tree_release(&growing->from);
+    growing->params.demand = growing->demand = NULL;
+    growing->params.from = NULL;
 }

@@ -28,10 +28,10 @@ MUST_CHECK Status growing_prepare(Growing *growing, Parsed *parsed, Err *err);
 /* Reads the map of --demand, if it is given, instead of the one that there was. */
 MUST_CHECK Status growing_read_demand(Growing *growing, Err *err);
 
-/* Grows with progress, as grow_tree; why growth stopped early, if it did and that is allowed, goes
- * to *why. */
-MUST_CHECK Status growing_run(Growing *growing, const Talk *talk, Tree *tree, GrowReport *report,
-                              Err *why, Err *err);
+/* Grows a tree, with progress. Warns why growth stopped early if that is allowed. Errors: as
+ * grow_tree. */
+MUST_CHECK Status growing_run(Growing *growing, const Parsed *parsed, Tree *tree,
+                              GrowReport *report, Err *err);
 
 void growing_release(Growing *growing);
 

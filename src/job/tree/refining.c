@@ -1,8 +1,8 @@
-/* One driver for both commands that refine: it shows progress, and hears the first SIGINT. */
+/* One driver for all operations that refine. */
 #include "job/tree/refining.h"
 
+#include "options/output.h"
 #include "options/talk.h"
-
 #include <stdio.h>
 
 static const char *const levels[] = {[GROW_REFINE_NONE] = "none",
@@ -45,57 +45,61 @@ Status refining_check_growing(const Refining *refining, const Growing *growing, 
     return STATUS_OK;
 }
 
-Status refining_apply(const Refining *refining, const Common *common, const Domain *domain,
-                      Tree *tree, RefineReport *report, Err *err)
+static void note_gain(const Talk *talk, const RefineReport *report)
 {
-    *report = (RefineReport){0};
-    if (refining->level == GROW_REFINE_NONE)
-        return STATUS_OK;
+    talk_note(talk, "refined in %.3g s%s: target %.6g to %.6g (%.2f %%), %llu of %llu moves kept",
+              report->seconds, report->stopped ? ", stopped" : "", report->target_before,
+              report->target_after, 100 * (report->target_after / report->target_before - 1),
+              (unsigned long long)report->moves_kept, (unsigned long long)report->moves_tried);
+    if (isfinite(report->apart_mm))
+        talk_note(talk, "walls of different trees are at least %.4g mm apart", report->apart_mm);
+}
+
+static Status refine(const Refining *refining, const Common *common, const Domain *domain,
+                     Tree *tree, RefineReport *report, Err *err)
+{
     Progress progress;
     const RefineParams params = {.level = refining->level,
                                  .seconds = refining->seconds,
                                  .moves = refining->moves,
                                  .seed = common->seed,
                                  .threads = common->threads,
-                                 .stop = interrupt_asked,
+                                 .stop = progress_enough,
+                                 .stop_context = &progress,
                                  .progress = progress_report,
                                  .progress_context = &progress};
     progress_start(&progress, "refining", common->talk);
-    interrupt_catch();
+    (void)progress_enough(&progress); /* the first question is this thread's */
     Status status = refine_tree(&params, domain, tree, report, err);
-    interrupt_release();
     progress_end(&progress);
     return status;
 }
 
-void refining_print(const RefineReport *report)
-{
-    if (report->target_before > 0)
-        fprintf(stderr,
-                "refined in %.3g s%s: target %.6g to %.6g (%.2f %%), %llu of %llu moves kept\n",
-                report->seconds, report->stopped ? ", stopped" : "", report->target_before,
-                report->target_after, 100 * (report->target_after / report->target_before - 1),
-                (unsigned long long)report->moves_kept, (unsigned long long)report->moves_tried);
-    if (report->target_before > 0 && isfinite(report->apart_mm))
-        fprintf(stderr, "walls of different trees are at least %.4g mm apart\n", report->apart_mm);
-}
-
-void print_broken(size_t broken)
-{
-    if (broken > 0)
-        fprintf(stderr,
-                "corcast: %zu segment%s shorter than wide or too near to others all the same\n",
-                broken, broken == 1 ? " is" : "s are");
-}
-
-Status refining_describe(const Refining *refining, const RefineReport *report, TreeMeta *meta,
-                         Err *err)
+static Status describe(const Refining *refining, const RefineReport *report, TreeMeta *meta,
+                       Err *err)
 {
     char line[160];
-    if (refining->level == GROW_REFINE_NONE)
-        return STATUS_OK;
     snprintf(line, sizeof line, "refined: %s, %llu of %llu moves kept%s", levels[refining->level],
              (unsigned long long)report->moves_kept, (unsigned long long)report->moves_tried,
              report->stopped ? ", stopped" : "");
     return meta_add_text(meta, META_KEYS, line, err);
+}
+
+Status refining_apply(const Refining *refining, const Parsed *parsed, const Domain *domain,
+                      Tree *tree, RefineReport *report, Err *err)
+{
+    *report = (RefineReport){0};
+    if (refining->level == GROW_REFINE_NONE)
+        return command_describe(parsed, &tree->meta, err);
+    TRY(refine(refining, &parsed->common, domain, tree, report, err));
+    note_gain(parsed->common.talk, report);
+    TRY(command_describe(parsed, &tree->meta, err));
+    return describe(refining, report, &tree->meta, err);
+}
+
+void refining_warn_broken(const Talk *talk, size_t broken)
+{
+    if (broken > 0)
+        talk_warn(talk, "%zu segment%s shorter than wide or too near to others all the same",
+                  broken, broken == 1 ? " is" : "s are");
 }

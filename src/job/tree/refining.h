@@ -18,21 +18,18 @@ extern const OptionTable refining_table; /* sets a Refining; a zeroed one is no 
 MUST_CHECK Status refining_check_growing(const Refining *refining, const Growing *growing,
                                          Err *err);
 
-/* Refines the tree, if at all, with progress; the first SIGINT keeps the best tree so far. *report
- * is zeroed when nothing was asked for. `domain` may be NULL. */
-MUST_CHECK Status refining_apply(const Refining *refining, const Common *common,
+/* Refines the tree, if asked, with progress, notes what was gained, and adds to the tree's metadata
+ * the command line and, if the tree was refined, the number of moves: a refinement that a clock or
+ * the user ended depends on more than the command line. If the caller has had enough [talk.h], the
+ * best tree so far is the result.
+ *
+ * domain  NULL: the tree may be anywhere.
+ * report  zeroed if the level is GROW_REFINE_NONE.
+ * Errors  as refine_tree. */
+MUST_CHECK Status refining_apply(const Refining *refining, const Parsed *parsed,
                                  const Domain *domain, Tree *tree, RefineReport *report, Err *err);
 
-/* Adds to what the tree's file says by how many moves the tree was refined, if at all: where a
- * clock or the user ended the refinement, the command line alone does not tell one result from
- * another. */
-MUST_CHECK Status refining_describe(const Refining *refining, const RefineReport *report,
-                                    TreeMeta *meta, Err *err);
-
-/* Says what was gained on standard error, if anything was asked for. */
-void refining_print(const RefineReport *report);
-
-/* Says on standard error how many segments break the rules of length and clearance, if any do. */
-void print_broken(size_t broken);
+/* Warns that `broken` segments break the rules of length and clearance; 0: says nothing. */
+void refining_warn_broken(const Talk *talk, size_t broken);
 
 #endif

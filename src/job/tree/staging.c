@@ -149,7 +149,7 @@ static Status change_domain(Staging *staging, const Tree *from, Err *err)
 
 /* Grows one stage on *tree, which is then its own. */
 static Status grow_stage(Staging *staging, const char *name, Tree *tree, GrowReport *report,
-                         Err *why, Err *err)
+                         Err *err)
 {
     Growing *growing = staging->growing;
     GrowReport own;
@@ -165,13 +165,13 @@ static Status grow_stage(Staging *staging, const char *name, Tree *tree, GrowRep
     if (status == STATUS_OK)
         status = growing_read_demand(growing, err);
     if (status == STATUS_OK)
-        status = growing_run(growing, staging->parsed->common.talk, &made, &own, why, err);
+        status = growing_run(growing, staging->parsed, &made, &own, err);
     if (status != STATUS_OK) {
         err_prefix(err, "%s: [%s]: ", staging->path, name);
         return status;
     }
-    if (!staging->parsed->common.quiet)
-        fprintf(stderr, "stage %s: %zu terminals in %.3g s\n", name, own.terminals, own.seconds);
+    talk_note(staging->parsed->common.talk, "stage %s: %zu terminals in %.3g s", name,
+              own.terminals, own.seconds);
     own.median_change = own.least_change = own.greatest_change = 0;
     own.seconds += report->seconds;
     own.tosses += report->tosses;
@@ -212,19 +212,19 @@ static Status check_all(Staging *staging, Err *err)
     return STATUS_OK;
 }
 
-static Status grow_all(Staging *staging, Tree *tree, GrowReport *report, Err *why, Err *err)
+static Status grow_all(Staging *staging, Tree *tree, GrowReport *report, Err *err)
 {
     *report = (GrowReport){.complete = true};
     for (size_t at = 0; at < staging->n && report->complete;) {
         const char *name = staging->line[at].stage;
         at = apply(staging, at);
-        TRY(grow_stage(staging, name, tree, report, why, err));
+        TRY(grow_stage(staging, name, tree, report, err));
     }
     return STATUS_OK;
 }
 
 Status staging_grow(const char *path, Growing *growing, const Parsed *parsed, Tree *tree,
-                    GrowReport *report, Err *why, Err *err)
+                    GrowReport *report, Err *err)
 {
     Staging staging = {.path = path, .parsed = parsed, .growing = growing};
     Status status = STATUS_OK;
@@ -232,7 +232,7 @@ Status staging_grow(const char *path, Growing *growing, const Parsed *parsed, Tr
     TRY_GOTO(ini_read(path, "a file of stages", take_line, &staging, &staging.text, err));
     *growing = before;
     TRY_GOTO(check_all(&staging, err));
-    TRY_GOTO(grow_all(&staging, tree, report, why, err));
+    TRY_GOTO(grow_all(&staging, tree, report, err));
 done:
     before.demand = growing->demand;
     before.domain = growing->domain; /* what else stages said is in their text */

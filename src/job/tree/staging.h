@@ -12,6 +12,6 @@
  * can say and for stages that contradict each other; errors as grow_tree, after the stage's name.
  */
 MUST_CHECK Status staging_grow(const char *path, Growing *growing, const Parsed *parsed, Tree *tree,
-                               GrowReport *report, Err *why, Err *err);
+                               GrowReport *report, Err *err);
 
 #endif

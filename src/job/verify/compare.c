@@ -28,7 +28,8 @@ static bool wants_pictures(const CompareOptions *options)
 
 static bool is_given(const CompareOptions *options)
 {
-    return options->given[0].image || options->given[0].ids;
+    const GivenImage *given = options->given;
+    return given[0].image || given[0].ids || given[1].image || given[1].ids;
 }
 
 /* Returns what a file holds, by its name as `render --planes` writes it. */
@@ -57,12 +58,28 @@ static PlaneKind plane_of(const CompareOptions *options, const Parsed *parsed)
     return plane_of_name(parsed->operands[0]);
 }
 
+/* Checks that images in memory are there on both sides, and are what is compared. */
+static Status check_given(const CompareOptions *options, PlaneKind plane, Err *err)
+{
+    if (options->reference || options->noise || options->variance)
+        return err_set(err, STATUS_USAGE,
+                       "--reference, --noise and --variance are for files, not for images in "
+                       "memory");
+    for (int i = 0; i < 2; i++)
+        if (plane == PLANE_ID ? !options->given[i].ids : !options->given[i].image)
+            return err_set(err, STATUS_USAGE, "image %s has no %s plane", i ? "B" : "A",
+                           plane_kind_name(plane));
+    return STATUS_OK;
+}
+
 static Status check_operands(const CompareOptions *options, const Parsed *parsed, Err *err)
 {
+    if (is_given(options))
+        return check_given(options, plane_of(options, parsed), err);
     if (options->reference && parsed->n_operands != 1)
         return err_set(err, STATUS_USAGE,
                        "--reference takes one folder of pictures, not two files");
-    if (!options->reference && !is_given(options) && parsed->n_operands != 2)
+    if (!options->reference && parsed->n_operands != 2)
         return err_set(err, STATUS_USAGE,
                        "compare needs two files, A and B, or --reference and one folder");
     if (!options->accept != !options->reason || (options->reason && !*options->reason))
@@ -77,7 +94,8 @@ static Status check_pair(const CompareOptions *options, PlaneKind plane, const P
     TRY(options_refuse(parsed, compare_unmet(plane), err));
     if (!options->ids_a != !options->ids_b)
         return err_set(err, STATUS_USAGE, "--ids-a and --ids-b go together; one is missing");
-    if (options->ledger && !options->ids_a && !options->given[0].ids)
+    const bool has_ids = options->ids_a || (options->given[0].ids && options->given[1].ids);
+    if (options->ledger && !has_ids)
         return err_set(err, STATUS_USAGE, "--ledger needs --ids-a and --ids-b, to tell segments");
     if (!color && (options->ledger || wants_pictures(options)))
         return err_set(err, STATUS_USAGE,
@@ -134,7 +152,7 @@ static Status compare_linear(const CompareOptions *options, const Tolerance *tol
                        options->metrics || options->page || options->report, result, err));
     TRY(alpha_judge(&sides[0].alpha, &sides[1].alpha, result, err));
     const bool asks_cause =
-        !result->agrees && !*result->cause && result->nan_pixels_a + result->nan_pixels_b == 0;
+        !result->agrees && !*result->cause && result->values[MEASURE_NAN_PIXELS] == 0;
     for (int i = 0; i < 2 && (asks_cause || wants_pictures(options)); i++)
         TRY(picture_from_plane(&sides[i].shown, &sides[i].image.plane, ENCODING_SRGB, 16, err));
     return asks_cause ? compare_cause(&sides[0].shown, &sides[1].shown, result, err) : STATUS_OK;

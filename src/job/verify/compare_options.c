@@ -207,17 +207,19 @@ Status compare_tolerance(const JudgeOptions *options, double depth_mm, Tolerance
     if (options->has_levels || options->has_ppm)
         tolerance->spare_levels = 0;
     if (options->has_levels) {
-        tolerance->color_levels = options->levels;
-        tolerance->interior_levels = (double)INFINITY;
+        tolerance->limits[LIMIT_COLOR_LEVELS] = options->levels;
+        tolerance->limits[LIMIT_INTERIOR_LEVELS] = (double)INFINITY;
     }
     if (options->has_ppm)
-        tolerance->color_ppm = tolerance->id_ppm = tolerance->depth_ppm = tolerance->normal_ppm =
-            tolerance->coverage_ppm = tolerance->pixelmatch_ppm = options->ppm;
+        tolerance->limits[LIMIT_COLOR_PPM] = tolerance->limits[LIMIT_ID_PPM] =
+            tolerance->limits[LIMIT_DEPTH_PPM] = tolerance->limits[LIMIT_NORMAL_PPM] =
+                tolerance->limits[LIMIT_COVERAGE_PPM] = tolerance->limits[LIMIT_PIXELMATCH_PPM] =
+                    options->ppm;
     if (options->has_pixelmatch) {
-        tolerance->pixelmatch = options->pixelmatch;
-        tolerance->color_ppm = (double)INFINITY;
+        tolerance->limits[LIMIT_PIXELMATCH] = options->pixelmatch;
+        tolerance->limits[LIMIT_COLOR_PPM] = (double)INFINITY;
         if (!options->has_ppm)
-            tolerance->pixelmatch_ppm = 0;
+            tolerance->limits[LIMIT_PIXELMATCH_PPM] = 0;
     }
     if (options->has_levels || options->has_ppm || depth_mm > 0 || options->has_pixelmatch)
         tolerance->tier = "given";

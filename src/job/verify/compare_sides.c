@@ -135,11 +135,16 @@ static Status get_item(size_t item, int worker, void *context, Err *err)
 
 /* ---- both sides ------------------------------------------------------------------------------ */
 
+static bool side_is_given(const GivenImage *given)
+{
+    return given->image || given->ids;
+}
+
 static SideSource source_of(const CompareOptions *options, const Parsed *parsed, PlaneKind plane,
                             int side)
 {
     const GivenImage *given = &options->given[side];
-    if (given->image || given->ids)
+    if (side_is_given(given))
         return (SideSource){.image = given->image, .ids = given->ids};
     if (plane == PLANE_ID)
         return (SideSource){.ids_path = parsed->operands[side]};
@@ -178,8 +183,7 @@ Status sides_read(const CompareOptions *options, const Parsed *parsed, PlaneKind
 {
     SidesReading reading = {.options = options, .plane = plane, .sides = sides};
     for (int i = 0; i < 2; i++) {
-        const bool given = options->given[i].image || options->given[i].ids;
-        sides[i].name = !given ? parsed->operands[i] : i ? "B" : "A";
+        sides[i].name = !side_is_given(&options->given[i]) ? parsed->operands[i] : i ? "B" : "A";
         reading.sources[i] = source_of(options, parsed, plane, i);
     }
     TRY(threads_try(4, parsed->common.threads, get_item, &reading, err));

@@ -341,8 +341,9 @@ static Tolerance exact_tolerance(const IdPlane *ids)
     tolerance.title = "exact color";
     if (sees_whole_vessels(ids))
         return tolerance;
-    tolerance.gain = tolerance.offset_levels = tolerance.interior_ppm = (double)INFINITY;
-    tolerance.segment_levels = tolerance.bias_levels = 1.5;
+    tolerance.limits[LIMIT_GAIN] = tolerance.limits[LIMIT_OFFSET_LEVELS] =
+        tolerance.limits[LIMIT_INTERIOR_PPM] = (double)INFINITY;
+    tolerance.limits[LIMIT_SEGMENT_LEVELS] = tolerance.limits[LIMIT_BIAS_LEVELS] = 1.5;
     return tolerance;
 }
 

@@ -85,7 +85,9 @@ static void move_off_ties(Camera *camera)
 static Status check_shows_something(const Verification *v, Err *err)
 {
     const CompareResult *ids = &v->found.planes[PLANE_ID];
-    if (ids->common_pixels + ids->missing_pixels + ids->extra_pixels + ids->settled_pixels > 0)
+    if (ids->values[MEASURE_COMMON_PIXELS] + ids->values[MEASURE_MISSING_PIXELS] +
+            ids->values[MEASURE_EXTRA_PIXELS] + ids->values[MEASURE_SETTLED_PIXELS] >
+        0)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
                    "neither POV-Ray nor corcast shows a vessel of %s in this view, so nothing is "

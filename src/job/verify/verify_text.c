@@ -63,7 +63,9 @@ static bool put_agreement(const char *title, bool agrees, const char *reason, Te
 static void put_counts(const char *title, const CompareResult *result, Text *out)
 {
     if (put_agreement(title, result->agrees, result->reason, out))
-        text_printf(out, "%zu of %zu pixels differ\n", result->differing_pixels, result->pixels);
+        text_printf(out, "%zu of %zu pixels differ\n",
+                    result_count(result, MEASURE_DIFFERING_PIXELS),
+                    result_count(result, MEASURE_PIXELS));
 }
 
 /* Appends a line for depth or normals, whose differences have the given unit. */
@@ -71,8 +73,9 @@ static void put_distances(const char *title, const CompareResult *result, const 
                           Text *out)
 {
     if (put_agreement(title, result->agrees, result->reason, out))
-        text_printf(out, "median %.3g %s, 99 %% within %.3g %s, worst %.3g %s\n", result->median,
-                    unit, result->p99, unit, result->max, unit);
+        text_printf(out, "median %.3g %s, 99 %% within %.3g %s, worst %.3g %s\n",
+                    result->values[MEASURE_MEDIAN], unit, result->values[MEASURE_P99], unit,
+                    result->values[MEASURE_MAX], unit);
 }
 
 static void put_planes(const CompareResult results[PLANE_KINDS], Text *out)
@@ -109,8 +112,10 @@ static void put_surface(const VerifyFindings *found, Text *out)
         text_printf(out, "99 %% within %.3g mm, worst %.3g mm, %zu pixels graze\n", surface->p99_mm,
                     surface->max_mm, surface->grazing);
     if (put_agreement("exact", exact->agrees, exact->reason, out))
-        text_printf(out, "gain %.6f, %zu of %zu pixels off by more than %g levels\n", exact->gain,
-                    exact->beyond_pixels, exact->common_pixels, exact->tolerance.color_levels);
+        text_printf(out, "gain %.6f, %zu of %zu pixels off by more than %g levels\n",
+                    exact->values[MEASURE_GAIN], result_count(exact, MEASURE_BEYOND_PIXELS),
+                    result_count(exact, MEASURE_COMMON_PIXELS),
+                    exact->tolerance.limits[LIMIT_COLOR_LEVELS]);
 }
 
 void verify_text(const Verification *result, Text *out)

@@ -158,7 +158,7 @@ static FieldTile tile_of(const LightView *view, int number, LocalGroups *groups)
 
 /* Sets the z of the points to the depths that the kernel reads, and tile->z_min to the smallest.
  * Removes points outside the tile: they are outside the light view, and so they are lit. */
-static void place_points(const LightAim *aim, ShadowPoints *points, FieldTile *tile)
+static void place_points(const LightProjection *aim, ShadowPoints *points, FieldTile *tile)
 {
     float half_x = (float)fabs(0.50005 / aim->per_x), half_y = (float)fabs(0.50005 / aim->per_y);
     int n = 0;

@@ -144,7 +144,7 @@ static Status decide_sample(const FieldTiles *tiles, FieldSpace *space, const Fi
 
 /* Decides the samples inside the grid that the kernel left undecided. */
 static Status decide_rest(const FieldTiles *tiles, FieldSpace *space, const FieldTile *tile,
-                          const SeenTile *seen, TileHits *hits, Err *err)
+                          const TracedTile *seen, TileHits *hits, Err *err)
 {
     const SampleGrid *grid = &tiles->params.grid;
     for (int sample = 0; hits->any_unsure && sample < TILE_SAMPLES; sample++) {
@@ -158,7 +158,7 @@ static Status decide_rest(const FieldTiles *tiles, FieldSpace *space, const Fiel
     return STATUS_OK;
 }
 
-Status fieldtiles_trace(FieldTiles *tiles, int worker, SeenTile *seen, TileHits *hits, Err *err)
+Status fieldtiles_trace(FieldTiles *tiles, int worker, TracedTile *seen, TileHits *hits, Err *err)
 {
     FieldWorker *own = &tiles->workers[worker];
     FieldSpace *space = &own->space;

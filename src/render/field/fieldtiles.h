@@ -33,7 +33,7 @@ bool fieldtiles_is_listed(const FieldTiles *tiles, int column, int worker);
 /* Sets the sample positions of a tile of the row whose column, row, columns and rows are set, and
  * its hits. seen->hits becomes `hits`, or NULL if no sample hits anything. No sample is TILE_UNSURE
  * then. Errors: STATUS_MEMORY. */
-MUST_CHECK Status fieldtiles_trace(FieldTiles *tiles, int worker, SeenTile *seen, TileHits *hits,
+MUST_CHECK Status fieldtiles_trace(FieldTiles *tiles, int worker, TracedTile *seen, TileHits *hits,
                                    Err *err);
 
 #endif

@@ -56,7 +56,7 @@ static bool is_facing(const AreaJob *job, const ShadingPoint *point, Vec3 positi
 }
 
 /* ShadowPoser.place: points that face away from the light do not query. */
-static uint64_t place_points(const void *context, size_t first, size_t n, SeenPlaces *places)
+static uint64_t place_points(const void *context, size_t first, size_t n, HitPoints *places)
 {
     const AreaJob *job = context;
     uint64_t wanted = 0;

@@ -94,18 +94,18 @@ LightView lightview_of(const Geometry *geometry, const Light *light, int tiles, 
     return view;
 }
 
-LightAim lightview_aim(const LightView *view, const Viewpoint *camera, double slack)
+LightProjection lightview_projection(const LightView *view, const Viewpoint *camera, double slack)
 {
-    LightAim aim = {.perspective = view->eye.perspective,
-                    .left = view->left - view->step_x / 2,
-                    .top = view->top - view->step_y / 2,
-                    .per_x = 1 / (TILE_SIDE * view->step_x),
-                    .per_y = 1 / (TILE_SIDE * view->step_y),
-                    .columns = view->tiles,
-                    .rows = view->tiles,
-                    .slack = slack,
-                    .z_middle = view->z_middle,
-                    .offset = viewpoint_place(&view->eye, camera->location)};
+    LightProjection aim = {.perspective = view->eye.perspective,
+                           .left = view->left - view->step_x / 2,
+                           .top = view->top - view->step_y / 2,
+                           .per_x = 1 / (TILE_SIDE * view->step_x),
+                           .per_y = 1 / (TILE_SIDE * view->step_y),
+                           .columns = view->tiles,
+                           .rows = view->tiles,
+                           .slack = slack,
+                           .z_middle = view->z_middle,
+                           .offset = viewpoint_place(&view->eye, camera->location)};
     for (int i = 0; i < 3; i++)
         aim.axes[i] = viewpoint_to_frame(camera, view->eye.axes[i]);
     return aim;

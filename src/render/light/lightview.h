@@ -32,6 +32,6 @@ LightView lightview_of(const Geometry *geometry, const Light *light, int tiles, 
 
 /* Returns how points in the frame of `camera` map to the view. Blockers nearer to a point than
  * `slack` mm cast no shadow on it. */
-LightAim lightview_aim(const LightView *view, const Viewpoint *camera, double slack);
+LightProjection lightview_projection(const LightView *view, const Viewpoint *camera, double slack);
 
 #endif

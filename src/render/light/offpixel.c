@@ -42,7 +42,7 @@ static size_t run_end(const OffPixelPoints *points, size_t run)
 }
 
 /* ShadowPoser.place: all points query. */
-static uint64_t place_points(const void *context, size_t first, size_t n, SeenPlaces *places)
+static uint64_t place_points(const void *context, size_t first, size_t n, HitPoints *places)
 {
     const OffPixelJob *job = context;
     const OffPixelPoints *points = job->points;

@@ -68,7 +68,7 @@ static Status make_bins(size_t index, int worker, void *context, Err *err)
     bins->geometry = drawing->geometry;
     bins->view = lightview_of(drawing->geometry, &job->lights[index], engine->tiles(drawing),
                               job->params->box);
-    bins->aim = lightview_aim(&bins->view, &job->params->frame, engine->slack(drawing));
+    bins->aim = lightview_projection(&bins->view, &job->params->frame, engine->slack(drawing));
     return engine->bin(drawing, bins, err);
 }
 

@@ -24,7 +24,7 @@ typedef enum ShadowState {
     SHADOW_UNSURE /* within the margin of a kernel's arithmetic; never the engine's answer */
 } ShadowState;
 
-/* Points in one tile of a light view, and the answers. Positions are those of AimedPlaces. */
+/* Points in one tile of a light view, and the answers. Positions are those of ProjectedPoints. */
 typedef struct ShadowPoints {
     int n;
     float x[POINT_CAPACITY],
@@ -52,8 +52,8 @@ typedef struct LightBins {
     const struct ShadowEngine *engine;
     const Geometry *geometry; /* borrowed */
     LightView view;
-    LightAim aim; /* from the frame of the querying points to the light view */
-    void *lists;  /* the engine's; owned */
+    LightProjection aim; /* from the frame of the querying points to the light view */
+    void *lists;         /* the engine's; owned */
 } LightBins;
 
 typedef struct ShadowEngine {

@@ -37,7 +37,7 @@ Status shadowpass_run(const ShadowPass *pass, size_t begin, size_t end, int work
     uint64_t wanted[SHADOW_RUN / TILE_SAMPLES];
     const size_t n = end - begin;
     for (size_t i = 0; i < n; i += TILE_SAMPLES) {
-        SeenPlaces points = {.x = {0}};
+        HitPoints points = {.x = {0}};
         size_t count = n - i < TILE_SAMPLES ? n - i : TILE_SAMPLES;
         uint64_t bits = poser->place(poser->context, begin + i, count, &points);
         for (int k = 0; k < pass->n_views; k++)

@@ -56,7 +56,7 @@ void shadowqueue_free(ShadowQueue *queue)
 }
 
 /* Appends the points whose bits are set, and returns their number. */
-static int append_points(ShadowQueue *queue, const AimedPlaces *aimed, const uint32_t *items,
+static int append_points(ShadowQueue *queue, const ProjectedPoints *aimed, const uint32_t *items,
                          uint64_t which)
 {
     ShadowPoints *queued = &queue->queued;
@@ -75,11 +75,11 @@ static int append_points(ShadowQueue *queue, const AimedPlaces *aimed, const uin
     return n - first;
 }
 
-void shadowqueue_add(ShadowQueue *queue, const SeenPlaces *points,
+void shadowqueue_add(ShadowQueue *queue, const HitPoints *points,
                      const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer)
 {
     const TileKernels *kernels = tilekernels[kernels_kind(queue->kernels)];
-    AimedPlaces aimed;
+    ProjectedPoints aimed;
     if (!wanted)
         return;
     kernels->aim(&queue->bins->aim, points, &aimed);

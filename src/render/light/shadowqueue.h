@@ -27,7 +27,7 @@ void shadowqueue_free(ShadowQueue *queue);
  * items    per point: what it lies on [ShadowPoints.item]; NULL: not known, in all calls between
  *          two answers or in none.
  * answer   index of the answer for point 0 in `shadowed` of shadowqueue_answer. */
-void shadowqueue_add(ShadowQueue *queue, const SeenPlaces *points,
+void shadowqueue_add(ShadowQueue *queue, const HitPoints *points,
                      const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer);
 
 /* Answers all queries and empties the queue. Sets shadowed[answer + i] to 1 if the light is hidden

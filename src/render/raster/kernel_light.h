@@ -12,7 +12,7 @@
 /* ---- aiming ---------------------------------------------------------------------------------- */
 
 LANE_TARGET static void RASTER_KERNEL(locate)(const RasterTile *tile, const RasterHits *hits,
-                                              SeenPlaces *places)
+                                              HitPoints *places)
 {
     const RasterGrid *grid = tile->grid;
     double middle_x = tile->x, middle_y = tile->y, z_middle = tile->z_middle;

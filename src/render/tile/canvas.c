@@ -161,7 +161,7 @@ static Vec3 load_vec3(const float values[3][TILE_SAMPLES], int sample)
     return vec3((double)values[0][sample], (double)values[1][sample], (double)values[2][sample]);
 }
 
-static void set_pigments(const Canvas *canvas, const SeenTile *seen, TileSurface *surface)
+static void set_pigments(const Canvas *canvas, const TracedTile *seen, TileSurface *surface)
 {
     const TileHits *hits = seen->hits;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
@@ -169,7 +169,7 @@ static void set_pigments(const Canvas *canvas, const SeenTile *seen, TileSurface
             continue;
         Vec3 point = {0, 0, 0};
         if (canvas->drawing->mean)
-            point = viewpoint_point(&canvas->eye, seen_place(seen, sample));
+            point = viewpoint_point(&canvas->eye, tile_hit_point(seen, sample));
         Rgb pigment = drawing_color(canvas->drawing, segment_of(canvas, hits, sample), point);
         surface->pigment[0][sample] = pigment.r;
         surface->pigment[1][sample] = pigment.g;
@@ -178,13 +178,13 @@ static void set_pigments(const Canvas *canvas, const SeenTile *seen, TileSurface
 }
 
 /* Points, and in perspective the directions towards them; parallel lines of sight never change. */
-static void set_places(const SeenTile *seen, TileSurface *surface)
+static void set_places(const TracedTile *seen, TileSurface *surface)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (seen->hits->state[sample] != TILE_HIT)
             continue;
-        Vec3 through = seen_line(seen, sample);
-        store_vec3(surface->point, sample, seen_place(seen, sample));
+        Vec3 through = tile_line(seen, sample);
+        store_vec3(surface->point, sample, tile_hit_point(seen, sample));
         if (seen->perspective)
             store_vec3(surface->direction, sample, vec3_normalized(through));
     }
@@ -192,16 +192,16 @@ static void set_places(const SeenTile *seen, TileSurface *surface)
 
 /* The pixel that a sample shares the light of. `per` are pixels across and down per unit of the
  * view's plane. */
-static uint32_t shared_pixel(const Canvas *canvas, const SeenTile *seen, int sample,
+static uint32_t shared_pixel(const Canvas *canvas, const TracedTile *seen, int sample,
                              const double per[2])
 {
     const PixelVisibility *visibility = canvas->drawing->visibility;
     const Camera *camera = &canvas->drawing->view->camera;
-    Vec3 line = seen_line(seen, sample), normal = load_vec3(seen->hits->normal, sample);
+    Vec3 line = tile_line(seen, sample), normal = load_vec3(seen->hits->normal, sample);
     double away = seen->perspective ? vec3_dot(normal, line) : normal.z;
     ShadingPoint place = pixelvisibility_point(
         visibility, seen->ground >> sample & 1 ? SURFACE_GROUND : SURFACE_VESSEL,
-        viewpoint_point(&canvas->eye, seen_place(seen, sample)),
+        viewpoint_point(&canvas->eye, tile_hit_point(seen, sample)),
         viewpoint_to_world(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
         pixelvisibility_pixel_mm(camera, seen->hits->z[sample]));
     return pixelvisibility_pixel(visibility, line.x * per[0] + (camera->width - 1) / 2.0,
@@ -209,7 +209,7 @@ static uint32_t shared_pixel(const Canvas *canvas, const SeenTile *seen, int sam
 }
 
 /* Asks memory for what the pixels of a tile to come share: of each of its rows that is little. */
-static void fetch_shared(const Canvas *canvas, const SeenTile *seen)
+static void fetch_shared(const Canvas *canvas, const TracedTile *seen)
 {
     const PixelVisibility *visibility = canvas->drawing->visibility;
     const int column = seen->column + 2 * TILE_SIDE;
@@ -227,7 +227,7 @@ static void fetch_shared(const Canvas *canvas, const SeenTile *seen)
 
 /* The parts of light that samples share with their pixels, whose centres they are where there is
  * one a pixel. */
-static void set_shared(const Canvas *canvas, const SeenTile *seen, CanvasWorker *own)
+static void set_shared(const Canvas *canvas, const TracedTile *seen, CanvasWorker *own)
 {
     const PixelVisibility *visibility = canvas->drawing->visibility;
     const Camera *camera = &canvas->drawing->view->camera;
@@ -252,7 +252,7 @@ static void set_shared(const Canvas *canvas, const SeenTile *seen, CanvasWorker 
     }
 }
 
-void canvas_see_ground(const Canvas *canvas, SeenTile *seen, TileHits *hits)
+void canvas_trace_ground(const Canvas *canvas, TracedTile *seen, TileHits *hits)
 {
     const Ground *ground = &canvas->drawing->view->ground;
     Vec3 n = viewpoint_to_frame(&canvas->eye, ground->normal);
@@ -261,7 +261,7 @@ void canvas_see_ground(const Canvas *canvas, SeenTile *seen, TileHits *hits)
         memset(hits->state, TILE_MISS, sizeof hits->state);
     seen->ground = 0;
     for (int sample = 0; ground->present && sample < TILE_SAMPLES; sample++) {
-        Vec3 line = seen_line(seen, sample);
+        Vec3 line = tile_line(seen, sample);
         double across = n.x * line.x + n.y * line.y;
         double z = seen->perspective ? offset / (across + n.z) : (offset - across) / n.z;
         bool before = hits->state[sample] == TILE_HIT && hits->z[sample] <= z;
@@ -278,7 +278,7 @@ void canvas_see_ground(const Canvas *canvas, SeenTile *seen, TileHits *hits)
 }
 
 /* Gives the samples that see the ground its colours. */
-static void shade_ground(const Canvas *canvas, const SeenTile *seen,
+static void shade_ground(const Canvas *canvas, const TracedTile *seen,
                          const uint8_t (*shadowed)[TILE_SAMPLES], CanvasWorker *own)
 {
     float color[3][TILE_SAMPLES];
@@ -292,7 +292,7 @@ static void shade_ground(const Canvas *canvas, const SeenTile *seen,
             own->color[c][sample] = color[c][sample];
 }
 
-float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
+float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *seen,
                      const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES]
 {
     CanvasWorker *own = &canvas->each[worker];
@@ -313,7 +313,7 @@ float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
 }
 
 /* Draws the thin vessels of a cell over a sample. */
-static void cover_sample(const SeenTile *seen, ThinCells *cells, int column, int row, int sample,
+static void cover_sample(const TracedTile *seen, ThinCells *cells, int column, int row, int sample,
                          float color[3][TILE_SAMPLES])
 {
     const bool hit = seen->hits && seen->hits->state[sample] == TILE_HIT;
@@ -323,7 +323,7 @@ static void cover_sample(const SeenTile *seen, ThinCells *cells, int column, int
         color[c][sample] = over[c];
 }
 
-float (*canvas_cover(const Canvas *canvas, int worker, const SeenTile *seen, ThinCells *cells,
+float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *seen, ThinCells *cells,
                      int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES]
 {
     CanvasWorker *own = &canvas->each[worker];
@@ -359,7 +359,7 @@ void canvas_store(const Canvas *canvas, int columns, int rows, float color[3][TI
                n * sizeof *pixels);
 }
 
-static void store_codes(const Canvas *canvas, const SeenTile *seen, float color[3][TILE_SAMPLES],
+static void store_codes(const Canvas *canvas, const TracedTile *seen, float color[3][TILE_SAMPLES],
                         uint8_t *pixels, size_t stride)
 {
     const uint8_t *state = canvas->wholly_colored ? NULL : seen->hits->state;
@@ -372,7 +372,7 @@ static void store_codes(const Canvas *canvas, const SeenTile *seen, float color[
 }
 
 /* Stores what is seen of geometry in a tile. */
-static void store_geometry(const Canvas *canvas, const SeenTile *seen)
+static void store_geometry(const Canvas *canvas, const TracedTile *seen)
 {
     const TileHits *hits = seen->hits;
     for (int j = 0; j < seen->n_rows; j++) {
@@ -383,14 +383,14 @@ static void store_geometry(const Canvas *canvas, const SeenTile *seen)
             if (hits->state[sample] != TILE_HIT || seen->ground >> sample & 1)
                 continue;
             Vec3 normal = viewpoint_to_world(&canvas->eye, load_vec3(hits->normal, sample));
-            planes_store(canvas->frame, first + (size_t)i, seen_depth(seen, sample), normal,
+            planes_store(canvas->frame, first + (size_t)i, tile_hit_distance(seen, sample), normal,
                          canvas->drawing->geometry->ids[segment_of(canvas, hits, sample)]);
         }
     }
 }
 
 /* Pixels, not of one tile alone, where nothing is seen. */
-static void store_nothing(const Canvas *canvas, const SeenTile *empty, const float *background)
+static void store_nothing(const Canvas *canvas, const TracedTile *empty, const float *background)
 {
     const Frame *frame = canvas->frame;
     size_t n = 3 * (size_t)empty->n_columns;
@@ -408,10 +408,10 @@ static void store_nothing(const Canvas *canvas, const SeenTile *empty, const flo
 static void store_blank(const Canvas *canvas, CanvasWorker *own, int end, int row)
 {
     const Camera *camera = &canvas->drawing->view->camera;
-    const SeenTile empty = {.column = own->column,
-                            .row = row,
-                            .n_columns = end - own->column,
-                            .n_rows = tile_extent(camera->height - row)};
+    const TracedTile empty = {.column = own->column,
+                              .row = row,
+                              .n_columns = end - own->column,
+                              .n_rows = tile_extent(camera->height - row)};
     if (empty.n_columns > 0)
         store_nothing(canvas, &empty, canvas->blank);
 }
@@ -425,7 +425,7 @@ static void blank_rows(const Canvas *canvas, CanvasWorker *own, int row)
     }
 }
 
-void canvas_draw(const Canvas *canvas, int worker, const SeenTile *seen,
+void canvas_draw(const Canvas *canvas, int worker, const TracedTile *seen,
                  float color[3][TILE_SAMPLES])
 {
     Frame *frame = canvas->frame;

@@ -1,5 +1,5 @@
-/* A band of a picture while it is drawn tile by tile, whatever engine finds what the tiles see: how
- * tiles are shaded, encoded and stored, in how many passes, and by which threads. */
+/* A band of a picture that is drawn tile by tile: shading, encoding and storing of tiles, the
+ * passes of antialiasing, and the threads. Any engine may trace the tiles. */
 #ifndef CORCAST_RENDER_CANVAS_H
 #define CORCAST_RENDER_CANVAS_H
 
@@ -12,7 +12,7 @@
 /* A finish, and the lights of a view in the frame of a viewpoint. */
 TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *eye);
 
-/* What one thread works with. */
+/* The scratch memory of one thread. */
 typedef struct CanvasWorker {
     TileSurface surface, ground; /* of vessels and of the ground */
     float open[TILE_SAMPLES];    /* of both, what samples share: */
@@ -21,49 +21,52 @@ typedef struct CanvasWorker {
     int row, column;              /* the first tile that is not drawn yet, in pixels */
 } CanvasWorker;
 
-/* Constant while rows are drawn, but for the workers, each its thread's own. */
+/* A canvas. It is constant while rows are drawn, except its workers, one per thread. */
 typedef struct Canvas {
     const Drawing *drawing; /* borrowed */
     Frame *frame;           /* borrowed */
     Viewpoint eye;
     const TileKernels *kernels;
-    bool needs_places; /* light, sight or colours differ from place to place: shading asks for
-                        * TileHits.z */
+    bool needs_places; /* shading reads TileHits.z, because light, visibility or colours depend on
+                        * the position of the hit */
     bool wants_color, wants_geometry;
-    bool wholly_colored; /* the engine sets colours where nothing is seen, too; at first false */
+    bool wholly_colored; /* the engine also sets the colours of samples without a hit; false at
+                          * first */
     TileLook look, ground_look;
-    Resampling more;   /* owned, as all that follows */
+    Resampling more;   /* owned, like all members below */
     SrgbCodes codes;   /* if the frame has codes */
     float *background; /* a row of the picture */
-    float *blank;      /* what pixels of tiles that are not drawn become: a row of the picture */
+    float *blank;      /* colours of pixels in tiles that are not drawn: a row of the picture */
     uint8_t *background_codes;
     CanvasWorker *each;
     int workers;
 } Canvas;
 
-/* Sets up the canvas (owned by the caller even when this fails) for the drawing's band, whose
- * planes the frame has. STATUS_MEMORY. */
+/* Sets up a canvas for the drawing's band; `frame` must have the planes of the band. Release the
+ * canvas with canvas_release, also after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye,
                               Canvas *canvas, Err *err);
 void canvas_release(Canvas *canvas);
 
-/* From now on pixels of tiles that are not drawn have the mean of their background's samples,
- * which need not be the background in the last digit. */
+/* Makes pixels of tiles that are not drawn the mean of the background's samples, from now on. The
+ * mean may differ from the background in the last digit. */
 void canvas_blank_is_mean(Canvas *canvas);
 
-/* Draws so many rows of tiles of the picture, `first` counted from its top. */
+/* Draws `rows` rows of tiles; `first` is the index of the first row from the top of the picture. */
 typedef Status CanvasRows(void *context, int first, int rows, int worker, Err *err);
 
-/* Calls `draw` for all rows of tiles of the band, so many at once, one worker each, and says how
- * far it is; the first failure is returned. In the pass of the centre samples (`further` false)
- * tiles that canvas_draw has not been given are blank. */
+/* Draws all rows of tiles in the band: calls `draw` for `at_once` rows at a time, in parallel, each
+ * call with its own worker, and reports progress. In the pass of the centre samples (`further` is
+ * false), tiles that were not passed to canvas_draw become blank. Errors: the first error of
+ * `draw`. */
 MUST_CHECK Status canvas_pass(Canvas *canvas, bool further, int at_once, CanvasRows *draw,
                               void *context, Err *err);
 
-/* Which pixels get further samples, by the colours of the centre samples. STATUS_MEMORY. */
+/* Selects the pixels that get further samples, from the colours of the centre samples. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status canvas_choose(Canvas *canvas, Err *err);
 
-/* Index of a pixel of the picture in the frame's planes. */
+/* Returns the index of a pixel of the picture in the frame's planes. */
 static inline size_t canvas_pixel(const Canvas *canvas, int column, int row)
 {
     return (size_t)(row - canvas->drawing->band.first) *
@@ -71,30 +74,39 @@ static inline size_t canvas_pixel(const Canvas *canvas, int column, int row)
            (size_t)column;
 }
 
-/* Sets what samples see of the view's ground, where no vessel is before it, in *hits, which has
- * what they see of vessels if seen->hits is not NULL, and in *seen. */
-void canvas_see_ground(const Canvas *canvas, SeenTile *seen, TileHits *hits);
+/* Traces the ground plane. Adds hits of the ground to *hits where no vessel is nearer, and sets
+ * seen->hits and seen->ground. If seen->hits is not NULL, *hits already has the hits of vessels. */
+void canvas_trace_ground(const Canvas *canvas, TracedTile *seen, TileHits *hits);
 
-/* The colours of a tile's samples, the background's where nothing is seen; the latter is left out
- * if the frame has codes. `seen` has hits. shadowed[light][sample]: whether the sample gets none of
- * the light; NULL: none is. The colours are the worker's until the next call. */
-float (*canvas_shade(const Canvas *canvas, int worker, const SeenTile *seen,
+/* Shades the samples of a tile that has hits. Samples without a hit get the background, unless the
+ * frame stores codes.
+ *
+ * shadowed  shadowed[light][sample] is 1 if the sample is in the shadow of the light; NULL: no
+ * sample is in shadow.
+ *
+ * Returns the colours, in the memory of the worker; they are valid until its next call. */
+float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *seen,
                      const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES];
 
-/* Draws thin vessels over the colours of a tile's samples, whose hits have depths. Sample (i, j) of
- * the tile has cell (i * step + x, j * step + y) of `cells`, step being the number of cells per
- * sample. `color` is the worker's, from canvas_shade; NULL: the background's. Returns the worker's
- * colours, or `color` if no thin vessel touches the tile. */
-float (*canvas_cover(const Canvas *canvas, int worker, const SeenTile *seen, ThinCells *cells,
+/* Draws thin vessels over the colours of a tile, whose hits must have depths.
+ *
+ * cells    sample (i, j) of the tile has the cell (i * step + x, j * step + y), where step is the
+ *          number of cells per sample.
+ * color    the result of canvas_shade; NULL: all samples have the background's colour.
+ *
+ * Returns the colours in the memory of the worker, or `color` if no thin vessel touches the tile.
+ */
+float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *seen, ThinCells *cells,
                      int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES];
 
-/* Stores a tile of the centre samples in the planes of the frame; tiles go row by row, and
- * from left to right. `color` NULL: the background's. */
-void canvas_draw(const Canvas *canvas, int worker, const SeenTile *seen,
+/* Stores a tile of centre samples in the planes of the frame. Tiles must come row by row, from left
+ * to right. `color` NULL: all samples have the background's colour. */
+void canvas_draw(const Canvas *canvas, int worker, const TracedTile *seen,
                  float color[3][TILE_SAMPLES]);
 
-/* Stores the first columns and rows of a tile's colours in rows of pixels, `stride` floats from one
- * to the next; color NULL: the background's. */
+/* Copies the first `columns` and `rows` of a tile's colours to rows of pixels; `stride` is the
+ * number of floats from one row to the next. `color` NULL: all samples have the background's
+ * colour. */
 void canvas_store(const Canvas *canvas, int columns, int rows, float color[3][TILE_SAMPLES],
                   float *pixels, size_t stride);
 

@@ -229,7 +229,7 @@ LANE_TARGET static void LANES_NAME(clear)(const uint8_t *state, const float back
 /* ---- lights ---------------------------------------------------------------------------------- */
 
 /* `near`: the light is not parallel; `slanted`: the camera's view is not. */
-LANE_FN uint64_t face_samples(const SeenTile *seen, const SeenPlaces *places,
+LANE_FN uint64_t face_samples(const TracedTile *seen, const HitPoints *places,
                               const float normal[3][TILE_SAMPLES], const TileLight *light,
                               bool near, bool slanted)
 {
@@ -253,7 +253,7 @@ LANE_FN uint64_t face_samples(const SeenTile *seen, const SeenPlaces *places,
     return facing;
 }
 
-LANE_TARGET static uint64_t LANES_NAME(face)(const SeenTile *seen, const SeenPlaces *places,
+LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *seen, const HitPoints *places,
                                              const float normal[3][TILE_SAMPLES],
                                              const TileLight *light)
 {
@@ -269,10 +269,10 @@ LANE_FN int32_t tile_at(double place, double count)
     return (int32_t)(place < count ? place : count - 1);
 }
 
-LANE_TARGET static void LANES_NAME(aim)(const LightAim *aim, const SeenPlaces *places,
-                                        AimedPlaces *restrict aimed)
+LANE_TARGET static void LANES_NAME(aim)(const LightProjection *aim, const HitPoints *places,
+                                        ProjectedPoints *restrict aimed)
 {
-    const LightAim a = *aim;
+    const LightProjection a = *aim;
     const double width = 1 / a.per_x, height = 1 / a.per_y;
     double seen_x[TILE_SAMPLES], seen_y[TILE_SAMPLES]; /* in the view's plane */
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
@@ -300,7 +300,7 @@ LANE_TARGET static void LANES_NAME(aim)(const LightAim *aim, const SeenPlaces *p
     }
 }
 
-LANE_TARGET static uint64_t LANES_NAME(within)(const AimedPlaces *aimed, int32_t tile)
+LANE_TARGET static uint64_t LANES_NAME(within)(const ProjectedPoints *aimed, int32_t tile)
 {
     uint64_t bits = 0;
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {

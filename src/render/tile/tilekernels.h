@@ -39,27 +39,27 @@ typedef struct TileSurface {
 
 /* The points that the samples of a tile hit, mm in the view's frame; undefined for samples that hit
  * nothing. */
-typedef struct SeenPlaces {
+typedef struct HitPoints {
     double x[TILE_SAMPLES], y[TILE_SAMPLES], z[TILE_SAMPLES];
-} SeenPlaces;
+} HitPoints;
 
 /* The projection from the camera's frame to a light view: from points to their tile in the light
  * view, and their depth. */
-typedef struct LightAim {
+typedef struct LightProjection {
     Vec3 axes[3], offset; /* the light's axes in the camera's frame; the camera in the light's */
     bool perspective;
     double left, top, per_x, per_y; /* edges of the first tile; tiles per unit of the plane */
     double columns, rows;           /* number of columns and rows of tiles */
     double slack;                   /* depth by which a blocker must be nearer to the light */
     double z_middle;                /* subtracted from depths, so that floats hold them well */
-} LightAim;
+} LightProjection;
 
 /* Points of a tile, projected to a light view. */
-typedef struct AimedPlaces {
+typedef struct ProjectedPoints {
     float x[TILE_SAMPLES], y[TILE_SAMPLES]; /* in the light view's plane, from the tile's middle */
     double z[TILE_SAMPLES];                 /* depth limit of blockers, minus z_middle */
     int32_t tile[TILE_SAMPLES];             /* index of the light's tile, row by row */
-} AimedPlaces;
+} ProjectedPoints;
 
 typedef struct TileKernels {
     /* Computes the colours of hits. They agree with shade() to 2e-5 of the light's colour. Sets the
@@ -77,13 +77,13 @@ typedef struct TileKernels {
                    const uint8_t background[3], uint8_t *pixels, size_t stride);
     /* Returns a mask: bit i is set if the visible side of the surface at sample i faces the light.
      * Bits of samples that hit nothing are undefined. */
-    uint64_t (*face)(const SeenTile *seen, const SeenPlaces *places,
+    uint64_t (*face)(const TracedTile *seen, const HitPoints *places,
                      const float normal[3][TILE_SAMPLES], const TileLight *light);
     /* Projects the points to the light view. Points of samples that hit nothing get a valid tile,
      * too. */
-    void (*aim)(const LightAim *aim, const SeenPlaces *places, AimedPlaces *aimed);
+    void (*aim)(const LightProjection *aim, const HitPoints *places, ProjectedPoints *aimed);
     /* Returns a mask of the samples whose projected point lies in the light's tile `tile`. */
-    uint64_t (*within)(const AimedPlaces *aimed, int32_t tile);
+    uint64_t (*within)(const ProjectedPoints *aimed, int32_t tile);
 } TileKernels;
 
 /* The kinds of kernels: first the portable one, then one for each newer instruction set. */

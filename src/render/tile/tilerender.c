@@ -63,7 +63,7 @@ static int tiles_of(int samples)
     return (samples + TILE_SIDE - 1) / TILE_SIDE;
 }
 
-static bool is_inside(const SeenTile *seen, int sample)
+static bool is_inside(const TracedTile *seen, int sample)
 {
     return tile_sample_x(sample) < seen->n_columns && tile_sample_y(sample) < seen->n_rows;
 }
@@ -71,7 +71,7 @@ static bool is_inside(const SeenTile *seen, int sample)
 /* ---- shadows --------------------------------------------------------------------------------- */
 
 /* Returns the samples inside the image that hit something, as bits. */
-static uint64_t find_hits(const SeenTile *seen)
+static uint64_t find_hits(const TracedTile *seen)
 {
     const bool whole = seen->n_columns == TILE_SIDE && seen->n_rows == TILE_SIDE;
     uint64_t hits = 0;
@@ -85,9 +85,9 @@ static uint64_t find_hits(const SeenTile *seen)
 
 /* Sets the positions of a tile's hits in the frame of the view. Those of the ground are rounded as
  * the engine rounds its own. */
-static void locate(const TileEngine *engine, const BatchTile *tile, SeenPlaces *restrict places)
+static void locate(const TileEngine *engine, const BatchTile *tile, HitPoints *restrict places)
 {
-    const SeenTile *seen = &tile->seen;
+    const TracedTile *seen = &tile->seen;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         places->x[sample] = seen->middle_x + (double)seen->x[sample];
         places->y[sample] = seen->middle_y + (double)seen->y[sample];
@@ -105,7 +105,7 @@ static void locate(const TileEngine *engine, const BatchTile *tile, SeenPlaces *
 
 /* Finds the shadows of one light by rays. */
 static void cast_shadows(const TilePicture *picture, int worker, const Light *light,
-                         const SeenPlaces *places, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
+                         const HitPoints *places, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
 {
     const Drawing *drawing = picture->canvas.drawing;
     for (; wanted; wanted &= wanted - 1) {
@@ -122,7 +122,7 @@ static void query_lights(const TilePicture *picture, int worker, const BatchTile
     const TileKernels *kernels = picture->canvas.kernels;
     const TileBatch *batch = &picture->batches[worker];
     const uint64_t hits = find_hits(&tile->seen);
-    SeenPlaces places;
+    HitPoints places;
     locate(picture->engine, tile, &places);
     for (uint64_t left = tile->items ? tile->seen.ground : 0; left; left &= left - 1)
         tile->items[__builtin_ctzll(left)] = NO_ITEM;
@@ -161,7 +161,7 @@ static Status find_shadows(const TilePicture *picture, int worker, Err *err)
 /* ---- colours --------------------------------------------------------------------------------- */
 
 /* Returns the ray of a sample. */
-static Ray sample_ray(const TilePicture *picture, const SeenTile *seen, int sample)
+static Ray sample_ray(const TilePicture *picture, const TracedTile *seen, int sample)
 {
     const SampleGrid *grid = &picture->pass->grid;
     return camera_ray(&picture->canvas.drawing->view->camera,
@@ -170,18 +170,18 @@ static Ray sample_ray(const TilePicture *picture, const SeenTile *seen, int samp
 }
 
 /* Returns the surface that a sample hits. */
-static Surfel surfel_of(const TilePicture *picture, const SeenTile *seen, int sample)
+static Surfel surfel_of(const TilePicture *picture, const TracedTile *seen, int sample)
 {
     const float(*n)[TILE_SAMPLES] = seen->hits->normal;
     const Vec3 normal = {(double)n[0][sample], (double)n[1][sample], (double)n[2][sample]};
     const Geometry *geometry = picture->canvas.drawing->geometry;
-    return (Surfel){.t = seen_depth(seen, sample),
+    return (Surfel){.t = tile_hit_distance(seen, sample),
                     .normal = vec3_normalized(viewpoint_to_world(&picture->canvas.eye, normal)),
                     .segment = geometry->segments[seen->hits->segment[sample]].segment};
 }
 
 /* Colours each sample on its own, with the effects that the kernel does not know. */
-static void color_samples(const TilePicture *picture, int worker, const SeenTile *seen,
+static void color_samples(const TilePicture *picture, int worker, const TracedTile *seen,
                           float color[3][TILE_SAMPLES])
 {
     const SampleGrid *grid = &picture->pass->grid;
@@ -227,7 +227,7 @@ static bool wants_more(const Canvas *canvas, int column, int row)
 /* Starts the sums of a tile with its pixels' centres, which the frame holds. */
 static void begin_sums(const Canvas *canvas, BatchTile *tile)
 {
-    const SeenTile *seen = &tile->seen;
+    const TracedTile *seen = &tile->seen;
     for (int j = 0; j < seen->n_rows; j++)
         for (int i = 0; i < seen->n_columns; i++) {
             size_t pixel = canvas_pixel(canvas, seen->column + i, seen->row + j);
@@ -249,7 +249,7 @@ static void add_to_sums(const TilePicture *picture, int worker, int shift, Batch
 
 static void write_means(const Canvas *canvas, const BatchTile *tile)
 {
-    const SeenTile *seen = &tile->seen;
+    const TracedTile *seen = &tile->seen;
     for (int j = 0; j < seen->n_rows; j++)
         for (int i = 0; i < seen->n_columns; i++) {
             size_t pixel = canvas_pixel(canvas, seen->column + i, seen->row + j);
@@ -266,7 +266,7 @@ static Status trace_tile(const TilePicture *picture, int worker, int shift, Batc
     const Canvas *canvas = &picture->canvas;
     TRY(picture->engine->trace(picture->pass->bins, worker, shift, tile, err));
     if (!canvas->wholly_colored && canvas->drawing->view->ground.present)
-        canvas_see_ground(canvas, &tile->seen, &tile->hits);
+        canvas_trace_ground(canvas, &tile->seen, &tile->hits);
     return STATUS_OK;
 }
 
@@ -292,7 +292,7 @@ static Status draw_shifted(const TilePicture *picture, int worker, Err *err)
 /* ---- the fine grid --------------------------------------------------------------------------- */
 
 /* Keeps the colours of a tile of the fine grid until those of a row of pixel tiles are complete. */
-static void keep_fine(const TilePicture *picture, const TileBatch *batch, const SeenTile *seen,
+static void keep_fine(const TilePicture *picture, const TileBatch *batch, const TracedTile *seen,
                       float (*color)[TILE_SAMPLES])
 {
     size_t width = (size_t)picture->pass->grid.n_columns;
@@ -331,14 +331,14 @@ static void add_up_rows(const TilePicture *picture, const TileBatch *batch, int 
 /* ---- tiles ----------------------------------------------------------------------------------- */
 
 /* Turns the normals of hits towards the viewer. */
-static void face_viewer(const SeenTile *seen, TileHits *hits)
+static void face_viewer(const TracedTile *seen, TileHits *hits)
 {
     float(*normal)[TILE_SAMPLES] = hits->normal;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (hits->state[sample] != TILE_HIT)
             continue;
         Vec3 v = {(double)normal[0][sample], (double)normal[1][sample], (double)normal[2][sample]};
-        Vec3 line = seen->perspective ? seen_line(seen, sample) : vec3(0, 0, 1);
+        Vec3 line = seen->perspective ? tile_line(seen, sample) : vec3(0, 0, 1);
         for (int c = 0; c < 3 && vec3_dot(v, line) > 0; c++)
             normal[c][sample] = -normal[c][sample];
     }
@@ -379,7 +379,7 @@ static Status draw_batch(const TilePicture *picture, int worker, Err *err)
 static Status find_thin(const TilePicture *picture, BatchTile *tile, Err *err)
 {
     const ThinLayer *thin = picture->canvas.wants_color ? picture->canvas.drawing->thin : NULL;
-    const SeenTile *seen = &tile->seen;
+    const TracedTile *seen = &tile->seen;
     const int per_pixel = picture->pass->grid.side, side = picture->canvas.more.side;
     const int fine = side * TILE_SIDE;
     if (per_pixel == 1 && thinlayer_misses(thin, seen->column / TILE_SIDE, seen->row / TILE_SIDE))
@@ -401,11 +401,11 @@ static Status begin_tile(const TilePicture *picture, int column, int row, int wo
     TileBatch *batch = &picture->batches[worker];
     BatchTile *tile = &batch->tiles[batch->n_tiles];
     const bool listed = picture->engine->is_listed(picture->pass->bins, column, worker);
-    tile->seen = (SeenTile){.column = column * TILE_SIDE,
-                            .row = row * TILE_SIDE,
-                            .n_columns = tile_extent(grid->n_columns - column * TILE_SIDE),
-                            .n_rows = tile_extent(grid->n_rows - row * TILE_SIDE),
-                            .perspective = camera->projection == PROJECTION_PERSPECTIVE};
+    tile->seen = (TracedTile){.column = column * TILE_SIDE,
+                              .row = row * TILE_SIDE,
+                              .n_columns = tile_extent(grid->n_columns - column * TILE_SIDE),
+                              .n_rows = tile_extent(grid->n_rows - row * TILE_SIDE),
+                              .perspective = camera->projection == PROJECTION_PERSPECTIVE};
     TRY(find_thin(picture, tile, err));
     *shown = tile->cells.n > 0 || picture->canvas.wholly_colored ||
              picture->canvas.drawing->view->ground.present;

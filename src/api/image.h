@@ -1,0 +1,15 @@
+/* The picture of a caller. */
+#ifndef CORCAST_API_IMAGE_H
+#define CORCAST_API_IMAGE_H
+
+#include "api/handle.h"
+#include "image/image.h"
+
+struct corcast_image {
+    Handle handle;
+    Image color; /* integer codes, or floats; empty if there are no colours */
+    Plane depth, normal;
+    IdPlane ids;
+};
+
+#endif

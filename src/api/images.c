@@ -1,0 +1,326 @@
+/* Pictures in memory. Colours stay as they were made or read, as integer codes or as floats; a
+ * caller who asks for another type gets a conversion. */
+#include "api/image.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- making ---------------------------------------------------------------------------------- */
+
+static Status read_image(const char *path, corcast_image **out, Err *err)
+{
+    corcast_image *made = NULL;
+    TRY(path_check(path, "path", err));
+    TRY(argument_check(out, "out", err));
+    TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
+    Status status = image_read(&made->color, path, ALPHA_KEPT, NULL, err);
+    if (status == STATUS_OK)
+        *out = made;
+    else
+        corcast_image_free(made);
+    return status;
+}
+
+int corcast_image_read(const char *path, corcast_image **out, corcast_error *error)
+{
+    Call call = call_begin(error);
+    return call_end(&call, read_image(path, out, &call.err));
+}
+
+/* Returns the bytes of one number; 0 for an unknown type. */
+static size_t bytes_of(corcast_type type)
+{
+    static const size_t bytes[] = {
+        [CORCAST_U8] = 1, [CORCAST_U16] = 2, [CORCAST_F32] = 4, [CORCAST_U32] = 4};
+    return (unsigned)type < sizeof bytes / sizeof *bytes ? bytes[type] : 0;
+}
+
+/* The caller's pixels. */
+typedef struct Pixels {
+    int width, height, channels;
+    corcast_type type;
+    const void *at;
+    size_t size; /* bytes */
+} Pixels;
+
+static Status check_pixels(const Pixels *pixels, Err *err)
+{
+    const int channels = pixels->channels;
+    TRY(argument_check(pixels->at, "pixels", err));
+    if (pixels->type != CORCAST_U8 && pixels->type != CORCAST_U16 && pixels->type != CORCAST_F32)
+        return err_set(err, STATUS_USAGE,
+                       "type is %d; it must be CORCAST_U8, CORCAST_U16 or CORCAST_F32",
+                       (int)pixels->type);
+    if (channels != 1 && channels != 3 && (channels != 4 || pixels->type == CORCAST_F32))
+        return err_set(err, STATUS_USAGE, "channels is %d; it must be 1 or 3, or 4 for integers",
+                       channels);
+    if (pixels->width < 1 || pixels->height < 1 || pixels->width > IMAGE_MAX_SIDE ||
+        pixels->height > IMAGE_MAX_SIDE)
+        return err_set(err, STATUS_USAGE, "%d x %d pixels; both sides must be in 1..%d",
+                       pixels->width, pixels->height, IMAGE_MAX_SIDE);
+    const size_t needed =
+        (size_t)pixels->width * (size_t)pixels->height * (size_t)channels * bytes_of(pixels->type);
+    if (pixels->size != needed)
+        return err_set(err, STATUS_USAGE, "size is %zu bytes; these pixels have %zu", pixels->size,
+                       needed);
+    return STATUS_OK;
+}
+
+static Status fill_image(const Pixels *pixels, Image *image, Err *err)
+{
+    if (pixels->type == CORCAST_F32) {
+        TRY(plane_init_unset(&image->plane, pixels->width, pixels->height, pixels->channels, err));
+        memcpy(image->plane.values, pixels->at, pixels->size);
+        return STATUS_OK;
+    }
+    TRY(picture_init(&image->picture, pixels->width, pixels->height, pixels->channels,
+                     pixels->type == CORCAST_U8 ? 8 : 16, err));
+    memcpy(picture_codes(&image->picture), pixels->at, pixels->size);
+    return STATUS_OK;
+}
+
+static Status from_pixels(const Pixels *pixels, corcast_image **out, Err *err)
+{
+    corcast_image *made = NULL;
+    TRY(argument_check(out, "out", err));
+    TRY(check_pixels(pixels, err));
+    TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
+    Status status = fill_image(pixels, &made->color, err);
+    if (status == STATUS_OK)
+        *out = made;
+    else
+        corcast_image_free(made);
+    return status;
+}
+
+int corcast_image_from_pixels(int width, int height, int channels, corcast_type type,
+                              const void *pixels, size_t size, corcast_image **out,
+                              corcast_error *error)
+{
+    Call call = call_begin(error);
+    const Pixels given = {width, height, channels, type, pixels, size};
+    return call_end(&call, from_pixels(&given, out, &call.err));
+}
+
+/* ---- reading back ---------------------------------------------------------------------------- */
+
+/* The size of a plane; zeros if the image does not have it. */
+typedef struct PlaneShape {
+    int width, height, channels;
+} PlaneShape;
+
+static PlaneShape shape_of(const corcast_image *image, corcast_plane plane)
+{
+    const Picture *picture = &image->color.picture;
+    const Plane *floats = plane == CORCAST_DEPTH    ? &image->depth
+                          : plane == CORCAST_NORMAL ? &image->normal
+                                                    : &image->color.plane;
+    if (plane == CORCAST_ID)
+        return (PlaneShape){image->ids.width, image->ids.height, image->ids.ids ? 1 : 0};
+    if (plane == CORCAST_COLOR && picture->width > 0)
+        return (PlaneShape){picture->width, picture->height, picture->channels};
+    return (PlaneShape){floats->width, floats->height, floats->channels};
+}
+
+static Status check_plane(const corcast_image *image, corcast_plane plane, Err *err)
+{
+    TRY(handle_check(image, HANDLE_IMAGE, "image", err));
+    if ((unsigned)plane > CORCAST_ID)
+        return err_set(err, STATUS_USAGE, "plane is %d; it must be in 0..%d", (int)plane,
+                       CORCAST_ID);
+    return STATUS_OK;
+}
+
+static Status get_shape(const corcast_image *image, corcast_plane plane, PlaneShape *shape,
+                        Err *err)
+{
+    TRY(check_plane(image, plane, err));
+    *shape = shape_of(image, plane);
+    return STATUS_OK;
+}
+
+int corcast_image_shape(const corcast_image *image, corcast_plane plane, int *width, int *height,
+                        int *channels, corcast_error *error)
+{
+    Call call = call_begin(error);
+    PlaneShape shape;
+    Status status = get_shape(image, plane, &shape, &call.err);
+    if (status == STATUS_OK && width)
+        *width = shape.width;
+    if (status == STATUS_OK && height)
+        *height = shape.height;
+    if (status == STATUS_OK && channels)
+        *channels = shape.channels;
+    return call_end(&call, status);
+}
+
+/* Converts a plane of colours with alpha in its last channel to codes. */
+static Status codes_of_transparent(const Plane *plane, int bits, Picture *out, Err *err)
+{
+    const size_t n = (size_t)plane->width * (size_t)plane->height;
+    Plane color = {0}, alpha = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(plane_init_unset(&color, plane->width, plane->height, 3, err));
+    TRY_GOTO(plane_init_unset(&alpha, plane->width, plane->height, 1, err));
+    for (size_t i = 0; i < n; i++) {
+        memcpy(&color.values[3 * i], &plane->values[4 * i], 3 * sizeof *color.values);
+        alpha.values[i] = plane->values[4 * i + 3];
+    }
+    status = picture_from_transparent(out, &color, &alpha, ENCODING_SRGB, bits, err);
+done:
+    plane_release(&color);
+    plane_release(&alpha);
+    return status;
+}
+
+/* Makes the colours of an image as integer codes of sRGB. */
+static Status codes_of(const Image *image, int bits, Picture *out, Err *err)
+{
+    if (!image->plane.values)
+        return picture_to_srgb(out, &image->picture, bits, err);
+    if (image->plane.channels == 4)
+        return codes_of_transparent(&image->plane, bits, out, err);
+    return picture_from_plane(out, &image->plane, ENCODING_SRGB, bits, err);
+}
+
+/* Copies codes that need no conversion. Returns false if they do. */
+static bool copy_codes(const Picture *picture, int bits, void *buffer)
+{
+    if (picture->width == 0 || picture->bits != bits || picture->gamma != 0)
+        return false;
+    memcpy(buffer, bits == 8 ? (const void *)picture->codes8 : (const void *)picture->codes16,
+           picture_stride(picture) * (size_t)picture->height * (size_t)bits / 8);
+    return true;
+}
+
+static Status copy_color(const Image *image, corcast_type type, void *buffer, size_t size, Err *err)
+{
+    Image made = {0};
+    const Plane *plane = &image->plane;
+    const int bits = type == CORCAST_U8 ? 8 : 16;
+    Status status = STATUS_OK;
+    if (type != CORCAST_F32 && copy_codes(&image->picture, bits, buffer))
+        return STATUS_OK;
+    if (type != CORCAST_F32) {
+        TRY_GOTO(codes_of(image, bits, &made.picture, err));
+        memcpy(buffer, picture_codes(&made.picture), size);
+        goto done;
+    }
+    if (!plane->values) {
+        TRY_GOTO(plane_from_picture(&made.plane, &image->picture, err));
+        plane = &made.plane;
+    }
+    memcpy(buffer, plane->values, size);
+done:
+    image_release(&made);
+    return status;
+}
+
+/* Checks that a plane can be had as a type. */
+static Status check_type(corcast_plane plane, corcast_type type, Err *err)
+{
+    const bool fits = plane == CORCAST_ID      ? type == CORCAST_U32
+                      : plane == CORCAST_COLOR ? bytes_of(type) > 0 && type != CORCAST_U32
+                                               : type == CORCAST_F32;
+    if (fits)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "type is %d; this plane is %s", (int)type,
+                   plane == CORCAST_ID      ? "CORCAST_U32"
+                   : plane == CORCAST_COLOR ? "CORCAST_U8, CORCAST_U16 or CORCAST_F32"
+                                            : "CORCAST_F32");
+}
+
+/* Checks that the image has the plane, and that the type is one of the plane's. */
+static Status find_plane(const corcast_image *image, corcast_plane plane, corcast_type type,
+                         PlaneShape *shape, Err *err)
+{
+    static const char *const names[] = {"colours", "depth", "normals", "ids"};
+    TRY(check_plane(image, plane, err));
+    TRY(check_type(plane, type, err));
+    *shape = shape_of(image, plane);
+    return shape->channels ? STATUS_OK
+                           : err_set(err, STATUS_USAGE, "the image has no %s", names[plane]);
+}
+
+static Status get_pixels(const corcast_image *image, corcast_plane plane, corcast_type type,
+                         void *buffer, size_t size, Err *err)
+{
+    PlaneShape shape;
+    TRY(find_plane(image, plane, type, &shape, err));
+    TRY(argument_check(buffer, "buffer", err));
+    const size_t needed =
+        (size_t)shape.width * (size_t)shape.height * (size_t)shape.channels * bytes_of(type);
+    if (size < needed)
+        return err_set(err, STATUS_USAGE, "size is %zu bytes; the plane needs %zu", size, needed);
+    if (plane == CORCAST_COLOR)
+        return copy_color(&image->color, type, buffer, needed, err);
+    memcpy(buffer,
+           plane == CORCAST_ID      ? (const void *)image->ids.ids
+           : plane == CORCAST_DEPTH ? (const void *)image->depth.values
+                                    : (const void *)image->normal.values,
+           needed);
+    return STATUS_OK;
+}
+
+int corcast_image_pixels(const corcast_image *image, corcast_plane plane, corcast_type type,
+                         void *buffer, size_t size, corcast_error *error)
+{
+    Call call = call_begin(error);
+    return call_end(&call, get_pixels(image, plane, type, buffer, size, &call.err));
+}
+
+/* ---- writing --------------------------------------------------------------------------------- */
+
+static Status write_floats(const corcast_image *image, corcast_plane plane, const char *path,
+                           Err *err)
+{
+    if (plane == CORCAST_DEPTH || plane == CORCAST_NORMAL)
+        return plane_write(plane == CORCAST_DEPTH ? &image->depth : &image->normal, path, NULL,
+                           err);
+    if (image->color.plane.values)
+        return plane_write(&image->color.plane, path, NULL, err);
+    Plane made = {0};
+    TRY(plane_from_picture(&made, &image->color.picture, err));
+    Status status = plane_write(&made, path, NULL, err);
+    plane_release(&made);
+    return status;
+}
+
+static Status write_image(const corcast_image *image, corcast_plane plane, corcast_type type,
+                          const char *path, Err *err)
+{
+    PlaneShape shape;
+    Picture made = {0};
+    TRY(find_plane(image, plane, type, &shape, err));
+    TRY(path_check(path, "path", err));
+    if (type == CORCAST_F32 && shape.channels == 4)
+        return err_set(err, STATUS_USAGE, "%s: floats with alpha are written by corcast_export",
+                       path);
+    if (type == CORCAST_F32)
+        return write_floats(image, plane, path, err);
+    if (plane == CORCAST_ID)
+        TRY(picture_from_ids(&made, &image->ids, err));
+    else
+        TRY(codes_of(&image->color, type == CORCAST_U8 ? 8 : 16, &made, err));
+    Status status = picture_write(&made, path, ENCODING_SRGB, NULL, NULL, err);
+    picture_release(&made);
+    return status;
+}
+
+int corcast_image_write(const corcast_image *image, corcast_plane plane, corcast_type type,
+                        const char *path, corcast_error *error)
+{
+    Call call = call_begin(error);
+    return call_end(&call, write_image(image, plane, type, path, &call.err));
+}
+
+void corcast_image_free(corcast_image *image)
+{
+    if (!handle_is(image, HANDLE_IMAGE))
+        return;
+    image_release(&image->color);
+    plane_release(&image->depth);
+    plane_release(&image->normal);
+    idplane_release(&image->ids);
+    handle_free(image);
+}

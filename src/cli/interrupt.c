@@ -1,0 +1,36 @@
+/* The handler only sets a flag, and puts the old action back, so that a second SIGINT ends a
+ * program that does not come to ask for the flag. */
+#include "cli/interrupt.h"
+
+#include <signal.h>
+#include <stddef.h>
+
+/* A signal handler can reach nothing but globals. */
+static volatile sig_atomic_t asked;
+static struct sigaction before;
+
+static void note(int signal_number)
+{
+    asked = 1;
+    sigaction(signal_number, &before, NULL);
+}
+
+void interrupt_catch(void)
+{
+    struct sigaction action = {.sa_handler = note};
+    sigemptyset(&action.sa_mask);
+    asked = 0;
+    sigaction(SIGINT, &action, &before);
+    if (before.sa_handler == SIG_IGN)
+        sigaction(SIGINT, &before, NULL);
+}
+
+void interrupt_release(void)
+{
+    sigaction(SIGINT, &before, NULL);
+}
+
+bool interrupt_asked(void)
+{
+    return asked != 0;
+}

@@ -1,0 +1,589 @@
+/* Where two pictures differ, when no map of one onto the other explains it: another background,
+ * one thing missing or extra, outlines only, highlights only, shading only. What is said is what
+ * the pixels show:
+ *
+ * - The background differs when nothing else does but outlines against it, with which it is mixed.
+ * - One thing is missing when the background took its place: the pixels seen in A only are one
+ *   region, which in A borders on background for three quarters of its rim (a cut end does, a worn
+ *   outline borders on what is left), and next to nothing else differs.
+ * - Outlines differ when the pixels that differ have neighbours of quite other colours in both
+ *   pictures, and there are others within the outlines to tell, most of which have the
+ *   same codes: of things a few pixels wide nothing can be said.
+ * - Highlights differ when the light in which the pictures differ is nearly white (a highlight has
+ *   the lamp's colour, all else the surface's), and the same at all pixels, on surfaces that are
+ *   not. Of grey surfaces nothing can be said.
+ * - Shading differs when that light is more, or less, of the surface's own colour and of white at
+ *   each pixel, but for a hundredth and for the rounding of codes. More of one and less of the
+ * other is another saturation, and anything else another hue: both are other colours, not other
+ * light.
+ */
+#include "compare/cause/guesses.h"
+#include "compare/measures/labels.h"
+#include "compare/pixels.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static size_t first_code(const Picture *picture, int x, int y)
+{
+    return ((size_t)y * (size_t)picture->width + (size_t)x) * (size_t)picture->channels;
+}
+
+static bool is_seen(const Labels *labels, const Picture *picture, int side, int x, int y)
+{
+    size_t at = first_code(picture, x, y);
+    for (int c = 0; c < picture->channels; c++)
+        if (picture_code(picture, at + (size_t)c) != labels->background[side][c])
+            return true;
+    return false;
+}
+
+/* ---- another background ---------------------------------------------------------------------- */
+
+/* Pixels of a row that are not background on both sides: those that are equal, those that differ
+ * beside background, which are mixed with it, and others that differ. */
+typedef struct RowBackground {
+    size_t equal, rims, others;
+} RowBackground;
+
+typedef struct Backgrounds {
+    const Picture *pictures[2];
+    Labels labels;
+    RowBackground *rows; /* owned */
+} Backgrounds;
+
+static bool touches_background(const Backgrounds *self, int x, int y)
+{
+    int right = x + 1 < self->labels.width ? x + 1 : x;
+    int bottom = y + 1 < self->labels.height ? y + 1 : y;
+    for (int v = y > 0 ? y - 1 : 0; v <= bottom; v++)
+        for (int u = x > 0 ? x - 1 : 0; u <= right; u++)
+            for (int side = 0; side < 2; side++)
+                if (!is_seen(&self->labels, self->pictures[side], side, u, v))
+                    return true;
+    return false;
+}
+
+static void count_background_at(const Backgrounds *self, int x, int y, RowBackground *count)
+{
+    const Picture *a = self->pictures[0], *b = self->pictures[1];
+    if (!is_seen(&self->labels, a, 0, x, y) && !is_seen(&self->labels, b, 1, x, y))
+        return;
+    if (picture_rows_equal(a, b, y, x, 1))
+        count->equal++;
+    else
+        ++*(touches_background(self, x, y) ? &count->rims : &count->others);
+}
+
+static void count_background(size_t y, int worker, void *context)
+{
+    (void)worker;
+    const Backgrounds *self = context;
+    for (int x = 0; x < self->labels.width; x++)
+        count_background_at(self, x, (int)y, &self->rows[y]);
+}
+
+/* Whether it is worth while to ask all pixels. */
+static bool may_be_background(const Backgrounds *self, const Samples *samples)
+{
+    RowBackground count = {0};
+    for (int i = 0; i < samples->n; i++)
+        count_background_at(self, samples->at[i].x, samples->at[i].y, &count);
+    return count.others <= 2 + (size_t)samples->n / 50;
+}
+
+/* "(12, 30, 41)" */
+static void describe_background(const Labels *labels, int side, int channels, char out[32])
+{
+    const uint16_t *codes = labels->background[side];
+    if (channels == 1)
+        snprintf(out, 32, "%u", codes[0]);
+    else
+        snprintf(out, 32, "(%u, %u, %u)", codes[0], codes[1], codes[2]);
+}
+
+static void say_background(const Backgrounds *self, Sentence *out)
+{
+    RowBackground sum = {0};
+    char colors[2][32];
+    for (int y = 0; y < self->labels.height; y++) {
+        sum.equal += self->rows[y].equal;
+        sum.rims += self->rows[y].rims;
+        sum.others += self->rows[y].others;
+    }
+    if (sum.equal == 0 || 4 * sum.equal < sum.rims || 50 * sum.others > sum.equal)
+        return;
+    for (int side = 0; side < 2; side++)
+        describe_background(&self->labels, side, self->pictures[side]->channels, colors[side]);
+    snprintf(out->text, out->size,
+             "only the background differs, and what is mixed with it at outlines: it is %s in A "
+             "and %s in B",
+             colors[0], colors[1]);
+}
+
+static bool have_backgrounds_unlike(const Labels *labels, int channels)
+{
+    size_t size = (size_t)channels * sizeof labels->background[0][0];
+    return labels->source == LABELS_BACKGROUND &&
+           memcmp(labels->background[0], labels->background[1], size) != 0;
+}
+
+Status cause_background(const Picture *a, const Picture *b, const Samples *samples, Sentence *out,
+                        Err *err)
+{
+    Backgrounds self = {.pictures = {a, b}, .labels = labels_from_background(a, b)};
+    size_t height = (size_t)a->height;
+    if (!have_backgrounds_unlike(&self.labels, a->channels) || !may_be_background(&self, samples))
+        return STATUS_OK;
+    TRY(mem_calloc(&self.rows, height, sizeof *self.rows, "counts of rows", err));
+    threads_for(height, 0, count_background, &self);
+    say_background(&self, out);
+    free(self.rows);
+    return STATUS_OK;
+}
+
+/* ---- one thing missing ----------------------------------------------------------------------- */
+
+/* Pixels seen on one side only, and what side-neighbours that are not such pixels show there. */
+typedef struct Lack {
+    size_t pixels, rim, background;
+    int left, top, right, bottom;
+} Lack;
+
+static void add_lack(const Labels *labels, const Picture *const pictures[2], int side, int x, int y,
+                     Lack *lack)
+{
+    static const int steps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    lack->pixels++;
+    lack->left = x < lack->left ? x : lack->left;
+    lack->right = x > lack->right ? x : lack->right;
+    lack->top = y < lack->top ? y : lack->top;
+    lack->bottom = y;
+    for (int i = 0; i < 4; i++) {
+        int u = x + steps[i][0], v = y + steps[i][1];
+        if (u < 0 || v < 0 || u >= labels->width || v >= labels->height)
+            continue;
+        bool here = is_seen(labels, pictures[side], side, u, v);
+        bool lacking = here && !is_seen(labels, pictures[!side], !side, u, v);
+        lack->rim += !lacking;
+        lack->background += !here;
+    }
+}
+
+/* What side `side` shows and the other does not. */
+static Lack find_lack(const Labels *labels, const Picture *const pictures[2], int side)
+{
+    Lack lack = {.left = labels->width, .top = labels->height};
+    for (int y = 0; y < labels->height; y++)
+        for (int x = 0; x < labels->width; x++)
+            if (is_seen(labels, pictures[side], side, x, y) &&
+                !is_seen(labels, pictures[!side], !side, x, y))
+                add_lack(labels, pictures, side, x, y, &lack);
+    return lack;
+}
+
+static void say_lack(const Picture *a, const Picture *b, const CompareResult *result, Sentence *out)
+{
+    const Picture *const pictures[2] = {a, b};
+    const Labels labels = labels_from_background(a, b);
+    const size_t differing = result_count(result, MEASURE_DIFFERING_PIXELS);
+    if (20 * (result->values[MEASURE_UNCOMMON_PIXELS] + result->values[MEASURE_SETTLED_PIXELS]) <
+        19 * (double)differing)
+        return; /* most of what differs is in both */
+    for (int side = 0; side < 2 && labels.source == LABELS_BACKGROUND && !*out->text; side++) {
+        Lack lack = find_lack(&labels, pictures, side);
+        bool one = 20 * result->values[MEASURE_LARGEST_REGION] >= 19 * (double)lack.pixels;
+        bool only = 20 * lack.pixels >= 19 * differing;
+        if (lack.pixels >= 9 && one && only && 4 * lack.background >= 3 * lack.rim)
+            snprintf(out->text, out->size,
+                     "one thing, or a part of one, is in %s only, %zu pixels from (%d, %d) to "
+                     "(%d, %d); %zu other pixels differ",
+                     side ? "B" : "A", lack.pixels, lack.left, lack.top, lack.right, lack.bottom,
+                     differing - lack.pixels);
+    }
+}
+
+/* Likewise where ids tell the segments: one is missing, and it covers what differs. */
+static void say_missing_segment(const CompareResult *result, Sentence *out)
+{
+    const size_t differing = result_count(result, MEASURE_DIFFERING_PIXELS);
+    for (int i = 0; i < result->n_worst_segments && !*out->text; i++) {
+        const LedgerEntry *entry = &result->worst_segments[i];
+        size_t area = entry->area_a + entry->area_b;
+        if ((entry->area_a == 0 || entry->area_b == 0) && area <= differing &&
+            20 * area >= 19 * differing)
+            snprintf(out->text, out->size,
+                     "segment %u is in %s only, %zu pixels from (%d, %d) to (%d, %d); %zu other "
+                     "pixels differ",
+                     entry->id, entry->area_a ? "A" : "B", area, entry->left, entry->top,
+                     entry->right, entry->bottom, differing - area);
+    }
+}
+
+/* ---- outlines -------------------------------------------------------------------------------- */
+
+/* The largest difference of a channel among a pixel and its neighbours, levels. */
+static int contrast(const Picture *picture, int x, int y)
+{
+    int largest = 0;
+    for (int c = 0; c < picture->channels; c++) {
+        int low = 65535, high = 0;
+        for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < picture->height; v++)
+            for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < picture->width; u++) {
+                int code = picture_code(picture, first_code(picture, u, v) + (size_t)c);
+                low = code < low ? code : low;
+                high = code > high ? code : high;
+            }
+        largest = high - low > largest ? high - low : largest;
+    }
+    return picture->bits == 8 ? largest : largest / 257;
+}
+
+enum { LEVELS = 32, SLIGHT = 2, BLOCK = 64 };
+
+/* Pixels of a row that differ by more than SLIGHT, at edges and off them, and others off
+ * edges and the background, of which `changed` differ at all. */
+typedef struct RowOutlines {
+    size_t at_edges, off, inner, changed;
+} RowOutlines;
+
+typedef struct Outlines {
+    const Picture *a, *b;
+    Labels labels;
+    int slight;        /* codes */
+    size_t enough;     /* when a row has this many inner pixels the rest of it is not looked at */
+    RowOutlines *rows; /* owned */
+} Outlines;
+
+static bool is_edge(const Outlines *self, int x, int y)
+{
+    return contrast(self->a, x, y) >= LEVELS && contrast(self->b, x, y) >= LEVELS;
+}
+
+static int codes_off(const Outlines *self, int x, int y)
+{
+    size_t pixel = (size_t)y * (size_t)self->a->width + (size_t)x;
+    return largest_difference(self->a, self->b, pixel);
+}
+
+static bool is_slight(const Outlines *self, int x, int y)
+{
+    return codes_off(self, x, y) <= self->slight;
+}
+
+static void count_differing(size_t row, int worker, void *context)
+{
+    (void)worker;
+    const Outlines *self = context;
+    int width = self->a->width, y = (int)row;
+    for (int from = 0; from < width; from += BLOCK) {
+        int to = from + BLOCK < width ? from + BLOCK : width;
+        if (picture_rows_equal(self->a, self->b, y, from, to - from))
+            continue;
+        for (int x = from; x < to; x++)
+            if (!is_slight(self, x, y))
+                ++*(is_edge(self, x, y) ? &self->rows[y].at_edges : &self->rows[y].off);
+    }
+}
+
+static void count_inner(size_t row, int worker, void *context)
+{
+    (void)worker;
+    const Outlines *self = context;
+    bool known = self->labels.source == LABELS_BACKGROUND;
+    int y = (int)row;
+    for (int x = 0; x < self->a->width && self->rows[y].inner < self->enough; x++) {
+        bool inner = (!known || is_seen(&self->labels, self->a, 0, x, y)) &&
+                     is_slight(self, x, y) && !is_edge(self, x, y);
+        self->rows[y].inner += inner;
+        self->rows[y].changed += inner && codes_off(self, x, y) > 0;
+    }
+}
+
+/* Whether it is worth while to ask all pixels. */
+static bool may_be_outlines(const Outlines *self, const Samples *samples)
+{
+    int at_edges = 0, off = 0;
+    for (int i = 0; i < samples->n; i++)
+        if (!is_slight(self, samples->at[i].x, samples->at[i].y))
+            ++*(is_edge(self, samples->at[i].x, samples->at[i].y) ? &at_edges : &off);
+    return at_edges > 0 && (off < 8 || 10 * off < at_edges);
+}
+
+static RowOutlines sum_rows(const Outlines *self)
+{
+    RowOutlines sum = {0};
+    for (int y = 0; y < self->a->height; y++) {
+        sum.at_edges += self->rows[y].at_edges;
+        sum.off += self->rows[y].off;
+        sum.inner += self->rows[y].inner;
+        sum.changed += self->rows[y].changed;
+    }
+    return sum;
+}
+
+static Status say_outlines(const Picture *a, const Picture *b, const Samples *samples,
+                           const CompareResult *result, Sentence *out, Err *err)
+{
+    Outlines self = {.a = a,
+                     .b = b,
+                     .labels = labels_from_background(a, b),
+                     .slight = a->bits == 8 ? SLIGHT : 257 * SLIGHT};
+    size_t height = (size_t)a->height;
+    if (!may_be_outlines(&self, samples))
+        return STATUS_OK;
+    TRY(mem_calloc(&self.rows, height, sizeof *self.rows, "counts of rows", err));
+    threads_for(height, 0, count_differing, &self);
+    RowOutlines sum = sum_rows(&self);
+    self.enough = (sum.at_edges + 3) / 4;
+    if (99 * sum.off <= sum.at_edges)
+        threads_for(height, 0, count_inner, &self);
+    sum = sum_rows(&self);
+    if (99 * sum.off <= sum.at_edges && sum.inner >= self.enough && 2 * sum.changed <= sum.inner)
+        snprintf(out->text, out->size,
+                 "only outlines differ by more than %d levels, by up to %.4g on %.3g %% of the "
+                 "pixels",
+                 SLIGHT, result->values[MEASURE_MAX_ABS],
+                 100.0 * (double)sum.at_edges / result->values[MEASURE_PIXELS]);
+    free(self.rows);
+    return STATUS_OK;
+}
+
+/* ---- shading --------------------------------------------------------------------------------- */
+
+/* Of the light that B has more of than A, pixel by pixel: the squares, the part of them that lies
+ * along white and along the colour of the pixel in A, what no more, or no less, of both makes, and
+ * what the rounding of codes makes. */
+typedef struct Light {
+    double squares, white, own, rest, rounding;
+    /* Of coloured pixels that differ by more than rounding: */
+    double moments[3][3];    /* products of the channels' light, summed */
+    double colored_rounding; /* what the rounding of their codes makes */
+    /* Of those so coloured that light midway between white and their own is neither: */
+    double telling;       /* squares */
+    size_t pixels, plain; /* all; in white or own light alone */
+} Light;
+
+/* The square of what is left of `more` beside `along`. */
+static double beside(const double more[3], const double along[3])
+{
+    double squares = 0, product = 0, length = 0;
+    for (int c = 0; c < 3; c++) {
+        squares += more[c] * more[c];
+        product += more[c] * along[c];
+        length += along[c] * along[c];
+    }
+    return length > 0 ? squares - product * product / length : squares;
+}
+
+/* The square of what is left of `more` beside white and `color`, both of which count with the same
+ * sign: within the angle between them, or against it, only what is square to both is left. */
+static double rest_of(const double more[3], const double color[3])
+{
+    static const double white[3] = {1, 1, 1};
+    double cc = 0, cw = 0, mc = 0, mw = 0, normal[3], across = 0, length = 0;
+    for (int c = 0; c < 3; c++) {
+        cc += color[c] * color[c];
+        cw += color[c];
+        mc += more[c] * color[c];
+        mw += more[c];
+        normal[c] = color[(c + 1) % 3] - color[(c + 2) % 3];
+        across += normal[c] * more[c];
+        length += normal[c] * normal[c];
+    }
+    double of_color = 3 * mc - cw * mw, of_white = cc * mw - cw * mc;
+    if (length > 0 && of_color * of_white >= 0)
+        return across * across / length;
+    return fmin(beside(more, white), beside(more, color));
+}
+
+/* The variance of the light of a code that was rounded. */
+static double variance_of_code(const Plane *table, int code)
+{
+    int low = code > 0 ? code - 1 : 0, high = code + 1 < table->width ? code + 1 : code;
+    double step = (double)(table->values[high] - table->values[low]) / (high - low);
+    return step * step / 12;
+}
+
+static void add_light(const Plane *table, const Picture *a, const Picture *b, size_t at,
+                      Light *light)
+{
+    double sum = 0, squares = 0, along = 0, norm = 0, rounding = 0, more[3], color[3];
+    for (int c = 0; c < 3; c++) {
+        int code_a = picture_code(a, at + (size_t)c), code_b = picture_code(b, at + (size_t)c);
+        if (code_a == table->width - 1 || code_b == table->width - 1)
+            return;
+        double in_a = (double)table->values[code_a], in_b = (double)table->values[code_b];
+        more[c] = in_b - in_a;
+        color[c] = in_a + in_b;
+        sum += more[c];
+        squares += more[c] * more[c];
+        along += more[c] * in_a;
+        norm += in_a * in_a;
+        rounding += variance_of_code(table, code_a) + variance_of_code(table, code_b);
+    }
+    light->squares += squares;
+    light->white += sum * sum / 3;
+    light->own += norm > 0 ? along * along / norm : 0;
+    if (squares > 0) {
+        light->rest += rest_of(more, color);
+        light->rounding += rounding;
+    }
+    static const double white[3] = {1, 1, 1};
+    const double chroma = beside(color, white) / (4 * norm), slack = 0.01; /* parts of squares */
+    if (!(chroma > 2 * slack) || squares <= 10 * rounding)
+        return;
+    light->colored_rounding += rounding;
+    for (int c = 0; c < 3; c++)
+        for (int d = 0; d < 3; d++)
+            light->moments[c][d] += more[c] * more[d];
+    if (!(chroma > 5 * slack))
+        return;
+    double least = fmin(beside(more, white), beside(more, color));
+    light->telling += squares;
+    light->pixels++;
+    light->plain += least <= slack * squares + rounding;
+}
+
+typedef struct Lights {
+    const Picture *a, *b;
+    Plane table;   /* owned; the light of each code */
+    Light *lights; /* owned; of each row */
+} Lights;
+
+static void add_row_light(size_t y, int worker, void *context)
+{
+    (void)worker;
+    const Lights *self = context;
+    if (picture_rows_equal(self->a, self->b, (int)y, 0, self->a->width))
+        return;
+    for (int x = 0; x < self->a->width; x++)
+        add_light(&self->table, self->a, self->b, first_code(self->a, x, (int)y), &self->lights[y]);
+}
+
+/* The light of each code of a picture. */
+static Status light_of_codes(const Picture *picture, Plane *table, Err *err)
+{
+    Picture codes;
+    TRY(picture_init(&codes, 1 << picture->bits, 1, 1, picture->bits, err));
+    codes.gamma = picture->gamma;
+    for (int i = 0; i < codes.width; i++)
+        picture_set(&codes, (size_t)i, (uint16_t)i);
+    Status status = plane_from_picture(table, &codes, err);
+    picture_release(&codes);
+    return status;
+}
+
+static void add_lights(Light *to, const Light *from)
+{
+    to->squares += from->squares;
+    to->white += from->white;
+    to->own += from->own;
+    to->rest += from->rest;
+    to->rounding += from->rounding;
+    to->colored_rounding += from->colored_rounding;
+    to->telling += from->telling;
+    to->pixels += from->pixels;
+    to->plain += from->plain;
+    for (int c = 0; c < 3; c++)
+        for (int d = 0; d < 3; d++)
+            to->moments[c][d] += from->moments[c][d];
+}
+
+static Status sum_light(const Picture *a, const Picture *b, Light *all, Err *err)
+{
+    Lights self = {.a = a, .b = b};
+    size_t height = (size_t)a->height;
+    *all = (Light){0};
+    if (a->channels != 3)
+        return STATUS_OK;
+    TRY(light_of_codes(a, &self.table, err));
+    Status status = mem_calloc(&self.lights, height, sizeof *self.lights, "light of rows", err);
+    if (status == STATUS_OK)
+        threads_for(height, 0, add_row_light, &self);
+    for (size_t y = 0; y < height && status == STATUS_OK; y++)
+        add_lights(all, &self.lights[y]);
+    plane_release(&self.table);
+    free(self.lights);
+    return status;
+}
+
+static bool has_equal_outlines(const CompareResult *result)
+{
+    return result->has_mask && result->values[MEASURE_UNCOMMON_PIXELS] == 0 &&
+           !(result->values[MEASURE_EDGE_MISMATCH] > 0) &&
+           result->classes[PIXEL_WRONG_SEGMENT] == 0;
+}
+
+/* Whether the light of coloured pixels is most of it and has one colour, the lamp's, but for a
+ * two-hundredth and for rounding. The light that another curve of tones takes from surfaces that
+ * are nearly grey is nearly white, too, but its colour is another at each brightness. */
+static bool has_one_color(const Light *light)
+{
+    enum { STEPS = 8 };
+    double along[3] = {1, 1, 1}, next[3], largest = 0;
+    double all = light->moments[0][0] + light->moments[1][1] + light->moments[2][2];
+    if (2 * all < light->squares)
+        return false;
+    for (int step = 0; step < STEPS; step++) { /* the power method */
+        double length = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+        largest = 0;
+        for (int c = 0; c < 3; c++) {
+            next[c] = 0;
+            for (int d = 0; d < 3; d++)
+                next[c] += light->moments[c][d] * along[d] / length;
+            largest += next[c] * along[c] / length;
+        }
+        for (int c = 0; c < 3; c++)
+            along[c] = next[c];
+    }
+    return all - largest <= 0.005 * all + light->colored_rounding;
+}
+
+/* Whether most of the light is of pixels that tell white from their own colour, and two in three of
+ * them have light of one or the other. */
+static bool is_plain(const Light *light)
+{
+    return 2 * light->telling >= light->squares && 3 * light->plain >= 2 * light->pixels;
+}
+
+/* Highlights are what white light explains, and more light of the surfaces' own colours does not.
+ */
+static void say_shading(const CompareResult *result, const Light *light, Sentence *out)
+{
+    bool highlights = light->white > 0.95 * light->squares && light->own < 0.95 * light->squares;
+    bool certain = highlights ? has_one_color(light) : is_plain(light);
+    if (!certain)
+        return;
+    double all = sqrt(result->values[MEASURE_DIFFERING_PIXELS]); /* sigmas, if all go one way */
+    snprintf(out->text, out->size,
+             "only %s, by up to %.4g levels on %.3g %% of the pixels, B %s; the outlines %s",
+             highlights ? "highlights differ" : "shading differs", result->values[MEASURE_MAX_ABS],
+             100.0 * result->values[MEASURE_DIFFERING_PIXELS] / result->values[MEASURE_PIXELS],
+             result->values[MEASURE_SIGN_SIGMA] > 0.98 * all ? "being brighter"
+             : result->values[MEASURE_SIGN_SIGMA] < -0.98 * all
+                 ? "being darker"
+                 : "being brighter here and darker there",
+             result->has_ids ? "of all segments are equal" : "against the background are equal");
+}
+
+Status cause_place(const Picture *a, const Picture *b, const Samples *samples,
+                   const CompareResult *result, Sentence *out, Err *err)
+{
+    say_missing_segment(result, out);
+    if (!*out->text && !result->has_ids)
+        say_lack(a, b, result, out);
+    if (!*out->text)
+        TRY(say_outlines(a, b, samples, result, out, err));
+    const Labels labels = labels_from_background(a, b);
+    bool other = have_backgrounds_unlike(&labels, a->channels);
+    if (*out->text || other || !has_equal_outlines(result))
+        return STATUS_OK;
+    Light light;
+    TRY(sum_light(a, b, &light, err));
+    if (light.rest <= 0.01 * light.squares + light.rounding)
+        say_shading(result, &light, out);
+    return STATUS_OK;
+}

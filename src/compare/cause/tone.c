@@ -1,0 +1,410 @@
+/* Brighter, darker, of another gamma: one curve that takes every code of A to the code of B,
+ * whatever its pixel. Each curve but the last, which is measured, has at most one number, which
+ * sums over the pixels give; of those that fit the samples the best is named, if it fits all
+ * pixels: 49 of 50 codes that are off by more than a level come within one, and no more are driven
+ * away. What is white in either picture may be clipped, and is not asked. */
+#include "compare/cause/guesses.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { KINDS = 11 };
+
+/* Of codes that are neither black nor white, where they may be clipped, in either picture. Levels
+ * are parts of 1 here. */
+typedef struct Sums {
+    double n, linear[2], level[2], log_ab, log_aa; /* of A, of B */
+} Sums;
+
+/* Of each code of a picture, what it means. */
+typedef struct Meaning {
+    int n;
+    float *linear;           /* owned, with all others; parts of 1 */
+    float *level;            /* sRGB's code over its largest */
+    float *log;              /* of the level */
+    float *predicted[KINDS]; /* the level that each curve gives */
+} Meaning;
+
+static Status meaning_init(Meaning *meaning, const Picture *picture, Err *err)
+{
+    Picture codes;
+    Plane linear;
+    int n = 1 << picture->bits;
+    TRY(picture_init(&codes, n, 1, 1, picture->bits, err));
+    codes.gamma = picture->gamma;
+    for (int i = 0; i < n; i++)
+        picture_set(&codes, (size_t)i, (uint16_t)i);
+    Status status = plane_from_picture(&linear, &codes, err);
+    picture_release(&codes);
+    TRY(status);
+    status = mem_calloc(&meaning->linear, (size_t)n * (3 + KINDS), sizeof(float), "codes", err);
+    if (status == STATUS_OK) {
+        meaning->n = n;
+        meaning->level = meaning->linear + n;
+        meaning->log = meaning->level + n;
+        for (int i = 0; i < n; i++) {
+            meaning->linear[i] = linear.values[i];
+            meaning->level[i] = srgb_encode(linear.values[i]);
+            meaning->log[i] = logf(fmaxf(meaning->level[i], 1e-6F));
+        }
+        for (int kind = 0; kind < KINDS; kind++)
+            meaning->predicted[kind] = meaning->log + (kind + 1) * n;
+    }
+    plane_release(&linear);
+    return status;
+}
+
+/* ---- curves ---------------------------------------------------------------------------------- */
+
+static double gain_of_light(const Sums *sums)
+{
+    return sums->linear[1] / sums->linear[0];
+}
+
+static double offset_of_light(const Sums *sums)
+{
+    return (sums->linear[1] - sums->linear[0]) / sums->n;
+}
+
+static double gain_of_codes(const Sums *sums)
+{
+    return sums->level[1] / sums->level[0];
+}
+
+static double offset_of_codes(const Sums *sums)
+{
+    return (sums->level[1] - sums->level[0]) / sums->n;
+}
+
+static double gamma_of_codes(const Sums *sums)
+{
+    return sums->log_ab / sums->log_aa;
+}
+
+static double no_number(const Sums *sums)
+{
+    (void)sums;
+    return 1;
+}
+
+static double gamma_of_screens(const Sums *sums)
+{
+    (void)sums;
+    return 2.2;
+}
+
+static float times_light(float linear, float level, float p)
+{
+    (void)level;
+    return srgb_encode(p * linear);
+}
+
+static float plus_light(float linear, float level, float p)
+{
+    (void)level;
+    return srgb_encode(fmaxf(0, linear + p));
+}
+
+static float times_code(float linear, float level, float p)
+{
+    (void)linear;
+    return p * level;
+}
+
+static float plus_code(float linear, float level, float p)
+{
+    (void)linear;
+    return level + p;
+}
+
+static float power_of_code(float linear, float level, float p)
+{
+    (void)linear;
+    return powf(level, p);
+}
+
+static float encoded_again(float linear, float level, float p)
+{
+    (void)linear;
+    (void)p;
+    return srgb_encode(level);
+}
+
+static float not_encoded(float linear, float level, float p)
+{
+    (void)level;
+    (void)p;
+    return linear;
+}
+
+static float encoded_by_power(float linear, float level, float p)
+{
+    (void)level;
+    return powf(linear, 1 / p);
+}
+
+static float encoded_as_srgb(float linear, float level, float p)
+{
+    (void)linear;
+    return srgb_encode(powf(level, p));
+}
+
+static float negative(float linear, float level, float p)
+{
+    (void)linear;
+    (void)p;
+    return 1 - level;
+}
+
+typedef enum Relation { ALONE, TIMES, PLUS, POWER } Relation;
+
+/* "B is A `how`", of curves with a number "made brighter: its `what` are 1.2 times those of A". */
+typedef struct Curve {
+    double (*number)(const Sums *sums);
+    float (*level)(float linear, float level, float p);
+    Relation relation;
+    const char *how, *what;
+    double unit;
+} Curve;
+
+static const Curve curves[KINDS] = {
+    {no_number, encoded_again, ALONE, "encoded as sRGB twice, and so too bright", NULL, 1},
+    {no_number, not_encoded, ALONE, "not encoded as sRGB, and so too dark", NULL, 1},
+    {gamma_of_screens, encoded_by_power, ALONE, "encoded by a gamma of 2.2 and not as sRGB", NULL,
+     1},
+    {gamma_of_screens, encoded_as_srgb, ALONE, "encoded as sRGB and not by a gamma of 2.2", NULL,
+     1},
+    {no_number, negative, ALONE, "as a negative", NULL, 1},
+    {gain_of_light, times_light, TIMES, "made", "linear colours", 1},
+    {offset_of_light, plus_light, PLUS, "made", "linear colours, from 0 to 1,", 1},
+    {gain_of_codes, times_code, TIMES, "made", "sRGB codes", 1},
+    {offset_of_codes, plus_code, PLUS, "made", "sRGB codes, from 0 to 255,", 255},
+    {gamma_of_codes, power_of_code, POWER, "of another gamma,", "sRGB codes, from 0 to 1,", 1},
+    {no_number, NULL, ALONE, "under some other curve of tones, the same everywhere", NULL, 1},
+};
+enum { ANY_CURVE = KINDS - 1 };
+
+static void say(const Curve *curve, double number, Sentence *out)
+{
+    static const struct {
+        const char *before, *after;
+        double none; /* the number that changes nothing */
+    } words[] = {
+        [TIMES] = {"", " times those of A", 1},
+        [PLUS] = {"those of A changed by ", "", 0},
+        [POWER] = {"those of A to the power of ", "", 1},
+    };
+    Relation relation = curve->relation;
+    bool brighter = (number > words[relation].none) != (relation == POWER);
+    if (relation == ALONE)
+        snprintf(out->text, out->size, "B is A %s", curve->how);
+    else
+        snprintf(out->text, out->size, "B is A %s %s: its %s are %s%.4g%s", curve->how,
+                 brighter ? "brighter" : "darker", curve->what, words[relation].before,
+                 number * curve->unit, words[relation].after);
+}
+
+/* ---- fit ------------------------------------------------------------------------------------- */
+
+/* Codes in question: those of samples, or all. */
+typedef struct Codes {
+    const Picture *a, *b;
+    const Samples *samples; /* NULL: all */
+    size_t n;
+    int skipped[3]; /* a code of A of each channel that is not asked; -1: none */
+} Codes;
+
+static Codes codes_of(const Picture *a, const Picture *b, const Samples *samples)
+{
+    size_t n =
+        samples ? (size_t)samples->n * (size_t)a->channels : picture_stride(a) * (size_t)a->height;
+    return (Codes){a, b, samples, n, {-1, -1, -1}};
+}
+
+static void take(const Codes *codes, size_t i, int *in_a, int *in_b)
+{
+    size_t channels = (size_t)codes->a->channels, at = i;
+    if (codes->samples) {
+        const PixelPlace *place = &codes->samples->at[i / channels];
+        at = ((size_t)place->y * (size_t)codes->a->width + (size_t)place->x) * channels +
+             i % channels;
+    }
+    *in_a = picture_code(codes->a, at);
+    *in_b = picture_code(codes->b, at);
+}
+
+static Sums sum_codes(const Meaning *meaning, const Codes *codes)
+{
+    Sums sums = {0};
+    for (size_t i = 0; i < codes->n; i++) {
+        int a, b;
+        take(codes, i, &a, &b);
+        if (a == 0 || b == 0 || a == meaning->n - 1 || b == meaning->n - 1)
+            continue;
+        sums.n++;
+        sums.linear[0] += (double)meaning->linear[a];
+        sums.linear[1] += (double)meaning->linear[b];
+        sums.level[0] += (double)meaning->level[a];
+        sums.level[1] += (double)meaning->level[b];
+        /* The rounding of a code moves its logarithm by the less, the larger the code is. */
+        double weight = (double)(meaning->level[a] * meaning->level[a]);
+        sums.log_ab += weight * (double)(meaning->log[a] * meaning->log[b]);
+        sums.log_aa += weight * (double)(meaning->log[a] * meaning->log[a]);
+    }
+    return sums;
+}
+
+static double predict(Meaning *meaning, int kind, const Sums *sums)
+{
+    const Curve *curve = &curves[kind];
+    double number = curve->number(sums);
+    for (int i = 0; i < meaning->n; i++) {
+        float level = curve->level(meaning->linear[i], meaning->level[i], (float)number);
+        meaning->predicted[kind][i] = fminf(fmaxf(level, 0), 1);
+    }
+    return number;
+}
+
+/* Codes that are off by more than a level, before and after a curve, and what is left, squared. */
+typedef struct Fit {
+    size_t beyond, misfits;
+    double squares;
+} Fit;
+
+static Fit fit_of(const Meaning *meaning, const Codes *codes, int kind)
+{
+    const float level = 1.01F / 255, *predicted = meaning->predicted[kind];
+    Fit fit = {0};
+    for (size_t i = 0; i < codes->n; i++) {
+        int a, b;
+        take(codes, i, &a, &b);
+        if (a == meaning->n - 1 || b == meaning->n - 1 ||
+            a == codes->skipped[i % (size_t)codes->a->channels])
+            continue;
+        float rest = predicted[a] - meaning->level[b];
+        fit.beyond += fabsf(meaning->level[a] - meaning->level[b]) > level;
+        fit.misfits += !(fabsf(rest) <= level);
+        fit.squares += (double)(rest * rest);
+    }
+    return fit;
+}
+
+static bool fits(const Fit *fit)
+{
+    return fit->beyond > 0 && 50 * fit->misfits <= fit->beyond;
+}
+
+/* The curve that fits the samples best, without those in `tried`; -1 when none fits. */
+static int best_curve(Meaning *meaning, const Codes *samples, const bool tried[KINDS])
+{
+    const Sums sums = sum_codes(meaning, samples);
+    Fit least = {0};
+    int best = -1;
+    for (int kind = 0; kind < ANY_CURVE; kind++) {
+        if (tried[kind] || !isfinite(predict(meaning, kind, &sums)))
+            continue;
+        Fit fit = fit_of(meaning, samples, kind);
+        if (!fits(&fit) || (best >= 0 && fit.squares >= least.squares))
+            continue;
+        least = fit;
+        best = kind;
+    }
+    return best;
+}
+
+/* The curve of the means that codes of A have in B. */
+static Status measure_curve(Meaning *meaning, const Codes *all, Err *err)
+{
+    double *sum;
+    size_t n = (size_t)meaning->n;
+    TRY(mem_calloc(&sum, 2 * n, sizeof *sum, "codes", err));
+    for (size_t i = 0; i < all->n; i++) {
+        int a, b;
+        take(all, i, &a, &b);
+        sum[a] += (double)meaning->level[b];
+        sum[n + (size_t)a]++;
+    }
+    for (size_t i = 0; i < n; i++)
+        meaning->predicted[ANY_CURVE][i] = sum[n + i] > 0 ? (float)(sum[i] / sum[n + i]) : 0;
+    free(sum);
+    return STATUS_OK;
+}
+
+/* Whether one curve can be told from surfaces that are lit otherwise: those of other colours then
+ * have other curves in each channel. */
+static bool has_colors(const Picture *picture, const Samples *samples)
+{
+    enum { LEVELS = 32, ENOUGH = 12 };
+    int colored = 0;
+    for (int i = 0; i < samples->n && picture->channels == 3; i++) {
+        const PixelPlace *at = &samples->at[i];
+        size_t first = 3 * ((size_t)at->y * (size_t)picture->width + (size_t)at->x);
+        int red = picture_code(picture, first), green = picture_code(picture, first + 1);
+        int blue = picture_code(picture, first + 2);
+        colored += abs(red - green) >= LEVELS || abs(green - blue) >= LEVELS;
+    }
+    return colored >= ENOUGH;
+}
+
+/* Whether samples of one code in A have nearly one code in B. */
+static bool may_be_curve(const Codes *few)
+{
+    enum { CODES = 256, APART = 4 };
+    int low[CODES], high[CODES], a, b;
+    size_t apart = 0;
+    for (int i = 0; i < CODES; i++) {
+        low[i] = CODES;
+        high[i] = 0;
+    }
+    for (size_t i = 0; i < few->n; i++) {
+        take(few, i, &a, &b);
+        low[a] = b < low[a] ? b : low[a];
+        high[a] = b > high[a] ? b : high[a];
+    }
+    for (size_t i = 0; i < few->n; i++) {
+        take(few, i, &a, &b);
+        apart += high[a] - low[a] >= APART;
+    }
+    return 10 * apart <= few->n;
+}
+
+/* Any curve, of codes of 8 bits, of which a picture has enough of each; the first pixel's, as of a
+ * background, which would outvote all others, are left out. */
+static Status find_any_curve(Meaning *meaning, Codes *few, Codes *all, Sentence *out, Err *err)
+{
+    if (meaning->n > 256 || !has_colors(all->a, few->samples) ||
+        !has_colors(all->b, few->samples) || !may_be_curve(few))
+        return STATUS_OK;
+    TRY(measure_curve(meaning, all, err));
+    for (size_t c = 0; c < 3; c++)
+        few->skipped[c] = all->skipped[c] = picture_code(all->a, c);
+    Fit fit = fit_of(meaning, few, ANY_CURVE);
+    if (fits(&fit))
+        fit = fit_of(meaning, all, ANY_CURVE);
+    if (fits(&fit))
+        say(&curves[ANY_CURVE], 1, out);
+    return STATUS_OK;
+}
+
+Status cause_tone(const Picture *a, const Picture *b, const Samples *samples, Sentence *out,
+                  Err *err)
+{
+    Meaning meaning = {0};
+    TRY(meaning_init(&meaning, a, err));
+    Codes few = codes_of(a, b, samples), all = codes_of(a, b, NULL);
+    bool tried[KINDS] = {false};
+    for (int kind; !*out->text && (kind = best_curve(&meaning, &few, tried)) >= 0;) {
+        const Sums sums = sum_codes(&meaning, &all);
+        double number = predict(&meaning, kind, &sums);
+        Fit fit = fit_of(&meaning, &all, kind);
+        if (fits(&fit))
+            say(&curves[kind], number, out);
+        tried[kind] = true;
+    }
+    Status status = STATUS_OK;
+    if (!*out->text)
+        status = find_any_curve(&meaning, &few, &all, out, err);
+    free(meaning.linear);
+    return status;
+}

@@ -1,0 +1,622 @@
+/* Moved by parts of pixels, or blurred: questions about the signal that the pixels sample, asked of
+ * patches about pixels that differ, so that they cost the same for pictures of any size. Both sides
+ * are smoothed first (a binomial filter of standard deviation 1.4 pixels), since what two renderers
+ * make of an outline within a pixel says nothing about where it lies.
+ *
+ * A shift is found by Gauss-Newton on the squares of what is left of B when A, moved by it, is
+ * taken away [Lucas and Kanade 1981]; A is moved by cubic interpolation. A blur is one number,
+ * found by golden section. Either is named when it leaves less than a twenty-fifth of the squares,
+ * so that a fifth of the difference at most is something else, and when nothing contradicts it: the
+ * halves of the picture have one displacement, each channel keeps its tones, what is flat keeps its
+ * codes, and no part of the picture that should have changed is as it was. */
+#include "compare/cause/guesses.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATCHES = 64, CORE = 32, MARGIN = 12, SIDE = CORE + 2 * MARGIN, CELLS = SIDE * SIDE };
+/* What of a pixel is looked at: the mean of its channels, a channel, or, from CHROMA on, what a
+ * channel has beside that mean. */
+enum { ALL_CHANNELS = -1, CHROMA = 3 };
+/* Pixels so near to an edge of the picture are mixed with what was made up beyond it. */
+enum { RIM = 6 };
+
+/* The patches of both pictures, those of A moved by whole pixels. */
+typedef struct Patches {
+    const Picture *a, *b;
+    Shift start;
+    const float *levels; /* of each code, parts of 1: of light, or of the code itself */
+    int channel;         /* what is looked at: ALL_CHANNELS, a channel, CHROMA + a channel */
+    int n;
+    double left;                       /* the least part of the squares that a guess has left */
+    PixelPlace at[PATCHES];            /* pixels of B; the first of each patch */
+    float *before, *from, *to, *moved; /* owned; A in its place, A moved, B, work: CELLS a patch */
+} Patches;
+
+/* A channel of a pixel, or the mean of all, from 0 to 255, or the difference of both. */
+static float level_at(const Picture *picture, int x, int y, int channel, const float *levels)
+{
+    x = x < 0 ? 0 : x < picture->width ? x : picture->width - 1;
+    y = y < 0 ? 0 : y < picture->height ? y : picture->height - 1;
+    size_t channels = (size_t)picture->channels;
+    size_t i = ((size_t)y * (size_t)picture->width + (size_t)x) * channels;
+    float sum = 0;
+    if (channel >= 0 && channel < CHROMA)
+        return 255 * levels[picture_code(picture, i + (size_t)channel)];
+    for (size_t c = 0; c < channels; c++)
+        sum += levels[picture_code(picture, i + c)];
+    float mean = sum / (float)channels;
+    if (channel == ALL_CHANNELS)
+        return 255 * mean;
+    return 255 * (levels[picture_code(picture, i + (size_t)(channel - CHROMA))] - mean);
+}
+
+/* Filters rows, then columns; `taps` are the weights of cells `first`, first + 1, ... from each;
+ * cells that reach over the edge of the patch keep their values. */
+static void filter(const float *in, float *out, const float *taps, int first, int n)
+{
+    float rows[CELLS];
+    int from = first < 0 ? -first : 0, to = SIDE - (first + n > 1 ? first + n - 1 : 0);
+    for (int i = 0; i < CELLS; i++)
+        rows[i] = in[i];
+    for (int y = 0; y < SIDE; y++)
+        for (int x = from; x < to; x++) {
+            float sum = 0;
+            for (int k = 0; k < n; k++)
+                sum += taps[k] * in[y * SIDE + x + first + k];
+            rows[y * SIDE + x] = sum;
+        }
+    for (int i = 0; i < CELLS; i++)
+        out[i] = rows[i];
+    for (int y = from; y < to; y++)
+        for (int k = 0; k < n; k++)
+            for (int x = 0; x < SIDE; x++) {
+                float value = taps[k] * rows[(y + first + k) * SIDE + x];
+                out[y * SIDE + x] = k ? out[y * SIDE + x] + value : value;
+            }
+}
+
+static void load(const Patches *patches, const Picture *picture, int left, int top, float *out)
+{
+    static const float binomial[9] = {1 / 256.0F,  8 / 256.0F,  28 / 256.0F,
+                                      56 / 256.0F, 70 / 256.0F, 56 / 256.0F,
+                                      28 / 256.0F, 8 / 256.0F,  1 / 256.0F};
+    float levels[CELLS];
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++)
+            levels[y * SIDE + x] =
+                level_at(picture, left + x, top + y, patches->channel, patches->levels);
+    filter(levels, out, binomial, -4, 9);
+}
+
+/* Fills the patches with what their channel shows. */
+static void load_patches(Patches *patches)
+{
+    const Shift *start = &patches->start;
+    for (int i = 0; i < patches->n; i++) {
+        int x = patches->at[i].x, y = patches->at[i].y;
+        size_t first = (size_t)i * CELLS;
+        load(patches, patches->a, x, y, patches->before + first);
+        if (start->dx || start->dy)
+            load(patches, patches->a, x - start->dx, y - start->dy, patches->from + first);
+        else
+            memcpy(patches->from + first, patches->before + first, CELLS * sizeof(float));
+        load(patches, patches->b, x, y, patches->to + first);
+    }
+}
+
+static Status patches_init(Patches *patches, const Samples *samples, Err *err)
+{
+    int step = (samples->n + PATCHES - 1) / PATCHES;
+    for (int i = 0; i < samples->n; i += step)
+        patches->at[patches->n++] =
+            (PixelPlace){.x = samples->at[i].x - SIDE / 2, .y = samples->at[i].y - SIDE / 2};
+    size_t cells = (size_t)patches->n * CELLS;
+    TRY(mem_calloc(&patches->before, 4 * cells, sizeof(float), "values of patches", err));
+    patches->from = patches->before + cells;
+    patches->to = patches->from + cells;
+    patches->moved = patches->to + cells;
+    load_patches(patches);
+    return STATUS_OK;
+}
+
+/* Whether a cell counts: in the core, and in both pictures, away from their edges. */
+static bool counts(const Patches *patches, int patch, int x, int y)
+{
+    if (x < MARGIN || x >= SIDE - MARGIN || y < MARGIN || y >= SIDE - MARGIN)
+        return false;
+    int u = patches->at[patch].x + x, v = patches->at[patch].y + y;
+    int s = u - patches->start.dx, t = v - patches->start.dy;
+    int right = patches->a->width - RIM, bottom = patches->a->height - RIM;
+    return u >= RIM && u < right && v >= RIM && v < bottom && s >= RIM && s < right && t >= RIM &&
+           t < bottom;
+}
+
+/* Steps through all cells that count, patch after patch; false behind the last. Begin with
+ * NO_CELL. */
+enum { NO_CELL = -1 };
+
+static bool next_cell(const Patches *patches, int *cell)
+{
+    while (++*cell < patches->n * CELLS) {
+        int in_patch = *cell % CELLS;
+        if (counts(patches, *cell / CELLS, in_patch % SIDE, in_patch / SIDE))
+            return true;
+    }
+    return false;
+}
+
+/* The sum of squares between two sides. */
+static double squares(const Patches *patches, const float *side, const float *other)
+{
+    double sum = 0;
+    for (int cell = NO_CELL; next_cell(patches, &cell);) {
+        double d = (double)(side[cell] - other[cell]);
+        sum += d * d;
+    }
+    return sum;
+}
+
+/* ---- moved ----------------------------------------------------------------------------------- */
+
+/* A, moved by (dx, dy), each in (-MARGIN / 2, MARGIN / 2): cubic interpolation [Keys 1981]. */
+static void weigh_cubic(double d, float taps[4], int *first)
+{
+    double whole = floor(d), t = 1 - (d - whole);
+    taps[0] = (float)(0.5 * (-t + 2 * t * t - t * t * t));
+    taps[1] = (float)(0.5 * (2 - 5 * t * t + 3 * t * t * t));
+    taps[2] = (float)(0.5 * (t + 4 * t * t - 3 * t * t * t));
+    taps[3] = (float)(0.5 * (-t * t + t * t * t));
+    *first = (int)-whole - 2;
+}
+
+static void filter_row_taps(const float *in, float *out, const float *across, int x_first,
+                            const float *down, int y_first)
+{
+    for (int y = MARGIN - 1; y <= SIDE - MARGIN; y++)
+        for (int x = MARGIN - 1; x <= SIDE - MARGIN; x++) {
+            float sum = 0;
+            for (int j = 0; j < 4; j++)
+                for (int i = 0; i < 4; i++)
+                    sum += down[j] * across[i] * in[(y + y_first + j) * SIDE + x + x_first + i];
+            out[y * SIDE + x] = sum;
+        }
+}
+
+static void move(Patches *patches, const double d[2])
+{
+    float across[4], down[4];
+    int x_first, y_first;
+    weigh_cubic(d[0], across, &x_first);
+    weigh_cubic(d[1], down, &y_first);
+    for (int i = 0; i < patches->n; i++)
+        filter_row_taps(patches->from + (size_t)i * CELLS, patches->moved + (size_t)i * CELLS,
+                        across, x_first, down, y_first);
+}
+
+/* Parts of the picture that a displacement is asked of. */
+typedef enum Part { PART_ALL, PART_LEFT, PART_RIGHT, PART_TOP, PART_BOTTOM, PARTS } Part;
+
+static bool is_in_part(const Patches *patches, int cell, Part part)
+{
+    const PixelPlace *first = &patches->at[cell / CELLS];
+    int x = first->x + cell % CELLS % SIDE, y = first->y + cell % CELLS / SIDE;
+    bool left = 2 * x < patches->a->width, top = 2 * y < patches->a->height;
+    return part == PART_ALL || (part == PART_LEFT && left) || (part == PART_RIGHT && !left) ||
+           (part == PART_TOP && top) || (part == PART_BOTTOM && !top);
+}
+
+/* The step of Gauss-Newton from where the patches are moved to, by the cells of a part; false where
+ * they have no gradients. */
+static bool find_step(const Patches *patches, Part part, double step[2])
+{
+    double xx = 0, xy = 0, yy = 0, xr = 0, yr = 0;
+    for (int cell = NO_CELL; next_cell(patches, &cell);) {
+        if (!is_in_part(patches, cell, part))
+            continue;
+        const float *at = patches->moved + cell;
+        double gx = (double)(at[1] - at[-1]) / 2, gy = (double)(at[SIDE] - at[-SIDE]) / 2;
+        double rest = (double)(patches->to[cell] - *at);
+        xx += gx * gx;
+        xy += gx * gy;
+        yy += gy * gy;
+        xr += gx * rest;
+        yr += gy * rest;
+    }
+    double ridge = 1e-6 * (xx + yy), determinant = (xx + ridge) * (yy + ridge) - xy * xy;
+    if (!(determinant > 0))
+        return false;
+    step[0] = -((yy + ridge) * xr - xy * yr) / determinant;
+    step[1] = -((xx + ridge) * yr - xy * xr) / determinant;
+    return true;
+}
+
+static bool improve(const Patches *patches, double d[2])
+{
+    double step[2];
+    if (!find_step(patches, PART_ALL, step))
+        return false;
+    d[0] += step[0];
+    d[1] += step[1];
+    return fabs(d[0]) < MARGIN / 4.0 && fabs(d[1]) < MARGIN / 4.0;
+}
+
+static bool explains(Patches *patches, double before, double after)
+{
+    patches->left = before > 0 ? fmin(patches->left, after / before) : patches->left;
+    return before > 0 && 25 * after < before;
+}
+
+/* What is left of the squares when what a slight blur does, a multiple of the second derivatives,
+ * is taken away from the rest, too; the multiple in *blurred. */
+static double left_by_blur(const Patches *patches, double *blurred)
+{
+    double rest_rest = 0, rest_bend = 0, bend_bend = 0;
+    for (int cell = NO_CELL; next_cell(patches, &cell);) {
+        const float *at = patches->moved + cell;
+        double rest = (double)(patches->to[cell] - *at);
+        double bend = (double)(at[1] + at[-1] + at[SIDE] + at[-SIDE] - 4 * *at);
+        rest_rest += rest * rest;
+        rest_bend += rest * bend;
+        bend_bend += bend * bend;
+    }
+    *blurred = bend_bend > 0 ? rest_bend / bend_bend : 0;
+    return rest_rest - *blurred * rest_bend;
+}
+
+/* Never minus zero. */
+static double round_to(double value, double unit)
+{
+    return round(value * unit) / unit + 0.0;
+}
+
+/* ---- blurred --------------------------------------------------------------------------------- */
+
+static const double most_sigma = 2.5;
+
+static void blur(Patches *patches, const float *side, double sigma)
+{
+    enum { REACH = 8 };
+    float taps[2 * REACH + 1], sum = 0;
+    for (int i = -REACH; i <= REACH; i++)
+        sum += taps[i + REACH] = (float)elementary_exp(-i * i / (2 * sigma * sigma));
+    for (int i = 0; i <= 2 * REACH; i++)
+        taps[i] /= sum;
+    for (int i = 0; i < patches->n; i++)
+        filter(side + (size_t)i * CELLS, patches->moved + (size_t)i * CELLS, taps, -REACH,
+               2 * REACH + 1);
+}
+
+static double off_when_blurred(Patches *patches, const float *side, const float *other,
+                               double sigma)
+{
+    blur(patches, side, sigma);
+    return squares(patches, patches->moved, other);
+}
+
+/* The standard deviation that brings `side` nearest to `other`, what is left in *after. */
+static double best_sigma(Patches *patches, const float *side, const float *other, double *after)
+{
+    enum { STEPS = 11 };
+    const double golden = 0.6180339887498949;
+    double low = 0.05, high = most_sigma;
+    double x[2] = {high - golden * (high - low), low + golden * (high - low)};
+    double off[2] = {off_when_blurred(patches, side, other, x[0]),
+                     off_when_blurred(patches, side, other, x[1])};
+    for (int i = 0; i < STEPS; i++) {
+        int worse = off[0] < off[1];
+        *(worse ? &high : &low) = x[worse];
+        x[worse] = x[!worse];
+        off[worse] = off[!worse];
+        x[!worse] = worse ? high - golden * (high - low) : low + golden * (high - low);
+        off[!worse] = off_when_blurred(patches, side, other, x[!worse]);
+    }
+    *after = fmin(off[0], off[1]);
+    return (low + high) / 2;
+}
+
+/* Smoothing goes the way of the differences: whether `other` is nearer to `side` when that is
+ * blurred a little. */
+static bool is_blurrier(Patches *patches, const float *side, const float *other, double before)
+{
+    return 1.1 * off_when_blurred(patches, side, other, 0.5) < before;
+}
+
+/* ---- nothing but one displacement, or one blur, of the whole picture --------------------------
+ */
+
+/* What may have made B of A. */
+typedef struct Warp {
+    double d[2];   /* displacement of the patches, beside their start, px */
+    double dx, dy; /* displacement of the picture, px */
+    double sigma;  /* standard deviation of a blur, px; 0: a displacement */
+    bool sharper;  /* A is B blurred */
+} Warp;
+
+static void warp(Patches *patches, const Warp *what)
+{
+    if (what->sigma > 0)
+        blur(patches, what->sharper ? patches->to : patches->before, what->sigma);
+    else
+        move(patches, what->d);
+}
+
+/* Whether the straight line B = gain A + offset through the warped patches changes nothing much. */
+static bool has_same_tones(const Patches *patches, const float *other, double slack_gain)
+{
+    const double slack_levels = 0.75; /* of the mean: fractions move it by up to 0.5 */
+    double n = 0, a = 0, b = 0, aa = 0, ab = 0;
+    for (int cell = NO_CELL; next_cell(patches, &cell);) {
+        double in_a = (double)patches->moved[cell], in_b = (double)other[cell];
+        n++;
+        a += in_a;
+        b += in_b;
+        aa += in_a * in_a;
+        ab += in_a * in_b;
+    }
+    double variance = n * aa - a * a;
+    double gain = variance > n * n ? (n * ab - a * b) / variance : 1;
+    return fabs(gain - 1) <= slack_gain && fabs(b - a) <= slack_levels * n;
+}
+
+/* Loads what is to be looked at, and warps it; the side that the warped one is held against. */
+static const float *look_at(Patches *patches, int channel, const Warp *what)
+{
+    patches->channel = channel;
+    load_patches(patches);
+    warp(patches, what);
+    return what->sharper ? patches->before : patches->to;
+}
+
+/* Whether the colours are as far from grey as they were, all channels together. The tones of a
+ * channel do not tell: where things are nearly grey they hide another saturation. */
+static bool has_same_saturation(Patches *patches, const Warp *what)
+{
+    double aa = 0, ab = 0;
+    for (int c = 0; c < patches->a->channels; c++) {
+        const float *other = look_at(patches, CHROMA + c, what);
+        for (int cell = NO_CELL; next_cell(patches, &cell);) {
+            aa += (double)(patches->moved[cell] * patches->moved[cell]);
+            ab += (double)(patches->moved[cell] * other[cell]);
+        }
+    }
+    return cause_is_same_saturation(aa, ab);
+}
+
+/* Whether each channel has the same tones. Cubic interpolation of what another interpolation has
+ * moved changes the contrast by up to 2 %; a blur is not quite a Gaussian. */
+static bool keeps_tones(Patches *patches, const Warp *what)
+{
+    bool whole = what->sigma == 0 && fabs(what->d[0]) < 0.02 && fabs(what->d[1]) < 0.02;
+    bool same = true;
+    for (int c = 0; c < patches->a->channels && same; c++) {
+        const float *other = look_at(patches, c, what);
+        same = has_same_tones(patches, other, whole ? 0.005 : 0.022);
+    }
+    same = same && has_same_saturation(patches, what);
+    look_at(patches, ALL_CHANNELS, what);
+    return same;
+}
+
+/* Whether halves of the picture have the same displacement. A picture that is scaled or turned has
+ * another in each. */
+static bool is_one_displacement(const Patches *patches)
+{
+    const double slack_px = 0.1;
+    for (Part part = PART_LEFT; part < PARTS; part++) {
+        double step[2];
+        if (find_step(patches, part, step) && !(elementary_hypot(step[0], step[1]) < slack_px))
+            return false;
+    }
+    return true;
+}
+
+/* Sum of the differences of two pixels over the channels, codes; 0 where there is no such pixel. */
+static int pixels_apart(const Picture *a, int x, int y, const Picture *b, int u, int v)
+{
+    int sum = 0;
+    if (u < 0 || u >= b->width || v < 0 || v >= b->height)
+        return 0;
+    size_t channels = (size_t)a->channels;
+    size_t at = ((size_t)y * (size_t)a->width + (size_t)x) * channels;
+    size_t other = ((size_t)v * (size_t)b->width + (size_t)u) * channels;
+    for (size_t c = 0; c < channels; c++)
+        sum += abs(picture_code(a, at + c) - picture_code(b, other + c));
+    return sum;
+}
+
+enum { GRID = 8 };
+
+/* For each field of a grid over the picture, sums over its pixels. */
+typedef struct Fields {
+    double expected[GRID * GRID]; /* how much A changes over one pixel */
+    double found[GRID * GRID];    /* how much B differs from A */
+} Fields;
+
+/* What B should differ by: that of A by n steps, which counts where it is at least `least`, codes
+ * summed over the channels, and the part of it that is enough. */
+typedef struct Expected {
+    int steps[2][2], n, least;
+    double part;
+} Expected;
+
+static void sum_fields(const Patches *patches, const Expected *expected, Fields *fields)
+{
+    const Picture *a = patches->a, *b = patches->b;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++) {
+            int field = y * GRID / a->height * GRID + x * GRID / a->width;
+            for (int k = 0; k < expected->n; k++) {
+                const int *step = expected->steps[k];
+                int apart = pixels_apart(a, x, y, a, x - step[0], y - step[1]);
+                if (apart >= expected->least)
+                    fields->expected[field] += apart / (double)expected->n;
+            }
+            fields->found[field] += pixels_apart(a, x, y, b, x, y);
+        }
+}
+
+/* Whether B differs from A wherever A changes: a part that stayed as it was contradicts. */
+static bool is_everywhere(const Patches *patches, const Expected *expected)
+{
+    const double enough = 0.25; /* of the mean, so that a few pixels of a field do not decide */
+    Fields fields = {{0}, {0}};
+    double sum = 0;
+    sum_fields(patches, expected, &fields);
+    for (int i = 0; i < GRID * GRID; i++)
+        sum += fields.expected[i];
+    for (int i = 0; i < GRID * GRID; i++)
+        if (fields.expected[i] > enough * sum / (GRID * GRID) &&
+            fields.found[i] < expected->part * fields.expected[i])
+            return false;
+    return true;
+}
+
+static bool is_moved_everywhere(const Patches *patches, double dx, double dy)
+{
+    const double largest = fmax(fabs(dx), fabs(dy)), unit = fmin(largest, 1);
+    const Expected expected = {
+        .steps = {{(int)lround(dx / unit), (int)lround(dy / unit)}}, .n = 1, .part = 0.1 * unit};
+    return is_everywhere(patches, &expected);
+}
+
+/* A blur leaves slopes as they are, and edges not. */
+static bool is_blurred_everywhere(const Patches *patches)
+{
+    const int edge = patches->a->bits == 8 ? 96 : 96 * 257;
+    const Expected expected = {.steps = {{1, 0}, {0, 1}}, .n = 2, .least = edge, .part = 0.02};
+    return is_everywhere(patches, &expected);
+}
+
+/* Whether no code of a picture is off by more than a level from that at (x, y) so near. */
+static bool is_flat(const Picture *picture, int x, int y, int reach)
+{
+    int level = picture->bits == 8 ? 1 : 257;
+    for (int v = y - reach; v <= y + reach; v++)
+        for (int u = x - reach; u <= x + reach; u++)
+            if (pixels_apart(picture, x, y, picture, u, v) > level)
+                return false;
+    return true;
+}
+
+/* Whether B has A's codes where A is flat as far as `reach`: neither a displacement by (dx, dy) nor
+ * a blur changes them, but noise and other tones do. */
+static bool keeps_flat_parts(const Patches *patches, int dx, int dy, int reach)
+{
+    enum { ASKED = 20000, ENOUGH = 50 };
+    const Picture *a = patches->a, *b = patches->b;
+    const size_t pixels = (size_t)a->width * (size_t)a->height, step = pixels / ASKED + 1;
+    const int level = a->bits == 8 ? 1 : 257;
+    size_t flat = 0, changed = 0;
+    for (size_t i = 0; i < pixels; i += step) {
+        int x = (int)(i % (size_t)a->width), y = (int)(i / (size_t)a->width);
+        if (x < reach || y < reach || x + reach >= a->width || y + reach >= a->height ||
+            !is_flat(a, x, y, reach))
+            continue;
+        flat++;
+        changed += pixels_apart(a, x, y, b, x + dx, y + dy) > 2 * level;
+    }
+    return flat < ENOUGH || 20 * changed <= flat;
+}
+
+/* Whether a warp that explains the patches is all that was done, and to the whole picture. */
+static bool is_all(Patches *patches, const Warp *what)
+{
+    if (what->sigma > 0)
+        return keeps_tones(patches, what) && is_blurred_everywhere(patches) &&
+               keeps_flat_parts(patches, 0, 0, (int)ceil(3 * what->sigma) + 1);
+    return is_one_displacement(patches) && keeps_tones(patches, what) &&
+           is_moved_everywhere(patches, what->dx, what->dy) &&
+           keeps_flat_parts(patches, (int)lround(what->dx), (int)lround(what->dy), 2);
+}
+
+/* ---- guesses --------------------------------------------------------------------------------- */
+
+static void try_shift(Patches *patches, Sentence *out)
+{
+    enum { STEPS = 6 };
+    double d[2] = {0, 0}, before = squares(patches, patches->before, patches->to);
+    for (int i = 0; i < STEPS; i++) {
+        move(patches, d);
+        if (!improve(patches, d))
+            return;
+    }
+    move(patches, d);
+    double dx = patches->start.dx + d[0], dy = patches->start.dy + d[1], blurred;
+    int digits = fmax(fabs(dx), fabs(dy)) < 0.25 ? 2 : 1;
+    double unit = digits == 2 ? 100 : 10;
+    double after = squares(patches, patches->moved, patches->to);
+    bool alone = explains(patches, before, after);
+    const Warp found = {.d = {d[0], d[1]}, .dx = dx, .dy = dy};
+    if ((alone ||
+         (2 * after < before && explains(patches, before, left_by_blur(patches, &blurred)))) &&
+        is_all(patches, &found))
+        snprintf(out->text, out->size,
+                 "B is nearly A moved by (%.*f, %.*f) pixels%s, right and down being positive",
+                 digits, round_to(dx, unit), digits, round_to(dy, unit),
+                 alone         ? ""
+                 : blurred > 0 ? " and blurred a little"
+                               : " and sharpened a little");
+}
+
+static void try_blur(Patches *patches, Sentence *out)
+{
+    const float *sides[2] = {patches->before, patches->to};
+    double before = squares(patches, sides[0], sides[1]), after;
+    for (int sharper = 0; sharper < 2; sharper++) {
+        if (!is_blurrier(patches, sides[sharper], sides[!sharper], before))
+            continue;
+        double sigma = best_sigma(patches, sides[sharper], sides[!sharper], &after);
+        const Warp found = {.sigma = sigma, .sharper = sharper};
+        if (sigma < 0.98 * most_sigma && explains(patches, before, after) &&
+            is_all(patches, &found))
+            snprintf(out->text, out->size,
+                     "%s is nearly %s blurred, by as much as a Gaussian of standard deviation "
+                     "%.2g pixels",
+                     sharper ? "A" : "B", sharper ? "B" : "A", sigma);
+    }
+}
+
+/* The level, in [0, 1], of every code of `bits` bits: linear light, or code / greatest code. */
+static Status list_levels(int bits, bool linear, float **levels, Err *err)
+{
+    int n = 1 << bits;
+    TRY(mem_calloc(levels, (size_t)n, sizeof **levels, "codes", err));
+    for (int i = 0; i < n; i++) {
+        float level = (float)i / (float)(n - 1);
+        (*levels)[i] = linear ? srgb_decode(level) : level;
+    }
+    return STATUS_OK;
+}
+
+static Status try_warp(const Picture *a, const Picture *b, const Samples *samples, Shift start,
+                       bool linear, double *left, Sentence *out, Err *err)
+{
+    float *levels;
+    TRY(list_levels(a->bits, linear, &levels, err));
+    Patches patches = {
+        .a = a, .b = b, .start = start, .levels = levels, .channel = ALL_CHANNELS, .left = 1};
+    Status status = patches_init(&patches, samples, err);
+    if (status == STATUS_OK)
+        try_shift(&patches, out);
+    patches.start = (Shift){0};
+    if (status == STATUS_OK && !*out->text)
+        try_blur(&patches, out);
+    *left = patches.left;
+    free(patches.before);
+    free(levels);
+    return status;
+}
+
+/* In light only where the same in codes leaves no more than half: the two are not so different. */
+Status cause_warp(const Picture *a, const Picture *b, const Samples *samples, const Shift *start,
+                  Sentence *out, Err *err)
+{
+    double left;
+    TRY(try_warp(a, b, samples, *start, false, &left, out, err));
+    return *out->text || a->gamma != 0 || left > 0.5
+               ? STATUS_OK
+               : try_warp(a, b, samples, *start, true, &left, out, err);
+}

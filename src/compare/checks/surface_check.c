@@ -1,0 +1,81 @@
+/* One pass over the pixels: which side sees a surface, and by how much of what is allowed the two
+ * depths differ. */
+#include "compare/checks/surface_check.h"
+
+#include "compare/pixels.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Classes one pixel; its error is appended to `errors` when it is common. */
+static void count_pixel(double a, double b, double allowed, size_t i, int width,
+                        SurfaceCheck *check, double *errors)
+{
+    bool in_a = isfinite(a), in_b = isfinite(b);
+    if (!in_a && !in_b)
+        return;
+    if (isinf(allowed)) {
+        check->grazing++;
+        return;
+    }
+    check->missing += !in_b;
+    check->extra += !in_a;
+    if (!in_a || !in_b)
+        return;
+    double error = fabs(a - b);
+    errors[check->common++] = error;
+    check->beyond += !(error <= allowed);
+    if (!(error / allowed <= check->max_ratio)) {
+        check->max_ratio = error / allowed;
+        check->worst_x = (int)(i % (size_t)width);
+        check->worst_y = (int)(i / (size_t)width);
+    }
+}
+
+static void judge(SurfaceCheck *check)
+{
+    check->agrees = check->missing == 0 && check->extra == 0 && check->beyond == 0;
+    check->reason[0] = '\0';
+    if (check->missing || check->extra)
+        snprintf(
+            check->reason, sizeof check->reason,
+            "surface: %zu pixels are seen by POV-Ray's root finder alone and %zu by proof alone, "
+            "although the ray does not graze",
+            check->missing, check->extra);
+    else if (check->beyond)
+        snprintf(
+            check->reason, sizeof check->reason,
+            "surface: %zu pixels are farther from the surface than the accuracy allows, the worst "
+            "%.3g times, at (%d, %d)",
+            check->beyond, check->max_ratio, check->worst_x, check->worst_y);
+}
+
+Status surface_check(const Plane *a, const Plane *b, const Plane *allowed, SurfaceCheck *out,
+                     Err *err)
+{
+    if (a->width != b->width || a->height != b->height || a->width != allowed->width ||
+        a->height != allowed->height)
+        return err_set(err, STATUS_INPUT,
+                       "the depth planes differ in size: %d x %d, %d x %d and %d x %d pixels",
+                       a->width, a->height, b->width, b->height, allowed->width, allowed->height);
+    SurfaceCheck check = {.pixels = (size_t)a->width * (size_t)a->height,
+                          .median_mm = NAN,
+                          .p99_mm = NAN,
+                          .max_mm = NAN,
+                          .worst_x = -1,
+                          .worst_y = -1};
+    double *errors;
+    TRY(mem_calloc(&errors, check.pixels, sizeof *errors, "errors of pixels", err));
+    for (size_t i = 0; i < check.pixels; i++)
+        count_pixel((double)a->values[i], (double)b->values[i], (double)allowed->values[i], i,
+                    a->width, &check, errors);
+    if (check.common) {
+        check.median_mm = percentile(errors, check.common, 0.5);
+        check.p99_mm = percentile(errors, check.common, 0.99);
+        check.max_mm = percentile(errors, check.common, 1);
+    }
+    free(errors);
+    judge(&check);
+    *out = check;
+    return STATUS_OK;
+}

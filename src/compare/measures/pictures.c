@@ -1,0 +1,179 @@
+/* Two pictures: the sums over all pixels (pixel_counts.c) become measures and a verdict. */
+#include "compare/measure.h"
+#include "compare/measures/perception.h"
+#include "compare/measures/planes.h"
+#include "compare/measures/regression.h"
+#include "compare/pixels.h"
+#include "compare/rules/judge.h"
+
+#include <math.h>
+#include <string.h>
+
+static void take_color(const Sums *sums, double code_levels, int channels, CompareResult *result)
+{
+    double *values = result->values, pixels = values[MEASURE_PIXELS], bias_levels = 0;
+    double samples = pixels * channels, rmse = sqrt((double)sums->squares / samples) * code_levels;
+    for (int c = 0; c < channels; c++) {
+        double bias = (double)sums->signed_codes[c] / pixels * code_levels;
+        if (fabs(bias) > fabs(bias_levels))
+            bias_levels = bias;
+    }
+    double brighter = (double)sums->brighter, darker = (double)sums->darker;
+    values[MEASURE_MAX_CODE] = sums->max;
+    values[MEASURE_MAX_ABS] = sums->max * code_levels;
+    values[MEASURE_UNSETTLED_MAX_ABS] = sums->unsettled_max * code_levels;
+    values[MEASURE_MEAN_ABS] = (double)sums->abs / samples * code_levels;
+    values[MEASURE_RMSE] = rmse;
+    values[MEASURE_PSNR_DB] = rmse > 0 ? 20 * elementary_log10(255 / rmse) : (double)INFINITY;
+    values[MEASURE_DIFFERING_PIXELS] = (double)sums->differing;
+    values[MEASURE_BEYOND_PIXELS] = (double)sums->beyond;
+    values[MEASURE_SETTLED_PIXELS] = (double)sums->settled;
+    values[MEASURE_BIAS_LEVELS] = bias_levels;
+    values[MEASURE_SIGN_SIGMA] =
+        sums->differing ? (brighter - darker) / sqrt(fmax(brighter + darker, 1)) : 0;
+    if (sums->max > 0)
+        result->places[PLACE_WORST] = sums->worst;
+    memcpy(result->classes, sums->classes, sizeof result->classes);
+}
+
+static void take_mask(const Sums *sums, double code_levels, CompareResult *result)
+{
+    double *values = result->values, moved = (double)sums->extra - (double)sums->missing;
+    result->has_mask = true;
+    values[MEASURE_COMMON_PIXELS] = (double)sums->common;
+    values[MEASURE_MISSING_PIXELS] = (double)sums->missing;
+    values[MEASURE_EXTRA_PIXELS] = (double)sums->extra;
+    values[MEASURE_BAND_PIXELS] = (double)sums->band;
+    values[MEASURE_INTERIOR_PIXELS] = values[MEASURE_PIXELS] - (double)sums->band;
+    values[MEASURE_BAND_BEYOND] = (double)sums->band_beyond;
+    values[MEASURE_INTERIOR_BEYOND] = (double)sums->interior_beyond;
+    values[MEASURE_INTERIOR_MAX_ABS] = sums->interior_max * code_levels;
+    values[MEASURE_EDGE_MISMATCH] =
+        sums->band ? (double)sums->band_differs / (double)sums->band : 0;
+    values[MEASURE_SILHOUETTE_PX] =
+        sums->silhouette ? moved / (PX_PER_EDGE * (double)sums->silhouette) : 0;
+}
+
+static Status check_views(const Rendering *a, const Rendering *b, Err *err)
+{
+    const Picture *in_a = a->picture, *in_b = b->picture;
+    TRY(check_sizes(in_a->width, in_a->height, in_b->width, in_b->height, err));
+    if (in_a->channels != in_b->channels || in_a->bits != in_b->bits)
+        return err_set(err, STATUS_INPUT,
+                       "the images differ in depth: %d x %d and %d x %d bits a pixel; only images "
+                       "of one depth can be compared",
+                       in_a->channels, in_a->bits, in_b->channels, in_b->bits);
+    return labels_check_ids(in_a->width, in_a->height, a->ids, b->ids, err);
+}
+
+/* What the sums say. */
+static Status take_counts(const Counting *counting, CompareResult *result, Ledger *ledger, Err *err)
+{
+    double code_levels = counting->a->picture->bits == 8 ? 1 : 1 / 257.0;
+    int channels = counting->a->picture->channels;
+    take_color(counting->sums, code_levels, channels, result);
+    if (counting->labels->source == LABELS_UNKNOWN)
+        return STATUS_OK;
+    take_mask(counting->sums, code_levels, result);
+    if (counting->common_only)
+        result->values[MEASURE_JUDGED_PIXELS] = result->values[MEASURE_COMMON_PIXELS];
+    TRY(region_take(counting->coverage, counting->labels, result, err));
+    if (!counting->index)
+        return STATUS_OK;
+    TRY(regression_take(counting, code_levels, result, err));
+    TRY(ledger_from_sums(ledger, counting->index, counting->segments, channels, code_levels, err));
+    ledger_summarise(ledger, result);
+    return STATUS_OK;
+}
+
+static Counting start_counting(const Rendering *a, const Rendering *b, const Labels *labels,
+                               const Tolerance *tolerance)
+{
+    return (Counting){.a = a,
+                      .b = b,
+                      .labels = labels,
+                      .beyond = allowed_codes(tolerance, a->picture),
+                      .common_only = tolerance->limits[LIMIT_COLOR_COMMON_ONLY] > 0 &&
+                                     labels->source != LABELS_UNKNOWN,
+                      .settled = tolerance->settled,
+                      .geometry_mm = fmin(tolerance->limits[LIMIT_DEPTH_MAX_MM],
+                                          tolerance->limits[LIMIT_DEPTH_P99_MM]),
+                      .geometry_deg = fmin(tolerance->limits[LIMIT_NORMAL_MAX_DEG], 1)};
+}
+
+static Labels labels_of(const Rendering *a, const Rendering *b)
+{
+    return a->ids ? labels_from_ids(a->ids, b->ids)
+                  : labels_from_background(a->picture, b->picture);
+}
+
+Status class_picture(Picture *out, const Rendering *a, const Rendering *b,
+                     const Tolerance *tolerance, Err *err)
+{
+    Picture made;
+    TRY(check_views(a, b, err));
+    Labels labels = labels_of(a, b);
+    Counting counting = start_counting(a, b, &labels, tolerance);
+    TRY(picture_init(&made, labels.width, labels.height, 1, 8, err));
+    memset(made.codes8, PIXEL_IDENTICAL, (size_t)labels.width * (size_t)labels.height);
+    counting.classes = made.codes8;
+    Status status = count_pixels(&counting, err);
+    counting_release(&counting);
+    if (status == STATUS_OK)
+        *out = made;
+    else
+        picture_release(&made);
+    return status;
+}
+
+static const Picture *as_read(const Rendering *rendering)
+{
+    const Picture *transparent = rendering->transparent;
+    return transparent && transparent->width > 0 ? transparent : rendering->picture;
+}
+
+Status compare_pictures(const Rendering *a, const Rendering *b, const Tolerance *tolerance,
+                        CompareResult *result, Ledger *ledger, Err *err)
+{
+    TRY(check_views(a, b, err));
+    const Picture *picture = a->picture;
+    CompareResult made =
+        result_start(PLANE_COLOR, picture->width, picture->height, a->ids, tolerance);
+    made.values[MEASURE_BITS] = picture->bits;
+    Labels labels = labels_of(a, b);
+    SegmentIndex index = {0};
+    Ledger of_segments = {0};
+    Counting counting = start_counting(a, b, &labels, tolerance);
+    counting.index = a->ids ? &index : NULL;
+    Status status = STATUS_OK;
+    if (counting.index)
+        TRY_GOTO(segment_index_init(&index, a->ids, b->ids, err));
+    TRY_GOTO(count_pixels(&counting, err));
+    TRY_GOTO(take_counts(&counting, &made, &of_segments, err));
+    if (!isnan(tolerance->limits[LIMIT_PIXELMATCH]))
+        made.values[MEASURE_PIXELMATCH_PIXELS] =
+            (double)pixelmatch_count(as_read(a), as_read(b), tolerance->limits[LIMIT_PIXELMATCH]);
+    result_finish(&made, a->ids, b->ids);
+    *result = made;
+    if (ledger) {
+        *ledger = of_segments;
+        of_segments = (Ledger){0};
+    }
+done:
+    ledger_release(&of_segments);
+    segment_index_release(&index);
+    counting_release(&counting);
+    return status;
+}
+
+Status compare_perception(const Picture *a, const Picture *b, CompareResult *result, Err *err)
+{
+    for (size_t i = 0; i < n_measures; i++) {
+        bool is_found = measures[i].find == NULL;
+        for (size_t k = 0; k < i && !is_found; k++)
+            is_found = measures[k].find == measures[i].find;
+        if (!is_found)
+            TRY(measures[i].find(a, b, result->values, err));
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,217 @@
+/* Depth, normal and id planes. The values of a pixel say what it shows. */
+#include "compare/measures/planes.h"
+
+#include "compare/measures/labels.h"
+#include "compare/pixels.h"
+#include "compare/rules/judge.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+static bool is_settled(const Tolerance *tolerance, size_t pixel)
+{
+    return tolerance->settled && tolerance->settled[pixel];
+}
+
+typedef enum Seen { SEEN_NOTHING, SEEN_SURFACE, SEEN_NAN } Seen;
+
+static Seen seen_at(PlaneKind kind, const float *value)
+{
+    if (kind == PLANE_DEPTH)
+        return isfinite(*value) ? SEEN_SURFACE : *value > 0 ? SEEN_NOTHING : SEEN_NAN;
+    if (!isfinite(value[0]) || !isfinite(value[1]) || !isfinite(value[2]))
+        return SEEN_NAN;
+    return value[0] == 0 && value[1] == 0 && value[2] == 0 ? SEEN_NOTHING : SEEN_SURFACE;
+}
+
+static double plane_error(PlaneKind kind, const float *a, const float *b)
+{
+    return kind == PLANE_DEPTH ? fabs((double)*a - (double)*b) : angle_deg(a, b);
+}
+
+/* Labels the pixels that show a surface, and counts values that are not numbers. A pixel with such
+ * a value shows nothing. */
+static void label_seen(PlaneKind kind, const Plane *a, const Plane *b, Labels *labels,
+                       CompareResult *result)
+{
+    size_t n = result_count(result, MEASURE_PIXELS), channels = (size_t)a->channels;
+    for (size_t i = 0; i < n; i++) {
+        Seen in_a = seen_at(kind, a->values + i * channels);
+        Seen in_b = seen_at(kind, b->values + i * channels);
+        bool is_nan = in_a == SEEN_NAN || in_b == SEEN_NAN;
+        result->values[MEASURE_NAN_PIXELS] += (in_a == SEEN_NAN) + (in_b == SEEN_NAN);
+        if (is_nan && result->places[PLACE_NAN].x < 0)
+            result->places[PLACE_NAN] = place_of(i, a->width);
+        labels->seen[0][i] = !is_nan && in_a == SEEN_SURFACE;
+        labels->seen[1][i] = !is_nan && in_b == SEEN_SURFACE;
+    }
+}
+
+/* Measures the pixels seen in both images. `errors` has space for one number for each of them. */
+static void measure_errors(PlaneKind kind, const Plane *a, const Plane *b, const Labels *labels,
+                           double *errors, CompareResult *result)
+{
+    const Tolerance *tolerance = &result->tolerance;
+    const double limit =
+        tolerance->limits[kind == PLANE_DEPTH ? LIMIT_DEPTH_MAX_MM : LIMIT_NORMAL_MAX_DEG];
+    const size_t n = result_count(result, MEASURE_PIXELS), channels = (size_t)a->channels;
+    size_t found = 0, differing = result_count(result, MEASURE_UNCOMMON_PIXELS), beyond = 0;
+    double worst = -1, *values = result->values;
+    for (size_t i = 0; i < n; i++) {
+        if (!labels->seen[0][i] || !labels->seen[1][i])
+            continue;
+        double error = plane_error(kind, a->values + i * channels, b->values + i * channels);
+        differing += error > 0;
+        if (is_settled(tolerance, i))
+            continue;
+        errors[found++] = error;
+        beyond += error > limit;
+        if (error > worst) {
+            worst = error;
+            result->places[PLACE_WORST] = place_of(i, a->width);
+        }
+    }
+    values[MEASURE_DIFFERING_PIXELS] = (double)differing;
+    values[MEASURE_BEYOND_PIXELS] = (double)beyond;
+    values[MEASURE_JUDGED_PIXELS] = (double)found;
+    if (found == 0)
+        return;
+    values[MEASURE_MEDIAN] = percentile(errors, found, 0.5);
+    values[MEASURE_P99] = percentile(errors, found, 0.99);
+    values[MEASURE_MAX] = worst;
+}
+
+/* Measures depth differences over the depth in A, of pixels seen in both images. */
+static void measure_parts(const Plane *a, const Plane *b, const Labels *labels, double *errors,
+                          CompareResult *result)
+{
+    size_t n = result_count(result, MEASURE_PIXELS), found = 0;
+    for (size_t i = 0; i < n; i++)
+        if (labels->seen[0][i] && labels->seen[1][i] && !is_settled(&result->tolerance, i))
+            errors[found++] = plane_error(PLANE_DEPTH, a->values + i, b->values + i) /
+                              fmax(fabs((double)a->values[i]), DBL_MIN);
+    if (found)
+        result->values[MEASURE_P99_PART] = percentile(errors, found, 0.99);
+}
+
+/* Counts of pixels by their labels. */
+typedef struct LabelCounts {
+    size_t missing, extra, common, band, differing, settled, band_differing, band_settled;
+} LabelCounts;
+
+static void count_label(const Labels *labels, const LabelWindow *window, int x, uint8_t *coverage,
+                        LabelCounts *counts, CompareResult *result)
+{
+    size_t pixel = (size_t)window->y * (size_t)labels->width + (size_t)x;
+    uint32_t a = window->rows[0][1][x], b = window->rows[1][1][x];
+    bool band = window->band[x], differs = a != b;
+    bool settled = differs && is_settled(&result->tolerance, pixel);
+    if (!a != !b && !settled) {
+        coverage[pixel] = a ? COVERED_MISSING : COVERED_EXTRA;
+        counts->missing += a != 0;
+        counts->extra += b != 0;
+    }
+    counts->common += a && b;
+    counts->band += band;
+    counts->settled += settled;
+    counts->band_differing += band && differs;
+    counts->band_settled += band && settled;
+    result->classes[settled   ? PIXEL_SETTLED
+                    : differs ? labels_class(a, b, band)
+                              : PIXEL_IDENTICAL]++;
+    if (differs && result->kind == PLANE_ID && counts->differing++ == 0)
+        result->places[PLACE_WORST] = (PixelPlace){.x = x, .y = window->y};
+}
+
+static void take_label_counts(const LabelCounts *counts, CompareResult *result)
+{
+    double *values = result->values, pixels = values[MEASURE_PIXELS];
+    double mismatch = counts->band ? (double)counts->band_differing / (double)counts->band : 0;
+    size_t beyond = counts->differing - counts->settled;
+    size_t band_beyond = counts->band_differing - counts->band_settled;
+    result->has_mask = true;
+    values[MEASURE_MISSING_PIXELS] = (double)counts->missing;
+    values[MEASURE_EXTRA_PIXELS] = (double)counts->extra;
+    values[MEASURE_COMMON_PIXELS] = (double)counts->common;
+    values[MEASURE_BAND_PIXELS] = (double)counts->band;
+    values[MEASURE_INTERIOR_PIXELS] = pixels - (double)counts->band;
+    values[MEASURE_SETTLED_PIXELS] = (double)counts->settled;
+    values[MEASURE_EDGE_MISMATCH] = mismatch;
+    if (result->kind != PLANE_ID)
+        return;
+    values[MEASURE_EDGE_MISMATCH_PERCENT] = 100 * mismatch;
+    values[MEASURE_DIFFERING_PIXELS] = (double)counts->differing;
+    values[MEASURE_MISMATCH_FRACTION] = (double)counts->differing / pixels;
+    values[MEASURE_BEYOND_PIXELS] = (double)beyond;
+    values[MEASURE_BAND_BEYOND] = (double)band_beyond;
+    values[MEASURE_INTERIOR_BEYOND] = (double)(beyond - band_beyond);
+}
+
+/* Measures coverage, regions and edges of any labels, and the classes of pixels. */
+static Status measure_labels(const Labels *labels, CompareResult *result, Err *err)
+{
+    uint8_t *scratch = NULL, *coverage = NULL;
+    LabelCounts counts = {0};
+    LabelWindow window;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&scratch, label_window_size(labels->width), 1, "rows of labels", err));
+    TRY_GOTO(mem_calloc(&coverage, result_count(result, MEASURE_PIXELS), 1, "pixel marks", err));
+    label_window_open(&window, labels, 0, scratch);
+    for (int y = 0; y < labels->height; y++) {
+        for (int x = 0; x < labels->width; x++)
+            count_label(labels, &window, x, coverage, &counts, result);
+        if (y + 1 < labels->height)
+            label_window_next(&window);
+    }
+    take_label_counts(&counts, result);
+    status = region_take(coverage, labels, result, err);
+done:
+    free(scratch);
+    free(coverage);
+    return status;
+}
+
+Status compare_planes(PlaneKind kind, const Plane *a, const Plane *b, const IdPlane *id_a,
+                      const IdPlane *id_b, const Tolerance *tolerance, CompareResult *result,
+                      Err *err)
+{
+    TRY(check_sizes(a->width, a->height, b->width, b->height, err));
+    int channels = kind == PLANE_DEPTH ? 1 : 3;
+    if (a->channels != channels || b->channels != channels)
+        return err_set(err, STATUS_INPUT, "a %s plane must have %d channel%s, not %d and %d",
+                       plane_kind_name(kind), channels, channels == 1 ? "" : "s", a->channels,
+                       b->channels);
+    TRY(labels_check_ids(a->width, a->height, id_a, id_b, err));
+    CompareResult made = result_start(kind, a->width, a->height, id_a, tolerance);
+    made.values[MEASURE_BITS] = 32;
+    Labels labels = {0};
+    double *errors = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(labels_init_seen(&labels, a->width, a->height, err));
+    label_seen(kind, a, b, &labels, &made);
+    TRY_GOTO(measure_labels(&labels, &made, err));
+    TRY_GOTO(mem_calloc(&errors, result_count(&made, MEASURE_COMMON_PIXELS), sizeof *errors,
+                        "errors of pixels", err));
+    measure_errors(kind, a, b, &labels, errors, &made);
+    if (kind == PLANE_DEPTH)
+        measure_parts(a, b, &labels, errors, &made);
+    result_finish(&made, id_a, id_b);
+    *result = made;
+done:
+    free(errors);
+    labels_release(&labels);
+    return status;
+}
+
+Status compare_ids(const IdPlane *a, const IdPlane *b, const Tolerance *tolerance,
+                   CompareResult *result, Err *err)
+{
+    TRY(check_sizes(a->width, a->height, b->width, b->height, err));
+    CompareResult made = result_start(PLANE_ID, a->width, a->height, a, tolerance);
+    made.values[MEASURE_BITS] = 24;
+    Labels labels = labels_from_ids(a, b);
+    TRY(measure_labels(&labels, &made, err));
+    result_finish(&made, a, b);
+    *result = made;
+    return STATUS_OK;
+}

@@ -1,0 +1,80 @@
+/* The angle between normals is taken from sine and cosine together, since the arc cosine alone
+ * loses half of the digits of a small angle. */
+#include "compare/pixels.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane *ids,
+                           const Tolerance *tolerance)
+{
+    const double pixels = (double)width * height;
+    CompareResult result = {.kind = kind, .tolerance = *tolerance, .has_ids = ids != NULL};
+    for (MeasureId i = 0; i < MEASURES; i++)
+        result.values[i] = (double)NAN;
+    for (PlaceId i = 0; i < PLACES; i++)
+        result.places[i] = (PixelPlace){.x = -1, .y = -1};
+    result.values[MEASURE_WIDTH] = width;
+    result.values[MEASURE_HEIGHT] = height;
+    result.values[MEASURE_PIXELS] = result.values[MEASURE_JUDGED_PIXELS] = pixels;
+    result.values[MEASURE_DIFFERING_PIXELS] = result.values[MEASURE_NAN_PIXELS] = 0;
+    result.values[MEASURE_BEYOND_PIXELS] = result.values[MEASURE_SETTLED_PIXELS] = 0;
+    if (ids) {
+        result.values[MEASURE_SEGMENTS] = result.values[MEASURE_SEGMENTS_MISSING] = 0;
+        result.values[MEASURE_GAIN_EXCESS] = result.values[MEASURE_OFFSET_EXCESS] = 0;
+    }
+    return result;
+}
+
+PixelPlace place_of(size_t pixel, int width)
+{
+    return (PixelPlace){.x = (int)(pixel % (size_t)width), .y = (int)(pixel / (size_t)width)};
+}
+
+Status check_sizes(int width_a, int height_a, int width_b, int height_b, Err *err)
+{
+    if (width_a == width_b && height_a == height_b)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "the images differ in size: %d x %d and %d x %d pixels; only images of one size "
+                   "can be compared",
+                   width_a, height_a, width_b, height_b);
+}
+
+double percentile(double *values, size_t n, double fraction)
+{
+    size_t rank = (size_t)ceil(fraction * (double)n);
+    return select_number(values, n, rank ? rank - 1 : 0);
+}
+
+int largest_difference(const Picture *a, const Picture *b, size_t pixel)
+{
+    size_t channels = (size_t)a->channels;
+    int largest = 0;
+    for (size_t c = pixel * channels; c < (pixel + 1) * channels; c++) {
+        int difference = abs(picture_code(a, c) - picture_code(b, c));
+        largest = difference > largest ? difference : largest;
+    }
+    return largest;
+}
+
+int allowed_codes(const Tolerance *tolerance, const Picture *picture)
+{
+    return (int)floor(tolerance->limits[LIMIT_COLOR_LEVELS] * (picture->bits == 8 ? 1 : 257) +
+                      1e-9);
+}
+
+bool geometry_differs(const Rendering *a, const Rendering *b, size_t pixel, double mm, double deg)
+{
+    double depth = fabs((double)a->depth->values[pixel] - (double)b->depth->values[pixel]);
+    return !(depth <= mm) ||
+           !(angle_deg(&a->normal->values[3 * pixel], &b->normal->values[3 * pixel]) <= deg);
+}
+
+double angle_deg(const float *a, const float *b)
+{
+    double ax = (double)a[0], ay = (double)a[1], az = (double)a[2];
+    double bx = (double)b[0], by = (double)b[1], bz = (double)b[2];
+    double x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
+    return elementary_atan2(sqrt(x * x + y * y + z * z), ax * bx + ay * by + az * bz) * 180 / PI;
+}

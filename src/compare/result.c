@@ -1,0 +1,28 @@
+/* The names of planes and of classes of pixels, in files and texts. */
+#include "compare/result.h"
+
+const char *plane_kind_name(PlaneKind kind)
+{
+    static const char *const names[PLANE_KINDS] = {"color", "depth", "normal", "id"};
+    return names[kind];
+}
+
+const char *pixel_class_name(PixelClass pixel_class)
+{
+    static const char *const names[PIXEL_CLASSES] = {[PIXEL_SETTLED] = "settled",
+                                                     [PIXEL_MISSING] = "missing",
+                                                     [PIXEL_EXTRA] = "extra",
+                                                     [PIXEL_EDGE] = "edge",
+                                                     [PIXEL_WRONG_SEGMENT] = "wrong_segment",
+                                                     [PIXEL_SHADOW] = "shadow",
+                                                     [PIXEL_GEOMETRY] = "geometry",
+                                                     [PIXEL_SHADING] = "shading",
+                                                     [PIXEL_ROUNDING] = "rounding",
+                                                     [PIXEL_IDENTICAL] = "identical"};
+    return names[pixel_class];
+}
+
+const char *result_title(const CompareResult *result)
+{
+    return result->tolerance.title ? result->tolerance.title : plane_kind_name(result->kind);
+}

@@ -1,0 +1,269 @@
+/* Compares the properties that a file states with a preset. Poppler's programs state the properties
+ * of a PDF. Requirements that cannot be checked here are listed, so that no silence passes for
+ * consent. */
+#include "job/figure/check_figure.h"
+
+#include "image/image.h"
+#include "job/job.h"
+#include "options/output.h"
+#include <stdio.h>
+#include <string.h>
+
+static const Option own[] = {
+    {.name = "preset",
+     SETS(LOOKUP, CheckFigureOptions, preset),
+     .list = "presets",
+     .help = "the publisher: a file of templates/presets, or a path"},
+    {.name = "kind",
+     SETS(CHOICE, CheckFigureOptions, kind),
+     .choices = content_kinds,
+     .help = "shades, shades with lines or letters in their pixels, or lines alone"},
+    {.name = "json", SETS(FLAG, CheckFigureOptions, json), .help = "on standard output"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+/* One check of a file. */
+typedef struct Check {
+    const Preset *preset;
+    ContentKind kind;
+    const char *path;
+    FigureFindings *found;
+} Check;
+
+static void refuse(Check *check, const char *format, ...) PRINTF_LIKE(2, 3);
+static void refuse(Check *check, const char *format, ...)
+{
+    char line[400];
+    va_list values;
+    va_start(values, format);
+    vsnprintf(line, sizeof line, format, values);
+    va_end(values);
+    text_printf(&check->found->refused, "%s\n", line);
+    check->found->n_refused++;
+}
+
+/* ---- sizes ----------------------------------------------------------------------------------- */
+
+/* Half a millimetre is what rounding to pixels and cutting edges may take or give. */
+static const double slack_mm = 0.5;
+
+static void check_lengths(Check *check, double width_mm, double height_mm)
+{
+    const Preset *preset = check->preset;
+    if (preset->most_mm > 0 && width_mm > preset->most_mm + slack_mm)
+        refuse(check, "width: %.1f mm, more than %g mm", width_mm, preset->most_mm);
+    if (width_mm < preset->least_mm - slack_mm)
+        refuse(check, "width: %.1f mm, less than %g mm", width_mm, preset->least_mm);
+    if (preset->height_mm > 0 && height_mm > preset->height_mm + slack_mm)
+        refuse(check, "height: %.1f mm, more than %g mm", height_mm, preset->height_mm);
+}
+
+/* PNG's whole pixels a metre and JPEG's whole pixels an inch are not off by one in a hundred. */
+static void check_resolution(Check *check, double dpi, const char *of)
+{
+    const Preset *preset = check->preset;
+    double least = preset->least_dpi[check->kind];
+    if (dpi < 0.99 * least)
+        refuse(check, "resolution: %.4g dpi%s, less than %g for %s", dpi, of, least,
+               content_kinds[check->kind]);
+    if (preset->most_dpi > 0 && dpi > 1.01 * preset->most_dpi)
+        refuse(check, "resolution: %.4g dpi%s, more than %g", dpi, of, preset->most_dpi);
+}
+
+/* Without a resolution, the pixels must do for the narrowest column. */
+static void check_pixels(Check *check, const ImageFacts *facts)
+{
+    double least = check->preset->least_dpi[check->kind];
+    double column = check->preset->single_mm / MM_PER_INCH * least;
+    if (facts->dpi > 0) {
+        check_resolution(check, facts->dpi, "");
+        check_lengths(check, facts->width / facts->dpi * MM_PER_INCH,
+                      facts->height / facts->dpi * MM_PER_INCH);
+        return;
+    }
+    refuse(check, "resolution: the file has none; %d pixels are %.0f dpi over a column of %g mm",
+           facts->width, facts->width / check->preset->single_mm * MM_PER_INCH,
+           check->preset->single_mm);
+    if (facts->width < 0.99 * column)
+        refuse(check, "pixels: %d across, fewer than the %.0f of a column of %g mm at %g dpi",
+               facts->width, column, check->preset->single_mm, least);
+}
+
+/* ---- pictures -------------------------------------------------------------------------------- */
+
+static void check_colors(Check *check, const char *colors, const char *profile)
+{
+    const char *listed = check->preset->colors;
+    if (!preset_has(listed, colors))
+        refuse(check, "colours: %s; taken are %s", colors, listed);
+    else if (strcmp(colors, "cmyk") == 0 && !*profile)
+        refuse(check, "profile: inks without the ICC profile of their press");
+    else if (strcmp(colors, "rgb") == 0 && *profile && !strstr(profile, "sRGB"))
+        refuse(check, "profile: \"%s\"; colours without ado are sRGB", profile);
+}
+
+static void check_picture(Check *check, const ImageFacts *facts)
+{
+    const Preset *preset = check->preset;
+    bool tiff = strcmp(facts->format, "tif") == 0;
+    check_pixels(check, facts);
+    if (facts->bits > preset->bits)
+        refuse(check, "bits: %d a channel, more than %g", facts->bits, preset->bits);
+    if (facts->has_alpha)
+        refuse(check, "alpha: a channel of transparency; figures are to be flat");
+    if (facts->pages > 1)
+        refuse(check, "pages: %d; one is wanted", facts->pages);
+    if (tiff && strcmp(preset->compression, "any") != 0 &&
+        strcmp(preset->compression, facts->compression) != 0)
+        refuse(check, "compression: %s; wanted is %s", facts->compression, preset->compression);
+    check_colors(check, facts->colors, facts->profile);
+    text_puts(&check->found->unchecked, "letters in the pixels, and their sizes\n");
+}
+
+/* ---- pages ----------------------------------------------------------------------------------- */
+
+typedef void TakeLine(Check *check, char *line, int number);
+
+/* Has a program of poppler's look at the file, and `take` at each line that it says. */
+static Status ask(Check *check, const char *program, TakeLine *take, Err *err)
+{
+    Text command = TEXT_INIT;
+    char line[1024];
+    text_printf(&command, "LC_ALL=C %s -- ", program);
+    put_shell_operand(&command, check->path);
+    text_puts(&command, " 2>/dev/null");
+    Status status = text_check(&command, err);
+    FILE *answer = status == STATUS_OK ? popen(text_chars(&command), "r") : NULL;
+    for (int i = 0; answer && fgets(line, sizeof line, answer); i++)
+        take(check, line, i);
+    int ended = answer ? pclose(answer) : 0;
+    text_release(&command);
+    if (status == STATUS_OK && (!answer || ended == 127 << 8))
+        status = err_set(err, STATUS_TOOL, "%.*s is not there; it comes with poppler-utils",
+                         (int)strcspn(program, " "), program);
+    else if (status == STATUS_OK && ended != 0)
+        status = err_set(err, STATUS_INPUT, "%s: is not a sound PDF, as %.*s has it", check->path,
+                         (int)strcspn(program, " "), program);
+    return status;
+}
+
+/* "Pages:           1", "Page size:       252.28 x 170.08 pts". */
+static void take_info(Check *check, char *line, int number)
+{
+    (void)number;
+    int pages;
+    double width, height, mm = MM_PER_INCH / 72;
+    if (sscanf(line, "Pages: %d", &pages) == 1 && pages != 1)
+        refuse(check, "pages: %d; one is wanted", pages);
+    if (sscanf(line, "Page size: %lf x %lf pts", &width, &height) == 2)
+        check_lengths(check, width * mm, height * mm);
+}
+
+/* Two lines of heads; columns from the right: generation and object number, uni, sub, emb,
+ * encoding, the type in one to three words. The letters of a Type 3 font are drawings, which other
+ * programs cannot edit, search or hint, so publishers refuse it even if it is embedded. */
+static void take_font(Check *check, char *line, int number)
+{
+    char *words[16], *rest = NULL;
+    size_t n = 0;
+    for (char *word = strtok_r(line, " \n", &rest); word && n < 16;
+         word = strtok_r(NULL, " \n", &rest))
+        words[n++] = word;
+    if (number < 2 || n < 7)
+        return;
+    if (strcmp(words[n - 5], "no") == 0)
+        refuse(check, "fonts: %s is not embedded", words[0]);
+    if (n >= 8 && strcmp(words[n - 8], "Type") == 0 && strcmp(words[n - 7], "3") == 0)
+        refuse(check, "fonts: %s is a Type 3 font; TrueType, OpenType and Type 1 fonts are taken",
+               strcmp(words[0], "[none]") ? words[0] : "one without a name");
+    if (number == 2 && strcmp(check->preset->text_form, "outlined") == 0)
+        refuse(check, "fonts: text is live; it is to be outlines");
+}
+
+/* Two lines of heads; page num type width height color comp bpc enc interp object ID x-ppi y-ppi.
+ */
+static void take_image(Check *check, char *line, int number)
+{
+    char type[32], color[32];
+    int bits;
+    double dpi;
+    if (number < 2 || sscanf(line, "%*d %*d %31s %*d %*d %31s %*d %d %*s %*s %*d %*d %lf", type,
+                             color, &bits, &dpi) != 4)
+        return;
+    char of[64];
+    snprintf(of, sizeof of, " of picture %d", number - 1);
+    if (strcmp(type, "image") == 0)
+        check_resolution(check, dpi, of);
+    if (strcmp(type, "smask") == 0)
+        refuse(check, "alpha: picture %d is a mask of transparency", number - 1);
+    bool grey = strcmp(color, "gray") == 0;
+    if (strcmp(color, "rgb") == 0 || strcmp(color, "cmyk") == 0 || grey)
+        check_colors(check, grey ? "grey" : color, "sRGB");
+    if (bits > check->preset->bits)
+        refuse(check, "bits: %d a channel, more than %g", bits, check->preset->bits);
+}
+
+static Status check_pdf(Check *check, Err *err)
+{
+    text_puts(&check->found->unchecked, "sizes of letters, colours of lines and letters\n");
+    TRY(ask(check, "pdfinfo", take_info, err));
+    TRY(ask(check, "pdffonts", take_font, err));
+    return ask(check, "pdfimages -list", take_image, err);
+}
+
+/* ---- the command ----------------------------------------------------------------------------- */
+
+static Status check_file(Check *check, Err *err)
+{
+    ImageFacts facts;
+    const Preset *preset = check->preset;
+    TRY(image_facts(check->path, &facts, err));
+    if (!preset_has(preset->formats, facts.format))
+        refuse(check, "format: %s; taken are %s", facts.format, preset->formats);
+    if (preset->megabytes > 0 && (double)facts.bytes >= preset->megabytes * 1e6)
+        refuse(check, "size: %.1f MB, not less than %g MB", (double)facts.bytes * 1e-6,
+               preset->megabytes);
+    if (facts.width > 0)
+        check_picture(check, &facts);
+    else if (strcmp(facts.format, "pdf") == 0)
+        return check_pdf(check, err);
+    else
+        text_printf(&check->found->unchecked, "anything in a .%s but its format and size\n",
+                    facts.format);
+    return STATUS_OK;
+}
+
+Status check_figure_make(const CheckFigureOptions *options, const char *path,
+                         FigureFindings *findings, Err *err)
+{
+    Preset preset = {0};
+    if (!options->preset)
+        return err_set(err, STATUS_USAGE,
+                       "--preset is missing; corcast presets lists those there are");
+    TRY(preset_read(options->preset, &preset, err));
+    Check check = {.preset = &preset, .kind = options->kind, .path = path, .found = findings};
+    Status status = check_file(&check, err);
+    preset_release(&preset);
+    TRY(status);
+    TRY(text_check(&findings->refused, err));
+    return text_check(&findings->unchecked, err);
+}
+
+void figurefindings_release(FigureFindings *findings)
+{
+    text_release(&findings->refused);
+    text_release(&findings->unchecked);
+}
+
+const Command command_check_figure = {
+    .name = "check-figure",
+    .summary = "say what a publisher would refuse in a figure",
+    .operands = "FILE --preset NAME",
+    .examples = "  corcast check-figure figure1.tif --preset plos\n"
+                "  corcast check-figure figure1.pdf --preset nature --kind combination\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .size = sizeof(CheckFigureOptions),
+    .tables = {{&own_table, 0}},
+};

@@ -1,0 +1,31 @@
+/* The job `check-figure`: finds what a publisher would refuse in the file of a figure. */
+#ifndef CORCAST_JOB_FIGURE_CHECK_FIGURE_H
+#define CORCAST_JOB_FIGURE_CHECK_FIGURE_H
+
+#include "base/base.h"
+#include "job/picture/preset.h"
+
+typedef struct CheckFigureOptions {
+    const char *preset; /* name in templates/presets, or a path; must be specified */
+    ContentKind kind;
+    bool json; /* read by the caller only: the findings are printed as JSON */
+} CheckFigureOptions;
+
+/* Zero it before use; release it with figurefindings_release. */
+typedef struct FigureFindings {
+    Text refused;   /* one line per property that the publisher refuses */
+    Text unchecked; /* one line per requirement that was not checked */
+    int n_refused;
+} FigureFindings;
+
+/* Checks the file `path` against the preset. A file of any format that the program writes can be
+ * checked; a PDF needs the programs of poppler-utils.
+ *
+ * findings  the caller releases it even after an error.
+ * Errors    STATUS_USAGE if there is no such preset; STATUS_INPUT if the file or the preset is
+ *           broken; STATUS_TOOL if a program is missing; STATUS_MEMORY. */
+MUST_CHECK Status check_figure_make(const CheckFigureOptions *options, const char *path,
+                                    FigureFindings *findings, Err *err);
+void figurefindings_release(FigureFindings *findings);
+
+#endif

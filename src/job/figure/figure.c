@@ -1,0 +1,474 @@
+/* A page is a grid of cells, which the panels of the recipe fill row by row. Each panel is drawn as
+ * `render` draws, on whole pixels of the page. Legends, scale bars, letters, insets with their
+ * frames, and text are drawn over the panels. Paths in the recipe start at the recipe's folder. */
+#include "job/figure/figure.h"
+
+#include "job/job.h"
+#include "job/picture/frames.h"
+#include "options/output.h"
+#include "options/templates.h"
+#include <fcntl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char *const letter_names[] = {
+    [LETTERS_LOWER] = "lower", [LETTERS_UPPER] = "upper", [LETTERS_NONE] = "none", NULL};
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, FigureOptions, output),
+     .argument = "F",
+     .help = "the figure: .pdf or .svg with live text, .png, .tif or .jpg"},
+    {.name = "size",
+     SETS(SIZE, FigureOptions, size),
+     FROM_TO(1, IMAGE_MAX_SIDE),
+     .group = GROUP_PAGE,
+     .help = "of the page on paper, as 183mmx120mm, or pixels"},
+    {DPI_OF_SIZE(FigureOptions, size), .group = GROUP_PAGE, .help = "pixels an inch on paper"},
+    {.name = "columns",
+     SETS(WHOLE, FigureOptions, columns),
+     FROM_TO(1, 64),
+     .group = GROUP_PAGE,
+     .help = "of panels"},
+    {.name = "gap",
+     SETS(NUMBER, FigureOptions, gap_mm),
+     FROM_TO(0, 1000),
+     .group = GROUP_PAGE,
+     .unit = "mm",
+     .help = "between panels"},
+    {.name = "margin",
+     SETS(NUMBER, FigureOptions, margin_mm),
+     FROM_TO(0, 1000),
+     .group = GROUP_PAGE,
+     .unit = "mm",
+     .help = "around them"},
+    {.name = "letters",
+     SETS(CHOICE, FigureOptions, letters),
+     .choices = letter_names,
+     .group = GROUP_PAGE,
+     .help = "of panels that have none of their own"},
+    {.name = "text-size",
+     SETS(NUMBER, FigureOptions, text_pt),
+     FROM_TO(1, 1000),
+     .group = GROUP_PAGE,
+     .unit = "pt",
+     .help = "of titles, legends and text; letters have one more"},
+    {.name = "background",
+     SETS(COLOR, FigureOptions, background),
+     .group = GROUP_PAGE,
+     .help = "sRGB, each from 0 to 1"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    FigureOptions *own_options = options;
+    *own_options = (FigureOptions){
+        .size = {.mm = {89, 89}}, .columns = 1, .gap_mm = 2, .text_pt = 7, .background = {1, 1, 1}};
+    press_set_defaults(&own_options->press);
+}
+
+/* ---- panels ---------------------------------------------------------------------------------- */
+
+static Status set_key(Parsed *parsed, const char *name, const char *value, Err *err)
+{
+    return setting_read(parsed_find(parsed, name, strlen(name)), value, err);
+}
+
+/* What the page says of a panel's options. Those of the recipe are no longer typed, as in recipes
+ * of commands: one that has no effect on this panel is not refused. */
+static Status set_options(const Figure *figure, size_t i, Err *err)
+{
+    const FigureOptions *options = figure->options;
+    Section *section = figure->plan.sections[i];
+    const PanelOptions *panel = section->own.options;
+    const Place *place = &figure->places[i];
+    char size[64], dpi[NUMBER_TEXT_SIZE], pt[NUMBER_TEXT_SIZE];
+    snprintf(size, sizeof size, "%dx%d", place->width, place->height);
+    number_text(figure->sheet.page.dpi, dpi);
+    number_text(options->text_pt, pt);
+    TRY(set_key(&section->render, "size", size, err));
+    TRY(set_key(&section->render, "dpi", dpi, err));
+    if (!options_said(&section->render, "text-size"))
+        TRY(set_key(&section->render, "text-size", pt, err));
+    for (size_t k = 0; k < section->render.n_settings; k++)
+        section->render.settings[k].typed = false;
+    section->render.common.talk = figure->parsed->common.talk;
+    section->render.common.threads = figure->parsed->common.threads;
+    section->render.operands[0] = panel->tree;
+    section->render.n_operands = 1;
+    if (section->maker)
+        parsed_give(&section->render, madetrees_tree(&figure->plan, &figure->trees, i),
+                    section->tree_name);
+    return STATUS_OK;
+}
+
+static Status draw_panels(Figure *figure, Err *err)
+{
+    size_t first = 0;
+    for (size_t i = 0; i < figure->plan.n; i++) {
+        Panel *panel = &figure->panels[i];
+        Section *section = figure->plan.sections[i];
+        if (!figure_is_panel(figure, i))
+            continue;
+        char name[80];
+        snprintf(name, sizeof name, "[panel %.60s]", section->name);
+        panel->name = name;
+        panel->fonts = figure->sheet.fonts;
+        panel->insets = figure->insets + first;
+        TRY(figure_plan_insets(figure, i, first, &panel->n_insets, err));
+        first += panel->n_insets;
+        TRY(set_options(figure, i, err));
+        Status status = panel_draw(&section->render, panel, err);
+        if (status != STATUS_OK) {
+            options_name_fields(&section->render, err);
+            err_prefix(err, "[panel %s]: ", section->name);
+            return status;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* ---- the page -------------------------------------------------------------------------------- */
+
+static FigureColor color_of(Vec3 srgb)
+{
+    return (FigureColor){{(uint8_t)lround(255 * srgb.x), (uint8_t)lround(255 * srgb.y),
+                          (uint8_t)lround(255 * srgb.z)}};
+}
+
+/* Black or white, whichever is read on the paper. */
+static FigureColor ink_on(FigureColor paper)
+{
+    const Vec3 srgb = vec3(paper.rgb[0] / 255.0, paper.rgb[1] / 255.0, paper.rgb[2] / 255.0);
+    return annotation_ink(rgb_of_option(srgb));
+}
+
+/* In the line above the panel, or in its upper left corner: at the edge where nobody sees one. */
+static void put_letter(Figure *figure, size_t i, const char *letter, FigureColor paper)
+{
+    const FigureOptions *options = figure->options;
+    const bool above = figure->places[i].title_mm > 0;
+    const double em = options->text_pt * MM_PER_POINT;
+    const Rgb inside = figure->panels[i].scene.view.background;
+    const FigureColor around = annotation_color(inside);
+    const bool is_seen = !above && memcmp(&around, &paper, sizeof paper) != 0;
+    FigureBox box = figure_panel_box(figure, i);
+    const FigureText text = {.text = letter,
+                             .x = box.left + (is_seen ? 0.6 * em : 0),
+                             .y =
+                                 above ? box.top - 0.55 * em : box.top + (is_seen ? 1.5 : 1.1) * em,
+                             .size_pt = options->text_pt + 1,
+                             .bold = true,
+                             .color = above ? ink_on(paper) : annotation_ink(inside)};
+    figure_add_text(&figure->sheet.page, &text);
+}
+
+static void put_title(Figure *figure, size_t i, FigureColor ink)
+{
+    const PanelOptions *panel = figure->plan.sections[i]->own.options;
+    FigureBox box = figure_panel_box(figure, i);
+    const FigureText text = {.text = panel->title,
+                             .x = (box.left + box.right) / 2,
+                             .y = box.top - 0.55 * figure->options->text_pt * MM_PER_POINT,
+                             .size_pt = figure->options->text_pt,
+                             .align = ALIGN_CENTER,
+                             .color = ink};
+    if (panel->title)
+        figure_add_text(&figure->sheet.page, &text);
+}
+
+/* a, b, ..., z, aa, ... */
+static void automatic_letter(int number, bool upper, char out[8])
+{
+    char digits[8];
+    int n = 0, k = 0;
+    for (int rest = number + 1; rest > 0 && n < 6; rest = (rest - 1) / 26)
+        digits[n++] = (char)((upper ? 'A' : 'a') + (rest - 1) % 26);
+    while (n > 0)
+        out[k++] = digits[--n];
+    out[k] = '\0';
+}
+
+/* Over the panel but for its letter, which is the page's. */
+static Status put_panel(Figure *figure, size_t i, int number, Err *err)
+{
+    Panel *panel = &figure->panels[i];
+    const Place *place = &figure->places[i];
+    const Letters letters = figure->options->letters;
+    Annotation annotation = panel->annotation;
+    char letter[8];
+    const FigureBox box = figure_panel_box(figure, i);
+    if (panel->in_lines)
+        figure_add_strokes(&figure->sheet.page, &panel->strokes, (FigurePoint){box.left, box.top},
+                           figure->ink);
+    else
+        figure_add_picture(&figure->sheet.page, &panel->picture, place->left, place->top);
+    automatic_letter(number, letters == LETTERS_UPPER, letter);
+    const char *shown = annotation.letter ? annotation.letter : letter;
+    FigureColor paper = figure->sheet.page.background;
+    if (annotation.letter || letters != LETTERS_NONE)
+        put_letter(figure, i, shown, paper);
+    put_title(figure, i, figure->ink);
+    annotation.letter = NULL;
+    return annotation_put(&annotation, &panel->scene, box, &figure->sheet.page, err);
+}
+
+/* ---- text ------------------------------------------------------------------------------------ */
+
+/* Larger coordinates are a mistake, and beyond what FreeType and cairo take. */
+static const double far_mm = 1e4;
+
+static Status put_text(Figure *figure, const Section *section, Err *err)
+{
+    const TextOptions *options = section->own.options;
+    if (!options->text || !options->has_at)
+        return err_set(err, STATUS_USAGE,
+                       "[text %s] needs 'text' and 'at', mm from the page's upper left corner",
+                       section->name);
+    if (!(fabs(options->at.x) <= far_mm && fabs(options->at.y) <= far_mm))
+        return err_set(err, STATUS_USAGE, "[text %s]: at: %g,%g is more than %g mm off the page",
+                       section->name, options->at.x, options->at.y, far_mm);
+    const FigureText text = {.text = options->text,
+                             .x = options->at.x,
+                             .y = options->at.y,
+                             .size_pt =
+                                 options->has_text_pt ? options->text_pt : figure->options->text_pt,
+                             .bold = options->bold,
+                             .align = options->align,
+                             .color = color_of(options->color)};
+    figure_add_text(&figure->sheet.page, &text);
+    return STATUS_OK;
+}
+
+/* Reports what the panels have lost of their trees and how they are coloured. */
+static Status say_panels(const Figure *figure, Err *err)
+{
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < figure->plan.n && status == STATUS_OK; i++)
+        if (figure_is_panel(figure, i))
+            status = picture_say(&figure->panels[i].scene, &figure->panels[i].report,
+                                 figure->parsed->common.talk, err);
+    return status;
+}
+
+static Status fill_page(Figure *figure, Err *err)
+{
+    int number = 0;
+    figure->sheet.page.background = color_of(figure->options->background);
+    figure->ink = ink_on(figure->sheet.page.background);
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_is_panel(figure, i)) {
+            TRY(put_panel(figure, i, number++, err));
+            TRY(figure_put_insets(figure, i, err));
+        }
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure->plan.sections[i]->kind == SECTION_TEXT)
+            TRY(put_text(figure, figure->plan.sections[i], err));
+    TRY(figure_check(&figure->sheet.page, err));
+    sheet_say(&figure->sheet, figure->parsed->common.talk);
+    return say_panels(figure, err);
+}
+
+/* ---- files ----------------------------------------------------------------------------------- */
+
+static Status write_picture(const Figure *figure, const Picture *picture, Err *err)
+{
+    const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", figure->sheet.notes.command}};
+    const ImageNotes all = {.notes = notes, .count = 2, .dpi = figure->sheet.page.dpi};
+    const ImageForm form = {.width = picture->width,
+                            .height = picture->height,
+                            .channels = 3,
+                            .bits = picture->bits,
+                            .encoding = ENCODING_SRGB,
+                            .notes = &all,
+                            .packing = figure->press.packing};
+    ImageWriter *writer;
+    TRY(imagewriter_open(&writer, figure->options->output, &form, err));
+    Status status = imagewriter_codes(writer, picture, err);
+    if (status == STATUS_OK)
+        return imagewriter_commit(writer, err);
+    imagewriter_discard(writer);
+    return status;
+}
+
+/* The page as pixels. */
+static Status write_pixels(const Figure *figure, Err *err)
+{
+    const FigurePage *page = &figure->sheet.page;
+    const int bits = figure->press.bits;
+    const unsigned scale = bits == 8 ? 1 : 257;
+    Picture picture;
+    TRY(picture_init(&picture, figure_pixels(page, page->width_mm),
+                     figure_pixels(page, page->height_mm), 3, bits, err));
+    for (size_t i = 0; i < picture_stride(&picture) * (size_t)picture.height; i++)
+        picture_set(&picture, i, (uint16_t)(page->background.rgb[i % 3] * scale));
+    Status status = figure_draw(page, 0, &picture, err);
+    if (status == STATUS_OK)
+        status = write_picture(figure, &picture, err);
+    picture_release(&picture);
+    return status;
+}
+
+static Status write_file(const Figure *figure, Err *err)
+{
+    const char *output = figure->options->output;
+    return frames_is_page(output)
+               ? frames_write_page(&figure->sheet.page, &figure->sheet.notes, output, err)
+               : write_pixels(figure, err);
+}
+
+Status figure_write(Figure *figure, Err *err)
+{
+    Text description = TEXT_INIT;
+    char *line = NULL;
+    TRY(command_line_text(figure->parsed, &line, err));
+    text_puts(&description, "figure ");
+    text_put_line(&description, file_name(figure->parsed->operands[0]));
+    Status status = sheet_describe(&figure->sheet, &description, line, err);
+    text_release(&description);
+    free(line);
+    return status == STATUS_OK ? write_file(figure, err) : status;
+}
+
+/* ---- the recipe's folder --------------------------------------------------------------------- */
+
+/* The recipe's path: a file by its '/' or extension, else one of templates/figures; in *path
+ * (owned). */
+static Status find_recipe(const char *name, char **path, Err *err)
+{
+    if (strchr(name, '/') || strcmp(file_extension(name), "ini") == 0)
+        return mem_strdup(path, name, err);
+    return template_find("no such figure:", "figures", name, ".ini", path, err);
+}
+
+/* Makes the folder of the recipe the current one; *home is the one before, to go back to. */
+static Status enter_folder(const char *recipe, int *home, Err *err)
+{
+    char *folder = NULL;
+    *home = open(".", O_PATH | O_DIRECTORY | O_CLOEXEC);
+    TRY(mem_strdup(&folder, recipe, err));
+    folder[file_name(recipe) - recipe] = '\0';
+    bool entered = *home >= 0 && (!*folder || chdir(folder) == 0);
+    free(folder);
+    return entered ? STATUS_OK
+                   : err_set(err, STATUS_IO, "%s: its folder cannot be entered", recipe);
+}
+
+static Status leave_folder(int home, Status status, Err *err)
+{
+    if (home >= 0 && fchdir(home) != 0 && status == STATUS_OK)
+        status = err_set(err, STATUS_IO, "the folder that the figure goes to is gone");
+    if (home >= 0)
+        close(home);
+    return status;
+}
+
+/* The press's profile is named from the recipe's folder, or on the command line from where that is
+ * typed. */
+static Status open_press(Figure *figure, bool in_folder, Err *err)
+{
+    const FigureOptions *options = figure->options;
+    if (frames_is_page(options->output) ||
+        options_typed(figure->parsed, "cmyk-profile") == in_folder)
+        return STATUS_OK;
+    return press_open(&options->press, options->output, figure->parsed->common.threads,
+                      &figure->press, err);
+}
+
+static Status draw_in_folder(Figure *figure, const char *recipe, Err *err)
+{
+    int home = -1;
+    TRY(open_press(figure, false, err));
+    Status status = enter_folder(recipe, &home, err);
+    if (status == STATUS_OK)
+        status = open_press(figure, true, err);
+    if (status == STATUS_OK)
+        status = madetrees_make(&figure->plan, &figure->parsed->common, &figure->trees, err);
+    if (status == STATUS_OK)
+        status = draw_panels(figure, err);
+    if (status == STATUS_OK)
+        status = fill_page(figure, err);
+    return leave_folder(home, status, err);
+}
+
+/* ---- the command ----------------------------------------------------------------------------- */
+
+static Status check_output(const FigureOptions *options, Err *err)
+{
+    static const char *const known[] = {"pdf", "svg", "png", "tif", "tiff", "jpg", "jpeg", NULL};
+    if (is_one_of(file_extension(options->output), known))
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pdf, .svg, .png, .tif or .jpg",
+                   options->output);
+}
+
+static Status put_recipe(Figure *figure, Err *err)
+{
+    text_puts(&figure->recipe, "; " GENERATOR ": figure FILE -o F.pdf\n");
+    figureplan_put(&figure->plan, figure->parsed, &figure->recipe);
+    return text_check(&figure->recipe, err);
+}
+
+static Status make_figure(Figure *figure, const char *recipe, Err *err)
+{
+    const FigureOptions *options = figure->options;
+    const int *pixels = options->size.pixels;
+    TRY(figureplan_read(recipe, figure->parsed, &figure->plan, err));
+    TRY(options_settle(figure->parsed, err));
+    TRY(options_check(figure->parsed, err)); /* an option may need one that the recipe gives */
+    TRY(press_check(&options->press, options->output, err));
+    TRY(picture_fits(pixels[0], pixels[1], 12, err));
+    TRY(sheet_open(&figure->sheet, err));
+    sheet_begin(&figure->sheet, pixels, options->size.dpi > 0 ? options->size.dpi : 300);
+    TRY(figure_place_panels(figure, err));
+    TRY(draw_in_folder(figure, recipe, err));
+    return figure->parsed->common.dump ? put_recipe(figure, err) : STATUS_OK;
+}
+
+Status figure_make(const FigureOptions *options, Parsed *parsed, Figure *out, Err *err)
+{
+    char *recipe = NULL;
+    out->options = options;
+    out->parsed = parsed;
+    TRY(check_output(options, err));
+    TRY(find_recipe(parsed->operands[0], &recipe, err));
+    Status status = make_figure(out, recipe, err);
+    free(recipe);
+    return status;
+}
+
+void figure_done(Figure *figure)
+{
+    for (size_t i = 0; figure->panels && i < figure->plan.n; i++)
+        panel_release(&figure->panels[i]);
+    madetrees_release(&figure->trees);
+    figureplan_release(&figure->plan);
+    sheet_release(&figure->sheet);
+    press_release(&figure->press);
+    text_release(&figure->recipe);
+    free(figure->places);
+    free(figure->panels);
+    free(figure->insets);
+}
+
+const Command command_figure = {
+    .name = "figure",
+    .summary = "draw the figure of a recipe: panels, legends, scale bars, letters, insets, text",
+    .operands = "R.ini -o F.pdf",
+    .examples = "  corcast figure figure2.ini -o figure2.pdf\n"
+                "  corcast figure figure2.ini --dpi 600 -o figure2.tif\n"
+                "  corcast figure figure2.ini -o figure2.svg --dump-recipe > all.ini\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .is_lookup = false,
+    .own_recipe = true,
+    .own_check = true,
+    .size = sizeof(FigureOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}, {&press_table, offsetof(FigureOptions, press)}},
+};

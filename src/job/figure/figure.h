@@ -1,0 +1,80 @@
+/* The job `figure`: draws the figure of a recipe, a page of panels. */
+#ifndef CORCAST_JOB_FIGURE_FIGURE_H
+#define CORCAST_JOB_FIGURE_FIGURE_H
+
+#include "job/figure/figure_plan.h"
+#include "job/figure/figure_trees.h"
+#include "job/picture/press.h"
+#include "job/picture/render_panel.h"
+
+typedef enum Letters { LETTERS_LOWER, LETTERS_UPPER, LETTERS_NONE } Letters;
+
+typedef struct FigureOptions {
+    const char *output;
+    PressOptions press;
+    PictureSize size;
+    int columns;
+    double gap_mm, margin_mm, text_pt;
+    Letters letters;
+    Vec3 background; /* sRGB in [0, 1] */
+} FigureOptions;
+
+/* The place of a panel on the page, in pixels from the page's upper left corner. */
+typedef struct Place {
+    int left, top, width, height;
+    double title_mm; /* height of the line above the panel */
+} Place;
+
+/* A figure on its page. Zero it before use; release it with figure_done. */
+typedef struct Figure {
+    const FigureOptions *options; /* borrowed, as is `parsed` */
+    Parsed *parsed;
+    FigurePlan plan;
+    MadeTrees trees;
+    Press press; /* of a page in pixels */
+    Sheet sheet; /* the page, and what it states about itself */
+    Text recipe; /* with --dump-recipe: the complete recipe */
+    /* Per section, but zero for those of another kind; owned. The insets are in the order of their
+     * panels. */
+    Place *places;
+    Panel *panels;
+    PanelInset *insets;
+    FigureColor ink; /* black or white, which is read on the paper */
+} Figure;
+
+/* Reads the recipe that is the first operand, draws its panels, and fills the page. The recipe is a
+ * path, if it has a '/' or the extension .ini, or a name in templates/figures. Options of the
+ * command line take precedence over the recipe.
+ *
+ * figure  the caller calls figure_done even after an error.
+ * Errors  STATUS_USAGE and STATUS_INPUT, naming the recipe's line or section; errors of
+ * render_make; STATUS_IO; STATUS_MEMORY. */
+MUST_CHECK Status figure_make(const FigureOptions *options, Parsed *parsed, Figure *figure,
+                              Err *err);
+/* Writes the page to the output: .pdf, .svg, .png, .tif or .jpg. Errors: STATUS_IO, STATUS_MEMORY.
+ */
+MUST_CHECK Status figure_write(Figure *figure, Err *err);
+void figure_done(Figure *figure);
+
+/* ---- the parts of figure_make --------------------------------------------------------------- */
+
+static inline bool figure_is_panel(const Figure *figure, size_t i)
+{
+    return figure->plan.sections[i]->kind == SECTION_PANEL;
+}
+
+/* Places the panels in the cells of the grid, and allocates panels and insets. Errors:
+ * STATUS_USAGE, naming the panel, if there is no room for it on the page, or if it spans more
+ * columns than there are; STATUS_MEMORY. */
+MUST_CHECK Status figure_place_panels(Figure *figure, Err *err);
+/* Returns the place of a panel in mm. */
+FigureBox figure_panel_box(const Figure *figure, size_t i);
+
+/* Stores the insets of panel `of` in figure->insets from `first` on, and their count in *n. Errors:
+ * STATUS_USAGE, naming the inset, if its panel or a place is missing. */
+MUST_CHECK Status figure_plan_insets(Figure *figure, size_t of, size_t first, size_t *n, Err *err);
+/* Appends the insets of a panel that is drawn to the page: picture, frames, lines between the
+ * frames, scale bar. Errors: STATUS_USAGE if an inset does not lie on the page; STATUS_MEMORY. */
+MUST_CHECK Status figure_put_insets(Figure *figure, size_t of, Err *err);
+
+#endif

@@ -1,0 +1,197 @@
+/* An isolated bifurcation in the plane, as figures 2 and 3 of [N] show them: the parent comes from
+ * above, ends at the origin, and its daughters leave to the left and to the right. What is not said
+ * of radii follows from Murray's law, r_0^gamma = r_1^gamma + r_2^gamma; what is not said of
+ * angles, from the least sum of length times radius^lambda: forces r_i^lambda along the vessels are
+ * in balance at the branching point. */
+#include "job/tree/makers.h"
+#include "options/output.h"
+#include <math.h>
+
+typedef struct BifurcationOptions {
+    const char *output;
+    NumberList radii, lengths, angles;
+    double ratio, gamma, lambda;
+    bool has_angles, has_ratio;
+} BifurcationOptions;
+
+static const double most_degrees = 180;
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, BifurcationOptions, output),
+     .argument = "T.swc",
+     .help = "the tree"},
+    {.name = "radii",
+     SETS(NUMBERS, BifurcationOptions, radii),
+     .group = GROUP_TREE,
+     .argument = "R,R,R",
+     .help = "of parent, left and right daughter, mm; of the parent alone: the others by Murray's "
+             "law"},
+    {.name = "lengths",
+     SETS(NUMBERS, BifurcationOptions, lengths),
+     .group = GROUP_TREE,
+     .argument = "L,L,L",
+     .help = "likewise, mm; one: of all three"},
+    {.name = "angles",
+     SETS(NUMBERS, BifurcationOptions, angles),
+     GIVEN(BifurcationOptions, has_angles),
+     .group = GROUP_TREE,
+     .argument = "A,B",
+     .otherwise = "of least target",
+     .help = "between the parent's continuation and the left and the right daughter, degrees"},
+    {.name = "ratio",
+     SETS(NUMBER, BifurcationOptions, ratio),
+     GIVEN(BifurcationOptions, has_ratio),
+     FROM_TO(1e-3, 1e3),
+     .group = GROUP_TREE,
+     .when = WHEN(LONE_RADIUS),
+     .help = "of the right daughter's radius to the left one's, where --radii gives the parent's"},
+    {.name = "gamma",
+     SETS(NUMBER, BifurcationOptions, gamma),
+     FROM_TO(0.1, 10),
+     .group = GROUP_TREE,
+     .when = WHEN(LONE_RADIUS),
+     .help = "Murray exponent"},
+    {.name = "lambda",
+     SETS(NUMBER, BifurcationOptions, lambda),
+     FROM_TO(0, 10),
+     .group = GROUP_TREE,
+     .when = WHEN(FREE_ANGLES),
+     .help = "of the target that the angles make least: the sum of length * radius^lambda"},
+};
+
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    (void)parsed;
+    const BifurcationOptions *options = set;
+    return UNLESS(options->radii.n == 1, LONE_RADIUS) | UNLESS(!options->has_angles, FREE_ANGLES);
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
+
+static void set_defaults(void *options)
+{
+    *(BifurcationOptions *)options = (BifurcationOptions){.radii = {.at = {2}, .n = 1},
+                                                          .lengths = {.at = {10}, .n = 1},
+                                                          .ratio = 1,
+                                                          .gamma = 3,
+                                                          .lambda = 2};
+}
+
+/* ---- what is not said ------------------------------------------------------------------------ */
+
+static Status check_sizes(const char *name, const NumberList *list, Err *err)
+{
+    if (list->n != 1 && list->n != 3)
+        return err_set(err, STATUS_USAGE, "--%s takes one number or three, not %zu", name, list->n);
+    for (size_t i = 0; i < list->n; i++)
+        if (!(list->at[i] >= 1e-6 && list->at[i] <= 1e6))
+            return err_set(err, STATUS_USAGE, "--%s: %g is not from 1e-06 to 1e+06 mm", name,
+                           list->at[i]);
+    return STATUS_OK;
+}
+
+static void find_radii(const BifurcationOptions *options, double radii[3])
+{
+    const double gamma = options->gamma;
+    const NumberList *given = &options->radii;
+    for (size_t i = 0; i < given->n; i++)
+        radii[i] = given->at[i];
+    if (given->n == 3)
+        return;
+    radii[1] = radii[0] * elementary_pow(1 + elementary_pow(options->ratio, gamma), -1 / gamma);
+    radii[2] = radii[1] * options->ratio;
+}
+
+/* The angles, in degrees, at which forces r^lambda along the three vessels are in balance. */
+static Status find_angles(const BifurcationOptions *options, const double radii[3],
+                          double angles[2], Err *err)
+{
+    double force[3];
+    for (int i = 0; i < 3; i++)
+        force[i] = elementary_pow(radii[i] / radii[0], options->lambda);
+    for (int i = 0; i < 2; i++) {
+        double one = force[i + 1], other = force[2 - i];
+        double cosine = (1 + one * one - other * other) / (2 * one);
+        if (!(fabs(cosine) < 1))
+            return err_set(err, STATUS_USAGE,
+                           "no angles make the target least for these radii and --lambda %g: one "
+                           "vessel is as thick as the others together; give --angles",
+                           options->lambda);
+        angles[i] = elementary_acos(cosine) / DEGREE;
+    }
+    return STATUS_OK;
+}
+
+static Status check(const BifurcationOptions *options, Err *err)
+{
+    TRY(tree_output_check(options->output, err));
+    TRY(check_sizes("radii", &options->radii, err));
+    TRY(check_sizes("lengths", &options->lengths, err));
+    if (options->has_angles && options->angles.n != 2)
+        return err_set(err, STATUS_USAGE, "--angles takes two angles, as in 30,45, not %zu",
+                       options->angles.n);
+    for (size_t i = 0; i < options->angles.n; i++)
+        if (!(fabs(options->angles.at[i]) < most_degrees))
+            return err_set(err, STATUS_USAGE, "--angles: %g is not above -180 and below 180",
+                           options->angles.at[i]);
+    return STATUS_OK;
+}
+
+/* ---- the tree -------------------------------------------------------------------------------- */
+
+static Status find_shape(const BifurcationOptions *options, double radii[3], double lengths[3],
+                         double angles[2], Err *err)
+{
+    find_radii(options, radii);
+    for (size_t i = 0; i < 3; i++)
+        lengths[i] = options->lengths.at[options->lengths.n == 3 ? i : 0];
+    if (!options->has_angles)
+        return find_angles(options, radii, angles, err);
+    for (size_t i = 0; i < 2; i++)
+        angles[i] = options->angles.at[i];
+    return STATUS_OK;
+}
+
+/* Fills a tree of four nodes: inlet, branching point, left and right end. */
+static void fill(const double radii[3], const double lengths[3], const double angles[2], Tree *tree)
+{
+    const double left = angles[0] * DEGREE, right = angles[1] * DEGREE;
+    const Vec3 places[] = {
+        {0, lengths[0], 0},
+        {0, 0, 0},
+        {-lengths[1] * elementary_sin(left), -lengths[1] * elementary_cos(left), 0},
+        {lengths[2] * elementary_sin(right), -lengths[2] * elementary_cos(right), 0}};
+    for (int i = 0; i < 4; i++) {
+        tree->type[i] = TREE_VESSEL_TYPE;
+        tree->parent[i] = i == 0 ? TREE_NO_PARENT : i == 1 ? 0 : 1;
+        tree->position[i] = places[i];
+        tree->radius_mm[i] = radii[i > 0 ? i - 1 : 0];
+    }
+    tree_renumber(tree);
+}
+
+Status bifurcation_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
+{
+    double radii[3], lengths[3], angles[2] = {0};
+    TRY(check(options, err));
+    TRY(find_shape(options, radii, lengths, angles, err));
+    TRY(tree_init(&made->tree, 4, err));
+    fill(radii, lengths, angles, &made->tree);
+    talk_note(parsed->common.talk, "radii %g, %g, %g mm, angles %.4g and %.4g degrees", radii[0],
+              radii[1], radii[2], angles[0], angles[1]);
+    return command_describe(parsed, &made->tree.meta, err);
+}
+
+const Command command_bifurcation = {
+    .name = "bifurcation",
+    .summary = "make an isolated bifurcation",
+    .operands = "-o T.swc",
+    .examples =
+        "  corcast bifurcation --radii 3 --ratio 0.8 --lengths 12,15,15 -o murray.swc\n"
+        "  corcast bifurcation --radii 3,2.5,2.2 --angles 30,45 --lengths 12,15,15 -o y.swc\n",
+    .needs_output = true,
+    .size = sizeof(BifurcationOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}},
+};

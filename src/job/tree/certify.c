@@ -1,0 +1,233 @@
+/* Bounds a tree's target, and tells apart what the target is above the bound by.
+ *
+ * The parts are the differences of targets between the tree's and the bound, each of a problem that
+ * is freer than the one before: the tree; the tree refined within the rules of length and
+ * clearance; the best geometry without them, with radii by Murray's law; the same with free radii;
+ * the bound. Only the last two are minima, so where a freer problem was solved worse, its part is
+ * 0. */
+#include "job/tree/certify.h"
+
+#include "derive/derive.h"
+#include "job/tree/blood.h"
+#include "job/tree/tree_domain.h"
+#include "options/output.h"
+#include "options/reading.h"
+
+typedef struct CertifyOptions {
+    bool json, parts, has_lambda;
+    const char *certificate; /* a file to write it to; NULL: it is not made */
+    double lambda;
+    BloodOptions blood; /* only law, flow of the terminals and gamma are set */
+} CertifyOptions;
+
+static const char of_tree[] = "the tree's";
+
+static const Option rows[] = {
+    {.name = "json", SETS(FLAG, CertifyOptions, json), .help = "as JSON"},
+    {.name = "certificate",
+     SETS(OUTPUT, CertifyOptions, certificate),
+     .argument = "FILE",
+     .otherwise = "",
+     .help = "the proof, for a checker that shares no code with corcast"},
+    {.name = "parts",
+     SETS(FLAG, CertifyOptions, parts),
+     .group = GROUP_OPTIMUM,
+     .help = "also refine the tree's geometry, to tell what the search left from what rules cost"},
+    {.name = "lambda",
+     SETS(NUMBER, CertifyOptions, lambda),
+     GIVEN(CertifyOptions, has_lambda),
+     .range = &BOUND_LAMBDA_RANGE,
+     .group = GROUP_OPTIMUM,
+     .otherwise = of_tree,
+     .help = "exponent of the target"},
+    {.name = "terminal-flow",
+     SETS(TEXT, CertifyOptions, blood.terminal_flow),
+     .group = GROUP_BLOOD,
+     .argument = "equal|murray|FILE.csv",
+     .otherwise = of_tree,
+     .help = "how flow parts: the same for all terminals, as radius^gamma, or by id and flow"},
+    {.name = "gamma",
+     SETS_KEY(CertifyOptions, blood.said.number[META_GAMMA], blood.said.known, GAMMA),
+     .group = GROUP_BLOOD,
+     .otherwise = "the tree's, or 3",
+     .help = "exponent of the radius, for murray"},
+    {.name = "viscosity-law",
+     SETS(CHOICE, CertifyOptions, blood.law),
+     GIVEN(CertifyOptions, blood.said.known[META_VISCOSITY_LAW]),
+     .choices = viscosity_law_names,
+     .group = GROUP_BLOOD,
+     .otherwise = of_tree,
+     .help = "a bound is proved for constant alone"},
+};
+
+static const OptionTable table = OPTION_TABLE(rows);
+
+const struct PartRow part_rows[PARTS] = {
+    [PART_SEARCH] = {"search", "what refining its geometry gains, every rule kept"},
+    [PART_RULES] = {"rules", "rules of length and clearance, and geometry"},
+    [PART_RADII] = {"radii", "Murray's law"},
+    [PART_UNPROVED] = {"unproved", "between the best geometry found and the bound"},
+};
+
+static Status find_lambda(const CertifyOptions *options, const char *path, const Tree *tree,
+                          double *lambda, Err *err)
+{
+    char range[RANGE_TEXT_SIZE];
+    *lambda = options->has_lambda ? options->lambda : meta_number(&tree->meta, META_LAMBDA);
+    if (options->has_lambda || range_has(BOUND_LAMBDA_RANGE, *lambda))
+        return STATUS_OK;
+    if (!tree->meta.known[META_LAMBDA])
+        return err_set(err, STATUS_INPUT,
+                       "%s does not say lambda, the exponent of the target; give --lambda", path);
+    return err_set(err, STATUS_INPUT,
+                   "%s: lambda is %g, and a bound is proved for lambda %s; give --lambda", path,
+                   *lambda, range_text(BOUND_LAMBDA_RANGE, range));
+}
+
+static Status check_viscosity(const CertifyOptions *options, const char *path, const Tree *tree,
+                              Err *err)
+{
+    const TreeMeta said = blood_said(&options->blood);
+    if (derive_viscosity_law(tree, &said) == VISCOSITY_CONSTANT)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "%s: its viscosity follows the radius by Pries's law, for which no bound is "
+                   "proved; --viscosity-law constant bounds it with one viscosity",
+                   path);
+}
+
+static Status refine_geometry(Tree *tree, double *refined, Err *err)
+{
+    const RefineParams params = {.level = GROW_REFINE_GEOMETRY, .seed = 1};
+    RefineReport report;
+    Domain domain = {0};
+    bool has_domain;
+    Status status = STATUS_OK;
+    TRY_GOTO(tree_domain(tree, &domain, &has_domain, err));
+    TRY_GOTO(refine_tree(&params, has_domain ? &domain : NULL, tree, &report, err));
+    *refined = report.target_after;
+done:
+    domain_release(&domain);
+    return status;
+}
+
+static void part_distance(Certified *found)
+{
+    const Bound *bound = &found->bound;
+    const double level[PARTS] = {found->refined, bound->murray, bound->best, bound->bound};
+    double above = bound->target;
+    for (int k = 0; k < PARTS; k++) {
+        found->part[k] = isnan(level[k]) ? (double)NAN : fmax(0, above - level[k]);
+        above = isnan(level[k]) ? above : fmin(above, level[k]);
+    }
+}
+
+/* Refines the tree's geometry, by the exponent of the bound. */
+static Status refine(const char *path, Tree *tree, Certified *found, Err *err)
+{
+    meta_set_number(&tree->meta, META_LAMBDA, found->bound.lambda);
+    Status status = refine_geometry(tree, &found->refined, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "--parts: %s: ", path);
+    return status;
+}
+
+static Status bound(const CertifyOptions *options, const char *path, const Tree *tree,
+                    Certified *found, Err *err)
+{
+    double lambda, begun = clock_seconds();
+    TRY(find_lambda(options, path, tree, &lambda, err));
+    TRY(check_viscosity(options, path, tree, err));
+    Status status = bound_tree(tree, lambda, &found->bound, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", path);
+    TRY(status);
+    found->seconds = clock_seconds() - begun;
+    return STATUS_OK;
+}
+
+/* Bounds the target of `tree`, and with --parts refines the tree's geometry. */
+static Status prove(const CertifyOptions *options, const Parsed *parsed, Tree *tree,
+                    Certified *found, Err *err)
+{
+    const char *path = parsed->operands[0];
+    TRY(reading_tree(parsed, path, tree, NULL, err));
+    TRY(blood_settle(&options->blood, parsed, tree, err));
+    TRY(bound(options, path, tree, found, err));
+    if (options->certificate)
+        bound_put_certificate(&found->bound, tree, &found->certificate);
+    if (options->parts)
+        TRY(refine(path, tree, found, err));
+    part_distance(found);
+    return text_check(&found->certificate, err);
+}
+
+Status certify_make(void *options, Parsed *parsed, Certified *found, Err *err)
+{
+    Tree tree = {0};
+    *found = (Certified){.certificate = TEXT_INIT, .refined = NAN};
+    Status status = prove(options, parsed, &tree, found, err);
+    tree_release(&tree);
+    return status;
+}
+
+void certified_release(Certified *found)
+{
+    bound_release(&found->bound);
+    text_release(&found->certificate);
+}
+
+/* ---- JSON ------------------------------------------------------------------------------------ */
+
+json_t *certified_json(const Certified *found)
+{
+    const Bound *bound = &found->bound;
+    json_t *parts = json_object();
+    for (int k = 0; k < PARTS; k++)
+        parts = json_with(parts, part_rows[k].key, json_number(found->part[k]));
+    const JsonMember members[] = {
+        {"target", json_number(bound->target)},
+        {"lambda", json_number(bound->lambda)},
+        {"bound", json_number(bound->bound)},
+        {"gap", json_number(bound->best / bound->bound - 1)},
+        {"best_geometry", json_number(bound->best)},
+        {"best_murray", json_number(bound->murray)},
+        {"refined", json_number(found->refined)},
+        {"parts", parts},
+        {"terminals", json_count(bound->outlets)},
+        {"seconds", json_number(found->seconds)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err)
+{
+    const TreeMeta *knows = said->known[META_LAMBDA] ? said : &tree->meta;
+    double lambda = meta_number(knows, META_LAMBDA);
+    *out = json_null();
+    if (derive_viscosity_law(tree, said) != VISCOSITY_CONSTANT || !knows->known[META_LAMBDA] ||
+        !range_has(BOUND_LAMBDA_RANGE, lambda))
+        return STATUS_OK;
+    Bound bound;
+    TRY(bound_tree(tree, lambda, &bound, err));
+    const JsonMember members[] = {{"target", json_number(bound.target)},
+                                  {"bound", json_number(bound.bound)},
+                                  {"above", json_number(bound.target / bound.bound - 1)}};
+    *out = json_with_members(json_object(), members, sizeof members / sizeof *members);
+    bound_release(&bound);
+    return STATUS_OK;
+}
+
+const Command command_certify = {
+    .name = "certify",
+    .summary = "prove how low the target of a tree can get",
+    .operands = "T.swc [--certificate FILE] [--json]",
+    .examples = "  corcast certify tree.swc\n"
+                "  corcast certify tree.swc --parts\n"
+                "  corcast certify tree.swc --certificate tree.cert --json | jq .gap\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .reads_tree = true,
+    .size = sizeof(CertifyOptions),
+    .tables = {{&table, 0}},
+};

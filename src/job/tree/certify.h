@@ -1,0 +1,48 @@
+/* The operation `certify`: proves a lower bound of a tree's target, and tells apart what the target
+ * is above the bound by. */
+#ifndef CORCAST_JOB_TREE_CERTIFY_H
+#define CORCAST_JOB_TREE_CERTIFY_H
+
+#include "grow/grow.h"
+#include "options/options.h"
+
+extern const Command command_certify;
+
+/* The parts that a target is above the bound by, in the target's unit. */
+enum { PART_SEARCH, PART_RULES, PART_RADII, PART_UNPROVED, PARTS };
+
+/* By part: its key in JSON, and what it is, for people. */
+extern const struct PartRow {
+    const char *key, *meaning;
+} part_rows[PARTS];
+
+typedef struct Certified {
+    Bound bound;        /* owned */
+    Text certificate;   /* the proof; owned; empty if the option certificate was not given */
+    double refined;     /* target of the tree with its geometry refined; NAN without --parts */
+    double part[PARTS]; /* NAN: not told apart from the next part */
+    double seconds;     /* wall clock time of the bound */
+} Certified;
+
+/* Bounds the target of the tree that is the first operand.
+ *
+ * options  parsed->options.
+ * found    the caller releases it with certified_release even after an error.
+ * Errors   STATUS_INPUT if the exponent of the target is not known or out of range, and if
+ *          viscosity follows the radius; as reading_tree, blood_settle, bound_tree and, with
+ *          --parts, refine_tree and tree_domain. */
+MUST_CHECK Status certify_make(void *options, Parsed *parsed, Certified *found, Err *err);
+void certified_release(Certified *found);
+
+/* Returns what was found as JSON. New reference, or NULL if memory runs out. */
+json_t *certified_json(const Certified *found);
+
+/* Bounds the target of a tree for the reports of other operations.
+ *
+ * said    values that the user specified; they take precedence over those of the tree.
+ * out     receives an object of `target`, `bound` and `above`, the distance over the bound; null
+ *         if viscosity follows the radius, or if the exponent is not known or out of range.
+ * Errors  as bound_tree. */
+MUST_CHECK Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err);
+
+#endif

@@ -1,0 +1,169 @@
+/* Values of a file and derived fields become columns, one after the other. */
+#include "job/tree/convert_tree.h"
+
+#include "derive/derive.h"
+#include "job/tree/makers.h"
+#include "options/reading.h"
+#include "treeio/treeio.h"
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static const Option rows[] = {
+    {.name = "values",
+     SETS(TEXT, TreeConversion, values),
+     .group = GROUP_FILES,
+     .argument = "FILE[:COLUMN]",
+     .when = WHEN(TREE),
+     .help = "values of the tree's segments by id, from a CSV or a folder of svOneDSolver"},
+    {.name = "fields",
+     SETS(TEXT, TreeConversion, fields),
+     .group = GROUP_FILES,
+     .argument = "all|NAME,...",
+     .list = "fields",
+     .when = WHEN(TREE),
+     .help = "what follows from the tree, and is to be in its file as columns"},
+};
+
+const OptionTable treeconversion_table = OPTION_TABLE(rows);
+
+/* ---- columns ----------------------------------------------------------------------------------
+ */
+
+/* Reads the values that are asked for into the tree. */
+static Status join_values(const TreeConversion *conversion, Parsed *parsed, Tree *tree, Err *err)
+{
+    size_t length;
+    const char *column;
+    char *path = NULL;
+    if (!conversion->values)
+        return STATUS_OK;
+    if (!values_parse(conversion->values, &length, &column))
+        return err_set(err, STATUS_USAGE,
+                       "--values: '%.60s' is not a FILE.csv, FILE.csv:COLUMN or FOLDER:flow",
+                       conversion->values);
+    TRY(mem_strdup(&path, conversion->values, err));
+    path[length] = '\0';
+    Status status = files_read(&parsed->files, "--values", path, err);
+    if (status == STATUS_OK)
+        status = tree_read_values(tree, path, column, NULL, err);
+    free(path);
+    return status;
+}
+
+/* Radius and length are in all files, as numbers or as where segments end. */
+static bool is_in_files(const char *name)
+{
+    return strcmp(name, "radius") == 0 || strcmp(name, "length") == 0;
+}
+
+static Status add_field(Tree *tree, const TreeMeta *said, const char *name, Err *err)
+{
+    Field field;
+    double *value;
+    if (tree_column(tree, name))
+        return STATUS_OK;
+    TRY(derive_field(tree, said, name, &field, err));
+    Status status = STATUS_OK;
+    if (!tree_column(tree, field.name)) {
+        status = tree_add_column(tree, field.name, field.unit, &value, err);
+        if (status == STATUS_OK)
+            memcpy(value, field.value, tree->n * sizeof *value);
+    }
+    field_release(&field);
+    return status;
+}
+
+/* Appends the name of a field that lacks what it needs, and forgets the error. */
+static Status skip_lacking(Status status, const char *name, Text *lacking)
+{
+    if (status != STATUS_INPUT)
+        return status;
+    text_printf(lacking, "%s%s", *text_chars(lacking) ? ", " : "", name);
+    return STATUS_OK;
+}
+
+static Status add_all(Tree *tree, const TreeMeta *said, const Talk *talk, Err *err)
+{
+    Text lacking = TEXT_INIT;
+    Status status = STATUS_OK;
+    const char *name;
+    for (size_t i = 0; (name = derive_field_name(i)); i++)
+        if (!is_in_files(name))
+            TRY_GOTO(skip_lacking(add_field(tree, said, name, err), name, &lacking));
+    TRY_GOTO(text_check(&lacking, err));
+    if (*text_chars(&lacking))
+        talk_note(talk, "%s are left out: neither the tree nor an option says what they need",
+                  text_chars(&lacking));
+done:
+    text_release(&lacking);
+    return status;
+}
+
+static Status add_list(Tree *tree, const TreeMeta *said, const char *list, Err *err)
+{
+    char *copy = NULL;
+    TRY(mem_strdup(&copy, list, err));
+    Status status = STATUS_OK;
+    char *rest = copy;
+    for (char *name; status == STATUS_OK && (name = text_field(&rest));)
+        status = add_field(tree, said, name, err);
+    free(copy);
+    return status;
+}
+
+/* Derives the fields that are asked for into the tree. */
+static Status join_fields(const TreeConversion *conversion, const Parsed *parsed, Tree *tree,
+                          Err *err)
+{
+    if (!conversion->fields)
+        return STATUS_OK;
+    const TreeMeta said = blood_said(&conversion->blood);
+    TRY(blood_settle(&conversion->blood, parsed, tree, err));
+    return strcmp(conversion->fields, "all") == 0 ? add_all(tree, &said, parsed->common.talk, err)
+                                                  : add_list(tree, &said, conversion->fields, err);
+}
+
+Status convert_tree_make(const TreeConversion *conversion, Parsed *parsed, Tree *tree, Err *err)
+{
+    *tree = (Tree){0};
+    TRY(reading_tree(parsed, parsed->operands[0], tree, NULL, err));
+    TRY(join_values(conversion, parsed, tree, err));
+    TRY(join_fields(conversion, parsed, tree, err));
+    tree_renumber(tree);
+    return STATUS_OK;
+}
+
+/* ---- files ------------------------------------------------------------------------------------
+ */
+
+/* Takes note of the file of a moment. */
+static Status note_moment(Parsed *parsed, const char *to, size_t moment, Err *err)
+{
+    char *path = NULL;
+    TRY(tree_moment_path(to, moment, &path, err));
+    Status status = files_write(&parsed->files, to, path, err);
+    free(path);
+    return status;
+}
+
+/* Writes an index for ParaView and the files that it names, none of which is read here. */
+static Status write_moments(const Tree *tree, Parsed *parsed, const char *to, Err *err)
+{
+    size_t n = 0;
+    Status status = tree_count_moments(tree, &n, err);
+    for (size_t k = 0; k < n && status == STATUS_OK; k++)
+        status = note_moment(parsed, to, k, err);
+    if (status == STATUS_OK)
+        return tree_write_moments(tree, to, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", parsed->operands[0]);
+    return status;
+}
+
+Status convert_tree_write(const Tree *tree, Parsed *parsed, const char *path, Err *err)
+{
+    return strcasecmp(file_extension(path), "pvd") == 0
+               ? write_moments(tree, parsed, path, err)
+               : tree_output(tree, path, parsed->common.talk, err);
+}

@@ -1,0 +1,187 @@
+/* Grows and, if asked, refines. What the tree is like is told before it is written, so that a
+ * caller who keeps the tree in memory learns it, too. */
+#include "job/tree/certify.h"
+#include "job/tree/growing.h"
+#include "job/tree/makers.h"
+#include "job/tree/refining.h"
+#include "job/tree/staging.h"
+#include "job/tree/summary_json.h"
+#include "options/output.h"
+#include <stdio.h>
+
+typedef struct GrowOptions {
+    const char *output, *json, *stages;
+    bool bound;
+    Growing growing;
+    Refining refining;
+} GrowOptions;
+
+static const Option own[] = {
+    {.name = "output", SETS(OUTPUT, GrowOptions, output), .argument = "T.swc", .help = "the tree"},
+    {.name = "json", SETS(OUTPUT, GrowOptions, json), .help = "what was done, as JSON"},
+    {.name = "bound",
+     SETS(FLAG, GrowOptions, bound),
+     .group = GROUP_OPTIMUM,
+     .needs = "json",
+     .help = "--json also says how low the target of this topology can get, as certify proves"},
+    {.name = "stages",
+     SETS(INPUT, GrowOptions, stages),
+     .group = GROUP_TREE,
+     .argument = "FILE.ini",
+     .otherwise = "",
+     .help = "grow in stages: sections of options, each on the tree of the one before"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    growing_set_defaults(&((GrowOptions *)options)->growing);
+}
+
+/* ---- sentences ------------------------------------------------------------------------------- */
+
+static void note_grown(const Talk *talk, const GrowReport *report, const GrowParams *params)
+{
+    talk_note(talk, "grew %zu terminals in %.3g s: target %.6g, root radius %.4g mm",
+              report->terminals, report->seconds, report->target, report->root_radius_mm);
+    if (params->pair_mm > 0)
+        talk_note(talk,
+                  "%zu pairs of terminals %.4g mm apart; walls of the two trees at least %.4g mm",
+                  report->terminals / 2, params->pair_mm, report->apart_mm);
+    if (report->median_change > 0 && !params->keep_radii)
+        talk_note(talk,
+                  "the radii of the tree of --from changed by a median factor of %.2g (%.2g to "
+                  "%.2g)",
+                  report->median_change, report->least_change, report->greatest_change);
+}
+
+/* Warns of a tree that does not fit its domain. */
+static void warn_of_size(const Talk *talk, const GrowReport *report, const Domain *domain)
+{
+    const Vec3 size = vec3_sub(domain->bounds.high, domain->bounds.low);
+    const char *unit =
+        domain->unit_is_guessed ? " if the file's unit is that (FILE,10 is a file in cm)" : "";
+    char depth[32] = "";
+    if (domain->dimension == 3)
+        snprintf(depth, sizeof depth, " x %.4g", size.z);
+    if (report->root_radius_mm > vec3_length(size))
+        talk_warn(talk,
+                  "the domain, %.4g x %.4g%s mm%s, is smaller than the radius of the root, %.4g "
+                  "mm: such a tree is of numbers only; move --gamma towards 3 or lower --q-perf",
+                  size.x, size.y, depth, unit, report->root_radius_mm);
+    else if (report->thickness < 1)
+        talk_warn(talk,
+                  "the domain, %.4g x %.4g%s mm%s, was too full for vessels of their real "
+                  "thickness: they keep clear of each other at %g of it only; ask for fewer "
+                  "terminals, a larger domain or a smaller --q-perf",
+                  size.x, size.y, depth, unit, report->thickness);
+}
+
+/* ---- the report ------------------------------------------------------------------------------ */
+
+/* The factors by which the radii of the tree of --from changed; null if they did not. */
+static json_t *change_json(const GrowReport *report)
+{
+    if (!(report->median_change > 0))
+        return json_null();
+    return json_pack("{s:f, s:f, s:f}", "median", report->median_change, "min",
+                     report->least_change, "max", report->greatest_change);
+}
+
+static Status make_report(const GrowOptions *options, int threads, const GrowReport *report,
+                          MadeTree *made, Err *err)
+{
+    json_t *bound = json_null();
+    if (options->bound)
+        TRY(bound_json(&made->tree, &made->tree.meta, &bound, err));
+    const JsonMember members[] = {
+        {"generator", json_text(GENERATOR)},
+        {"seconds", json_number(report->seconds)},
+        {"terminals", json_count(report->terminals)},
+        {"target", json_number(report->target)},
+        {"root_radius_mm", json_number(report->root_radius_mm)},
+        {"tosses", json_count(report->tosses)},
+        {"rejected", json_count(report->rejected)},
+        {"thickness", json_number(report->thickness)},
+        {"broken", json_count(report->broken)},
+        {"complete", json_boolean(report->complete)},
+        {"threads", json_integer(threads ? threads : threads_available())},
+        {"radius_change", change_json(report)},
+        {"apart_mm", json_number(report->apart_mm)},
+        {"terminal_pairs", pairs_json(&made->tree)},
+        {"bound", bound},
+    };
+    return json_put(json_with_members(json_object(), members, sizeof members / sizeof *members),
+                    &made->report, err);
+}
+
+/* ---- the operation --------------------------------------------------------------------------- */
+
+static Status check(const GrowOptions *options, Err *err)
+{
+    const Refining *refining = &options->refining;
+    TRY(tree_output_check(options->output, err));
+    if (options->stages && refining->level != GROW_REFINE_NONE)
+        return err_set(err, STATUS_USAGE,
+                       "--refine: would give --stages one law; use corcast refine afterwards");
+    return refining_check_growing(refining, &options->growing, err);
+}
+
+/* Refines the tree if asked, and updates the report of its growth. */
+static Status refine(const GrowOptions *options, const Parsed *parsed, Tree *tree,
+                     GrowReport *report, Err *err)
+{
+    RefineReport refined;
+    TRY(refining_apply(&options->refining, parsed, &options->growing.domain, tree, &refined, err));
+    if (options->refining.level == GROW_REFINE_NONE)
+        return STATUS_OK;
+    report->seconds += refined.seconds;
+    report->target = refined.target_after;
+    report->thickness = refined.thickness;
+    report->broken = refined.broken;
+    report->apart_mm = refined.apart_mm;
+    report->root_radius_mm = tree_root_radius(tree);
+    return STATUS_OK;
+}
+
+Status grow_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
+{
+    GrowOptions *own_options = options;
+    Growing *growing = &own_options->growing;
+    const Talk *talk = parsed->common.talk;
+    GrowReport report;
+    Status status = STATUS_OK;
+    TRY_GOTO(check(own_options, err));
+    TRY_GOTO(growing_prepare(growing, parsed, err));
+    if (own_options->stages)
+        TRY_GOTO(staging_grow(own_options->stages, growing, parsed, &made->tree, &report, err));
+    else
+        TRY_GOTO(growing_run(growing, parsed, &made->tree, &report, err));
+    note_grown(talk, &report, &growing->params);
+    TRY_GOTO(refine(own_options, parsed, &made->tree, &report, err));
+    warn_of_size(talk, &report, &growing->domain);
+    refining_warn_broken(talk, report.broken);
+    if (own_options->json)
+        status = make_report(own_options, parsed->common.threads, &report, made, err);
+done:
+    growing_release(growing);
+    return status;
+}
+
+const Command command_grow = {
+    .name = "grow",
+    .summary = "grow an arterial tree by constrained constructive optimization",
+    .operands = "-o T.swc",
+    .examples = "  corcast grow --terminals 4000 --seed 7 -o tree.swc\n"
+                "  corcast grow --domain ball:30 --gamma 2.55 --lambda 1 -o tree.swc\n"
+                "  corcast grow --from tree.swc --terminals 8000 -o larger.swc\n"
+                "  corcast grow --inlet 0,50 --inlet 30,-40 --inlet-shares 0.7,0.3 -o forest.swc\n",
+    .needs_output = true,
+    .reads_tree = true,
+    .size = sizeof(GrowOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0},
+               {&growing_table, offsetof(GrowOptions, growing)},
+               {&refining_table, offsetof(GrowOptions, refining)}},
+};

@@ -1,0 +1,220 @@
+/* The report of `info` as JSON. The keys are a contract: they may be added to, never renamed. */
+#include "job/tree/info.h"
+#include "job/tree/summary_json.h"
+
+/* ---- reading ----------------------------------------------------------------------------------
+ */
+
+static json_t *roots_json(const TreeReading *reading)
+{
+    json_t *rows_json = json_array();
+    for (size_t i = 0; i < reading->n_roots; i++)
+        rows_json = json_with_item(rows_json,
+                                   json_pack("{s:i, s:s, s:I}", "id", reading->root[i].id, "reason",
+                                             root_reason_texts[reading->root[i].reason], "nodes",
+                                             (json_int_t)reading->root[i].nodes));
+    return rows_json;
+}
+
+static json_t *cuts_json(const NetworkReading *network)
+{
+    json_t *rows_json = json_array();
+    for (size_t i = 0; i < network->n_cuts; i++) {
+        const ReadCut *cut = &network->cut[i];
+        rows_json = json_with_item(
+            rows_json, json_pack("{s:I, s:[f,f,f], s:o}", "record", (json_int_t)cut->record,
+                                 "position_mm", cut->position.x, cut->position.y, cut->position.z,
+                                 "radius_mm", json_number(cut->radius_mm)));
+    }
+    return rows_json;
+}
+
+static json_t *degrees_json(const TreeReading *reading)
+{
+    json_t *list = json_array();
+    for (int degree = 0; degree <= READ_MAX_DEGREE; degree++)
+        list = json_with_item(list, json_count(reading->degree[degree]));
+    return list;
+}
+
+static json_t *notes_json(const TreeReading *reading)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < reading->n_notes; i++)
+        list = json_with_item(list, json_text(reading->note[i]));
+    return list;
+}
+
+static json_t *network_json(const NetworkReading *network)
+{
+    const JsonMember members[] = {
+        {"points", json_count(network->points)},
+        {"lines", json_count(network->lines)},
+        {"lines_against", json_count(network->against)},
+        {"merged_points", json_count(network->merged)},
+        {"unused_points", json_count(network->unused)},
+        {"lines_without_length", json_count(network->without_length)},
+        {"repeated_lines", json_count(network->repeated)},
+        {"loops", json_count(network->loops)},
+        {"cuts", cuts_json(network)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+static json_t *reading_json(const TreeReading *reading)
+{
+    const JsonMember members[] = {
+        {"format", json_text(reading->format)},
+        {"network", reading->is_network ? network_json(&reading->network) : json_null()},
+        {"components", json_count(reading->n_roots)},
+        {"roots", roots_json(reading)},
+        {"degrees", degrees_json(reading)},
+        {"median_radius_mm", json_number(reading->median_radius_mm)},
+        {"segments_without_radius", json_count(reading->without_radius)},
+        {"given_radii", json_count(reading->given_radius)},
+        {"repaired_radii", json_count(reading->repaired_radii)},
+        {"near_ends", json_count(reading->network.near_ends)},
+        {"near_ends_mm", json_number(reading->network.near_mm)},
+        {"unit", json_text(length_unit_names[reading->unit])},
+        {"unit_said", json_boolean(reading->unit_said)},
+        {"believed_unit",
+         reading->believes ? json_text(length_unit_names[reading->believed]) : json_null()},
+        {"looks_like_voxels", json_boolean(reading->looks_like_voxels)},
+        {"assumed", notes_json(reading)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+/* ---- statistics -------------------------------------------------------------------------------
+ */
+
+static json_t *spread_json(const Spread *spread)
+{
+    return json_pack("{s:o, s:o}", "mean", json_number(spread->mean), "sd",
+                     json_number(spread->sd));
+}
+
+/* `number` is the key of row->number. */
+static json_t *table_json(const char *number, const StatisticsTable *table)
+{
+    json_t *rows = json_array();
+    for (size_t i = 0; i < table->n; i++) {
+        const StatisticsRow *row = &table->row[i];
+        rows = json_with_item(rows, json_pack("{s:i, s:I, s:I, s:o, s:o}", number, row->number,
+                                              "vessels", (json_int_t)row->vessels, "elements",
+                                              (json_int_t)row->elements, "radius_mm",
+                                              spread_json(&row->radius_mm), "length_mm",
+                                              spread_json(&row->length_mm)));
+    }
+    return rows;
+}
+
+static json_t *ratios_json(const OrderRatios *ratios)
+{
+    return json_pack("{s:o, s:o, s:o}", "number", json_number(ratios->number), "diameter",
+                     json_number(ratios->diameter), "length", json_number(ratios->length));
+}
+
+static json_t *bifurcations_json(const BifurcationSpread *spread)
+{
+    return json_pack("{s:I, s:o, s:o, s:o}", "count", (json_int_t)spread->count, "mean",
+                     json_number(spread->mean), "sd", json_number(spread->sd), "median",
+                     json_number(spread->median));
+}
+
+static json_t *connectivity_json(const TreeStatistics *statistics)
+{
+    size_t n = statistics->by_diameter_strahler.n;
+    json_t *rows = json_array();
+    for (size_t i = 0; i < n; i++) {
+        json_t *row = json_array();
+        for (size_t k = 0; k < n; k++)
+            row = json_with_item(row, json_number(statistics->daughters[i * n + k]));
+        rows = json_with_item(rows, row);
+    }
+    return rows;
+}
+
+static json_t *statistics_json(const TreeStatistics *statistics)
+{
+    const JsonMember members[] = {
+        {"vessels", json_count(statistics->vessels)},
+        {"volume_mm3", json_number(statistics->volume_mm3)},
+        {"by_level", table_json("level", &statistics->by_level)},
+        {"by_strahler", table_json("order", &statistics->by_strahler)},
+        {"strahler_ratios", ratios_json(&statistics->strahler_ratios)},
+        {"by_diameter_strahler", table_json("order", &statistics->by_diameter_strahler)},
+        {"diameter_strahler_ratios", ratios_json(&statistics->diameter_strahler_ratios)},
+        {"connectivity", connectivity_json(statistics)},
+        {"diameter_rounds", json_integer(statistics->diameter_rounds)},
+        {"diameter_orders_converged", json_boolean(statistics->diameter_orders_converged)},
+        {"symmetry", bifurcations_json(&statistics->symmetry)},
+        {"area_ratio", bifurcations_json(&statistics->area_ratio)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+/* ---- morphometry ------------------------------------------------------------------------------
+ */
+
+static json_t *pair_json(const MorphometryPair *pair)
+{
+    json_t *whole = pair->order > 0 ? json_integer(pair->order) : json_null();
+    json_t *other = pair->order > 0 ? json_integer(pair->published_order) : json_null();
+    const JsonMember members[] = {
+        {"measure", json_text(morphometry_names[pair->measure].name)},
+        {"unit", json_text(morphometry_names[pair->measure].unit)},
+        {"order", whole},
+        {"published_order", other},
+        {"value", json_number(pair->value)},
+        {"published_mean", json_number(pair->published.mean)},
+        {"published_sd", json_number(pair->published.sd)},
+        {"room", json_number(pair->room)},
+        {"pass", json_boolean(pair->agrees)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+static json_t *morphometry_json(const Morphometry *table, const MorphometryComparison *comparison)
+{
+    json_t *pairs = json_array();
+    for (size_t i = 0; i < comparison->n; i++)
+        pairs = json_with_item(pairs, pair_json(&comparison->pair[i]));
+    const JsonMember members[] = {
+        {"source", json_text(table->source)},
+        {"compared", json_count(comparison->n)},
+        {"passed", json_count(comparison->agreeing)},
+        {"rows", pairs},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+/* ---- the whole --------------------------------------------------------------------------------
+ */
+
+static json_t *columns_json(const Tree *tree)
+{
+    json_t *rows = json_array();
+    for (size_t k = 0; k < tree->n_columns; k++) {
+        json_t *row = json_with(json_object(), "name", json_text(tree->column[k].name));
+        rows = json_with_item(rows, json_with(row, "unit", json_text(tree->column[k].unit)));
+    }
+    return rows;
+}
+
+json_t *inforeport_json(const InfoReport *report)
+{
+    const Tree *tree = &report->tree;
+    json_t *json = summary_json(&report->summary);
+    if (tree_column(tree, tree_pairs_name))
+        json = json_with(json, "terminal_pairs", pairs_json(tree));
+    if (tree->n_columns > 0)
+        json = json_with(json, "columns", columns_json(tree));
+    if (report->has_statistics)
+        json = json_with(json, "stats", statistics_json(&report->statistics));
+    if (report->has_morphometry)
+        json =
+            json_with(json, "morphometry", morphometry_json(&report->table, &report->comparison));
+    json = json_with(json, "reading", reading_json(&report->reading));
+    return report->bound ? json_with(json, "bound", json_incref(report->bound)) : json;
+}
