@@ -23,7 +23,8 @@ ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c) $(ROOMS:%=src/%/*/*.c))
 CLI_SOURCES := $(wildcard src/cli/*.c src/cli/*/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
 FORMATTED := $(sort $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
-	tests/alloc/*.c tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h tests/optima/*.c))
+	tests/alloc/*.c tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h tests/optima/*.c \
+	tests/api/*.c docs/examples/*.c src/*.h))
 
 # Kernels of the renderer are compiled once for each kind of processor [src/render/tile/lanes.h].
 KERNELS := $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),$(wildcard src/render/*/*kernels.c))
@@ -31,6 +32,7 @@ ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o) $(foreach kind,avx2 avx512,$(KE
 CLI_OBJECTS := $(CLI_SOURCES:%.c=$(BUILD)/%.o)
 TEST_OBJECTS := $(TEST_SOURCES:%.c=$(BUILD)/%.o)
 TEST_PROGRAMS := $(TEST_SOURCES:tests/unit/%.c=$(BUILD)/tests/%)
+API_PROGRAMS := $(patsubst tests/api/%.c,$(BUILD)/tests/api/%,$(wildcard tests/api/*.c))
 ORACLE := $(BUILD)/tests/check_tree
 FAILING := $(BUILD)/tests/failing.so
 POWER_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/power/*.c))
@@ -90,7 +92,7 @@ LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := build/viewer/viewer.js
 LIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 
-.PHONY: all lib deps demo figures gallery validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
+.PHONY: all lib abi api-programs deps demo figures gallery validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
 .DELETE_ON_ERROR:
@@ -240,10 +242,6 @@ $(BUILD)/libcorcast.a: $(BUILD)/rooms.a
 	$(Q)ld -r -o $(@:.a=.o) --whole-archive $< && objcopy --localize-hidden $(@:.a=.o) && $(AR) rcs $@ $(@:.a=.o)
 	$(Q)rm -f $(@:.a=.o)
 
-$(BUILD)/corcast.pc: src/api/corcast.pc.in src/base/version.h Makefile
-	$(Q)mkdir -p $(@D)
-	$(Q)sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|; s|@PACKAGES@|$(PACKAGES)|; s|@LIBS@|-lOpenEXRCore -lnifti2 -lznz -lpthread -lm|' $< > $@
-
 lib: build/$(SONAME) build/libcorcast.a ## the library, build/libcorcast.so.0 and build/libcorcast.a
 
 ifeq ($(MODE),release)
@@ -279,6 +277,15 @@ $(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/cli.a $(BUILD)/room
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(LINK) -o $@ $^ $(LIBS) -lcmocka
+
+# Programs that use the library as others do: through its header, its shared object and nothing else.
+$(API_PROGRAMS): $(BUILD)/tests/api/%: tests/api/%.c src/corcast.h $(BUILD)/$(SONAME)
+	$(call say,LINK,$@)
+	$(Q)mkdir -p $(@D)
+	$(Q)$(CC) -D_GNU_SOURCE -Isrc $(CPPFLAGS) $(OWN_CFLAGS) $(CFLAGS) $(filter-out -pie,$(OWN_LDFLAGS)) -pie -o $@ $< $(BUILD)/$(SONAME) \
+		-Wl,-rpath,$(abspath $(BUILD)) -lpthread -lm
+
+api-programs: $(API_PROGRAMS)
 
 $(OPTIMA) $(FIT): %: %.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
@@ -339,9 +346,14 @@ ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)
 	@echo 'corcast needs $(PACKAGES) $(HEADERS), OpenEXR, libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
 endif
 
-unit-programs: $(TEST_PROGRAMS) $(OPTIMA) $(ORACLE) $(FAILING)
+unit-programs: $(TEST_PROGRAMS) $(API_PROGRAMS) $(OPTIMA) $(ORACLE) $(FAILING)
 
 fuzz-programs: $(FUZZ_PROGRAMS)
+
+abi: $(BUILD)/$(SONAME) ## store the library's binary interface anew, after a change that users may see
+	$(Q)rm -rf build/abi && mkdir -p build/abi && cp src/corcast.h build/abi
+	$(Q)abidw --no-show-locs --drop-private-types --headers-dir build/abi --exported-interfaces-only --no-corpus-path \
+		--no-comp-dir-path $< --out-file tests/api/libcorcast.abi
 
 fuzz: ## have libFuzzer think out input for every reader, FUZZ=60 seconds each; TARGET=NAME for one
 	$(Q).ci/deps build fuzz
@@ -371,7 +383,7 @@ golden-update: build/corcast ## rewrite a golden: CASE=name REASON="why"; withou
 
 # Manual pages and completions, made of the program's own descriptions.
 PAGES := build/share/man/man1
-build/share: build/corcast
+build/share: build/corcast src/corcast.h src/api/manual.awk
 	$(call say,MADE,$@)
 	$(Q)rm -rf $@ && mkdir -p $(PAGES) $@/bash-completion/completions $@/zsh/site-functions $@/fish/vendor_completions.d
 	$(Q)build/corcast help --as man > $(PAGES)/corcast.1
@@ -380,13 +392,23 @@ build/share: build/corcast
 	$(Q)build/corcast help --as bash > $@/bash-completion/completions/corcast
 	$(Q)build/corcast help --as zsh > $@/zsh/site-functions/_corcast
 	$(Q)build/corcast help --as fish > $@/fish/vendor_completions.d/corcast.fish
+	$(Q)mkdir -p $@/man/man3
+	$(Q)awk -v version=$(VERSION) -f src/api/manual.awk src/corcast.h > $@/man/man3/corcast.h.3
 
 reference: build/corcast ## write docs/REFERENCE.md anew
 	$(Q)build/corcast help --as markdown > build/REFERENCE.md && mv build/REFERENCE.md docs/
 
 SHARE = $(DESTDIR)$(PREFIX)/share
-install: build/corcast build/share ## install under $(DESTDIR)$(PREFIX), with manual pages and completions
+LIBRARIES = $(DESTDIR)$(PREFIX)/lib
+install: build/corcast lib build/share ## install under $(DESTDIR)$(PREFIX), with library, manual pages and completions
 	install -Dm755 build/corcast $(DESTDIR)$(PREFIX)/bin/corcast
+	install -Dm755 build/$(SONAME) $(LIBRARIES)/$(SONAME)
+	ln -sf $(SONAME) $(LIBRARIES)/libcorcast.so
+	install -Dm644 build/libcorcast.a $(LIBRARIES)/libcorcast.a
+	install -d $(LIBRARIES)/pkgconfig
+	sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|; s|@PACKAGES@|$(PACKAGES)|; s|@LIBS@|-lOpenEXRCore -lnifti2 -lznz -lpthread -lm|' \
+		src/api/corcast.pc.in > $(LIBRARIES)/pkgconfig/corcast.pc
+	install -Dm644 src/corcast.h $(DESTDIR)$(PREFIX)/include/corcast.h
 	install -d $(SHARE)/corcast
 	cp -R templates $(SHARE)/corcast
 	test ! -e $(VIEWER) || install -Dm644 -t $(SHARE)/corcast/templates/page $(VIEWER)
@@ -402,6 +424,8 @@ uninstall: ## remove what `make install` put there
 	rm -f $(DESTDIR)$(PREFIX)/bin/corcast $(SHARE)/man/man1/corcast.1 $(SHARE)/man/man1/corcast-*.1
 	rm -f $(SHARE)/bash-completion/completions/corcast $(SHARE)/zsh/site-functions/_corcast
 	rm -f $(SHARE)/fish/vendor_completions.d/corcast.fish
+	rm -f $(LIBRARIES)/$(SONAME) $(LIBRARIES)/libcorcast.so $(LIBRARIES)/libcorcast.a $(LIBRARIES)/pkgconfig/corcast.pc
+	rm -f $(DESTDIR)$(PREFIX)/include/corcast.h $(SHARE)/man/man3/corcast.h.3
 	rm -rf $(SHARE)/corcast $(SHARE)/doc/corcast
 
 VERSION := $(shell sed -n 's/^.define CORCAST_VERSION "\(.*\)"/\1/p' src/base/version.h)

@@ -123,7 +123,7 @@ typedef struct corcast_options corcast_options;
 
 /* Makes the options of a command, all with their defaults.
  *
- * command  "grow", "refine", "certify", "info", "convert", "render", "scene", "export", "diagram",
+ * command  "grow", "refine", "certify", "info", "convert", "render", "scene", "export",
  *          "compare", "verify" or "figure": the operations of this header say which they take.
  * Errors   CORCAST_WRONG for an unknown command.
  * Stability: stable. */
@@ -314,7 +314,8 @@ CORCAST_API void corcast_tree_free(corcast_tree *tree);
 
 /* Grows a tree by constrained constructive optimization.
  *
- * options  of "grow". "output" and "json" are not used: the tree and the report are returned.
+ * options  of "grow", or of "bifurcation", which makes a tree of one bifurcation. "output" and
+ *          "json" are not used: the tree and the report are returned.
  * report   NULL, or receives what `grow --json` writes: terminals, target, seconds, ...
  * Errors   CORCAST_WRONG also if the domain is too small for the terminals.
  * Stability: stable. */
@@ -372,9 +373,8 @@ typedef struct corcast_scene corcast_scene;
 /* Makes the scene of a tree.
  *
  * options  NULL, or options of "render": model, view, size, colours, light, look, and the planes
- *          that corcast_render makes ("planes" = "depth,id"). Options about files, animations,
- *          tiles and annotations have no effect on a picture in memory and are refused;
- *          corcast_export takes them.
+ *          that corcast_render makes ("planes" = "depth,id"). "bits" is the precision of the
+ *          colours: 8, 16, or 32 for floats. Of an animation, "only" selects the picture.
  * Stability: stable. */
 CORCAST_API int corcast_scene_new(const corcast_tree *tree, const corcast_options *options,
                                   corcast_scene **out, corcast_error *error);
@@ -488,7 +488,7 @@ CORCAST_API void corcast_mesh_free(corcast_mesh *mesh);
 /* Writes what a command makes of a tree to files, with the bytes of the command line.
  *
  * options  of "export" (meshes, curves, volumes, pages), "scene" (POV-Ray, OpenSCAD, Tachyon),
- *          "render" (pictures, planes, animations, pages), "diagram" or "convert". The option
+ *          "render" (pictures, planes, animations, pages) or "convert" (trees). The option
  *          "output" is not used: `path` is the output. Its extension decides the format. Some
  *          commands write further files, whose names begin like `path`.
  * Errors   CORCAST_WRONG if a file would be written over one that is read.

@@ -5,18 +5,6 @@
 #include "job/tree/certify.h"
 #include "job/tree/info.h"
 #include "job/tree/makers.h"
-#include <stdlib.h>
-#include <string.h>
-
-/* Makes a report of JSON text. Errors: STATUS_MEMORY. */
-static Status report_of_text(const Text *text, corcast_report **report, Err *err)
-{
-    const char *chars = text_chars(text);
-    json_error_t wrong;
-    bool no_memory = false;
-    return report_new(chars ? json_read(chars, strlen(chars), 0, &wrong, &no_memory) : NULL, report,
-                      err);
-}
 
 /* ---- trees that are made --------------------------------------------------------------------- */
 
@@ -32,7 +20,7 @@ static Status make_tree(const RequestForm *form, MadeTree *made, corcast_report 
         TRY_GOTO(options_set(parsed, "json", "report.json", err));
     TRY_GOTO(tree_maker_find(parsed->command->name)->make(parsed->options, parsed, made, err));
     if (report)
-        status = report_of_text(&made->report, report, err);
+        status = report_new(json_incref(made->report), report, err);
 done:
     return request_close(&request, status, err);
 }

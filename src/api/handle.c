@@ -3,6 +3,7 @@
  * read, so a debug build (CORCAST_DEBUG) never gives it back: it chains freed handles instead. */
 #include "api/handle.h"
 
+#include "options/templates.h"
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -96,6 +97,7 @@ Status path_check(const char *path, const char *name, Err *err)
 Call call_begin(corcast_error *error)
 {
     Call call = {.error = handle_is(error, HANDLE_ERROR) ? error : NULL};
+    call.templates = templates_set(NULL);
     call.before = uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));
     return call;
 }
@@ -103,6 +105,7 @@ Call call_begin(corcast_error *error)
 int call_end(Call *call, Status status)
 {
     freelocale(uselocale(call->before));
+    (void)templates_set(call->templates);
     if (call->error) {
         call->error->err = call->err;
         call->error->status = status;

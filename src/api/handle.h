@@ -47,8 +47,9 @@ struct corcast_error {
 
 /* A call of the library. During it the thread has the locale "C": numbers in files have a '.'. */
 typedef struct Call {
-    corcast_error *error; /* NULL: nobody wants the sentence */
-    locale_t before;      /* the locale of the caller's thread */
+    corcast_error *error;  /* NULL: nobody wants the sentence */
+    locale_t before;       /* the locale of the caller's thread */
+    const char *templates; /* the folder of an outer call; NULL: none */
     Err err;
 } Call;
 

@@ -3,6 +3,7 @@
 #include "api/request.h"
 
 #include "job/job.h"
+#include "options/templates.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -93,6 +94,7 @@ static Status take_surroundings(Request *request, const corcast_options *options
     request->user = options->user;
     if (options->templates)
         TRY(mem_strdup(&request->templates, options->templates, err));
+    (void)templates_set(request->templates);
     return STATUS_OK;
 }
 

@@ -5,6 +5,7 @@
 #include "api/request.h"
 
 #include "job/picture/render.h"
+#include "options/templates.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -111,6 +112,7 @@ static Status draw_scene(corcast_scene *scene, corcast_image **out, corcast_repo
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
     scene->request.before = call->before;
+    (void)templates_set(scene->request.templates);
     Status status = draw_image(&scene->rendering, made, report, err);
     if (status == STATUS_OK)
         *out = made;

@@ -7,7 +7,9 @@
 #include "job/export/export.h"
 #include "job/export/scene.h"
 #include "job/picture/convert.h"
+#include "options/templates.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 const CommandRow command_rows[] = {
@@ -103,13 +105,15 @@ Status command_run(const Command *command, int argc, char **argv, Err *err)
     Parsed parsed;
     TRY(parsed_init(&parsed, command, err));
     parsed.find_command = command_find;
+    (void)templates_set(getenv("CORCAST_TEMPLATES"));
     Screen screen;
     Status status = options_parse(&parsed, argc, argv, err);
     Talk talk = screen_talk(&screen, parsed.common.quiet);
     parsed.common.talk = &talk;
     if (status == STATUS_OK)
         status = run(&parsed, err);
-    (status_exit(status) < 2 ? screen_print_held : screen_drop_held)(&screen);
+    bool failed = status_exit(status) >= 2 || fflush(stdout) != 0;
+    (failed ? screen_drop_held : screen_print_held)(&screen);
     if (status != STATUS_OK)
         options_name_fields(&parsed, err);
     parsed_release(&parsed);

@@ -12,8 +12,6 @@ const Command *const job_commands[] = {
     &command_export,
     &command_povray,
     &command_render,
-    &command_merge,
-    &command_diagram,
     &command_figure,
     &command_verify,
     &command_compare,

@@ -231,19 +231,12 @@ Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err)
     return status;
 }
 
-Status json_put(json_t *object, Text *text, Err *err)
-{
-    text_json(text, object, 2);
-    text_puts(text, "\n");
-    return text_check(text, err);
-}
-
 Status json_write(json_t *object, const char *path, Err *err)
 {
     Text text = TEXT_INIT;
-    Status status = json_put(object, &text, err);
-    if (status == STATUS_OK)
-        status = file_write_text(path, &text, err);
+    text_json(&text, object, 2);
+    text_puts(&text, "\n");
+    Status status = file_write_text(path, &text, err);
     text_release(&text);
     return status;
 }

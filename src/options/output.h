@@ -38,9 +38,6 @@ MUST_CHECK Status hash_option_files(const Parsed *parsed, Hash *hash, Err *err);
 /* Adds the command line to those that a tree's file says. */
 MUST_CHECK Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err);
 
-/* Appends `object` to `text` as indented JSON with a final newline, and releases the reference,
- * also after an error. Errors: STATUS_MEMORY, also if `object` is NULL or `text` has failed. */
-MUST_CHECK Status json_put(json_t *object, Text *text, Err *err);
 /* Writes `object` to `path` ("-": standard output) as indented JSON with a final newline, and lets
  * go of it. Numbers that are not finite must have been left out or set to null. */
 MUST_CHECK Status json_write(json_t *object, const char *path, Err *err);

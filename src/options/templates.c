@@ -1,9 +1,12 @@
-/* The folder of templates is looked for where the program is: beside the build folder, or where
- * `make install` puts it. */
+/* The folder of templates is the one that the caller has set, or is looked for where the program or
+ * the library that holds this code is: beside the build folder, or where `make install` puts it. */
 #include "options/templates.h"
 
 #include <dirent.h>
+#include <dlfcn.h>
 #include <errno.h>
+#include <limits.h>
+#include <link.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,43 +24,65 @@ static void cut_components(char *path, int n)
         *strrchr(path, '/') = '\0';
 }
 
-/* Takes the folder that CORCAST_TEMPLATES names, if looks are in it. */
-static Status take_given(const char *given, char **folder, Err *err)
+/* The folder that a thread has set: a value of the call that the thread is in. */
+static _Thread_local const char *chosen;
+
+const char *templates_set(const char *folder)
+{
+    const char *before = chosen;
+    chosen = folder;
+    return before;
+}
+
+/* Takes the folder that was set, if looks are in it. */
+static Status take_chosen(char **folder, Err *err)
 {
     char *looks = NULL;
-    TRY(file_join(given, "looks", &looks, err));
+    TRY(file_join(chosen, "looks", &looks, err));
     const bool has_looks = is_folder(looks);
     free(looks);
     if (has_looks)
-        return mem_strdup(folder, given, err);
+        return mem_strdup(folder, chosen, err);
     return err_set(err, STATUS_IO,
                    "CORCAST_TEMPLATES: '%s' is not a folder of templates: it has no folder 'looks'",
-                   given);
+                   chosen);
+}
+
+/* Finds the file that holds this code: the library, or the program, whose name the loader does not
+ * know. Returns false if there is none. */
+static bool find_self(char path[PATH_MAX])
+{
+    Dl_info info;
+    struct link_map *map = NULL;
+    if (dladdr1((const void *)(uintptr_t)&find_self, &info, (void **)&map, RTLD_DL_LINKMAP) &&
+        map && map->l_name[0] == '/')
+        return realpath(map->l_name, path) != NULL;
+    ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 1);
+    path[length > 0 ? length : 0] = '\0';
+    return length > 0;
 }
 
 Status templates_folder(char **folder, Err *err)
 {
-    const char *given = getenv("CORCAST_TEMPLATES");
-    if (given && *given)
-        return take_given(given, folder, err);
-    char program[4096];
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length > 0) {
-        program[length] = '\0';
-        static const struct {
-            int up; /* components fewer than for the one before */
-            const char *path;
-        } places[] = {{2, "templates"}, {0, "share/corcast/templates"}, {1, "templates"}};
-        for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-            char *path = NULL;
-            cut_components(program, places[i].up);
-            TRY(file_join(program, places[i].path, &path, err));
-            if (is_folder(path)) {
-                *folder = path;
-                return STATUS_OK;
-            }
-            free(path);
+    static const struct {
+        int up; /* components fewer than for the one before */
+        const char *path;
+    } places[] = {{2, "templates"},
+                  {0, "share/corcast/templates"},
+                  {1, "templates"},
+                  {0, "share/corcast/templates"}};
+    char self[PATH_MAX];
+    if (chosen && *chosen)
+        return take_chosen(folder, err);
+    for (size_t i = 0; i < sizeof places / sizeof *places && (i > 0 || find_self(self)); i++) {
+        char *path = NULL;
+        cut_components(self, places[i].up);
+        TRY(file_join(self, places[i].path, &path, err));
+        if (is_folder(path)) {
+            *folder = path;
+            return STATUS_OK;
         }
+        free(path);
     }
     return err_set(err, STATUS_IO,
                    "the templates folder was found neither beside the program nor where it is "

@@ -4,9 +4,13 @@
 
 #include "base/base.h"
 
-/* The folder: CORCAST_TEMPLATES unless it is empty, or beside the build folder (../templates,
- * ../../templates), or installed (../share/corcast/templates); in *folder (owned). STATUS_IO when
- * there is none, or when CORCAST_TEMPLATES is not such a folder. */
+/* Sets the folder for all that the calling thread looks up from now on, and returns the one before.
+ * NULL or "": found by the place of the program or library. Borrowed. */
+const char *templates_set(const char *folder);
+
+/* Finds the folder: the one that was set, or beside the build folder (../templates,
+ * ../../templates), or installed (../share/corcast/templates), in *folder (owned). Errors:
+ * STATUS_IO if there is none, or if the one that was set has no looks. */
 MUST_CHECK Status templates_folder(char **folder, Err *err);
 
 /* The path of what is called `name` in that folder, in *path (owned), whether it is there or not.

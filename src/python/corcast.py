@@ -369,8 +369,11 @@ class Tree(_Handle):
         """Writes the tree to a file; the extension decides the format."""
         _call("tree_write", self._handle, _text(path))
 
-    def refine(self, **options):
-        """Optimizes the tree in place; returns the report of `corcast refine`."""
+    def refine(self, level=None, **options):
+        """Optimizes the tree in place; returns the report of `corcast refine`. `level` is the value
+        of its option --refine: "geometry", "topology" or "anneal"."""
+        if level is not None:
+            options["refine"] = level
         return self._report("refine", options)
 
     def certify(self, **options):

@@ -205,9 +205,10 @@ Status fieldscale_check_frame(int frame, const char *name, size_t frames, Err *e
 }
 
 /* Makes the colours of all frames, or of the one that is shown. */
-static Status color_frames(int frame, const Look *look, FieldSeries *series,
+static Status color_frames(const FieldScaleParams *params, FieldSeries *series,
                            const ColorScale *scale, Appearance *appearance, Err *err)
 {
+    const int frame = params->frame;
     size_t n = series->field.n / series->frames;
     Field shown = series->field;
     if (frame) {
@@ -215,7 +216,7 @@ static Status color_frames(int frame, const Look *look, FieldSeries *series,
         shown.value += (size_t)(frame - 1) * n;
         shown.n = n;
     }
-    TRY(stage_appearance(look, &shown, scale, appearance, err));
+    TRY(stage_appearance(params->look, &shown, scale, appearance, err));
     if (frame || !series->time)
         return STATUS_OK;
     appearance->n_frames = series->frames;
@@ -225,9 +226,8 @@ static Status color_frames(int frame, const Look *look, FieldSeries *series,
     return STATUS_OK;
 }
 
-Status fieldscale_color(const FieldScaleParams *params, const Look *look, Colormap *map,
-                        const FieldValues *range_of, FieldValues *drawn, Appearance *appearance,
-                        Err *err)
+Status fieldscale_color(const FieldScaleParams *params, Colormap *map, const FieldValues *range_of,
+                        FieldValues *drawn, Appearance *appearance, Err *err)
 {
     ColorScale scale = {.name = drawn->series.field.name,
                         .unit = drawn->series.field.unit,
@@ -240,7 +240,7 @@ Status fieldscale_color(const FieldScaleParams *params, const Look *look, Colorm
     TRY(set_classes(params, &scale, err));
     TRY(set_range(params, range_of, &scale, err));
     TRY(check_separate(params, &scale, drawn, err));
-    TRY(color_frames(params->frame, look, &drawn->series, &scale, &made, err));
+    TRY(color_frames(params, &drawn->series, &scale, &made, err));
     Status status = say(params, range_of, drawn, &made, err);
     if (status != STATUS_OK) {
         made.scale.map = (Colormap){0}; /* the caller still owns the map */

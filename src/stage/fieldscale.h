@@ -29,6 +29,7 @@ void fieldvalues_release(FieldValues *values);
 
 /* Parameters of fieldscale_color. Numbers are in the unit of the values. */
 typedef struct FieldScaleParams {
+    const struct Look *look; /* the finish of the vessels; borrowed */
     bool has_ends;         /* false: the ends of the scale are the minimum and the maximum value */
     double ends[2];        /* values, the first at most the second, or */
     bool percent[2];       /* percentiles of the values, 0..100 */
@@ -53,8 +54,8 @@ typedef struct FieldScaleParams {
  *             if an end is not above 0 with `log`, if `frame` is beyond the last frame, or if the
  *             map has separate colours and values are not integers; STATUS_MEMORY. Sentences put
  *             the names of options in backquotes. */
-MUST_CHECK Status fieldscale_color(const FieldScaleParams *params, const struct Look *look,
-                                   Colormap *map, const FieldValues *range_of, FieldValues *drawn,
+MUST_CHECK Status fieldscale_color(const FieldScaleParams *params, Colormap *map,
+                                   const FieldValues *range_of, FieldValues *drawn,
                                    Appearance *appearance, Err *err);
 
 /* Returns the number of decades that a logarithmic scale of an appearance would span; 0 if its

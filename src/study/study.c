@@ -90,6 +90,11 @@ static void grow_one(size_t index, int worker, void *context)
     Err err = {{0}};
     bool kept = false;
     (void)worker;
+    pthread_mutex_lock(&runs->lock);
+    const bool stopped = runs->progress.stopped;
+    pthread_mutex_unlock(&runs->lock);
+    if (stopped)
+        return;
     Status status =
         study_grow_run(&runs->params, runs->first + index, &runs->path[index], &kept, &err);
     pthread_mutex_lock(&runs->lock);
@@ -107,6 +112,8 @@ static Status grow_runs(StudyRuns *runs, const Common *common, Err *err)
     progress_start(&runs->progress, "growing", common->talk);
     threads_for(runs->n, threads, grow_one, runs);
     progress_end(&runs->progress);
+    if (runs->progress.stopped)
+        return err_cancelled(err);
     if (runs->failed > 0)
         return err_set(err, runs->status, "%s%s", runs->err.text,
                        runs->failed > 1 ? "; others failed, too" : "");

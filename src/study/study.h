@@ -22,7 +22,8 @@ extern const Command command_study;
  * lines   with `commands`, the commands are appended; with `table`, the table as CSV. Unchanged
  *         otherwise.
  * Errors  STATUS_USAGE if options exclude each other; STATUS_INPUT if the plan is bad; STATUS_IO;
- *         STATUS_MEMORY; and those of growth, of the first run that failed. */
+ *         STATUS_MEMORY; STATUS_CANCELLED, and finished runs stay; and those of growth, of the
+ *         first run that failed. */
 MUST_CHECK Status study_run(const StudyOptions *options, Parsed *parsed, Text *lines, Err *err);
 
 #endif

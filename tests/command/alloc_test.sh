@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
 # A failed allocation, wherever it is, ends in one sentence and exit status 3, or in the right result: each
 # command is run again and again on small inputs, each time with another allocation that fails
-# (tests/alloc/failing.c says what is expected). `make check` fails every second allocation, and fewer where
+# (tests/alloc/failing.c says what is expected). `make check` fails every fourth allocation, and fewer where
 # there are many. ALLOC=all, which `make check-all` sets, fails each.
 . "$(dirname "$0")/../lib.sh"
 
 FAILING=${FAILING:-$REPO/build/release/tests/failing.so}
 
-# fail_each STEP one|many COMMAND ...: fails every (2 STEP)-th allocation of a command that leaves one file or many.
+# fail_each STEP one|many COMMAND ...: fails every (4 STEP)-th allocation of a command that leaves one file or many.
 fail_each() {
     local step=$1 outputs=$2
     shift 2
-    [ "${ALLOC:-}" = all ] && step=1 || step=$((2 * step))
+    [ "${ALLOC:-}" = all ] && step=1 || step=$((4 * step))
     run env FAILING_STEP="$step" FAILING_OUTPUTS="$outputs" LD_PRELOAD="$FAILING" "$CORCAST" "$@" \
         --threads "${THREADS:-1}"
     [ "$status" -eq 0 ] || fail "$(head -3 stdout | tr '\n' ';') from: corcast $*"

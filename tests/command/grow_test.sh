@@ -311,7 +311,7 @@ test_an_output_in_a_missing_folder_is_refused() {
 test_an_output_on_a_full_disk_is_refused() {
     [ -w /dev/full ] || skip "there is no /dev/full"
     ln -s /dev/full full.swc
-    run corcast grow --terminals 3 --quiet -o full.swc
+    run corcast grow --terminals 3 -o full.swc
     expect_status 3
     expect_sentence "full"
 }

@@ -46,6 +46,53 @@ test_line_ends_and_byte_order_marks_change_nothing() {
     expect_same_however_written body.obj t.swc corcast grow --terminals 5 --domain mesh:body.obj -o t.swc
 }
 
+# A tree in micrometres that is read as millimetres, of which a note is printed when a command succeeds.
+micrometre_tree() {
+    printf '%s\n' '1 5 0 0 0 2385 -1' '2 5 1250 -17500 0 2385 1' '3 5 -9750 -31125 0 1655 2' '4 5 8500 -29875 0 2062 2' >t.swc
+}
+
+# Each command that reads a tree, with an option that is refused after the tree was read, or an output that fails.
+test_a_command_that_fails_after_it_read_a_tree_prints_one_line() {
+    local command commands=0
+    micrometre_tree
+    run_ok corcast info t.swc
+    expect_sentence 'looks like um'
+    while read -r command; do
+        run corcast $command
+        [ "$status" -ge 2 ] || fail "expected this to fail: corcast $command"
+        expect_sentence '^corcast'
+        commands=$((commands + 1))
+    done <<'COMMANDS'
+grow --from t.swc --terminals 2 -o none/t.swc
+refine t.swc none/u.swc
+refine t.swc u.swc --flow 3
+info t.swc --field none
+certify t.swc -o none/c.json
+convert t.swc none/u.swc
+convert t.swc u.vtp --flow 3
+scene t.swc --color-by none -o s.pov
+scene t.swc -o none/s.pov
+export t.swc -o none/m.stl
+export t.swc --print-scale 1e9 -o m.stl
+export t.swc -o none/m.glb
+export t.swc -o none/m.nii.gz
+export t.swc -o none/m.html
+povray t.swc --color-by none -o p.png
+render t.swc --color-by none -o p.png
+render t.swc -o none/p.png
+render t.swc -o none/p.pdf
+diagram t.swc -o none/d.svg
+diagram t.swc --color-by none -o d.svg
+view t.swc --color-by none
+verify t.swc --color-by none --out v
+COMMANDS
+    [ "$commands" -eq 22 ] || fail "expected 22 commands, got $commands"
+    for command in info certify; do
+        corcast $command t.swc >/dev/full 2>stderr
+        [ "$(wc -l <stderr)" -eq 1 ] || fail "expected one line from $command: $(cat stderr)"
+    done
+}
+
 test_a_tolerance_may_have_any_line_ends() {
     printf 'tier = ours\ncolor_ppm = 20\n' >t.ini
     run_ok corcast render --exact "$DATA/bifurcation.swc" --size 31x17 -o p.ppm

@@ -53,6 +53,8 @@ static Appearance color(const FieldScaleParams *params, const double *values, si
                         bool separate, const char *sentence)
 {
     const Look look = {.color = {1, 1, 1}};
+    FieldScaleParams shown = *params;
+    shown.look = &look;
     Tree tree = make_tree();
     FieldSeries series = make_series(values, frames);
     FieldValues drawn;
@@ -60,7 +62,7 @@ static Appearance color(const FieldScaleParams *params, const double *values, si
     Colormap map = make_map(separate);
     Err err = {{0}};
     must(fieldvalues_take(&tree, &series, NULL, &drawn, &err), &err);
-    Status status = fieldscale_color(params, &look, &map, &drawn, &drawn, &appearance, &err);
+    Status status = fieldscale_color(&shown, &map, &drawn, &drawn, &appearance, &err);
     assert_int_equal(status == STATUS_OK, sentence == NULL);
     if (sentence && !strstr(err.text, sentence))
         fail_msg("%s", err.text);

@@ -1,170 +1,18 @@
-/* What there is to colour by: a line a map, of the first words of its file, and a picture of them
- * all. */
+/* Prints the list of colour maps, unless their picture goes to standard output. */
 #include "cli/commands.h"
-#include "image/image.h"
-#include "options/output.h"
-#include "options/templates.h"
+#include "job/picture/colormaps.h"
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-typedef struct ColormapsOptions {
-    const char *output;
-    bool cite;
-} ColormapsOptions;
-
-static const Option own[] = {
-    {.name = "output",
-     SETS(OUTPUT, ColormapsOptions, output),
-     .argument = "P.png",
-     .help = "a picture of the maps, a strip each, in the order of the list"},
-    {.name = "cite",
-     SETS(FLAG, ColormapsOptions, cite),
-     .help = "with what to cite and the licence of each, instead of what it is for"},
-};
-
-static const OptionTable own_table = OPTION_TABLE(own);
-
-/* ---- the list -------------------------------------------------------------------------------- */
-
-/* The comment that a file begins with, in one line. */
-static void join_head(char *text, Text *head)
-{
-    for (char *rest = text, *line; (line = text_line(&rest)) && *line == '#';)
-        text_printf(head, "%s%s", text_chars(head) && *text_chars(head) ? " " : "",
-                    line + 1 + strspn(line + 1, TEXT_BLANKS));
-}
-
-/* Appends what of a head stands after `from` and before `to`; nothing where it lacks either. */
-static void put_between(const char *head, const char *from, const char *to, Text *line)
-{
-    const char *begin = strstr(head, from), *end = begin ? strstr(begin, to) : NULL;
-    if (end)
-        text_append(line, begin + strlen(from), (size_t)(end - begin) - strlen(from));
-}
-
-static Status put_line(const char *name, const char *path, bool cite, Text *lines, Err *err)
-{
-    static const FileForm form = {.name = "a colour map", .most_bytes = 1e7, .is_text = true};
-    char *text = NULL;
-    size_t size;
-    Text head = TEXT_INIT;
-    TRY(file_read(path, &form, &text, &size, err));
-    join_head(text, &head);
-    const char *chars = text_chars(&head);
-    text_printf(lines, "%s\t", name);
-    if (chars)
-        put_between(chars, cite ? "Cite: " : ": ", cite ? " One colour" : " Cite: ", lines);
-    text_puts(lines, chars ? "\n" : NULL);
-    free(text);
-    text_release(&head);
-    return text_check(lines, err);
-}
-
-/* ---- the picture ----------------------------------------------------------------------------- */
-
-enum { STRIP_WIDTH = 512, STRIP_HEIGHT = 24, STRIP_GAP = 8, STRIP_STEP = STRIP_HEIGHT + STRIP_GAP };
-
-static void draw_strip(const Colormap *map, float *pixels)
-{
-    for (int i = 0; i < STRIP_WIDTH; i++) {
-        float *rgb = &pixels[3 * i];
-        if (map->separate)
-            colormap_color(map, (size_t)i * map->n / STRIP_WIDTH, rgb);
-        else
-            colormap_linear(map, i / (STRIP_WIDTH - 1.0), rgb);
-    }
-    for (int row = 1; row < STRIP_HEIGHT; row++)
-        memcpy(&pixels[(size_t)row * 3 * STRIP_WIDTH], pixels, 3 * STRIP_WIDTH * sizeof *pixels);
-}
-
-static Status write_plane(const Plane *plane, const Parsed *parsed, Err *err)
-{
-    const ColormapsOptions *options = parsed->options;
-    Picture picture = {0};
-    char *line = NULL;
-    Status status;
-    TRY_GOTO(command_line_text(parsed, &line, err));
-    const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", line}};
-    const ImageNotes all = {.notes = notes, .count = 2};
-    TRY_GOTO(picture_from_plane(&picture, plane, ENCODING_SRGB, 8, err));
-    TRY_GOTO(picture_write(&picture, options->output, ENCODING_SRGB, &all, NULL, err));
-done:
-    free(line);
-    picture_release(&picture);
-    return status;
-}
-
-/* ---- the command ----------------------------------------------------------------------------- */
-
-/* Adds the map to the list and, unless plane->values is NULL, to the picture as its next strip. */
-static Status take_map(const char *name, bool cite, Text *lines, Plane *plane, int strip, Err *err)
-{
-    char *path = NULL;
-    Colormap map = {0};
-    Status status;
-    TRY(template_file("colormap", "colormaps", name, ".txt", &path, err));
-    TRY_GOTO(put_line(name, path, cite, lines, err));
-    TRY_GOTO(colormap_read(&map, path, err));
-    size_t row = 3 * (size_t)STRIP_WIDTH;
-    if (plane->values)
-        draw_strip(&map, &plane->values[((size_t)strip * STRIP_STEP + STRIP_GAP) * row]);
-done:
-    free(path);
-    colormap_release(&map);
-    return status;
-}
-
-static int count_lines(const char *text)
-{
-    int n = 0;
-    while ((text = strchr(text, '\n'))) {
-        text++;
-        n++;
-    }
-    return n;
-}
-
-/* Makes a white plane with room for `strips` strips. */
-static Status make_plane(Plane *plane, int strips, Err *err)
-{
-    TRY(plane_init(plane, STRIP_WIDTH, strips * STRIP_STEP + STRIP_GAP, 3, err));
-    size_t n = 3 * (size_t)plane->width * (size_t)plane->height;
-    for (size_t i = 0; i < n; i++)
-        plane->values[i] = 1;
-    return STATUS_OK;
-}
 
 Status run_colormaps(void *options, Parsed *parsed, Err *err)
 {
-    const ColormapsOptions *own_options = options;
-    Text names = TEXT_INIT, lines = TEXT_INIT;
-    char *list = NULL;
-    Plane plane = {0};
-    int strip = 0;
-    Status status;
-    TRY_GOTO(template_names("colormaps", ".txt", &names, err));
-    TRY_GOTO(text_take(&names, &list, err));
-    if (own_options->output)
-        TRY_GOTO(make_plane(&plane, count_lines(list), err));
-    for (char *rest = list, *name; (name = text_line(&rest)) && *name;)
-        TRY_GOTO(take_map(name, own_options->cite, &lines, &plane, strip++, err));
-    if (own_options->output)
-        TRY_GOTO(write_plane(&plane, parsed, err));
-    if (!own_options->output || strcmp(own_options->output, "-") != 0)
-        fputs(text_chars(&lines), stdout);
-done:
-    text_release(&names);
-    text_release(&lines);
-    free(list);
-    plane_release(&plane);
+    const ColormapsOptions *own = options;
+    ColormapsResult result = {0};
+    Status status = colormaps_make(own, &result, err);
+    if (status == STATUS_OK && own->output)
+        status = colormaps_write(own, parsed, &result, err);
+    if (status == STATUS_OK && (!own->output || strcmp(own->output, "-") != 0))
+        fputs(text_chars(&result.lines), stdout);
+    colormaps_release(&result);
     return status;
 }
-
-const Command command_colormaps = {.name = "colormaps",
-                                   .summary = "the values of --colormap, as a list and a picture",
-                                   .operands = "[-o P.png]",
-                                   .examples = "  corcast colormaps --cite\n"
-                                               "  corcast colormaps -o maps.png\n",
-                                   .size = sizeof(ColormapsOptions),
-                                   .tables = {{&own_table, 0}}};

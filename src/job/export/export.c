@@ -1,6 +1,5 @@
-/* The extension of the output chooses the emitter, as in scene.c, or an option does; meshing.c
- * makes what it writes, volumes.c voxels, webpage.c a page. Options that have no effect on a format
- * are refused. */
+/* The extension of the output selects the format: a mesh or lines (meshing.c), a volume (volumes.c)
+ * or a page (webpage.c). Some extensions have a second format, which an option selects. */
 #include "job/export/export.h"
 
 #include "emit/emit.h"
@@ -97,7 +96,7 @@ static void set_defaults(void *options)
     coloring_set_defaults(&own_options->meshing.coloring);
 }
 
-/* The emitter for the extension of the output, or the one that an option asks for. */
+/* Finds the emitter for the extension of the output, or the emitter that an option selects. */
 static Status find_emitter(const ExportOptions *options, const Emitter **emitter, Err *err)
 {
     const Emitter *asked = NULL;
@@ -117,7 +116,7 @@ static Status find_emitter(const ExportOptions *options, const Emitter **emitter
     return STATUS_OK;
 }
 
-/* Reads --wall and --print. STATUS_USAGE where one would not do what it says. */
+/* Reads --wall and --print. Returns STATUS_USAGE if one of them cannot have its effect. */
 static Status read_print(ExportOptions *options, const Emitter *emitter, Err *err)
 {
     PrintSettings *print = &options->settings;
@@ -156,13 +155,19 @@ static Status plan_mesh(ExportOptions *options, const Emitter **emitter, Err *er
     return read_print(options, *emitter, err);
 }
 
+static Status make_mesh(const ExportOptions *options, const Emitter *emitter, const Parsed *parsed,
+                        MeshResult *mesh, Err *err)
+{
+    PictureTree of;
+    TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, &of, err));
+    return meshing_make(emitter, &options->meshing, &of, &parsed->common, mesh, err);
+}
+
 Status mesh_make(ExportOptions *options, const Parsed *parsed, MeshResult *mesh, Err *err)
 {
     const Emitter *emitter;
-    PictureTree of;
     TRY(plan_mesh(options, &emitter, err));
-    TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, &of, err));
-    return meshing_make(emitter, &options->meshing, &of, &parsed->common, mesh, err);
+    return make_mesh(options, emitter, parsed, mesh, err);
 }
 
 static Status export_mesh(ExportOptions *options, Parsed *parsed, FileSet *files, Err *err)
@@ -172,7 +177,7 @@ static Status export_mesh(ExportOptions *options, Parsed *parsed, FileSet *files
     TRY(plan_mesh(options, &emitter, err));
     TRY(scene_files_name(emitter, options->output, false, files, err));
     TRY(work_note_files(files, &parsed->files, err));
-    TRY(mesh_make(options, parsed, &mesh, err));
+    TRY(make_mesh(options, emitter, parsed, &mesh, err));
     Status status = meshing_write(&mesh, files, parsed, err);
     meshing_release(&mesh);
     return status;

@@ -1,6 +1,115 @@
-/* The keys of a manifest are public [docs/FORMATS.md]; they stay when names in the code change. */
+/* The facts about a mesh, in notes for its user and in its manifest. Other programs read the keys
+ * of the manifest, so that they stay when names in the code change. */
 #include "job/export/meshing.h"
 #include "options/output.h"
+#include <math.h>
+
+void mesh_say_print(const MeshResult *made, const Talk *talk)
+{
+    const PrintSettings *settings = made->print;
+    const PrintChanges *changes = &made->changes;
+    const PrintReport *report = &made->printed;
+    const uint32_t *ids = made->vessels.ids;
+    double size[3];
+    printing_size(&made->mesh, size);
+    if (changes->thickened)
+        talk_note(talk, "%zu segment%s thickened to %g mm", changes->thickened,
+                  changes->thickened == 1 ? " is" : "s are", settings->min_diameter_mm);
+    if (made->of.pruned)
+        talk_note(talk, "%zu thin segment%s pruned", made->of.pruned,
+                  made->of.pruned == 1 ? " is" : "s are");
+    if (changes->below_two)
+        talk_note(talk, "%zu segment%s thinner than two widths of the nozzle", changes->below_two,
+                  changes->below_two == 1 ? " is" : "s are");
+    if (report->has_closest)
+        talk_note(talk,
+                  "vessels that do not belong together are %.3g mm apart at the least, "
+                  "segments %u and %u",
+                  report->closest.gap_mm, ids[report->closest.segments[0]],
+                  ids[report->closest.segments[1]]);
+    if (report->cavities)
+        talk_note(talk, "%zu trees are closed cavities, which cannot drain", report->cavities);
+    if (report->n_longer)
+        talk_note(talk, "%zu ends are lengthened, so that they can be cut off flat",
+                  report->n_longer);
+    if (settings->params.base.is_there)
+        talk_note(talk,
+                  "%zu pins hold it on the base; %zu places hang free, as vessels or open "
+                  "ends are in the way",
+                  report->pins, report->hanging);
+    if (settings->params.block.is_there)
+        talk_note(talk, "the block has %zu ports; %zu ends are closed in it", report->openings,
+                  report->n_closed);
+    if (print_has_wall(&settings->params))
+        talk_note(talk, "the wall has %zu openings; %zu ends are closed", report->openings,
+                  report->n_closed);
+    talk_note(talk, "the print measures %.4g x %.4g x %.4g mm", size[0], size[1], size[2]);
+}
+
+static json_t *segment_ids(const VesselTree *vessels, const uint32_t *list, size_t n)
+{
+    json_t *ids = json_array();
+    for (size_t i = 0; i < n; i++)
+        ids = json_with_item(ids, json_integer(vessels->ids[list[i]]));
+    return ids;
+}
+
+/* Adds the members that describe the wall. */
+static json_t *with_wall(json_t *object, const MeshResult *made)
+{
+    const PrintParams *params = &made->print->params;
+    const JsonMember members[] = {
+        {"wall_mm", json_number(params->wall_mm)},
+        {"wall_over_radius", json_number(params->wall_ratio)},
+        {"outer_mm3", json_number(made->printed.outer_mm3)},
+    };
+    return json_with_members(object, members, sizeof members / sizeof *members);
+}
+
+/* Returns the minimum of the vessels' diameters, the walls' thicknesses and the gaps between
+ * vessels, in mm. */
+static double smallest_of(const MeshResult *made)
+{
+    double least = made->changes.thinnest_mm;
+    if (print_has_wall(&made->print->params))
+        least = fmin(least, printing_thinnest_wall(made->print, &made->changes));
+    return made->printed.has_closest ? fmin(least, made->printed.closest.gap_mm) : least;
+}
+
+static json_t *print_json(const MeshResult *made)
+{
+    const PrintSettings *settings = made->print;
+    const PrintChanges *changes = &made->changes;
+    const VesselTree *vessels = &made->vessels;
+    const PrintReport *report = &made->printed;
+    double size[3];
+    printing_size(&made->mesh, size);
+    const JsonMember members[] = {
+        {"scale", json_number(settings->scale)},
+        {"min_diameter_mm", json_number(settings->min_diameter_mm)},
+        {"segments_thickened", json_count(changes->thickened)},
+        {"segments_pruned", json_count(made->of.pruned)},
+        {"nozzle_mm", json_number(settings->nozzle_mm)},
+        {"segments_below_two_nozzles", json_count(changes->below_two)},
+        {"thinnest_diameter_mm", json_number(changes->thinnest_mm)},
+        {"segments_lengthened", segment_ids(vessels, report->longer, report->n_longer)},
+        {"openings", json_count(report->openings)},
+        {"closed_ends", segment_ids(vessels, report->closed, report->n_closed)},
+        {"lumen_mm3", json_number(report->lumen_mm3)},
+        {"pins", json_count(report->pins)},
+        {"hanging", json_count(report->hanging)},
+        {"closed_cavities", json_count(report->cavities)},
+        {"rings", json_count(report->rings)},
+        {"least_gap_mm", report->has_closest ? json_number(report->closest.gap_mm) : json_null()},
+        {"least_gap_between",
+         segment_ids(vessels, report->closest.segments, 2 * report->has_closest)},
+        {"smallest_feature_mm", json_number(smallest_of(made))},
+        {"size_mm", json_numbers(size, 3)},
+        {"bed_mm", settings->bed_mm[2] > 0 ? json_numbers(settings->bed_mm, 3) : json_null()},
+    };
+    json_t *all = json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return print_has_wall(&settings->params) ? with_wall(all, made) : all;
+}
 
 static json_t *pair_list(const VesselTree *vessels, const MeshReport *report)
 {
@@ -51,8 +160,5 @@ json_t *mesh_manifest(const MeshResult *made)
         {"max_distance_over_radius", json_number(report->off.ratio)},
     };
     json_t *all = json_with_members(json_object(), members, sizeof members / sizeof *members);
-    if (!made->print)
-        return all;
-    const Printing print = printing_of(made);
-    return json_with(all, "print", printing_json(&print));
+    return made->print ? json_with(all, "print", print_json(made)) : all;
 }

@@ -109,9 +109,8 @@ static void say_result(const MeshResult *made, const Talk *talk)
         talk_note(talk, "%zu pairs of vessels that do not belong together come near",
                   report->n_near);
     talk_note(talk, "%zu triangles, %.6g mm^3", made->mesh.n_triangles, report->volume_mm3);
-    const Printing print = printing_of(made);
     if (made->print && !made->print->params.lids)
-        printing_say(&print, talk);
+        mesh_say_print(made, talk);
 }
 
 static Status triangulate(const MeshingOptions *options, const Common *common, MeshResult *made,

@@ -65,13 +65,8 @@ void meshing_release(MeshResult *mesh);
 MUST_CHECK Status meshing_write(const MeshResult *mesh, FileSet *files, const Parsed *parsed,
                                 Err *err);
 
-/* Returns the facts about the print that a mesh is. Borrows all of them. */
-static inline Printing printing_of(const MeshResult *mesh)
-{
-    return (Printing){mesh->print,    &mesh->changes, mesh->of.pruned,
-                      &mesh->vessels, &mesh->printed, &mesh->mesh};
-}
-
+/* Reports the facts about a mesh that is a print, as notes. */
+void mesh_say_print(const MeshResult *mesh, const Talk *talk);
 /* Makes the manifest of a mesh. Returns NULL if memory runs out. */
 json_t *mesh_manifest(const MeshResult *mesh);
 

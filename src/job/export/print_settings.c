@@ -18,7 +18,7 @@ static void *member(const PrintKey *key, PrintSettings *settings)
     return (char *)settings + key->where;
 }
 
-/* A number above 0 and below a kilometre. */
+/* Reads a length in mm: a number above 0, of at most a kilometre. */
 static bool is_length(const char *text, double *out)
 {
     double value;
@@ -170,7 +170,7 @@ static Status read_item(const char *item, PrintSettings *out, Err *err)
     return STATUS_OK;
 }
 
-/* What margin, ports and base have without a value; the margin of Luer ports has room for them. */
+/* The defaults of margin, ports and base. The margin of Luer ports has room for the fittings. */
 static const double plain_margin_mm = 3, luer_margin_mm = 15, plain_taper = 0.06, plain_base_mm = 2;
 
 static Status settle_block(PrintParams *params, Err *err)

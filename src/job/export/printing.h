@@ -1,9 +1,8 @@
-/* The vessels of `export --print`: they are made fit for a printer, and the print is described. */
+/* Makes the vessels of `export --print` fit for a printer. */
 #ifndef CORCAST_JOB_EXPORT_PRINTING_H
 #define CORCAST_JOB_EXPORT_PRINTING_H
 
 #include "job/export/print_settings.h"
-#include "options/talk.h"
 
 /* What was done to vessels before their surface is made. */
 typedef struct PrintChanges {
@@ -23,24 +22,9 @@ MUST_CHECK Status printing_prepare(const PrintSettings *settings, VesselTree *ve
 MUST_CHECK Status printing_check_bed(const PrintSettings *settings, const VesselMesh *mesh,
                                      Err *err);
 
-/* A finished print. All members are borrowed. */
-typedef struct Printing {
-    const PrintSettings *settings;
-    const PrintChanges *changes;
-    size_t pruned; /* number of segments that were removed because they are thin */
-    const VesselTree *vessels;
-    const PrintReport *report;
-    const VesselMesh *mesh;
-} Printing;
-
-/* Reports the facts about a print as notes. */
-void printing_say(const Printing *print, const Talk *talk);
-
-/* Makes the part of a manifest that describes a print. Returns NULL if memory runs out. */
-json_t *printing_json(const Printing *print);
-
-/* Makes a list of the ids of `n` segments, which `list` has by their indices. Returns NULL if
- * memory runs out. */
-json_t *segment_ids(const VesselTree *vessels, const uint32_t *list, size_t n);
+/* Computes the thickness of the wall around the thinnest vessel, mm. */
+double printing_thinnest_wall(const PrintSettings *settings, const PrintChanges *changes);
+/* Computes the sides of the mesh's box, mm. */
+void printing_size(const VesselMesh *mesh, double size[3]);
 
 #endif

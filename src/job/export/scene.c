@@ -1,7 +1,6 @@
-/* The extension of the output chooses the emitter, whose row says what it can hold; options that a
- * format has no use for are refused. OpenSCAD has two: modules, which it unites for half a second
- * each, and one closed surface; where nothing that is asked for decides, the number of vessels
- * does. */
+/* The extension of the output selects the format. Models for OpenSCAD have two forms: modules,
+ * which OpenSCAD takes half a second each to unite, and one closed surface. If no option decides
+ * between them, the number of vessels does. */
 #include "job/export/scene.h"
 
 #include "job/export/meshing.h"

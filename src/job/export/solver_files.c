@@ -1,12 +1,12 @@
-/* Ends are those of the mesh; how the flow parts among them is the tree's. Radii and
- * places come from the vessels, which may have been thinned, and lengthened at their ends. */
+/* The ends come from the mesh, and the flow through them from the tree. Radii and positions come
+ * from the vessels, which may have been made thinner, and longer at their ends. */
 #include "job/export/solver_files.h"
 
 #include "treeio/treeio.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* The part of all blood that passes each segment, in *parts (owned). */
+/* Computes the fraction of all blood that passes each segment. *parts is owned. */
 static Status find_flow_parts(const Tree *tree, double **parts, Err *err)
 {
     double total = 0;
@@ -78,7 +78,7 @@ done:
     return status;
 }
 
-/* A part by what it bounds: blood within the lumen, or the wall about it. */
+/* Returns true if the part bounds the blood in the lumen. */
 static bool bounds_blood(const MeshEnds *ends, size_t part)
 {
     if (part < ends->n_walls)
@@ -86,12 +86,13 @@ static bool bounds_blood(const MeshEnds *ends, size_t part)
     return !ends->ends[part - ends->n_walls].is_ring;
 }
 
+/* Returns true if the part bounds the wall around the lumen. */
 static bool bounds_wall(const MeshEnds *ends, size_t part)
 {
     return part < ends->n_walls || ends->ends[part - ends->n_walls].is_ring;
 }
 
-/* gmsh numbers surfaces from 1 on, in the order of the file. */
+/* Appends a volume. gmsh numbers the surfaces from 1, in the order of the file. */
 static void put_volume(const MeshEnds *ends, bool (*bounds)(const MeshEnds *, size_t),
                        const char *name, int number, Text *out)
 {

@@ -1,4 +1,5 @@
-/* What may stop the work, sizes that a format or a disk does not hold, is asked before it. */
+/* The sizes that a format, the memory or the disk cannot hold are refused before the work begins.
+ */
 #include "job/export/volumes.h"
 
 #include "derive/derive.h"
@@ -19,7 +20,7 @@ static const char *const depths[] = {"8", "16", "float", NULL};
 typedef enum LabelKind { LABEL_NONE, LABEL_SEGMENT, LABEL_STRAHLER, LABEL_TREE } LabelKind;
 static const char *const label_kinds[] = {"none", "segment", "strahler", "tree", NULL};
 
-/* Voxels along the longest side, without --voxel. */
+/* Number of voxels along the longest side, without --voxel. */
 enum { USUAL_VOXELS = 256 };
 
 static const Option volume_options[] = {

@@ -15,7 +15,7 @@ typedef struct VolumeOptions {
 
 extern const OptionTable volume_table; /* sets a VolumeOptions */
 
-/* Appends the extensions of volumes: ".nii.gz, .nii". */
+/* Appends the extensions of volume files: ".nii.gz, .nii". */
 void volumes_extensions(Text *out);
 
 /* Sets the paths and roles of the files that are written for `output`: volumes, and beside them the

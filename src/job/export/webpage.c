@@ -1,6 +1,6 @@
-/* The viewer is built apart from the program [templates/viewer/bundle], as it takes npm, and stands
- * beside the templates where it is installed, or in the build folder. A page holds whatever fields
- * there are, so that who reads it needs no other. */
+/* The viewer is built separately from the program [templates/viewer/bundle], because its build
+ * needs npm. It is beside the templates if it is installed, else in the build folder. A page holds
+ * all fields of the tree, so that its reader needs no other page. */
 #include "job/export/webpage.h"
 
 #include "derive/derive.h"
@@ -14,7 +14,10 @@
 #include <unistd.h>
 
 typedef struct Webpage {
-    const PictureTree *of;
+    const PictureTree *of; /* this and the next two are borrowed */
+    const Coloring *coloring;
+    const char *look_name;
+    char *templates, *viewer, *title; /* owned */
     Look look;
     Appearance appearance;
     FieldSeries *fields;
@@ -28,6 +31,9 @@ typedef struct Webpage {
 static void webpage_release(Webpage *page)
 {
     appearance_release(&page->appearance);
+    free(page->templates);
+    free(page->viewer);
+    free(page->title);
     for (size_t i = 0; i < page->n_fields; i++)
         fieldseries_release(&page->fields[i]);
     for (size_t i = 0; i < page->n_names; i++)
@@ -60,8 +66,8 @@ static Status add_field(Webpage *page, const TreeMeta *said, const char *name, E
     return STATUS_OK;
 }
 
-/* What the page opens with takes precedence over others of that name: it may be of a file of
- * values, and in a unit that was asked for. */
+/* Adds the field that the page opens with. It replaces other fields of its name, because its values
+ * may come from a file, and may be in a unit that the user selected. */
 static Status add_shown(Webpage *page, Err *err)
 {
     Appearance *shown = &page->appearance;
@@ -87,8 +93,8 @@ static size_t count_roots(const Tree *tree)
     return n;
 }
 
-/* The fields that can be derived, and that tell segments apart; `lacking` lists those that lack
- * what they need. */
+/* Adds the fields that can be derived. Leaves out the field "tree" of a single tree, which has one
+ * value. `lacking` receives the names of the fields whose inputs are missing. */
 static Status add_derived(Webpage *page, const TreeMeta *said, Text *lacking, Err *err)
 {
     const bool is_alone = count_roots(&page->of->tree) == 1;
@@ -105,8 +111,8 @@ static Status add_derived(Webpage *page, const TreeMeta *said, Text *lacking, Er
     return STATUS_OK;
 }
 
-/* The name of the series that a column is a moment of, owned by the page, in *name; else that of
- * the column. */
+/* Finds the name of the series that contains a column, or the column's own name if it is in no
+ * series. The page owns the name of a series. */
 static Status series_name(Webpage *page, const char *column, const char **name, Err *err)
 {
     size_t length;
@@ -161,7 +167,7 @@ done:
 
 /* ---- colours --------------------------------------------------------------------------------- */
 
-/* Takes `name` over. */
+/* Adds a colour map. The page takes ownership of `name`. */
 static Status add_map(Webpage *page, char *name, const char *path, Err *err)
 {
     PageMap *map = &page->maps[page->n_maps];
@@ -184,7 +190,7 @@ done:
     return status;
 }
 
-/* All maps that there are, and the user's own. */
+/* Reads all colour maps of the templates, and the user's own map if `chosen` is a path. */
 static Status read_maps(const char *chosen, Webpage *page, Err *err)
 {
     Text names = TEXT_INIT;
@@ -211,7 +217,7 @@ static int thicker_first(const void *a, const void *b)
     return (*x < *y) - (*x > *y);
 }
 
-/* The radius below which segments are to be dropped so that no more are left than a page holds. */
+/* Finds the radius below which segments must be removed so that a page can hold the rest. */
 static Status radius_to_prune(const Tree *tree, double *radius_mm, Err *err)
 {
     double *radii;
@@ -240,7 +246,7 @@ static Status check_count(const PictureTree *of, Err *err)
                    radius_mm);
 }
 
-/* Of the values, as float in base64. */
+/* Refuses a page whose field values, as floats in base64, are too large. */
 static Status check_bytes(const Webpage *page, Err *err)
 {
     double bytes = 0;
@@ -259,7 +265,7 @@ static Status check_bytes(const Webpage *page, Err *err)
         page->of->path, moments, bytes_text(bytes, size), WEBPAGE_MOST_BYTES / 1000000);
 }
 
-/* The viewer's file in *path (owned). */
+/* Finds the viewer's file. *path is owned. */
 static Status find_viewer(const char *templates, char **path, Err *err)
 {
     static const char *const places[] = {"page/viewer.js", "../build/viewer/viewer.js"};
@@ -277,23 +283,14 @@ static Status find_viewer(const char *templates, char **path, Err *err)
                    "esbuild (`make deps FOR=page`) and run `make` again");
 }
 
-/* What a page is made of, besides its fields and maps. */
-typedef struct PageFrame {
-    const Webpage *page;
-    const Coloring *coloring;
-    const char *look;
-    char *templates, *viewer, *name; /* owned */
-} PageFrame;
-
 static Status put_page(const void *job, const char *command, FileSlot files[], Err *err)
 {
-    const PageFrame *frame = job;
-    const Webpage *page = frame->page;
+    const Webpage *page = job;
     const Tree *tree = &page->of->tree;
     const Box box = tree_bounds(tree);
-    const PageParams params = {.templates = frame->templates,
-                               .viewer = frame->viewer,
-                               .title = frame->name,
+    const PageParams params = {.templates = page->templates,
+                               .viewer = page->viewer,
+                               .title = page->title,
                                .generator = GENERATOR,
                                .command = command,
                                .tree = tree,
@@ -303,42 +300,35 @@ static Status put_page(const void *job, const char *command, FileSlot files[], E
                                .maps = page->maps,
                                .n_maps = page->n_maps,
                                .look = &page->look,
-                               .look_name = frame->look,
+                               .look_name = page->look_name,
                                .scale = page->appearance.colors ? &page->appearance.scale : NULL,
-                               .map = file_name(frame->coloring->colormap)};
+                               .map = file_name(page->coloring->colormap)};
     return page_put(&params, &files[0].text, err);
 }
 
-static Status write_page(const Coloring *coloring, const char *look, const Webpage *page,
-                         FileSet *files, const Parsed *parsed, Err *err)
+/* Refuses a page that is too large, and collects what it contains. */
+static Status collect(Webpage *page, const Talk *talk, Err *err)
 {
-    PageFrame frame = {page, coloring, look, NULL, NULL, NULL};
-    Status status;
-    TRY_GOTO(templates_folder(&frame.templates, err));
-    TRY_GOTO(find_viewer(frame.templates, &frame.viewer, err));
-    TRY_GOTO(shown_name(page->of->path, &frame.name, err));
-    status = work_write(files, put_page, &frame, parsed, err);
-done:
-    free(frame.templates);
-    free(frame.viewer);
-    free(frame.name);
-    return status;
+    const Coloring *coloring = page->coloring;
+    const ColoredTree tree = picture_colored_tree(page->of);
+    TRY(check_count(page->of, err));
+    TRY(coloring_read_look(page->look_name, &page->look, err));
+    TRY(coloring_appearance(coloring, &tree, &page->look, &page->appearance, err));
+    TRY(add_fields(coloring, talk, page, err));
+    TRY(check_bytes(page, err));
+    TRY(read_maps(coloring->colormap, page, err));
+    TRY(templates_folder(&page->templates, err));
+    TRY(find_viewer(page->templates, &page->viewer, err));
+    return shown_name(page->of->path, &page->title, err);
 }
 
 Status webpage_write(const Coloring *coloring, const char *look, const PictureTree *of,
                      FileSet *files, const Parsed *parsed, Err *err)
 {
-    const ColoredTree tree = picture_colored_tree(of);
-    Webpage page = {.of = of};
-    Status status;
-    TRY_GOTO(check_count(of, err));
-    TRY_GOTO(coloring_read_look(look, &page.look, err));
-    TRY_GOTO(coloring_appearance(coloring, &tree, &page.look, &page.appearance, err));
-    TRY_GOTO(add_fields(coloring, parsed->common.talk, &page, err));
-    TRY_GOTO(check_bytes(&page, err));
-    TRY_GOTO(read_maps(coloring->colormap, &page, err));
-    status = write_page(coloring, look, &page, files, parsed, err);
-done:
+    Webpage page = {.of = of, .coloring = coloring, .look_name = look};
+    Status status = collect(&page, parsed->common.talk, err);
+    if (status == STATUS_OK)
+        status = work_write(files, put_page, &page, parsed, err);
     webpage_release(&page);
     return status;
 }

@@ -1,4 +1,4 @@
-/* A tree as a page for browsers. */
+/* A tree as a page for browsers, in which the user can rotate it. */
 #ifndef CORCAST_JOB_EXPORT_WEBPAGE_H
 #define CORCAST_JOB_EXPORT_WEBPAGE_H
 
@@ -7,8 +7,8 @@
 #include "job/work.h"
 #include "options/options.h"
 
-/* A page holds no more segments than this, which make a file of about 17 MB, and no more bytes of
- * values. */
+/* The largest number of segments in a page, which make a file of about 17 MB, and the largest
+ * number of bytes of field values. */
 enum { WEBPAGE_MOST_SEGMENTS = 200000, WEBPAGE_MOST_BYTES = 100000000 };
 
 /* Writes a page about a tree, with all fields that can be derived, all columns of its file and all

@@ -190,10 +190,11 @@ static ScaleColor own_color(bool given, Vec3 srgb)
     return (ScaleColor){given, {color.r, color.g, color.b}};
 }
 
-static FieldScaleParams scale_params(const Coloring *coloring)
+static FieldScaleParams scale_params(const Coloring *coloring, const Look *look)
 {
     const RangeEnds *ends = &coloring->range;
-    return (FieldScaleParams){.has_ends = coloring->has_range,
+    return (FieldScaleParams){.look = look,
+                              .has_ends = coloring->has_range,
                               .ends = {ends->at[0], ends->at[1]},
                               .percent = {ends->percent[0], ends->percent[1]},
                               .log = coloring->log,
@@ -210,7 +211,7 @@ static FieldScaleParams scale_params(const Coloring *coloring)
 static Status color_field(const Coloring *coloring, const ColoredTree *tree, const Look *look,
                           Appearance *appearance, Err *err)
 {
-    const FieldScaleParams params = scale_params(coloring);
+    const FieldScaleParams params = scale_params(coloring, look);
     FieldValues drawn = {0}, whole = {0};
     Colormap map = {0};
     Status status;
@@ -219,8 +220,7 @@ static Status color_field(const Coloring *coloring, const ColoredTree *tree, con
     TRY_GOTO(read_values(coloring, tree->drawn, tree->joined, &drawn, err));
     if (of_tree)
         TRY_GOTO(read_values(coloring, tree->whole, tree->joined, &whole, err));
-    TRY_GOTO(
-        fieldscale_color(&params, look, &map, of_tree ? &whole : &drawn, &drawn, appearance, err));
+    TRY_GOTO(fieldscale_color(&params, &map, of_tree ? &whole : &drawn, &drawn, appearance, err));
 done:
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", tree->path);

@@ -157,7 +157,8 @@ static Status copy_tiles(const TileFiles *tiles, ImageWriter *writer, const Imag
     Status status = STATUS_OK;
     for (size_t i = 0; i < tiles->n; i++) {
         TRY_GOTO(copy_rows(tiles->tile[i].path, writer, &rows, err));
-        progress_report((double)(i + 1) / (double)tiles->n, progress);
+        if (!progress_show(progress, (double)(i + 1) / (double)tiles->n))
+            TRY_GOTO(err_cancelled(err));
     }
 done:
     picture_release(&rows);

@@ -112,8 +112,8 @@ static Status make_report(const GrowOptions *options, int threads, const GrowRep
         {"terminal_pairs", pairs_json(&made->tree)},
         {"bound", bound},
     };
-    return json_put(json_with_members(json_object(), members, sizeof members / sizeof *members),
-                    &made->report, err);
+    return madetree_report(
+        made, json_with_members(json_object(), members, sizeof members / sizeof *members), err);
 }
 
 /* ---- the operation --------------------------------------------------------------------------- */

@@ -2,6 +2,7 @@
  * figures, whose panels may show a tree that a command makes. */
 #include "job/tree/makers.h"
 
+#include "options/output.h"
 #include "treeio/treeio.h"
 #include <string.h>
 
@@ -20,8 +21,15 @@ const TreeMaker *tree_maker_find(const char *name)
 void madetree_release(MadeTree *made)
 {
     tree_release(&made->tree);
-    text_release(&made->report);
+    json_decref(made->report);
     *made = (MadeTree){0};
+}
+
+Status madetree_report(MadeTree *made, json_t *report, Err *err)
+{
+    made->report = report;
+    return report ? STATUS_OK
+                  : err_set(err, STATUS_MEMORY, "out of memory: no room for the report of a tree");
 }
 
 Status tree_output_check(const char *path, Err *err)
@@ -75,5 +83,5 @@ Status madetree_write(const Parsed *parsed, const MadeTree *made, Err *err)
 {
     TRY(tree_output(&made->tree, parsed_text(parsed, "output"), parsed->common.talk, err));
     const char *path = parsed_text(parsed, "json");
-    return path ? file_write_text(path, &made->report, err) : STATUS_OK;
+    return path ? json_write(json_incref(made->report), path, err) : STATUS_OK;
 }

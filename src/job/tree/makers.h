@@ -10,8 +10,8 @@ extern const Command command_grow, command_refine, command_bifurcation;
 
 /* Zero it before use; release it with madetree_release. */
 typedef struct MadeTree {
-    Tree tree;   /* its metadata names the command that made it */
-    Text report; /* what was done, as JSON; empty if the option json was not given */
+    Tree tree;      /* its metadata names the command that made it */
+    json_t *report; /* what was done; owned; NULL if the option json was not given */
 } MadeTree;
 
 void madetree_release(MadeTree *made);
@@ -25,6 +25,9 @@ void madetree_release(MadeTree *made);
  *          STATUS_IO, STATUS_MEMORY. */
 typedef Status MakeTree(void *options, Parsed *parsed, MadeTree *made, Err *err);
 MUST_CHECK MakeTree grow_make, refine_make, bifurcation_make;
+
+/* Takes over the report of a tree. Errors: STATUS_MEMORY if `report` is NULL. */
+MUST_CHECK Status madetree_report(MadeTree *made, json_t *report, Err *err);
 
 /* An operation that makes a tree. A tree is the first operand of `refine`; the others need none. */
 typedef struct TreeMaker {

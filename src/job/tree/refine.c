@@ -91,8 +91,8 @@ static Status make_report(const RefineReport *report, MadeTree *made, Err *err)
         {"stopped", json_boolean(report->stopped)},
         {"bound", bound},
     };
-    return json_put(json_with_members(json_object(), members, sizeof members / sizeof *members),
-                    &made->report, err);
+    return madetree_report(
+        made, json_with_members(json_object(), members, sizeof members / sizeof *members), err);
 }
 
 /* Reads the tree and its domain; *found says whether there is one. */

@@ -1,0 +1,207 @@
+/* Files of trees: meshes, scenes, pictures and figures, by the jobs that write them. */
+#include "api/reports.h"
+#include "api/request.h"
+
+#include "job/export/export.h"
+#include "job/export/scene.h"
+#include "job/figure/figure.h"
+#include "job/job.h"
+#include "job/picture/convert.h"
+#include "job/picture/render.h"
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* ---- to files -------------------------------------------------------------------------------- */
+
+typedef Status RunJob(void *options, Parsed *parsed, Err *err);
+
+/* The operations that write files, by command. */
+static const struct {
+    const Command *command;
+    RunJob *run;
+} exporters[] = {{&command_export, export_run},
+                 {&command_scene, scene_run},
+                 {&command_render, render_run},
+                 {&command_convert, convert_run}};
+
+static const char of_export[] = "export scene render convert";
+
+static RunJob *find_exporter(const Command *command)
+{
+    size_t i = 0;
+    while (exporters[i].command != command) /* request_open has accepted it */
+        i++;
+    return exporters[i].run;
+}
+
+static Status run_export(const RequestForm *form, const Call *call, Err *err)
+{
+    Request request = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(request_open(&request, form, call, err));
+    Parsed *parsed = &request.parsed;
+    status = find_exporter(parsed->command)(parsed->options, parsed, err);
+done:
+    return request_close(&request, status, err);
+}
+
+static Status export_files(const corcast_tree *tree, const corcast_options *options,
+                           const char *path, const Call *call, Err *err)
+{
+    const RequestForm form = {.commands = of_export,
+                              .options = options,
+                              .tree = tree,
+                              .output = path,
+                              .needs_options = true};
+    TRY(handle_check(tree, HANDLE_TREE, "tree", err));
+    TRY(path_check(path, "path", err));
+    return run_export(&form, call, err);
+}
+
+int corcast_export(const corcast_tree *tree, const corcast_options *options, const char *path,
+                   corcast_error *error)
+{
+    Call call = call_begin(error);
+    return call_end(&call, export_files(tree, options, path, &call, &call.err));
+}
+
+/* ---- to a sink ------------------------------------------------------------------------------- */
+
+/* Where the bytes of files go. */
+typedef struct Sink {
+    corcast_sink *take;
+    void *user;
+    locale_t before; /* the caller's */
+} Sink;
+
+static bool give(const Sink *sink, const char *name, const void *bytes, size_t size)
+{
+    locale_t own = callback_begin(sink->before);
+    const int stop = sink->take(sink->user, name, bytes, size);
+    callback_end(own);
+    return stop == 0;
+}
+
+static Status pass_stream(const Sink *sink, const char *name, FILE *stream, Err *err)
+{
+    enum { BLOCK = 1 << 16 };
+    char block[BLOCK];
+    size_t count;
+    bool is_first = true;
+    while ((count = fread(block, 1, BLOCK, stream)) > 0 || is_first) {
+        is_first = false;
+        if (!give(sink, name, block, count))
+            return err_set(err, STATUS_IO, "%s: the sink did not take the bytes", name);
+    }
+    return ferror(stream) ? err_set(err, STATUS_IO, "%s: reading failed", name) : STATUS_OK;
+}
+
+static Status pass_file(const Sink *sink, const char *folder, const char *name, Err *err)
+{
+    char *path = NULL;
+    TRY(file_join(folder, name, &path, err));
+    FILE *stream = fopen(path, "rb");
+    Status status = stream
+                        ? pass_stream(sink, name, stream, err)
+                        : err_set(err, STATUS_IO, "%s: cannot be read: %s", path, strerror(errno));
+    if (stream)
+        fclose(stream);
+    free(path);
+    return status;
+}
+
+/* Passes all files of a folder, in the order of their names. */
+static Status pass_folder(const Sink *sink, const char *folder, Err *err)
+{
+    struct dirent **entries = NULL;
+    const int n = scandir(folder, &entries, NULL, alphasort);
+    Status status = n < 0 ? mem_out_of("to list", folder, err) : STATUS_OK;
+    for (int i = 0; i < n; i++) {
+        const char *name = entries[i]->d_name;
+        if (status == STATUS_OK && strcmp(name, ".") != 0 && strcmp(name, "..") != 0)
+            status = pass_file(sink, folder, name, err);
+        free(entries[i]);
+    }
+    free(entries);
+    return status;
+}
+
+/* Removes the files of a folder, and the folder. */
+static void remove_folder(const char *folder)
+{
+    struct dirent **entries = NULL;
+    const int n = scandir(folder, &entries, NULL, NULL);
+    for (int i = 0; i < n; i++) {
+        char path[512];
+        if (snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name) < (int)sizeof path)
+            (void)unlink(path);
+        free(entries[i]);
+    }
+    free(entries);
+    (void)rmdir(folder);
+}
+
+static Status check_name(const char *name, Err *err)
+{
+    TRY(path_check(name, "name", err));
+    return strchr(name, '/')
+               ? err_set(err, STATUS_USAGE, "name is '%s'; it must have no folder", name)
+               : STATUS_OK;
+}
+
+static Status export_bytes(const corcast_tree *tree, const corcast_options *options,
+                           const char *name, const Sink *sink, const Call *call, Err *err)
+{
+    char folder[] = "/tmp/corcast-XXXXXX";
+    char *path = NULL;
+    Status status = STATUS_OK;
+    TRY(check_name(name, err));
+    if (!sink->take)
+        return err_set(err, STATUS_USAGE, "sink is NULL");
+    if (!mkdtemp(folder))
+        return err_set(err, STATUS_IO, "%s: cannot be made: %s", folder, strerror(errno));
+    TRY_GOTO(file_join(folder, name, &path, err));
+    TRY_GOTO(export_files(tree, options, path, call, err));
+    status = pass_folder(sink, folder, err);
+done:
+    remove_folder(folder);
+    free(path);
+    return status;
+}
+
+int corcast_export_bytes(const corcast_tree *tree, const corcast_options *options, const char *name,
+                         corcast_sink *sink, void *user, corcast_error *error)
+{
+    Call call = call_begin(error);
+    const Sink to = {sink, user, call.before};
+    return call_end(&call, export_bytes(tree, options, name, &to, &call, &call.err));
+}
+
+/* ---- figures --------------------------------------------------------------------------------- */
+
+static Status draw_figure(const RequestForm *form, const Call *call, Err *err)
+{
+    Request request = {0};
+    Figure figure = {0};
+    Status status = STATUS_OK;
+    TRY(path_check(form->operand, "recipe", err));
+    TRY(path_check(form->output, "path", err));
+    TRY_GOTO(request_open(&request, form, call, err));
+    TRY_GOTO(figure_make(request.parsed.options, &request.parsed, &figure, err));
+    status = figure_write(&figure, err);
+done:
+    figure_done(&figure);
+    return request_close(&request, status, err);
+}
+
+int corcast_figure(const char *recipe, const corcast_options *options, const char *path,
+                   corcast_error *error)
+{
+    Call call = call_begin(error);
+    const RequestForm form = {
+        .commands = "figure", .options = options, .operand = recipe, .output = path};
+    return call_end(&call, draw_figure(&form, &call, &call.err));
+}

@@ -1,0 +1,221 @@
+/* One layout, drawn as SVG or as pixels: the output's extension says which. */
+#include "job/picture/diagram.h"
+
+#include "options/output.h"
+#include "options/templates.h"
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct DiagramOptions {
+    const char *output, *look;
+    PictureSize size;
+    double gap_mm, prune_radius_mm, margin;
+    Vec3 background; /* sRGB in [0, 1] */
+    Coloring coloring;
+    PressOptions press;
+} DiagramOptions;
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, DiagramOptions, output),
+     .argument = "D.svg",
+     .help = "the diagram: .svg, true to size, or .png, .tif, .jpg, .ppm"},
+    {.name = "gap",
+     SETS(NUMBER, DiagramOptions, gap_mm),
+     FROM_TO(0, 1e7),
+     .group = GROUP_VESSELS,
+     .unit = "mm",
+     .otherwise = "by the height that suits the width",
+     .help = "space between two branches"},
+    {.name = "prune-radius",
+     SETS(NUMBER, DiagramOptions, prune_radius_mm),
+     .group = GROUP_VESSELS,
+     .range = &prune_range,
+     .unit = "mm",
+     .otherwise = "",
+     .help = "drop segments thinner than this"},
+    {.name = "size",
+     SETS(SIZE, DiagramOptions, size),
+     FROM_TO(1, IMAGE_MAX_SIDE),
+     .group = GROUP_CAMERA,
+     .when = WHEN(PIXELS),
+     .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
+    {DPI_OF_SIZE(DiagramOptions, size), .group = GROUP_CAMERA,
+     .when = WHEN(PIXELS) | WHEN(ON_PAPER_OR_KEPT),
+     .help = "pixels an inch on paper, which .png, .tif and .jpg keep"},
+    {.name = "margin",
+     SETS(NUMBER, DiagramOptions, margin),
+     FROM_TO(0, 0.45),
+     .group = GROUP_CAMERA,
+     .help = "free part on each side"},
+    {.name = "look",
+     SETS(LOOKUP, DiagramOptions, look),
+     .group = GROUP_COLOR,
+     .list = "looks",
+     .help = "colour of what no field colours: a file of templates/looks, or a path"},
+    {.name = "background",
+     SETS(COLOR, DiagramOptions, background),
+     .group = GROUP_LIGHT,
+     .help = "sRGB, each from 0 to 1"},
+};
+
+/* A diagram in memory is a page, as that of an .svg. */
+static bool is_page(const DiagramOptions *options)
+{
+    return !options->output || strcmp(file_extension(options->output), "svg") == 0;
+}
+
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    const DiagramOptions *options = set;
+    return is_page(options) ? WHEN(PIXELS)
+                            : picture_unmet_dpi(&options->size, options_output(parsed));
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
+
+static void set_defaults(void *options)
+{
+    DiagramOptions *own_options = options;
+    *own_options = (DiagramOptions){
+        .look = "cast", .size = {.pixels = {1200, 900}}, .margin = 0.05, .background = {1, 1, 1}};
+    coloring_set_defaults(&own_options->coloring);
+    press_set_defaults(&own_options->press);
+}
+
+static Status paint(const DiagramOptions *options, MadeDiagram *made, Err *err)
+{
+    const Tree *tree = &made->of.tree;
+    const Appearance *appearance = &made->appearance;
+    const Rgb background = rgb_of_option(options->background);
+    TRY(mem_calloc(&made->color, tree->n, sizeof *made->color, "colours", err));
+    for (size_t i = 0; i < tree->n; i++) {
+        Rgb color = appearance_color(appearance, (uint32_t)i);
+        memcpy(made->color[i], &color, sizeof color);
+    }
+    made->style = (DiagramStyle){.diagram = &made->layout,
+                                 .tree = tree,
+                                 .color = (const float(*)[3])made->color,
+                                 .background = {background.r, background.g, background.b},
+                                 .margin = options->margin,
+                                 .name = appearance->colors ? appearance->scale.name : NULL,
+                                 .unit = appearance->scale.unit,
+                                 .values = appearance->values};
+    return STATUS_OK;
+}
+
+/* Reads the tree and its colours, and lays the tree out. */
+static Status lay_out(const DiagramOptions *options, const Parsed *parsed, MadeDiagram *made,
+                      Err *err)
+{
+    const Talk *talk = parsed->common.talk;
+    PictureTree *of = &made->of;
+    Look look;
+    TRY(coloring_read_look(options->look, &look, err));
+    TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, of, err));
+    if (of->pruned > 0)
+        talk_note(talk, "%zu segment%s pruned", of->pruned, of->pruned == 1 ? " is" : "s are");
+    const ColoredTree tree = picture_colored_tree(of);
+    TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
+    coloring_say(&made->appearance, talk);
+    TRY(paint(options, made, err));
+    Status status = diagram_lay_out(&of->tree, options->gap_mm, &made->layout, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", of->path);
+    made->bars = diagram_bars(&made->style);
+    return status;
+}
+
+static Status check(const DiagramOptions *options, Err *err)
+{
+    if (is_page(options))
+        return STATUS_OK;
+    TRY(press_check(&options->press, options->output, err));
+    return frames_check_output(options->output, false, err);
+}
+
+Status diagram_make(void *options, Parsed *parsed, MadeDiagram *made, Err *err)
+{
+    const DiagramOptions *own_options = options;
+    const int *size = own_options->size.pixels;
+    *made = (MadeDiagram){.is_page = is_page(own_options)};
+    TRY(check(own_options, err));
+    if (!made->is_page)
+        TRY(press_open(&own_options->press, own_options->output, parsed->common.threads,
+                       &made->press, err));
+    TRY(lay_out(own_options, parsed, made, err));
+    if (!made->is_page) {
+        TRY(picture_fits(size[0], size[1], 40, err));
+        return diagram_draw(&made->style, &made->bars, size[0], size[1], &made->pixels.color, err);
+    }
+    diagram_make_page(&made->style, &made->bars, &made->page);
+    return figure_check(&made->page, err);
+}
+
+void madediagram_release(MadeDiagram *made)
+{
+    figure_release(&made->page);
+    frame_release(&made->pixels);
+    press_release(&made->press);
+    picture_tree_release(&made->of);
+    appearance_release(&made->appearance);
+    diagram_release(&made->layout);
+    free(made->color);
+}
+
+static Status write_pixels(const DiagramOptions *options, const MadeDiagram *made,
+                           const char *command, Err *err)
+{
+    const FramesForm form = {.path = options->output,
+                             .bits = made->press.bits,
+                             .packing = made->press.packing,
+                             .encoding = ENCODING_SRGB,
+                             .picture = true,
+                             .dpi = options->size.dpi,
+                             .provenance = command,
+                             .colors = made->appearance.said};
+    return frames_write(&made->pixels, &form, err);
+}
+
+static Status write_page(const DiagramOptions *options, const MadeDiagram *made,
+                         const char *command, Err *err)
+{
+    char *templates = NULL, *name = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(templates_folder(&templates, err));
+    TRY_GOTO(shown_name(made->of.path, &name, err));
+    const FigureNotes notes = {
+        .templates = templates, .description = name, .generator = GENERATOR, .command = command};
+    status = frames_write_page(&made->page, &notes, options->output, err);
+done:
+    free(templates);
+    free(name);
+    return status;
+}
+
+Status diagram_write(const void *options, const Parsed *parsed, const MadeDiagram *made, Err *err)
+{
+    char *command = NULL;
+    TRY(command_line_text(parsed, &command, err));
+    Status status = made->is_page ? write_page(options, made, command, err)
+                                  : write_pixels(options, made, command, err);
+    free(command);
+    return status;
+}
+
+const Command command_diagram = {
+    .name = "diagram",
+    .summary = "draw a tree unrolled flat, lengths and diameters true",
+    .operands = "T.swc -o D.svg",
+    .examples = "  corcast diagram tree.swc --color-by wss -o wss.svg\n"
+                "  corcast diagram tree.swc --color-by pressure --size 2400x1800 -o pressure.png\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .reads_tree = true,
+    .size = sizeof(DiagramOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0},
+               COLORING_TABLES(DiagramOptions, coloring),
+               {&press_table, offsetof(DiagramOptions, press)}},
+};

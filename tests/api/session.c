@@ -1,0 +1,217 @@
+/* One operation of the library as a program, so that its files can be compared with those of the
+ * command line, and its allocations can be made to fail:
+ *
+ *     session grow OUT NAME=VALUE...        refine IN OUT NAME=VALUE...
+ *     session export COMMAND IN OUT NAME=VALUE...    (also `bytes`, through a sink into OUT's
+ * folder) session render IN OUT.ppm NAME=VALUE...        the pixels of a picture in memory session
+ * compare A B NAME=VALUE...     info IN NAME=VALUE...      print the report session convert IN OUT
+ * the bytes of IN are read in memory
+ *
+ * Ends with the status of the library, its sentence on standard error. */
+#include "corcast.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static corcast_error *error;
+
+/* Returns options with the arguments NAME=VALUE set; NULL after a failure, with *status set. */
+static corcast_options *options_of(const char *command, char **arguments, int *status)
+{
+    corcast_options *options = NULL;
+    *status = corcast_options_new(command, &options, error);
+    for (; !*status && *arguments; arguments++) {
+        char name[64];
+        const char *equals = strchr(*arguments, '=');
+        snprintf(name, sizeof name, "%.*s", (int)(equals - *arguments), *arguments);
+        *status = corcast_options_set(options, name, equals + 1, error);
+    }
+    return options;
+}
+
+static int grow(char **arguments)
+{
+    int status;
+    corcast_tree *tree = NULL;
+    corcast_report *report = NULL;
+    corcast_options *options = options_of("grow", arguments + 1, &status);
+    if (!status)
+        status = corcast_grow(options, &tree, &report, error);
+    if (!status)
+        status = corcast_tree_write(tree, arguments[0], error);
+    corcast_report_free(report);
+    corcast_tree_free(tree);
+    corcast_options_free(options);
+    return status;
+}
+
+static int refine(char **arguments)
+{
+    int status;
+    corcast_tree *tree = NULL;
+    corcast_options *options = options_of("refine", arguments + 2, &status);
+    if (!status)
+        status = corcast_tree_read(arguments[0], NULL, &tree, error);
+    if (!status)
+        status = corcast_refine(tree, options, NULL, error);
+    if (!status)
+        status = corcast_tree_write(tree, arguments[1], error);
+    corcast_tree_free(tree);
+    corcast_options_free(options);
+    return status;
+}
+
+static int export_tree(char **arguments)
+{
+    int status;
+    corcast_tree *tree = NULL;
+    corcast_options *options = options_of(arguments[0], arguments + 3, &status);
+    if (!status)
+        status = corcast_tree_read(arguments[1], NULL, &tree, error);
+    if (!status)
+        status = corcast_export(tree, options, arguments[2], error);
+    corcast_tree_free(tree);
+    corcast_options_free(options);
+    return status;
+}
+
+/* Appends to the file of that name in the folder `user`. */
+static int keep(void *user, const char *name, const void *bytes, size_t size)
+{
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", (const char *)user, name);
+    FILE *file = fopen(path, "ab");
+    const int failed = !file || fwrite(bytes, 1, size, file) != size;
+    if (file)
+        fclose(file);
+    return failed;
+}
+
+static int export_bytes(char **arguments)
+{
+    int status;
+    corcast_tree *tree = NULL;
+    char *slash = strrchr(arguments[2], '/');
+    corcast_options *options = options_of(arguments[0], arguments + 3, &status);
+    *slash = '\0';
+    if (!status)
+        status = corcast_tree_read(arguments[1], NULL, &tree, error);
+    if (!status)
+        status = corcast_export_bytes(tree, options, slash + 1, keep, arguments[2], error);
+    corcast_tree_free(tree);
+    corcast_options_free(options);
+    return status;
+}
+
+static int write_pixels(const corcast_image *image, const char *path)
+{
+    int width = 0, height = 0, channels = 0;
+    int status = corcast_image_shape(image, CORCAST_COLOR, &width, &height, &channels, error);
+    const size_t size = (size_t)width * (size_t)height * (size_t)channels;
+    unsigned char *pixels = status ? NULL : malloc(size);
+    FILE *file = pixels ? fopen(path, "wb") : NULL;
+    if (!status && !file)
+        status = 3;
+    if (!status)
+        status = corcast_image_pixels(image, CORCAST_COLOR, CORCAST_U8, pixels, size, error);
+    if (!status && (fprintf(file, "P6\n%d %d\n255\n", width, height) < 0 ||
+                    fwrite(pixels, 1, size, file) != size))
+        status = 3;
+    if (file)
+        fclose(file);
+    free(pixels);
+    return status;
+}
+
+static int render(char **arguments)
+{
+    int status;
+    corcast_tree *tree = NULL;
+    corcast_scene *scene = NULL;
+    corcast_image *image = NULL;
+    corcast_options *options = options_of("render", arguments + 2, &status);
+    if (!status)
+        status = corcast_tree_read(arguments[0], NULL, &tree, error);
+    if (!status)
+        status = corcast_scene_new(tree, options, &scene, error);
+    corcast_tree_free(tree);
+    corcast_options_free(options);
+    if (!status)
+        status = corcast_render(scene, &image, NULL, error);
+    corcast_scene_free(scene);
+    if (!status)
+        status = write_pixels(image, arguments[1]);
+    corcast_image_free(image);
+    return status;
+}
+
+static int compare(char **arguments)
+{
+    int status;
+    corcast_image *a = NULL, *b = NULL;
+    corcast_report *report = NULL;
+    corcast_options *options = options_of("compare", arguments + 2, &status);
+    if (!status)
+        status = corcast_image_read(arguments[0], &a, error);
+    if (!status)
+        status = corcast_image_read(arguments[1], &b, error);
+    if (!status)
+        status = corcast_compare(a, b, options, &report, error);
+    fputs(corcast_report_json(report), stdout);
+    corcast_report_free(report);
+    corcast_image_free(a);
+    corcast_image_free(b);
+    corcast_options_free(options);
+    return status;
+}
+
+static int info(char **arguments)
+{
+    int status;
+    corcast_tree *tree = NULL;
+    corcast_report *report = NULL;
+    corcast_options *options = options_of("info", arguments + 1, &status);
+    if (!status)
+        status = corcast_tree_read(arguments[0], NULL, &tree, error);
+    if (!status)
+        status = corcast_info(tree, options, &report, error);
+    fputs(corcast_report_json(report), stdout);
+    corcast_report_free(report);
+    corcast_tree_free(tree);
+    corcast_options_free(options);
+    return status;
+}
+
+static int convert(char **arguments)
+{
+    static char bytes[1 << 20];
+    corcast_tree *tree = NULL;
+    FILE *file = fopen(arguments[0], "rb");
+    const size_t size = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+    int status = corcast_tree_read_bytes(bytes, size, arguments[0], NULL, &tree, error);
+    if (!status)
+        status = corcast_tree_write(tree, arguments[1], error);
+    if (file)
+        fclose(file);
+    corcast_tree_free(tree);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    static const struct {
+        const char *name;
+        int (*run)(char **arguments);
+    } operations[] = {{"grow", grow},          {"refine", refine},  {"export", export_tree},
+                      {"bytes", export_bytes}, {"render", render},  {"compare", compare},
+                      {"info", info},          {"convert", convert}};
+    int status = 2;
+    error = corcast_error_new();
+    for (size_t i = 0; argc > 1 && i < sizeof operations / sizeof *operations; i++)
+        if (strcmp(argv[1], operations[i].name) == 0)
+            status = operations[i].run(argv + 2);
+    if (status > 1)
+        fprintf(stderr, "session: %s\n", error ? corcast_error_text(error) : "out of memory");
+    corcast_error_free(error);
+    return status;
+}
