@@ -125,25 +125,14 @@ Status help_put_all(HelpPut *put, Text *text, Err *err)
     return STATUS_OK;
 }
 
-/* Adds the description of a command to the array. */
-static Status add_schema(const Command *command, json_t **array, Err *err)
-{
-    Parsed plain;
-    TRY(parsed_init(&plain, command, err));
-    *array = json_with_item(*array, command_schema(&plain));
-    parsed_release(&plain);
-    return STATUS_OK;
-}
-
 Status schema_put(const Command *command, Text *text, Err *err)
 {
     json_t *commands = json_array();
-    Status status = command ? add_schema(command, &commands, err) : STATUS_OK;
+    Status status = command ? schema_add(command, &commands, err) : STATUS_OK;
     for (const CommandRow *row = command_rows; !command && row->command; row++)
-        TRY_GOTO(add_schema(row->command, &commands, err));
-    const JsonMember members[] = {{"generator", json_text(GENERATOR)}, {"commands", commands}};
+        TRY_GOTO(schema_add(row->command, &commands, err));
+    text_json(text, schema_document(commands), 2);
     commands = NULL;
-    text_json(text, json_with_members(json_object(), members, 2), 2);
     text_puts(text, "\n");
     status = text_check(text, err);
 done:

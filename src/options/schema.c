@@ -2,6 +2,8 @@
  * the schema tests for the member alone. */
 #include "options/schema.h"
 
+#include "options/output.h"
+
 #include <string.h>
 
 /* Adds a text member, unless its value is NULL. */
@@ -121,5 +123,20 @@ json_t *command_schema(const Parsed *plain)
         {"needs_output", json_boolean(command->needs_output)},
         {"options", options},
     };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+Status schema_add(const Command *command, json_t **commands, Err *err)
+{
+    Parsed plain;
+    TRY(parsed_init(&plain, command, err));
+    *commands = json_with_item(*commands, command_schema(&plain));
+    parsed_release(&plain);
+    return STATUS_OK;
+}
+
+json_t *schema_document(json_t *commands)
+{
+    const JsonMember members[] = {{"generator", json_text(GENERATOR)}, {"commands", commands}};
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }

@@ -26,4 +26,12 @@
  * Returns  a new reference; NULL when memory runs out. */
 json_t *command_schema(const Parsed *plain);
 
+/* Appends the description of a command to the array *commands, which may be NULL, from an array for
+ * which memory ran out. Errors: those of parsed_init. */
+MUST_CHECK Status schema_add(const Command *command, json_t **commands, Err *err);
+
+/* Returns the document {"generator", "commands"}, which takes over the array; NULL when memory runs
+ * out. */
+json_t *schema_document(json_t *commands);
+
 #endif
