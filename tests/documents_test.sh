@@ -114,8 +114,8 @@ longer than 2 x 16384 pixels @ rasteritem.c @ most_pixels = 16384;
 cylinders seen within 0.02 rad of their axis @ rasteritem.c @ 0.02; /* of the angle
 cylinders seen within 0.02 rad of their axis @ kernel_round.h @ steep_sine2 = 4e-4f;
 within 10⁻⁴ r of the ray @ kernel_joint.h @ off_joint_line = 1e-4f;
-0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ slack_mm + 0x3p-23 * lightview_radius
-0.001 mm and 3 · 2^-23 of the scene's radius @ caster.c @ slack_mm = 1e-3;
+0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ SHADOW_NEAREST_MM + 0x3p-23 * lightview_radius
+0.001 mm and 3 · 2^-23 of the scene's radius @ shadowengine.h @ SHADOW_NEAREST_MM 1e-3
 within 1.16 radii of the scene's middle cast rays @ lightview.c @ least_radii = 1.16;
 at most a quarter of a pixel apart @ zbuffer.c @ pixels_apart = 0.25;
 nothing below the horizon covers it, and than 3.5 mean radii @ occluders.c @ wide_in_radii = 3.5;
@@ -131,32 +131,32 @@ END
 
 test_the_limits_of_the_tiers_are_those_of_the_source() {
     agree METHODS.md <<'END'
-| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ tolerance.c @ tolerance.color_ppm = 2;
-| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ tolerance.c @ tolerance.color_levels = 1 / 257.0;
-| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ tolerance.c @ tolerance.interior_ppm = 2000;
-| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ tolerance.c @ tolerance.band_ppm = 10000;
-| largest difference off the band | 1 level | @ tolerance.c @ tolerance.interior_levels = 1;
-| mean difference | | 0.01 levels | @ tolerance.c @ tolerance.bias_levels = 0.01;
-| pixels brighter less pixels darker, over the root of their sum | | 6 | @ tolerance.c @ tolerance.sign_sigma = 6;
-| gain, offset | | 0.0005, 0.0255 levels | @ tolerance.c @ tolerance.gain = 0.0005;
-| gain, offset | | 0.0005, 0.0255 levels | @ tolerance.c @ tolerance.offset_levels = 0.0255;
-| outline of what is seen | | 0.002 px | @ tolerance.c @ tolerance.silhouette_px = 0.002;
-outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ tolerance.segment_levels = 0.12;
-outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ tolerance.segment_px = 0.15;
-| segments of more than 2 pixels seen in one picture only | | 0 | @ tolerance.c @ tolerance.segments_missing = 0;
-| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ tolerance.id_ppm = 2;
-| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ tolerance.id_interior_ppm = 0;
-| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ tolerance.id_band_ppm = 2000;
-| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ tolerance.normal_max_deg = 0.03;
-| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ tolerance.normal_max_deg = 0.1;
-| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ tolerance.normal_ppm = 10000;
-| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ tolerance.normal_median_deg = 0.02;
-| seen in one plane only (depth, normal) | 2 ppm | @ tolerance.c @ tolerance.coverage_ppm = 2;
-2000 ppm, 15000 ppm, N = 2 | @ tolerance.c @ tolerance.band_ppm = 15000;
-0.0005, 0.15 levels | @ tolerance.c @ tolerance.offset_levels = 0.15;
-1 level, 0.15 px | @ tolerance.c @ tolerance.segment_levels = 1; tolerance.segment_px = 0.15;
-99 % within 10⁻⁴ of the depth @ tolerance.c @ tolerance.depth_p99_part = 1e-4;
-| largest missing or extra region | | | 2 pixels | @ tolerance.c @ tolerance.region_pixels = 2;
+| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ tolerance.c @ {LIMIT_COLOR_PPM, 2}
+| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ tolerance.c @ {LIMIT_COLOR_LEVELS, 1 / 257.0}
+| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ tolerance.c @ {LIMIT_INTERIOR_PPM, 2000}
+| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ tolerance.c @ {LIMIT_BAND_PPM, 10000}
+| largest difference off the band | 1 level | @ tolerance.c @ {LIMIT_INTERIOR_LEVELS, 1}
+| mean difference | | 0.01 levels | @ tolerance.c @ {LIMIT_BIAS_LEVELS, 0.01}
+| pixels brighter less pixels darker, over the root of their sum | | 6 | @ tolerance.c @ {LIMIT_SIGN_SIGMA, 6}
+| gain, offset | | 0.0005, 0.0255 levels | @ tolerance.c @ {LIMIT_GAIN, 0.0005}
+| gain, offset | | 0.0005, 0.0255 levels | @ tolerance.c @ {LIMIT_OFFSET_LEVELS, 0.0255}
+| outline of what is seen | | 0.002 px | @ tolerance.c @ {LIMIT_SILHOUETTE_PX, 0.002}
+outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ {LIMIT_SEGMENT_LEVELS, 0.12}
+outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ {LIMIT_SEGMENT_PX, 0.15}
+| segments of more than 2 pixels seen in one picture only | | 0 | @ tolerance.c @ {LIMIT_SEGMENTS_MISSING, 0}
+| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ {LIMIT_ID_PPM, 2}
+| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ {LIMIT_ID_INTERIOR_PPM, 0}
+| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ {LIMIT_ID_BAND_PPM, 2000}
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ {LIMIT_NORMAL_MAX_DEG, 0.03}
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ {LIMIT_NORMAL_MAX_DEG, 0.1}
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ {LIMIT_NORMAL_PPM, 10000}
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ {LIMIT_NORMAL_MEDIAN_DEG, 0.02}
+| seen in one plane only (depth, normal) | 2 ppm | @ tolerance.c @ {LIMIT_COVERAGE_PPM, 2}
+2000 ppm, 15000 ppm, N = 2 | @ tolerance.c @ {LIMIT_BAND_PPM, 15000}
+0.0005, 0.15 levels | @ tolerance.c @ {LIMIT_OFFSET_LEVELS, 0.15}
+1 level, 0.15 px | @ tolerance.c @ {LIMIT_SEGMENT_LEVELS, 1}, {LIMIT_SEGMENT_PX, 0.15}
+99 % within 10⁻⁴ of the depth @ tolerance.c @ LIMIT_DEPTH_P99_PART, depth_mm > 0 ? depth_mm : 1e-4}
+| largest missing or extra region | | | 2 pixels | @ tolerance.c @ {LIMIT_REGION_PIXELS, 2}
 one segment: mean difference (of at least 64 pixels), outline (of at least 8 px) @ ledger.c @ LEVELS_MIN_PIXELS = 64, OUTLINE_MIN_PX = 8
 segments of more than 2 pixels seen in one picture only @ ledger.c @ MISSING_MIN_PIXELS = 3
 END
@@ -166,7 +166,7 @@ test_the_numbers_of_comparing_are_those_of_the_source() {
     agree METHODS.md <<'END'
 one side over 1.5 times as bright @ pixel_counts.c @ sum_a > 1.5 * sum_b || sum_b > 1.5 * sum_a
 moved by up to 48 whole pixels (less than 1/50 of the differences remain @ cause.c @ REACH = 48
-moved by up to 48 whole pixels (less than 1/50 of the differences remain @ cause.c @ leaves(before, after, 0.02)
+moved by up to 48 whole pixels (less than 1/50 of the differences remain @ cause.c @ leaves(trial.before, trial.after, 0.02)
 49 of 50 codes that are off by more than a level @ compare/cause/tone.c @ 50 * fit->misfits <= fit->beyond
 a twenty-fifth of the squares @ compare/cause/warp.c @ 25 * after < before
 three quarters of its rim @ compare/cause/place.c @ 4 * lack.background >= 3 * lack.rim
@@ -179,7 +179,7 @@ so far before and behind | 40 ppm, or 6 pixels | @ settled.c @ "pixels at which 
 as many rays as graze | 200 ppm, or 12 pixels | @ settled.c @ "pixels at which POV-Ray missed a root on the way to a light", 200, 12},
 | 1000 ppm, or 20 pixels | @ settled.c @ "pixels on their own horizon, left to POV-Ray's shadow cache", 1000, 20},
 it may be off by the accuracy of its cell, r / 300 @ celltree.c @ accuracy_ratio = 1.0 / 300,
-not judged but the mean difference is, to 1.5 levels @ verification.c @ bias_levels = 1.5;
+not judged but the mean difference is, to 1.5 levels @ verification.c @ [LIMIT_BIAS_LEVELS] = 1.5;
 at 67.02 pixels a degree @ flip_kernels.c @ pixels_per_degree = 67.0206451f;
 Gaussian window of 11 x 11 @ ssim.c @ RADIUS = 5, TAPS = 2 * RADIUS + 1
 K1 = 0.01, K2 = 0.03 @ ssim.c @ c1 = 0.01 * 255 * 0.01 * 255, c2 = 0.03 * 255 * 0.03 * 255
@@ -209,7 +209,7 @@ END
 test_the_numbers_of_formats_are_those_of_the_source() {
     agree FORMATS.md <<'END'
 trees above 20 GB @ treeio.c @ MOST_BYTES 2e10
-scenes and reports above 4 GB @ cmd_povray.c @ .most_bytes = 4e9
+scenes and reports above 4 GB @ verify/povray.c @ .most_bytes = 4e9
 scenes and reports above 4 GB @ report_merge.c @ .most_bytes = 4e9
 polygons and NIfTI files above 1 GB @ polygon_file.c @ .most_bytes = 1e9
 polygons and NIfTI files above 1 GB @ mask_file.c @ .most_bytes = 1e9

@@ -9,7 +9,7 @@
 
 /* A part of a page, without a zero at its end. */
 typedef struct PagePart {
-    const char *chars; /* borrowed */
+    const char *start; /* borrowed */
     size_t size;
 } PagePart;
 
@@ -50,8 +50,8 @@ static Status find_part(const char *page, const char *path, const char *const ma
     const char *to = from ? strstr(from, marks_of[1]) : NULL;
     if (!to)
         return err_set(err, STATUS_INPUT, "%s: is not a report of this version of corcast", path);
-    part->chars = from + strlen(marks_of[0]);
-    part->size = (size_t)(to - part->chars);
+    part->start = from + strlen(marks_of[0]);
+    part->size = (size_t)(to - part->start);
     return STATUS_OK;
 }
 
@@ -108,7 +108,7 @@ static void append_mark(Text *out, int mark, const MergedCase *merged)
 /* Appends a part, with all marks filled in. */
 static void append_part(Text *out, const PagePart *whole, const MergedCase *merged)
 {
-    const char *part = whole->chars;
+    const char *part = whole->start;
     size_t size = whole->size;
     while (size > 0) {
         const char *first = NULL;
