@@ -239,7 +239,7 @@ $(BUILD)/$(SONAME): $(BUILD)/rooms.a src/api/libcorcast.map
 $(BUILD)/libcorcast.a: $(BUILD)/rooms.a
 	$(call say,AR,$@)
 	$(Q)rm -f $@ $(@:.a=.o)
-	$(Q)ld -r -o $(@:.a=.o) --whole-archive $< && objcopy --localize-hidden $(@:.a=.o) && $(AR) rcs $@ $(@:.a=.o)
+	$(Q)ld -r -o $(@:.a=.o) --whole-archive $< && objcopy --localize-hidden --wildcard --localize-symbol='_TIFF*alloc' $(@:.a=.o) && $(AR) rcs $@ $(@:.a=.o)
 	$(Q)rm -f $(@:.a=.o)
 
 lib: build/$(SONAME) build/libcorcast.a ## the library, build/libcorcast.so.0 and build/libcorcast.a

@@ -1,4 +1,5 @@
-/* A sentence is formatted twice: once to learn its length, once into memory of that length. */
+/* A sentence needs memory only if it is long, so that ordinary sentences arrive when memory has run
+ * out. */
 #include "options/talk.h"
 
 #include <stdarg.h>
@@ -8,18 +9,19 @@
 __attribute__((format(printf, 3, 0))) static void say(const Talk *talk, TalkKind kind,
                                                       const char *format, va_list values)
 {
+    char local[1024], *longer = NULL;
     va_list again;
     if (!talk || !talk->say)
         return;
     va_copy(again, values);
-    int length = vsnprintf(NULL, 0, format, values);
-    char *sentence = length < 0 ? NULL : malloc((size_t)length + 1);
-    if (sentence) {
-        vsnprintf(sentence, (size_t)length + 1, format, again);
-        talk->say(talk->user, kind, sentence);
-    }
+    const int length = vsnprintf(local, sizeof local, format, values);
+    const bool fits = length >= 0 && (size_t)length < sizeof local;
+    if (length >= 0 && !fits && (longer = malloc((size_t)length + 1)))
+        vsnprintf(longer, (size_t)length + 1, format, again);
+    if (fits || longer)
+        talk->say(talk->user, kind, fits ? local : longer);
     va_end(again);
-    free(sentence);
+    free(longer);
 }
 
 void talk_note(const Talk *talk, const char *format, ...)

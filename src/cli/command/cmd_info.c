@@ -5,8 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* ---- summary
- * ------------------------------------------------------------------------------------- */
+/* ---- summary --------------------------------------------------------------------------------- */
 
 static void print_gamma(const LogCurve *gamma)
 {
@@ -89,8 +88,7 @@ static Status print_columns(const Tree *tree, Err *err)
     return status;
 }
 
-/* ---- reading
- * ------------------------------------------------------------------------------------- */
+/* ---- reading --------------------------------------------------------------------------------- */
 
 /* Returns the ending of the word behind a count. */
 static const char *ending(size_t count)
@@ -189,8 +187,7 @@ static void print_reading(const TreeReading *reading)
         printf("  %s %s\n", i ? "             " : "assumed      ", reading->note[i]);
 }
 
-/* ---- statistics
- * ---------------------------------------------------------------------------------- */
+/* ---- statistics ------------------------------------------------------------------------------ */
 
 static void print_table(const char *title, const char *number, const StatisticsTable *table)
 {
@@ -249,8 +246,7 @@ static void print_statistics(const TreeStatistics *statistics)
            statistics->vessels);
 }
 
-/* ---- morphometry
- * --------------------------------------------------------------------------------- */
+/* ---- morphometry ----------------------------------------------------------------------------- */
 
 static void print_pair(const MorphometryPair *pair)
 {
@@ -276,8 +272,7 @@ static void print_morphometry(const Morphometry *table, const MorphometryCompari
     printf("  %zu of %zu pass\n", comparison->agreeing, comparison->n);
 }
 
-/* ---- the command
- * --------------------------------------------------------------------------------- */
+/* ---- the command ----------------------------------------------------------------------------- */
 
 static Status print(const InfoReport *report, Err *err)
 {

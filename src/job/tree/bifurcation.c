@@ -1,8 +1,9 @@
-/* An isolated bifurcation in the plane, as figures 2 and 3 of [N] show them: the parent comes from
- * above, ends at the origin, and its daughters leave to the left and to the right. What is not said
- * of radii follows from Murray's law, r_0^gamma = r_1^gamma + r_2^gamma; what is not said of
- * angles, from the least sum of length times radius^lambda: forces r_i^lambda along the vessels are
- * in balance at the branching point. */
+/* Makes an isolated bifurcation in the plane, as in figures 2 and 3 of [N]. The parent comes from
+ * above and ends at the origin; the daughters leave to the left and to the right.
+ *
+ * Radii that are not given follow from Murray's law, r_0^gamma = r_1^gamma + r_2^gamma. Angles that
+ * are not given minimise the sum of length times radius^lambda: forces of magnitude r_i^lambda
+ * along the three vessels are then in balance at the branching point. */
 #include "job/tree/makers.h"
 #include "options/output.h"
 #include <math.h>
@@ -78,7 +79,7 @@ static void set_defaults(void *options)
                                                           .lambda = 2};
 }
 
-/* ---- what is not said ------------------------------------------------------------------------ */
+/* ---- radii and angles ------------------------------------------------------------------------ */
 
 static Status check_sizes(const char *name, const NumberList *list, Err *err)
 {

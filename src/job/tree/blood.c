@@ -1,4 +1,4 @@
-/* One set of options wherever fields of flow are derived from a tree. */
+/* All operations that derive flow from a tree share these options. */
 #include "job/tree/blood.h"
 
 #include "derive/derive.h"
@@ -86,14 +86,14 @@ ConditionSet blood_unmet(ViscosityLaw law)
     return law == VISCOSITY_PRIES ? WHEN(CONSTANT_VISCOSITY) : WHEN(PRIES);
 }
 
-/* The exponent that is said, else the tree's, else Murray's own. */
+/* Returns the exponent of the options, else the tree's, else 3, Murray's. */
 static double gamma_of(const BloodOptions *blood, const Tree *tree)
 {
     const TreeMeta *source = blood->said.known[META_GAMMA] ? &blood->said : &tree->meta;
     return source->known[META_GAMMA] ? source->number[META_GAMMA] : 3;
 }
 
-/* Refuses to take the exponent from a tree that has many. */
+/* A tree whose exponent depends on the radius has no single exponent to use. */
 static Status check_gamma(const BloodOptions *blood, const Tree *tree, const char *tree_path,
                           Err *err)
 {

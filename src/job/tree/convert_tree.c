@@ -27,8 +27,7 @@ static const Option rows[] = {
 
 const OptionTable treeconversion_table = OPTION_TABLE(rows);
 
-/* ---- columns ----------------------------------------------------------------------------------
- */
+/* ---- columns --------------------------------------------------------------------------------- */
 
 /* Reads the values that are asked for into the tree. */
 static Status join_values(const TreeConversion *conversion, Parsed *parsed, Tree *tree, Err *err)
@@ -134,8 +133,7 @@ Status convert_tree_make(const TreeConversion *conversion, Parsed *parsed, Tree 
     return STATUS_OK;
 }
 
-/* ---- files ------------------------------------------------------------------------------------
- */
+/* ---- files ----------------------------------------------------------------------------------- */
 
 /* Takes note of the file of a moment. */
 static Status note_moment(Parsed *parsed, const char *to, size_t moment, Err *err)

@@ -1,5 +1,5 @@
-/* What a command line says of growth becomes grow's parameters in three steps: defaults, the header
- * of a tree to grow on from, and what the user gave, each over the one before. */
+/* The parameters of growth are set in three steps, each of which takes precedence over the one
+ * before: defaults, the header of the tree that growth continues, and the user's options. */
 #include "job/tree/growing.h"
 
 #include "job/tree/blood.h"
@@ -160,7 +160,7 @@ void growing_set_defaults(Growing *growing)
     growing->params = grow_defaults();
 }
 
-/* What is known of the tree and no option says. */
+/* Takes the parameters that no option gives from the metadata of the tree to continue. */
 static Status take_meta(Growing *growing, Err *err)
 {
     const Tree *from = &growing->from;
@@ -188,8 +188,7 @@ static Status read_from(Growing *growing, const Parsed *parsed, bool *has_domain
                    "--from: the header of the tree names no domain; give --domain");
 }
 
-/* Takes note of the domain's file, and refuses what the law of viscosity, settled by now, does not
- * take. */
+/* Notes the domain's file, and checks the options against the viscosity law, which is known now. */
 static Status check(const Growing *growing, Parsed *parsed, Err *err)
 {
     TRY(options_refuse(parsed, blood_unmet(growing->params.blood.viscosity_law), err));

@@ -17,7 +17,7 @@ typedef struct InfoReport {
     bool has_statistics, has_morphometry; /* the user asked for them */
     TreeStatistics statistics;
     Morphometry table;                /* the published table; zeroed without has_morphometry */
-    MorphometryComparison comparison; /* of the tree with the table; likewise */
+    MorphometryComparison comparison; /* of the tree with the table; zeroed without it */
     json_t *bound;                    /* bound_json [certify.h]; owned; NULL: not asked for */
 } InfoReport;
 

@@ -2,8 +2,7 @@
 #include "job/tree/info.h"
 #include "job/tree/summary_json.h"
 
-/* ---- reading ----------------------------------------------------------------------------------
- */
+/* ---- reading --------------------------------------------------------------------------------- */
 
 static json_t *roots_json(const TreeReading *reading)
 {
@@ -85,8 +84,7 @@ static json_t *reading_json(const TreeReading *reading)
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-/* ---- statistics -------------------------------------------------------------------------------
- */
+/* ---- statistics ------------------------------------------------------------------------------ */
 
 static json_t *spread_json(const Spread *spread)
 {
@@ -154,8 +152,7 @@ static json_t *statistics_json(const TreeStatistics *statistics)
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-/* ---- morphometry ------------------------------------------------------------------------------
- */
+/* ---- morphometry ----------------------------------------------------------------------------- */
 
 static json_t *pair_json(const MorphometryPair *pair)
 {
@@ -189,8 +186,7 @@ static json_t *morphometry_json(const Morphometry *table, const MorphometryCompa
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-/* ---- the whole --------------------------------------------------------------------------------
- */
+/* ---- the whole ------------------------------------------------------------------------------- */
 
 static json_t *columns_json(const Tree *tree)
 {

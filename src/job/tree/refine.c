@@ -1,4 +1,4 @@
-/* A tree from a file, refined within its domain: that of the option, or that of its header. */
+/* Refines a tree within a domain: that of the option --domain, or that of the tree's metadata. */
 #include "job/tree/certify.h"
 #include "job/tree/makers.h"
 #include "job/tree/refining.h"
@@ -45,7 +45,7 @@ static void set_defaults(void *options)
     ((RefineOptions *)options)->refining.level = GROW_REFINE_TOPOLOGY;
 }
 
-/* The domain of the option, or of the tree; *found says whether there is one. */
+/* Makes the domain of the option or of the tree. *found is false if neither names one. */
 static Status find_domain(const char *spec, const Tree *tree, Domain *domain, bool *found, Err *err)
 {
     if (!spec)
@@ -95,7 +95,7 @@ static Status make_report(const RefineReport *report, MadeTree *made, Err *err)
         made, json_with_members(json_object(), members, sizeof members / sizeof *members), err);
 }
 
-/* Reads the tree and its domain; *found says whether there is one. */
+/* Reads the tree and the domain. *found is false if there is no domain. */
 static Status read_inputs(const RefineOptions *options, Parsed *parsed, Tree *tree, Domain *domain,
                           bool *found, Err *err)
 {

@@ -1,15 +1,16 @@
-/* The file is read line by line, each value through its option, so that what is wrong is said with
- * its line before anything grows. Then each stage's lines are applied again, in turn, twice, with
- * the options put back before: to compare every stage with the one before it, and to grow it. */
+/* The lines of the file are applied three times, and the options are restored in between.
+ *
+ * First, each value is read through its option, so that an error names its line before anything
+ * grows. Second, the lines of each stage are applied in turn to compare the stage with the one
+ * before it. Third, they are applied again to grow. */
 #include "job/tree/staging.h"
 
 #include "job/tree/tree_domain.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct StageLine {
-    const char *stage, *name, *value; /* of a stage's head, name and value are NULL */
+    const char *stage, *name, *value; /* name and value are NULL in the line [STAGE] */
 } StageLine;
 
 typedef struct Staging {
@@ -19,28 +20,25 @@ typedef struct Staging {
     StageLine *line; /* owned */
     size_t n, capacity;
     char *text;            /* that lines point into; owned */
-    const char *domain;    /* the text of the domain that there is; NULL: the one prepared */
-    const char *last_name; /* of the stage before; NULL: none */
+    const char *domain;    /* text of the current domain; NULL: the one of growing_prepare */
+    const char *last_name; /* the stage before; NULL: none */
     LogCurve last_gamma;
     double last_p_term;
-    size_t last_terminals; /* 0 where a radius may have ended its growth */
+    size_t last_terminals; /* 0 if a minimum radius may have ended its growth */
 } Staging;
 
-/* The option of growth; NULL when it is none of a stage's. */
+/* Finds an option of growth; NULL if a stage cannot have it. */
 static const Setting *find_option(const Staging *staging, const char *name)
 {
-    static const char *const others[] = {"from", NULL};
     const Setting *setting = parsed_find(staging->parsed, name, strlen(name));
     bool is_growth = setting && setting->base == (const char *)staging->growing;
-    for (int k = 0; is_growth && others[k]; k++)
-        is_growth = strcmp(name, others[k]) != 0;
-    return is_growth ? setting : NULL;
+    return is_growth && strcmp(name, "from") != 0 ? setting : NULL;
 }
 
-/* What a stage cannot say. */
+/* Refuses a stage that is there already, an option given twice in a stage, and options of the first
+ * stage in later ones. */
 static Status check_line(const Staging *staging, const StageLine *line, Err *err)
 {
-    static const char *const of_first[] = {"inlet", "inlet-shares", NULL};
     bool is_first = staging->n == 0 || strcmp(line->stage, staging->line[0].stage) == 0;
     for (size_t i = 0; i < staging->n; i++) {
         const StageLine *other = &staging->line[i];
@@ -52,10 +50,11 @@ static Status check_line(const Staging *staging, const StageLine *line, Err *err
             return err_set(err, STATUS_INPUT, "stage [%s] says '%s' twice", line->stage,
                            line->name);
     }
-    for (int k = 0; line->name && !is_first && of_first[k]; k++)
-        if (strcmp(line->name, of_first[k]) == 0)
-            return err_set(err, STATUS_INPUT,
-                           "'%s' is for the first stage; the others grow on its trees", line->name);
+    bool is_of_first =
+        line->name && (strcmp(line->name, "inlet") == 0 || strcmp(line->name, "inlet-shares") == 0);
+    if (is_of_first && !is_first)
+        return err_set(err, STATUS_INPUT,
+                       "'%s' is for the first stage; the others grow on its trees", line->name);
     return STATUS_OK;
 }
 
@@ -84,21 +83,20 @@ static Status refuse_gamma(const Staging *staging, const char *name, Err *err)
     Text own = TEXT_INIT, last = TEXT_INIT;
     text_logcurve(&own, &staging->growing->params.gamma);
     text_logcurve(&last, &staging->last_gamma);
-    Status status = text_check(&own, err);
-    if (status == STATUS_OK)
-        status = text_check(&last, err);
-    if (status == STATUS_OK)
-        status =
-            err_set(err, STATUS_INPUT,
-                    "%s: [%s]: gamma %s would change the radii of stage [%s], which has %s; say "
-                    "keep-radii = on, or the same gamma",
-                    staging->path, name, text_chars(&own), staging->last_name, text_chars(&last));
+    Status status;
+    TRY_GOTO(text_check(&own, err));
+    TRY_GOTO(text_check(&last, err));
+    status = err_set(err, STATUS_INPUT,
+                     "%s: [%s]: gamma %s would change the radii of stage [%s], which has %s; say "
+                     "keep-radii = on, or the same gamma",
+                     staging->path, name, text_chars(&own), staging->last_name, text_chars(&last));
+done:
     text_release(&own);
     text_release(&last);
     return status;
 }
 
-/* What two stages must not say. */
+/* Compares a stage with the one before it. */
 static Status check_stage(const Staging *staging, const char *name, Err *err)
 {
     const GrowParams *params = &staging->growing->params;
@@ -120,7 +118,7 @@ static Status check_stage(const Staging *staging, const char *name, Err *err)
     return STATUS_OK;
 }
 
-/* Remembers what the next stage is compared with. */
+/* Stores what the next stage is compared with. */
 static void take_note(Staging *staging, const char *name)
 {
     const GrowParams *params = &staging->growing->params;
@@ -130,7 +128,7 @@ static void take_note(Staging *staging, const char *name)
     staging->last_terminals = params->min_radius_mm > 0 ? 0 : params->terminals;
 }
 
-/* Makes the domain that the stage names, if it is another. */
+/* Makes the domain that the stage names, if it differs from the current one. */
 static Status change_domain(Staging *staging, const Tree *from, Err *err)
 {
     Growing *growing = staging->growing;
@@ -147,13 +145,10 @@ static Status change_domain(Staging *staging, const Tree *from, Err *err)
     return STATUS_OK;
 }
 
-/* Grows one stage on *tree, which is then its own. */
-static Status grow_stage(Staging *staging, const char *name, Tree *tree, GrowReport *report,
-                         Err *err)
+/* Grows one stage, by the inlets of the options if it is the first and continues no tree. */
+static Status grow_stage(Staging *staging, Tree *tree, Tree *made, GrowReport *report, Err *err)
 {
     Growing *growing = staging->growing;
-    GrowReport own;
-    Tree made = {0};
     if (staging->last_name) {
         growing->params.from = tree;
         growing->params.inlets = growing->params.inlet_shares = 0;
@@ -161,11 +156,18 @@ static Status grow_stage(Staging *staging, const char *name, Tree *tree, GrowRep
         growing->params.inlets = growing->inlet.n;
         growing->params.inlet_shares = growing->inlet_share.n;
     }
-    Status status = change_domain(staging, growing->params.from, err);
-    if (status == STATUS_OK)
-        status = growing_read_demand(growing, err);
-    if (status == STATUS_OK)
-        status = growing_run(growing, staging->parsed, &made, &own, err);
+    TRY(change_domain(staging, growing->params.from, err));
+    TRY(growing_read_demand(growing, err));
+    return growing_run(growing, staging->parsed, made, report, err);
+}
+
+/* Replaces *tree by the tree of the stage, which continues it, and adds up the reports. */
+static Status add_stage(Staging *staging, const char *name, Tree *tree, GrowReport *report,
+                        Err *err)
+{
+    GrowReport own;
+    Tree made = {0};
+    Status status = grow_stage(staging, tree, &made, &own, err);
     if (status != STATUS_OK) {
         err_prefix(err, "%s: [%s]: ", staging->path, name);
         return status;
@@ -184,7 +186,8 @@ static Status grow_stage(Staging *staging, const char *name, Tree *tree, GrowRep
     return STATUS_OK;
 }
 
-/* Applies the lines of the stage whose head is line `at`; returns the next head. */
+/* Applies the lines of the stage whose section starts at line `at`. Returns the line at which the
+ * next section starts. */
 static size_t apply(const Staging *staging, size_t at)
 {
     for (at++; at < staging->n && staging->line[at].name; at++) {
@@ -195,7 +198,7 @@ static size_t apply(const Staging *staging, size_t at)
     return at;
 }
 
-/* Holds all stages against each other; the options are afterwards as they were. */
+/* Compares all stages. The options are restored afterwards. */
 static Status check_all(Staging *staging, Err *err)
 {
     Growing before = *staging->growing;
@@ -218,7 +221,7 @@ static Status grow_all(Staging *staging, Tree *tree, GrowReport *report, Err *er
     for (size_t at = 0; at < staging->n && report->complete;) {
         const char *name = staging->line[at].stage;
         at = apply(staging, at);
-        TRY(grow_stage(staging, name, tree, report, err));
+        TRY(add_stage(staging, name, tree, report, err));
     }
     return STATUS_OK;
 }

@@ -1,14 +1,15 @@
-/* What `info --json` and studies say of a tree. */
+/* Parts of reports about trees that several operations have in common. */
 #ifndef CORCAST_JOB_TREE_SUMMARY_JSON_H
 #define CORCAST_JOB_TREE_SUMMARY_JSON_H
 
 #include "derive/derive.h"
 
-/* New reference; NULL when memory ran out. */
+/* Returns a summary as a JSON object. New reference, or NULL if memory runs out. */
 json_t *summary_json(const TreeSummary *summary);
 
-/* The tree's pairs [tree/pairs.h], of each both ids and the distance of the nodes, mm; null where
- * the tree says none. Likewise. */
+/* Returns the pairs of terminals [tree/pairs.h] as an array; an item is the two ids and the
+ * distance of the nodes in mm. Returns JSON null if the tree has no pairs. New reference, or NULL
+ * if memory runs out. */
 json_t *pairs_json(const Tree *tree);
 
 #endif

@@ -1,4 +1,4 @@
-/* A domain is kept with the tree as the text that tree_domain_parse reads. */
+/* The metadata of a tree stores its domain as the text that tree_domain_parse reads. */
 #include "job/tree/tree_domain.h"
 
 #include "treeio/treeio.h"
@@ -23,7 +23,7 @@ static Status hull_of(const Tree *tree, double mm, const char *path, Domain *dom
     return status;
 }
 
-/* The tree in a file, and what lies within `mm` of it. */
+/* Makes the hull of the tree in a file. */
 static Status hull_of_file(const char *path, double mm, Domain *domain, Err *err)
 {
     Tree tree = {0};
@@ -33,7 +33,7 @@ static Status hull_of_file(const char *path, double mm, Domain *domain, Err *err
     return status;
 }
 
-/* Whether a place, @X,Y or @X,Y,Z, ends the text. */
+/* Returns true if the text ends with a position, @X,Y or @X,Y,Z. */
 static bool has_place(const char *text)
 {
     const char *at = strrchr(text, '@');
@@ -82,7 +82,8 @@ static bool is_standard_input(const char *spec)
     return file && file[1] == '-' && (!file[2] || file[2] == ',' || file[2] == '@');
 }
 
-/* Only the command line means standard input by "-": a file that names its domain names files. */
+/* "-" means standard input on the command line alone. In the metadata of a tree it cannot be read
+ * again. */
 Status tree_domain(const Tree *tree, Domain *domain, bool *found, Err *err)
 {
     *found = false;

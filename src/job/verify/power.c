@@ -220,9 +220,12 @@ static Status measure(const PowerOptions *options, const PowerFiles *place, cons
     const PowerRule rule = {.name = "yours",
                             .differs = asks ? command_differs : tolerance_differs,
                             .context = asks ? (void *)&verdict : (void *)&tolerance};
-    status = power_measure(&drawings[0], &drawings[1], &rule, asks ? 1 : parsed->common.threads,
-                           options->folder ? keep_missed : NULL, (void *)(uintptr_t)options->folder,
-                           power, err);
+    const PowerInput input = {.reference = &drawings[0],
+                              .drawn = &drawings[1],
+                              .rule = &rule,
+                              .keep = options->folder ? keep_missed : NULL,
+                              .keep_context = (void *)(uintptr_t)options->folder};
+    status = power_measure(&input, asks ? 1 : parsed->common.threads, power, err);
 done:
     picture_release(&drawings[0]);
     picture_release(&drawings[1]);
