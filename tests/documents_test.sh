@@ -26,14 +26,14 @@ says() {
 }
 
 # agree DOCUMENT: lines "WORDS @ FILE @ CODE" on standard input: the document has the words, and the file of
-# that name (of src, templates or tests/fit; names are unique there) the code. Numbers that no result shows are held
+# that name (of src, templates or tests/fit; with its folder where the name is not unique) the code. Numbers that no result shows are held
 # so: change both.
 agree() {
     local words file code path
     while IFS=@ read -r words file code; do
         words=$(echo "$words" | sed 's/^ *//; s/ *$//') file=${file// /}
         says "$1" "$words"
-        path=$(find "$REPO/src" "$REPO/templates" "$REPO/tests/fit" -name "$file")
+        path=$(find "$REPO/src" "$REPO/templates" "$REPO/tests/fit" -path "*/$file")
         [ -f "$path" ] || fail "docs/$1 says '$words', but there is no one file $file that could hold it"
         tr -s '\n ' '  ' <"$path" | grep -qF -- "${code# }" || fail "docs/$1 says '$words', but $file does not have '${code# }'"
     done
@@ -53,18 +53,18 @@ test_the_numbers_of_growth_are_those_of_the_source() {
     expect_stdout 'nearest segments tried for each terminal; from 1 to 1000 \(8\)'
     says METHODS.md 'The nearest segments (8; `--candidates`)'
     agree METHODS.md <<'END'
-one point in three is far enough @ grow.c @ TOSSES_PER_ADDED = 3 }
+one point in three is far enough @ grow/grow.c @ TOSSES_PER_ADDED = 3 }
 1.15 times what the rule asks for, and distances 1.1 times @ connection.c @ length_reserve = 1.15, clearance_reserve = 1.1;
 changes the numbers of its eight nearest ancestors at once @ network.c @ LEVELS = 8 }
-whenever the tree has grown by a fifth @ grow.c @ refresh_growth = 1.2;
+whenever the tree has grown by a fifth @ grow/grow.c @ refresh_growth = 1.2;
 ahead of its share by more than a sixteenth @ forest.c @ lead = 1.0 / 16;
 all by 1.1, and those of segments that break a rule by 2.2 @ refine_penalty.c @ rise = 1.1, steep_rise = 2.2;
 as far as the rules are kept with 0.15 of the radii to spare @ repair.c @ relaxed_spare = 0.15,
-Penalties rise twentyfold @ refine.c @ first_rate = 0.1, last_rate = 2;
-a tenth of the budget is left, or what 40 moves a terminal take, half of it at most @ refine.c @ last_moves = 40, least_left = 0.1, most_left = 0.5;
-the same with 2,000 moves a terminal @ refine.c @ [GROW_REFINE_ANNEAL] = 2000}
-20 moves times the square of the number of terminals, or 2,000 times the number if that is less, @ refine.c @ moves_per_square = 20, most_per_terminal = 2000;
-topology has 88 @ refine.c @ [GROW_REFINE_TOPOLOGY] = 88,
+Penalties rise twentyfold @ grow/refine/refine.c @ first_rate = 0.1, last_rate = 2;
+a tenth of the budget is left, or what 40 moves a terminal take, half of it at most @ grow/refine/refine.c @ last_moves = 40, least_left = 0.1, most_left = 0.5;
+the same with 2,000 moves a terminal @ grow/refine/refine.c @ [GROW_REFINE_ANNEAL] = 2000}
+20 moves times the square of the number of terminals, or 2,000 times the number if that is less, @ grow/refine/refine.c @ moves_per_square = 20, most_per_terminal = 2000;
+topology has 88 @ grow/refine/refine.c @ [GROW_REFINE_TOPOLOGY] = 88,
 until they agree to 10⁻¹³ @ finish.c @ agreement = 1e-13;
 256 points a terminal, up to 4,096 where that makes less than two million in all @ segment_weights.c @ least_points = 256, most_points = 4096, all_points = 2e6;
 END
@@ -107,7 +107,7 @@ test_the_numbers_of_pictures_are_those_of_the_source() {
 `Phi_i <= B = exp(-d^2) min(1, h / s)` @ kernel_potential.h @ term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
 4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ kernel_potential.h @ term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny)
 packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays @ lanes.h @ #define LANES 16
-A band begins at a multiple of eight rows @ render.h @ RENDER_BAND_STEP = 8 }
+A band begins at a multiple of eight rows @ render/render.h @ RENDER_BAND_STEP = 8 }
 in which tiles of 8 x 8 pixels @ tile.h @ TILE_SIDE = 8,
 longer than 2 x 16384 pixels @ rasteritem.c @ most_pixels = 16384;
 4 eps H, 0.004 pixels for the longest @ rasteritem.c @ length / 2 + radius > most_pixels * pixel
@@ -202,14 +202,14 @@ test_the_limits_of_large_trees_are_those_of_the_source() {
 grows up to 50,000,000 terminals @ grow.h @ GROW_MAX_TERMINALS = 50000000,
 ids of nodes go up to 100,000,000 @ tree.h @ TREE_MAX_ID = 100000000
 files of trees up to 20 GB @ treeio.c @ MOST_BYTES 2e10
-hold ids up to 16777215 @ image.h @ IMAGE_MAX_ID = 0xffffff
+hold ids up to 16777215 @ image/image.h @ IMAGE_MAX_ID = 0xffffff
 END
 }
 
 test_the_numbers_of_formats_are_those_of_the_source() {
     agree FORMATS.md <<'END'
 trees above 20 GB @ treeio.c @ MOST_BYTES 2e10
-scenes and reports above 4 GB @ cmd_povray.c @ .most_bytes = 4e9
+scenes and reports above 4 GB @ job/verify/povray.c @ .most_bytes = 4e9
 scenes and reports above 4 GB @ report_merge.c @ .most_bytes = 4e9
 polygons and NIfTI files above 1 GB @ polygon_file.c @ .most_bytes = 1e9
 polygons and NIfTI files above 1 GB @ mask_file.c @ .most_bytes = 1e9
@@ -255,9 +255,9 @@ where there are more than 8,000 @ povray_joint.c @ MANY = 8000,
 scenes of more than 3,000 segments the twelve @ povray_text.h @ MOST_INLINE_TERMS = 3000
 - `f(x) <= M d(x) / 2`, because a ray that missed @ povray_joint.c @ 2 * steepest, folded
 Its hits are within 2 · 10⁻⁹ radii @ joints.inc @ accuracy 2e-9 open
-no tile has more than 400,000 cylinders @ povray.c @ {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
-200,000 pieces of a joined tree, 32,768 segments of a blob @ povray.c @ {MODEL_BLOB, find_painted, put_blob_macros, put_blob, 32768},
-of a mesh, or 100,000 cells @ povray.c @ {MODEL_POTENTIAL, find_cells, put_cell_macros, put_cells, 100000},
+no tile has more than 400,000 cylinders @ emit/povray.c @ {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
+200,000 pieces of a joined tree, 32,768 segments of a blob @ emit/povray.c @ {MODEL_BLOB, find_painted, put_blob_macros, put_blob, 32768},
+of a mesh, or 100,000 cells @ emit/povray.c @ {MODEL_POTENTIAL, find_cells, put_cell_macros, put_cells, 100000},
 tile is narrower than 8 pixels @ povray_tiles.c @ MIN_TILE_SIDE = 8 };
 for at most 65,536 segments @ povray_blob.c @ GROUP = 256, MAX_PAINTED = GROUP * GROUP,
 END
