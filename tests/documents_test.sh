@@ -26,7 +26,7 @@ says() {
 }
 
 # agree DOCUMENT: lines "WORDS @ FILE @ CODE" on standard input: the document has the words, and the file of
-# that name (of src, templates or tests/fit; names are unique there) the code. Numbers that no result shows are held
+# that name (of src, templates or tests/fit; with its folder where the name is not unique) the code. Numbers that no result shows are held
 # so: change both.
 agree() {
     local words file code path
@@ -209,7 +209,7 @@ END
 test_the_numbers_of_formats_are_those_of_the_source() {
     agree FORMATS.md <<'END'
 trees above 20 GB @ treeio.c @ MOST_BYTES 2e10
-scenes and reports above 4 GB @ verify/povray.c @ .most_bytes = 4e9
+scenes and reports above 4 GB @ job/verify/povray.c @ .most_bytes = 4e9
 scenes and reports above 4 GB @ report_merge.c @ .most_bytes = 4e9
 polygons and NIfTI files above 1 GB @ polygon_file.c @ .most_bytes = 1e9
 polygons and NIfTI files above 1 GB @ mask_file.c @ .most_bytes = 1e9
