@@ -1,4 +1,5 @@
-/* A sentence is formatted twice: once to learn its length, once into memory of that length. */
+/* A sentence fits on the stack as a rule. A longer one is formatted again, into memory of its
+ * length, and is cut short if memory runs out. */
 #include "options/talk.h"
 
 #include <stdarg.h>
@@ -11,15 +12,17 @@ __attribute__((format(printf, 3, 0))) static void say(const Talk *talk, TalkKind
     va_list again;
     if (!talk || !talk->say)
         return;
+    char most[800], *whole = NULL;
     va_copy(again, values);
-    int length = vsnprintf(NULL, 0, format, values);
-    char *sentence = length < 0 ? NULL : malloc((size_t)length + 1);
-    if (sentence) {
-        vsnprintf(sentence, (size_t)length + 1, format, again);
-        talk->say(talk->user, kind, sentence);
-    }
+    int length = vsnprintf(most, sizeof most, format, values);
+    if (length >= (int)sizeof most)
+        whole = malloc((size_t)length + 1);
+    if (whole)
+        vsnprintf(whole, (size_t)length + 1, format, again);
+    if (length >= 0)
+        talk->say(talk->user, kind, whole ? whole : most);
     va_end(again);
-    free(sentence);
+    free(whole);
 }
 
 void talk_note(const Talk *talk, const char *format, ...)
