@@ -33,7 +33,7 @@ agree() {
     while IFS=@ read -r words file code; do
         words=$(echo "$words" | sed 's/^ *//; s/ *$//') file=${file// /}
         says "$1" "$words"
-        path=$(find "$REPO/src" "$REPO/templates" "$REPO/tests/fit" -name "$file")
+        path=$(find "$REPO/src" "$REPO/templates" "$REPO/tests/fit" -path "*/$file")
         [ -f "$path" ] || fail "docs/$1 says '$words', but there is no one file $file that could hold it"
         tr -s '\n ' '  ' <"$path" | grep -qF -- "${code# }" || fail "docs/$1 says '$words', but $file does not have '${code# }'"
     done
@@ -53,18 +53,18 @@ test_the_numbers_of_growth_are_those_of_the_source() {
     expect_stdout 'nearest segments tried for each terminal; from 1 to 1000 \(8\)'
     says METHODS.md 'The nearest segments (8; `--candidates`)'
     agree METHODS.md <<'END'
-one point in three is far enough @ grow.c @ TOSSES_PER_ADDED = 3 }
+one point in three is far enough @ grow/grow.c @ TOSSES_PER_ADDED = 3 }
 1.15 times what the rule asks for, and distances 1.1 times @ connection.c @ length_reserve = 1.15, clearance_reserve = 1.1;
 changes the numbers of its eight nearest ancestors at once @ network.c @ LEVELS = 8 }
-whenever the tree has grown by a fifth @ grow.c @ refresh_growth = 1.2;
+whenever the tree has grown by a fifth @ grow/grow.c @ refresh_growth = 1.2;
 ahead of its share by more than a sixteenth @ forest.c @ lead = 1.0 / 16;
 all by 1.1, and those of segments that break a rule by 2.2 @ refine_penalty.c @ rise = 1.1, steep_rise = 2.2;
 as far as the rules are kept with 0.15 of the radii to spare @ repair.c @ relaxed_spare = 0.15,
-Penalties rise twentyfold @ refine.c @ first_rate = 0.1, last_rate = 2;
-a tenth of the budget is left, or what 40 moves a terminal take, half of it at most @ refine.c @ last_moves = 40, least_left = 0.1, most_left = 0.5;
-the same with 2,000 moves a terminal @ refine.c @ [GROW_REFINE_ANNEAL] = 2000}
-20 moves times the square of the number of terminals, or 2,000 times the number if that is less, @ refine.c @ moves_per_square = 20, most_per_terminal = 2000;
-topology has 88 @ refine.c @ [GROW_REFINE_TOPOLOGY] = 88,
+Penalties rise twentyfold @ grow/refine/refine.c @ first_rate = 0.1, last_rate = 2;
+a tenth of the budget is left, or what 40 moves a terminal take, half of it at most @ grow/refine/refine.c @ last_moves = 40, least_left = 0.1, most_left = 0.5;
+the same with 2,000 moves a terminal @ grow/refine/refine.c @ [GROW_REFINE_ANNEAL] = 2000}
+20 moves times the square of the number of terminals, or 2,000 times the number if that is less, @ grow/refine/refine.c @ moves_per_square = 20, most_per_terminal = 2000;
+topology has 88 @ grow/refine/refine.c @ [GROW_REFINE_TOPOLOGY] = 88,
 until they agree to 10⁻¹³ @ finish.c @ agreement = 1e-13;
 256 points a terminal, up to 4,096 where that makes less than two million in all @ segment_weights.c @ least_points = 256, most_points = 4096, all_points = 2e6;
 END
@@ -107,15 +107,15 @@ test_the_numbers_of_pictures_are_those_of_the_source() {
 `Phi_i <= B = exp(-d^2) min(1, h / s)` @ kernel_potential.h @ term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
 4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ kernel_potential.h @ term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny)
 packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays @ lanes.h @ #define LANES 16
-A band begins at a multiple of eight rows @ render.h @ RENDER_BAND_STEP = 8 }
+A band begins at a multiple of eight rows @ render/render.h @ RENDER_BAND_STEP = 8 }
 in which tiles of 8 x 8 pixels @ tile.h @ TILE_SIDE = 8,
 longer than 2 x 16384 pixels @ rasteritem.c @ most_pixels = 16384;
 4 eps H, 0.004 pixels for the longest @ rasteritem.c @ length / 2 + radius > most_pixels * pixel
 cylinders seen within 0.02 rad of their axis @ rasteritem.c @ 0.02; /* of the angle
 cylinders seen within 0.02 rad of their axis @ kernel_round.h @ steep_sine2 = 4e-4f;
 within 10⁻⁴ r of the ray @ kernel_joint.h @ off_joint_line = 1e-4f;
-0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ slack_mm + 0x3p-23 * lightview_radius
-0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ slack_mm = 1e-3;
+0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ SHADOW_NEAREST_MM + 0x3p-23 * lightview_radius
+0.001 mm and 3 · 2^-23 of the scene's radius @ shadowengine.h @ SHADOW_NEAREST_MM 1e-3
 within 1.16 radii of the scene's middle cast rays @ lightview.c @ least_radii = 1.16;
 at most a quarter of a pixel apart @ zbuffer.c @ pixels_apart = 0.25;
 nothing below the horizon covers it, and than 3.5 mean radii @ occluders.c @ wide_in_radii = 3.5;
@@ -131,32 +131,32 @@ END
 
 test_the_limits_of_the_tiers_are_those_of_the_source() {
     agree METHODS.md <<'END'
-| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ tolerance.c @ tolerance.color_ppm = 2;
-| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ tolerance.c @ tolerance.color_levels = 1 / 257.0;
-| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ tolerance.c @ tolerance.interior_ppm = 2000;
-| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ tolerance.c @ tolerance.band_ppm = 10000;
-| largest difference off the band | 1 level | @ tolerance.c @ tolerance.interior_levels = 1;
-| mean difference | | 0.01 levels | @ tolerance.c @ tolerance.bias_levels = 0.01;
-| pixels brighter less pixels darker, over the root of their sum | | 6 | @ tolerance.c @ tolerance.sign_sigma = 6;
-| gain, offset | | 0.0005, 0.0255 levels | @ tolerance.c @ tolerance.gain = 0.0005;
-| gain, offset | | 0.0005, 0.0255 levels | @ tolerance.c @ tolerance.offset_levels = 0.0255;
-| outline of what is seen | | 0.002 px | @ tolerance.c @ tolerance.silhouette_px = 0.002;
-outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ tolerance.segment_levels = 0.12;
-outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ tolerance.segment_px = 0.15;
-| segments of more than 2 pixels seen in one picture only | | 0 | @ tolerance.c @ tolerance.segments_missing = 0;
-| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ tolerance.id_ppm = 2;
-| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ tolerance.id_interior_ppm = 0;
-| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ tolerance.id_band_ppm = 2000;
-| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ tolerance.normal_max_deg = 0.03;
-| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ tolerance.normal_max_deg = 0.1;
-| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ tolerance.normal_ppm = 10000;
-| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ tolerance.normal_median_deg = 0.02;
-| seen in one plane only (depth, normal) | 2 ppm | @ tolerance.c @ tolerance.coverage_ppm = 2;
-2000 ppm, 15000 ppm, N = 2 | @ tolerance.c @ tolerance.band_ppm = 15000;
-0.0005, 0.15 levels | @ tolerance.c @ tolerance.offset_levels = 0.15;
-1 level, 0.15 px | @ tolerance.c @ tolerance.segment_levels = 1; tolerance.segment_px = 0.15;
-99 % within 10⁻⁴ of the depth @ tolerance.c @ tolerance.depth_p99_part = 1e-4;
-| largest missing or extra region | | | 2 pixels | @ tolerance.c @ tolerance.region_pixels = 2;
+| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ tolerance.c @ {LIMIT_COLOR_PPM, 2}
+| pixels off by more than N levels | 2 ppm, N = 0, or one code of 16 bits | @ tolerance.c @ {LIMIT_COLOR_LEVELS, 1 / 257.0}
+| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ tolerance.c @ {LIMIT_INTERIOR_PPM, 2000}
+| ... off the band, in the band | | 2000 ppm, 10000 ppm, N = 2 | @ tolerance.c @ {LIMIT_BAND_PPM, 10000}
+| largest difference off the band | 1 level | @ tolerance.c @ {LIMIT_INTERIOR_LEVELS, 1}
+| mean difference | | 0.01 levels | @ tolerance.c @ {LIMIT_BIAS_LEVELS, 0.01}
+| pixels brighter less pixels darker, over the root of their sum | | 6 | @ tolerance.c @ {LIMIT_SIGN_SIGMA, 6}
+| gain, offset | | 0.0005, 0.0255 levels | @ tolerance.c @ {LIMIT_GAIN, 0.0005}
+| gain, offset | | 0.0005, 0.0255 levels | @ tolerance.c @ {LIMIT_OFFSET_LEVELS, 0.0255}
+| outline of what is seen | | 0.002 px | @ tolerance.c @ {LIMIT_SILHOUETTE_PX, 0.002}
+outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ {LIMIT_SEGMENT_LEVELS, 0.12}
+outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ {LIMIT_SEGMENT_PX, 0.15}
+| segments of more than 2 pixels seen in one picture only | | 0 | @ tolerance.c @ {LIMIT_SEGMENTS_MISSING, 0}
+| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ {LIMIT_ID_PPM, 2}
+| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ {LIMIT_ID_INTERIOR_PPM, 0}
+| ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ {LIMIT_ID_BAND_PPM, 2000}
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ {LIMIT_NORMAL_MAX_DEG, 0.03}
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ {LIMIT_NORMAL_MAX_DEG, 0.1}
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ {LIMIT_NORMAL_PPM, 10000}
+| normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ {LIMIT_NORMAL_MEDIAN_DEG, 0.02}
+| seen in one plane only (depth, normal) | 2 ppm | @ tolerance.c @ {LIMIT_COVERAGE_PPM, 2}
+2000 ppm, 15000 ppm, N = 2 | @ tolerance.c @ {LIMIT_BAND_PPM, 15000}
+0.0005, 0.15 levels | @ tolerance.c @ {LIMIT_OFFSET_LEVELS, 0.15}
+1 level, 0.15 px | @ tolerance.c @ {LIMIT_SEGMENT_LEVELS, 1}, {LIMIT_SEGMENT_PX, 0.15}
+99 % within 10⁻⁴ of the depth @ tolerance.c @ LIMIT_DEPTH_P99_PART, depth_mm > 0 ? depth_mm : 1e-4}
+| largest missing or extra region | | | 2 pixels | @ tolerance.c @ {LIMIT_REGION_PIXELS, 2}
 one segment: mean difference (of at least 64 pixels), outline (of at least 8 px) @ ledger.c @ LEVELS_MIN_PIXELS = 64, OUTLINE_MIN_PX = 8
 segments of more than 2 pixels seen in one picture only @ ledger.c @ MISSING_MIN_PIXELS = 3
 END
@@ -166,11 +166,11 @@ test_the_numbers_of_comparing_are_those_of_the_source() {
     agree METHODS.md <<'END'
 one side over 1.5 times as bright @ pixel_counts.c @ sum_a > 1.5 * sum_b || sum_b > 1.5 * sum_a
 moved by up to 48 whole pixels (less than 1/50 of the differences remain @ cause.c @ REACH = 48
-moved by up to 48 whole pixels (less than 1/50 of the differences remain @ cause.c @ leaves(before, after, 0.02)
-49 of 50 codes that are off by more than a level @ cause_tone.c @ 50 * fit->misfits <= fit->beyond
-a twenty-fifth of the squares @ cause_warp.c @ 25 * after < before
-three quarters of its rim @ cause_place.c @ 4 * lack.background >= 3 * lack.rim
-by more than 2 levels off an outline @ cause_place.c @ SLIGHT = 2
+moved by up to 48 whole pixels (less than 1/50 of the differences remain @ cause.c @ leaves(trial.before, trial.after, 0.02)
+49 of 50 codes that are off by more than a level @ compare/cause/tone.c @ 50 * fit->misfits <= fit->beyond
+a twenty-fifth of the squares @ compare/cause/warp.c @ 25 * after < before
+three quarters of its rim @ compare/cause/place.c @ 4 * lack.background >= 3 * lack.rim
+by more than 2 levels off an outline @ compare/cause/place.c @ SLIGHT = 2
 POV-Ray sees a later root, to 0.02 r @ explain.c @ root_tolerance_radii = 0.02;
 (cosine to the normal below 0.1) @ explain.c @ max_grazing_cosine = 0.1;
 shadows that count from 10⁻³ on, which is corcast's, and from 10⁻⁴ on @ explain.c @ shadow_ray_start_mm = 1e-3, shadow_cache_start_mm = 1e-4;
@@ -179,7 +179,7 @@ so far before and behind | 40 ppm, or 6 pixels | @ settled.c @ "pixels at which 
 as many rays as graze | 200 ppm, or 12 pixels | @ settled.c @ "pixels at which POV-Ray missed a root on the way to a light", 200, 12},
 | 1000 ppm, or 20 pixels | @ settled.c @ "pixels on their own horizon, left to POV-Ray's shadow cache", 1000, 20},
 it may be off by the accuracy of its cell, r / 300 @ celltree.c @ accuracy_ratio = 1.0 / 300,
-not judged but the mean difference is, to 1.5 levels @ verification.c @ bias_levels = 1.5;
+not judged but the mean difference is, to 1.5 levels @ verification.c @ [LIMIT_BIAS_LEVELS] = 1.5;
 at 67.02 pixels a degree @ flip_kernels.c @ pixels_per_degree = 67.0206451f;
 Gaussian window of 11 x 11 @ ssim.c @ RADIUS = 5, TAPS = 2 * RADIUS + 1
 K1 = 0.01, K2 = 0.03 @ ssim.c @ c1 = 0.01 * 255 * 0.01 * 255, c2 = 0.03 * 255 * 0.03 * 255
@@ -202,14 +202,14 @@ test_the_limits_of_large_trees_are_those_of_the_source() {
 grows up to 50,000,000 terminals @ grow.h @ GROW_MAX_TERMINALS = 50000000,
 ids of nodes go up to 100,000,000 @ tree.h @ TREE_MAX_ID = 100000000
 files of trees up to 20 GB @ treeio.c @ MOST_BYTES 2e10
-hold ids up to 16777215 @ image.h @ IMAGE_MAX_ID = 0xffffff
+hold ids up to 16777215 @ image/image.h @ IMAGE_MAX_ID = 0xffffff
 END
 }
 
 test_the_numbers_of_formats_are_those_of_the_source() {
     agree FORMATS.md <<'END'
 trees above 20 GB @ treeio.c @ MOST_BYTES 2e10
-scenes and reports above 4 GB @ cmd_povray.c @ .most_bytes = 4e9
+scenes and reports above 4 GB @ verify/povray.c @ .most_bytes = 4e9
 scenes and reports above 4 GB @ report_merge.c @ .most_bytes = 4e9
 polygons and NIfTI files above 1 GB @ polygon_file.c @ .most_bytes = 1e9
 polygons and NIfTI files above 1 GB @ mask_file.c @ .most_bytes = 1e9
@@ -255,9 +255,9 @@ where there are more than 8,000 @ povray_joint.c @ MANY = 8000,
 scenes of more than 3,000 segments the twelve @ povray_text.h @ MOST_INLINE_TERMS = 3000
 - `f(x) <= M d(x) / 2`, because a ray that missed @ povray_joint.c @ 2 * steepest, folded
 Its hits are within 2 · 10⁻⁹ radii @ joints.inc @ accuracy 2e-9 open
-no tile has more than 400,000 cylinders @ povray.c @ {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
-200,000 pieces of a joined tree, 32,768 segments of a blob @ povray.c @ {MODEL_BLOB, find_painted, put_blob_macros, put_blob, 32768},
-of a mesh, or 100,000 cells @ povray.c @ {MODEL_POTENTIAL, find_cells, put_cell_macros, put_cells, 100000},
+no tile has more than 400,000 cylinders @ emit/povray.c @ {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
+200,000 pieces of a joined tree, 32,768 segments of a blob @ emit/povray.c @ {MODEL_BLOB, find_painted, put_blob_macros, put_blob, 32768},
+of a mesh, or 100,000 cells @ emit/povray.c @ {MODEL_POTENTIAL, find_cells, put_cell_macros, put_cells, 100000},
 tile is narrower than 8 pixels @ povray_tiles.c @ MIN_TILE_SIDE = 8 };
 for at most 65,536 segments @ povray_blob.c @ GROUP = 256, MAX_PAINTED = GROUP * GROUP,
 END

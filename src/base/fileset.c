@@ -29,9 +29,9 @@ Status fileset_open(FileSet *files, Err *err)
 Status fileset_failed(const FileSet *files, Status status, Err *err)
 {
     size_t i = 0;
-    while (i + 1 < files->n_open && !ferror(files->open[i].stream))
+    while (i < files->n_open && !ferror(files->open[i].stream))
         i++;
-    if (status == STATUS_IO)
+    if (status == STATUS_IO && i < files->n_open)
         err_prefix(err, "%s: ", files->open[i].path);
     return status;
 }

@@ -13,9 +13,11 @@ typedef enum PlaneKind { PLANE_COLOR, PLANE_DEPTH, PLANE_NORMAL, PLANE_ID, PLANE
 /* Returns "color", "depth", "normal" or "id". */
 const char *plane_kind_name(PlaneKind kind);
 
-/* One rendering of a scene. All planes have the size of the picture. All members are borrowed. */
+/* One rendering of a scene. All planes have one size. All members are borrowed; a comparison looks
+ * at those that its contract names. */
 typedef struct Rendering {
     const Picture *picture;
+    const Plane *color;          /* linear colours in floats, which may exceed 1 */
     const IdPlane *ids;          /* NULL, in both renderings: unknown. The background is then the
                                   * colour that three corners of each picture share. */
     const Plane *depth, *normal; /* NULL, in both renderings: unknown */

@@ -3,13 +3,19 @@
  * functions _TIFFmalloc, _TIFFcalloc and _TIFFrealloc, and calls them through the linker. The
  * functions of these names here therefore replace them. A failed allocation does not return to
  * libtiff but leaves the guard. A libtiff that is linked so that it calls its own functions never
- * calls these, and behaves as libtiff does. */
+ * calls these, and behaves as libtiff does.
+ *
+ * The program exports these functions. The libraries do not, because they would replace libtiff's
+ * functions for the whole process that loads them. */
 #include "image/tiff_stream.h"
 
 #include <stdint.h>
 #include <stdlib.h>
 #include <sys/types.h>
 #include <tiffio.h>
+
+/* Visible to libtiff. Everything else is compiled with hidden visibility. */
+#define REPLACES_LIBTIFF __attribute__((visibility("default")))
 
 static void *memory_or_leave(void *memory)
 {
@@ -18,17 +24,17 @@ static void *memory_or_leave(void *memory)
     return memory;
 }
 
-void *_TIFFmalloc(tmsize_t size)
+REPLACES_LIBTIFF void *_TIFFmalloc(tmsize_t size)
 {
     return size > 0 ? memory_or_leave(malloc((size_t)size)) : NULL;
 }
 
-void *_TIFFcalloc(tmsize_t count, tmsize_t size)
+REPLACES_LIBTIFF void *_TIFFcalloc(tmsize_t count, tmsize_t size)
 {
     return count > 0 && size > 0 ? memory_or_leave(calloc((size_t)count, (size_t)size)) : NULL;
 }
 
-void *_TIFFrealloc(void *memory, tmsize_t size)
+REPLACES_LIBTIFF void *_TIFFrealloc(void *memory, tmsize_t size)
 {
     void *moved = realloc(memory, (size_t)size);
     return size > 0 ? memory_or_leave(moved) : moved;

@@ -1,5 +1,5 @@
-/* A sentence fits on the stack as a rule. A longer one is formatted again, into memory of its
- * length, and is cut short if memory runs out. */
+/* A sentence needs memory only if it is long, so that ordinary sentences arrive when memory has run
+ * out. */
 #include "options/talk.h"
 
 #include <stdarg.h>
@@ -9,20 +9,19 @@
 __attribute__((format(printf, 3, 0))) static void say(const Talk *talk, TalkKind kind,
                                                       const char *format, va_list values)
 {
+    char local[1024], *longer = NULL;
     va_list again;
     if (!talk || !talk->say)
         return;
-    char most[800], *whole = NULL;
     va_copy(again, values);
-    int length = vsnprintf(most, sizeof most, format, values);
-    if (length >= (int)sizeof most)
-        whole = malloc((size_t)length + 1);
-    if (whole)
-        vsnprintf(whole, (size_t)length + 1, format, again);
-    if (length >= 0)
-        talk->say(talk->user, kind, whole ? whole : most);
+    const int length = vsnprintf(local, sizeof local, format, values);
+    const bool fits = length >= 0 && (size_t)length < sizeof local;
+    if (length >= 0 && !fits && (longer = malloc((size_t)length + 1)))
+        vsnprintf(longer, (size_t)length + 1, format, again);
+    if (fits || longer)
+        talk->say(talk->user, kind, fits ? local : longer);
     va_end(again);
-    free(whole);
+    free(longer);
 }
 
 void talk_note(const Talk *talk, const char *format, ...)

@@ -27,7 +27,7 @@ typedef struct Talk {
 } Talk;
 
 /* Formats a sentence, of any length, and passes it to `talk`, which may be NULL: then nobody
- * listens. If memory runs out, a long sentence is cut short. */
+ * listens. A sentence of 1024 bytes or more is dropped if memory runs out. */
 void talk_note(const Talk *talk, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void talk_warn(const Talk *talk, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

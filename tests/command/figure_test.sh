@@ -91,6 +91,26 @@ test_a_printed_recipe_makes_the_same_figure() {
     grep -q '^text-size = 6.5$' again/all.ini || fail "expected what the command line says in the recipe"
 }
 
+# Configurations of fontconfig: none, and one that asks for other smoothing and other fonts.
+test_a_figure_has_the_same_bytes_whatever_fontconfig_says() {
+    local form configuration
+    write_recipe
+    printf '%s\n' '<?xml version="1.0"?>' '<fontconfig><match target="font">' \
+        '<edit name="antialias" mode="assign"><bool>false</bool></edit>' \
+        '<edit name="hinting" mode="assign"><bool>true</bool></edit>' \
+        '<edit name="rgba" mode="assign"><const>rgb</const></edit></match></fontconfig>' >fonts.conf
+    for form in pdf svg png; do
+        run_ok corcast figure folder/all.ini --quiet --dpi 60 -o usual.$form
+        for configuration in /dev/null "$PWD/fonts.conf" "$PWD/none"; do
+            run env HOME="$PWD/none" XDG_CACHE_HOME="$PWD/none" FONTCONFIG_PATH="$PWD/none" FONTCONFIG_FILE="$configuration" \
+                "$CORCAST" figure folder/all.ini --quiet --dpi 60 -o other.$form
+            expect_status 0
+            [ ! -s stderr ] || fail "expected no message, got: $(head -1 stderr)"
+            expect_same usual.$form other.$form
+        done
+    done
+}
+
 test_a_printed_recipe_of_render_makes_the_same_picture() {
     run_ok corcast grow --terminals 40 --seed 5 --quiet -o tree.swc
     run_ok corcast render tree.swc --quiet --size 171x153 --color-by wss --range 5%,95% --legend --text-size 3 \
@@ -227,6 +247,43 @@ test_names_that_there_are_none_of() {
     run corcast render t.swc --recipe help.ini -o x.png
     expect_status 2
     expect_sentence "help.ini:1: 'help' is not an option of render that a recipe may give"
+}
+
+# All that a recipe may name: trees, values, maps, looks, domains, recipes of commands.
+test_paths_start_at_the_folder_of_the_recipe() {
+    mkdir f f/sub
+    run_ok corcast grow --terminals 12 --quiet -o f/sub/t.swc
+    printf '0 0\n30 0\n30 30\n0 30\n' >f/sub/square.csv
+    printf 'id,v\n' >f/sub/v.csv
+    awk '!/^#/ && $7 > 0 { print $1 ",", $1 % 5 }' f/sub/t.swc | tr -d ' ' >>f/sub/v.csv
+    printf '0 0 0\n1 0 0\n' >f/sub/map.txt
+    cp "$REPO/templates/looks/journal.ini" f/sub/look.ini
+    printf '[grow]\nterminals = 7\n' >f/sub/few.ini
+    cat >f/all.ini <<'END'
+[figure]
+size = 200x200
+columns = 2
+letters = none
+[panel values]
+tree = sub/t.swc
+color-by = sub/v.csv:v
+colormap = ./sub/map.txt
+look = ./sub/look.ini
+[panel recipe]
+grow = --recipe sub/few.ini
+[panel refined]
+refine = sub/t.swc
+[panel domain]
+grow = --domain polygon:sub/square.csv --terminals 9
+END
+    run_ok corcast figure f/all.ini --quiet -o outside.png
+    (cd f && corcast figure all.ini --quiet -o ../inside.png) || fail "expected a figure from inside of the folder"
+    pngtopnm outside.png >a.ppm
+    pngtopnm inside.png >b.ppm
+    expect_same a.ppm b.ppm
+    run corcast figure f/all.ini --quiet -o again.png --dump-recipe
+    grep -q '^tree = sub/t.swc$' stdout || fail "expected the recipe's own path, got $(cat stdout)"
+    grep -q '^color-by = sub/v.csv:v$' stdout || fail "expected the recipe's own path, got $(cat stdout)"
 }
 
 # One whose inset shows nothing is drawn without a word: the page shows where it lies.

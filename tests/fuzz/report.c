@@ -19,9 +19,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     bool agree;
     Err err = {{0}};
     const char *page = fuzz_file("page.html", "", 0);
-    fuzz_check_refusal(report_merge(folders, 2, NULL, "templates/report", page, &agree, &err), &err,
-                       folder);
-    fuzz_check_refusal(report_merge(folders, 1, power, "templates/report", page, &agree, &err),
-                       &err, folder);
+    fuzz_check_refusal(
+        report_merge(&(ReportMerge){folders, 2, NULL, "templates/report"}, page, &agree, &err),
+        &err, folder);
+    fuzz_check_refusal(
+        report_merge(&(ReportMerge){folders, 1, power, "templates/report"}, page, &agree, &err),
+        &err, folder);
     return 0;
 }

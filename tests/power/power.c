@@ -54,9 +54,11 @@ static bool tier_differs(Lab *lab, const Subject *a, const Subject *b, const Tol
     CompareResult results[PLANE_KINDS];
     Err *err = &lab->err;
     must(lab, compare_pictures(&ra, &rb, tolerance, &results[PLANE_COLOR], NULL, err));
-    must(lab, compare_planes(PLANE_DEPTH, &fa->depth, &fb->depth, &fa->id, &fb->id, tolerance,
+    must(lab, compare_planes(PLANE_DEPTH, &(Rendering){.depth = &fa->depth, .ids = &fa->id},
+                             &(Rendering){.depth = &fb->depth, .ids = &fb->id}, tolerance,
                              &results[PLANE_DEPTH], err));
-    must(lab, compare_planes(PLANE_NORMAL, &fa->normal, &fb->normal, &fa->id, &fb->id, tolerance,
+    must(lab, compare_planes(PLANE_NORMAL, &(Rendering){.normal = &fa->normal, .ids = &fa->id},
+                             &(Rendering){.normal = &fb->normal, .ids = &fb->id}, tolerance,
                              &results[PLANE_NORMAL], err));
     must(lab, compare_ids(&fa->id, &fb->id, tolerance, &results[PLANE_ID], err));
     for (int i = 0; i < PLANE_KINDS; i++)

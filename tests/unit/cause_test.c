@@ -438,6 +438,32 @@ static void tells_a_move_from_one_that_is_desaturated(void **state)
     }
 }
 
+/* Leaves the rows from `first` on as they are in the plain shot. */
+static void restore_rows(Picture *picture, double first)
+{
+    size_t from = (size_t)first * W * 3;
+    memcpy(picture->codes8 + from, reference.codes8 + from, (size_t)W * H * 3 - from);
+}
+
+/* However little the part shows. */
+static void names_no_move_where_a_part_was_not_moved(void **state)
+{
+    (void)state;
+    int named = 0;
+    for (int first = H / 2; first < H; first += 2) {
+        Shot shot = spoilt(restore_rows, first);
+        shot.dx = 3;
+        shot.dy = -2;
+        Picture b = shoot(&shot);
+        const CompareResult result = judge(&reference, &b);
+        if (strstr(result.cause, "nearly A moved"))
+            fail_msg("rows from %d on were not moved: '%s'", first, result.cause);
+        named += strstr(result.cause, "A moved") != NULL;
+        picture_release(&b);
+    }
+    assert_true(named < H / 4);
+}
+
 static void names_outlines_that_are_sampled_otherwise(void **state)
 {
     (void)state;
@@ -514,7 +540,7 @@ static void names_nothing_where_chance_was_at_work(void **state)
     (void)state;
     void (*const kinds[])(Picture * picture, double by) = {add_noise, spoil_pixels, spoil_block,
                                                            darken_band};
-    for (int i = 0; i < 24; i += SHARE > 1 ? 5 : 1) {
+    for (int i = 0; i<24; i += SHARE> 1 ? 5 : 1) {
         const Shot shot = spoilt(kinds[i % 4], 100 + i);
         expect_cause(&shot, NULL);
     }
@@ -531,6 +557,7 @@ int main(void)
         cmocka_unit_test(tells_highlights_from_other_shading),
         cmocka_unit_test(names_no_light_of_surfaces_that_are_nearly_grey),
         cmocka_unit_test(tells_a_move_from_one_that_is_desaturated),
+        cmocka_unit_test(names_no_move_where_a_part_was_not_moved),
         cmocka_unit_test(names_outlines_that_are_sampled_otherwise),
         cmocka_unit_test(names_another_background),
         cmocka_unit_test(names_the_side_that_lacks_a_thing_and_its_place),

@@ -491,7 +491,8 @@ static void fill_depth(Plane *depth, int radius, double slope)
 static CompareResult compare_depth(const Plane *a, const Plane *b, Tolerance tolerance)
 {
     CompareResult result;
-    assert_int_equal(compare_planes(PLANE_DEPTH, a, b, NULL, NULL, &tolerance, &result, &err),
+    assert_int_equal(compare_planes(PLANE_DEPTH, &(Rendering){.depth = a}, &(Rendering){.depth = b},
+                                    &tolerance, &result, &err),
                      STATUS_OK);
     return result;
 }
@@ -582,18 +583,21 @@ static void measures_normals_by_their_angle(void **state)
     const float normals_b[] = {0, 0.6f, 0.8f, 1, 1e-4f, 0, 0, 0, 0};
     memcpy(a.values, normals_a, sizeof normals_a);
     memcpy(b.values, normals_b, sizeof normals_b);
-    assert_int_equal(compare_planes(PLANE_NORMAL, &a, &b, NULL, NULL, &tolerance, &r, &err),
+    assert_int_equal(compare_planes(PLANE_NORMAL, &(Rendering){.normal = &a},
+                                    &(Rendering){.normal = &b}, &tolerance, &r, &err),
                      STATUS_OK);
     assert_int_equal(r.values[MEASURE_COMMON_PIXELS], 2);
     assert_float_equal(r.values[MEASURE_MAX], 36.8698976, 1e-5);
     assert_float_equal(r.values[MEASURE_MEDIAN], 0.0057295780, 1e-9);
     assert_int_equal(r.values[MEASURE_BEYOND_PIXELS], 1);
     b.values[0] = NAN;
-    assert_int_equal(compare_planes(PLANE_NORMAL, &a, &b, NULL, NULL, &tolerance, &r, &err),
+    assert_int_equal(compare_planes(PLANE_NORMAL, &(Rendering){.normal = &a},
+                                    &(Rendering){.normal = &b}, &tolerance, &r, &err),
                      STATUS_OK);
     assert_int_equal(r.values[MEASURE_NAN_PIXELS], 1);
     assert_int_equal(r.values[MEASURE_COMMON_PIXELS], 1);
-    assert_int_equal(compare_planes(PLANE_DEPTH, &a, &b, NULL, NULL, &tolerance, &r, &err),
+    assert_int_equal(compare_planes(PLANE_DEPTH, &(Rendering){.depth = &a},
+                                    &(Rendering){.depth = &b}, &tolerance, &r, &err),
                      STATUS_INPUT);
     plane_release(&a);
     plane_release(&b);

@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "job/export/export.h"
 #include "job/export/scene.h"
+#include "options/templates.h"
 #include "scratch.h"
 #include "unit.h"
 
@@ -311,6 +312,6 @@ int main(void)
         cmocka_unit_test(test_a_full_disk_is_said_with_the_name_of_the_file),
         cmocka_unit_test(test_work_that_the_machine_cannot_hold_does_not_begin),
     };
-    setenv("CORCAST_TEMPLATES", "templates", 0);
+    templates_set("templates");
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

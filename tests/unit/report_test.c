@@ -234,9 +234,9 @@ static void merges_a_page_with_an_empty_part(void **state)
     write_output("report.html", "<!-- row: begin -->\n<!-- row: end -->\n<!-- case: begin -->\n"
                                 "<!-- case: end -->\n");
     write_output("report.json", "{\"severity\": 3}");
-    assert_int_equal(
-        report_merge(&folder, 1, NULL, templates, "build/report_test/all.html", &agree, &err),
-        STATUS_OK);
+    assert_int_equal(report_merge(&(ReportMerge){&folder, 1, NULL, templates},
+                                  "build/report_test/all.html", &agree, &err),
+                     STATUS_OK);
     assert_false(agree);
     char *page = read_output("all.html");
     assert_holds(page, "1 of 1 cases <span class=\"bad\">differ</span>");
@@ -271,9 +271,10 @@ static void merges_cases_worst_first_under_numbers_of_their_own(void **state)
                  "{\"faults\": [{\"fault\": \"<f>\", \"model\": \"blob\", \"A\": true,"
                  " \"B\": false}], \"limits\": [{\"parameter\": \"p\", \"A\": 0.0123}],"
                  " \"alarms\": [], \"clean_scenes\": 3, \"povray_scenes\": 4}");
-    assert_int_equal(report_merge(folders, 2, "build/report_test/power.json", templates,
-                                  "build/report_test/all.html", &agree, &err),
-                     STATUS_OK);
+    assert_int_equal(
+        report_merge(&(ReportMerge){folders, 2, "build/report_test/power.json", templates},
+                     "build/report_test/all.html", &agree, &err),
+        STATUS_OK);
     assert_false(agree);
     char *page = read_output("all.html");
     assert_holds(page, "1 of 2 cases <span class=\"bad\">differ</span>");
@@ -295,16 +296,16 @@ static void merges_no_page_of_another_program(void **state)
     assert_int_equal(file_make_folder(folder, &err), STATUS_OK);
     write_output("report.html", "<html></html>");
     write_output("report.json", "{\"severity\": 3}");
-    assert_int_equal(
-        report_merge(&folder, 1, NULL, templates, "build/report_test/no.html", &agree, &err),
-        STATUS_INPUT);
+    assert_int_equal(report_merge(&(ReportMerge){&folder, 1, NULL, templates},
+                                  "build/report_test/no.html", &agree, &err),
+                     STATUS_INPUT);
     assert_holds(err.text, "report.html: is not a report of this version of corcast");
     write_output("report.html", "<!-- row: begin -->\n<!-- row: end -->\n<!-- case: begin -->\n"
                                 "<!-- case: end -->\n");
     write_output("report.json", "{\"severity\": \"3\"}");
-    assert_int_equal(
-        report_merge(&folder, 1, NULL, templates, "build/report_test/no.html", &agree, &err),
-        STATUS_INPUT);
+    assert_int_equal(report_merge(&(ReportMerge){&folder, 1, NULL, templates},
+                                  "build/report_test/no.html", &agree, &err),
+                     STATUS_INPUT);
     assert_holds(err.text, "report.json: has no number \"severity\"");
 }
 

@@ -344,7 +344,9 @@ static void never_averages_in_what_is_not_finite(void **state)
     b.values[3 * 100] = INFINITY;
     Tolerance tolerance = tolerance_none();
     CompareResult r;
-    assert_int_equal(compare_colors(&a, &b, NULL, NULL, &tolerance, true, &r, &err), STATUS_OK);
+    assert_int_equal(compare_colors(&(Rendering){.color = &a}, &(Rendering){.color = &b},
+                                    &tolerance, true, &r, &err),
+                     STATUS_OK);
     assert_int_equal(r.values[MEASURE_NAN_PIXELS], 3);
     assert_int_equal(r.places[PLACE_NAN].x, 7);
     assert_int_equal(r.values[MEASURE_JUDGED_PIXELS], 298);
@@ -370,7 +372,9 @@ static void sees_differences_beyond_white_and_below_a_code(void **state)
     a.values[30] = 5;
     b.values[30] = 5.5f;
     b.values[60] = nextafterf(0.5f, 1);
-    assert_int_equal(compare_colors(&a, &b, NULL, NULL, &tolerance, true, &r, &err), STATUS_OK);
+    assert_int_equal(compare_colors(&(Rendering){.color = &a}, &(Rendering){.color = &b},
+                                    &tolerance, true, &r, &err),
+                     STATUS_OK);
     assert_int_equal(r.values[MEASURE_DIFFERING_PIXELS], 2);
     assert_int_equal(r.values[MEASURE_BEYOND_PIXELS], 1);
     assert_int_equal(r.places[PLACE_WORST].x, 10);
@@ -378,7 +382,9 @@ static void sees_differences_beyond_white_and_below_a_code(void **state)
                 1e-9);
     assert_true(r.values[MEASURE_HDR_FLIP_MEAN] > 0);
     tolerance.limits[LIMIT_COLOR_LEVELS] = 0;
-    assert_int_equal(compare_colors(&a, &b, NULL, NULL, &tolerance, false, &r, &err), STATUS_OK);
+    assert_int_equal(compare_colors(&(Rendering){.color = &a}, &(Rendering){.color = &b},
+                                    &tolerance, false, &r, &err),
+                     STATUS_OK);
     assert_int_equal(r.values[MEASURE_BEYOND_PIXELS], 2);
     plane_release(&a);
     plane_release(&b);
@@ -562,11 +568,14 @@ static void no_limit_counts_a_settled_pixel(void **state)
         Tolerance identity = tolerance_identity(1e-3);
         identity.settled = marks;
         CompareResult color = compare(&a, &b, identity, NULL);
-        assert_int_equal(compare_planes(PLANE_DEPTH, &a.depth, &b.depth, &a.ids, &b.ids, &identity,
+        assert_int_equal(compare_planes(PLANE_DEPTH, &(Rendering){.depth = &a.depth, .ids = &a.ids},
+                                        &(Rendering){.depth = &b.depth, .ids = &b.ids}, &identity,
                                         &depth, &err),
                          STATUS_OK);
-        assert_int_equal(compare_planes(PLANE_NORMAL, &a.normal, &b.normal, &a.ids, &b.ids,
-                                        &identity, &normal, &err),
+        assert_int_equal(compare_planes(PLANE_NORMAL,
+                                        &(Rendering){.normal = &a.normal, .ids = &a.ids},
+                                        &(Rendering){.normal = &b.normal, .ids = &b.ids}, &identity,
+                                        &normal, &err),
                          STATUS_OK);
         assert_int_equal(compare_ids(&a.ids, &b.ids, &identity, &ids, &err), STATUS_OK);
         assert_true(color.agrees == settled && depth.agrees == settled &&

@@ -13,26 +13,27 @@
 
 enum { REACH = 48, BLOCK = 64 };
 
-static void take_block(const Picture *a, const Picture *b, int x, int y, size_t step, size_t *seen,
-                       Samples *samples)
+/* Takes each `step`-th pixel that differs of a row. Blocks that are equal are skipped at once. */
+static void take_row(const Picture *a, const Picture *b, int y, size_t step, size_t *seen,
+                     Samples *samples)
 {
-    int end = x + BLOCK < a->width ? x + BLOCK : a->width;
-    if (picture_rows_equal(a, b, y, x, end - x))
-        return;
-    for (; x < end && samples->n < CAUSE_SAMPLES; x++)
-        if (!picture_rows_equal(a, b, y, x, 1) && (*seen)++ % step == 0)
-            samples->at[samples->n++] = (PixelPlace){.x = x, .y = y};
+    for (int x = 0, end; x < a->width; x = end) {
+        end = x + BLOCK < a->width ? x + BLOCK : a->width;
+        if (picture_rows_equal(a, b, y, x, end - x))
+            continue;
+        for (; x < end && samples->n < CAUSE_SAMPLES; x++)
+            if (!picture_rows_equal(a, b, y, x, 1) && (*seen)++ % step == 0)
+                samples->at[samples->n++] = (PixelPlace){.x = x, .y = y};
+    }
 }
 
 static void choose_samples(const Picture *a, const Picture *b, size_t differing, Samples *samples)
 {
     size_t step = (differing + CAUSE_SAMPLES - 1) / CAUSE_SAMPLES, seen = 0;
     samples->n = 0;
-    for (int y = 0; y < a->height; y++) {
-        bool equal = picture_rows_equal(a, b, y, 0, a->width);
-        for (int x = 0; x < a->width && !equal; x += BLOCK)
-            take_block(a, b, x, y, step, &seen, samples);
-    }
+    for (int y = 0; y < a->height; y++)
+        if (!picture_rows_equal(a, b, y, 0, a->width))
+            take_row(a, b, y, step, &seen, samples);
 }
 
 static int code_at(const Picture *picture, int x, int y, int c)
@@ -55,32 +56,31 @@ typedef struct Turn {
     const char *sentence;
 } Turn;
 
-/* Adds the differences of a pixel of B without the turn and with it. */
+/* Adds the differences of a pixel of B without the turn, sums[0], and with it, sums[1]. */
 static void add_turned(const Picture *a, const Picture *b, const Turn *turn, int x, int y,
-                       double *before, double *after)
+                       double sums[2])
 {
     int u = turn->mirrored ? a->width - 1 - x : x, v = turn->upended ? a->height - 1 - y : y;
     for (int c = 0; c < a->channels; c++) {
         int code = code_at(b, x, y, c);
-        *before += abs(code - code_at(a, x, y, c));
-        *after += abs(code - code_at(a, u, v, turn->from[c]));
+        sums[0] += abs(code - code_at(a, x, y, c));
+        sums[1] += abs(code - code_at(a, u, v, turn->from[c]));
     }
 }
 
 static bool is_turned(const Picture *a, const Picture *b, const Samples *samples, const Turn *turn)
 {
-    double before = 0, after = 0;
+    double few[2] = {0}, all[2] = {0};
     if (a->channels == 1 && turn->from[0] != 0)
         return false;
     for (int i = 0; i < samples->n; i++)
-        add_turned(a, b, turn, samples->at[i].x, samples->at[i].y, &before, &after);
-    if (!leaves(before, after, 0.05))
+        add_turned(a, b, turn, samples->at[i].x, samples->at[i].y, few);
+    if (!leaves(few[0], few[1], 0.05))
         return false;
-    before = after = 0;
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++)
-            add_turned(a, b, turn, x, y, &before, &after);
-    return leaves(before, after, 0.02);
+            add_turned(a, b, turn, x, y, all);
+    return leaves(all[0], all[1], 0.02);
 }
 
 static void find_turn(const Picture *a, const Picture *b, const Samples *samples, Sentence *out)
@@ -115,23 +115,24 @@ static bool differs_by(const Picture *a, const Picture *b, int x, int y, const S
 }
 
 /* A sample of A, with its codes. */
-typedef struct Sample {
+typedef struct ShiftSample {
     int x, y, codes[3];
     double off; /* from B, without a shift */
-} Sample;
+} ShiftSample;
 
 static int most_off_first(const void *left, const void *right)
 {
-    const Sample *a = left, *b = right;
+    const ShiftSample *a = left, *b = right;
     return (a->off < b->off) - (a->off > b->off);
 }
 
-static void take_samples(const Picture *a, const Picture *b, const Samples *samples, Sample *out)
+static void take_samples(const Picture *a, const Picture *b, const Samples *samples,
+                         ShiftSample *out)
 {
     static const Shift none = {0};
     for (int i = 0; i < samples->n; i++) {
         int x = samples->at[i].x, y = samples->at[i].y;
-        out[i] = (Sample){.x = x, .y = y};
+        out[i] = (ShiftSample){.x = x, .y = y};
         for (int c = 0; c < a->channels; c++)
             out[i].codes[c] = code_at(a, x, y, c);
         differs_by(a, b, x, y, &none, &out[i].off);
@@ -141,7 +142,7 @@ static void take_samples(const Picture *a, const Picture *b, const Samples *samp
 
 /* The mean over the samples that stay within the picture, infinite where fewer than three in four
  * do, or as soon as the sum is as large as `limit`. */
-static double off_when_shifted(const Picture *b, const Sample *samples, int n, int dx, int dy,
+static double off_when_shifted(const Picture *b, const ShiftSample *samples, int n, int dx, int dy,
                                double limit)
 {
     double sum = 0;
@@ -159,7 +160,7 @@ static double off_when_shifted(const Picture *b, const Sample *samples, int n, i
     return 4 * inside >= 3 * n && inside > 0 ? sum / inside : (double)INFINITY;
 }
 
-static Shift search_shifts(const Picture *b, const Sample *samples, int n)
+static Shift search_shifts(const Picture *b, const ShiftSample *samples, int n)
 {
     Shift best = {.off = off_when_shifted(b, samples, n, 0, 0, (double)INFINITY)};
     for (int dy = -REACH; dy <= REACH; dy++)
@@ -177,7 +178,7 @@ static Shift search_shifts(const Picture *b, const Sample *samples, int n)
 Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples)
 {
     enum { FEW = 64 };
-    Sample taken[CAUSE_SAMPLES], few[FEW];
+    ShiftSample taken[CAUSE_SAMPLES], few[FEW];
     take_samples(a, b, samples, taken);
     const Shift none = {.off = off_when_shifted(b, taken, samples->n, 0, 0, (double)INFINITY)};
     if (samples->n <= FEW)
@@ -189,16 +190,27 @@ Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *sample
     return moved ? search_shifts(b, taken, samples->n) : none;
 }
 
-static double off_by(const Picture *a, const Picture *b, const Shift *shift, const Shift *common)
+/* Sums of |b - a| over the pixels that both pictures have with a shift and without. */
+typedef struct ShiftTrial {
+    double before, after; /* without the shift, and with it */
+    double made;          /* with the shift, of pixels that are equal without it */
+} ShiftTrial;
+
+static ShiftTrial try_shift(const Picture *a, const Picture *b, const Shift *shift)
 {
-    double sum = 0;
+    static const Shift none = {0};
+    ShiftTrial trial = {0};
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++) {
-            int u = x + common->dx, v = y + common->dy;
-            if (u >= 0 && u < b->width && v >= 0 && v < b->height)
-                differs_by(a, b, x, y, shift, &sum);
+            double after = 0, there = 0;
+            if (!differs_by(a, b, x, y, shift, &after))
+                continue;
+            differs_by(a, b, x, y, &none, &trial.before);
+            differs_by(a, b, x + shift->dx, y + shift->dy, &none, &there);
+            trial.after += after;
+            trial.made += there == 0 ? after : 0;
         }
-    return sum;
+    return trial;
 }
 
 bool cause_is_same_saturation(double aa, double ab)
@@ -229,7 +241,10 @@ static bool has_shifted_saturation(const Picture *a, const Picture *b, const Shi
     return cause_is_same_saturation(aa / (level * level), ab / (level * level));
 }
 
-void cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
+/* A part of the picture that was not moved contradicts a shift, however little the part shows:
+ * there the pictures are equal without the shift, and the shift makes them differ. So at most half
+ * of the differences that are left may be made by the shift. */
+bool cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
                  Sentence *out)
 {
     static const Shift none = {0};
@@ -237,13 +252,17 @@ void cause_shift(const Picture *a, const Picture *b, const Samples *samples, con
     for (int i = 0; i < samples->n; i++)
         differs_by(a, b, samples->at[i].x, samples->at[i].y, &none, &before);
     if (!leaves(before, shift->off * samples->n, 0.05))
-        return;
-    before = off_by(a, b, &none, shift);
-    double after = off_by(a, b, shift, shift);
-    if (leaves(before, after, 0.02) && (after == 0 || has_shifted_saturation(a, b, shift)))
+        return false;
+    const ShiftTrial trial = try_shift(a, b, shift);
+    if (!leaves(trial.before, trial.after, 0.02))
+        return false;
+    if (trial.made > trial.after / 2)
+        return true;
+    if (trial.after == 0 || has_shifted_saturation(a, b, shift))
         snprintf(out->text, out->size,
                  "B is %sA moved by (%d, %d) pixels, right and down being positive",
-                 after > 0 ? "nearly " : "", shift->dx, shift->dy);
+                 trial.after > 0 ? "nearly " : "", shift->dx, shift->dy);
+    return false;
 }
 
 /* ---- all of them ----------------------------------------------------------------------------- */
@@ -259,13 +278,12 @@ Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, 
     if (!*out.text)
         TRY(cause_background(a, b, &samples, &out, err));
     const Shift shift = *out.text ? (Shift){0} : cause_best_shift(a, b, &samples);
-    if (!*out.text)
-        cause_shift(a, b, &samples, &shift, &out);
+    const bool partly_moved = !*out.text && cause_shift(a, b, &samples, &shift, &out);
     if (!*out.text && result->values[MEASURE_MAX_CODE] <= 1)
         snprintf(out.text, out.size, "only rounding differs: no code is off by more than 1");
     if (!*out.text)
         TRY(cause_tone(a, b, &samples, &out, err));
-    if (!*out.text)
+    if (!*out.text && !partly_moved)
         TRY(cause_warp(a, b, &samples, &shift, &out, err));
     return *out.text ? STATUS_OK : cause_place(a, b, &samples, result, &out, err);
 }

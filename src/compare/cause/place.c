@@ -249,26 +249,26 @@ typedef struct RowOutlines {
     size_t at_edges, off, inner, changed;
 } RowOutlines;
 
-typedef struct Outlines {
+typedef struct OutlineCounts {
     const Picture *a, *b;
     Labels labels;
     int slight;        /* codes */
     size_t enough;     /* when a row has this many inner pixels the rest of it is not looked at */
     RowOutlines *rows; /* owned */
-} Outlines;
+} OutlineCounts;
 
-static bool is_edge(const Outlines *self, int x, int y)
+static bool is_edge(const OutlineCounts *self, int x, int y)
 {
     return contrast(self->a, x, y) >= LEVELS && contrast(self->b, x, y) >= LEVELS;
 }
 
-static int codes_off(const Outlines *self, int x, int y)
+static int codes_off(const OutlineCounts *self, int x, int y)
 {
     size_t pixel = (size_t)y * (size_t)self->a->width + (size_t)x;
     return largest_difference(self->a, self->b, pixel);
 }
 
-static bool is_slight(const Outlines *self, int x, int y)
+static bool is_slight(const OutlineCounts *self, int x, int y)
 {
     return codes_off(self, x, y) <= self->slight;
 }
@@ -276,7 +276,7 @@ static bool is_slight(const Outlines *self, int x, int y)
 static void count_differing(size_t row, int worker, void *context)
 {
     (void)worker;
-    const Outlines *self = context;
+    const OutlineCounts *self = context;
     int width = self->a->width, y = (int)row;
     for (int from = 0; from < width; from += BLOCK) {
         int to = from + BLOCK < width ? from + BLOCK : width;
@@ -291,7 +291,7 @@ static void count_differing(size_t row, int worker, void *context)
 static void count_inner(size_t row, int worker, void *context)
 {
     (void)worker;
-    const Outlines *self = context;
+    const OutlineCounts *self = context;
     bool known = self->labels.source == LABELS_BACKGROUND;
     int y = (int)row;
     for (int x = 0; x < self->a->width && self->rows[y].inner < self->enough; x++) {
@@ -303,7 +303,7 @@ static void count_inner(size_t row, int worker, void *context)
 }
 
 /* Whether it is worth while to ask all pixels. */
-static bool may_be_outlines(const Outlines *self, const Samples *samples)
+static bool may_be_outlines(const OutlineCounts *self, const Samples *samples)
 {
     int at_edges = 0, off = 0;
     for (int i = 0; i < samples->n; i++)
@@ -312,7 +312,7 @@ static bool may_be_outlines(const Outlines *self, const Samples *samples)
     return at_edges > 0 && (off < 8 || 10 * off < at_edges);
 }
 
-static RowOutlines sum_rows(const Outlines *self)
+static RowOutlines sum_rows(const OutlineCounts *self)
 {
     RowOutlines sum = {0};
     for (int y = 0; y < self->a->height; y++) {
@@ -327,10 +327,10 @@ static RowOutlines sum_rows(const Outlines *self)
 static Status say_outlines(const Picture *a, const Picture *b, const Samples *samples,
                            const CompareResult *result, Sentence *out, Err *err)
 {
-    Outlines self = {.a = a,
-                     .b = b,
-                     .labels = labels_from_background(a, b),
-                     .slight = a->bits == 8 ? SLIGHT : 257 * SLIGHT};
+    OutlineCounts self = {.a = a,
+                          .b = b,
+                          .labels = labels_from_background(a, b),
+                          .slight = a->bits == 8 ? SLIGHT : 257 * SLIGHT};
     size_t height = (size_t)a->height;
     if (!may_be_outlines(&self, samples))
         return STATUS_OK;
@@ -356,7 +356,7 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
 /* Of the light that B has more of than A, pixel by pixel: the squares, the part of them that lies
  * along white and along the colour of the pixel in A, what no more, or no less, of both makes, and
  * what the rounding of codes makes. */
-typedef struct Light {
+typedef struct LightSums {
     double squares, white, own, rest, rounding;
     /* Of coloured pixels that differ by more than rounding: */
     double moments[3][3];    /* products of the channels' light, summed */
@@ -364,7 +364,7 @@ typedef struct Light {
     /* Of those so coloured that light midway between white and their own is neither: */
     double telling;       /* squares */
     size_t pixels, plain; /* all; in white or own light alone */
-} Light;
+} LightSums;
 
 /* The square of what is left of `more` beside `along`. */
 static double beside(const double more[3], const double along[3])
@@ -408,7 +408,7 @@ static double variance_of_code(const Plane *table, int code)
 }
 
 static void add_light(const Plane *table, const Picture *a, const Picture *b, size_t at,
-                      Light *light)
+                      LightSums *light)
 {
     double sum = 0, squares = 0, along = 0, norm = 0, rounding = 0, more[3], color[3];
     for (int c = 0; c < 3; c++) {
@@ -449,8 +449,8 @@ static void add_light(const Plane *table, const Picture *a, const Picture *b, si
 
 typedef struct Lights {
     const Picture *a, *b;
-    Plane table;   /* owned; the light of each code */
-    Light *lights; /* owned; of each row */
+    Plane table;       /* owned; the light of each code */
+    LightSums *lights; /* owned; of each row */
 } Lights;
 
 static void add_row_light(size_t y, int worker, void *context)
@@ -476,7 +476,7 @@ static Status light_of_codes(const Picture *picture, Plane *table, Err *err)
     return status;
 }
 
-static void add_lights(Light *to, const Light *from)
+static void add_lights(LightSums *to, const LightSums *from)
 {
     to->squares += from->squares;
     to->white += from->white;
@@ -492,11 +492,11 @@ static void add_lights(Light *to, const Light *from)
             to->moments[c][d] += from->moments[c][d];
 }
 
-static Status sum_light(const Picture *a, const Picture *b, Light *all, Err *err)
+static Status sum_light(const Picture *a, const Picture *b, LightSums *all, Err *err)
 {
     Lights self = {.a = a, .b = b};
     size_t height = (size_t)a->height;
-    *all = (Light){0};
+    *all = (LightSums){0};
     if (a->channels != 3)
         return STATUS_OK;
     TRY(light_of_codes(a, &self.table, err));
@@ -520,7 +520,7 @@ static bool has_equal_outlines(const CompareResult *result)
 /* Whether the light of coloured pixels is most of it and has one colour, the lamp's, but for a
  * two-hundredth and for rounding. The light that another curve of tones takes from surfaces that
  * are nearly grey is nearly white, too, but its colour is another at each brightness. */
-static bool has_one_color(const Light *light)
+static bool has_one_color(const LightSums *light)
 {
     enum { STEPS = 8 };
     double along[3] = {1, 1, 1}, next[3], largest = 0;
@@ -544,14 +544,14 @@ static bool has_one_color(const Light *light)
 
 /* Whether most of the light is of pixels that tell white from their own colour, and two in three of
  * them have light of one or the other. */
-static bool is_plain(const Light *light)
+static bool is_plain(const LightSums *light)
 {
     return 2 * light->telling >= light->squares && 3 * light->plain >= 2 * light->pixels;
 }
 
 /* Highlights are what white light explains, and more light of the surfaces' own colours does not.
  */
-static void say_shading(const CompareResult *result, const Light *light, Sentence *out)
+static void say_shading(const CompareResult *result, const LightSums *light, Sentence *out)
 {
     bool highlights = light->white > 0.95 * light->squares && light->own < 0.95 * light->squares;
     bool certain = highlights ? has_one_color(light) : is_plain(light);
@@ -581,7 +581,7 @@ Status cause_place(const Picture *a, const Picture *b, const Samples *samples,
     bool other = have_backgrounds_unlike(&labels, a->channels);
     if (*out->text || other || !has_equal_outlines(result))
         return STATUS_OK;
-    Light light;
+    LightSums light;
     TRY(sum_light(a, b, &light, err));
     if (light.rest <= 0.01 * light.squares + light.rounding)
         say_shading(result, &light, out);

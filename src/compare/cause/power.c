@@ -55,20 +55,17 @@ static Status published_differs(const PublishedRule *rule, const Picture *a, con
 /* ---- cases ----------------------------------------------------------------------------------- */
 
 typedef struct Work {
-    const Picture *reference, *drawn;
-    const PowerRule *rule;
-    Status (*keep)(void *context, const PowerCase *missed, const Picture *picture, Err *err);
-    void *keep_context;
+    const PowerInput *input;
     Power *power;
-    Status *status; /* of each case */
-    Err *err;
 } Work;
 
-static Status ask_all(const Work *work, const Picture *picture, bool found[POWER_RULES], Err *err)
+static Status ask_all(const PowerInput *input, const Picture *picture, bool found[POWER_RULES],
+                      Err *err)
 {
-    TRY(work->rule->differs(work->rule->context, work->reference, picture, &found[0], err));
+    const Picture *reference = input->reference;
+    TRY(input->rule->differs(input->rule->context, reference, picture, &found[0], err));
     for (int i = 0; i < PUBLISHED_RULES; i++)
-        TRY(published_differs(&published_rules[i], work->reference, picture, &found[1 + i], err));
+        TRY(published_differs(&published_rules[i], reference, picture, &found[1 + i], err));
     return STATUS_OK;
 }
 
@@ -80,23 +77,23 @@ static bool same_codes(const Picture *a, const Picture *b)
     return true;
 }
 
-static void measure_case(size_t index, int worker, void *context)
+static Status measure_case(size_t index, int worker, void *context, Err *err)
 {
     (void)worker;
     const Work *work = context;
+    const PowerInput *input = work->input;
     PowerCase *one = &work->power->cases[index];
-    Err *err = &work->err[index];
     Picture planted;
-    Status status = picture_fault_plant(one->fault, one->size, work->drawn, &planted, err);
-    if (status == STATUS_OK) {
-        one->exists = !same_codes(work->drawn, &planted);
-        if (one->exists)
-            status = ask_all(work, &planted, one->found, err);
-        if (status == STATUS_OK && one->exists && !one->found[0] && work->keep)
-            status = work->keep(work->keep_context, one, &planted, err);
-        picture_release(&planted);
-    }
-    work->status[index] = status;
+    Status status = STATUS_OK;
+    TRY(picture_fault_plant(one->fault, one->size, input->drawn, &planted, err));
+    one->exists = !same_codes(input->drawn, &planted);
+    if (one->exists)
+        TRY_GOTO(ask_all(input, &planted, one->found, err));
+    if (one->exists && !one->found[0] && input->keep)
+        status = input->keep(input->keep_context, one, &planted, err);
+done:
+    picture_release(&planted);
+    return status;
 }
 
 static void list_cases(Power *power)
@@ -119,27 +116,14 @@ static void count(Power *power)
     }
 }
 
-static Status measure_all(Work *work, int threads, Err *err)
+Status power_measure(const PowerInput *input, int threads, Power *power, Err *err)
 {
-    Power *power = work->power;
-    TRY(ask_all(work, work->drawn, power->alarm, err));
-    threads_for(power->n, threads, measure_case, work);
-    for (size_t i = 0; i < power->n; i++)
-        if (work->status[i] != STATUS_OK)
-            return err_set(err, work->status[i], "%s", work->err[i].text);
-    return STATUS_OK;
-}
-
-Status power_measure(const Picture *reference, const Picture *drawn, const PowerRule *rule,
-                     int threads,
-                     Status (*keep)(void *context, const PowerCase *missed, const Picture *picture,
-                                    Err *err),
-                     void *keep_context, Power *power, Err *err)
-{
-    Power made = {
-        .name = rule->name, .width = drawn->width, .height = drawn->height, .bits = drawn->bits};
-    Work work = {reference, drawn, rule, keep, keep_context, &made, NULL, NULL};
-    const size_t most = n_picture_faults * FAULT_SIZES;
+    const Picture *reference = input->reference, *drawn = input->drawn;
+    Power made = {.name = input->rule->name,
+                  .width = drawn->width,
+                  .height = drawn->height,
+                  .bits = drawn->bits};
+    Work work = {input, &made};
     Status status = STATUS_OK;
     if (reference->width != drawn->width || reference->height != drawn->height ||
         reference->channels != drawn->channels || reference->bits != drawn->bits)
@@ -148,19 +132,16 @@ Status power_measure(const Picture *reference, const Picture *drawn, const Power
                        "%d x %d of %d x %d",
                        reference->width, reference->height, reference->channels, reference->bits,
                        drawn->width, drawn->height, drawn->channels, drawn->bits);
-    TRY_GOTO(mem_calloc(&made.cases, most, sizeof *made.cases, "faults", err));
-    TRY_GOTO(mem_calloc(&work.status, most, sizeof *work.status, "faults", err));
-    TRY_GOTO(mem_calloc(&work.err, most, sizeof *work.err, "faults", err));
+    TRY(mem_calloc(&made.cases, n_picture_faults * FAULT_SIZES, sizeof *made.cases, "faults", err));
     list_cases(&made);
     made.repeats = same_codes(reference, drawn);
-    TRY_GOTO(measure_all(&work, threads, err));
+    TRY_GOTO(ask_all(input, drawn, made.alarm, err));
+    TRY_GOTO(threads_try(made.n, threads, measure_case, &work, err));
     count(&made);
     *power = made;
     made.cases = NULL;
 done:
     free(made.cases);
-    free(work.status);
-    free(work.err);
     return status;
 }
 

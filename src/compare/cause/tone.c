@@ -9,13 +9,26 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { KINDS = 11 };
+typedef enum CurveKind {
+    ENCODED_AGAIN,
+    NOT_ENCODED,
+    ENCODED_BY_POWER,
+    ENCODED_AS_SRGB,
+    NEGATIVE,
+    TIMES_LIGHT,
+    PLUS_LIGHT,
+    TIMES_CODE,
+    PLUS_CODE,
+    POWER_OF_CODE,
+    ANY_CURVE, /* is measured, not computed */
+    KINDS
+} CurveKind;
 
 /* Of codes that are neither black nor white, where they may be clipped, in either picture. Levels
  * are parts of 1 here. */
-typedef struct Sums {
+typedef struct ToneSums {
     double n, linear[2], level[2], log_ab, log_aa; /* of A, of B */
-} Sums;
+} ToneSums;
 
 /* Of each code of a picture, what it means. */
 typedef struct Meaning {
@@ -57,133 +70,79 @@ static Status meaning_init(Meaning *meaning, const Picture *picture, Err *err)
 
 /* ---- curves ---------------------------------------------------------------------------------- */
 
-static double gain_of_light(const Sums *sums)
+/* Returns the number of a curve that fits sums over pixels best; of a curve without a number, 1. */
+static double number_of(CurveKind kind, const ToneSums *sums)
 {
-    return sums->linear[1] / sums->linear[0];
+    switch (kind) {
+    case TIMES_LIGHT:
+        return sums->linear[1] / sums->linear[0];
+    case PLUS_LIGHT:
+        return (sums->linear[1] - sums->linear[0]) / sums->n;
+    case TIMES_CODE:
+        return sums->level[1] / sums->level[0];
+    case PLUS_CODE:
+        return (sums->level[1] - sums->level[0]) / sums->n;
+    case POWER_OF_CODE:
+        return sums->log_ab / sums->log_aa;
+    case ENCODED_BY_POWER:
+    case ENCODED_AS_SRGB:
+        return 2.2; /* the gamma of screens */
+    default:
+        return 1;
+    }
 }
 
-static double offset_of_light(const Sums *sums)
+/* Returns the level that a curve with the number `p` makes of a code of A. */
+static float level_of(CurveKind kind, float linear, float level, float p)
 {
-    return (sums->linear[1] - sums->linear[0]) / sums->n;
-}
-
-static double gain_of_codes(const Sums *sums)
-{
-    return sums->level[1] / sums->level[0];
-}
-
-static double offset_of_codes(const Sums *sums)
-{
-    return (sums->level[1] - sums->level[0]) / sums->n;
-}
-
-static double gamma_of_codes(const Sums *sums)
-{
-    return sums->log_ab / sums->log_aa;
-}
-
-static double no_number(const Sums *sums)
-{
-    (void)sums;
-    return 1;
-}
-
-static double gamma_of_screens(const Sums *sums)
-{
-    (void)sums;
-    return 2.2;
-}
-
-static float times_light(float linear, float level, float p)
-{
-    (void)level;
-    return srgb_encode(p * linear);
-}
-
-static float plus_light(float linear, float level, float p)
-{
-    (void)level;
-    return srgb_encode(fmaxf(0, linear + p));
-}
-
-static float times_code(float linear, float level, float p)
-{
-    (void)linear;
-    return p * level;
-}
-
-static float plus_code(float linear, float level, float p)
-{
-    (void)linear;
-    return level + p;
-}
-
-static float power_of_code(float linear, float level, float p)
-{
-    (void)linear;
-    return powf(level, p);
-}
-
-static float encoded_again(float linear, float level, float p)
-{
-    (void)linear;
-    (void)p;
-    return srgb_encode(level);
-}
-
-static float not_encoded(float linear, float level, float p)
-{
-    (void)level;
-    (void)p;
-    return linear;
-}
-
-static float encoded_by_power(float linear, float level, float p)
-{
-    (void)level;
-    return powf(linear, 1 / p);
-}
-
-static float encoded_as_srgb(float linear, float level, float p)
-{
-    (void)linear;
-    return srgb_encode(powf(level, p));
-}
-
-static float negative(float linear, float level, float p)
-{
-    (void)linear;
-    (void)p;
-    return 1 - level;
+    switch (kind) {
+    case ENCODED_AGAIN:
+        return srgb_encode(level);
+    case NOT_ENCODED:
+        return linear;
+    case ENCODED_BY_POWER:
+        return powf(linear, 1 / p);
+    case ENCODED_AS_SRGB:
+        return srgb_encode(powf(level, p));
+    case NEGATIVE:
+        return 1 - level;
+    case TIMES_LIGHT:
+        return srgb_encode(p * linear);
+    case PLUS_LIGHT:
+        return srgb_encode(fmaxf(0, linear + p));
+    case TIMES_CODE:
+        return p * level;
+    case PLUS_CODE:
+        return level + p;
+    case POWER_OF_CODE:
+        return powf(level, p);
+    default:
+        return level;
+    }
 }
 
 typedef enum Relation { ALONE, TIMES, PLUS, POWER } Relation;
 
 /* "B is A `how`", of curves with a number "made brighter: its `what` are 1.2 times those of A". */
 typedef struct Curve {
-    double (*number)(const Sums *sums);
-    float (*level)(float linear, float level, float p);
     Relation relation;
     const char *how, *what;
     double unit;
 } Curve;
 
 static const Curve curves[KINDS] = {
-    {no_number, encoded_again, ALONE, "encoded as sRGB twice, and so too bright", NULL, 1},
-    {no_number, not_encoded, ALONE, "not encoded as sRGB, and so too dark", NULL, 1},
-    {gamma_of_screens, encoded_by_power, ALONE, "encoded by a gamma of 2.2 and not as sRGB", NULL,
-     1},
-    {gamma_of_screens, encoded_as_srgb, ALONE, "encoded as sRGB and not by a gamma of 2.2", NULL,
-     1},
-    {no_number, negative, ALONE, "as a negative", NULL, 1},
-    {gain_of_light, times_light, TIMES, "made", "linear colours", 1},
-    {offset_of_light, plus_light, PLUS, "made", "linear colours, from 0 to 1,", 1},
-    {gain_of_codes, times_code, TIMES, "made", "sRGB codes", 1},
-    {offset_of_codes, plus_code, PLUS, "made", "sRGB codes, from 0 to 255,", 255},
-    {gamma_of_codes, power_of_code, POWER, "of another gamma,", "sRGB codes, from 0 to 1,", 1},
-    {no_number, NULL, ALONE, "under some other curve of tones, the same everywhere", NULL, 1},
+    [ENCODED_AGAIN] = {ALONE, "encoded as sRGB twice, and so too bright", NULL, 1},
+    [NOT_ENCODED] = {ALONE, "not encoded as sRGB, and so too dark", NULL, 1},
+    [ENCODED_BY_POWER] = {ALONE, "encoded by a gamma of 2.2 and not as sRGB", NULL, 1},
+    [ENCODED_AS_SRGB] = {ALONE, "encoded as sRGB and not by a gamma of 2.2", NULL, 1},
+    [NEGATIVE] = {ALONE, "as a negative", NULL, 1},
+    [TIMES_LIGHT] = {TIMES, "made", "linear colours", 1},
+    [PLUS_LIGHT] = {PLUS, "made", "linear colours, from 0 to 1,", 1},
+    [TIMES_CODE] = {TIMES, "made", "sRGB codes", 1},
+    [PLUS_CODE] = {PLUS, "made", "sRGB codes, from 0 to 255,", 255},
+    [POWER_OF_CODE] = {POWER, "of another gamma,", "sRGB codes, from 0 to 1,", 1},
+    [ANY_CURVE] = {ALONE, "under some other curve of tones, the same everywhere", NULL, 1},
 };
-enum { ANY_CURVE = KINDS - 1 };
 
 static void say(const Curve *curve, double number, Sentence *out)
 {
@@ -234,9 +193,9 @@ static void take(const Codes *codes, size_t i, int *in_a, int *in_b)
     *in_b = picture_code(codes->b, at);
 }
 
-static Sums sum_codes(const Meaning *meaning, const Codes *codes)
+static ToneSums sum_codes(const Meaning *meaning, const Codes *codes)
 {
-    Sums sums = {0};
+    ToneSums sums = {0};
     for (size_t i = 0; i < codes->n; i++) {
         int a, b;
         take(codes, i, &a, &b);
@@ -255,12 +214,11 @@ static Sums sum_codes(const Meaning *meaning, const Codes *codes)
     return sums;
 }
 
-static double predict(Meaning *meaning, int kind, const Sums *sums)
+static double predict(Meaning *meaning, CurveKind kind, const ToneSums *sums)
 {
-    const Curve *curve = &curves[kind];
-    double number = curve->number(sums);
+    double number = number_of(kind, sums);
     for (int i = 0; i < meaning->n; i++) {
-        float level = curve->level(meaning->linear[i], meaning->level[i], (float)number);
+        float level = level_of(kind, meaning->linear[i], meaning->level[i], (float)number);
         meaning->predicted[kind][i] = fminf(fmaxf(level, 0), 1);
     }
     return number;
@@ -298,11 +256,11 @@ static bool fits(const Fit *fit)
 /* The curve that fits the samples best, without those in `tried`; -1 when none fits. */
 static int best_curve(Meaning *meaning, const Codes *samples, const bool tried[KINDS])
 {
-    const Sums sums = sum_codes(meaning, samples);
+    const ToneSums sums = sum_codes(meaning, samples);
     Fit least = {0};
     int best = -1;
     for (int kind = 0; kind < ANY_CURVE; kind++) {
-        if (tried[kind] || !isfinite(predict(meaning, kind, &sums)))
+        if (tried[kind] || !isfinite(predict(meaning, (CurveKind)kind, &sums)))
             continue;
         Fit fit = fit_of(meaning, samples, kind);
         if (!fits(&fit) || (best >= 0 && fit.squares >= least.squares))
@@ -395,8 +353,8 @@ Status cause_tone(const Picture *a, const Picture *b, const Samples *samples, Se
     Codes few = codes_of(a, b, samples), all = codes_of(a, b, NULL);
     bool tried[KINDS] = {false};
     for (int kind; !*out->text && (kind = best_curve(&meaning, &few, tried)) >= 0;) {
-        const Sums sums = sum_codes(&meaning, &all);
-        double number = predict(&meaning, kind, &sums);
+        const ToneSums sums = sum_codes(&meaning, &all);
+        double number = predict(&meaning, (CurveKind)kind, &sums);
         Fit fit = fit_of(&meaning, &all, kind);
         if (fits(&fit))
             say(&curves[kind], number, out);

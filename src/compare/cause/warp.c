@@ -591,21 +591,23 @@ static Status list_levels(int bits, bool linear, float **levels, Err *err)
     return STATUS_OK;
 }
 
-static Status try_warp(const Picture *a, const Picture *b, const Samples *samples, Shift start,
-                       bool linear, double *left, Sentence *out, Err *err)
+/* Tries both guesses, in light or in codes. patches->left is what they have left. */
+static Status try_warp(Patches *patches, const Samples *samples, const Shift *start, bool linear,
+                       Sentence *out, Err *err)
 {
     float *levels;
-    TRY(list_levels(a->bits, linear, &levels, err));
-    Patches patches = {
-        .a = a, .b = b, .start = start, .levels = levels, .channel = ALL_CHANNELS, .left = 1};
-    Status status = patches_init(&patches, samples, err);
-    if (status == STATUS_OK)
-        try_shift(&patches, out);
-    patches.start = (Shift){0};
-    if (status == STATUS_OK && !*out->text)
-        try_blur(&patches, out);
-    *left = patches.left;
-    free(patches.before);
+    TRY(list_levels(patches->a->bits, linear, &levels, err));
+    Status status = STATUS_OK;
+    patches->start = *start;
+    patches->levels = levels;
+    patches->n = 0;
+    TRY_GOTO(patches_init(patches, samples, err));
+    try_shift(patches, out);
+    patches->start = (Shift){0};
+    if (!*out->text)
+        try_blur(patches, out);
+done:
+    free(patches->before);
     free(levels);
     return status;
 }
@@ -614,9 +616,10 @@ static Status try_warp(const Picture *a, const Picture *b, const Samples *sample
 Status cause_warp(const Picture *a, const Picture *b, const Samples *samples, const Shift *start,
                   Sentence *out, Err *err)
 {
-    double left;
-    TRY(try_warp(a, b, samples, *start, false, &left, out, err));
-    return *out->text || a->gamma != 0 || left > 0.5
-               ? STATUS_OK
-               : try_warp(a, b, samples, *start, true, &left, out, err);
+    Patches patches = {.a = a, .b = b, .channel = ALL_CHANNELS, .left = 1};
+    TRY(try_warp(&patches, samples, start, false, out, err));
+    if (*out->text || a->gamma != 0 || patches.left > 0.5)
+        return STATUS_OK;
+    patches = (Patches){.a = a, .b = b, .channel = ALL_CHANNELS, .left = 1};
+    return try_warp(&patches, samples, start, true, out, err);
 }

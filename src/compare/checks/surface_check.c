@@ -7,10 +7,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* The planes of a check. */
+typedef struct SurfacePlanes {
+    const Plane *a, *b, *allowed;
+} SurfacePlanes;
+
 /* Classes one pixel; its error is appended to `errors` when it is common. */
-static void count_pixel(double a, double b, double allowed, size_t i, int width,
-                        SurfaceCheck *check, double *errors)
+static void count_pixel(const SurfacePlanes *planes, size_t i, SurfaceCheck *check, double *errors)
 {
+    const double a = (double)planes->a->values[i], b = (double)planes->b->values[i];
+    const double allowed = (double)planes->allowed->values[i];
     bool in_a = isfinite(a), in_b = isfinite(b);
     if (!in_a && !in_b)
         return;
@@ -27,8 +33,8 @@ static void count_pixel(double a, double b, double allowed, size_t i, int width,
     check->beyond += !(error <= allowed);
     if (!(error / allowed <= check->max_ratio)) {
         check->max_ratio = error / allowed;
-        check->worst_x = (int)(i % (size_t)width);
-        check->worst_y = (int)(i / (size_t)width);
+        check->worst_x = (int)(i % (size_t)planes->a->width);
+        check->worst_y = (int)(i / (size_t)planes->a->width);
     }
 }
 
@@ -64,11 +70,11 @@ Status surface_check(const Plane *a, const Plane *b, const Plane *allowed, Surfa
                           .max_mm = NAN,
                           .worst_x = -1,
                           .worst_y = -1};
+    const SurfacePlanes planes = {a, b, allowed};
     double *errors;
     TRY(mem_calloc(&errors, check.pixels, sizeof *errors, "errors of pixels", err));
     for (size_t i = 0; i < check.pixels; i++)
-        count_pixel((double)a->values[i], (double)b->values[i], (double)allowed->values[i], i,
-                    a->width, &check, errors);
+        count_pixel(&planes, i, &check, errors);
     if (check.common) {
         check.median_mm = percentile(errors, check.common, 0.5);
         check.p99_mm = percentile(errors, check.common, 0.99);

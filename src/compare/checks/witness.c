@@ -35,6 +35,8 @@ static Status compare_pair(const Testimony *a, const Testimony *b, double depth_
                            Witness *witness, WitnessPair pair, Err *err)
 {
     Tolerance tolerance = witness_tolerance(depth_step_mm, a->ids);
+    const Rendering of_a = {.ids = a->ids, .depth = a->depth};
+    const Rendering of_b = {.ids = b->ids, .depth = b->depth};
     CompareResult **ids = &witness->pairs[pair].ids, **depth = &witness->pairs[pair].depth;
     TRY(mem_calloc(ids, 1, sizeof **ids, "a comparison", err));
     TRY(mem_calloc(depth, 1, sizeof **depth, "a comparison", err));
@@ -42,7 +44,7 @@ static Status compare_pair(const Testimony *a, const Testimony *b, double depth_
              b->name);
     TRY(compare_ids(a->ids, b->ids, &tolerance, *ids, err));
     tolerance.limits[LIMIT_REGION_PIXELS] = (double)INFINITY; /* as judged of the ids */
-    TRY(compare_planes(PLANE_DEPTH, a->depth, b->depth, a->ids, b->ids, &tolerance, *depth, err));
+    TRY(compare_planes(PLANE_DEPTH, &of_a, &of_b, &tolerance, *depth, err));
     witness->pairs[pair].agrees = (*ids)->agrees && (*depth)->agrees;
     return STATUS_OK;
 }

@@ -111,9 +111,9 @@ double de2000(const double lab_a[3], const double lab_b[3])
 enum { STRETCH = 64 };
 
 /* Linear colours of a stretch of both pictures. */
-typedef struct Stretch {
+typedef struct LinearStretch {
     float red[STRETCH], green[STRETCH], blue[STRETCH];
-} Stretch;
+} LinearStretch;
 
 typedef struct De2000 {
     const Picture *pictures[2];
@@ -136,7 +136,7 @@ static inline Lab lab_of(float red, float green, float blue)
     return (Lab){116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-static inline void load(const De2000 *self, int side, size_t y, int x, int n, Stretch *out)
+static inline void load(const De2000 *self, int side, size_t y, int x, int n, LinearStretch *out)
 {
     const Picture *picture = self->pictures[side];
     size_t channels = (size_t)picture->channels, green = channels == 1 ? 0 : 1;
@@ -148,8 +148,8 @@ static inline void load(const De2000 *self, int side, size_t y, int x, int n, St
     }
 }
 
-static inline void find_differences(const Stretch *restrict a, const Stretch *restrict b,
-                                    float *restrict differences)
+static inline void find_differences(const LinearStretch *restrict a,
+                                    const LinearStretch *restrict b, float *restrict differences)
 {
     for (int i = 0; i < STRETCH; i++)
         differences[i] = difference_of(lab_of(a->red[i], a->green[i], a->blue[i]),
@@ -161,7 +161,7 @@ FLAT static void do_row(size_t y, int worker, void *context)
     (void)worker;
     De2000 *self = context;
     const Picture *a = self->pictures[0], *b = self->pictures[1];
-    Stretch colors[2] = {0};
+    LinearStretch colors[2] = {0};
     float differences[STRETCH];
     if (picture_rows_equal(a, b, (int)y, 0, a->width))
         return;

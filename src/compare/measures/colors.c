@@ -130,17 +130,18 @@ static Status copy_plane(Plane *copy, const Plane *plane, Err *err)
     return STATUS_OK;
 }
 
-Status compare_colors(const Plane *a, const Plane *b, const IdPlane *id_a, const IdPlane *id_b,
-                      const Tolerance *tolerance, bool perception, CompareResult *result, Err *err)
+Status compare_colors(const Rendering *of_a, const Rendering *of_b, const Tolerance *tolerance,
+                      bool perception, CompareResult *result, Err *err)
 {
+    const Plane *a = of_a->color, *b = of_b->color;
     TRY(check_sizes(a->width, a->height, b->width, b->height, err));
     if (a->channels != b->channels || (a->channels != 1 && a->channels != 3))
         return err_set(err, STATUS_INPUT,
                        "the images differ in depth: %d and %d channels of floats; both must have 1 "
                        "or both 3",
                        a->channels, b->channels);
-    TRY(labels_check_ids(a->width, a->height, id_a, id_b, err));
-    CompareResult made = result_start(PLANE_COLOR, a->width, a->height, id_a, tolerance);
+    TRY(labels_check_ids(a->width, a->height, of_a->ids, of_b->ids, err));
+    CompareResult made = result_start(PLANE_COLOR, a->width, a->height, of_a->ids, tolerance);
     made.values[MEASURE_BITS] = 32;
     Plane copy_a = {0}, copy_b = {0};
     Status status = STATUS_OK;
@@ -150,7 +151,7 @@ Status compare_colors(const Plane *a, const Plane *b, const IdPlane *id_a, const
     measure(&copy_a, &copy_b, &made);
     if (perception)
         TRY_GOTO(measure_perception(&copy_a, &copy_b, &made, err));
-    result_finish(&made, id_a, id_b);
+    result_finish(&made, of_a->ids, of_b->ids);
     *result = made;
 done:
     plane_release(&copy_a);

@@ -173,8 +173,8 @@ static void load_inputs(const Flip *flip, int side, int exposure, int x, int y, 
     const FlipPair *pair = flip->pair;
     int left = clamp(x, 0, pair->width - 1), right = clamp(x + SPAN, left + 1, pair->width);
     int first = left - x, count = right - left;
-    pair->colors(pair, side, exposure, left, clamp(y, 0, pair->height - 1), count,
-                 work->colors[0] + first, SPAN);
+    const FlipSpan span = {side, exposure, left, clamp(y, 0, pair->height - 1), count};
+    pair->colors(pair, &span, work->colors[0] + first, SPAN);
     for (int i = first; i < first + count; i++) {
         Triple xyz =
             xyz_from_rgb((Triple){work->colors[0][i], work->colors[1][i], work->colors[2][i]});
@@ -390,15 +390,13 @@ typedef struct Pictures {
     float *linear; /* owned; decoded level of each code */
 } Pictures;
 
-static void picture_colors(const FlipPair *pair, int side, int exposure, int x, int y, int n,
-                           float *out, size_t stride)
+static void picture_colors(const FlipPair *pair, const FlipSpan *span, float *out, size_t stride)
 {
-    (void)exposure;
     const Pictures *self = pair->context;
-    const Picture *picture = self->pictures[side];
+    const Picture *picture = self->pictures[span->side];
     size_t channels = (size_t)picture->channels;
-    size_t first = (size_t)y * picture_stride(picture) + (size_t)x * channels;
-    for (size_t i = 0; i < (size_t)n; i++)
+    size_t first = (size_t)span->y * picture_stride(picture) + (size_t)span->x * channels;
+    for (size_t i = 0; i < (size_t)span->n; i++)
         for (size_t c = 0; c < 3; c++)
             out[c * stride + i] =
                 self->linear[picture_code(picture, first + i * channels + (channels == 1 ? 0 : c))];

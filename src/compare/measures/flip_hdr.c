@@ -23,16 +23,16 @@ static float tone_map(float x)
     return mapped < 0 ? 0 : mapped > 1 ? 1 : mapped;
 }
 
-static void hdr_colors(const FlipPair *pair, int side, int exposure, int x, int y, int n,
-                       float *out, size_t stride)
+static void hdr_colors(const FlipPair *pair, const FlipSpan *span, float *out, size_t stride)
 {
     const Hdr *self = pair->context;
-    const Plane *plane = self->planes[side];
+    const Plane *plane = self->planes[span->side];
     double step = (self->stop - self->start) / (self->exposures - 1);
-    float factor = (float)elementary_exp2(self->start + exposure * step);
+    float factor = (float)elementary_exp2(self->start + span->exposure * step);
     size_t channels = (size_t)plane->channels;
-    const float *values = plane->values + ((size_t)y * (size_t)plane->width + (size_t)x) * channels;
-    for (size_t i = 0; i < (size_t)n; i++)
+    const float *values =
+        plane->values + ((size_t)span->y * (size_t)plane->width + (size_t)span->x) * channels;
+    for (size_t i = 0; i < (size_t)span->n; i++)
         for (size_t c = 0; c < 3; c++)
             out[c * stride + i] = tone_map(factor * values[i * channels + (channels == 1 ? 0 : c)]);
 }

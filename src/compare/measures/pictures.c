@@ -1,15 +1,16 @@
 /* Two pictures: the sums over all pixels (pixel_counts.c) become measures and a verdict. */
 #include "compare/measure.h"
 #include "compare/measures/perception.h"
+#include "compare/measures/pixel_counts.h"
 #include "compare/measures/planes.h"
-#include "compare/measures/regression.h"
 #include "compare/pixels.h"
 #include "compare/rules/judge.h"
 
 #include <math.h>
 #include <string.h>
 
-static void take_color(const Sums *sums, double code_levels, int channels, CompareResult *result)
+static void take_color(const PixelSums *sums, double code_levels, int channels,
+                       CompareResult *result)
 {
     double *values = result->values, pixels = values[MEASURE_PIXELS], bias_levels = 0;
     double samples = pixels * channels, rmse = sqrt((double)sums->squares / samples) * code_levels;
@@ -25,33 +26,12 @@ static void take_color(const Sums *sums, double code_levels, int channels, Compa
     values[MEASURE_MEAN_ABS] = (double)sums->abs / samples * code_levels;
     values[MEASURE_RMSE] = rmse;
     values[MEASURE_PSNR_DB] = rmse > 0 ? 20 * elementary_log10(255 / rmse) : (double)INFINITY;
-    values[MEASURE_DIFFERING_PIXELS] = (double)sums->differing;
-    values[MEASURE_BEYOND_PIXELS] = (double)sums->beyond;
-    values[MEASURE_SETTLED_PIXELS] = (double)sums->settled;
     values[MEASURE_BIAS_LEVELS] = bias_levels;
     values[MEASURE_SIGN_SIGMA] =
-        sums->differing ? (brighter - darker) / sqrt(fmax(brighter + darker, 1)) : 0;
+        sums->counts[COUNT_DIFFERING] ? (brighter - darker) / sqrt(fmax(brighter + darker, 1)) : 0;
     if (sums->max > 0)
         result->places[PLACE_WORST] = sums->worst;
     memcpy(result->classes, sums->classes, sizeof result->classes);
-}
-
-static void take_mask(const Sums *sums, double code_levels, CompareResult *result)
-{
-    double *values = result->values, moved = (double)sums->extra - (double)sums->missing;
-    result->has_mask = true;
-    values[MEASURE_COMMON_PIXELS] = (double)sums->common;
-    values[MEASURE_MISSING_PIXELS] = (double)sums->missing;
-    values[MEASURE_EXTRA_PIXELS] = (double)sums->extra;
-    values[MEASURE_BAND_PIXELS] = (double)sums->band;
-    values[MEASURE_INTERIOR_PIXELS] = values[MEASURE_PIXELS] - (double)sums->band;
-    values[MEASURE_BAND_BEYOND] = (double)sums->band_beyond;
-    values[MEASURE_INTERIOR_BEYOND] = (double)sums->interior_beyond;
-    values[MEASURE_INTERIOR_MAX_ABS] = sums->interior_max * code_levels;
-    values[MEASURE_EDGE_MISMATCH] =
-        sums->band ? (double)sums->band_differs / (double)sums->band : 0;
-    values[MEASURE_SILHOUETTE_PX] =
-        sums->silhouette ? moved / (PX_PER_EDGE * (double)sums->silhouette) : 0;
 }
 
 static Status check_views(const Rendering *a, const Rendering *b, Err *err)
@@ -71,12 +51,19 @@ static Status take_counts(const Counting *counting, CompareResult *result, Ledge
 {
     double code_levels = counting->a->picture->bits == 8 ? 1 : 1 / 257.0;
     int channels = counting->a->picture->channels;
-    take_color(counting->sums, code_levels, channels, result);
-    if (counting->labels->source == LABELS_UNKNOWN)
+    const PixelSums *sums = counting->sums;
+    double *values = result->values;
+    bool labelled = counting->labels->source != LABELS_UNKNOWN;
+    take_color(sums, code_levels, channels, result);
+    counts_take(sums->counts, labelled, result);
+    if (!labelled)
         return STATUS_OK;
-    take_mask(counting->sums, code_levels, result);
+    double moved = values[MEASURE_EXTRA_PIXELS] - values[MEASURE_MISSING_PIXELS];
+    values[MEASURE_INTERIOR_MAX_ABS] = sums->interior_max * code_levels;
+    values[MEASURE_SILHOUETTE_PX] =
+        sums->silhouette ? moved / (PX_PER_EDGE * (double)sums->silhouette) : 0;
     if (counting->common_only)
-        result->values[MEASURE_JUDGED_PIXELS] = result->values[MEASURE_COMMON_PIXELS];
+        values[MEASURE_JUDGED_PIXELS] = values[MEASURE_COMMON_PIXELS];
     TRY(region_take(counting->coverage, counting->labels, result, err));
     if (!counting->index)
         return STATUS_OK;
@@ -117,12 +104,13 @@ Status class_picture(Picture *out, const Rendering *a, const Rendering *b,
     TRY(picture_init(&made, labels.width, labels.height, 1, 8, err));
     memset(made.codes8, PIXEL_IDENTICAL, (size_t)labels.width * (size_t)labels.height);
     counting.classes = made.codes8;
-    Status status = count_pixels(&counting, err);
+    Status status = STATUS_OK;
+    TRY_GOTO(count_pixels(&counting, err));
+    *out = made;
+    made = (Picture){0};
+done:
     counting_release(&counting);
-    if (status == STATUS_OK)
-        *out = made;
-    else
-        picture_release(&made);
+    picture_release(&made);
     return status;
 }
 

@@ -12,17 +12,17 @@
 enum { BAND_ROWS = 32, BLOCK = 32 };
 
 /* One row being looked at. */
-typedef struct Row {
+typedef struct PixelRow {
     const LabelWindow *window;
     const uint16_t *a, *b; /* codes; when the rows are equal the same pointer, perhaps to what has
                             * not been read */
     int y;
-} Row;
+} PixelRow;
 
 /* ------------------------------------------------------------------------------------- classes */
 
 /* Of a pixel whose labels agree. */
-static PixelClass class_of_shading(const Counting *counting, const Row *row, int x, bool seen,
+static PixelClass class_of_shading(const Counting *counting, const PixelRow *row, int x, bool seen,
                                    int difference)
 {
     size_t pixel = (size_t)row->y * (size_t)counting->labels->width + (size_t)x;
@@ -45,7 +45,7 @@ static PixelClass class_of_shading(const Counting *counting, const Row *row, int
 }
 
 /* The largest difference over the channels of a pixel, in codes; adds to the sums. */
-static int pixel_difference(const uint16_t *a, const uint16_t *b, int channels, Sums *sums)
+static int pixel_difference(const uint16_t *a, const uint16_t *b, int channels, PixelSums *sums)
 {
     int largest = 0, sum = 0;
     for (int c = 0; c < channels; c++) {
@@ -61,7 +61,7 @@ static int pixel_difference(const uint16_t *a, const uint16_t *b, int channels, 
     return largest;
 }
 
-static void count_pixel(const Counting *counting, const Row *row, int x, Sums *sums)
+static void count_pixel(const Counting *counting, const PixelRow *row, int x, PixelSums *sums)
 {
     const LabelWindow *window = row->window;
     int channels = counting->a->picture->channels;
@@ -78,20 +78,20 @@ static void count_pixel(const Counting *counting, const Row *row, int x, Sums *s
     sums->classes[pixel_class]++;
     if (counting->classes)
         counting->classes[pixel] = (uint8_t)pixel_class;
-    sums->common += common;
+    sums->counts[COUNT_COMMON] += common;
     if (!in_a != !in_b && !settled) {
         counting->coverage[pixel] = in_a ? COVERED_MISSING : COVERED_EXTRA;
-        sums->missing += in_a != 0;
-        sums->extra += in_b != 0;
+        sums->counts[COUNT_MISSING] += in_a != 0;
+        sums->counts[COUNT_EXTRA] += in_b != 0;
     }
-    sums->band += band;
-    sums->band_differs += band && in_a != in_b;
-    sums->differing += difference > 0;
-    sums->settled += settled;
+    sums->counts[COUNT_BAND] += band;
+    sums->counts[COUNT_BAND_DIFFERS] += band && in_a != in_b;
+    sums->counts[COUNT_DIFFERING] += difference > 0;
+    sums->counts[COUNT_SETTLED] += settled;
     beyond = beyond && !settled;
-    sums->beyond += beyond && (common || !counting->common_only);
-    sums->band_beyond += beyond && band;
-    sums->interior_beyond += beyond && !band;
+    sums->counts[COUNT_BEYOND] += beyond && (common || !counting->common_only);
+    sums->counts[COUNT_BAND_BEYOND] += beyond && band;
+    sums->counts[COUNT_INTERIOR_BEYOND] += beyond && !band;
     if (!band && !settled && difference > sums->interior_max)
         sums->interior_max = difference;
     if (!settled && difference > sums->unsettled_max)
@@ -104,7 +104,7 @@ static void count_pixel(const Counting *counting, const Row *row, int x, Sums *s
 
 /* Pixels [from, to) of a row that are equal in colour and label, and whose geometry nobody asked
  * about. */
-static void count_equal(const LabelWindow *window, int from, int to, Sums *sums)
+static void count_equal(const LabelWindow *window, int from, int to, PixelSums *sums)
 {
     const uint32_t *label = window->rows[0][1];
     unsigned common = 0, band = 0;
@@ -112,8 +112,8 @@ static void count_equal(const LabelWindow *window, int from, int to, Sums *sums)
         common += label[x] != 0;
         band += window->band[x];
     }
-    sums->common += common;
-    sums->band += band;
+    sums->counts[COUNT_COMMON] += common;
+    sums->counts[COUNT_BAND] += band;
     sums->classes[PIXEL_IDENTICAL] += (size_t)(to - from);
 }
 
@@ -124,7 +124,7 @@ typedef struct Differences {
 
 /* Of n pixels; adds to the sums. No sum of a block exceeds 64 bits, and but squares 32. */
 static inline void take_differences(const uint16_t *a, const uint16_t *b, int n, int channels,
-                                    Differences *out, Sums *sums)
+                                    Differences *out, PixelSums *sums)
 {
     uint64_t squares = 0;
     uint32_t total = 0;
@@ -148,7 +148,7 @@ static inline void take_differences(const uint16_t *a, const uint16_t *b, int n,
         sums->signed_codes[c] += signed_codes[c];
 }
 
-static void note_worst(const Differences *differences, int from, int n, int y, Sums *sums)
+static void note_worst(const Differences *differences, int from, int n, int y, PixelSums *sums)
 {
     for (int x = 0; x < n; x++)
         if (differences->largest[x] > sums->max) {
@@ -159,7 +159,8 @@ static void note_worst(const Differences *differences, int from, int n, int y, S
 
 /* Pixels [from, to) of a row whose labels agree, of which nobody asks more than their colours: as
  * count_pixel counts them. */
-static void count_colors(const Counting *counting, const Row *row, int from, int to, Sums *sums)
+static void count_colors(const Counting *counting, const PixelRow *row, int from, int to,
+                         PixelSums *sums)
 {
     const uint32_t *label = row->window->rows[0][1] + from;
     const uint8_t *band = row->window->band + from;
@@ -191,34 +192,34 @@ static void count_colors(const Counting *counting, const Row *row, int from, int
     sums->classes[PIXEL_ROUNDING] += rounding;
     sums->classes[PIXEL_SHADING] += shading;
     sums->classes[PIXEL_IDENTICAL] += (unsigned)n - rounding - shading;
-    sums->differing += rounding + shading;
+    sums->counts[COUNT_DIFFERING] += rounding + shading;
     sums->brighter += brighter;
     sums->darker += darker;
-    sums->common += common;
-    sums->band += in_band;
-    sums->beyond += beyond;
-    sums->band_beyond += band_beyond;
-    sums->interior_beyond += interior_beyond;
+    sums->counts[COUNT_COMMON] += common;
+    sums->counts[COUNT_BAND] += in_band;
+    sums->counts[COUNT_BEYOND] += beyond;
+    sums->counts[COUNT_BAND_BEYOND] += band_beyond;
+    sums->counts[COUNT_INTERIOR_BEYOND] += interior_beyond;
     sums->interior_max = interior_max;
     sums->unsettled_max = unsettled_max;
     note_worst(&differences, from, n, row->y, sums);
 }
 
-static bool labels_equal(const Row *row, int from, int to)
+static bool labels_equal(const PixelRow *row, int from, int to)
 {
     const uint32_t *in_a = row->window->rows[0][1], *in_b = row->window->rows[1][1];
     size_t n = (size_t)(to - from);
     return in_a == in_b || memcmp(in_a + from, in_b + from, n * sizeof *in_a) == 0;
 }
 
-static bool codes_equal(const Row *row, int from, int to, int channels)
+static bool codes_equal(const PixelRow *row, int from, int to, int channels)
 {
     size_t start = (size_t)from * (size_t)channels, n = (size_t)(to - from) * (size_t)channels;
     return row->a == row->b || memcmp(row->a + start, row->b + start, n * sizeof *row->a) == 0;
 }
 
 /* Counts a row by blocks, most of which are equal even in rows that are not. */
-static void count_blocks(const Counting *counting, const Row *row, Sums *sums)
+static void count_blocks(const Counting *counting, const PixelRow *row, PixelSums *sums)
 {
     int width = counting->labels->width, channels = counting->a->picture->channels;
     bool geometry = counting->a->depth && counting->a->normal;
@@ -238,7 +239,12 @@ static void count_blocks(const Counting *counting, const Row *row, Sums *sums)
 
 /* ---------------------------------------------------------------------------------------- sums */
 
-static void count_silhouette(const uint32_t *row, const uint32_t *below, int width, Sums *sums)
+static int larger_int(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+static void count_silhouette(const uint32_t *row, const uint32_t *below, int width, PixelSums *sums)
 {
     unsigned edges = 0;
     for (int x = 0; x < width; x++)
@@ -249,7 +255,7 @@ static void count_silhouette(const uint32_t *row, const uint32_t *below, int wid
 }
 
 /* What the straight line through the colours seen in both needs. */
-static void add_regression(const Row *row, int width, int channels, Sums *sums)
+static void add_regression(const PixelRow *row, int width, int channels, PixelSums *sums)
 {
     const uint32_t *in_a = row->window->rows[0][1], *in_b = row->window->rows[1][1];
     for (int x = 0; x < width; x++) {
@@ -257,17 +263,18 @@ static void add_regression(const Row *row, int width, int channels, Sums *sums)
             continue;
         for (int i = x * channels; i < (x + 1) * channels; i++) {
             int64_t a = row->a[i], d = row->b[i] - a;
-            sums->a += (uint64_t)a;
-            sums->aa += (uint64_t)(a * a);
-            sums->d += d;
-            sums->ad += a * d;
-            sums->dd += (uint64_t)(d * d);
+            sums->line.a += (uint64_t)a;
+            sums->line.aa += (uint64_t)(a * a);
+            sums->line.d += d;
+            sums->line.ad += a * d;
+            sums->line.dd += (uint64_t)(d * d);
         }
-        sums->n += (uint64_t)channels;
+        sums->line.n += (uint64_t)channels;
     }
 }
 
-static void count_row(const Counting *counting, const Row *row, Sums *sums, SegmentSums *segments)
+static void count_row(const Counting *counting, const PixelRow *row, PixelSums *sums,
+                      SegmentSums *segments)
 {
     int width = counting->labels->width, channels = counting->a->picture->channels;
     count_blocks(counting, row, sums);
@@ -296,7 +303,7 @@ static void count_band(size_t index, int worker, void *context)
     for (int y = top; y < bottom; y++) {
         bool equal = picture_rows_equal(a, b, y, 0, a->width);
         bool read = !equal || counting->index || counting->a->depth;
-        Row row = {.window = &window, .y = y};
+        PixelRow row = {.window = &window, .y = y};
         row.a = read ? picture_row(a, y, codes[0]) : codes[0];
         row.b = equal ? row.a : picture_row(b, y, codes[1]);
         count_row(counting, &row, &counting->sums[index], segments);
@@ -310,7 +317,7 @@ WIDE static void count_band_wide(size_t index, int worker, void *context)
     count_band(index, worker, context);
 }
 
-static void add_sums(Sums *to, const Sums *from)
+static void add_sums(PixelSums *to, const PixelSums *from)
 {
     to->abs += from->abs;
     to->squares += from->squares;
@@ -318,29 +325,19 @@ static void add_sums(Sums *to, const Sums *from)
         to->signed_codes[c] += from->signed_codes[c];
     for (int i = 0; i < PIXEL_CLASSES; i++)
         to->classes[i] += from->classes[i];
-    to->differing += from->differing;
-    to->beyond += from->beyond;
-    to->settled += from->settled;
+    for (int i = 0; i < PIXEL_COUNTS; i++)
+        to->counts[i] += from->counts[i];
     to->brighter += from->brighter;
     to->darker += from->darker;
-    to->common += from->common;
-    to->missing += from->missing;
-    to->extra += from->extra;
-    to->band += from->band;
-    to->band_differs += from->band_differs;
-    to->band_beyond += from->band_beyond;
-    to->interior_beyond += from->interior_beyond;
     to->silhouette += from->silhouette;
-    to->n += from->n;
-    to->a += from->a;
-    to->aa += from->aa;
-    to->d += from->d;
-    to->ad += from->ad;
-    to->dd += from->dd;
-    if (from->interior_max > to->interior_max)
-        to->interior_max = from->interior_max;
-    if (from->unsettled_max > to->unsettled_max)
-        to->unsettled_max = from->unsettled_max;
+    to->line.n += from->line.n;
+    to->line.a += from->line.a;
+    to->line.aa += from->line.aa;
+    to->line.d += from->line.d;
+    to->line.ad += from->line.ad;
+    to->line.dd += from->line.dd;
+    to->interior_max = larger_int(to->interior_max, from->interior_max);
+    to->unsettled_max = larger_int(to->unsettled_max, from->unsettled_max);
     if (from->max > to->max) {
         to->max = from->max;
         to->worst = from->worst;

@@ -1,25 +1,28 @@
-/* The one pass over two pictures in which all pixels are counted and all sums taken; private to the
- * room compare. */
+/* The one pass over two pictures that counts all pixels and takes all sums. Private to the module
+ * compare. */
 #ifndef CORCAST_COMPARE_MEASURES_PIXEL_COUNTS_H
 #define CORCAST_COMPARE_MEASURES_PIXEL_COUNTS_H
 
 #include "compare/measures/ledger.h"
 
-/* What is gathered over a band of rows. */
-typedef struct Sums {
+/* Sums over the samples seen in both, for the straight line through them; d = b - a. */
+typedef struct LineSums {
+    uint64_t n, a, aa, dd;
+    int64_t d, ad;
+} LineSums;
+
+/* Sums over the pixels of a band of rows. */
+typedef struct PixelSums {
     uint64_t abs, squares; /* codes, codes^2 */
     int64_t signed_codes[3];
-    size_t differing, beyond, settled;
+    size_t counts[PIXEL_COUNTS];
     size_t brighter, darker; /* pixels, by the sum of their channels */
     size_t classes[PIXEL_CLASSES];
     int max, interior_max, unsettled_max; /* codes; unsettled_max leaves settled pixels out */
     PixelPlace worst;
-    size_t common, missing, extra, band, band_differs, band_beyond, interior_beyond;
     uint64_t silhouette; /* sides of A's pixels that part something from nothing */
-    uint64_t n, a, aa;   /* over samples seen in both: count, a, a a */
-    int64_t d, ad;       /* ... d = b - a, a d */
-    uint64_t dd;         /* ... d d */
-} Sums;
+    LineSums line;
+} PixelSums;
 
 /* What is counted, and where to. */
 typedef struct Counting {
@@ -32,7 +35,7 @@ typedef struct Counting {
     double geometry_mm, geometry_deg; /* beyond which geometry differs */
     uint8_t *classes;                 /* borrowed; takes the PixelClass of each pixel; or NULL */
     uint8_t *coverage;                /* owned; a Coverage for each pixel */
-    Sums *sums;                       /* owned; one for each band */
+    PixelSums *sums;                  /* owned; one for each band */
     SegmentSums *segments;            /* owned; index->n for each worker */
     uint8_t *scratch;                 /* owned; scratch_size for each worker */
     size_t scratch_size;
@@ -43,5 +46,11 @@ typedef struct Counting {
  * on failure. */
 MUST_CHECK Status count_pixels(Counting *counting, Err *err);
 void counting_release(Counting *counting);
+
+/* Adds gain and offset of the least squares fit B = gain A + offset over the samples that were
+ * counted, their standard errors, and what is left of them beyond two errors. A code is
+ * `code_levels` levels. Errors: STATUS_MEMORY. */
+MUST_CHECK Status regression_take(const Counting *counting, double code_levels,
+                                  CompareResult *result, Err *err);
 
 #endif

@@ -94,64 +94,38 @@ static void measure_parts(const Plane *a, const Plane *b, const Labels *labels, 
         result->values[MEASURE_P99_PART] = percentile(errors, found, 0.99);
 }
 
-/* Counts of pixels by their labels. */
-typedef struct LabelCounts {
-    size_t missing, extra, common, band, differing, settled, band_differing, band_settled;
-} LabelCounts;
-
-static void count_label(const Labels *labels, const LabelWindow *window, int x, uint8_t *coverage,
-                        LabelCounts *counts, CompareResult *result)
+static void count_label(const LabelWindow *window, int x, uint8_t *coverage,
+                        size_t counts[PIXEL_COUNTS], CompareResult *result)
 {
-    size_t pixel = (size_t)window->y * (size_t)labels->width + (size_t)x;
+    size_t pixel = (size_t)window->y * (size_t)window->labels->width + (size_t)x;
     uint32_t a = window->rows[0][1][x], b = window->rows[1][1][x];
     bool band = window->band[x], differs = a != b;
-    bool settled = differs && is_settled(&result->tolerance, pixel);
+    bool settled = differs && is_settled(&result->tolerance, pixel), beyond = differs && !settled;
     if (!a != !b && !settled) {
         coverage[pixel] = a ? COVERED_MISSING : COVERED_EXTRA;
-        counts->missing += a != 0;
-        counts->extra += b != 0;
+        counts[COUNT_MISSING] += a != 0;
+        counts[COUNT_EXTRA] += b != 0;
     }
-    counts->common += a && b;
-    counts->band += band;
-    counts->settled += settled;
-    counts->band_differing += band && differs;
-    counts->band_settled += band && settled;
+    if (differs && result->kind == PLANE_ID && counts[COUNT_DIFFERING] == 0)
+        result->places[PLACE_WORST] = (PixelPlace){.x = x, .y = window->y};
+    counts[COUNT_DIFFERING] += differs;
+    counts[COUNT_BEYOND] += beyond;
+    counts[COUNT_SETTLED] += settled;
+    counts[COUNT_COMMON] += a && b;
+    counts[COUNT_BAND] += band;
+    counts[COUNT_BAND_DIFFERS] += band && differs;
+    counts[COUNT_BAND_BEYOND] += band && beyond;
+    counts[COUNT_INTERIOR_BEYOND] += !band && beyond;
     result->classes[settled   ? PIXEL_SETTLED
                     : differs ? labels_class(a, b, band)
                               : PIXEL_IDENTICAL]++;
-    if (differs && result->kind == PLANE_ID && counts->differing++ == 0)
-        result->places[PLACE_WORST] = (PixelPlace){.x = x, .y = window->y};
-}
-
-static void take_label_counts(const LabelCounts *counts, CompareResult *result)
-{
-    double *values = result->values, pixels = values[MEASURE_PIXELS];
-    double mismatch = counts->band ? (double)counts->band_differing / (double)counts->band : 0;
-    size_t beyond = counts->differing - counts->settled;
-    size_t band_beyond = counts->band_differing - counts->band_settled;
-    result->has_mask = true;
-    values[MEASURE_MISSING_PIXELS] = (double)counts->missing;
-    values[MEASURE_EXTRA_PIXELS] = (double)counts->extra;
-    values[MEASURE_COMMON_PIXELS] = (double)counts->common;
-    values[MEASURE_BAND_PIXELS] = (double)counts->band;
-    values[MEASURE_INTERIOR_PIXELS] = pixels - (double)counts->band;
-    values[MEASURE_SETTLED_PIXELS] = (double)counts->settled;
-    values[MEASURE_EDGE_MISMATCH] = mismatch;
-    if (result->kind != PLANE_ID)
-        return;
-    values[MEASURE_EDGE_MISMATCH_PERCENT] = 100 * mismatch;
-    values[MEASURE_DIFFERING_PIXELS] = (double)counts->differing;
-    values[MEASURE_MISMATCH_FRACTION] = (double)counts->differing / pixels;
-    values[MEASURE_BEYOND_PIXELS] = (double)beyond;
-    values[MEASURE_BAND_BEYOND] = (double)band_beyond;
-    values[MEASURE_INTERIOR_BEYOND] = (double)(beyond - band_beyond);
 }
 
 /* Measures coverage, regions and edges of any labels, and the classes of pixels. */
 static Status measure_labels(const Labels *labels, CompareResult *result, Err *err)
 {
     uint8_t *scratch = NULL, *coverage = NULL;
-    LabelCounts counts = {0};
+    size_t counts[PIXEL_COUNTS] = {0};
     LabelWindow window;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&scratch, label_window_size(labels->width), 1, "rows of labels", err));
@@ -159,11 +133,11 @@ static Status measure_labels(const Labels *labels, CompareResult *result, Err *e
     label_window_open(&window, labels, 0, scratch);
     for (int y = 0; y < labels->height; y++) {
         for (int x = 0; x < labels->width; x++)
-            count_label(labels, &window, x, coverage, &counts, result);
+            count_label(&window, x, coverage, counts, result);
         if (y + 1 < labels->height)
             label_window_next(&window);
     }
-    take_label_counts(&counts, result);
+    counts_take(counts, true, result);
     status = region_take(coverage, labels, result, err);
 done:
     free(scratch);
@@ -171,18 +145,19 @@ done:
     return status;
 }
 
-Status compare_planes(PlaneKind kind, const Plane *a, const Plane *b, const IdPlane *id_a,
-                      const IdPlane *id_b, const Tolerance *tolerance, CompareResult *result,
-                      Err *err)
+Status compare_planes(PlaneKind kind, const Rendering *of_a, const Rendering *of_b,
+                      const Tolerance *tolerance, CompareResult *result, Err *err)
 {
+    const Plane *a = kind == PLANE_DEPTH ? of_a->depth : of_a->normal;
+    const Plane *b = kind == PLANE_DEPTH ? of_b->depth : of_b->normal;
     TRY(check_sizes(a->width, a->height, b->width, b->height, err));
     int channels = kind == PLANE_DEPTH ? 1 : 3;
     if (a->channels != channels || b->channels != channels)
         return err_set(err, STATUS_INPUT, "a %s plane must have %d channel%s, not %d and %d",
                        plane_kind_name(kind), channels, channels == 1 ? "" : "s", a->channels,
                        b->channels);
-    TRY(labels_check_ids(a->width, a->height, id_a, id_b, err));
-    CompareResult made = result_start(kind, a->width, a->height, id_a, tolerance);
+    TRY(labels_check_ids(a->width, a->height, of_a->ids, of_b->ids, err));
+    CompareResult made = result_start(kind, a->width, a->height, of_a->ids, tolerance);
     made.values[MEASURE_BITS] = 32;
     Labels labels = {0};
     double *errors = NULL;
@@ -195,7 +170,7 @@ Status compare_planes(PlaneKind kind, const Plane *a, const Plane *b, const IdPl
     measure_errors(kind, a, b, &labels, errors, &made);
     if (kind == PLANE_DEPTH)
         measure_parts(a, b, &labels, errors, &made);
-    result_finish(&made, id_a, id_b);
+    result_finish(&made, of_a->ids, of_b->ids);
     *result = made;
 done:
     free(errors);

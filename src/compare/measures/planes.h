@@ -24,29 +24,23 @@ MUST_CHECK Status class_picture(Picture *out, const Rendering *a, const Renderin
 MUST_CHECK Status compare_perception(const Picture *a, const Picture *b, CompareResult *result,
                                      Err *err);
 
-/* Compares two planes of linear colours, which may exceed 1.
+/* Compares the planes `color` of two renderings. Levels are those of the sRGB encoding, continued
+ * above white and mirrored below black. Pixels with a value that is not finite are counted, and
+ * enter no other measure. `ids` only name segments.
  *
- * Levels are those of the sRGB encoding, continued above white and mirrored below black. Pixels
- * with a value that is not finite are counted, and enter no other measure.
- *
- * id_a, id_b   both or neither NULL; they only name segments.
  * perception   adds HDR-FLIP of the colours, and the other perceptual measures of the colours
  *              clipped to white.
  * Errors       STATUS_INPUT if shapes differ; STATUS_MEMORY. */
-MUST_CHECK Status compare_colors(const Plane *a, const Plane *b, const IdPlane *id_a,
-                                 const IdPlane *id_b, const Tolerance *tolerance, bool perception,
-                                 CompareResult *result, Err *err);
+MUST_CHECK Status compare_colors(const Rendering *a, const Rendering *b, const Tolerance *tolerance,
+                                 bool perception, CompareResult *result, Err *err);
 
-/* Compares two depth planes (1 channel, INFINITY where nothing is seen) or two normal planes (3
- * channels, 0 0 0 where nothing is seen).
- *
- * NaN, and for a depth minus infinity, is counted and enters no other measure.
+/* Compares the planes `depth` (1 channel, INFINITY where nothing is seen) or `normal` (3 channels,
+ * 0 0 0 where nothing is seen) of two renderings. NaN, and for a depth minus infinity, is counted
+ * and enters no other measure. `ids` only name segments.
  *
  * kind         PLANE_DEPTH or PLANE_NORMAL.
- * id_a, id_b   both or neither NULL; they only name segments.
  * Errors       STATUS_INPUT if shapes differ; STATUS_MEMORY. */
-MUST_CHECK Status compare_planes(PlaneKind kind, const Plane *a, const Plane *b,
-                                 const IdPlane *id_a, const IdPlane *id_b,
+MUST_CHECK Status compare_planes(PlaneKind kind, const Rendering *a, const Rendering *b,
                                  const Tolerance *tolerance, CompareResult *result, Err *err);
 
 /* Compares two id planes. Errors: STATUS_INPUT if sizes differ; STATUS_MEMORY. */

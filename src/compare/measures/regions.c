@@ -71,3 +71,27 @@ done:
     free(fill.stack);
     return status;
 }
+
+void counts_take(const size_t counts[PIXEL_COUNTS], bool labelled, CompareResult *result)
+{
+    static const MeasureId ids[PIXEL_COUNTS] = {[COUNT_DIFFERING] = MEASURE_DIFFERING_PIXELS,
+                                                [COUNT_BEYOND] = MEASURE_BEYOND_PIXELS,
+                                                [COUNT_SETTLED] = MEASURE_SETTLED_PIXELS,
+                                                [COUNT_COMMON] = MEASURE_COMMON_PIXELS,
+                                                [COUNT_MISSING] = MEASURE_MISSING_PIXELS,
+                                                [COUNT_EXTRA] = MEASURE_EXTRA_PIXELS,
+                                                [COUNT_BAND] = MEASURE_BAND_PIXELS,
+                                                [COUNT_BAND_BEYOND] = MEASURE_BAND_BEYOND,
+                                                [COUNT_INTERIOR_BEYOND] = MEASURE_INTERIOR_BEYOND};
+    double *values = result->values, band = (double)counts[COUNT_BAND];
+    for (int i = 0; i < (labelled ? PIXEL_COUNTS : COUNT_COMMON); i++)
+        if (ids[i] != MEASURE_NONE)
+            values[ids[i]] = (double)counts[i];
+    result->has_mask = labelled;
+    if (!labelled)
+        return;
+    values[MEASURE_INTERIOR_PIXELS] = values[MEASURE_PIXELS] - band;
+    values[MEASURE_EDGE_MISMATCH] = band > 0 ? (double)counts[COUNT_BAND_DIFFERS] / band : 0;
+    values[MEASURE_EDGE_MISMATCH_PERCENT] = 100 * values[MEASURE_EDGE_MISMATCH];
+    values[MEASURE_MISMATCH_FRACTION] = values[MEASURE_DIFFERING_PIXELS] / values[MEASURE_PIXELS];
+}

@@ -7,7 +7,7 @@
  * B are a run, and count as one measurement with the weight of all its pixels [cluster-robust
  * errors, Liang and Zeger 1986]. The largest error counts: that of independent samples, or that of
  * the runs in one of the four directions. */
-#include "compare/measures/regression.h"
+#include "compare/measures/pixel_counts.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,9 +33,9 @@ typedef struct Runs {
     LineError *errors; /* owned; DIRECTIONS for each row, of the runs that begin in it */
 } Runs;
 
-static LineError error_of_samples(const Sums *sums, const Line *line)
+static LineError error_of_samples(const PixelSums *sums, const Line *line)
 {
-    double rest = (double)sums->dd - line->n * line->mean_d * line->mean_d -
+    double rest = (double)sums->line.dd - line->n * line->mean_d * line->mean_d -
                   line->slope * line->slope * line->squares_a;
     double variance = fmax(0, rest) / line->n;
     return (LineError){variance / line->squares_a,
@@ -133,18 +133,18 @@ static double beyond_error(double distance, double error)
 Status regression_take(const Counting *counting, double code_levels, CompareResult *result,
                        Err *err)
 {
-    const Sums *sums = counting->sums;
-    double n = (double)sums->n, a = (double)sums->a, d = (double)sums->d;
-    double variance = n * (double)sums->aa - a * a;
+    const PixelSums *sums = counting->sums;
+    double n = (double)sums->line.n, a = (double)sums->line.a, d = (double)sums->line.d;
+    double variance = n * (double)sums->line.aa - a * a;
     if (!(variance > 0))
         return STATUS_OK;
     const Line line = {.n = n,
                        .mean_a = a / n,
                        .mean_d = d / n,
-                       .slope = (n * (double)sums->ad - a * d) / variance,
+                       .slope = (n * (double)sums->line.ad - a * d) / variance,
                        .squares_a = variance / n};
     LineError error = error_of_samples(sums, &line);
-    if (sums->dd > 0)
+    if (sums->line.dd > 0)
         TRY(raise_by_runs(counting, &line, &error, err));
     double *values = result->values;
     values[MEASURE_GAIN] = 1 + line.slope;

@@ -1,4 +1,4 @@
-/* Loops over pixels as vectors; private to the room compare. */
+/* Loops over pixels as vectors. Private to the module compare. */
 #ifndef CORCAST_COMPARE_MEASURES_WIDE_H
 #define CORCAST_COMPARE_MEASURES_WIDE_H
 
@@ -6,10 +6,9 @@
 #include <stdint.h>
 #include <string.h>
 
-/* All that a FLAT function calls becomes a part of it, so that a loop over pixels has no calls. A
- * WIDE one is that, compiled for the vectors of AVX2: it calls the function that it stands for,
- * where wide_usable says that the processor has them. As nothing is reordered and no product is
- * fused with a sum, both give the same bits. */
+/* All functions that a FLAT function calls are inlined, so that a loop over pixels has no calls. A
+ * WIDE function is a FLAT function compiled for AVX2, to be used if wide_usable returns true.
+ * Nothing is reordered and no product is fused with a sum, so both give the same bits. */
 #define FLAT __attribute__((flatten))
 #ifdef __x86_64__
 #define WIDE __attribute__((target("avx2"), flatten))
@@ -26,8 +25,8 @@ static inline bool wide_usable(void)
 #endif
 
 /* ---- roots and powers ------------------------------------------------------------------------
- * Without branches or calls; in the ranges of FLIP and CIEDE2000 they are right to a few units of
- * the last place. */
+ * They have no branches or calls. In the ranges of FLIP and CIEDE2000 they are right to a few units
+ * in the last place. */
 
 static inline float float_of(uint32_t bits)
 {

@@ -1,5 +1,5 @@
-/* What a report judges, in the one form that its text, JUnit XML and page are written from; private
- * to the room compare. */
+/* Checks: what a report judges, in the one form that text, JUnit XML and page are written from.
+ * Private to the module compare. */
 #ifndef CORCAST_COMPARE_REPORT_CHECK_H
 #define CORCAST_COMPARE_REPORT_CHECK_H
 
@@ -14,8 +14,8 @@ typedef struct CheckMeasure {
 
 enum { MEASURES_MAX = 40 };
 
-/* One thing that is judged: a plane, the settled pixels, an isosurface's colours or place, or two
- * programs of which one may be the witness. */
+/* One thing that is judged: a plane, alpha, the settled pixels, the colours or the place of an
+ * implicit surface, or two programs of which one may be the witness. */
 typedef struct Check {
     const char *title; /* "color", "settled", "exact color", "surface"; borrowed */
     bool agrees;
@@ -29,16 +29,15 @@ typedef struct Check {
 
 enum { CHECKS_MAX = PLANE_KINDS + 4 + WITNESS_PAIRS };
 
-/* The check of one plane: its rules, and its measures that are known. */
+/* Returns the check of one plane: its rules, and the measures that are known. */
 Check check_plane(const CompareResult *plane);
-/* All checks of a report, in the order in which they are shown; how many there are. */
+/* Sets all checks of a report, in the order in which they are shown, and returns their number. */
 int report_checks(const ReportCase *report, Check checks[CHECKS_MAX]);
 
-/* Why the report does not agree: the reason of its first check that does not. NULL when all agree.
- * Borrowed. */
+/* Returns the reason of the first check that does not agree, borrowed; NULL if all agree. */
 const char *report_reason(const ReportCase *report);
-/* By how much the rule that is broken most is exceeded: measured over allowed, at least 1; 0 when
- * all are met. */
+/* Returns by how much the worst broken rule is exceeded: measured over allowed, at least 1; 0 if
+ * all rules are met. */
 double report_severity(const ReportCase *report);
 
 #endif

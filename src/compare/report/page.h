@@ -4,7 +4,7 @@
 
 #include "compare/report/report.h"
 
-/* Appends the JUnit XML: a test case for each plane. */
+/* Appends the report as JUnit XML, a test case for each check. */
 void report_junit(const ReportCase *report, Text *out);
 
 /* Return parts of a report as JSON; the worst segments are those that compare_json has. The caller
@@ -18,10 +18,11 @@ json_t *witness_json(const Witness *witness);
 MUST_CHECK Status report_tables(const ReportCase *report, const char *templates, Text *rules,
                                 Text *measures, Err *err);
 
-/* Appends the depths and normals of both sides as data: URIs for the page's script, "data:," for
- * what is not known or larger than 4 million pixels. Depth: 0 for nothing, else 1 to 65534 over
- * range_mm, in red and green; normals: 128 + 127 n; the angle between them in 0.001 degrees, in red
- * and green. B is less A, modulo the range of the codes. */
+/* Pictures of depths and normals for the page's script, 8 bits per channel.
+ *
+ * Depths are numbers of two bytes in red and green: 0 where nothing is seen, else 1 to 65534 over
+ * the range of depths. Normals are 128 + 127 n. Angles between normals are in 0.001 degrees, in red
+ * and green. Pictures of B hold B - A, modulo the range of the codes. */
 typedef enum ReportPlane {
     REPORT_DEPTH_A,
     REPORT_DEPTH_B,
@@ -30,13 +31,16 @@ typedef enum ReportPlane {
     REPORT_ANGLES,
     REPORT_PLANES
 } ReportPlane;
+/* Appends these pictures as data: URIs, "data:," for planes that are unknown or larger than 4
+ * million pixels. Sets the range of depths. Errors: STATUS_MEMORY. */
 MUST_CHECK Status report_planes(const ReportSide *a, const ReportSide *b,
                                 Text *parts[REPORT_PLANES], double range_mm[2], Err *err);
-/* A small copy of a picture, at most 96 pixels across, each the mean of a box. */
+/* Makes a copy at most 96 pixels wide, each pixel of which is the mean of a square. The caller
+ * releases it. Errors: STATUS_MEMORY. */
 MUST_CHECK Status report_thumbnail(Picture *out, const Picture *picture, Err *err);
 
-/* How the templates case.html and row.html call their case, where they have room for its folder,
- * and what marks them in a page, for report_merge to find. */
+/* The name of the case in the templates case.html and row.html, the mark that report_merge replaces
+ * by the folder of the case, and the marks between which report_merge finds the parts of a page. */
 #define REPORT_FIRST_CASE "case-1"
 #define REPORT_FOLDER "<!-- folder -->"
 #define REPORT_ROW_BEGIN "<!-- row: begin -->\n"
@@ -44,8 +48,8 @@ MUST_CHECK Status report_thumbnail(Picture *out, const Picture *picture, Err *er
 #define REPORT_CASE_BEGIN "<!-- case: begin -->\n"
 #define REPORT_CASE_END "<!-- case: end -->\n"
 
-/* A page about cases. `title`, `heading` and `sentence` are text, `rows`, `cases` and `power`
- * markup; all is borrowed. */
+/* A page about cases. All members are borrowed. `title`, `heading` and `sentence` are text; `rows`,
+ * `cases` and `power` are markup. */
 typedef struct ReportFrame {
     const char *title, *heading, *sentence;
     const Text *rows, *cases, *power;

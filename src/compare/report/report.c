@@ -50,9 +50,8 @@ json_t *report_json(const ReportCase *report)
 static Status write_named(const char *folder, const char *name, const Text *text, Err *err)
 {
     char *path = NULL;
-    Status status = file_join(folder, name, &path, err);
-    if (status == STATUS_OK)
-        status = file_write_text(path, text, err);
+    TRY(file_join(folder, name, &path, err));
+    Status status = file_write_text(path, text, err);
     free(path);
     return status;
 }

@@ -67,13 +67,18 @@ MUST_CHECK Status report_write(const ReportCase *report, const char *templates, 
 MUST_CHECK Status report_write_page(const ReportCase *report, const char *templates,
                                     const char *path, Err *err);
 
-/* Writes one page about all cases that report_write wrote about, worst first, to `path`.
- *
- * folders     of report_write.
- * power       the file that `make power` writes; NULL: none.
- * all_agree   receives whether all cases agree.
- * Errors      STATUS_INPUT if a folder has no report of this version; STATUS_IO; STATUS_MEMORY. */
-MUST_CHECK Status report_merge(const char *const *folders, size_t n, const char *power,
-                               const char *templates, const char *path, bool *all_agree, Err *err);
+/* What report_merge makes a page of. All members are borrowed. */
+typedef struct ReportMerge {
+    const char *const *folders; /* of report_write */
+    size_t n;
+    const char *power;     /* the file that `make power` writes; NULL: none */
+    const char *templates; /* the folder with the templates of the page */
+} ReportMerge;
+
+/* Writes one page about all cases of the folders, worst first, to `path`. *all_agree becomes true
+ * if all cases agree. Errors: STATUS_INPUT if a folder has no report of this version; STATUS_IO;
+ * STATUS_MEMORY. */
+MUST_CHECK Status report_merge(const ReportMerge *merge, const char *path, bool *all_agree,
+                               Err *err);
 
 #endif

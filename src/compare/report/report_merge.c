@@ -7,13 +7,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A part of a page, without a zero at its end. */
+typedef struct PagePart {
+    const char *start; /* borrowed */
+    size_t size;
+} PagePart;
+
 typedef struct MergedCase {
-    const char *folder;        /* borrowed */
-    char *page;                /* owned */
-    const char *row, *section; /* within page */
-    size_t row_size, section_size;
-    double severity; /* 0: agrees */
-    size_t number;   /* in the order given, from 1 */
+    const char *folder;    /* borrowed */
+    char *page;            /* owned */
+    PagePart row, section; /* of page */
+    double severity;       /* 0: agrees */
+    size_t number;         /* in the order given, from 1 */
 } MergedCase;
 
 /* A page holds its pictures. */
@@ -37,21 +42,23 @@ static Status read_json(json_t **out, const char *path, Err *err)
     return STATUS_OK;
 }
 
-/* What stands between two marks of a page. */
-static Status find_part(const MergedCase *merged, const char *path, const char *begin,
-                        const char *end, const char **part, size_t *size, Err *err)
+/* Finds what stands between two marks of a page. */
+static Status find_part(const char *page, const char *path, const char *const marks_of[2],
+                        PagePart *part, Err *err)
 {
-    const char *from = strstr(merged->page, begin);
-    const char *to = from ? strstr(from, end) : NULL;
+    const char *from = strstr(page, marks_of[0]);
+    const char *to = from ? strstr(from, marks_of[1]) : NULL;
     if (!to)
         return err_set(err, STATUS_INPUT, "%s: is not a report of this version of corcast", path);
-    *part = from + strlen(begin);
-    *size = (size_t)(to - *part);
+    part->start = from + strlen(marks_of[0]);
+    part->size = (size_t)(to - part->start);
     return STATUS_OK;
 }
 
 static Status read_case(MergedCase *merged, const char *folder, Err *err)
 {
+    static const char *const row_marks[] = {REPORT_ROW_BEGIN, REPORT_ROW_END};
+    static const char *const case_marks[] = {REPORT_CASE_BEGIN, REPORT_CASE_END};
     char *page = NULL, *numbers = NULL;
     json_t *json = NULL;
     size_t size;
@@ -59,10 +66,8 @@ static Status read_case(MergedCase *merged, const char *folder, Err *err)
     TRY_GOTO(file_join(folder, "report.html", &page, err));
     TRY_GOTO(file_join(folder, "report.json", &numbers, err));
     TRY_GOTO(file_read(page, &page_file, &merged->page, &size, err));
-    TRY_GOTO(find_part(merged, page, REPORT_ROW_BEGIN, REPORT_ROW_END, &merged->row,
-                       &merged->row_size, err));
-    TRY_GOTO(find_part(merged, page, REPORT_CASE_BEGIN, REPORT_CASE_END, &merged->section,
-                       &merged->section_size, err));
+    TRY_GOTO(find_part(merged->page, page, row_marks, &merged->row, err));
+    TRY_GOTO(find_part(merged->page, page, case_marks, &merged->section, err));
     TRY_GOTO(read_json(&json, numbers, err));
     json_t *severity = json_object_get(json, "severity");
     if (!json_is_number(severity))
@@ -101,8 +106,10 @@ static void append_mark(Text *out, int mark, const MergedCase *merged)
 }
 
 /* Appends a part, with all marks filled in. */
-static void append_part(Text *out, const char *part, size_t size, const MergedCase *merged)
+static void append_part(Text *out, const PagePart *whole, const MergedCase *merged)
 {
+    const char *part = whole->start;
+    size_t size = whole->size;
     while (size > 0) {
         const char *first = NULL;
         int mark = 0;
@@ -184,19 +191,19 @@ static Status put_power(const char *path, const char *templates, Text *out, Err 
 {
     json_t *json = NULL;
     Markup parts = {0};
+    Status status = STATUS_OK;
     TRY(read_json(&json, path, err));
     text_printf(markup_text(&parts, "alarms"), "%zu",
                 json_array_size(json_object_get(json, "alarms")));
     text_printf(markup_text(&parts, "scenes"), "%lld",
                 json_integer_value(json_object_get(json, "clean_scenes")) +
                     json_integer_value(json_object_get(json, "povray_scenes")));
-    Status status = put_rows(json_object_get(json, "faults"), put_fault, templates,
-                             markup_raw(&parts, "faults"), err);
-    if (status == STATUS_OK)
-        status = put_rows(json_object_get(json, "limits"), put_limit, templates,
-                          markup_raw(&parts, "limits"), err);
-    if (status == STATUS_OK)
-        status = markup_put(&parts, templates, "power.html", out, err);
+    TRY_GOTO(put_rows(json_object_get(json, "faults"), put_fault, templates,
+                      markup_raw(&parts, "faults"), err));
+    TRY_GOTO(put_rows(json_object_get(json, "limits"), put_limit, templates,
+                      markup_raw(&parts, "limits"), err));
+    status = markup_put(&parts, templates, "power.html", out, err);
+done:
     markup_release(&parts);
     json_decref(json);
     return status;
@@ -210,8 +217,8 @@ static Status write_page(const MergedCase *cases, size_t n, const Text *power,
     Text rows = TEXT_INIT, sections = TEXT_INIT, heading = TEXT_INIT;
     size_t differing = 0;
     for (size_t i = 0; i < n; i++) {
-        append_part(&rows, cases[i].row, cases[i].row_size, &cases[i]);
-        append_part(&sections, cases[i].section, cases[i].section_size, &cases[i]);
+        append_part(&rows, &cases[i].row, &cases[i]);
+        append_part(&sections, &cases[i].section, &cases[i]);
         differing += cases[i].severity > 0;
     }
     if (differing)
@@ -234,27 +241,26 @@ static Status write_page(const MergedCase *cases, size_t n, const Text *power,
     return status;
 }
 
-Status report_merge(const char *const *folders, size_t n, const char *power, const char *templates,
-                    const char *path, bool *all_agree, Err *err)
+Status report_merge(const ReportMerge *merge, const char *path, bool *all_agree, Err *err)
 {
     MergedCase *cases;
     Text of_power = TEXT_INIT;
-    TRY(mem_calloc(&cases, n, sizeof *cases, "cases", err));
-    Status status = STATUS_OK;
     bool agree = true;
-    for (size_t i = 0; i < n; i++) {
-        cases[i].folder = folders[i];
+    Status status = STATUS_OK;
+    TRY(mem_calloc(&cases, merge->n, sizeof *cases, "cases", err));
+    for (size_t i = 0; i < merge->n; i++) {
+        cases[i].folder = merge->folders[i];
         cases[i].number = i + 1;
-        TRY_GOTO(read_case(&cases[i], folders[i], err));
+        TRY_GOTO(read_case(&cases[i], merge->folders[i], err));
         agree = agree && cases[i].severity == 0;
     }
-    if (power)
-        TRY_GOTO(put_power(power, templates, &of_power, err));
-    qsort(cases, n, sizeof *cases, worst_first);
-    TRY_GOTO(write_page(cases, n, &of_power, templates, path, err));
+    if (merge->power)
+        TRY_GOTO(put_power(merge->power, merge->templates, &of_power, err));
+    qsort(cases, merge->n, sizeof *cases, worst_first);
+    TRY_GOTO(write_page(cases, merge->n, &of_power, merge->templates, path, err));
     *all_agree = agree;
 done:
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < merge->n; i++)
         free(cases[i].page);
     free(cases);
     text_release(&of_power);

@@ -283,9 +283,9 @@ static Status put_row(const ReportCase *report, const char *templates, Text *row
     bool agrees = report_agrees(report);
     Markup parts = {0};
     Picture thumbnail;
+    Status status = STATUS_OK;
     TRY(report_thumbnail(&thumbnail, report->b.picture, err));
-    Status status = picture_put_uri(&thumbnail, markup_raw(&parts, "thumbnail"), err);
-    picture_release(&thumbnail);
+    TRY_GOTO(picture_put_uri(&thumbnail, markup_raw(&parts, "thumbnail"), err));
     text_puts(markup_text(&parts, "name"), report->name);
     text_puts(markup_text(&parts, "options"), options_of(report));
     text_puts(markup_text(&parts, "model"), report->model);
@@ -296,8 +296,9 @@ static Status put_row(const ReportCase *report, const char *templates, Text *row
     put_cell(&parts, "largest_value", "largest", color->values[MEASURE_MAX_ABS]);
     put_cell(&parts, "flip_value", "flip", color->values[MEASURE_FLIP_MEAN]);
     put_cell(&parts, "ssim_value", "ssim", color->values[MEASURE_SSIM]);
-    if (status == STATUS_OK)
-        status = markup_put(&parts, templates, "row.html", row, err);
+    status = markup_put(&parts, templates, "row.html", row, err);
+done:
+    picture_release(&thumbnail);
     markup_release(&parts);
     return status;
 }
@@ -318,9 +319,10 @@ Status report_write_frame(const ReportFrame *frame, const char *templates, const
     text_add(markup_raw(&parts, "rows"), frame->rows);
     text_add(markup_raw(&parts, "cases"), frame->cases);
     text_add(markup_raw(&parts, "power"), frame->power);
-    Status status = markup_put(&parts, templates, "report.html", &page, err);
-    if (status == STATUS_OK)
-        status = file_write_text(path, &page, err);
+    Status status = STATUS_OK;
+    TRY_GOTO(markup_put(&parts, templates, "report.html", &page, err));
+    status = file_write_text(path, &page, err);
+done:
     text_release(&page);
     return status;
 }

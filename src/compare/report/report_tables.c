@@ -93,11 +93,12 @@ static Status put_measured(const ReportCase *report, const Check *check, const c
     }
     if (check->settled)
         text_printf(first, "the first %d pixels", report->settled->n_first);
-    Status status = put_measures(check, templates, tables, err);
-    if (status == STATUS_OK && check->settled)
-        status = put_settled(report, templates, tables, err);
-    if (status == STATUS_OK)
-        status = markup_put(&parts, templates, "measured.html", out, err);
+    Status status = STATUS_OK;
+    TRY_GOTO(put_measures(check, templates, tables, err));
+    if (check->settled)
+        TRY_GOTO(put_settled(report, templates, tables, err));
+    status = markup_put(&parts, templates, "measured.html", out, err);
+done:
     markup_release(&parts);
     return status;
 }

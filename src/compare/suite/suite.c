@@ -113,6 +113,17 @@ static Status list_entry(Suite *suite, const Top *top, const char *below, const 
     return STATUS_OK;
 }
 
+/* Lists the entry `name` of the folder `below`. */
+static Status list_named(Suite *suite, const Top *top, const char *below, const char *name,
+                         const Level *level, Err *err)
+{
+    char *path = NULL;
+    TRY(*below ? file_join(below, name, &path, err) : mem_strdup(&path, name, err));
+    Status status = list_entry(suite, top, path, level, err);
+    free(path);
+    return status;
+}
+
 static Status list_folder(Suite *suite, const Top *top, const char *below, const Level *parent,
                           Err *err)
 {
@@ -125,16 +136,9 @@ static Status list_folder(Suite *suite, const Top *top, const char *below, const
             ? STATUS_OK
             : err_set(err, STATUS_IO, "%s: cannot be read as a folder: %s", path, strerror(errno));
     const Level level = {parent, facts.st_dev, facts.st_ino};
-    for (struct dirent *entry; status == STATUS_OK && (entry = readdir(folder));) {
-        char *name = NULL;
-        if (*entry->d_name == '.')
-            continue;
-        status = *below ? file_join(below, entry->d_name, &name, err)
-                        : mem_strdup(&name, entry->d_name, err);
-        if (status == STATUS_OK)
-            status = list_entry(suite, top, name, &level, err);
-        free(name);
-    }
+    for (struct dirent *entry; status == STATUS_OK && (entry = readdir(folder));)
+        if (*entry->d_name != '.')
+            status = list_named(suite, top, below, entry->d_name, &level, err);
     if (folder)
         closedir(folder);
     free(path);
@@ -181,20 +185,18 @@ static Status list_cases(Suite *suite, const char *reference, const char *pictur
 
 typedef struct Judging {
     Suite *suite;
-    const char *folders[2]; /* references, pictures */
-    const Tolerance *tolerance;
-    const float *background;
+    const SuiteFolders *folders;
 } Judging;
 
 /* What one case holds in memory. All is owned. */
-typedef struct Held {
+typedef struct HeldPair {
     char *paths[2], *mask_path;
     Image images[2];
     Picture alphas[2]; /* empty where the image is opaque */
     Picture mask;
-} Held;
+} HeldPair;
 
-static void held_release(Held *held)
+static void held_release(HeldPair *held)
 {
     for (int side = 0; side < 2; side++) {
         free(held->paths[side]);
@@ -213,14 +215,15 @@ static Status read_regular(const char *path, const FileForm *form, char **bytes,
     return file_read(path, form, bytes, size, err);
 }
 
-static Status have_same_bytes(const Held *held, bool *same, Err *err)
+static Status have_same_bytes(const HeldPair *held, bool *same, Err *err)
 {
     char *bytes[2] = {NULL, NULL};
     size_t size[2];
-    Status status = read_regular(held->paths[0], &any_file, &bytes[0], &size[0], err);
-    if (status == STATUS_OK)
-        status = read_regular(held->paths[1], &any_file, &bytes[1], &size[1], err);
-    *same = status == STATUS_OK && size[0] == size[1] && memcmp(bytes[0], bytes[1], size[0]) == 0;
+    Status status = STATUS_OK;
+    for (int side = 0; side < 2; side++)
+        TRY_GOTO(read_regular(held->paths[side], &any_file, &bytes[side], &size[side], err));
+    *same = size[0] == size[1] && memcmp(bytes[0], bytes[1], size[0]) == 0;
+done:
     free(bytes[0]);
     free(bytes[1]);
     return status;
@@ -250,7 +253,7 @@ static void cover_pixel(Picture *transparent, size_t pixel, const Picture *opaqu
 }
 
 /* Gives the picture the reference's codes where the mask is not black. */
-static Status apply_mask(Held *held, SuiteCase *entry, Err *err)
+static Status apply_mask(HeldPair *held, SuiteCase *entry, Err *err)
 {
     const Picture *mask = &held->mask, *a = &held->images[0].picture;
     Picture *b = &held->images[1].picture;
@@ -275,11 +278,11 @@ static Status apply_mask(Held *held, SuiteCase *entry, Err *err)
                              : err_set(err, STATUS_INPUT, "the mask leaves no pixel to judge");
 }
 
-static Status read_pair(const Judging *judging, Held *held, SuiteCase *entry, Err *err)
+static Status read_pair(const Judging *judging, HeldPair *held, SuiteCase *entry, Err *err)
 {
     for (int side = 0; side < 2; side++)
         TRY(read_image(&held->images[side], &held->alphas[side], held->paths[side],
-                       judging->background, err));
+                       judging->folders->background, err));
     TRY(file_with_suffix(held->paths[0], mask_suffix, &held->mask_path, err));
     if (access(held->mask_path, F_OK) != 0)
         return STATUS_OK;
@@ -288,13 +291,13 @@ static Status read_pair(const Judging *judging, Held *held, SuiteCase *entry, Er
     return apply_mask(held, entry, err);
 }
 
-static Status compare_pair(const Judging *judging, const Held *held, SuiteCase *entry, Err *err)
+static Status compare_pair(const Judging *judging, const HeldPair *held, SuiteCase *entry, Err *err)
 {
     CompareResult result;
     const Image *images = held->images;
     const Rendering a = {.picture = &images[0].picture, .transparent = &images[0].transparent};
     const Rendering b = {.picture = &images[1].picture, .transparent = &images[1].transparent};
-    Status status = compare_pictures(&a, &b, judging->tolerance, &result, NULL, err);
+    Status status = compare_pictures(&a, &b, judging->folders->tolerance, &result, NULL, err);
     if (status == STATUS_INPUT) { /* another size or depth */
         entry->state = SUITE_CHANGED;
         snprintf(entry->sentence, sizeof entry->sentence, "%s", err->text);
@@ -318,11 +321,11 @@ static Status compare_pair(const Judging *judging, const Held *held, SuiteCase *
 
 static Status judge(const Judging *judging, SuiteCase *entry, Err *err)
 {
-    Held held = {0};
+    HeldPair held = {0};
     bool same = false;
     Status status = STATUS_OK;
-    for (int side = 0; side < 2; side++)
-        TRY_GOTO(file_join(judging->folders[side], entry->name, &held.paths[side], err));
+    TRY_GOTO(file_join(judging->folders->reference, entry->name, &held.paths[0], err));
+    TRY_GOTO(file_join(judging->folders->pictures, entry->name, &held.paths[1], err));
     TRY_GOTO(have_same_bytes(&held, &same, err));
     if (same)
         goto done;
@@ -351,25 +354,24 @@ static void judge_case(size_t index, int worker, void *context)
     entry->seconds = clock_seconds() - start_s;
 }
 
-Status suite_judge(Suite *suite, const char *reference, const char *pictures,
-                   const Tolerance *tolerance, const float background[3], int threads, Err *err)
+Status suite_judge(Suite *suite, const SuiteFolders *folders, int threads, Err *err)
 {
     Suite made = {0};
-    Judging judging = {&made, {reference, pictures}, tolerance, background};
-    Status status = list_cases(&made, reference, pictures, err);
-    if (status == STATUS_OK && made.n == 0)
-        status = err_set(err, STATUS_INPUT, "%s: there is no picture in it, nor in %s", reference,
-                         pictures);
-    if (status != STATUS_OK) {
-        suite_release(&made);
-        return status;
-    }
+    Judging judging = {&made, folders};
+    Status status = STATUS_OK;
+    TRY_GOTO(list_cases(&made, folders->reference, folders->pictures, err));
+    if (made.n == 0)
+        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: there is no picture in it, nor in %s",
+                         folders->reference, folders->pictures));
     threads_for(made.n, threads, judge_case, &judging);
     for (size_t i = 0; i < made.n; i++)
         made.count[made.cases[i].state]++;
     made.agrees = made.count[SUITE_SAME] + made.count[SUITE_WITHIN] == made.n;
     *suite = made;
-    return STATUS_OK;
+    made = (Suite){0};
+done:
+    suite_release(&made);
+    return status;
 }
 
 /* ---- acceptance ------------------------------------------------------------------------------ */
@@ -400,20 +402,17 @@ static Status copy_file(const char *from, const char *to, HashText *hash_out, Er
     char *bytes = NULL, *folder = NULL;
     size_t size;
     Hash hash;
-    Status status = read_regular(from, &any_file, &bytes, &size, err);
-    if (status == STATUS_OK)
-        status = mem_strdup(&folder, to, err);
-    if (status == STATUS_OK) {
-        *strrchr(folder, '/') = '\0';
-        status = *folder ? file_make_folder(folder, err) : STATUS_OK;
-    }
-    if (status == STATUS_OK)
-        status = file_write(to, bytes, size, err);
-    if (status == STATUS_OK) {
-        hash_begin(&hash);
-        hash_add(&hash, bytes, size);
-        *hash_out = hash_text(&hash);
-    }
+    Status status = STATUS_OK;
+    TRY_GOTO(read_regular(from, &any_file, &bytes, &size, err));
+    TRY_GOTO(mem_strdup(&folder, to, err));
+    *strrchr(folder, '/') = '\0';
+    if (*folder)
+        TRY_GOTO(file_make_folder(folder, err));
+    TRY_GOTO(file_write(to, bytes, size, err));
+    hash_begin(&hash);
+    hash_add(&hash, bytes, size);
+    *hash_out = hash_text(&hash);
+done:
     free(bytes);
     free(folder);
     return status;
@@ -453,15 +452,17 @@ Status suite_accept(const char *reference, const char *pictures, const char *nam
 {
     Suite suite = {0};
     bool is_first = access(reference, F_OK) != 0 && errno == ENOENT;
-    Status status = list_cases(&suite, is_first ? NULL : reference, pictures, err);
-    const SuiteCase *entry = status == STATUS_OK ? find_case(&suite, name) : NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(list_cases(&suite, is_first ? NULL : reference, pictures, err));
+    const SuiteCase *entry = find_case(&suite, name);
     if (entry)
         status = accept_case(entry, reference, pictures, reason, err);
-    else if (status == STATUS_OK)
+    else
         status = err_set(err, STATUS_INPUT,
                          "there is no case '%s' in %s, nor in %s; a case is a picture that compare "
                          "lists without --accept",
                          name, pictures, reference);
+done:
     suite_release(&suite);
     return status;
 }

@@ -1,62 +1,72 @@
-/* A folder of pictures compared with a folder of stored ones: a test suite of any renderer's. A
- * case is a picture of the same name in both, below the folders as deep as it may be. */
+/* Regression test of a renderer: compares a folder of pictures with a folder of reference pictures.
+ * A case is the file name of a picture, with its path below the folder; subfolders of any depth are
+ * read. */
 #ifndef CORCAST_COMPARE_SUITE_SUITE_H
 #define CORCAST_COMPARE_SUITE_SUITE_H
 
-#include "base/base.h"
-
-struct Tolerance;
+#include "compare/result.h"
 
 typedef enum SuiteState {
-    SUITE_SAME,    /* byte by byte or pixel by pixel */
-    SUITE_WITHIN,  /* differs within the tolerance, or where it is masked */
-    SUITE_CHANGED, /* by more, or in size */
-    SUITE_NEW,     /* has no reference */
-    SUITE_MISSING, /* there is a reference only */
-    SUITE_BROKEN,  /* one of the files cannot be read */
+    SUITE_SAME,    /* same bytes, or same pixels without a mask */
+    SUITE_WITHIN,  /* within the tolerance, or differs only under the mask */
+    SUITE_CHANGED, /* beyond the tolerance, or another size or depth */
+    SUITE_NEW,     /* there is no reference */
+    SUITE_MISSING, /* there is only a reference */
+    SUITE_BROKEN,  /* a file cannot be read, or the mask does not fit */
     SUITE_STATES
 } SuiteState;
 
-/* "same", "within", "changed", "new", "missing", "broken"; the last four fail. */
+/* Returns "same", "within", "changed", "new", "missing" or "broken". A case in one of the last four
+ * states fails. */
 const char *suite_state_name(SuiteState state);
 
 typedef struct SuiteCase {
-    char *name; /* owned; the path below the folders */
+    char *name; /* path below the folders; owned */
     bool is_reference, is_picture;
     SuiteState state;
-    char sentence[1100]; /* why it fails; "" when it does not */
-    size_t differing, pixels, masked;
-    double seconds;
+    char sentence[1100];              /* why the case fails; "" if it passes */
+    size_t differing, pixels, masked; /* pixels; 0 if none were compared */
+    double seconds;                   /* that this case took */
 } SuiteCase;
 
 typedef struct Suite {
-    SuiteCase *cases; /* owned; by name */
+    SuiteCase *cases; /* sorted by name; owned */
     size_t n, capacity;
     size_t count[SUITE_STATES];
-    size_t others; /* files that are no pictures by their names, left alone */
-    bool agrees;
+    size_t others; /* files whose names are not those of pictures, masks or accepted.tsv */
+    bool agrees;   /* no case fails */
 } Suite;
 
-/* Judges all cases, each by `tolerance`, what is transparent laid on `background`. Beside a
- * reference NAME.png there may be NAME.mask.png, which is not black where nothing is judged. Broken
- * pictures are cases that fail; STATUS_IO when a folder cannot be read, STATUS_INPUT when there is
- * no picture in either, STATUS_MEMORY. */
-MUST_CHECK Status suite_judge(Suite *suite, const char *reference, const char *pictures,
-                              const struct Tolerance *tolerance, const float background[3],
-                              int threads, Err *err);
+/* The folders of a suite, and how their pictures are compared. All members are borrowed. */
+typedef struct SuiteFolders {
+    const char *reference, *pictures;
+    const Tolerance *tolerance;
+    const float *background; /* red, green and blue in linear light, 0..1; transparent pixels are
+                              * composited over it */
+} SuiteFolders;
+
+/* Compares all cases with their references. If a reference NAME.png has a mask, NAME.mask.png
+ * beside it, pixels that are not black in the mask are not compared.
+ *
+ * suite     is set on success; release it with suite_release.
+ * threads   0: all processors.
+ * Errors    STATUS_IO if a folder cannot be read; STATUS_INPUT if neither folder has a picture;
+ *           STATUS_MEMORY. A file that cannot be read is a failed case, not an error. */
+MUST_CHECK Status suite_judge(Suite *suite, const SuiteFolders *folders, int threads, Err *err);
 void suite_release(Suite *suite);
 
-/* Makes the picture of a case its reference, or removes the reference where there is no picture,
- * and appends case, hash of the new file and reason, separated by tabs, to reference/accepted.tsv.
- * STATUS_INPUT when `name` is not the name of a case that suite_judge would list. */
+/* Accepts a case: copies its picture over its reference, or removes the reference if there is no
+ * picture. Appends a line to reference/accepted.tsv: case, hash of the new file (SHA-256, or
+ * "removed") and `reason`, separated by tabs. Errors: STATUS_INPUT if there is no such case;
+ * STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status suite_accept(const char *reference, const char *pictures, const char *name,
                                const char *reason, Err *err);
 
-/* Appends a line for each case that is not the same, and one about all. */
+/* Appends a line for each case that is not SUITE_SAME, and one about all. */
 void suite_text(const Suite *suite, Text *out);
-/* New reference, NULL when memory runs out. */
+/* Returns the suite as JSON. The caller releases it. Returns NULL if memory runs out. */
 json_t *suite_json(const Suite *suite);
-/* Appends JUnit XML, a test case for each case. */
+/* Appends the suite as JUnit XML, one test case for each case. */
 void suite_junit(const Suite *suite, const char *name, double seconds, Text *out);
 
 #endif

@@ -38,7 +38,7 @@ static const struct {
     bool of_mesh, of_parts;
     const char *of_extension; /* only beside a mesh of this extension; NULL: of any */
 } beside[SCENE_FILES] = {
-    [SCENE_SETTINGS] = {"the settings", NULL},
+    [SCENE_SETTINGS] = {"the settings", .suffix = NULL},
     [MESH_MANIFEST] = {"the manifest", ".json", .keeps_extension = true, .of_mesh = true},
     [MESH_ENDS] = {"the table of ends", ".ends.csv", .of_mesh = true, .of_parts = true},
     [MESH_CENTERLINE] = {"the centreline", ".centreline.vtp", .of_mesh = true, .of_parts = true},

@@ -3,15 +3,14 @@
  * frames, and text are drawn over the panels. Paths in the recipe start at the recipe's folder. */
 #include "job/figure/figure.h"
 
+#include "job/figure/figure_paths.h"
 #include "job/job.h"
 #include "job/picture/frames.h"
 #include "options/output.h"
 #include "options/templates.h"
-#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const char *const letter_names[] = {
     [LETTERS_LOWER] = "lower", [LETTERS_UPPER] = "upper", [LETTERS_NONE] = "none", NULL};
@@ -84,7 +83,6 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
 {
     const FigureOptions *options = figure->options;
     Section *section = figure->plan.sections[i];
-    const PanelOptions *panel = section->own.options;
     const Place *place = &figure->places[i];
     char size[64], dpi[NUMBER_TEXT_SIZE], pt[NUMBER_TEXT_SIZE];
     snprintf(size, sizeof size, "%dx%d", place->width, place->height);
@@ -98,12 +96,51 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
         section->render.settings[k].typed = false;
     section->render.common.talk = figure->parsed->common.talk;
     section->render.common.threads = figure->parsed->common.threads;
-    section->render.operands[0] = panel->tree;
-    section->render.n_operands = 1;
-    if (section->maker)
+    return STATUS_OK;
+}
+
+static Status prepare_panels(const Figure *figure, Err *err)
+{
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_is_panel(figure, i))
+            TRY(set_options(figure, i, err));
+    return STATUS_OK;
+}
+
+/* Makes the tree of a panel the first operand. *path is owned by the caller. */
+static Status set_tree(const Figure *figure, size_t i, char **path, Err *err)
+{
+    Section *section = figure->plan.sections[i];
+    const PanelOptions *panel = section->own.options;
+    if (section->maker) {
         parsed_give(&section->render, madetrees_tree(&figure->plan, &figure->trees, i),
                     section->tree_name);
+        return STATUS_OK;
+    }
+    TRY(figure_path(figure->folder, panel->tree, path, err));
+    section->render.operands[0] = *path;
+    section->render.n_operands = 1;
     return STATUS_OK;
+}
+
+static Status draw_panel(const Figure *figure, size_t i, Panel *panel, Err *err)
+{
+    Section *section = figure->plan.sections[i];
+    char name[80], *path = NULL;
+    snprintf(name, sizeof name, "[panel %.60s]", section->name);
+    panel->name = name;
+    Status status = set_tree(figure, i, &path, err);
+    if (status == STATUS_OK)
+        status = figure_rebase(&section->render, figure->folder, NULL, err);
+    if (status == STATUS_OK)
+        status = panel_draw(&section->render, panel, err);
+    if (status != STATUS_OK) {
+        options_name_fields(&section->render, err);
+        err_prefix(err, "[panel %s]: ", section->name);
+    }
+    panel->name = NULL;
+    free(path);
+    return status;
 }
 
 static Status draw_panels(Figure *figure, Err *err)
@@ -111,23 +148,13 @@ static Status draw_panels(Figure *figure, Err *err)
     size_t first = 0;
     for (size_t i = 0; i < figure->plan.n; i++) {
         Panel *panel = &figure->panels[i];
-        Section *section = figure->plan.sections[i];
         if (!figure_is_panel(figure, i))
             continue;
-        char name[80];
-        snprintf(name, sizeof name, "[panel %.60s]", section->name);
-        panel->name = name;
         panel->fonts = figure->sheet.fonts;
         panel->insets = figure->insets + first;
         TRY(figure_plan_insets(figure, i, first, &panel->n_insets, err));
         first += panel->n_insets;
-        TRY(set_options(figure, i, err));
-        Status status = panel_draw(&section->render, panel, err);
-        if (status != STATUS_OK) {
-            options_name_fields(&section->render, err);
-            err_prefix(err, "[panel %s]: ", section->name);
-            return status;
-        }
+        TRY(draw_panel(figure, i, panel, err));
     }
     return STATUS_OK;
 }
@@ -279,20 +306,8 @@ static Status write_picture(const Figure *figure, const Picture *picture, Err *e
 {
     const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", figure->sheet.notes.command}};
     const ImageNotes all = {.notes = notes, .count = 2, .dpi = figure->sheet.page.dpi};
-    const ImageForm form = {.width = picture->width,
-                            .height = picture->height,
-                            .channels = 3,
-                            .bits = picture->bits,
-                            .encoding = ENCODING_SRGB,
-                            .notes = &all,
-                            .packing = figure->press.packing};
-    ImageWriter *writer;
-    TRY(imagewriter_open(&writer, figure->options->output, &form, err));
-    Status status = imagewriter_codes(writer, picture, err);
-    if (status == STATUS_OK)
-        return imagewriter_commit(writer, err);
-    imagewriter_discard(writer);
-    return status;
+    return picture_write(picture, figure->options->output, ENCODING_SRGB, &all,
+                         &figure->press.packing, err);
 }
 
 /* The page as pixels. */
@@ -334,7 +349,7 @@ Status figure_write(Figure *figure, Err *err)
     return status == STATUS_OK ? write_file(figure, err) : status;
 }
 
-/* ---- the recipe's folder --------------------------------------------------------------------- */
+/* ---- the recipe ------------------------------------------------------------------------------ */
 
 /* The recipe's path: a file by its '/' or extension, else one of templates/figures; in *path
  * (owned). */
@@ -345,54 +360,35 @@ static Status find_recipe(const char *name, char **path, Err *err)
     return template_find("no such figure:", "figures", name, ".ini", path, err);
 }
 
-/* Makes the folder of the recipe the current one; *home is the one before, to go back to. */
-static Status enter_folder(const char *recipe, int *home, Err *err)
+static Status find_folder(const char *recipe, char **folder, Err *err)
 {
-    char *folder = NULL;
-    *home = open(".", O_PATH | O_DIRECTORY | O_CLOEXEC);
-    TRY(mem_strdup(&folder, recipe, err));
-    folder[file_name(recipe) - recipe] = '\0';
-    bool entered = *home >= 0 && (!*folder || chdir(folder) == 0);
-    free(folder);
-    return entered ? STATUS_OK
-                   : err_set(err, STATUS_IO, "%s: its folder cannot be entered", recipe);
+    TRY(mem_strdup(folder, recipe, err));
+    (*folder)[file_name(recipe) - recipe] = '\0';
+    return STATUS_OK;
 }
 
-static Status leave_folder(int home, Status status, Err *err)
+/* The complete recipe. Its paths are those of the recipe that was read. */
+static Status put_recipe(Figure *figure, Err *err)
 {
-    if (home >= 0 && fchdir(home) != 0 && status == STATUS_OK)
-        status = err_set(err, STATUS_IO, "the folder that the figure goes to is gone");
-    if (home >= 0)
-        close(home);
-    return status;
+    text_puts(&figure->recipe, "; " GENERATOR ": figure FILE -o F.pdf\n");
+    figureplan_put(&figure->plan, figure->parsed, &figure->recipe);
+    return text_check(&figure->recipe, err);
 }
 
-/* The press's profile is named from the recipe's folder, or on the command line from where that is
- * typed. */
-static Status open_press(Figure *figure, bool in_folder, Err *err)
+static bool is_typed(const Setting *setting)
+{
+    return setting->typed;
+}
+
+/* Reads the output profile. A path on the command line starts at the current folder. */
+static Status open_press(Figure *figure, Err *err)
 {
     const FigureOptions *options = figure->options;
-    if (frames_is_page(options->output) ||
-        options_typed(figure->parsed, "cmyk-profile") == in_folder)
-        return STATUS_OK;
-    return press_open(&options->press, options->output, figure->parsed->common.threads,
-                      &figure->press, err);
-}
-
-static Status draw_in_folder(Figure *figure, const char *recipe, Err *err)
-{
-    int home = -1;
-    TRY(open_press(figure, false, err));
-    Status status = enter_folder(recipe, &home, err);
-    if (status == STATUS_OK)
-        status = open_press(figure, true, err);
-    if (status == STATUS_OK)
-        status = madetrees_make(&figure->plan, &figure->parsed->common, &figure->trees, err);
-    if (status == STATUS_OK)
-        status = draw_panels(figure, err);
-    if (status == STATUS_OK)
-        status = fill_page(figure, err);
-    return leave_folder(home, status, err);
+    TRY(figure_rebase(figure->parsed, figure->folder, is_typed, err));
+    return frames_is_page(options->output)
+               ? STATUS_OK
+               : press_open(&options->press, options->output, figure->parsed->common.threads,
+                            &figure->press, err);
 }
 
 /* ---- the command ----------------------------------------------------------------------------- */
@@ -406,35 +402,27 @@ static Status check_output(const FigureOptions *options, Err *err)
                    options->output);
 }
 
-/* Checks the options of the command line against the output file. The recipe has been read: an
- * option may need one that the recipe gives. */
-static Status check_press(const FigureOptions *options, const Parsed *parsed, Err *err)
-{
-    if (frames_is_page(options->output))
-        return press_refuse_packing(parsed, "is for pictures; a page holds one of 8 bits", err);
-    return press_check(&options->press, options->output, parsed, err);
-}
-
-static Status put_recipe(Figure *figure, Err *err)
-{
-    text_puts(&figure->recipe, "; " GENERATOR ": figure FILE -o F.pdf\n");
-    figureplan_put(&figure->plan, figure->parsed, &figure->recipe);
-    return text_check(&figure->recipe, err);
-}
-
 static Status make_figure(Figure *figure, const char *recipe, Err *err)
 {
     const FigureOptions *options = figure->options;
     const int *pixels = options->size.pixels;
     TRY(figureplan_read(recipe, figure->parsed, &figure->plan, err));
     TRY(options_settle(figure->parsed, err));
-    TRY(check_press(options, figure->parsed, err));
+    TRY(options_check(figure->parsed, err)); /* an option may need one that the recipe gives */
+    TRY(press_check(&options->press, options->output, err));
     TRY(picture_fits(pixels[0], pixels[1], 12, err));
     TRY(sheet_open(&figure->sheet, err));
     sheet_begin(&figure->sheet, pixels, options->size.dpi > 0 ? options->size.dpi : 300);
     TRY(figure_place_panels(figure, err));
-    TRY(draw_in_folder(figure, recipe, err));
-    return figure->parsed->common.dump ? put_recipe(figure, err) : STATUS_OK;
+    TRY(prepare_panels(figure, err));
+    if (figure->parsed->common.dump)
+        TRY(put_recipe(figure, err));
+    TRY(find_folder(recipe, &figure->folder, err));
+    TRY(open_press(figure, err));
+    TRY(madetrees_make(&figure->plan, &figure->parsed->common, figure->folder, &figure->trees,
+                       err));
+    TRY(draw_panels(figure, err));
+    return fill_page(figure, err);
 }
 
 Status figure_make(const FigureOptions *options, Parsed *parsed, Figure *out, Err *err)
@@ -458,6 +446,7 @@ void figure_done(Figure *figure)
     sheet_release(&figure->sheet);
     press_release(&figure->press);
     text_release(&figure->recipe);
+    free(figure->folder);
     free(figure->places);
     free(figure->panels);
     free(figure->insets);
@@ -475,6 +464,7 @@ const Command command_figure = {
     .needs_output = true,
     .is_lookup = false,
     .own_recipe = true,
+    .own_check = true,
     .size = sizeof(FigureOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, {&press_table, offsetof(FigureOptions, press)}},

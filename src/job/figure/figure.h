@@ -29,6 +29,7 @@ typedef struct Place {
 typedef struct Figure {
     const FigureOptions *options; /* borrowed, as is `parsed` */
     Parsed *parsed;
+    char *folder; /* of the recipe, with its final '/', or ""; owned */
     FigurePlan plan;
     MadeTrees trees;
     Press press; /* of a page in pixels */

@@ -4,6 +4,7 @@
  * the page says. Its tree is a file, or what a command makes: the key `grow` holds its options. */
 #include "job/figure/figure_plan.h"
 
+#include "job/job.h"
 #include "options/output.h"
 #include <stdlib.h>
 #include <string.h>
@@ -210,14 +211,6 @@ typedef struct Reading {
     enum { IN_NOTHING, IN_FIGURE, IN_PANELS, IN_SECTION } in;
 } Reading;
 
-static Status init_render(const Reading *reading, Section *section, Err *err)
-{
-    FindCommand *find_command = reading->figure->find_command;
-    TRY(parsed_init(&section->render, find_command("render"), err));
-    section->render.find_command = find_command;
-    return STATUS_OK;
-}
-
 /* Options that [panels] gives are not typed: one without effect in this panel is no fault of it,
  * and one of the panel's own takes precedence. */
 static Status take_defaults(const Reading *reading, Section *section, Err *err)
@@ -248,7 +241,7 @@ static Status add_section(Reading *reading, SectionKind kind, const char *name, 
     TRY(parsed_init(&section->own, &kinds[kind], err));
     if (kind != SECTION_PANEL)
         return STATUS_OK;
-    TRY(init_render(reading, section, err));
+    TRY(parsed_init(&section->render, &command_render, err));
     return take_defaults(reading, section, err);
 }
 
@@ -307,7 +300,7 @@ static Status take_default(Reading *reading, const char *name, const char *value
     Section trial = {.kind = SECTION_PANEL};
     Status status = parsed_init(&trial.own, &kinds[SECTION_PANEL], err);
     if (status == STATUS_OK)
-        status = init_render(reading, &trial, err);
+        status = parsed_init(&trial.render, &command_render, err);
     if (status == STATUS_OK)
         status = take_defaults(reading, &trial, err);
     parsed_release(&trial.own);

@@ -2,13 +2,17 @@
  * blanks outside quotes. The tree stays in memory. */
 #include "job/figure/figure_trees.h"
 
+#include "job/figure/figure_paths.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 enum { MOST_WORDS = 256 };
 
 typedef struct Words {
-    char *text; /* owned; cut up */
+    char *text;    /* owned; cut up */
+    char *recipe;  /* the path of --recipe from the folder; owned; NULL: there is none */
+    char *operand; /* the first operand likewise */
     char *word[MOST_WORDS];
     int n;
 } Words;
@@ -66,32 +70,61 @@ static void pass_warning(void *user, TalkKind kind, const char *sentence)
         talk_warn(*talk, "%s", sentence);
 }
 
-static Status run_maker(const Section *section, const Common *figure, Parsed *parsed, Words *words,
+/* Has the recipe of a maker start at the folder: it is read while options are parsed. */
+static Status rebase_recipe(const char *folder, Words *words, Err *err)
+{
+    for (int i = 0; i + 1 < words->n; i++)
+        if (strcmp(words->word[i], "--recipe") == 0) {
+            TRY(figure_path(folder, words->word[i + 1], &words->recipe, err));
+            words->word[i + 1] = words->recipe;
+            return STATUS_OK;
+        }
+    return STATUS_OK;
+}
+
+static Status parse(const Section *section, const char *folder, Parsed *parsed, Words *words,
+                    Err *err)
+{
+    TRY(cut_words(section->arguments, words, err));
+    TRY(check_words(words, err));
+    TRY(rebase_recipe(folder, words, err));
+    TRY(options_parse(parsed, words->n, words->word, err));
+    TRY(figure_rebase(parsed, folder, NULL, err));
+    if (parsed->n_operands == 0)
+        return STATUS_OK;
+    TRY(figure_path(folder, parsed->operands[0], &words->operand, err));
+    parsed->operands[0] = words->operand;
+    return STATUS_OK;
+}
+
+static Status run_maker(const Section *section, const Common *figure, Parsed *parsed,
                         MadeTree *made, Err *err)
 {
     const Talk *talk = figure->talk;
     const Talk warnings = {.say = pass_warning, .user = &talk};
-    TRY(cut_words(section->arguments, words, err));
-    TRY(check_words(words, err));
-    TRY(options_parse(parsed, words->n, words->word, err));
     parsed->common.threads = figure->threads;
     parsed->common.talk = &warnings;
     return section->maker->make(parsed->options, parsed, made, err);
 }
 
-static Status make_tree(const Section *section, const Common *figure, MadeTree *made, Err *err)
+static Status make_tree(const Section *section, const Common *figure, const char *folder,
+                        MadeTree *made, Err *err)
 {
     Words words = {0};
     Parsed parsed;
     TRY(parsed_init(&parsed, section->maker->command, err));
     parsed.in_memory = true;
-    Status status = run_maker(section, figure, &parsed, &words, made, err);
+    Status status = parse(section, folder, &parsed, &words, err);
+    if (status == STATUS_OK)
+        status = run_maker(section, figure, &parsed, made, err);
     if (status != STATUS_OK) {
         options_name_fields(&parsed, err);
         err_prefix(err, "[panel %s]: %s: ", section->name, section->maker->command->name);
     }
     parsed_release(&parsed);
     free(words.text);
+    free(words.recipe);
+    free(words.operand);
     return status;
 }
 
@@ -106,13 +139,14 @@ static size_t first_of(const FigurePlan *plan, size_t i)
     return i;
 }
 
-Status madetrees_make(const FigurePlan *plan, const Common *figure, MadeTrees *trees, Err *err)
+Status madetrees_make(const FigurePlan *plan, const Common *figure, const char *folder,
+                      MadeTrees *trees, Err *err)
 {
     TRY(mem_calloc(&trees->made, plan->n, sizeof *trees->made, "trees", err));
     trees->n = plan->n;
     for (size_t i = 0; i < plan->n; i++)
         if (plan->sections[i]->maker && first_of(plan, i) == i)
-            TRY(make_tree(plan->sections[i], figure, &trees->made[i], err));
+            TRY(make_tree(plan->sections[i], figure, folder, &trees->made[i], err));
     return STATUS_OK;
 }
 

@@ -15,11 +15,12 @@ typedef struct MadeTrees {
  * passed on.
  *
  * figure  the options of the figure: the number of threads, and who listens.
+ * folder  where paths among the arguments start [figure_paths.h].
  * trees   the caller releases it even after an error.
  * Errors  naming the panel: STATUS_USAGE for a quote that is not closed, for an option that says
  *         where the tree goes, and for wrong options; errors of the makers. */
-MUST_CHECK Status madetrees_make(const FigurePlan *plan, const Common *figure, MadeTrees *trees,
-                                 Err *err);
+MUST_CHECK Status madetrees_make(const FigurePlan *plan, const Common *figure, const char *folder,
+                                 MadeTrees *trees, Err *err);
 /* Returns the tree of a section that has a maker; borrowed. */
 const Tree *madetrees_tree(const FigurePlan *plan, const MadeTrees *trees, size_t i);
 void madetrees_release(MadeTrees *trees);

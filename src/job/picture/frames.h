@@ -1,4 +1,4 @@
-/* Frames as files: the picture and the planes beside it. */
+/* Frames as files or in memory: the picture, and the planes beside it. */
 #ifndef CORCAST_JOB_PICTURE_FRAMES_H
 #define CORCAST_JOB_PICTURE_FRAMES_H
 
@@ -7,20 +7,21 @@
 #include "image/image.h"
 #include "options/files.h"
 
-/* Whether the file is a page, .pdf or .svg, that holds a picture. */
+/* Returns true if the file is a page that holds a picture: .pdf or .svg. */
 bool frames_is_page(const char *path);
-/* Writes such a page. Errors are those of figure_write_pdf and figure_put_svg. */
+/* Writes such a page. Errors: as figure_write_pdf and figure_put_svg; STATUS_IO. */
 MUST_CHECK Status frames_write_page(const FigurePage *page, const FigureNotes *notes,
                                     const char *path, Err *err);
-/* STATUS_USAGE when `path` is no image file, or is standard output although planes are wanted. */
+/* Errors: STATUS_USAGE if `path` has not the extension of an image, or if it is standard output
+ * although planes are wanted, which need a name. */
 MUST_CHECK Status frames_check_output(const char *path, bool planes, Err *err);
 
-/* Of the bits of a picture, of which only the ends are taken. */
+/* Range of --bits; only its two ends are accepted. */
 extern const Range bits_range;
-/* STATUS_USAGE unless 8 or 16. */
+/* Errors: STATUS_USAGE unless `bits` is 8 or 16. */
 MUST_CHECK Status bits_check(int bits, Err *err);
 
-/* Which files are to be written for a frame. */
+/* The form of a frame that is written or kept. All pointers are borrowed. */
 typedef struct FramesForm {
     int width, height; /* of the file's picture */
     int first;         /* row of the page that is its first */
@@ -44,22 +45,24 @@ typedef struct FramesForm {
                   * even after an error; NULL: files are written */
 } FramesForm;
 
-/* Takes note of the planes that are to be written, of the picture's name or not. */
+/* Notes the files of the planes, whose names follow from form->path. Errors: as files_write. */
 MUST_CHECK Status frames_note_planes(const FramesForm *form, Files *files, Err *err);
 
-/* Files being written band by band; none has its final name before frames_commit. */
+/* A frame that is written or kept band by band. Its files get their final names only in
+ * frames_commit. */
 typedef struct FramesWriter FramesWriter;
 
-/* `form` is borrowed until the end. Follow with exactly one of frames_commit and frames_discard,
- * each of which frees the writer, also on failure. */
+/* Opens the files, or allocates form->kept. `form` is borrowed until the end. Follow with exactly
+ * one of frames_commit and frames_discard, which free the writer, also on failure. Errors: as
+ * imagewriter_open; STATUS_MEMORY. */
 MUST_CHECK Status frames_open(FramesWriter **out, const FramesForm *form, Err *err);
-/* The next rows, with all the planes that are to be written. */
+/* Takes the next rows, which have all planes of the form. Errors: STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err);
 MUST_CHECK Status frames_commit(FramesWriter *writer, Err *err);
 void frames_discard(FramesWriter *writer);
 
-/* Writes a whole frame as the form says, its size and planes, but for the colour, those that the
- * frame has. */
+/* Writes a whole frame. Size and planes are those of the frame, not those of the form, except for
+ * `color`. Errors: as frames_open and frames_rows. */
 MUST_CHECK Status frames_write(const Frame *frame, const FramesForm *form, Err *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* A page that is being filled, and what it says of itself. */
+/* A page that is being filled, and what its file states about itself. */
 #ifndef CORCAST_JOB_PICTURE_SHEET_H
 #define CORCAST_JOB_PICTURE_SHEET_H
 
@@ -13,14 +13,15 @@ typedef struct Sheet {
     char *templates, *description, *command; /* owned; what notes borrow */
 } Sheet;
 
-/* Loads the fonts, in *sheet (owned; sheet_release), which is zeroed before. As figurefonts_load.
- */
+/* Loads the fonts. *sheet is zeroed before; the caller calls sheet_release even after an error.
+ * Errors: as figurefonts_load and templates_folder. */
 MUST_CHECK Status sheet_open(Sheet *sheet, Err *err);
-/* Begins the page, of whole pixels at `dpi`. */
+/* Begins an empty page with this width and height in pixels, at `dpi` pixels per inch. */
 void sheet_begin(Sheet *sheet, const int pixels[2], double dpi);
-/* Sets the notes: `description`, of which the sheet takes hold, and the command. */
+/* Sets the notes of the file. The text moves out of `description`; `command` is copied. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err *err);
-/* Says which letters of the page the font lacks. */
+/* Says which letters of the page the font lacks: a warning for boxes, a note for substitutes. */
 void sheet_say(const Sheet *sheet, const Talk *talk);
 void sheet_release(Sheet *sheet);
 

@@ -91,16 +91,7 @@ static Status check_pair(const CompareOptions *options, PlaneKind plane, const P
                          Err *err)
 {
     const bool color = plane == PLANE_COLOR;
-    const OptionNeed needs[] = {{"depth-mm", plane == PLANE_DEPTH, "is for two depth planes"},
-                                {"levels", color, "is for two pictures"},
-                                {"background", color, "is for two pictures"},
-                                {"pixelmatch", color, "is for two pictures"},
-                                {"bits", color, "is for two pictures"},
-                                {"layer", plane != PLANE_ID, "is for other planes than ids"},
-                                {"ids-a", plane != PLANE_ID, "is for other planes than ids"},
-                                {"ids-b", plane != PLANE_ID, "is for other planes than ids"},
-                                {0}};
-    TRY(options_check_needs(parsed, needs, err));
+    TRY(options_refuse(parsed, compare_unmet(plane), err));
     if (!options->ids_a != !options->ids_b)
         return err_set(err, STATUS_USAGE, "--ids-a and --ids-b go together; one is missing");
     const bool has_ids = options->ids_a || (options->given[0].ids && options->given[1].ids);
@@ -148,6 +139,13 @@ static Status compare_codes(const CompareOptions *options, const Tolerance *tole
                : STATUS_OK;
 }
 
+/* Returns a side whose plane is of colours, depths or normals. */
+static Rendering values_of(const Comparison *made, int side)
+{
+    const Plane *plane = &made->sides[side].image.plane;
+    return (Rendering){.color = plane, .depth = plane, .normal = plane, .ids = ids_of(made, side)};
+}
+
 static Status compare_linear(const CompareOptions *options, const Tolerance *tolerance,
                              Comparison *made, Err *err)
 {
@@ -156,9 +154,9 @@ static Status compare_linear(const CompareOptions *options, const Tolerance *tol
     if (options->ledger)
         return err_set(err, STATUS_USAGE,
                        "--ledger is of two pictures of 8 or 16 bits and one gamma");
-    TRY(compare_colors(&sides[0].image.plane, &sides[1].image.plane, ids_of(made, 0),
-                       ids_of(made, 1), tolerance,
-                       options->metrics || options->page || options->report, result, err));
+    const Rendering a = values_of(made, 0), b = values_of(made, 1);
+    TRY(compare_colors(&a, &b, tolerance, options->metrics || options->page || options->report,
+                       result, err));
     TRY(alpha_judge(&sides[0].alpha, &sides[1].alpha, result, err));
     const bool asks_cause =
         !result->agrees && !*result->cause && result->values[MEASURE_NAN_PIXELS] == 0;
@@ -177,8 +175,8 @@ static Status compare_geometry(const Tolerance *tolerance, Comparison *made, Err
                 err, STATUS_INPUT,
                 "%s: holds whole numbers; a %s plane is of floats (PFM, OpenEXR or TIFF)",
                 sides[i].name, plane_kind_name(made->plane));
-    return compare_planes(made->plane, &sides[0].image.plane, &sides[1].image.plane,
-                          ids_of(made, 0), ids_of(made, 1), tolerance, &made->result, err);
+    const Rendering a = values_of(made, 0), b = values_of(made, 1);
+    return compare_planes(made->plane, &a, &b, tolerance, &made->result, err);
 }
 
 static Status compare_sides(const CompareOptions *options, const Tolerance *tolerance,
@@ -232,8 +230,8 @@ static Status compare_folders(const CompareOptions *options, const Parsed *parse
     if (options->accept)
         return suite_accept(options->reference, folder, options->accept, options->reason, err);
     TRY(compare_tolerance(&options->judge, options->depth_mm, &tolerance, &made->tier, err));
-    TRY(suite_judge(&made->suite, options->reference, folder, &tolerance, background,
-                    parsed->common.threads, err));
+    const SuiteFolders folders = {options->reference, folder, &tolerance, background};
+    TRY(suite_judge(&made->suite, &folders, parsed->common.threads, err));
     made->agrees = made->suite.agrees;
     return STATUS_OK;
 }
@@ -254,7 +252,6 @@ Status compare_make(CompareOptions *options, Parsed *parsed, Comparison *compari
 {
     Comparison made = {0};
     const double start_s = clock_seconds();
-    TRY(compare_check_folders(options, parsed, err));
     TRY(check_operands(options, parsed, err));
     Status status = compare_any(options, parsed, &made, err);
     made.seconds = clock_seconds() - start_s;

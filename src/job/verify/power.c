@@ -220,9 +220,12 @@ static Status measure(const PowerOptions *options, const PowerFiles *place, cons
     const PowerRule rule = {.name = "yours",
                             .differs = asks ? command_differs : tolerance_differs,
                             .context = asks ? (void *)&verdict : (void *)&tolerance};
-    status = power_measure(&drawings[0], &drawings[1], &rule, asks ? 1 : parsed->common.threads,
-                           options->folder ? keep_missed : NULL, (void *)(uintptr_t)options->folder,
-                           power, err);
+    const PowerInput input = {.reference = &drawings[0],
+                              .drawn = &drawings[1],
+                              .rule = &rule,
+                              .keep = options->folder ? keep_missed : NULL,
+                              .keep_context = (void *)(uintptr_t)options->folder};
+    status = power_measure(&input, asks ? 1 : parsed->common.threads, power, err);
 done:
     picture_release(&drawings[0]);
     picture_release(&drawings[1]);
@@ -232,29 +235,24 @@ done:
 }
 
 /* Checks that the commands have their marks. */
-static Status check(const PowerOptions *options, const Parsed *parsed, Err *err)
+static Status check(const PowerOptions *options, Err *err)
 {
-    const bool own_rule = options->verdict == NULL;
-    static const char instead[] = "and --verdict are two rules; one can be asked";
-    const OptionNeed needs[] = {{"tier", own_rule, instead},       {"tolerance", own_rule, instead},
-                                {"levels", own_rule, instead},     {"ppm", own_rule, instead},
-                                {"pixelmatch", own_rule, instead}, {0}};
     if (!options->render || !strstr(options->render, "{}"))
         return err_set(err, STATUS_USAGE,
                        "--render is a command with {} for the file that it draws into, as "
                        "--render 'povray scene.pov +O{} -D'");
-    if (!own_rule && (!strstr(options->verdict, "{a}") || !strstr(options->verdict, "{b}")))
+    if (options->verdict && (!strstr(options->verdict, "{a}") || !strstr(options->verdict, "{b}")))
         return err_set(err, STATUS_USAGE,
                        "--verdict is a command with {a} and {b} for the two pictures, as "
                        "--verdict 'idiff -fail 0.004 {a} {b}'");
-    return options_check_needs(parsed, needs, err);
+    return STATUS_OK;
 }
 
 Status power_run(const PowerOptions *options, Parsed *parsed, Power *power, Err *err)
 {
     PowerFiles place = {0};
     Status status;
-    TRY(check(options, parsed, err));
+    TRY(check(options, err));
     TRY_GOTO(open_place(&place, options->extension, err));
     status = measure(options, &place, parsed, power, err);
 done:

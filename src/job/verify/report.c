@@ -38,8 +38,9 @@ Status report_run(const ReportOptions *options, Parsed *parsed, bool *agree, Err
     for (int i = 0; i < parsed->n_operands; i++)
         TRY(note_case(parsed->operands[i], &parsed->files, err));
     TRY(templates_path("report", &folder, err));
-    Status status = report_merge(parsed->operands, (size_t)parsed->n_operands, options->power,
-                                 folder, options->page, agree, err);
+    Status status = report_merge(
+        &(ReportMerge){parsed->operands, (size_t)parsed->n_operands, options->power, folder},
+        options->page, agree, err);
     free(folder);
     return status;
 }

@@ -429,10 +429,8 @@ Status verification_compare(Verification *v, Err *err)
         TRY(compare_witness(v, depth_step_mm, err));
     TRY(settle_sides(v, &a, &b, &tolerance, err));
     TRY(compare_colors_of(v, &a, &b, &tolerance, err));
-    TRY(compare_planes(PLANE_DEPTH, a.depth, b.depth, a.ids, b.ids, &tolerance,
-                       &planes[PLANE_DEPTH], err));
-    TRY(compare_planes(PLANE_NORMAL, a.normal, b.normal, a.ids, b.ids, &tolerance,
-                       &planes[PLANE_NORMAL], err));
+    TRY(compare_planes(PLANE_DEPTH, &a, &b, &tolerance, &planes[PLANE_DEPTH], err));
+    TRY(compare_planes(PLANE_NORMAL, &a, &b, &tolerance, &planes[PLANE_NORMAL], err));
     TRY(compare_ids(a.ids, b.ids, &tolerance, &planes[PLANE_ID], err));
     if (v->has_alpha)
         TRY(compare_alpha(v, &tolerance, err));

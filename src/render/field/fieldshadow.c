@@ -11,9 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Blockers nearer than this to a point cast no shadow on it [docs/POVRAY.md section 3]. */
-static const double nearest_mm = 1e-3;
-
 /* The segments in the tiles of a light view. All arrays are owned. */
 typedef struct FieldLists {
     VesselLists vessels;
@@ -40,22 +37,22 @@ static bool can_look(const Geometry *geometry, const View *view, const Light *li
     return lightview_sees_all(geometry, view, light) && way.distance > lightview_radius(geometry);
 }
 
-static Status list_row(size_t row, int worker, void *context, Err *err)
+static Status list_segments_of_row(size_t row, int worker, void *context, Err *err)
 {
-    (void)err; /* list_rows says what memory is for */
+    (void)err; /* list_segments says what memory is for */
     FieldLists *lists = context;
     return vessellists_row(&lists->vessels, row,
                            lists->columns + (size_t)worker * lists->vessels.longest,
                            &lists->rows[row], NULL);
 }
 
-static Status list_rows(FieldLists *lists, int threads, Err *err)
+static Status list_segments(FieldLists *lists, int threads, Err *err)
 {
     size_t n = (size_t)lists->vessels.tile_rows, longest = lists->vessels.longest;
     TRY(mem_calloc(&lists->rows, n, sizeof *lists->rows, "rows of tiles", err));
     TRY(mem_calloc(&lists->columns, (size_t)threads * longest, sizeof *lists->columns,
                    "rows of tiles", err));
-    if (threads_try(n, threads, list_row, lists, NULL) != STATUS_OK)
+    if (threads_try(n, threads, list_segments_of_row, lists, NULL) != STATUS_OK)
         return err_set(err, STATUS_MEMORY, "out of memory: no room for shadows");
     free(lists->columns);
     lists->columns = NULL;
@@ -77,7 +74,7 @@ static void reflect_segments(VesselLists *lists)
     }
 }
 
-static void release_lists(void *of)
+static void release_field_lists(void *of)
 {
     FieldLists *lists = of;
     if (!lists)
@@ -91,7 +88,7 @@ static void release_lists(void *of)
 }
 
 /* Half as many tiles as the image has, but no more tiles than segments. */
-static int tiles_across(const Drawing *drawing)
+static int tiles_for_segments(const Drawing *drawing)
 {
     enum { MIN_SIDE = 16, MAX_SIDE = 384 };
     const Camera *camera = &drawing->view->camera;
@@ -100,12 +97,12 @@ static int tiles_across(const Drawing *drawing)
     return side < MIN_SIDE ? MIN_SIDE : side > MAX_SIDE ? MAX_SIDE : side;
 }
 
-static double slack_of(const Drawing *drawing)
+static double slack_of_field(const Drawing *drawing)
 {
     const double from_mm = drawing->params->shadow_from_mm;
     if (model_has(drawing->geometry->model, MODEL_BLOB))
         return BLOB_NEAREST_MM;
-    return from_mm > 0 ? from_mm : nearest_mm;
+    return from_mm > 0 ? from_mm : SHADOW_NEAREST_MM;
 }
 
 static Status bin_segments(const Drawing *drawing, LightBins *light, Err *err)
@@ -115,7 +112,7 @@ static Status bin_segments(const Drawing *drawing, LightBins *light, Err *err)
     TRY(mem_calloc(&lists, 1, sizeof *lists, "shadows", err));
     light->lists = lists;
     TRY(vessellists_of_light(drawing->geometry, &light->view, threads, &lists->vessels, err));
-    TRY(list_rows(lists, threads, err));
+    TRY(list_segments(lists, threads, err));
     reflect_segments(&lists->vessels);
     return STATUS_OK;
 }
@@ -142,7 +139,7 @@ static void end(void *workspace)
 }
 
 /* Returns a tile of the light view, without terms. */
-static FieldTile tile_of(const LightView *view, int number, LocalGroups *groups)
+static FieldTile tile_without_terms(const LightView *view, int number, LocalGroups *groups)
 {
     const double half = TILE_SIDE / 2.0, middle = half - 0.5;
     int row = number / view->tiles, column = number % view->tiles;
@@ -326,13 +323,13 @@ static const uint32_t *list_of(const FieldTester *tester, int tile)
     return &tester->lists->rows[tile / tiles].first[tile % tiles];
 }
 
-static Status test_tile(const LightBins *light, void *workspace, const TileQueries *queries,
-                        Err *err)
+static Status test_by_terms(const LightBins *light, void *workspace, const TileQueries *queries,
+                            Err *err)
 {
     FieldTester *tester = workspace;
     FieldSpace *space = &tester->space;
     ShadowPoints *points = queries->points;
-    FieldTile tile = tile_of(&light->view, queries->tile, space->groups);
+    FieldTile tile = tile_without_terms(&light->view, queries->tile, space->groups);
     const uint32_t *list = list_of(tester, queries->tile);
     const size_t n = list[1] - list[0];
     const FrameSegment *segments = tester->lists->vessels.segments;
@@ -354,10 +351,10 @@ static Status test_tile(const LightBins *light, void *workspace, const TileQueri
 }
 
 const ShadowEngine field_shadows = {.can = can_look,
-                                    .tiles = tiles_across,
-                                    .slack = slack_of,
+                                    .tiles = tiles_for_segments,
+                                    .slack = slack_of_field,
                                     .bin = bin_segments,
-                                    .release = release_lists,
+                                    .release = release_field_lists,
                                     .begin = begin,
                                     .end = end,
-                                    .test = test_tile};
+                                    .test = test_by_terms};

@@ -15,6 +15,9 @@ enum { SHADOW_BATCH = 512, SHADOW_MAX_POINTS = SHADOW_BATCH * TILE_SAMPLES };
 /* Kernels may read and write up to POINT_PADDING elements past the last point. */
 enum { POINT_PADDING = 15, POINT_CAPACITY = SHADOW_MAX_POINTS + POINT_PADDING };
 
+/* Blockers nearer than this to a point cast no shadow on it [docs/POVRAY.md section 3]. */
+#define SHADOW_NEAREST_MM 1e-3
+
 /* The item of a point whose surface is not known. */
 #define NO_ITEM UINT32_MAX
 

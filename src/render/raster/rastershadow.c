@@ -10,8 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Blockers nearer than this to a point cast no shadow on it [docs/POVRAY.md section 3]. */
-static const double slack_mm = 1e-3;
 /* RasterKernels.cover reads up to this many words past the end of a list. */
 enum { MOST_LANES = 16 };
 /* Words of a cache line, and words of the next list that are prefetched. */
@@ -65,9 +63,9 @@ static Status take_words(RowStore *store, size_t n, uint32_t **out)
     return *out ? STATUS_OK : STATUS_MEMORY;
 }
 
-static Status list_row(size_t row, int worker, void *context, Err *err)
+static Status list_boxes_of_row(size_t row, int worker, void *context, Err *err)
 {
-    (void)err; /* list_rows says what memory is for */
+    (void)err; /* list_boxes says what memory is for */
     RasterLists *lists = context;
     RowStore *store = &lists->stores[worker];
     const RasterBins *bins = lists->bins;
@@ -93,7 +91,7 @@ static Status list_row(size_t row, int worker, void *context, Err *err)
     return STATUS_OK;
 }
 
-static Status list_rows(RasterLists *lists, Err *err)
+static Status list_boxes(RasterLists *lists, Err *err)
 {
     size_t n = (size_t)lists->bins->tile_rows, columns = (size_t)lists->bins->tile_columns;
     TRY(mem_calloc(&lists->rows, n, sizeof *lists->rows, "rows of tiles", err));
@@ -101,26 +99,26 @@ static Status list_rows(RasterLists *lists, Err *err)
     for (int i = 0; i < lists->workers; i++)
         TRY(mem_calloc(&lists->stores[i].taken, columns, sizeof *lists->stores[i].taken, "shadows",
                        err));
-    if (threads_try(n, lists->workers, list_row, lists, NULL) != STATUS_OK)
+    if (threads_try(n, lists->workers, list_boxes_of_row, lists, NULL) != STATUS_OK)
         return err_set(err, STATUS_MEMORY, "out of memory: no room for shadows");
     rasterbins_forget_rows(lists->bins);
     return STATUS_OK;
 }
 
 /* Aims for sixteen primitives per tile. */
-static int tiles_across(const Drawing *drawing)
+static int tiles_for_primitives(const Drawing *drawing)
 {
     double side = sqrt((double)rasterbins_items(drawing->geometry)) / 3;
     return side < MIN_SIDE ? MIN_SIDE : side > MAX_SIDE ? MAX_SIDE : (int)side;
 }
 
 /* Positions and depths are rounded to 2^-24 of the scene's size, three times. */
-static double slack_of(const Drawing *drawing)
+static double slack_of_rounding(const Drawing *drawing)
 {
-    return slack_mm + 0x3p-23 * lightview_radius(drawing->geometry);
+    return SHADOW_NEAREST_MM + 0x3p-23 * lightview_radius(drawing->geometry);
 }
 
-static void release_lists(void *of)
+static void release_raster_lists(void *of)
 {
     RasterLists *lists = of;
     if (!lists)
@@ -145,13 +143,13 @@ static Status bin_primitives(const Drawing *drawing, LightBins *light, Err *err)
     lists->grid = rastergrid_make(&view, 0.5, 0.5);
     lists->workers = threads;
     TRY(rasterbins_new(drawing->geometry, &view, threads, &lists->bins, err));
-    return list_rows(lists, err);
+    return list_boxes(lists, err);
 }
 
 /* ---- queries --------------------------------------------------------------------------------- */
 
 /* Returns a tile of the light view with its list. */
-static RasterTile tile_of(const RasterLists *lists, int number)
+static RasterTile tile_with_list(const RasterLists *lists, int number)
 {
     const RasterBins *bins = lists->bins;
     int row = number / bins->tile_columns, column = number % bins->tile_columns;
@@ -165,17 +163,17 @@ static RasterTile tile_of(const RasterLists *lists, int number)
 
 static void prefetch_list(const RasterLists *lists, int number)
 {
-    RasterTile tile = tile_of(lists, number);
+    RasterTile tile = tile_with_list(lists, number);
     for (size_t word = 0; word < 3 * tile.n && word < MAX_PREFETCHED; word += LINE_WORDS)
         __builtin_prefetch(tile.list + word);
 }
 
-static Status test_tile(const LightBins *light, void *workspace, const TileQueries *queries,
-                        Err *err)
+static Status test_by_cover(const LightBins *light, void *workspace, const TileQueries *queries,
+                            Err *err)
 {
     (void)workspace;
     (void)err;
-    RasterTile tile = tile_of(light->lists, queries->tile);
+    RasterTile tile = tile_with_list(light->lists, queries->tile);
     if (queries->next >= 0)
         prefetch_list(light->lists, queries->next);
     rasterkernels[kernels_kind(queries->kernels)]->cover(&tile, queries->points);
@@ -183,8 +181,8 @@ static Status test_tile(const LightBins *light, void *workspace, const TileQueri
 }
 
 const ShadowEngine raster_shadows = {.can = lightview_sees_all,
-                                     .tiles = tiles_across,
-                                     .slack = slack_of,
+                                     .tiles = tiles_for_primitives,
+                                     .slack = slack_of_rounding,
                                      .bin = bin_primitives,
-                                     .release = release_lists,
-                                     .test = test_tile};
+                                     .release = release_raster_lists,
+                                     .test = test_by_cover};

@@ -1,0 +1,86 @@
+/* A path is found in a value by the kind of its option. Values of kind text hold paths in four
+ * options, each in its own way. */
+#include "job/figure/figure_paths.h"
+
+#include "treeio/treeio.h"
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+Status figure_path(const char *folder, const char *path, char **out, Err *err)
+{
+    Text text = TEXT_INIT;
+    text_puts(&text, path[0] == '/' || strcmp(path, "-") == 0 ? "" : folder);
+    text_puts(&text, path);
+    Status status = text_take(&text, out, err);
+    text_release(&text);
+    return status;
+}
+
+/* Returns the path in the description of a domain, such as mesh:FILE; NULL if there is none. */
+static const char *path_of_domain(const char *value)
+{
+    static const char *const shapes[] = {"polygon:", "mask:", "mesh:", "surface:"};
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
+        if (strncmp(value, shapes[i], strlen(shapes[i])) == 0)
+            return value + strlen(shapes[i]);
+    return NULL;
+}
+
+/* Returns the place in `value` where a path begins; NULL if there is none. `from_folder` is the
+ * value with the folder before it. */
+static const char *find_path(const Option *option, const char *value, const char *from_folder)
+{
+    size_t length;
+    const char *column;
+    if (option->kind == OPTION_INPUT)
+        return value;
+    if (option->kind == OPTION_LOOKUP)
+        return strchr(value, '/') ? value : NULL;
+    if (strcmp(option->name, "domain") == 0)
+        return path_of_domain(value);
+    if (strcmp(option->name, "color-by") == 0)
+        return values_parse(from_folder, &length, &column) ? value : NULL;
+    if (strcmp(option->name, "terminal-flow") == 0)
+        return strcasecmp(file_extension(value), "csv") == 0 ? value : NULL;
+    return strcmp(option->name, "demand") == 0 && strcmp(value, "even") != 0 ? value : NULL;
+}
+
+static Status rebase_value(Parsed *parsed, const Setting *setting, const char *folder, Err *err)
+{
+    const char *value = *(const char *const *)(setting->base + setting->option->where);
+    char *from_folder = NULL, *path = NULL;
+    Text text = TEXT_INIT;
+    Status status;
+    if (!value)
+        return STATUS_OK;
+    TRY_GOTO(figure_path(folder, value, &from_folder, err));
+    const char *begin = find_path(setting->option, value, from_folder);
+    if (!begin) {
+        status = STATUS_OK;
+        goto done;
+    }
+    TRY_GOTO(figure_path(folder, begin, &path, err));
+    text_append(&text, value, (size_t)(begin - value));
+    text_puts(&text, path);
+    TRY_GOTO(text_check(&text, err));
+    TRY_GOTO(options_set(parsed, setting->option->name, text_chars(&text), err));
+done:
+    text_release(&text);
+    free(from_folder);
+    free(path);
+    return status;
+}
+
+Status figure_rebase(Parsed *parsed, const char *folder, bool (*is_fixed)(const Setting *),
+                     Err *err)
+{
+    for (size_t i = 0; *folder && i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        const OptionKind kind = setting->option->kind;
+        if ((kind == OPTION_INPUT || kind == OPTION_LOOKUP || kind == OPTION_TEXT) &&
+            strcmp(setting->option->name, "recipe") != 0 && !(is_fixed && is_fixed(setting)))
+            TRY(rebase_value(parsed, setting, folder, err));
+    }
+    return STATUS_OK;
+}
