@@ -409,6 +409,7 @@ install: build/corcast lib build/share ## install under $(DESTDIR)$(PREFIX), wit
 	sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|; s|@PACKAGES@|$(PACKAGES)|; s|@LIBS@|-lOpenEXRCore -lnifti2 -lznz -lpthread -lm|' \
 		src/api/corcast.pc.in > $(LIBRARIES)/pkgconfig/corcast.pc
 	install -Dm644 src/corcast.h $(DESTDIR)$(PREFIX)/include/corcast.h
+	install -Dm644 src/python/corcast.py $(LIBRARIES)/python3/dist-packages/corcast.py
 	install -d $(SHARE)/corcast
 	cp -R templates $(SHARE)/corcast
 	test ! -e $(VIEWER) || install -Dm644 -t $(SHARE)/corcast/templates/page $(VIEWER)
@@ -425,6 +426,7 @@ uninstall: ## remove what `make install` put there
 	rm -f $(SHARE)/bash-completion/completions/corcast $(SHARE)/zsh/site-functions/_corcast
 	rm -f $(SHARE)/fish/vendor_completions.d/corcast.fish
 	rm -f $(LIBRARIES)/$(SONAME) $(LIBRARIES)/libcorcast.so $(LIBRARIES)/libcorcast.a $(LIBRARIES)/pkgconfig/corcast.pc
+	rm -f $(LIBRARIES)/python3/dist-packages/corcast.py
 	rm -f $(DESTDIR)$(PREFIX)/include/corcast.h $(SHARE)/man/man3/corcast.h.3
 	rm -rf $(SHARE)/corcast $(SHARE)/doc/corcast
 

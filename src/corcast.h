@@ -211,8 +211,9 @@ CORCAST_API int corcast_report_text(const corcast_report *report, const char *ke
  * Stability: stable. */
 CORCAST_API void corcast_report_free(corcast_report *report);
 
-/* Makes a report that describes commands and their options for programs: names, kinds, ranges,
- * units, defaults, choices and sentences. `command` is the name of one command, or NULL for all.
+/* Makes a report that describes commands and their options for programs, as `corcast help --as
+ * json` prints it: the array "commands", each with the names, kinds, ranges, units, defaults and
+ * choices of its options. `command` is the name of one command, or NULL for all.
  * Errors: CORCAST_WRONG for an unknown command.
  * Stability: provisional. */
 CORCAST_API int corcast_schema(const char *command, corcast_report **out, corcast_error *error);

@@ -172,6 +172,10 @@ test_make_install_puts_program_templates_and_documents_under_the_prefix() {
         done) || exit 1
     grow_tree 5
     run_ok stage/opt/corcast/bin/corcast scene tree.swc -o installed.pov
+    if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+        run_ok env -u CORCAST_TEMPLATES -u CORCAST_LIBRARY PYTHONPATH=stage/opt/corcast/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1 \
+            /usr/bin/python3 -c 'import corcast; corcast.read("tree.swc").render(look="journal", size=(40, 30)).save("installed.png")'
+    fi
     [ ! -e "$REPO/build/viewer/viewer.js" ] || run_ok stage/opt/corcast/bin/corcast export tree.swc -o installed.html
     run_ok make -C "$REPO" --no-print-directory uninstall "DESTDIR=$PWD/stage" PREFIX=/opt/corcast
     [ -z "$(find stage -type f)" ] || fail "expected nothing to be left, found $(find stage -type f)"

@@ -79,6 +79,9 @@ MUST_CHECK Status request_open(Request *request, const RequestForm *form, const 
  * set them. Returns `status`. */
 Status request_close(Request *request, Status status, Err *err);
 
+/* Finds the command that the argument `command` names. Errors: STATUS_USAGE, with the name that may
+ * have been meant. */
+MUST_CHECK Status request_find(const char *name, const Command **command, Err *err);
 /* Finds a command of the library; NULL if there is none. */
 const Command *request_command(const char *name);
 

@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Finds the command of an argument. Errors: STATUS_USAGE. */
-static Status find_command(const char *name, const Command **command, Err *err)
+Status request_find(const char *name, const Command **command, Err *err)
 {
     TRY(argument_check(name, "command", err));
     *command = request_command(name);
@@ -27,7 +26,7 @@ static Status new_options(const char *name, corcast_options **out, Err *err)
     const Command *command = NULL;
     corcast_options *made = NULL;
     TRY(argument_check(out, "out", err));
-    TRY(find_command(name, &command, err));
+    TRY(request_find(name, &command, err));
     TRY(handle_new(&made, HANDLE_OPTIONS, sizeof *made, err));
     made->command = command;
     Status status = parsed_init(&made->parsed, command, err);

@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "options/output.h"
+#include "options/schema.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -59,11 +60,6 @@ void help_put_escaped(const char *chars, const char *special, Text *text)
         text_puts(text, chars);
     for (; chars && *chars; chars++)
         text_printf(text, strchr(special, *chars) ? "\\%c" : "%c", *chars);
-}
-
-bool help_is_common(const Parsed *parsed, const Setting *setting)
-{
-    return setting->base == (const char *)&parsed->common;
 }
 
 static void put_option(const Setting *plain, Text *text)
@@ -127,6 +123,21 @@ Status help_put_all(HelpPut *put, Text *text, Err *err)
     for (const CommandRow *row = command_rows; row->command; row++)
         TRY(help_put(put, row->command, text, err));
     return STATUS_OK;
+}
+
+Status schema_put(const Command *command, Text *text, Err *err)
+{
+    json_t *commands = json_array();
+    Status status = command ? schema_add(command, &commands, err) : STATUS_OK;
+    for (const CommandRow *row = command_rows; !command && row->command; row++)
+        TRY_GOTO(schema_add(row->command, &commands, err));
+    text_json(text, schema_document(commands), 2);
+    commands = NULL;
+    text_puts(text, "\n");
+    status = text_check(text, err);
+done:
+    json_decref(commands);
+    return status;
 }
 
 const char help_exit_status[] =

@@ -17,8 +17,6 @@ void help_put_meaning(const Setting *plain, Text *text);
 /* Appends the chars, after a backslash those that are among `special`; NULL, from a text that
  * failed, makes `text` fail. */
 void help_put_escaped(const char *chars, const char *special, Text *text);
-/* Whether the option is one that every command has. */
-bool help_is_common(const Parsed *parsed, const Setting *setting);
 
 /* All of these append; `plain` has the defaults of a command. */
 typedef void HelpPut(const Parsed *plain, Text *text);
@@ -32,6 +30,9 @@ MUST_CHECK Status help_put_all(HelpPut *put, Text *text, Err *err);
 void manual_put(const Parsed *plain, Text *text);
 /* The page corcast.1, which names the others. */
 void manual_put_overview(Text *text);
+/* Appends a JSON object whose member "commands" describes a command, or all if it is NULL, as
+ * command_schema does. */
+MUST_CHECK Status schema_put(const Command *command, Text *text, Err *err);
 /* docs/REFERENCE.md. */
 MUST_CHECK Status reference_put(Text *text, Err *err);
 /* Completion for bash, zsh, fish. */

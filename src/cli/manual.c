@@ -13,7 +13,8 @@ static void for_groups(const Parsed *plain, bool common, void (*head)(const char
         bool headed = false;
         for (size_t i = 0; i < plain->n_settings; i++) {
             const Setting *setting = &plain->settings[i];
-            if ((int)setting->option->group != group || (!common && help_is_common(plain, setting)))
+            if ((int)setting->option->group != group ||
+                (!common && setting_is_common(plain, setting)))
                 continue;
             if (!headed)
                 head(option_group_names[group], text);
@@ -176,7 +177,7 @@ static void put_common(const Parsed *plain, Text *text)
 {
     text_puts(text, "\n| option | |\n|---|---|\n");
     for (size_t i = 0; i < plain->n_settings; i++)
-        if (help_is_common(plain, &plain->settings[i]))
+        if (setting_is_common(plain, &plain->settings[i]))
             put_markdown_option(&plain->settings[i], text);
 }
 

@@ -444,6 +444,7 @@ static void put_range(const void *where, Text *text)
 /* ---- kinds ----------------------------------------------------------------------------------- */
 
 typedef struct Kind {
+    const char *name;     /* for programs */
     const char *argument; /* what stands for a value */
     ReadValue *read;
     CountValues *count;
@@ -452,25 +453,25 @@ typedef struct Kind {
 } Kind;
 
 static const Kind kinds[] = {
-    [OPTION_FLAG] = {"", read_flag, count_flag, put_switch, false},
-    [OPTION_SWITCH] = {"[on|off]", read_switch, count_one, put_switch, false},
-    [OPTION_TEXT] = {"TEXT", read_text, count_text, put_text, false},
-    [OPTION_INPUT] = {"FILE", read_text, count_text, put_text, true},
-    [OPTION_OUTPUT] = {"FILE", read_text, count_text, put_text, true},
-    [OPTION_FOLDER] = {"DIR", read_text, count_text, put_text, true},
-    [OPTION_LOOKUP] = {"NAME", read_text, count_text, put_text, true},
-    [OPTION_WHOLE] = {"N", read_whole, count_one, put_whole, false},
-    [OPTION_SEED] = {"N", read_seed, count_one, put_seed, false},
-    [OPTION_COUNT] = {"N", read_count, count_one, put_count, false},
-    [OPTION_NUMBER] = {"NUMBER", read_number, count_one, put_number, false},
-    [OPTION_CURVE] = {"NUMBER|PLACE:NUMBER,...", read_curve, count_one, put_curve, false},
-    [OPTION_VECTOR] = {"X,Y,Z", read_vector, count_one, put_vector, false},
-    [OPTION_VECTORS] = {"X,Y,Z", read_vectors, count_vectors, put_vector, false},
-    [OPTION_NUMBERS] = {"A,B,...", read_list, count_list, put_list, false},
-    [OPTION_COLOR] = {"COLOR", read_color, count_one, put_color, false},
-    [OPTION_SIZE] = {"WxH", read_size, count_one, put_size, false},
-    [OPTION_RANGE] = {"A,B", read_range, count_one, put_range, false},
-    [OPTION_CHOICE] = {"NAME", read_choice, count_one, NULL, false},
+    [OPTION_FLAG] = {"flag", "", read_flag, count_flag, put_switch, false},
+    [OPTION_SWITCH] = {"switch", "[on|off]", read_switch, count_one, put_switch, false},
+    [OPTION_TEXT] = {"text", "TEXT", read_text, count_text, put_text, false},
+    [OPTION_INPUT] = {"input file", "FILE", read_text, count_text, put_text, true},
+    [OPTION_OUTPUT] = {"output file", "FILE", read_text, count_text, put_text, true},
+    [OPTION_FOLDER] = {"output folder", "DIR", read_text, count_text, put_text, true},
+    [OPTION_LOOKUP] = {"name or file", "NAME", read_text, count_text, put_text, true},
+    [OPTION_WHOLE] = {"integer", "N", read_whole, count_one, put_whole, false},
+    [OPTION_SEED] = {"seed", "N", read_seed, count_one, put_seed, false},
+    [OPTION_COUNT] = {"integer", "N", read_count, count_one, put_count, false},
+    [OPTION_NUMBER] = {"number", "NUMBER", read_number, count_one, put_number, false},
+    [OPTION_CURVE] = {"curve", "NUMBER|PLACE:NUMBER,...", read_curve, count_one, put_curve, false},
+    [OPTION_VECTOR] = {"vector", "X,Y,Z", read_vector, count_one, put_vector, false},
+    [OPTION_VECTORS] = {"vector", "X,Y,Z", read_vectors, count_vectors, put_vector, false},
+    [OPTION_NUMBERS] = {"numbers", "A,B,...", read_list, count_list, put_list, false},
+    [OPTION_COLOR] = {"color", "COLOR", read_color, count_one, put_color, false},
+    [OPTION_SIZE] = {"size", "WxH", read_size, count_one, put_size, false},
+    [OPTION_RANGE] = {"range", "A,B", read_range, count_one, put_range, false},
+    [OPTION_CHOICE] = {"choice", "NAME", read_choice, count_one, NULL, false},
 };
 
 static void *where_of(const Setting *setting)
@@ -551,6 +552,11 @@ void option_put_allowed(const Option *option, Text *text)
         text_puts(text, range_text(*option_range(option), range));
     for (int i = 0; option->choices && option->choices[i]; i++)
         text_printf(text, "%s%s", i ? ", " : "", option->choices[i]);
+}
+
+const char *option_kind_name(OptionKind kind)
+{
+    return kinds[kind].name;
 }
 
 bool option_is_path(const Option *option)

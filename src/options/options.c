@@ -23,7 +23,11 @@ static const Option common_options[] = {
      .group = GROUP_RUN,
      .aside = true,
      .help = "print a recipe that says all of what was done"},
-    {.name = "seed", SETS(SEED, Common, seed), .group = GROUP_RUN, .help = "of what is random"},
+    {.name = "seed",
+     SETS(SEED, Common, seed),
+     .group = GROUP_RUN,
+     .when = WHEN(OWN_SEED),
+     .help = "of what is random"},
     {.name = "threads",
      SETS(WHOLE, Common, threads),
      FROM_TO(0, 256),
@@ -123,6 +127,11 @@ static Setting *find(const Parsed *parsed, const char *name, size_t length)
             return &parsed->settings[i];
     }
     return NULL;
+}
+
+bool setting_is_common(const Parsed *parsed, const Setting *setting)
+{
+    return setting->base == (const char *)&parsed->common;
 }
 
 const Setting *parsed_find(const Parsed *parsed, const char *name, size_t length)
@@ -380,6 +389,14 @@ static Status check_present(const Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
+const char *options_output(const Parsed *parsed)
+{
+    const Setting *output = find(parsed, "output", strlen("output"));
+    if (parsed->command->writes_last && parsed->n_operands > 0)
+        return parsed->operands[parsed->n_operands - 1];
+    return output ? *(const char *const *)(output->base + output->option->where) : NULL;
+}
+
 /* The pixels of a size on paper. */
 static Status settle_size(const Option *option, PictureSize *size, Err *err)
 {
@@ -422,7 +439,8 @@ Status options_finish(Parsed *parsed, Err *err)
     TRY(read_recipe(parsed, err));
     TRY(options_settle(parsed, err));
     TRY(check_present(parsed, err));
-    return note_files(parsed, err);
+    TRY(note_files(parsed, err));
+    return parsed->command->own_check ? STATUS_OK : options_check(parsed, err);
 }
 
 Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
@@ -486,14 +504,6 @@ bool options_said(const Parsed *parsed, const char *name)
 {
     const Setting *setting = find(parsed, name, strlen(name));
     return setting && setting->said;
-}
-
-Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *err)
-{
-    for (const OptionNeed *need = needs; need->name; need++)
-        if (!need->met && options_typed(parsed, need->name))
-            return err_set(err, STATUS_USAGE, "--%s %s", need->name, need->sentence);
-    return STATUS_OK;
 }
 
 /* ---- fields ---------------------------------------------------------------------------------- */

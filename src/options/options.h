@@ -7,6 +7,7 @@
 
 #include "base/base.h"
 #include "geom/geom.h"
+#include "options/conditions.h"
 #include "options/files.h"
 #include "options/talk.h"
 #include "tree/tree.h"
@@ -115,6 +116,11 @@ typedef struct Option {
     const char *otherwise; /* NULL: without the option the value before holds; "": nothing does;
                             * or what does in words, "the tree's" */
     const char *list;      /* the command that lists the values; NULL: none */
+    ConditionSet when;     /* all of these must hold for the option to have an effect */
+    const char *needs;    /* names parted by blanks: one of these options must be on, if the command
+                           * has any of them; NULL: none */
+    const char *excludes; /* names parted by blanks: these options must be off; NULL: none */
+    const char *clash;    /* ends the sentence "--NAME and --OTHER"; NULL: " exclude each other" */
     const char *help;
 } Option;
 
@@ -147,12 +153,10 @@ static inline const char *option_unit(const Option *option)
         least, most                                                                                \
     }
 
-/* The resolution of the PictureSize at `path`; a command where it would have no effect refuses it
- * with the sentence below. */
+/* The resolution of the PictureSize at `path`. */
 #define DPI_OF_SIZE(Type, path)                                                                    \
     .name = "dpi", SETS(NUMBER, Type, path.dpi), GIVEN(Type, path.has_dpi), FROM_TO(1, 1e5),       \
     .argument = "N", .otherwise = "300 of a size on paper"
-#define NEEDS_PAPER "needs a --size on paper, as 89mm"
 
 #define OPTION_TYPE_FLAG bool
 #define OPTION_TYPE_SWITCH bool
@@ -183,12 +187,16 @@ typedef struct OptionTable {
     size_t n;
     /* Once all are read, sets options, of other tables as well, that nobody has (setting->said);
      * NULL: nothing follows from these. */
-    Status (*settle)(const void *set, const Parsed *parsed, Err *err);
+    Status (*settle)(void *set, const Parsed *parsed, Err *err);
+    /* Returns which conditions do not hold for these values, `set`; conditions that are known only
+     * later count as holding. NULL: the table knows of no condition. */
+    ConditionSet (*unmet)(const void *set, const Parsed *parsed);
 } OptionTable;
 
+#define OPTION_ROWS(array) .options = array, .n = sizeof(array) / sizeof *(array)
 #define OPTION_TABLE(array)                                                                        \
     {                                                                                              \
-        .options = array, .n = sizeof(array) / sizeof *(array)                                     \
+        OPTION_ROWS(array)                                                                         \
     }
 
 enum { MAX_OPERANDS = 4096, MAX_TABLES = 8 };
@@ -204,6 +212,7 @@ typedef struct Command {
     bool is_lookup;    /* operands are names, not files */
     bool reads_tree;   /* it has the options of reading, which set parsed->reading */
     bool own_recipe;   /* it prints its --dump-recipe itself */
+    bool own_check;    /* it calls options_check itself, or never */
     size_t size;       /* of the struct that its options set; 0: it has none of its own */
     void (*set_defaults)(void *options); /* of that struct, zeroed before; NULL: zeros */
     struct {
@@ -251,13 +260,6 @@ struct Parsed {
     bool in_memory;         /* the caller takes the result in memory: --output may be missing */
 };
 
-/* What an option of the command line takes to have an effect. */
-typedef struct OptionNeed {
-    const char *name; /* NULL ends a list */
-    bool met;
-    const char *sentence; /* "needs --color-by" */
-} OptionNeed;
-
 /* The command's options with their defaults, in *parsed (parsed_release). */
 MUST_CHECK Status parsed_init(Parsed *parsed, const Command *command, Err *err);
 void parsed_release(Parsed *parsed);
@@ -304,14 +306,26 @@ void options_put_recipe(const Parsed *parsed, Text *text);
  * many. */
 MUST_CHECK Status options_settle(const Parsed *parsed, Err *err);
 
+/* Returns the path that the command writes to: its last operand or -o; NULL if there is none. */
+const char *options_output(const Parsed *parsed);
+
 /* Whether the option stands on the command line. */
 bool options_typed(const Parsed *parsed, const char *name);
 /* Returns true if the option was given, on the command line or in a recipe. */
 bool options_said(const Parsed *parsed, const char *name);
 
-/* STATUS_USAGE for the first option of the command line whose need is not met: it would have no
- * effect. A recipe's options are defaults for many runs, and may be without effect in this one. */
-MUST_CHECK Status options_check_needs(const Parsed *parsed, const OptionNeed needs[], Err *err);
+/* Returns the conditions of options that do not hold, as far as is known before the command runs.
+ */
+ConditionSet options_unmet(const Parsed *parsed);
+/* Whether an option of the command has an effect if it is given. `unmet` is from options_unmet. */
+bool options_has_effect(const Parsed *parsed, const Option *option, ConditionSet unmet);
+/* Refuses the first option of the command line that has no effect. A recipe's options are defaults
+ * for many runs, and may be without effect in this one.
+ * Errors  STATUS_USAGE with a sentence that names the option and what it needs. STATUS_MEMORY. */
+MUST_CHECK Status options_check(const Parsed *parsed, Err *err);
+/* Refuses the first option of the command line that has a condition of `unmet`: for conditions that
+ * are known only after a file is read. Errors as options_check. */
+MUST_CHECK Status options_refuse(const Parsed *parsed, ConditionSet unmet, Err *err);
 
 /* Rooms name fields, in backquotes: `p_perf_mmhg`. Puts the option that sets the field there,
  * --p-perf: the one whose name, with its unit or without, or whose member is called so. What no
@@ -329,6 +343,8 @@ const char *parsed_text(const Parsed *parsed, const char *name);
 
 /* Reads a value. STATUS_USAGE as options_parse has it. */
 MUST_CHECK Status setting_read(const Setting *setting, const char *value, Err *err);
+/* Whether every command has the option. */
+bool setting_is_common(const Parsed *parsed, const Setting *setting);
 /* How often the option has to be given to say what it says: 0 or 1, or the length of a list of
  * vectors. */
 size_t setting_count(const Setting *setting);
@@ -343,6 +359,8 @@ bool setting_differs(const Setting *setting, const Setting *plain, Text *text);
 void option_put_argument(const Option *option, Text *text);
 /* What values the option takes, "from 1 to 9", or "" where its argument says it. */
 void option_put_allowed(const Option *option, Text *text);
+/* Returns the name of a kind, as a schema has it: "number". */
+const char *option_kind_name(OptionKind kind);
 /* Whether the value is a file or folder by name. */
 bool option_is_path(const Option *option);
 

@@ -75,16 +75,6 @@ static const Option rows[] = {
 
 const OptionTable reading_table = OPTION_TABLE(rows);
 
-Status reading_refuse(const Parsed *parsed, const char *sentence, Err *err)
-{
-    for (size_t i = 0; i < parsed->n_settings; i++) {
-        const Setting *setting = &parsed->settings[i];
-        if (setting->typed && setting->base == (const char *)&parsed->reading)
-            return err_set(err, STATUS_USAGE, "--%s %s", setting->option->name, sentence);
-    }
-    return STATUS_OK;
-}
-
 static Status check(const ReadOptions *options, Err *err)
 {
     Vec3 voxel = options->voxel_size;
@@ -180,7 +170,6 @@ Status reading_tree_bytes(const Parsed *parsed, const MemoryFile *file, Tree *tr
 static Status copy_given(const Parsed *parsed, Tree *tree, TreeReading *reading, Err *err)
 {
     *reading = (TreeReading){.format = "memory", .unit = LENGTH_MM, .unit_said = true};
-    TRY(reading_refuse(parsed, "is for a tree in a file", err));
     TRY(reading_measure(reading, parsed->given, err));
     return tree_pruned(parsed->given, 0, tree, err);
 }

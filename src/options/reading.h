@@ -9,10 +9,6 @@
 
 extern const OptionTable reading_table; /* sets a ReadOptions */
 
-/* STATUS_USAGE, with this end of the sentence, for an option of reading on the command line, where
- * none has an effect: "needs --from". */
-MUST_CHECK Status reading_refuse(const Parsed *parsed, const char *sentence, Err *err);
-
 /* Reads a tree as the options say. If `path` is parsed->given_name, copies the tree in memory.
  *
  * Notes tell where loops were cut, which radii were replaced, which ends nearly touch, and which

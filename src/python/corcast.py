@@ -267,10 +267,11 @@ def version():
 
 
 def schema(command=None):
-    """Returns the commands, or one command, with all options: kinds, ranges, units, defaults."""
+    """Describes one command, or a list of all: options with kinds, ranges, units, defaults."""
     report = _ReportHandle()
     _call("schema", _text(command), byref(report._handle))
-    return Report(report.content())
+    commands = report.content()["commands"]
+    return Report(commands[0]) if command else [Report(described) for described in commands]
 
 
 # ---- trees ---------------------------------------------------------------------------------------

@@ -15,8 +15,12 @@ static const Option own[] = {
     {.name = "output",
      SETS(FOLDER, StudyOptions, output),
      .argument = "DIR",
+     .excludes = "table",
      .help = "a file for each run, and the tables study.csv and study.jsonl"},
-    {.name = "trees", SETS(FLAG, StudyOptions, trees), .help = "keep the trees, too, as SWC"},
+    {.name = "trees",
+     SETS(FLAG, StudyOptions, trees),
+     .excludes = "table",
+     .help = "keep the trees, too, as SWC"},
     {.name = "table",
      SETS(FLAG, StudyOptions, table),
      .help = "grow nothing: print a CSV of files of info --json, of runs, or of folders of them"},
@@ -26,15 +30,24 @@ static const Option own[] = {
      .group = GROUP_PARTS,
      .argument = "K",
      .otherwise = "",
+     .excludes = "table commands",
      .help = "run K alone, and no tables"},
     {.name = "commands",
      SETS(FLAG, StudyOptions, commands),
      .group = GROUP_PARTS,
+     .excludes = "table",
      .help = "grow nothing, but print a command a line, for GNU parallel, Slurm and others, that "
              "grows a run"},
 };
 
-static const OptionTable own_table = OPTION_TABLE(own);
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    (void)set;
+    (void)parsed;
+    return WHEN(OWN_SEED);
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
 
 /* The runs that are grown, and how far they are. */
 typedef struct StudyRuns {
@@ -191,13 +204,6 @@ done:
 static Status check(const StudyOptions *options, const Parsed *parsed, Err *err)
 {
     const bool grows = !options->table;
-    const OptionNeed needs[] = {{"output", grows, "is not for --table, which prints"},
-                                {"trees", grows, "is not for --table"},
-                                {"only", grows && !options->commands, "is for growing"},
-                                {"commands", grows, "is not for --table"},
-                                {"seed", false, "is the plan's to say"},
-                                {0}};
-    TRY(options_check_needs(parsed, needs, err));
     if (grows && !options->output)
         return err_set(err, STATUS_USAGE,
                        "-o DIR is missing; usage: corcast study PLAN.ini -o DIR");

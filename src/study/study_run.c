@@ -67,7 +67,6 @@ static Status prepare(const StudyRunParams *params, size_t index, StudyRun *run,
     run->number = index + 1;
     TRY(command_line_text(&run->parsed, &run->command, err));
     TRY(refining_check_growing(&run->growth->refining, &run->growth->growing, err));
-    TRY(refining_check(&run->growth->refining, &run->parsed, err));
     TRY(growing_prepare(&run->growth->growing, &run->parsed, err));
     TRY(hash_run(run, err));
     TRY(name_file(run, params->folder, "json", &run->report, err));

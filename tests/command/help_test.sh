@@ -31,6 +31,69 @@ test_every_command_and_option_is_in_the_reference() {
     done
 }
 
+# What the JSON of commands has to be: members and their types, and names that other members refer to.
+check_schema() {
+    python3 - "$1" <<'END'
+import json, sys
+known = {"name": str, "help": str, "group": str, "kind": str, "common": bool, "repeats": bool, "argument": str,
+         "unit": str, "minimum": (int, float), "exclusiveMinimum": (int, float), "maximum": (int, float),
+         "choices": list, "list": str, "default": str, "otherwise": str, "needs": list, "excludes": list,
+         "conditions": list}
+always = {"name", "help", "group", "kind", "common", "repeats"}
+schema = json.load(open(sys.argv[1]))
+names = {command["name"] for command in schema["commands"]}
+for command in schema["commands"]:
+    where = command["name"]
+    assert command["summary"] and command["min_operands"] <= command["max_operands"], where
+    options = {option["name"] for option in command["options"]}
+    assert len(options) == len(command["options"]), where + ": an option is there twice"
+    for option in command["options"]:
+        where = command["name"] + " --" + option["name"]
+        assert always <= option.keys() <= known.keys(), where + ": " + str(option.keys() ^ known.keys())
+        for key, value in option.items():
+            assert isinstance(value, known[key]) and value != [] and value != "", where + ": " + key
+        if option["kind"] == "choice":
+            assert option["choices"], where
+            assert option.get("default", option["choices"][0]) in option["choices"], where
+        if "minimum" in option and "maximum" in option:
+            assert option["minimum"] <= option["maximum"], where
+        if "list" in option and len(names) > 1:
+            assert option["list"] in names, where
+        print(command["name"], "--" + option["name"])
+END
+}
+
+test_every_command_and_option_is_in_the_json() {
+    local command option
+    command -v python3 >/dev/null || skip "python3 is not installed"
+    corcast help --as json >commands.json
+    check_schema commands.json >known 2>errors || fail "expected JSON as documented, got $(tail -1 errors)"
+    for command in $(corcast help --as names); do
+        for option in $(options_of "$command"); do
+            grep -qxF -e "$command $option" known || fail "expected $option of $command in the JSON"
+        done
+    done
+    corcast help render --as json >render.json
+    check_schema render.json >one 2>errors || fail "expected JSON of one command, got $(tail -1 errors)"
+    grep '^render ' known >expected
+    expect_same expected one
+}
+
+test_the_json_says_what_an_option_needs() {
+    command -v python3 >/dev/null || skip "python3 is not installed"
+    corcast help render --as json >render.json
+    python3 - <<'END' || fail "expected the row of --tiles, --color-blend and --range"
+import json
+option = {option["name"]: option for option in json.load(open("render.json"))["commands"][0]["options"]}
+assert option["tiles"]["needs"] == ["commands"] and option["tiles"]["excludes"] == ["tile"]
+assert option["tiles"]["minimum"] == 1 and option["tiles"]["kind"] == "integer"
+assert "is for --model isosurface and blob" in option["color-blend"]["conditions"]
+assert option["text-size"]["needs"] == ["legend", "scale-bar", "letter"]
+assert option["prune-radius"]["unit"] == "mm" and option["prune-radius"]["default"] == "0"
+assert option["model"]["choices"] and option["look"]["list"] == "looks"
+END
+}
+
 test_every_command_has_a_page_for_man() {
     local command option
     command -v mandoc >/dev/null || skip "mandoc is not installed"

@@ -90,15 +90,20 @@ static void refusals_are_those_of_the_command_line(void **state)
     end();
 }
 
+/* Writes a recipe into a file of a new name, whose last X are replaced. */
+static void write_recipe(char *path, const char *recipe)
+{
+    int file = mkstemp(path);
+    assert_int_equal(write(file, recipe, strlen(recipe)), strlen(recipe));
+    close(file);
+}
+
 /* What is set by name wins over a recipe, as on the command line. */
 static void a_recipe_is_read_at_the_end(void **state)
 {
     (void)state;
     char path[] = "/tmp/options_test_XXXXXX";
-    int file = mkstemp(path);
-    static const char recipe[] = "terminals = 7\ngamma = 2.5\n[view]\nsize = 3x3\n";
-    assert_true(write(file, recipe, sizeof recipe - 1) == sizeof recipe - 1);
-    close(file);
+    write_recipe(path, "terminals = 7\ngamma = 2.5\n[view]\nsize = 3x3\n");
     begin(&command_grow);
     must(options_set(&parsed, "recipe", path, &err), &err);
     must(options_set(&parsed, "terminals", "9", &err), &err);
@@ -110,6 +115,98 @@ static void a_recipe_is_read_at_the_end(void **state)
     unlink(path);
 }
 
+/* Sets an option of `render` beside an output, and returns how that ends. */
+static Status finish_render(const char *name, const char *value)
+{
+    begin(&command_render);
+    must(options_set(&parsed, name, value, &err), &err);
+    must(options_set(&parsed, "output", "/tmp/options_test.png", &err), &err);
+    parsed.operands[parsed.n_operands++] = "/dev/null";
+    Status status = options_finish(&parsed, &err);
+    end();
+    return status;
+}
+
+static void an_option_without_effect_is_refused_with_what_it_needs(void **state)
+{
+    (void)state;
+    assert_int_equal(finish_render("tiles", "3"), STATUS_USAGE);
+    assert_string_equal(err.text, "--tiles needs --commands");
+    assert_int_equal(finish_render("text-size", "8"), STATUS_USAGE);
+    assert_string_equal(err.text, "--text-size needs --legend, --scale-bar or --letter");
+    assert_int_equal(finish_render("joints", "paper"), STATUS_USAGE);
+    assert_string_equal(err.text, "--joints is for --model joined");
+    must(finish_render("model", "joined"), &err);
+}
+
+static void an_option_that_is_excluded_is_refused(void **state)
+{
+    (void)state;
+    begin(&command_power);
+    must(options_set(&parsed, "verdict", "cmp {a} {b}", &err), &err);
+    must(options_set(&parsed, "ppm", "8", &err), &err);
+    assert_int_equal(options_finish(&parsed, &err), STATUS_USAGE);
+    assert_string_equal(err.text, "--ppm and --verdict are two rules; one can be asked");
+    end();
+}
+
+/* A recipe's options are defaults for many runs. */
+static void an_option_of_a_recipe_may_have_no_effect(void **state)
+{
+    (void)state;
+    char path[] = "/tmp/options_test_XXXXXX";
+    write_recipe(path, "tiles = 3\njoints = paper\n");
+    must(finish_render("recipe", path), &err);
+    unlink(path);
+}
+
+/* Whether a command that has this very row has an option of the name, too. */
+static bool is_known_beside(const Option *option, const char *name, size_t length)
+{
+    bool found = false;
+    for (const CommandRow *row = command_rows; row->command && !found; row++) {
+        Parsed plain;
+        must(parsed_init(&plain, row->command, &err), &err);
+        const Setting *same = parsed_find(&plain, option->name, strlen(option->name));
+        found = same && same->option == option && parsed_find(&plain, name, length);
+        parsed_release(&plain);
+    }
+    return found;
+}
+
+static void check_names(const Option *option, const char *names)
+{
+    while (names && *names) {
+        size_t length = strcspn(names, " ");
+        if (!is_known_beside(option, names, length))
+            fail_msg("--%s names --%s, which no command has beside it", option->name, names);
+        names += length + strspn(names + length, " ");
+    }
+}
+
+static void rows_name_options_and_conditions_that_there_are(void **state)
+{
+    (void)state;
+    ConditionSet used = 0;
+    for (const CommandRow *row = command_rows; row->command; row++) {
+        begin(row->command);
+        for (size_t i = 0; i < parsed.n_settings; i++) {
+            const Option *option = parsed.settings[i].option;
+            used |= option->when | conditions_of_group((int)option->group);
+            check_names(option, option->needs);
+            check_names(option, option->excludes);
+        }
+        end();
+    }
+    for (int i = 0; i < CONDITIONS; i++) {
+        Text sentence = TEXT_INIT;
+        condition_put((Condition)i, &sentence);
+        if (!(used >> i & 1) || sentence.length == 0)
+            fail_msg("condition %d, '%s', is of no option", i, text_chars(&sentence));
+        text_release(&sentence);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -117,6 +214,10 @@ int main(void)
         cmocka_unit_test(values_of_a_list_are_appended),
         cmocka_unit_test(refusals_are_those_of_the_command_line),
         cmocka_unit_test(a_recipe_is_read_at_the_end),
+        cmocka_unit_test(an_option_without_effect_is_refused_with_what_it_needs),
+        cmocka_unit_test(an_option_that_is_excluded_is_refused),
+        cmocka_unit_test(an_option_of_a_recipe_may_have_no_effect),
+        cmocka_unit_test(rows_name_options_and_conditions_that_there_are),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

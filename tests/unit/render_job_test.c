@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 #include "job/picture/render.h"
+#include "options/templates.h"
 #include "scratch.h"
 #include "unit.h"
 
@@ -253,6 +254,6 @@ int main(void)
         cmocka_unit_test(test_one_picture_of_an_animation_is_drawn),
         cmocka_unit_test(test_a_scene_is_drawn_several_times),
     };
-    setenv("CORCAST_TEMPLATES", "templates", 0);
+    templates_set("templates");
     return cmocka_run_group_tests_name("render_job", tests, make_folder, remove_folder);
 }

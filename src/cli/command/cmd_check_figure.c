@@ -25,7 +25,7 @@ static Status print_json(FigureFindings *found, const char *path, const CheckFig
 {
     const JsonMember members[] = {{"file", json_text(file_name(path))},
                                   {"preset", json_text(options->preset)},
-                                  {"kind", json_text(figure_kinds[options->kind])},
+                                  {"kind", json_text(content_kinds[options->kind])},
                                   {"accepted", json_boolean(found->n_refused == 0)},
                                   {"refused", json_lines(&found->refused)},
                                   {"not_checked", json_lines(&found->unchecked)}};

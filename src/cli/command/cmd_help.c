@@ -11,11 +11,13 @@ typedef enum HelpForm {
     FORM_BASH,
     FORM_ZSH,
     FORM_FISH,
-    FORM_NAMES
+    FORM_NAMES,
+    FORM_JSON
 } HelpForm;
 static const char *const forms[] = {
-    [FORM_TEXT] = "text", [FORM_MAN] = "man",   [FORM_MARKDOWN] = "markdown", [FORM_BASH] = "bash",
-    [FORM_ZSH] = "zsh",   [FORM_FISH] = "fish", [FORM_NAMES] = "names",       NULL};
+    [FORM_TEXT] = "text",   [FORM_MAN] = "man",   [FORM_MARKDOWN] = "markdown",
+    [FORM_BASH] = "bash",   [FORM_ZSH] = "zsh",   [FORM_FISH] = "fish",
+    [FORM_NAMES] = "names", [FORM_JSON] = "json", NULL};
 
 typedef struct HelpOptions {
     HelpForm form;
@@ -27,7 +29,8 @@ static const Option own[] = {
      .choices = forms,
      .argument = "FORM",
      .help = "text to read, a page for man, the reference of all commands in Markdown, completion "
-             "for a shell, or the names of the commands"},
+             "for a shell, the names of the commands, or all that is known of commands and "
+             "options as JSON, for programs"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -62,6 +65,8 @@ static Status put_form(HelpForm form, const Command *command, Text *text, Err *e
         return completion_put_fish(text, err);
     case FORM_NAMES:
         return help_put_all(put_name, text, err);
+    case FORM_JSON:
+        return schema_put(command, text, err);
     }
     return STATUS_OK;
 }
@@ -75,7 +80,7 @@ Status run_help(void *options, Parsed *parsed, Err *err)
         return command_unknown(name, err);
     if (form == FORM_TEXT)
         return help_print(command, err);
-    if (command && form != FORM_MAN)
+    if (command && form != FORM_MAN && form != FORM_JSON)
         return err_set(err, STATUS_USAGE, "--as %s is of all commands; leave out %s", forms[form],
                        name);
     Text text = TEXT_INIT;
@@ -92,6 +97,7 @@ const Command command_help = {
     .operands = "[COMMAND]",
     .examples = "  corcast help grow\n"
                 "  corcast help grow --as man | man -l -\n"
+                "  corcast help grow --as json | jq -r '.commands[0].options[].name'\n"
                 "  corcast help --as bash > ~/.local/share/bash-completion/completions/corcast\n",
     .max_operands = 1,
     .is_lookup = true,

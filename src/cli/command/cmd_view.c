@@ -178,17 +178,17 @@ static Status put_setting(const Setting *setting, PutSetting *put, Text *text, E
 
 /* Whether the option makes the picture what it is; `plain` has its default. `text` as
  * setting_differs has it. */
-static bool is_shown(const PictureOptions *options, const Setting *setting, const Setting *plain,
-                     Text *text)
+static bool is_shown(const Viewer *viewer, const Setting *setting, const Setting *plain, Text *text)
 {
+    const Parsed *parsed = viewer->parsed;
     static const char *const always[] = {"model", "size", "projection", NULL};
     static const char *const framing[] = {"view", "turn", "margin", "angle", "height", NULL};
     const char *name = setting->option->name;
-    bool perspective = options->projection == PROJECTION_PERSPECTIVE;
+    bool perspective = viewer->options->projection == PROJECTION_PERSPECTIVE;
     if (is_one_of(name, always) || strcmp(name, perspective ? "angle" : "height") == 0)
         return true;
-    return picture_takes(options, setting->option) && !is_one_of(name, framing) &&
-           setting_differs(setting, plain, text);
+    return options_has_effect(parsed, setting->option, options_unmet(parsed)) &&
+           !is_one_of(name, framing) && setting_differs(setting, plain, text);
 }
 
 /* Model, size, projection, where the camera is, and all that is not by default; the first settings
@@ -200,7 +200,7 @@ static Status put_settings(const Viewer *viewer, PutSetting *put, Text *text, Er
     Status status = STATUS_OK;
     for (size_t i = 0; i < plain.n_settings && status == STATUS_OK; i++) {
         const Setting *setting = &viewer->parsed->settings[i];
-        if (!setting->option->aside && is_shown(viewer->options, setting, &plain.settings[i], text))
+        if (!setting->option->aside && is_shown(viewer, setting, &plain.settings[i], text))
             status = put_setting(setting, put, text, err);
     }
     parsed_release(&plain);
@@ -484,6 +484,7 @@ const Command command_view = {
     .min_operands = 1,
     .max_operands = 1,
     .reads_tree = true,
+    .own_check = true, /* keys change the model and the field */
     .size = sizeof(ViewOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(ViewOptions, picture)},

@@ -8,6 +8,8 @@
 #include "job/picture/picture.h"
 #include <string.h>
 
+#define OF_SURFACE WHEN(NO_VOLUME) | WHEN(NO_PAGE)
+
 static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, ExportOptions, output),
@@ -18,22 +20,26 @@ static const Option own[] = {
      SETS(CHOICE, ExportOptions, meshing.body),
      .choices = vessel_body_names,
      .group = GROUP_VESSELS,
+     .when = WHEN(MESH) | OF_SURFACE,
      .help = "the wall: vessels that blend where they meet, or cylinders and balls"},
     {.name = "tolerance",
      SETS(NUMBER, ExportOptions, meshing.tolerance),
      .group = GROUP_VESSELS,
      .range = &tolerance_range,
+     .when = WHEN(MESH) | OF_SURFACE,
      .help = "how far triangles may be off the surface, over the local radius"},
     {.name = "lod",
      SETS(NUMBER, ExportOptions, meshing.lod),
      .group = GROUP_VESSELS,
      FROM_TO(RANGE_ABOVE_0, 1),
+     .when = WHEN(MESH) | OF_SURFACE,
      .help = "level of detail: make about this part of the triangles, farther off the surface"},
     {.name = "tube-edge",
      SETS(NUMBER, ExportOptions, meshing.tube_edge),
      .group = GROUP_VESSELS,
      FROM_TO(0.05, 1e6),
      .otherwise = "as long as the tube",
+     .when = WHEN(MESH) | OF_SURFACE,
      .help = "how long triangles of straight tubes are along them, over the radius; for solvers"},
     {.name = "prune-radius",
      SETS(NUMBER, ExportOptions, prune_radius_mm),
@@ -45,14 +51,17 @@ static const Option own[] = {
     {.name = "part-overlaps",
      SETS(FLAG, ExportOptions, meshing.part_overlaps),
      .group = GROUP_VESSELS,
+     .when = WHEN(MESH) | OF_SURFACE,
      .help = "thin vessels that overlap others that they do not belong with"},
     {.name = "parts",
      SETS(FLAG, ExportOptions, parts),
      .group = GROUP_VESSELS,
+     .when = OF_SURFACE,
      .help = "of an STL: the wall and each end as a named solid, as text; a VTP has them always"},
     {.name = "lattice",
      SETS(FLAG, ExportOptions, lattice),
      .group = GROUP_VESSELS,
+     .when = OF_SURFACE,
      .help = "of a 3MF: a beam for each segment, exactly, and no mesh but a preview"},
     {.name = "wall",
      SETS(NUMBER, ExportOptions, wall_mm),
@@ -60,22 +69,23 @@ static const Option own[] = {
      FROM_TO(RANGE_ABOVE_0, 1e6),
      .unit = "mm",
      .otherwise = "",
+     .when = WHEN(NAMED_PARTS) | OF_SURFACE,
      .help = "of named parts: a second surface so far about the vessels, which are its lumen"},
     {.name = "print",
      SETS(TEXT, ExportOptions, print),
      .argument = "KEY=VALUE,...",
      .group = GROUP_VESSELS,
      .otherwise = "",
+     .when = WHEN(MESH) | OF_SURFACE,
      .help = "make it fit for a printer: scale=N, min-diameter=MM, thin=clamp|prune, nozzle=MM, "
              "wall=MM or as 0.2r, base, block=box|cylinder, margin=MM, ports, bed=AxBxC"},
     {.name = "look",
      SETS(LOOKUP, ExportOptions, meshing.look),
      .group = GROUP_COLOR,
      .list = "looks",
+     .when = WHEN(COLORS),
      .help = "colour and finish: a file of templates/looks, or a path"},
 };
-
-static const OptionTable own_table = OPTION_TABLE(own);
 
 static void set_defaults(void *options)
 {
@@ -84,30 +94,6 @@ static void set_defaults(void *options)
     own_options->meshing.lod = 1;
     own_options->meshing.look = "cast";
     coloring_set_defaults(&own_options->meshing.coloring);
-}
-
-/* Returns STATUS_USAGE if an option was given that has no effect on a file of this format. */
-static Status check_format(const ExportOptions *options, const Emitter *emitter,
-                           const Parsed *parsed, Err *err)
-{
-    static const char of_colors[] = "is for formats with colours";
-    static const char of_meshes[] = "is for formats of triangles";
-    const OptionNeed format[] = {
-        {"look", emitter->has_colors, of_colors},
-        {"color-by", emitter->has_colors, of_colors},
-        {"model", emitter->of_meshes, of_meshes},
-        {"tolerance", emitter->of_meshes, of_meshes},
-        {"lod", emitter->of_meshes, of_meshes},
-        {"tube-edge", emitter->of_meshes, of_meshes},
-        {"part-overlaps", emitter->of_meshes, of_meshes},
-        {"print", emitter->of_meshes, of_meshes},
-        {"wall", emitter->has_parts, "is for named parts: a .vtp, or an .stl with --parts"},
-        {0}};
-    TRY(options_check_needs(parsed, format, err));
-    if (emitter->has_parts && options->meshing.body == BODY_ROUND)
-        return err_set(err, STATUS_USAGE,
-                       "`model` rounded has no flat ends that could be named parts");
-    return coloring_check_needs(&options->meshing.coloring, parsed, err);
 }
 
 /* Finds the emitter for the extension of the output, or the emitter that an option selects. */
@@ -155,31 +141,17 @@ static Status read_print(ExportOptions *options, const Emitter *emitter, Err *er
     return STATUS_OK;
 }
 
-/* Returns STATUS_USAGE if an option about the surface was given, for a format that shows none. */
-static Status refuse_surface(const Parsed *parsed, const char *shown, Err *err)
-{
-    for (size_t i = 0; i < parsed->n_settings; i++) {
-        const Setting *setting = &parsed->settings[i];
-        const Option *option = setting->option;
-        if (setting->typed && option->group == GROUP_VESSELS &&
-            strcmp(option->name, "prune-radius") != 0)
-            return err_set(err, STATUS_USAGE, "--%s is for the surface; %s cylinders and balls",
-                           option->name, shown);
-    }
-    return STATUS_OK;
-}
-
 /* Finds the format of the mesh or the lines, and checks the options against it. Without an output,
  * a mesh in memory has what a PLY file holds. */
-static Status plan_mesh(ExportOptions *options, const Parsed *parsed, const Emitter **emitter,
-                        Err *err)
+static Status plan_mesh(ExportOptions *options, const Emitter **emitter, Err *err)
 {
     if (options->output)
         TRY(find_emitter(options, emitter, err));
     else
         *emitter = emitter_find("ply", true);
-    options->meshing.coloring.with_flow = (*emitter)->has_parts;
-    TRY(check_format(options, *emitter, parsed, err));
+    if ((*emitter)->has_parts && options->meshing.body == BODY_ROUND)
+        return err_set(err, STATUS_USAGE,
+                       "`model` rounded has no flat ends that could be named parts");
     return read_print(options, *emitter, err);
 }
 
@@ -194,7 +166,7 @@ static Status make_mesh(const ExportOptions *options, const Emitter *emitter, co
 Status mesh_make(ExportOptions *options, const Parsed *parsed, MeshResult *mesh, Err *err)
 {
     const Emitter *emitter;
-    TRY(plan_mesh(options, parsed, &emitter, err));
+    TRY(plan_mesh(options, &emitter, err));
     return make_mesh(options, emitter, parsed, mesh, err);
 }
 
@@ -202,7 +174,7 @@ static Status export_mesh(ExportOptions *options, Parsed *parsed, FileSet *files
 {
     const Emitter *emitter;
     MeshResult mesh;
-    TRY(plan_mesh(options, parsed, &emitter, err));
+    TRY(plan_mesh(options, &emitter, err));
     TRY(scene_files_name(emitter, options->output, false, files, err));
     TRY(work_note_files(files, &parsed->files, err));
     TRY(make_mesh(options, emitter, parsed, &mesh, err));
@@ -216,8 +188,6 @@ static Status export_volume(const ExportOptions *options, Parsed *parsed, FileSe
     const VolumeFormat *format = volume_format_find(options->output);
     const Coloring *coloring = &options->meshing.coloring;
     PictureTree of;
-    TRY(refuse_surface(parsed, "volumes are of", err));
-    TRY(coloring_check_needs(coloring, parsed, err));
     TRY(volumes_name(&options->volume, format, options->output, files, err));
     TRY(work_note_files(files, &parsed->files, err));
     TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
@@ -231,8 +201,6 @@ static Status export_page(const ExportOptions *options, const Parsed *parsed, Fi
 {
     const Coloring *coloring = &options->meshing.coloring;
     PictureTree of;
-    TRY(refuse_surface(parsed, "a page shows", err));
-    TRY(webpage_check_needs(coloring, parsed, err));
     TRY(mem_strdup(&files->at[0].path, options->output, err));
     TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
     Status status = webpage_write(coloring, options->meshing.look, &of, files, parsed, err);
@@ -240,19 +208,21 @@ static Status export_page(const ExportOptions *options, const Parsed *parsed, Fi
     return status;
 }
 
+static bool is_page(const ExportOptions *options)
+{
+    return strcmp(file_extension(options->output), "html") == 0;
+}
+
 Status export_write(ExportOptions *options, Parsed *parsed, const FileTaker *taker, Err *err)
 {
     FileSet files = {.taker = taker};
-    const bool is_volume = volume_format_find(options->output) != NULL;
     Status status;
-    TRY_GOTO(volumes_check_needs(is_volume, parsed, err));
-    if (strcmp(file_extension(options->output), "html") == 0)
+    if (is_page(options))
         status = export_page(options, parsed, &files, err);
-    else if (is_volume)
+    else if (volume_format_find(options->output))
         status = export_volume(options, parsed, &files, err);
     else
         status = export_mesh(options, parsed, &files, err);
-done:
     fileset_release(&files);
     return status;
 }
@@ -261,6 +231,47 @@ Status export_run(void *options, Parsed *parsed, Err *err)
 {
     return export_write(options, parsed, NULL, err);
 }
+
+/* Finds the emitter for the output; NULL for a volume, a page, or a file that is refused later. */
+static const Emitter *emitter_of(const ExportOptions *options)
+{
+    const Emitter *emitter;
+    if (!options->output)
+        return emitter_find("ply", true);
+    const bool found = !is_page(options) && !volume_format_find(options->output) &&
+                       find_emitter(options, &emitter, NULL) == STATUS_OK;
+    return found ? emitter : NULL;
+}
+
+/* Flow parts a mesh with named ends, and a page holds fields of the blood. */
+static Status settle(void *set, const Parsed *parsed, Err *err)
+{
+    (void)parsed;
+    (void)err;
+    ExportOptions *options = set;
+    const Emitter *emitter = emitter_of(options);
+    options->meshing.coloring.uses_flow = emitter && emitter->has_parts;
+    options->meshing.coloring.uses_blood = options->output && is_page(options);
+    return STATUS_OK;
+}
+
+/* The format of the file decides which options have an effect. */
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    (void)parsed;
+    const ExportOptions *options = set;
+    const Emitter *emitter = emitter_of(options);
+    if (options->output && is_page(options))
+        return WHEN(VOLUME) | WHEN(NO_PAGE) | WHEN(STEPS) | WHEN(ONE_MOMENT) | WHEN(WHOLE_RANGE);
+    if (options->output && volume_format_find(options->output))
+        return WHEN(COLORS) | WHEN(NO_VOLUME);
+    return WHEN(VOLUME) |
+           (emitter ? UNLESS(emitter->has_colors, COLORS) | UNLESS(emitter->of_meshes, MESH) |
+                          UNLESS(emitter->has_parts, NAMED_PARTS)
+                    : 0);
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .settle = settle, .unmet = unmet};
 
 const Command command_export = {
     .name = "export",

@@ -24,20 +24,21 @@ static const Option own[] = {
     {.name = "ids",
      SETS(SWITCH, SceneOptions, ids),
      .group = GROUP_POVRAY,
+     .when = WHEN(FIELD_IDS) | WHEN(POVRAY),
      .help = "isosurface, blob: with what POV-Ray needs for the id plane"},
     {.name = "ini",
      SETS(SWITCH, SceneOptions, ini),
      .group = GROUP_POVRAY,
+     .when = WHEN(POVRAY),
      .help = "size, antialiasing and animations in S.ini, too: povray S.ini draws the picture"},
     {.name = "scad",
      SETS(CHOICE, SceneOptions, scad),
      .choices = scad_forms,
      .group = GROUP_VESSELS,
+     .when = WHEN(OPENSCAD),
      .help = "S.scad: modules that answer to the customizer, or one closed surface; auto: by the "
              "number of vessels"},
 };
-
-static const OptionTable own_table = OPTION_TABLE(own);
 
 static void set_defaults(void *options)
 {
@@ -45,55 +46,15 @@ static void set_defaults(void *options)
     picture_set_defaults(&own_options->picture);
 }
 
-/* Returns STATUS_USAGE if an option was given that has no effect on a file of this format. */
-static Status check_format(const Emitter *emitter, const PictureOptions *picture,
-                           const Parsed *parsed, Err *err)
+static Status check(const SceneOptions *options, const Emitter *emitter, Err *err)
 {
-    static const char of_view[] = "is for scenes with a camera (.pov, .tachyon); a solid has none";
-    static const char of_povray[] = "is for scenes of POV-Ray (.pov)";
-    static const char of_vessels[] = "is for vessels; a polyhedron is the surface of all";
-    const bool view = emitter->has_view, povray = strcmp(emitter->extension, "pov") == 0;
-    const bool scad = strcmp(emitter->extension, "scad") == 0;
-    const bool vessels = !emitter->of_meshes, mesh = model_has(picture->model, MODEL_TRIANGLES);
-    const bool on_paper = view && size_is_on_paper(&picture->size);
-    const OptionNeed needs[] = {{"size", view, of_view},
-                                {"dpi", on_paper, NEEDS_PAPER},
-                                {"projection", view, of_view},
-                                {"view", view, of_view},
-                                {"turn", view, of_view},
-                                {"up-axis", view, of_view},
-                                {"frame", view, of_view},
-                                {"location", view, of_view},
-                                {"look-at", view, of_view},
-                                {"up", view, of_view},
-                                {"angle", view, of_view},
-                                {"height", view, of_view},
-                                {"margin", view, of_view},
-                                {"antialias", view, of_view},
-                                {"shadows", view, of_view},
-                                {"background", view, of_view},
-                                {"ids", povray, of_povray},
-                                {"ini", povray, of_povray},
-                                {"model", vessels || mesh, of_vessels},
-                                {"look", vessels, of_vessels},
-                                {"color-by", vessels, of_vessels},
-                                {"scad", scad, "is for models of OpenSCAD (.scad)"},
-                                {0}};
-    return options_check_needs(parsed, needs, err);
-}
-
-static Status check(const SceneOptions *options, const Emitter *emitter, const Parsed *parsed,
-                    Err *err)
-{
-    PictureOptions picture = options->picture;
-    TRY(check_format(emitter, &picture, parsed, err));
+    const PictureOptions *picture = &options->picture;
+    const SceneModel model =
+        picture->as_mesh ? model_with(MODEL_TRIANGLES) : (SceneModel)picture->model;
     if (options->ini && options->output && strcmp(options->output, "-") == 0)
         return err_set(err, STATUS_USAGE, "--ini is a file beside S.pov; standard output has none");
-    if (emitter->of_meshes)
-        picture.model = model_with(MODEL_TRIANGLES);
-    TRY(picture_check_needs(&picture, parsed, err));
-    TRY(picture_check_povray(&picture, err));
-    return emit_check_model(emitter, (SceneModel)picture.model, err);
+    TRY(picture_check_povray(picture, err));
+    return emit_check_model(emitter, model, err);
 }
 
 /* Returns the form of a model for OpenSCAD, or SCAD_AUTO if the options do not decide. */
@@ -178,7 +139,7 @@ Status scene_make(const SceneOptions *options, Parsed *parsed, const FileTaker *
     SceneResult made = {.files.taker = taker};
     Status status;
     TRY_GOTO(find_emitter(options->output, asked_form(options, parsed), &made.emitter, err));
-    TRY_GOTO(check(options, made.emitter, parsed, err));
+    TRY_GOTO(check(options, made.emitter, err));
     TRY_GOTO(picture_read_source(picture, parsed, &made.source, err));
     TRY_GOTO(settle_format(options, parsed, &made, err));
     TRY_GOTO(made.emitter->of_meshes ? make_surface(picture, &parsed->common, &made, err)
@@ -263,6 +224,42 @@ Status scene_run(void *options, Parsed *parsed, Err *err)
     sceneresult_release(&scene);
     return status;
 }
+
+/* Finds the emitter for the output; NULL if there is none, which is refused later. */
+static const Emitter *emitter_of(const SceneOptions *options, const Parsed *parsed)
+{
+    const Emitter *emitter;
+    return find_emitter(options->output, asked_form(options, parsed), &emitter, NULL) == STATUS_OK
+               ? emitter
+               : NULL;
+}
+
+static Status settle(void *set, const Parsed *parsed, Err *err)
+{
+    (void)err;
+    SceneOptions *options = set;
+    const Emitter *emitter = emitter_of(options, parsed);
+    options->picture.as_mesh = emitter && emitter->of_meshes;
+    return STATUS_OK;
+}
+
+/* The format of the file decides which options have an effect. */
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    const SceneOptions *options = set;
+    const Emitter *emitter = emitter_of(options, parsed);
+    if (!emitter)
+        return 0;
+    const PictureOptions *picture = &options->picture;
+    const bool mesh = model_has((SceneModel)picture->model, MODEL_TRIANGLES);
+    return UNLESS(emitter->has_view, CAMERA) |
+           UNLESS(emitter->has_view && size_is_on_paper(&picture->size), ON_PAPER) |
+           UNLESS(strcmp(emitter->extension, "pov") == 0, POVRAY) |
+           UNLESS(strcmp(emitter->extension, "scad") == 0, OPENSCAD) |
+           UNLESS(!emitter->of_meshes, VESSELS) | UNLESS(!emitter->of_meshes || mesh, MODELS);
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .settle = settle, .unmet = unmet};
 
 const Command command_scene = {
     .name = "scene",

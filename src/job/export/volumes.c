@@ -50,19 +50,6 @@ static const Option volume_options[] = {
 
 const OptionTable volume_table = OPTION_TABLE(volume_options);
 
-Status volumes_check_needs(bool is_volume, const Parsed *parsed, Err *err)
-{
-    static const char of_colors[] = "is for formats with colours";
-    const OptionNeed colors[] = {
-        {"look", !is_volume, of_colors}, {"color-by", !is_volume, of_colors}, {0}};
-    for (size_t i = 0; i < volume_table.n; i++) {
-        const OptionNeed need[] = {
-            {volume_table.options[i].name, is_volume, "is for volumes, as V.nii.gz"}, {0}};
-        TRY(options_check_needs(parsed, need, err));
-    }
-    return options_check_needs(parsed, colors, err);
-}
-
 void volumes_extensions(Text *out)
 {
     for (const VolumeFormat *format = volume_formats; format->suffix; format++)

@@ -15,9 +15,6 @@ typedef struct VolumeOptions {
 
 extern const OptionTable volume_table; /* sets a VolumeOptions */
 
-/* Returns STATUS_USAGE if an option about volumes was given and the file is none, or an option
- * about colours was given and the file is a volume. */
-MUST_CHECK Status volumes_check_needs(bool is_volume, const Parsed *parsed, Err *err);
 /* Appends the extensions of volume files: ".nii.gz, .nii". */
 void volumes_extensions(Text *out);
 

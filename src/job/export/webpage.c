@@ -47,27 +47,6 @@ static void webpage_release(Webpage *page)
     free(page->maps);
 }
 
-Status webpage_check_needs(const Coloring *coloring, const Parsed *parsed, Err *err)
-{
-    static const char of_pictures[] = "is for pictures; a page has a scale that runs on";
-    const OptionNeed needs[] = {
-        {"classes", false, of_pictures},
-        {"under", false, of_pictures},
-        {"over", false, of_pictures},
-        {"no-data", false, of_pictures},
-        {"moment", false, "is for pictures; a page has a slider"},
-        {"range-of", false, "is for pictures; a page holds what it shows"},
-        {0},
-    };
-    for (size_t i = 0; i < parsed->n_settings; i++) {
-        const Setting *setting = &parsed->settings[i];
-        const Option *option = setting->option;
-        if (setting->typed && option->group == GROUP_COLOR && !coloring_takes(coloring, option))
-            return err_set(err, STATUS_USAGE, "--%s needs --color-by", option->name);
-    }
-    return options_check_needs(parsed, needs, err);
-}
-
 /* ---- fields ---------------------------------------------------------------------------------- */
 
 static bool has_field(const Webpage *page, const char *name)

@@ -11,10 +11,6 @@
  * number of bytes of field values. */
 enum { WEBPAGE_MOST_SEGMENTS = 200000, WEBPAGE_MOST_BYTES = 100000000 };
 
-/* Returns STATUS_USAGE if a colour option was given that a page ignores. Options of the group
- * "blood" are accepted: they change the fields stored in the page. */
-MUST_CHECK Status webpage_check_needs(const Coloring *coloring, const Parsed *parsed, Err *err);
-
 /* Writes a page about a tree, with all fields that can be derived, all columns of its file and all
  * colour maps. The page opens with the colours that `coloring` selects. Reports which fields are
  * left out.

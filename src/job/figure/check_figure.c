@@ -16,7 +16,7 @@ static const Option own[] = {
      .help = "the publisher: a file of templates/presets, or a path"},
     {.name = "kind",
      SETS(CHOICE, CheckFigureOptions, kind),
-     .choices = figure_kinds,
+     .choices = content_kinds,
      .help = "shades, shades with lines or letters in their pixels, or lines alone"},
     {.name = "json", SETS(FLAG, CheckFigureOptions, json), .help = "on standard output"},
 };
@@ -26,7 +26,7 @@ static const OptionTable own_table = OPTION_TABLE(own);
 /* One check of a file. */
 typedef struct Check {
     const Preset *preset;
-    FigureKind kind;
+    ContentKind kind;
     const char *path;
     FigureFindings *found;
 } Check;
@@ -66,7 +66,7 @@ static void check_resolution(Check *check, double dpi, const char *of)
     double least = preset->least_dpi[check->kind];
     if (dpi < 0.99 * least)
         refuse(check, "resolution: %.4g dpi%s, less than %g for %s", dpi, of, least,
-               figure_kinds[check->kind]);
+               content_kinds[check->kind]);
     if (preset->most_dpi > 0 && dpi > 1.01 * preset->most_dpi)
         refuse(check, "resolution: %.4g dpi%s, more than %g", dpi, of, preset->most_dpi);
 }

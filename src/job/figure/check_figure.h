@@ -7,7 +7,7 @@
 
 typedef struct CheckFigureOptions {
     const char *preset; /* name in templates/presets, or a path; must be specified */
-    FigureKind kind;
+    ContentKind kind;
     bool json; /* read by the caller only: the findings are printed as JSON */
 } CheckFigureOptions;
 

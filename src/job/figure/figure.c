@@ -402,22 +402,14 @@ static Status check_output(const FigureOptions *options, Err *err)
                    options->output);
 }
 
-/* Checks the options of the command line against the output file. The recipe has been read: an
- * option may need one that the recipe gives. */
-static Status check_press(const FigureOptions *options, const Parsed *parsed, Err *err)
-{
-    if (frames_is_page(options->output))
-        return press_refuse_packing(parsed, "is for pictures; a page holds one of 8 bits", err);
-    return press_check(&options->press, options->output, parsed, err);
-}
-
 static Status make_figure(Figure *figure, const char *recipe, Err *err)
 {
     const FigureOptions *options = figure->options;
     const int *pixels = options->size.pixels;
     TRY(figureplan_read(recipe, figure->parsed, &figure->plan, err));
     TRY(options_settle(figure->parsed, err));
-    TRY(check_press(options, figure->parsed, err));
+    TRY(options_check(figure->parsed, err)); /* an option may need one that the recipe gives */
+    TRY(press_check(&options->press, options->output, err));
     TRY(picture_fits(pixels[0], pixels[1], 12, err));
     TRY(sheet_open(&figure->sheet, err));
     sheet_begin(&figure->sheet, pixels, options->size.dpi > 0 ? options->size.dpi : 300);
@@ -472,6 +464,7 @@ const Command command_figure = {
     .needs_output = true,
     .is_lookup = false,
     .own_recipe = true,
+    .own_check = true,
     .size = sizeof(FigureOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, {&press_table, offsetof(FigureOptions, press)}},

@@ -12,12 +12,14 @@ static const Option rows[] = {
     {.name = "legend",
      SETS(SWITCH, Annotation, legend),
      .group = GROUP_PAGE,
+     .when = WHEN(SURFACES),
      .help = "a colour bar beside the tree, with ticks, name and unit of the field"},
     {.name = "legend-at",
      SETS(CHOICE, Annotation, legend_at),
      GIVEN(Annotation, has_side),
      .choices = sides,
      .group = GROUP_PAGE,
+     .needs = "legend",
      .help = "where it stands"},
     {.name = "legend-title",
      SETS(TEXT, Annotation, title),
@@ -25,6 +27,7 @@ static const Option rows[] = {
      .group = GROUP_PAGE,
      .argument = "TEXT",
      .otherwise = "the field's name and unit",
+     .needs = "legend",
      .help = "above it"},
     {.name = "scale-bar",
      SETS(NUMBER, Annotation, scale_bar_mm),
@@ -44,6 +47,7 @@ static const Option rows[] = {
      FROM_TO(1, 1000),
      .group = GROUP_PAGE,
      .unit = "pt",
+     .needs = "legend scale-bar letter",
      .help = "of legend and scale bar; a size in pixels has 300 an inch"},
 };
 
@@ -59,23 +63,16 @@ bool annotation_is_any(const Annotation *annotation)
     return annotation->legend || annotation->has_scale_bar || annotation->letter;
 }
 
-Status annotation_check(const Annotation *annotation, const PictureOptions *picture,
-                        const Parsed *parsed, Err *err)
+Status annotation_check(const Annotation *annotation, const PictureOptions *picture, Err *err)
 {
-    static const char of_legend[] = "needs --legend";
     const bool flat = picture->projection == PROJECTION_ORTHOGRAPHIC;
-    const OptionNeed needs[] = {
-        {"legend-at", annotation->legend, of_legend},
-        {"legend-title", annotation->legend, of_legend},
-        {"text-size", annotation_is_any(annotation), "needs --legend, --scale-bar or --letter"},
-        {0}};
     if (annotation->legend && !picture->coloring.field)
         return err_set(err, STATUS_USAGE, "--legend needs --color-by");
     if (annotation->has_scale_bar && !flat)
         return err_set(err, STATUS_USAGE,
                        "--scale-bar is for orthographic pictures: in perspective a length has "
                        "another size at each distance");
-    return options_check_needs(parsed, needs, err);
+    return STATUS_OK;
 }
 
 double annotation_dpi(const PictureOptions *picture)

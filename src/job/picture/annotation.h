@@ -26,9 +26,9 @@ extern const OptionTable annotation_table; /* sets an Annotation */
 bool annotation_is_any(const Annotation *annotation);
 
 /* STATUS_USAGE when a legend has no colours to explain, a scale bar is asked for in perspective,
- * where no length of the picture is one of the tree, or an option has no effect. */
+ * where no length of the picture is one of the tree. */
 MUST_CHECK Status annotation_check(const Annotation *annotation, const PictureOptions *picture,
-                                   const Parsed *parsed, Err *err);
+                                   Err *err);
 
 /* Pixels an inch of a picture on a page: its own, or 300 where its size is in pixels. */
 double annotation_dpi(const PictureOptions *picture);

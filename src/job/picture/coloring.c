@@ -17,6 +17,7 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .argument = "FIELD",
      .list = "fields",
+     .when = WHEN(COLORS) | WHEN(VESSELS),
      .help = "a field of the tree, such as radius, flow or wss, a column of its file, or "
              "FILE.csv:COLUMN"},
     {.name = "moment",
@@ -25,34 +26,49 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .argument = "K",
      .otherwise = "",
+     .when = WHEN(ONE_MOMENT),
+     .needs = "color-by",
      .help = "of values that change with time: the K-th moment alone"},
     {.name = "colormap",
      SETS(LOOKUP, Coloring, colormap),
      .group = GROUP_COLOR,
      .list = "colormaps",
+     .needs = "color-by",
      .help = "a file of templates/colormaps, or a path"},
     {.name = "unit",
      SETS(TEXT, Coloring, unit),
      .group = GROUP_COLOR,
      .argument = "UNIT",
      .otherwise = "the field's",
+     .needs = "color-by",
      .help = "of the field, its range and classes: Pa, kPa, mmHg, dyn/cm2, cm/s, ml/s, ..."},
     {.name = "range",
      SETS(RANGE, Coloring, range),
      GIVEN(Coloring, has_range),
      .group = GROUP_COLOR,
      .otherwise = "the field's",
+     .when = WHEN(NO_BOUNDS),
+     .needs = "color-by",
      .help = "values at the ends of the colour map; 2%,98%: that many of the field's are smaller"},
     {.name = "range-of",
      SETS(CHOICE, Coloring, range_of),
      .choices = ranges_of,
      .group = GROUP_COLOR,
+     .when = WHEN(WHOLE_RANGE) | WHEN(FITTED_RANGE),
+     .needs = "color-by",
      .help = "whose values the range is of: of the segments drawn, or of those pruned, too"},
-    {.name = "log", SETS(FLAG, Coloring, log), .group = GROUP_COLOR, .help = "logarithmic colours"},
+    {.name = "log",
+     SETS(FLAG, Coloring, log),
+     .group = GROUP_COLOR,
+     .when = WHEN(NO_BOUNDS),
+     .needs = "color-by",
+     .help = "logarithmic colours"},
     {.name = "classes",
      SETS(NUMBERS, Coloring, classes),
      .group = GROUP_COLOR,
      .argument = "N|A,B,...",
+     .when = WHEN(STEPS),
+     .needs = "color-by",
      .help = "N equal steps of the range, each of one colour, or steps between bounds; 1: colours "
              "run on"},
     {.name = "under",
@@ -61,6 +77,8 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .argument = "COLOR",
      .otherwise = "the map's first",
+     .when = WHEN(STEPS),
+     .needs = "color-by",
      .help = "of values below the range, or all bounds: a name, #RRGGBB or R,G,B from 0 to 1"},
     {.name = "over",
      SETS(COLOR, Coloring, over),
@@ -68,6 +86,8 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .argument = "COLOR",
      .otherwise = "the map's last",
+     .when = WHEN(STEPS),
+     .needs = "color-by",
      .help = "of values above it"},
     {.name = "no-data",
      SETS(COLOR, Coloring, none),
@@ -75,31 +95,10 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .argument = "COLOR",
      .otherwise = "gray",
+     .when = WHEN(STEPS),
+     .needs = "color-by",
      .help = "of segments without a value, or without its logarithm"},
 };
-
-const OptionTable coloring_table = OPTION_TABLE(rows);
-
-void coloring_set_defaults(Coloring *coloring)
-{
-    coloring->colormap = "viridis";
-    coloring->classes = (NumberList){.at = {1}, .n = 1};
-}
-
-Rgb rgb_of_option(Vec3 srgb)
-{
-    return (Rgb){srgb_decode((float)srgb.x), srgb_decode((float)srgb.y),
-                 srgb_decode((float)srgb.z)};
-}
-
-bool coloring_takes(const Coloring *coloring, const Option *option)
-{
-    static const char *const without_field[] = {"color-by", "look", NULL};
-    static const char *const of_flow[] = {"terminal-flow", "gamma", NULL};
-    return coloring->field || (option->group != GROUP_COLOR && option->group != GROUP_BLOOD) ||
-           is_one_of(option->name, without_field) ||
-           (coloring->with_flow && is_one_of(option->name, of_flow));
-}
 
 static bool has_bounds(const Coloring *coloring)
 {
@@ -113,20 +112,28 @@ static bool range_is_told(const Coloring *coloring)
     return coloring->has_range && !ends->percent[0] && !ends->percent[1];
 }
 
-Status coloring_check_needs(const Coloring *coloring, const Parsed *parsed, Err *err)
+static ConditionSet unmet(const void *set, const Parsed *parsed)
 {
-    static const char of_bounds[] = "has no effect on classes that have bounds";
-    const OptionNeed needs[] = {
-        {"range", !has_bounds(coloring), of_bounds},
-        {"log", !has_bounds(coloring), of_bounds},
-        {"range-of", !range_is_told(coloring), "has no effect on a --range of two values"},
-        {0}};
-    for (size_t i = 0; i < parsed->n_settings; i++) {
-        const Setting *setting = &parsed->settings[i];
-        if (setting->typed && !coloring_takes(coloring, setting->option))
-            return err_set(err, STATUS_USAGE, "--%s needs --color-by", setting->option->name);
-    }
-    return options_check_needs(parsed, needs, err);
+    const Coloring *coloring = set;
+    (void)parsed;
+    const bool blood = coloring->field || coloring->uses_blood;
+    return UNLESS(blood, USES_BLOOD) | UNLESS(blood || coloring->uses_flow, USES_FLOW) |
+           UNLESS(!has_bounds(coloring), NO_BOUNDS) |
+           UNLESS(!range_is_told(coloring), FITTED_RANGE);
+}
+
+const OptionTable coloring_table = {OPTION_ROWS(rows), .unmet = unmet};
+
+void coloring_set_defaults(Coloring *coloring)
+{
+    coloring->colormap = "viridis";
+    coloring->classes = (NumberList){.at = {1}, .n = 1};
+}
+
+Rgb rgb_of_option(Vec3 srgb)
+{
+    return (Rgb){srgb_decode((float)srgb.x), srgb_decode((float)srgb.y),
+                 srgb_decode((float)srgb.z)};
 }
 
 Status coloring_read_look(const char *name, Look *look, Err *err)

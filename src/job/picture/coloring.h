@@ -25,7 +25,8 @@ typedef struct Coloring {
     Vec3 under, over, none; /* sRGB in [0, 1] */
     bool has_under, has_over, has_none;
     BloodOptions blood;
-    bool with_flow; /* how flow parts has an effect without a field, too */
+    bool uses_blood, uses_flow; /* options on blood, or on how flow parts, have an effect even
+                                 * without a field */
 } Coloring;
 
 /* Of a zeroed Coloring. */
@@ -44,11 +45,6 @@ Rgb rgb_of_option(Vec3 srgb);
 /* Reads a look by its name in templates/looks or its path. Errors as template_file and look_read.
  */
 MUST_CHECK Status coloring_read_look(const char *name, Look *look, Err *err);
-
-/* Whether the option has an effect; those on blood and colours have one with a field alone. */
-bool coloring_takes(const Coloring *coloring, const Option *option);
-/* STATUS_USAGE when an option of the command line has none. */
-MUST_CHECK Status coloring_check_needs(const Coloring *coloring, const Parsed *parsed, Err *err);
 
 /* Where --color-by names a file, reads the values into the tree, and what they are called there
  * into *joined (owned; else unchanged). As tree_read_values. */

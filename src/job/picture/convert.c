@@ -27,6 +27,7 @@ static const Option own[] = {
      .group = GROUP_PRESS,
      .argument = "N",
      .otherwise = "",
+     .when = WHEN(KEEPS_DPI),
      .help = "pixels an inch on paper, kept in a .png, .tif or .jpg"},
     {.name = "background",
      SETS(COLOR, ConvertOptions, background),
@@ -35,8 +36,6 @@ static const Option own[] = {
      .otherwise = "none",
      .help = "what a transparent picture is laid on"},
 };
-
-static const OptionTable own_table = OPTION_TABLE(own);
 
 static void set_defaults(void *options)
 {
@@ -167,25 +166,10 @@ static Status unknown_kind(const char *path, Err *err)
     return status;
 }
 
-/* STATUS_USAGE for what has no effect on an image of this name. */
-static Status check_press(const ConvertOptions *options, const char *to, const Parsed *parsed,
-                          Err *err)
-{
-    const OptionNeed needs[] = {{"dpi", image_traits(to).keeps_dpi && !image_traits(to).floats,
-                                 "is for .png, .tif and .jpg"},
-                                {0}};
-    TRY(options_check_needs(parsed, needs, err));
-    return press_check(&options->press, to, parsed, err);
-}
-
 static Status convert_tree(const ConvertOptions *options, Parsed *parsed, const char *to, Err *err)
 {
-    const OptionNeed needs[] = {
-        {"dpi", false, "is for pictures"}, {"background", false, "is for pictures"}, {0}};
     Tree tree = {0};
-    Status status = STATUS_OK;
-    TRY_GOTO(options_check_needs(parsed, needs, err));
-    TRY_GOTO(press_refuse(parsed, "is for pictures", err));
+    Status status;
     TRY_GOTO(convert_tree_make(&options->tree, parsed, &tree, err));
     status = convert_tree_write(&tree, parsed, to, err);
 done:
@@ -211,16 +195,25 @@ Status convert_run(void *options, Parsed *parsed, Err *err)
                        to);
     if (kind == FILE_TREE)
         return convert_tree(own_options, parsed, to, err);
-    const OptionNeed needs[] = {
-        {"values", false, "is for trees"}, {"fields", false, "is for trees"}, {0}};
-    TRY(options_check_needs(parsed, needs, err));
-    TRY(reading_refuse(parsed, "is for trees", err));
-    TRY(blood_refuse(parsed, "is for trees", err));
-    TRY(check_press(own_options, to, parsed, err));
+    TRY(press_check(&own_options->press, to, err));
     return kind == FILE_PICTURE
                ? convert_picture(own_options, from, to, parsed->common.threads, err)
                : convert_plane(own_options, from, to, err);
 }
+
+/* The output's kind decides which options have an effect. */
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    const char *to = options_output(parsed);
+    if (!to || kind_of(to) == FILE_UNKNOWN)
+        return 0;
+    if (kind_of(to) == FILE_TREE)
+        return WHEN(PICTURE) | UNLESS(((const ConvertOptions *)set)->tree.fields, FIELDS);
+    const ImageTraits traits = image_traits(to);
+    return WHEN(TREE) | UNLESS(traits.keeps_dpi && !traits.floats, KEEPS_DPI);
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
 
 const Command command_convert = {
     .name = "convert",

@@ -38,8 +38,10 @@ static const Option own[] = {
      SETS(SIZE, DiagramOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
+     .when = WHEN(PIXELS),
      .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
     {DPI_OF_SIZE(DiagramOptions, size), .group = GROUP_CAMERA,
+     .when = WHEN(PIXELS) | WHEN(ON_PAPER_OR_KEPT),
      .help = "pixels an inch on paper, which .png, .tif and .jpg keep"},
     {.name = "margin",
      SETS(NUMBER, DiagramOptions, margin),
@@ -57,7 +59,20 @@ static const Option own[] = {
      .help = "sRGB, each from 0 to 1"},
 };
 
-static const OptionTable own_table = OPTION_TABLE(own);
+/* A diagram in memory is a page, as that of an .svg. */
+static bool is_page(const DiagramOptions *options)
+{
+    return !options->output || strcmp(file_extension(options->output), "svg") == 0;
+}
+
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    const DiagramOptions *options = set;
+    return is_page(options) ? WHEN(PIXELS)
+                            : picture_unmet_dpi(&options->size, options_output(parsed));
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
 
 static void set_defaults(void *options)
 {
@@ -111,23 +126,11 @@ static Status lay_out(const DiagramOptions *options, const Parsed *parsed, MadeD
     return status;
 }
 
-/* A diagram in memory is a page, as that of an .svg. */
-static bool is_page(const DiagramOptions *options)
+static Status check(const DiagramOptions *options, Err *err)
 {
-    return !options->output || strcmp(file_extension(options->output), "svg") == 0;
-}
-
-static Status check(const DiagramOptions *options, const Parsed *parsed, Err *err)
-{
-    static const char of_pixels[] = "is for pixels; an .svg is true to size";
-    const OptionNeed needs[] = {
-        {"size", !is_page(options), of_pixels}, {"dpi", !is_page(options), of_pixels}, {0}};
-    TRY(options_check_needs(parsed, needs, err));
-    TRY(coloring_check_needs(&options->coloring, parsed, err));
     if (is_page(options))
-        return press_refuse(parsed, of_pixels, err);
-    TRY(picture_check_dpi(&options->size, options->output, parsed, err));
-    TRY(press_check(&options->press, options->output, parsed, err));
+        return STATUS_OK;
+    TRY(press_check(&options->press, options->output, err));
     return frames_check_output(options->output, false, err);
 }
 
@@ -136,7 +139,7 @@ Status diagram_make(void *options, Parsed *parsed, MadeDiagram *made, Err *err)
     const DiagramOptions *own_options = options;
     const int *size = own_options->size.pixels;
     *made = (MadeDiagram){.is_page = is_page(own_options)};
-    TRY(check(own_options, parsed, err));
+    TRY(check(own_options, err));
     if (!made->is_page)
         TRY(press_open(&own_options->press, own_options->output, parsed->common.threads,
                        &made->press, err));

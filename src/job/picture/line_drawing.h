@@ -10,8 +10,7 @@
 extern const Range ink_range;
 
 /* STATUS_USAGE when --ink fights another option of the command line, or `output` is no page. */
-MUST_CHECK Status line_drawing_check(const PictureOptions *picture, const char *output,
-                                     const Parsed *parsed, Err *err);
+MUST_CHECK Status line_drawing_check(const PictureOptions *picture, const char *output, Err *err);
 
 /* Writes the page of the form, and in it, below all else, the scene's vessels as lines of
  * `line_mm`. As ink_draw and frames_write_page. */

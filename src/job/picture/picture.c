@@ -42,26 +42,31 @@ static const Option rows[] = {
      SETS(CHOICE, PictureOptions, model),
      .choices = model_names,
      .group = GROUP_VESSELS,
+     .when = WHEN(MODELS),
      .help = "how vessels are drawn"},
     {.name = "potential",
      SETS(CHOICE, PictureOptions, potential),
      .choices = potentials,
      .group = GROUP_VESSELS,
+     .when = WHEN(POTENTIAL) | WHEN(SURFACES),
      .help = "isosurface: all vessels blend, or only those near along the tree"},
     {.name = "joints",
      SETS(CHOICE, PictureOptions, joints),
      GIVEN(PictureOptions, has_joints),
      .choices = joint_forms,
      .group = GROUP_VESSELS,
+     .when = WHEN(JOINTS) | WHEN(SURFACES),
      .help = "joined: what is done where vessels are too short or turn too sharply"},
     {.name = "tolerance",
      SETS(NUMBER, PictureOptions, tolerance),
      .range = &tolerance_range,
      .group = GROUP_VESSELS,
+     .when = WHEN(TRIANGLES),
      .help = "mesh: how far triangles may be off the surface, over the local radius"},
     {.name = "part-overlaps",
      SETS(FLAG, PictureOptions, part_overlaps),
      .group = GROUP_VESSELS,
+     .when = WHEN(TRIANGLES) | WHEN(SURFACES),
      .help = "mesh: thin vessels that overlap others that they do not belong with"},
     {.name = "prune-radius",
      SETS(NUMBER, PictureOptions, prune_radius_mm),
@@ -73,25 +78,31 @@ static const Option rows[] = {
      SETS(CHOICE, PictureOptions, color_blend),
      .choices = color_blends,
      .group = GROUP_COLOR,
+     .when = WHEN(FIELD_MODEL),
+     .needs = "color-by",
      .help =
          "isosurface, blob: a point has its largest segment's colour, or that of the mean value"},
     {.name = "size",
      SETS(SIZE, PictureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
+     .when = WHEN(CAMERA),
      .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
     {DPI_OF_SIZE(PictureOptions, size), .group = GROUP_CAMERA,
+     .when = WHEN(ON_PAPER) | WHEN(ON_PAPER_OR_KEPT),
      .help = "pixels an inch on paper, which .png, .tif and .jpg keep"},
     {.name = "projection",
      SETS(CHOICE, PictureOptions, projection),
      .choices = projections,
      .group = GROUP_CAMERA,
+     .when = WHEN(CAMERA),
      .help = "of the camera"},
     {.name = "view",
      SETS(CHOICE, PictureOptions, view),
      GIVEN(PictureOptions, has_view),
      .choices = views,
      .group = GROUP_CAMERA,
+     .when = WHEN(CAMERA),
      .help = "where from"},
     {.name = "turn",
      SETS(NUMBERS, PictureOptions, turn),
@@ -99,16 +110,19 @@ static const Option rows[] = {
      .group = GROUP_CAMERA,
      .argument = "AZ,EL",
      .otherwise = "",
+     .when = WHEN(CAMERA),
      .help = "from there so many degrees to the right about the upright, and up"},
     {.name = "up-axis",
      SETS(CHOICE, PictureOptions, stage.up_axis),
      .choices = up_axes,
      .group = GROUP_CAMERA,
+     .when = WHEN(CAMERA),
      .help = "the upright of the tree's coordinates; measured trees often have z"},
     {.name = "frame",
      SETS(CHOICE, PictureOptions, frame),
      .choices = framings,
      .group = GROUP_CAMERA,
+     .when = WHEN(CAMERA),
      .help = "what fills the picture: the tree, the same for all models, the domain it was grown "
              "in, or what is drawn"},
     {.name = "location",
@@ -116,18 +130,21 @@ static const Option rows[] = {
      GIVEN(PictureOptions, stage.has_location),
      .group = GROUP_CAMERA,
      .otherwise = "",
+     .when = WHEN(CAMERA),
      .help = "camera point, mm"},
     {.name = "look-at",
      SETS(VECTOR, PictureOptions, stage.look_at),
      GIVEN(PictureOptions, stage.has_look_at),
      .group = GROUP_CAMERA,
      .otherwise = "",
+     .when = WHEN(CAMERA),
      .help = "point in the middle of the picture, mm; alone it moves the framed camera"},
     {.name = "up",
      SETS(VECTOR, PictureOptions, stage.up),
      GIVEN(PictureOptions, stage.has_up),
      .group = GROUP_CAMERA,
      .otherwise = "",
+     .when = WHEN(CAMERA),
      .help = "what is up in the picture"},
     {.name = "angle",
      SETS(NUMBER, PictureOptions, stage.angle_deg),
@@ -135,6 +152,7 @@ static const Option rows[] = {
      FROM_TO(0.01, 170),
      .group = GROUP_CAMERA,
      .unit = "deg",
+     .when = WHEN(CAMERA),
      .help = "full horizontal angle, perspective"},
     {.name = "height",
      SETS(NUMBER, PictureOptions, stage.height_mm),
@@ -143,43 +161,51 @@ static const Option rows[] = {
      .group = GROUP_CAMERA,
      .unit = "mm",
      .otherwise = "",
+     .when = WHEN(CAMERA),
      .help = "height of the picture, orthographic"},
     {.name = "margin",
      SETS(NUMBER, PictureOptions, stage.margin),
      FROM_TO(0, 0.45),
      .group = GROUP_CAMERA,
+     .when = WHEN(CAMERA),
      .help = "free part on each side when the tree is framed"},
     {.name = "antialias",
      SETS(WHOLE, PictureOptions, antialias),
      GIVEN(PictureOptions, has_antialias),
      .range = &antialias_range,
      .group = GROUP_LIGHT,
+     .when = WHEN(CAMERA),
      .help = "N x N samples a pixel"},
     {.name = "ao",
      SETS(WHOLE, PictureOptions, occlusion),
      FROM_TO(0, 4096),
      .group = GROUP_LIGHT,
+     .when = WHEN(LIT),
      .help = "ambient occlusion by N beams a pixel, or with --exact N rays a sample; best with "
              "--look print; 0: none"},
     {.name = "look",
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
      .list = "looks",
+     .when = WHEN(VESSELS),
      .help = "a file of templates/looks, or a path"},
     {.name = "erf",
      SETS(CHOICE, PictureOptions, erf),
      .choices = erf_names,
      .group = GROUP_POVRAY,
+     .when = WHEN(POTENTIAL),
      .help = "POV-Ray's isosurface: how exact erf is"},
     {.name = "cell-beta",
      SETS(NUMBER, PictureOptions, cell_beta),
      FROM_TO(0.5, 64),
      .group = GROUP_POVRAY,
      .otherwise = "6",
+     .when = WHEN(POTENTIAL),
      .help = "POV-Ray's isosurface: side of a cell over the smallest radius in it"},
     {.name = "shadows",
      SETS(SWITCH, PictureOptions, stage.shadows),
      .group = GROUP_LIGHT,
+     .when = WHEN(CAMERA) | WHEN(LIGHTS),
      .help = "of the lights"},
     {.name = "background",
      SETS(COLOR, PictureOptions, background),
@@ -187,10 +213,24 @@ static const Option rows[] = {
      .can_be_none = true,
      .group = GROUP_LIGHT,
      .otherwise = "the look's",
+     .when = WHEN(CAMERA),
      .help = "a name as in CSS, #RRGGBB, R,G,B from 0 to 1, or none: transparent"},
 };
 
-const OptionTable picture_table = OPTION_TABLE(rows);
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    const PictureOptions *options = set;
+    (void)parsed;
+    const SceneModel model =
+        options->as_mesh ? model_with(MODEL_TRIANGLES) : (SceneModel)options->model;
+    const bool field = model_has(model, MODEL_FIELD);
+    return UNLESS(model_has(model, MODEL_POTENTIAL), POTENTIAL) |
+           UNLESS(model_has(model, MODEL_JOINTS), JOINTS) |
+           UNLESS(model_has(model, MODEL_TRIANGLES), TRIANGLES) | UNLESS(field, FIELD_MODEL) |
+           UNLESS(field, FIELD_IDS);
+}
+
+const OptionTable picture_table = {OPTION_ROWS(rows), .unmet = unmet};
 
 void picture_set_defaults(PictureOptions *picture)
 {
@@ -230,67 +270,10 @@ static Status check_camera(const PictureOptions *options, Err *err)
     return STATUS_OK;
 }
 
-/* Options that have an effect on models of these elements alone. */
-typedef struct ModelOption {
-    const char *name;
-    unsigned elements;
-    const char *rest; /* of the sentence that refuses it */
-} ModelOption;
-
-static const ModelOption of_models[] = {
-    {"potential", MODEL_POTENTIAL, ""},
-    {"erf", MODEL_POTENTIAL, ""},
-    {"cell-beta", MODEL_POTENTIAL, ""},
-    {"hits", MODEL_POTENTIAL, ""},
-    {"joints", MODEL_JOINTS, ""},
-    {"tolerance", MODEL_TRIANGLES, ""},
-    {"part-overlaps", MODEL_TRIANGLES, ""},
-    {"color-blend", MODEL_FIELD, ""},
-    {"ids", MODEL_FIELD, "; other scenes have ids anyway"},
-};
-
-/* The row of an option; NULL when it has an effect on all models. */
-static const ModelOption *model_option(const Option *option)
+ConditionSet picture_unmet_dpi(const PictureSize *size, const char *output)
 {
-    for (size_t i = 0; i < sizeof of_models / sizeof *of_models; i++)
-        if (strcmp(of_models[i].name, option->name) == 0)
-            return &of_models[i];
-    return NULL;
-}
-
-bool picture_takes(const PictureOptions *options, const Option *option)
-{
-    const ModelOption *of = model_option(option);
-    return of ? model_has((SceneModel)options->model, of->elements)
-              : coloring_takes(&options->coloring, option);
-}
-
-static Status refuse(const Option *option, const ModelOption *of, Err *err)
-{
-    return err_set(err, STATUS_USAGE, "--%s is for --model %s%s", option->name,
-                   models_with(of->elements).text, of->rest);
-}
-
-Status picture_check_needs(const PictureOptions *options, const Parsed *parsed, Err *err)
-{
-    for (size_t i = 0; i < parsed->n_settings; i++) {
-        const Setting *setting = &parsed->settings[i];
-        const ModelOption *of = model_option(setting->option);
-        if (setting->typed && of && !picture_takes(options, setting->option))
-            return refuse(setting->option, of, err);
-    }
-    return coloring_check_needs(&options->coloring, parsed, err);
-}
-
-Status picture_check_dpi(const PictureSize *size, const char *output, const Parsed *parsed,
-                         Err *err)
-{
-    const bool kept = image_traits(output).keeps_dpi || frames_is_page(output);
-    const OptionNeed needs[] = {{"dpi", size_is_on_paper(size) || kept,
-                                 NEEDS_PAPER
-                                 ", or a file that keeps it (.png, .tif, .jpg, .pdf, .svg)"},
-                                {0}};
-    return options_check_needs(parsed, needs, err);
+    const bool kept = !output || image_traits(output).keeps_dpi || frames_is_page(output);
+    return UNLESS(size_is_on_paper(size) || kept, ON_PAPER_OR_KEPT);
 }
 
 Status picture_check_povray(const PictureOptions *options, Err *err)
@@ -422,10 +405,8 @@ static Status read_look(const PictureOptions *options, const Parsed *parsed, Loo
         return err_set(err, STATUS_USAGE,
                        "--look %s has two colours of its own; --color-by has no effect",
                        options->look);
-    const OptionNeed needs[] = {{"ao", !is_xray(look), "is of lit walls, and an x-ray has none"},
-                                {"shadows", !is_xray(look), "are of lights, and an x-ray has none"},
-                                {0}};
-    TRY(options_check_needs(parsed, needs, err));
+    if (is_xray(look))
+        TRY(options_refuse(parsed, WHEN(LIT) | WHEN(LIGHTS), err));
     if (options->has_background && !color_is_none(options->background))
         look->background = rgb_of_option(options->background);
     return STATUS_OK;

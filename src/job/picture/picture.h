@@ -20,6 +20,7 @@ typedef struct PictureOptions {
     double tolerance; /* of a mesh, over the local radius */
     bool
         part_overlaps; /* likewise: thin vessels that overlap others that they do not belong with */
+    bool as_mesh;      /* the model is a mesh, whatever `model` says */
     bool by_tiles;     /* nothing but pictures tile by tile is made of the geometry */
     double prune_radius_mm;
     const char *look;
@@ -48,17 +49,9 @@ extern const OptionTable picture_table; /* sets a PictureOptions but its colorin
 /* How POV-Ray's isosurface is cut into cells. */
 CellParams picture_cells(const PictureOptions *options);
 
-/* STATUS_USAGE when an option of the command line has no effect on this picture. Not for `view`,
- * whose keys change models and fields. */
-MUST_CHECK Status picture_check_needs(const PictureOptions *options, const Parsed *parsed,
-                                      Err *err);
-
-/* STATUS_USAGE when --dpi is given and has an effect neither on the size nor on the file. */
-MUST_CHECK Status picture_check_dpi(const PictureSize *size, const char *output,
-                                    const Parsed *parsed, Err *err);
-
-/* Whether the option has an effect on this picture, if it is given. */
-bool picture_takes(const PictureOptions *options, const Option *option);
+/* Returns the condition of --dpi if the resolution has an effect neither on the size nor on the
+ * file `output`, NULL for a picture in memory. */
+ConditionSet picture_unmet_dpi(const PictureSize *size, const char *output);
 
 /* STATUS_USAGE when an option is given that only the native renderer knows. */
 MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);

@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const figure_kinds[] = {[FIGURE_HALFTONE] = "halftone",
-                                    [FIGURE_COMBINATION] = "combination",
-                                    [FIGURE_LINE] = "line",
-                                    NULL};
+const char *const content_kinds[] = {[CONTENT_HALFTONE] = "halftone",
+                                     [CONTENT_COMBINATION] = "combination",
+                                     [CONTENT_LINE] = "line",
+                                     NULL};
 
 static const struct {
     const char *section, *name;
@@ -25,9 +25,9 @@ static const struct {
     {"width", "most", true, offsetof(Preset, most_mm)},
     {"height", "most", true, offsetof(Preset, height_mm)},
     {"resolution", "render", true, offsetof(Preset, render_dpi)},
-    {"resolution", "halftone", true, offsetof(Preset, least_dpi[FIGURE_HALFTONE])},
-    {"resolution", "combination", true, offsetof(Preset, least_dpi[FIGURE_COMBINATION])},
-    {"resolution", "line", true, offsetof(Preset, least_dpi[FIGURE_LINE])},
+    {"resolution", "halftone", true, offsetof(Preset, least_dpi[CONTENT_HALFTONE])},
+    {"resolution", "combination", true, offsetof(Preset, least_dpi[CONTENT_COMBINATION])},
+    {"resolution", "line", true, offsetof(Preset, least_dpi[CONTENT_LINE])},
     {"resolution", "most", true, offsetof(Preset, most_dpi)},
     {"file", "formats", false, offsetof(Preset, formats)},
     {"file", "compression", false, offsetof(Preset, compression)},

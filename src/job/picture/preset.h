@@ -5,13 +5,13 @@
 #include "base/base.h"
 
 /* What a figure consists of: shades, shades with lines or letters, lines alone. */
-typedef enum FigureKind {
-    FIGURE_HALFTONE,
-    FIGURE_COMBINATION,
-    FIGURE_LINE,
-    FIGURE_KINDS
-} FigureKind;
-extern const char *const figure_kinds[]; /* by FigureKind; NULL ends them */
+typedef enum ContentKind {
+    CONTENT_HALFTONE,
+    CONTENT_COMBINATION,
+    CONTENT_LINE,
+    CONTENT_KINDS
+} ContentKind;
+extern const char *const content_kinds[]; /* by ContentKind; NULL ends them */
 
 /* Lengths in mm, resolutions in pixels an inch; 0 as a bound: there is none. Texts are of `text`.
  */
@@ -21,7 +21,7 @@ typedef struct Preset {
     double single_mm, double_mm, least_mm, most_mm; /* widths: of columns, of anything */
     double height_mm;                               /* at most */
     double render_dpi;                              /* of what is drawn anew */
-    double least_dpi[FIGURE_KINDS], most_dpi;
+    double least_dpi[CONTENT_KINDS], most_dpi;
     const char *formats, *colors; /* words: "tif eps", "rgb grey cmyk" */
     const char *compression;      /* of a TIFF: "any" or a word of --compression */
     double bits;                  /* at most */

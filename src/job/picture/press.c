@@ -1,6 +1,7 @@
 /* Options that have no effect on a file of the format that its name says are refused. */
 #include "job/picture/press.h"
 
+#include "job/picture/frames.h"
 #include "job/picture/preset.h"
 #include <string.h>
 #include <strings.h>
@@ -23,6 +24,7 @@ static const Option rows[] = {
      SETS(CHOICE, PressOptions, column),
      .choices = columns,
      .group = GROUP_PRESS,
+     .needs = "preset",
      .help = "how many columns of the preset's the picture is wide"},
     {.name = "bits",
      SETS(WHOLE, PressOptions, bits),
@@ -30,26 +32,32 @@ static const Option rows[] = {
      .group = GROUP_PRESS,
      .argument = "8|16|32",
      .otherwise = "8; 32 of an .exr",
+     .when = WHEN(PACKED) | WHEN(SURFACES),
      .help = "of a channel; of an .exr, which has floats, 16 or 32"},
     {.name = "compression",
      SETS(CHOICE, PressOptions, compression),
      .choices = compressions,
      .group = GROUP_PRESS,
+     .when = WHEN(PACKED) | WHEN(TIFF),
      .help = "of a .tif; none loses anything"},
     {.name = "quality",
      SETS(WHOLE, PressOptions, quality),
      FROM_TO(1, 100),
      .group = GROUP_PRESS,
+     .when = WHEN(PACKED) | WHEN(JPEG),
      .help = "of a .jpg, which loses a little even at 100"},
     {.name = "cmyk-profile",
      SETS(INPUT, PressOptions, cmyk_profile),
      .group = GROUP_PRESS,
      .argument = "P.icc",
+     .when = WHEN(PACKED) | WHEN(TIFF_OR_JPEG) | WHEN(OPAQUE) | WHEN(WHOLE_SRGB),
      .help = "a .tif or .jpg in the inks of the press that this ICC profile is of"},
     {.name = "cmyk-intent",
      SETS(CHOICE, PressOptions, intent),
      .choices = intents,
      .group = GROUP_PRESS,
+     .needs = "cmyk-profile",
+     .when = WHEN(PACKED),
      .help = "colours that the press has not: all make way, or they alone"},
 };
 
@@ -61,7 +69,7 @@ static Status imply(const Parsed *parsed, const char *name, const char *value, E
 }
 
 /* A picture is square, but no higher than a page. */
-static Status settle(const void *set, const Parsed *parsed, Err *err)
+static Status settle(void *set, const Parsed *parsed, Err *err)
 {
     const PressOptions *options = set;
     Preset preset;
@@ -82,18 +90,29 @@ static Status settle(const void *set, const Parsed *parsed, Err *err)
     return status;
 }
 
-const OptionTable press_table = {
-    .options = rows, .n = sizeof rows / sizeof *rows, .settle = settle};
-
-void press_set_defaults(PressOptions *options)
-{
-    *options = (PressOptions){.intent = INKS_RELATIVE, .quality = 95};
-}
-
 static bool is_of(const char *output, const char *extension, const char *other)
 {
     return strcasecmp(file_extension(output), extension) == 0 ||
            strcasecmp(file_extension(output), other) == 0;
+}
+
+/* The extension of the file decides how it is packed. */
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    (void)set;
+    const char *output = options_output(parsed);
+    if (!output)
+        return 0;
+    return UNLESS(!frames_is_page(output), PACKED) | UNLESS(is_of(output, "tif", "tiff"), TIFF) |
+           UNLESS(is_of(output, "jpg", "jpeg"), JPEG) |
+           UNLESS(image_traits(output).has_profile, TIFF_OR_JPEG);
+}
+
+const OptionTable press_table = {OPTION_ROWS(rows), .settle = settle, .unmet = unmet};
+
+void press_set_defaults(PressOptions *options)
+{
+    *options = (PressOptions){.intent = INKS_RELATIVE, .quality = 95};
 }
 
 static Status check_bits(const char *output, int bits, Err *err)
@@ -114,38 +133,9 @@ static Status check_bits(const char *output, int bits, Err *err)
     return err_set(err, STATUS_USAGE, "--bits: '%d': %s", bits, rules[i].sentence);
 }
 
-Status press_check(const PressOptions *options, const char *output, const Parsed *parsed, Err *err)
+Status press_check(const PressOptions *options, const char *output, Err *err)
 {
-    const OptionNeed needs[] = {
-        {"column", options->preset != NULL, "needs --preset"},
-        {"compression", is_of(output, "tif", "tiff"), "is for .tif"},
-        {"quality", is_of(output, "jpg", "jpeg"), "is for .jpg"},
-        {"cmyk-profile", image_traits(output).has_profile, "is for .tif and .jpg"},
-        {"cmyk-intent", options->cmyk_profile != NULL, "needs --cmyk-profile"},
-        {0}};
-    TRY(options_check_needs(parsed, needs, err));
-    return check_bits(output, options->bits, err);
-}
-
-enum { OF_SIZE = 2 /* the first rows */ };
-
-static Status refuse_from(size_t first, const Parsed *parsed, const char *sentence, Err *err)
-{
-    for (size_t i = first; i < sizeof rows / sizeof *rows; i++) {
-        const OptionNeed needs[] = {{rows[i].name, false, sentence}, {0}};
-        TRY(options_check_needs(parsed, needs, err));
-    }
-    return STATUS_OK;
-}
-
-Status press_refuse(const Parsed *parsed, const char *sentence, Err *err)
-{
-    return refuse_from(0, parsed, sentence, err);
-}
-
-Status press_refuse_packing(const Parsed *parsed, const char *sentence, Err *err)
-{
-    return refuse_from(OF_SIZE, parsed, sentence, err);
+    return frames_is_page(output) ? STATUS_OK : check_bits(output, options->bits, err);
 }
 
 Status press_open(const PressOptions *options, const char *output, int threads, Press *press,

@@ -19,17 +19,9 @@ typedef struct PressOptions {
 extern const OptionTable press_table;
 void press_set_defaults(PressOptions *options);
 
-/* STATUS_USAGE when an option of the command line has no effect on the file `output`, or the file
- * cannot have the bits. */
-MUST_CHECK Status press_check(const PressOptions *options, const char *output, const Parsed *parsed,
-                              Err *err);
-
-/* STATUS_USAGE for the first of the table's options that stands on the command line, which
- * `sentence` says are without effect. */
-MUST_CHECK Status press_refuse(const Parsed *parsed, const char *sentence, Err *err);
-
-/* Likewise of those but preset and column, which are of sizes. */
-MUST_CHECK Status press_refuse_packing(const Parsed *parsed, const char *sentence, Err *err);
+/* Checks the bits of a channel against the format of the file `output`.
+ * Errors  STATUS_USAGE when the format cannot have them. */
+MUST_CHECK Status press_check(const PressOptions *options, const char *output, Err *err);
 
 /* What writers take. */
 typedef struct Press {

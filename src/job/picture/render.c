@@ -73,11 +73,10 @@ static Status plan_rows(Rendering *r, Err *err)
 {
     const RenderOptions *options = r->options;
     const RenderKernels kernels = options->kernels;
-    const bool animated = r->animation.kind != ANIMATION_NONE;
     if (r->in_memory && (options->shard.commands || options->shard.resume))
         return err_set(err, STATUS_USAGE, "--%s is for files, not for pictures in memory",
                        options->shard.commands ? "commands" : "resume");
-    TRY(shard_check(&options->shard, animated, &r->form, r->parsed, err));
+    TRY(shard_check(&options->shard, &r->form, r->parsed, err));
     TRY(shard_of_tile(options->shard.tile, r->form.height, &r->shard, err));
     snprintf(r->shard.kernels, sizeof r->shard.kernels, "%s",
              render_kernel_names[kernels ? kernels : render_fastest_kernels()]);
@@ -99,7 +98,7 @@ static Status check_size(const Rendering *r, Err *err)
 static Status plan(Rendering *r, Err *err)
 {
     RenderOptions *options = r->options;
-    TRY(render_check(options, r->parsed, err));
+    TRY(render_check(options, err));
     TRY(animation_read(&options->animation, options->output, &r->animation, err));
     TRY(press_open(&options->press, options->output, r->parsed->common.threads, &r->press, err));
     TRY(plan_form(r, err));

@@ -23,10 +23,12 @@ static const Option own[] = {
     {.name = "planes",
      SETS(TEXT, RenderOptions, planes),
      .argument = "LIST",
+     .when = WHEN(SURFACES) | WHEN(WHOLE),
      .help = "planes beside it, or in an .exr: color,depth,normal,id"},
     {.name = "exact",
      SETS(FLAG, RenderOptions, exact),
      .group = GROUP_RUN,
+     .when = WHEN(SURFACES),
      .help = "the picture that verify draws: POV-Ray's arithmetic, ray by ray, and one ray a pixel "
              "unless --antialias says more"},
     {.name = "method",
@@ -34,6 +36,7 @@ static const Option own[] = {
      GIVEN(RenderOptions, has_method),
      .choices = methods,
      .group = GROUP_RUN,
+     .when = WHEN(SURFACES),
      .help = "cylinders, joined, rounded, and but for zbuffer blob: as POV-Ray does, by tiles, as "
              "the paper does, or tiles where they can"},
     {.name = "min-width",
@@ -41,6 +44,7 @@ static const Option own[] = {
      FROM_TO(0, 64),
      .argument = "PX",
      .group = GROUP_VESSELS,
+     .when = WHEN(SURFACES),
      .help = "vessels are drawn at least so many pixels wide; 0: as wide as they are"},
     {.name = "ink",
      SETS(NUMBER, RenderOptions, ink_mm),
@@ -53,17 +57,20 @@ static const Option own[] = {
      SETS(CHOICE, RenderOptions, hits),
      .choices = hits_names,
      .group = GROUP_POVRAY,
+     .when = WHEN(POTENTIAL),
      .help = "isosurface: where it is, or where POV-Ray's root finder sees it"},
     {.name = "antialias-threshold",
      SETS(NUMBER, RenderOptions, threshold),
      FROM_TO(0, 1),
      .group = GROUP_LIGHT,
      .argument = "T",
+     .when = WHEN(OPAQUE),
      .help = "antialias only pixels that differ by T from a neighbour; 0: all, as POV-Ray"},
     {.name = "kernels",
      SETS(CHOICE, RenderOptions, kernels),
      .choices = render_kernel_names,
      .group = GROUP_RUN,
+     .when = WHEN(SURFACES),
      .help = "instructions that tiles are drawn with, for tests"},
     {.name = "memory",
      SETS(NUMBER, RenderOptions, memory_mb),
@@ -71,28 +78,55 @@ static const Option own[] = {
      .group = GROUP_RUN,
      .aside = true,
      .unit = "MB",
+     .when = WHEN(SURFACES),
      .help = "of a band; larger pictures are drawn and written band by band"},
-    {.name = "json", SETS(OUTPUT, RenderOptions, json), .help = "what was done, as JSON"},
+    {.name = "json",
+     SETS(OUTPUT, RenderOptions, json),
+     .when = WHEN(SURFACES) | WHEN(WHOLE),
+     .help = "what was done, as JSON"},
     {.name = "frames",
      SETS(TEXT, RenderOptions, animation.frames),
      .group = GROUP_ANIMATION,
      .argument = "all|A..B",
+     .when = WHEN(SURFACES),
      .help = "a picture for each frame of values that change with time"},
     {.name = "turntable",
      SETS(WHOLE, RenderOptions, animation.turn),
      .group = GROUP_ANIMATION,
      FROM_TO(1, 100000),
      .otherwise = "",
+     .when = WHEN(SURFACES),
      .help = "so many pictures, once about the upright"},
     {.name = "growth",
      SETS(WHOLE, RenderOptions, animation.growth),
      .group = GROUP_ANIMATION,
      FROM_TO(1, 100000),
      .otherwise = "",
+     .when = WHEN(SURFACES),
      .help = "so many pictures of the tree as it grows from its root"},
 };
 
-const OptionTable render_table = OPTION_TABLE(own);
+/* Which conditions on parts of pictures do not hold. */
+static ConditionSet unmet_of_parts(const RenderOptions *options)
+{
+    const AnimationOptions *animation = &options->animation;
+    const ShardOptions *shard = &options->shard;
+    const bool animated = animation->frames || animation->turn > 0 || animation->growth > 0;
+    const ConditionSet whole = WHEN(WHOLE) | WHEN(WHOLE_SRGB);
+    return UNLESS(!animated, STILL) | UNLESS(animated, ANIMATED) |
+           UNLESS(animated || shard->tiles > 0, HAS_PARTS) | (shard_is_asked(shard) ? whole : 0);
+}
+
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    const RenderOptions *options = set;
+    const PictureOptions *picture = &options->picture;
+    return unmet_of_parts(options) | UNLESS(options->ink_mm == 0, SURFACES) |
+           UNLESS(!picture_is_transparent(picture), OPAQUE) |
+           picture_unmet_dpi(&picture->size, options_output(parsed));
+}
+
+const OptionTable render_table = {OPTION_ROWS(own), .unmet = unmet};
 
 void render_set_defaults(void *options)
 {
@@ -136,20 +170,18 @@ static Status check_method(const RenderOptions *options, Err *err)
 }
 
 /* What the file holds: 8 bits of a page, and nothing over floats. */
-static Status check_file(const RenderOptions *options, const Parsed *parsed, Err *err)
+static Status check_file(const RenderOptions *options, Err *err)
 {
-    if (frames_is_page(options->output))
-        return press_refuse_packing(parsed, "is for pictures; a page holds one of 8 bits", err);
     if (image_traits(options->output).floats && annotation_is_any(&options->annotation))
         return err_set(err, STATUS_USAGE,
                        "-o: %s holds numbers to measure, and no legend, scale bar or letter",
                        strcmp(file_extension(options->output), "exr") ? "a .pfm" : "an .exr");
-    return press_check(&options->press, options->output, parsed, err);
+    return press_check(&options->press, options->output, err);
 }
 
 /* Nothing can be drawn over what is transparent, nor parts of it joined; and every pixel is to be
  * of the same samples over any background. */
-static Status check_transparent(const RenderOptions *options, const Parsed *parsed, Err *err)
+static Status check_transparent(const RenderOptions *options, Err *err)
 {
     static const char *const able[] = {"png", "tif", "tiff", "exr", NULL};
     if (!picture_is_transparent(&options->picture))
@@ -161,29 +193,23 @@ static Status check_transparent(const RenderOptions *options, const Parsed *pars
     if (annotation_is_any(&options->annotation))
         return err_set(err, STATUS_USAGE,
                        "--background none: a legend, a scale bar or a letter needs a background");
-    const OptionNeed needs[] = {
-        {"cmyk-profile", false, "needs a background, not --background none"},
-        {"antialias-threshold", false, "needs a background, not --background none"},
-        {0}};
-    return options_check_needs(parsed, needs, err);
+    return STATUS_OK;
 }
 
-Status render_check(const RenderOptions *options, const Parsed *parsed, Err *err)
+Status render_check(const RenderOptions *options, Err *err)
 {
     const PictureOptions *picture = &options->picture;
-    TRY(check_file(options, parsed, err));
+    TRY(check_file(options, err));
     if (options->ink_mm > 0)
-        TRY(line_drawing_check(picture, options->output, parsed, err));
+        TRY(line_drawing_check(picture, options->output, err));
     if (options->min_width_px > 0 && !covers_thin(options))
         return err_set(err, STATUS_USAGE,
                        "--min-width is for --method fastest, without --exact and --hits povray");
     if (options->min_width_px > 0 && model_is_of((SceneModel)picture->model, MODEL_TRIANGLES))
         return err_set(err, STATUS_USAGE, "--min-width is for vessels, not for --model %s",
                        models[picture->model].name);
-    TRY(picture_check_needs(picture, parsed, err));
-    TRY(annotation_check(&options->annotation, picture, parsed, err));
-    TRY(check_transparent(options, parsed, err));
-    TRY(picture_check_dpi(&picture->size, options->output, parsed, err));
+    TRY(annotation_check(&options->annotation, picture, err));
+    TRY(check_transparent(options, err));
     if (options->threshold > 0 && picture->antialias == 1)
         return err_set(err, STATUS_USAGE,
                        "--antialias-threshold needs --antialias N, with N from 2 to 9");

@@ -31,7 +31,7 @@ void render_set_defaults(void *options);
 void render_settle(RenderOptions *options);
 
 /* STATUS_USAGE when options fight each other, or the method does not know one. */
-MUST_CHECK Status render_check(const RenderOptions *options, const Parsed *parsed, Err *err);
+MUST_CHECK Status render_check(const RenderOptions *options, Err *err);
 
 /* What the options ask of the renderer, but for planes and progress. `cells` is borrowed. */
 RenderParams render_params_of(const RenderOptions *options, int threads, CellParams *cells);

@@ -21,6 +21,7 @@ static const Option rows[] = {
      .group = GROUP_PARTS,
      .argument = "I/N",
      .aside = true,
+     .when = WHEN(STILL) | WHEN(SURFACES),
      .help = "rows only: part I of N, from the top; corcast merge joins them"},
     {.name = "tiles",
      SETS(WHOLE, ShardOptions, tiles),
@@ -28,6 +29,9 @@ static const Option rows[] = {
      .group = GROUP_PARTS,
      .aside = true,
      .otherwise = "",
+     .when = WHEN(STILL) | WHEN(SURFACES),
+     .needs = "commands",
+     .excludes = "tile",
      .help = "with --commands: a command for each of N tiles, P.tile-1.png to P.tile-N.png"},
     {.name = "only",
      SETS(WHOLE, ShardOptions, only),
@@ -36,11 +40,13 @@ static const Option rows[] = {
      .argument = "K",
      .aside = true,
      .otherwise = "",
+     .when = WHEN(ANIMATED),
      .help = "picture K of an animation alone"},
     {.name = "commands",
      SETS(FLAG, ShardOptions, commands),
      .group = GROUP_PARTS,
      .aside = true,
+     .when = WHEN(HAS_PARTS),
      .help = "draw nothing, but print a command a line, for GNU parallel, Slurm and others, that "
              "draws a tile or a picture of an animation"},
     {.name = "resume",
@@ -58,24 +64,16 @@ static int most_tiles(int height)
     return (height + RENDER_BAND_STEP - 1) / RENDER_BAND_STEP;
 }
 
-Status shard_check(const ShardOptions *options, bool animated, const FramesForm *form,
-                   const Parsed *parsed, Err *err)
+bool shard_is_asked(const ShardOptions *options)
+{
+    return options->tile || options->commands || options->resume;
+}
+
+Status shard_check(const ShardOptions *options, const FramesForm *form, const Parsed *parsed,
+                   Err *err)
 {
     static const char *const noted[] = {"png", "tif", "tiff", NULL};
-    bool parts = options->tile || options->commands || options->resume;
-    const OptionNeed needs[] = {
-        {"tile", !animated, "is for single pictures, not for animations"},
-        {"tiles", options->commands, "needs --commands"},
-        {"tiles", !animated, "is for single pictures, not for animations"},
-        {"tiles", !options->tile, "and --tile exclude each other"},
-        {"only", animated, "is for animations"},
-        {"commands", animated || options->tiles > 0, "needs --tiles N or an animation"},
-        {"planes", !parts, "is not for parts: --tile, --commands and --resume know pictures only"},
-        {"json", !parts, "is not for parts: --tile, --commands and --resume know pictures only"},
-        {"cmyk-profile", !parts, "is not for parts: they are put together as sRGB"},
-        {0}};
-    TRY(options_check_needs(parsed, needs, err));
-    if (parts && !is_one_of(file_extension(form->path), noted))
+    if (shard_is_asked(options) && !is_one_of(file_extension(form->path), noted))
         return err_set(err, STATUS_USAGE,
                        "-o: '%s' cannot say what part of what it is; parts are .png or .tif",
                        form->path);

@@ -29,9 +29,12 @@ typedef struct Shard {
     HashText made_from;
 } Shard;
 
-/* Checks the options. Errors: STATUS_USAGE if options exclude each other, or if the file's format
- * has no notes. `animated` says that there are several pictures. */
-MUST_CHECK Status shard_check(const ShardOptions *options, bool animated, const FramesForm *form,
+/* Whether the file is a part of a picture, or may be kept as one. */
+bool shard_is_asked(const ShardOptions *options);
+/* Checks the file that is a part, and the number of tiles.
+ * Errors  STATUS_USAGE when the format of the file holds no notes, when the picture has fewer rows
+ *         than tiles need, and for commands about a tree from standard input. */
+MUST_CHECK Status shard_check(const ShardOptions *options, const FramesForm *form,
                               const Parsed *parsed, Err *err);
 
 /* Finds the tile that --tile selects, of a picture of `height` rows. Does not set the hash and the

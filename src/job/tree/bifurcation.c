@@ -45,20 +45,30 @@ static const Option own[] = {
      GIVEN(BifurcationOptions, has_ratio),
      FROM_TO(1e-3, 1e3),
      .group = GROUP_TREE,
+     .when = WHEN(LONE_RADIUS),
      .help = "of the right daughter's radius to the left one's, where --radii gives the parent's"},
     {.name = "gamma",
      SETS(NUMBER, BifurcationOptions, gamma),
      FROM_TO(0.1, 10),
      .group = GROUP_TREE,
+     .when = WHEN(LONE_RADIUS),
      .help = "Murray exponent"},
     {.name = "lambda",
      SETS(NUMBER, BifurcationOptions, lambda),
      FROM_TO(0, 10),
      .group = GROUP_TREE,
+     .when = WHEN(FREE_ANGLES),
      .help = "of the target that the angles make least: the sum of length * radius^lambda"},
 };
 
-static const OptionTable own_table = OPTION_TABLE(own);
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    (void)parsed;
+    const BifurcationOptions *options = set;
+    return UNLESS(options->radii.n == 1, LONE_RADIUS) | UNLESS(!options->has_angles, FREE_ANGLES);
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
 
 static void set_defaults(void *options)
 {
@@ -114,15 +124,9 @@ static Status find_angles(const BifurcationOptions *options, const double radii[
     return STATUS_OK;
 }
 
-static Status check(const BifurcationOptions *options, const Parsed *parsed, Err *err)
+static Status check(const BifurcationOptions *options, Err *err)
 {
-    const bool alone = options->radii.n == 1;
-    const OptionNeed needs[] = {{"ratio", alone, "is for --radii with the parent's alone"},
-                                {"gamma", alone, "is for --radii with the parent's alone"},
-                                {"lambda", !options->has_angles, "has no effect beside --angles"},
-                                {0}};
     TRY(tree_output_check(options->output, err));
-    TRY(options_check_needs(parsed, needs, err));
     TRY(check_sizes("radii", &options->radii, err));
     TRY(check_sizes("lengths", &options->lengths, err));
     if (options->has_angles && options->angles.n != 2)
@@ -171,7 +175,7 @@ static void fill(const double radii[3], const double lengths[3], const double an
 Status bifurcation_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
 {
     double radii[3], lengths[3], angles[2] = {0};
-    TRY(check(options, parsed, err));
+    TRY(check(options, err));
     TRY(find_shape(options, radii, lengths, angles, err));
     TRY(tree_init(&made->tree, 4, err));
     fill(radii, lengths, angles, &made->tree);

@@ -15,27 +15,32 @@ static const Option rows[] = {
      SAYS(Q_PERF),
      .group = GROUP_BLOOD,
      .otherwise = of_tree,
+     .when = WHEN(USES_BLOOD),
      .help = "flow through the inlet"},
     {.name = "terminal-flow",
      SETS(TEXT, BloodOptions, terminal_flow),
      .group = GROUP_BLOOD,
      .argument = "equal|murray|FILE.csv",
      .otherwise = of_tree,
+     .when = WHEN(USES_FLOW),
      .help = "how flow parts: the same for all terminals, as radius^gamma, or by id and flow"},
     {.name = "gamma",
      SAYS(GAMMA),
      .group = GROUP_BLOOD,
      .otherwise = "the tree's, or 3",
+     .when = WHEN(USES_FLOW) | WHEN(MURRAY),
      .help = "exponent of the radius, for murray"},
     {.name = "p-perf",
      SAYS(P_PERF),
      .group = GROUP_BLOOD,
      .otherwise = of_tree,
+     .when = WHEN(USES_BLOOD),
      .help = "pressure at the inlet"},
     {.name = "viscosity",
      SAYS(VISCOSITY),
      .group = GROUP_BLOOD,
      .otherwise = of_tree,
+     .when = WHEN(USES_BLOOD) | WHEN(CONSTANT_VISCOSITY),
      .help = "of the blood"},
     {.name = "viscosity-law",
      SETS(CHOICE, BloodOptions, law),
@@ -43,21 +48,31 @@ static const Option rows[] = {
      .choices = viscosity_law_names,
      .group = GROUP_BLOOD,
      .otherwise = of_tree,
+     .when = WHEN(USES_BLOOD),
      .help = "the same in all vessels, or by their diameter"},
     {.name = "hematocrit",
      SAYS(HEMATOCRIT),
      .group = GROUP_BLOOD,
      .argument = "H",
      .otherwise = of_tree,
+     .when = WHEN(USES_BLOOD) | WHEN(PRIES),
      .help = "of the blood, for pries"},
     {.name = "plasma-viscosity",
      SAYS(PLASMA_VISCOSITY),
      .group = GROUP_BLOOD,
      .otherwise = of_tree,
+     .when = WHEN(USES_BLOOD) | WHEN(PRIES),
      .help = "of the plasma, for pries"},
 };
 
-const OptionTable blood_table = OPTION_TABLE(rows);
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    (void)parsed;
+    const char *law = ((const BloodOptions *)set)->terminal_flow;
+    return UNLESS(law && strcmp(law, "murray") == 0, MURRAY);
+}
+
+const OptionTable blood_table = {OPTION_ROWS(rows), .unmet = unmet};
 
 TreeMeta blood_said(const BloodOptions *blood)
 {
@@ -66,25 +81,9 @@ TreeMeta blood_said(const BloodOptions *blood)
     return said;
 }
 
-Status blood_check_law(ViscosityLaw law, const Parsed *parsed, Err *err)
+ConditionSet blood_unmet(ViscosityLaw law)
 {
-    bool pries = law == VISCOSITY_PRIES;
-    static const char of_pries[] = "is for --viscosity-law pries";
-    const OptionNeed needs[] = {{"viscosity", !pries, "is for --viscosity-law constant"},
-                                {"hematocrit", pries, of_pries},
-                                {"plasma-viscosity", pries, of_pries},
-                                {0}};
-    return options_check_needs(parsed, needs, err);
-}
-
-Status blood_refuse(const Parsed *parsed, const char *sentence, Err *err)
-{
-    for (size_t i = 0; i < parsed->n_settings; i++) {
-        const Setting *setting = &parsed->settings[i];
-        if (setting->typed && setting->option->group == GROUP_BLOOD)
-            return err_set(err, STATUS_USAGE, "--%s %s", setting->option->name, sentence);
-    }
-    return STATUS_OK;
+    return law == VISCOSITY_PRIES ? WHEN(CONSTANT_VISCOSITY) : WHEN(PRIES);
 }
 
 /* Returns the exponent of the options, else the tree's, else 3, Murray's. */
@@ -130,10 +129,6 @@ static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_
 Status blood_settle(const BloodOptions *blood, const Parsed *parsed, Tree *tree, Err *err)
 {
     const TreeMeta said = blood_said(blood);
-    const char *law = blood->terminal_flow;
-    const OptionNeed needs[] = {
-        {"gamma", law && strcmp(law, "murray") == 0, "is for --terminal-flow murray"}, {0}};
-    TRY(options_check_needs(parsed, needs, err));
-    TRY(blood_check_law(derive_viscosity_law(tree, &said), parsed, err));
+    TRY(options_refuse(parsed, blood_unmet(derive_viscosity_law(tree, &said)), err));
     return part_flow(blood, tree, parsed->operands[0], err);
 }

@@ -17,15 +17,11 @@ extern const OptionTable blood_table; /* sets a BloodOptions */
 /* Returns all specified values, as derive_field takes them. They own nothing. */
 TreeMeta blood_said(const BloodOptions *blood);
 
-/* Checks the command line against the viscosity law in force. Errors: STATUS_USAGE for an option
- * of another law. */
-MUST_CHECK Status blood_check_law(ViscosityLaw law, const Parsed *parsed, Err *err);
-/* Refuses all options of the group "blood" on the command line. Errors: STATUS_USAGE, "--NAME
- * SENTENCE". */
-MUST_CHECK Status blood_refuse(const Parsed *parsed, const char *sentence, Err *err);
+/* Returns the conditions of options about blood that do not hold for a viscosity law. */
+ConditionSet blood_unmet(ViscosityLaw law);
 /* Checks the options for the tree that is the first operand, and divides the flow among the tree's
- * terminals as terminal_flow says. Errors: STATUS_USAGE for options without effect on this tree,
- * and for a terminal_flow that is no rule and no file; as tree_part_flow_by_radius and
+ * terminals as terminal_flow says. Errors: STATUS_USAGE for options of another viscosity law than
+ * the tree's, and for a terminal_flow that is no rule and no file; as tree_part_flow_by_radius and
  * tree_read_flows. */
 MUST_CHECK Status blood_settle(const BloodOptions *blood, const Parsed *parsed, Tree *tree,
                                Err *err);

@@ -14,12 +14,14 @@ static const Option rows[] = {
      SETS(TEXT, TreeConversion, values),
      .group = GROUP_FILES,
      .argument = "FILE[:COLUMN]",
+     .when = WHEN(TREE),
      .help = "values of the tree's segments by id, from a CSV or a folder of svOneDSolver"},
     {.name = "fields",
      SETS(TEXT, TreeConversion, fields),
      .group = GROUP_FILES,
      .argument = "all|NAME,...",
      .list = "fields",
+     .when = WHEN(TREE),
      .help = "what follows from the tree, and is to be in its file as columns"},
 };
 
@@ -114,7 +116,7 @@ static Status join_fields(const TreeConversion *conversion, const Parsed *parsed
                           Err *err)
 {
     if (!conversion->fields)
-        return blood_refuse(parsed, "needs --fields", err);
+        return STATUS_OK;
     const TreeMeta said = blood_said(&conversion->blood);
     TRY(blood_settle(&conversion->blood, parsed, tree, err));
     return strcmp(conversion->fields, "all") == 0 ? add_all(tree, &said, parsed->common.talk, err)

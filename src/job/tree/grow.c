@@ -22,6 +22,7 @@ static const Option own[] = {
     {.name = "bound",
      SETS(FLAG, GrowOptions, bound),
      .group = GROUP_OPTIMUM,
+     .needs = "json",
      .help = "--json also says how low the target of this topology can get, as certify proves"},
     {.name = "stages",
      SETS(INPUT, GrowOptions, stages),
@@ -117,17 +118,14 @@ static Status make_report(const GrowOptions *options, int threads, const GrowRep
 
 /* ---- the operation --------------------------------------------------------------------------- */
 
-static Status check(const GrowOptions *options, const Parsed *parsed, Err *err)
+static Status check(const GrowOptions *options, Err *err)
 {
     const Refining *refining = &options->refining;
-    const OptionNeed needs[] = {{"bound", options->json != NULL, "needs --json"}, {0}};
     TRY(tree_output_check(options->output, err));
     if (options->stages && refining->level != GROW_REFINE_NONE)
         return err_set(err, STATUS_USAGE,
                        "--refine: would give --stages one law; use corcast refine afterwards");
-    TRY(refining_check_growing(refining, &options->growing, err));
-    TRY(options_check_needs(parsed, needs, err));
-    return refining_check(refining, parsed, err);
+    return refining_check_growing(refining, &options->growing, err);
 }
 
 /* Refines the tree if asked, and updates the report of its growth. */
@@ -154,7 +152,7 @@ Status grow_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
     const Talk *talk = parsed->common.talk;
     GrowReport report;
     Status status = STATUS_OK;
-    TRY_GOTO(check(own_options, parsed, err));
+    TRY_GOTO(check(own_options, err));
     TRY_GOTO(growing_prepare(growing, parsed, err));
     if (own_options->stages)
         TRY_GOTO(staging_grow(own_options->stages, growing, parsed, &made->tree, &report, err));

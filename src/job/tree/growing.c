@@ -74,6 +74,7 @@ static const Option rows[] = {
     {.name = "viscosity",
      SETS_KEY(Growing, params.blood.viscosity_cp, given, VISCOSITY),
      .group = GROUP_BLOOD,
+     .when = WHEN(CONSTANT_VISCOSITY),
      .help = "of the blood"},
     {.name = "viscosity-law",
      SETS(CHOICE, Growing, params.blood.viscosity_law),
@@ -85,10 +86,12 @@ static const Option rows[] = {
      SETS_KEY(Growing, params.blood.hematocrit, given, HEMATOCRIT),
      .group = GROUP_BLOOD,
      .argument = "H",
+     .when = WHEN(PRIES),
      .help = "for pries"},
     {.name = "plasma-viscosity",
      SETS_KEY(Growing, params.blood.plasma_viscosity_cp, given, PLASMA_VISCOSITY),
      .group = GROUP_BLOOD,
+     .when = WHEN(PRIES),
      .help = "for pries"},
     {.name = "terminal-flow",
      SETS(CHOICE, Growing, params.blood.terminal_flow),
@@ -144,7 +147,13 @@ static const Option rows[] = {
      .help = "write the tree so far when no more terminals find room"},
 };
 
-const OptionTable growing_table = OPTION_TABLE(rows);
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    (void)parsed;
+    return UNLESS(((const Growing *)set)->from_path, GROWS_ON);
+}
+
+const OptionTable growing_table = {OPTION_ROWS(rows), .unmet = unmet};
 
 void growing_set_defaults(Growing *growing)
 {
@@ -182,7 +191,7 @@ static Status read_from(Growing *growing, const Parsed *parsed, bool *has_domain
 /* Notes the domain's file, and checks the options against the viscosity law, which is known now. */
 static Status check(const Growing *growing, Parsed *parsed, Err *err)
 {
-    TRY(blood_check_law(growing->params.blood.viscosity_law, parsed, err));
+    TRY(options_refuse(parsed, blood_unmet(growing->params.blood.viscosity_law), err));
     if (!growing->domain.file)
         return STATUS_OK;
     return files_read(&parsed->files, "--domain", growing->domain.file, err);
@@ -198,9 +207,7 @@ Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
     params->inlet_shares = growing->inlet_share.n;
     params->inlet_share = growing->inlet_share.at;
     bool has_domain = false;
-    if (!growing->from_path)
-        TRY(reading_refuse(parsed, "needs --from", err));
-    else
+    if (growing->from_path)
         TRY(read_from(growing, parsed, &has_domain, err));
     if (!has_domain)
         TRY(tree_domain_parse(growing->domain_spec ? growing->domain_spec : plain_domain,

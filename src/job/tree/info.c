@@ -21,6 +21,7 @@ static const Option own[] = {
     {.name = "bound",
      SETS(FLAG, InfoOptions, bound),
      .group = GROUP_OPTIMUM,
+     .needs = "json",
      .help = "with --json, how low the target of this topology can get, as certify proves"},
     {.name = "morphometry",
      SETS(LOOKUP, InfoOptions, morphometry),
@@ -63,9 +64,7 @@ static Status measure(const InfoOptions *options, InfoReport *report, Err *err)
 Status info_make(void *options, Parsed *parsed, InfoReport *report, Err *err)
 {
     const InfoOptions *own_options = options;
-    const OptionNeed needs[] = {{"bound", own_options->json, "needs --json"}, {0}};
     *report = (InfoReport){.name = parsed->operands[0]};
-    TRY(options_check_needs(parsed, needs, err));
     TRY(reading_tree(parsed, report->name, &report->tree, &report->reading, err));
     TRY(blood_settle(&own_options->blood, parsed, &report->tree, err));
     return measure(own_options, report, err);

@@ -117,7 +117,6 @@ Status refine_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
     RefineReport report;
     Status status = STATUS_OK;
     TRY_GOTO(tree_output_check(own_options->output, err));
-    TRY_GOTO(refining_check(refining, parsed, err));
     TRY_GOTO(read_inputs(own_options, parsed, &made->tree, &domain, &has_domain, err));
     TRY_GOTO(
         refining_apply(refining, parsed, has_domain ? &domain : NULL, &made->tree, &report, err));

@@ -23,24 +23,17 @@ static const Option rows[] = {
      FROM_TO(0, 1e6),
      .group = GROUP_OPTIMUM,
      .unit = "s",
+     .needs = "refine",
      .help = "at most this long, and results then depend on the machine; 0: as the moves allow"},
     {.name = "refine-moves",
      SETS(COUNT, Refining, moves),
      FROM_TO(0, 1e12),
      .group = GROUP_OPTIMUM,
+     .needs = "refine",
      .help = "moves tried at most; 0: enough for the tree"},
 };
 
 const OptionTable refining_table = OPTION_TABLE(rows);
-
-Status refining_check(const Refining *refining, const Parsed *parsed, Err *err)
-{
-    bool refines = refining->level != GROW_REFINE_NONE;
-    const OptionNeed needs[] = {{"refine-seconds", refines, "needs --refine"},
-                                {"refine-moves", refines, "needs --refine"},
-                                {0}};
-    return options_check_needs(parsed, needs, err);
-}
 
 Status refining_check_growing(const Refining *refining, const Growing *growing, Err *err)
 {

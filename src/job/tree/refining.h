@@ -15,9 +15,6 @@ typedef struct Refining {
 
 extern const OptionTable refining_table; /* sets a Refining */
 
-/* Checks the options on limits. Errors: STATUS_USAGE for a limit without a level. */
-MUST_CHECK Status refining_check(const Refining *refining, const Parsed *parsed, Err *err);
-
 /* Checks that the tree of a growth can be refined. Errors: STATUS_USAGE if growth continues a tree,
  * whose nodes refinement would move. */
 MUST_CHECK Status refining_check_growing(const Refining *refining, const Growing *growing,

@@ -91,16 +91,7 @@ static Status check_pair(const CompareOptions *options, PlaneKind plane, const P
                          Err *err)
 {
     const bool color = plane == PLANE_COLOR;
-    const OptionNeed needs[] = {{"depth-mm", plane == PLANE_DEPTH, "is for two depth planes"},
-                                {"levels", color, "is for two pictures"},
-                                {"background", color, "is for two pictures"},
-                                {"pixelmatch", color, "is for two pictures"},
-                                {"bits", color, "is for two pictures"},
-                                {"layer", plane != PLANE_ID, "is for other planes than ids"},
-                                {"ids-a", plane != PLANE_ID, "is for other planes than ids"},
-                                {"ids-b", plane != PLANE_ID, "is for other planes than ids"},
-                                {0}};
-    TRY(options_check_needs(parsed, needs, err));
+    TRY(options_refuse(parsed, compare_unmet(plane), err));
     if (!options->ids_a != !options->ids_b)
         return err_set(err, STATUS_USAGE, "--ids-a and --ids-b go together; one is missing");
     const bool has_ids = options->ids_a || (options->given[0].ids && options->given[1].ids);
@@ -261,7 +252,6 @@ Status compare_make(CompareOptions *options, Parsed *parsed, Comparison *compari
 {
     Comparison made = {0};
     const double start_s = clock_seconds();
-    TRY(compare_check_folders(options, parsed, err));
     TRY(check_operands(options, parsed, err));
     Status status = compare_any(options, parsed, &made, err);
     made.seconds = clock_seconds() - start_s;

@@ -16,23 +16,29 @@ static const Option own[] = {
     {.name = "kind",
      SETS(CHOICE, CompareOptions, kind),
      .choices = kinds,
+     .when = WHEN(TWO_FILES),
      .help = "what the files hold; auto: by their names"},
     {.name = "noise",
      SETS(TEXT, CompareOptions, noise),
      .group = GROUP_JUDGE,
      .argument = "R1,R2,...",
+     .when = WHEN(TWO_FILES),
      .help = "test whether two noisy pictures have the same mean; the variance of each pixel is "
              "measured from these other renderings, at least two"},
     {.name = "variance",
      SETS(INPUT, CompareOptions, variance),
      .group = GROUP_JUDGE,
      .argument = "V.exr",
+     .when = WHEN(TWO_FILES),
+     .excludes = "noise",
+     .clash = " both give the variance",
      .help = "test as with --noise; the variance of each pixel of one rendering is read from this "
              "file of floats"},
     {.name = "alarms",
      SETS(NUMBER, CompareOptions, alarms),
      FROM_TO(1e-9, 0.5),
      .group = GROUP_JUDGE,
+     .needs = "noise variance",
      .help = "rate of false alarms of --noise and --variance"},
     {.name = "reference",
      SETS(TEXT, CompareOptions, reference),
@@ -41,66 +47,95 @@ static const Option own[] = {
     {.name = "accept",
      SETS(TEXT, CompareOptions, accept),
      .argument = "CASE",
+     .needs = "reference",
      .help = "make the picture of this name in the folder A its reference"},
     {.name = "reason",
      SETS(TEXT, CompareOptions, reason),
      .argument = "TEXT",
+     .needs = "reference",
      .help = "why it is accepted; kept in DIR/accepted.tsv"},
     {.name = "layer",
      SETS(TEXT, CompareOptions, layer),
      .argument = "NAME",
+     .when = WHEN(TWO_FILES) | WHEN(NO_IDS),
      .help = "of OpenEXR files the part or the layer of this name"},
     {.name = "bits",
      SETS(CHOICE, CompareOptions, bits),
      .choices = bit_counts,
+     .when = WHEN(TWO_FILES) | WHEN(COLOR_PICTURES),
      .help = "compare pictures as sRGB of 8 or 16 bits, whatever they hold"},
     {.name = "background",
      SETS(COLOR, CompareOptions, background),
+     .when = WHEN(COLOR_PICTURES),
      .help = "what transparent pictures are laid on"},
     {.name = "depth-mm",
      SETS(NUMBER, CompareOptions, depth_mm),
      FROM_TO(0, 1e7),
      .group = GROUP_JUDGE,
      .unit = "mm",
+     .when = WHEN(DEPTHS),
      .help = "a depth may be off"},
     {.name = "metrics",
      SETS(SWITCH, CompareOptions, metrics),
      GIVEN(CompareOptions, has_metrics),
      .group = GROUP_JUDGE,
      .otherwise = "on with --json",
+     .when = WHEN(TWO_FILES),
      .help = "FLIP, SSIM, CIEDE2000 and all that was measured"},
     {.name = "ids-a",
      SETS(INPUT, CompareOptions, ids_a),
+     .when = WHEN(TWO_PICTURES) | WHEN(NO_IDS),
      .help = "id plane of A; tells silhouettes from surfaces"},
-    {.name = "ids-b", SETS(INPUT, CompareOptions, ids_b), .help = "id plane of B"},
+    {.name = "ids-b",
+     SETS(INPUT, CompareOptions, ids_b),
+     .when = WHEN(TWO_PICTURES) | WHEN(NO_IDS),
+     .help = "id plane of B"},
     {.name = "output",
      SETS(OUTPUT, CompareOptions, heat),
      .argument = "H.png",
+     .when = WHEN(TWO_PICTURES),
      .help = "heat map of the difference of two pictures"},
     {.name = "difference",
      SETS(OUTPUT, CompareOptions, difference),
      .argument = "D.png",
+     .when = WHEN(TWO_PICTURES),
      .help = "signed difference, 128 + 8 (B - A)"},
     {.name = "flicker",
      SETS(OUTPUT, CompareOptions, flicker),
      .argument = "F.png",
+     .when = WHEN(TWO_PICTURES),
      .help = "animated PNG that shows A and B in turn"},
     {.name = "ledger",
      SETS(OUTPUT, CompareOptions, ledger),
      .argument = "L.csv",
+     .when = WHEN(TWO_PICTURES),
      .help = "the account of every segment"},
     {.name = "html",
      SETS(OUTPUT, CompareOptions, page),
      .is_told = true,
      .argument = "PAGE.html",
+     .when = WHEN(TWO_PICTURES),
      .help = "one page about two pictures: swipe, blink, zoom, differences, numbers"},
     {.name = "report",
      SETS(FOLDER, CompareOptions, report),
      .is_told = true,
+     .when = WHEN(TWO_PICTURES),
      .help = "that page, JSON, JUnit and the heat map, for `report` to merge with others"},
 };
 
-const OptionTable compare_options = OPTION_TABLE(own);
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    (void)parsed;
+    return ((const CompareOptions *)set)->reference ? WHEN(TWO_PICTURES) | WHEN(TWO_FILES) : 0;
+}
+
+const OptionTable compare_options = {OPTION_ROWS(own), .unmet = unmet};
+
+ConditionSet compare_unmet(PlaneKind kind)
+{
+    return UNLESS(kind == PLANE_DEPTH, DEPTHS) | UNLESS(kind == PLANE_COLOR, COLOR_PICTURES) |
+           UNLESS(kind != PLANE_ID, NO_IDS);
+}
 
 static const Option of_judge[] = {
     {.name = "tier",
@@ -108,17 +143,24 @@ static const Option of_judge[] = {
      GIVEN(JudgeOptions, has_tier),
      .choices = tiers,
      .group = GROUP_JUDGE,
+     .excludes = "verdict",
+     .clash = " are two rules; one can be asked",
      .help = "what is still agreement"},
     {.name = "tolerance",
      SETS(INPUT, JudgeOptions, tolerance),
      .group = GROUP_JUDGE,
      .argument = "FILE.ini",
+     .excludes = "verdict",
+     .clash = " are two rules; one can be asked",
      .help = "limits of one's own, the others unjudged unless --tier is given"},
     {.name = "levels",
      SETS(NUMBER, JudgeOptions, levels),
      GIVEN(JudgeOptions, has_levels),
      FROM_TO(0, 255),
      .group = GROUP_JUDGE,
+     .when = WHEN(COLOR_PICTURES),
+     .excludes = "verdict",
+     .clash = " are two rules; one can be asked",
      .help = "8-bit levels a pixel may be off"},
     {.name = "ppm",
      SETS(NUMBER, JudgeOptions, ppm),
@@ -126,6 +168,8 @@ static const Option of_judge[] = {
      FROM_TO(0, 1e6),
      .group = GROUP_JUDGE,
      .otherwise = "2 in tier A",
+     .excludes = "verdict",
+     .clash = " are two rules; one can be asked",
      .help = "pixels in a million that may be off by more"},
     {.name = "pixelmatch",
      SETS(NUMBER, JudgeOptions, pixelmatch),
@@ -134,6 +178,9 @@ static const Option of_judge[] = {
      .group = GROUP_JUDGE,
      .argument = "T",
      .otherwise = "",
+     .when = WHEN(COLOR_PICTURES),
+     .excludes = "verdict",
+     .clash = " are two rules; one can be asked",
      .help = "count pixels as pixelmatch 7.2.0 does at this threshold; 0.1 is its own"},
 };
 
@@ -177,30 +224,4 @@ Status compare_tolerance(const JudgeOptions *options, double depth_mm, Tolerance
     if (options->has_levels || options->has_ppm || depth_mm > 0 || options->has_pixelmatch)
         tolerance->tier = "given";
     return STATUS_OK;
-}
-
-Status compare_check_folders(const CompareOptions *options, const Parsed *parsed, Err *err)
-{
-    const bool pair = options->reference == NULL;
-    const OptionNeed needs[] = {
-        {"html", pair, "is for two pictures, not for --reference"},
-        {"report", pair, "is for two pictures, not for --reference"},
-        {"output", pair, "is for two pictures, not for --reference"},
-        {"difference", pair, "is for two pictures, not for --reference"},
-        {"flicker", pair, "is for two pictures, not for --reference"},
-        {"ledger", pair, "is for two pictures, not for --reference"},
-        {"ids-a", pair, "is for two pictures, not for --reference"},
-        {"ids-b", pair, "is for two pictures, not for --reference"},
-        {"kind", pair, "is for two files, not for --reference"},
-        {"layer", pair, "is for two files, not for --reference"},
-        {"bits", pair, "is for two files, not for --reference"},
-        {"metrics", pair, "is for two files, not for --reference"},
-        {"noise", pair, "is for two files, not for --reference"},
-        {"variance", pair, "is for two files, not for --reference"},
-        {"variance", !options->noise, "and --noise both give the variance"},
-        {"alarms", options->noise || options->variance, "needs --noise or --variance"},
-        {"accept", !pair, "needs --reference"},
-        {"reason", !pair, "needs --reference"},
-        {0}};
-    return options_check_needs(parsed, needs, err);
 }

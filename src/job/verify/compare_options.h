@@ -49,6 +49,8 @@ typedef struct CompareOptions {
 
 extern const OptionTable compare_options; /* sets a CompareOptions, except `judge` */
 void compare_set_defaults(void *options);
+/* Returns the conditions of options that do not hold for two files of this kind. */
+ConditionSet compare_unmet(PlaneKind kind);
 
 /* Finds the tolerance: the tier, changed by the tolerance file, changed by single limits.
  *
@@ -57,9 +59,5 @@ void compare_set_defaults(void *options);
  * Errors     STATUS_INPUT if the file is bad, STATUS_MEMORY. */
 MUST_CHECK Status compare_tolerance(const JudgeOptions *options, double depth_mm,
                                     Tolerance *tolerance, char **name, Err *err);
-
-/* Checks the options that only folders, or only two files, have. Errors: STATUS_USAGE. */
-MUST_CHECK Status compare_check_folders(const CompareOptions *options, const Parsed *parsed,
-                                        Err *err);
 
 #endif

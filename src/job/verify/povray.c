@@ -39,21 +39,24 @@ static const Option own[] = {
      .group = GROUP_CAMERA,
      .otherwise = "what the scene says",
      .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
-    {DPI_OF_SIZE(PovrayOptions, size), .group = GROUP_CAMERA,
+    {DPI_OF_SIZE(PovrayOptions, size), .group = GROUP_CAMERA, .when = WHEN(ON_PAPER),
      .help = "pixels an inch of a size on paper"},
     {.name = "antialias",
      SETS(WHOLE, PovrayOptions, antialias),
      .range = &antialias_range,
      .group = GROUP_LIGHT,
+     .when = WHEN(COLOR_PLANE),
      .help = "N x N samples a pixel"},
     {.name = "bits",
      SETS(WHOLE, PovrayOptions, bits),
      .range = &bits_range,
      .argument = "8|16",
+     .when = WHEN(COLOR_PLANE),
      .help = "of the colours: 8, sRGB, or 16, linear"},
     {.name = "alpha",
      SETS(FLAG, PovrayOptions, alpha),
      .group = GROUP_LIGHT,
+     .when = WHEN(COLOR_PLANE),
      .help = "transparent where the scene's background is: of a scene of --background none"},
     {.name = "plane",
      SETS(CHOICE, PovrayOptions, plane),
@@ -61,7 +64,15 @@ static const Option own[] = {
      .help = "what a scene of ours shows"},
 };
 
-static const OptionTable own_table = OPTION_TABLE(own);
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    (void)parsed;
+    const PovrayOptions *options = set;
+    return UNLESS(options->plane == POVRAY_COLOR, COLOR_PLANE) |
+           UNLESS(size_is_on_paper(&options->size), ON_PAPER);
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
 
 static void set_defaults(void *options)
 {
@@ -71,16 +82,9 @@ static void set_defaults(void *options)
 
 static Status check(PovrayOptions *options, const Parsed *parsed, Err *err)
 {
-    bool color = options->plane == POVRAY_COLOR;
-    const OptionNeed needs[] = {{"antialias", color, "is for --plane color"},
-                                {"bits", color, "is for --plane color"},
-                                {"alpha", color, "is for --plane color"},
-                                {"dpi", size_is_on_paper(&options->size), NEEDS_PAPER},
-                                {0}};
     if (strcmp(file_extension(options->output), "png") != 0)
         return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .png", options->output);
     TRY(bits_check(options->bits, err));
-    TRY(options_check_needs(parsed, needs, err));
     TRY(file_check_regular(parsed->operands[0], err));
     return options->has_size ? STATUS_OK : size_of_scene(parsed->operands[0], &options->size, err);
 }

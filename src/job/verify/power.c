@@ -235,29 +235,24 @@ done:
 }
 
 /* Checks that the commands have their marks. */
-static Status check(const PowerOptions *options, const Parsed *parsed, Err *err)
+static Status check(const PowerOptions *options, Err *err)
 {
-    const bool own_rule = options->verdict == NULL;
-    static const char instead[] = "and --verdict are two rules; one can be asked";
-    const OptionNeed needs[] = {{"tier", own_rule, instead},       {"tolerance", own_rule, instead},
-                                {"levels", own_rule, instead},     {"ppm", own_rule, instead},
-                                {"pixelmatch", own_rule, instead}, {0}};
     if (!options->render || !strstr(options->render, "{}"))
         return err_set(err, STATUS_USAGE,
                        "--render is a command with {} for the file that it draws into, as "
                        "--render 'povray scene.pov +O{} -D'");
-    if (!own_rule && (!strstr(options->verdict, "{a}") || !strstr(options->verdict, "{b}")))
+    if (options->verdict && (!strstr(options->verdict, "{a}") || !strstr(options->verdict, "{b}")))
         return err_set(err, STATUS_USAGE,
                        "--verdict is a command with {a} and {b} for the two pictures, as "
                        "--verdict 'idiff -fail 0.004 {a} {b}'");
-    return options_check_needs(parsed, needs, err);
+    return STATUS_OK;
 }
 
 Status power_run(const PowerOptions *options, Parsed *parsed, Power *power, Err *err)
 {
     PowerFiles place = {0};
     Status status;
-    TRY(check(options, parsed, err));
+    TRY(check(options, err));
     TRY_GOTO(open_place(&place, options->extension, err));
     status = measure(options, &place, parsed, power, err);
 done:

@@ -56,13 +56,12 @@ static void set_defaults(void *options)
     verify_options->povray.patience_s = verify_options->tachyon.patience_s = PROGRAM_PATIENCE_S;
 }
 
-static Status check(const VerifyOptions *options, const Parsed *parsed, Err *err)
+static Status check(const VerifyOptions *options, Err *err)
 {
     const PictureOptions *picture = &options->picture;
     if (strcmp(options->folder, "-") == 0)
         return err_set(err, STATUS_USAGE, "-o: a report is a folder, not standard output");
     TRY(bits_check(options->bits, err));
-    TRY(picture_check_needs(picture, parsed, err));
     TRY(picture_check_povray(picture, err));
     if (options->witness == WITNESS_TACHYON)
         TRY(emit_check_model(emitter_find("tachyon", false), (SceneModel)picture->model, err));
@@ -141,7 +140,7 @@ Status verify_run(VerifyOptions *options, Parsed *parsed, Verification *result, 
     VerifyFolder folder = {options->folder, -1};
     char *command = NULL;
     Status status;
-    TRY_GOTO(check(options, parsed, err));
+    TRY_GOTO(check(options, err));
     TRY_GOTO(command_line_text(parsed, &command, err));
     TRY_GOTO(verification_add_command(&v, command, err));
     TRY_GOTO(verify(&v, &folder, parsed, err));

@@ -1,0 +1,142 @@
+/* A member stands in the JSON of an option only where the row has it, so that a program that reads
+ * the schema tests for the member alone. */
+#include "options/schema.h"
+
+#include "options/output.h"
+
+#include <string.h>
+
+/* Adds a text member, unless its value is NULL. */
+static json_t *with_text(json_t *object, const char *key, const char *chars)
+{
+    return chars ? json_with(object, key, json_text(chars)) : object;
+}
+
+/* Adds the characters of `text` as a member, unless there are none, and releases `text`. */
+static json_t *with_put(json_t *object, const char *key, Text *text)
+{
+    if (text->length || !text_chars(text))
+        object = json_with(object, key, json_text(text_chars(text)));
+    text_release(text);
+    return object;
+}
+
+/* Adds the ends of a range as JSON Schema calls them. */
+static json_t *with_range(json_t *object, const Range *range)
+{
+    if (!range)
+        return object;
+    if (range->low == RANGE_ABOVE_0)
+        object = json_with(object, "exclusiveMinimum", json_integer(0));
+    else if (range->low > -RANGE_NO_END)
+        object = json_with(object, "minimum", json_number(range->low));
+    return range->high < RANGE_NO_END ? json_with(object, "maximum", json_number(range->high))
+                                      : object;
+}
+
+static json_t *with_choices(json_t *object, const char *const *choices)
+{
+    json_t *array = choices ? json_array() : NULL;
+    for (int i = 0; choices && choices[i]; i++)
+        array = json_with_item(array, json_text(choices[i]));
+    return choices ? json_with(object, "choices", array) : object;
+}
+
+/* Adds names that are parted by blanks as an array. */
+static json_t *with_names(json_t *object, const char *key, const char *names)
+{
+    if (!names)
+        return object;
+    json_t *array = json_array();
+    while (*names) {
+        size_t length = strcspn(names, " ");
+        array = json_with_item(array, json_stringn(names, length));
+        names += length + strspn(names + length, " ");
+    }
+    return json_with(object, key, array);
+}
+
+/* Adds the sentences of the conditions that the row names. */
+static json_t *with_conditions(json_t *object, ConditionSet when)
+{
+    json_t *array = when ? json_array() : NULL;
+    for (int i = 0; i < CONDITIONS; i++) {
+        Text sentence = TEXT_INIT;
+        if (!(when >> i & 1))
+            continue;
+        condition_put((Condition)i, &sentence);
+        array = json_with_item(array, json_text(text_chars(&sentence)));
+        text_release(&sentence);
+    }
+    return when ? json_with(object, "conditions", array) : object;
+}
+
+/* What holds without the option: its value, or words. */
+static json_t *with_default(json_t *object, const Setting *plain)
+{
+    const Option *option = plain->option;
+    Text value = TEXT_INIT;
+    if (option->otherwise)
+        return with_text(object, "otherwise", *option->otherwise ? option->otherwise : NULL);
+    if (setting_count(plain) > 0)
+        setting_put(plain, 0, &value);
+    return with_put(object, "default", &value);
+}
+
+static json_t *option_schema(const Parsed *plain, const Setting *setting)
+{
+    const Option *option = setting->option;
+    Text argument = TEXT_INIT;
+    option_put_argument(option, &argument);
+    const JsonMember members[] = {
+        {"name", json_text(option->name)},
+        {"help", json_text(option->help)},
+        {"group", json_text(option_group_names[option->group])},
+        {"kind", json_text(option_kind_name(option->kind))},
+        {"common", json_boolean(setting_is_common(plain, setting))},
+        {"repeats", json_boolean(option->kind == OPTION_VECTORS)},
+    };
+    json_t *json = json_with_members(json_object(), members, sizeof members / sizeof *members);
+    json = with_put(json, "argument", &argument);
+    json = with_text(json, "unit", option_unit(option));
+    json = with_range(json, option_range(option));
+    json = with_choices(json, option->choices);
+    json = with_text(json, "list", option->list);
+    json = with_default(json, setting);
+    json = with_names(json, "needs", option->needs);
+    json = with_names(json, "excludes", option->excludes);
+    return with_conditions(json, option->when);
+}
+
+json_t *command_schema(const Parsed *plain)
+{
+    const Command *command = plain->command;
+    json_t *options = json_array();
+    for (size_t i = 0; i < plain->n_settings; i++)
+        options = json_with_item(options, option_schema(plain, &plain->settings[i]));
+    const JsonMember members[] = {
+        {"name", json_text(command->name)},
+        {"summary", json_text(command->summary)},
+        {"operands", json_text(command->operands)},
+        {"min_operands", json_integer(command->min_operands)},
+        {"max_operands", json_integer(command->max_operands)},
+        {"needs_output", json_boolean(command->needs_output)},
+        {"options", options},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+Status schema_add(const Command *command, json_t **commands, Err *err)
+{
+    Parsed plain;
+    TRY(parsed_init(&plain, command, err));
+    *commands = json_with_item(*commands, command_schema(&plain));
+    parsed_release(&plain);
+    return STATUS_OK;
+}
+
+json_t *schema_document(json_t *commands)
+{
+    const JsonMember members[] = {{"generator", json_text(GENERATOR)}, {"commands", commands}};
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
