@@ -400,16 +400,20 @@ CORCAST_API void corcast_scene_free(corcast_scene *scene);
  * Stability: stable. */
 CORCAST_API int corcast_image_read(const char *path, corcast_image **out, corcast_error *error);
 
-/* Makes a picture of pixels in memory, which are copied.
- *
- * channels 1, 3 or 4; 4 are red, green, blue and alpha, of CORCAST_U8 and CORCAST_U16 alone.
- * type     CORCAST_U8, CORCAST_U16 or CORCAST_F32.
- * pixels   rows from the top down, pixels from left to right, channels interleaved, no padding.
- * size     of `pixels` in bytes: width * height * channels * bytes per number.
- * Errors   CORCAST_WRONG for other channels, types or sizes, and for sides outside [1, 1048576].
+/* Pixels in memory: rows from the top down, pixels from left to right, channels interleaved, no
+ * padding. */
+typedef struct corcast_pixels {
+    int width, height; /* each in [1, 1048576] */
+    int channels;      /* 1, 3 or 4; 4 are red, green, blue and alpha, of integers alone */
+    corcast_type type; /* CORCAST_U8, CORCAST_U16 or CORCAST_F32 */
+    const void *data;  /* aligned for the type */
+    size_t size;       /* of `data` in bytes: width * height * channels * bytes per number */
+} corcast_pixels;
+
+/* Makes a picture of pixels, which are copied. Errors: CORCAST_WRONG for other channels, types or
+ * sizes than corcast_pixels states.
  * Stability: stable. */
-CORCAST_API int corcast_image_from_pixels(int width, int height, int channels, corcast_type type,
-                                          const void *pixels, size_t size, corcast_image **out,
+CORCAST_API int corcast_image_from_pixels(const corcast_pixels *pixels, corcast_image **out,
                                           corcast_error *error);
 
 /* Finds the width, height and number of channels of a plane. All three are 0 if the image does not
@@ -419,7 +423,7 @@ CORCAST_API int corcast_image_shape(const corcast_image *image, corcast_plane pl
                                     int *height, int *channels, corcast_error *error);
 
 /* Copies the pixels of a plane to a buffer of the caller's, in the layout that
- * corcast_image_from_pixels describes. Colours are converted to `type`.
+ * corcast_pixels describes. Colours are converted to `type`.
  *
  * type     CORCAST_U8, CORCAST_U16 or CORCAST_F32 for colours, CORCAST_F32 for depth and normals,
  *          CORCAST_U32 for ids.
@@ -489,8 +493,8 @@ CORCAST_API void corcast_mesh_free(corcast_mesh *mesh);
 /* Writes what a command makes of a tree to files, with the bytes of the command line.
  *
  * options  of "export" (meshes, curves, volumes, pages), "scene" (POV-Ray, OpenSCAD, Tachyon),
- *          "render" (pictures, planes, animations, pages) or "convert" (trees). The option
- *          "output" is not used: `path` is the output. Its extension decides the format. Some
+ *          "render" (pictures, planes, animations, pages), "diagram" or "convert" (trees). The
+ * option "output" is not used: `path` is the output. Its extension decides the format. Some
  *          commands write further files, whose names begin like `path`.
  * Errors   CORCAST_WRONG if a file would be written over one that is read.
  * Stability: stable. */

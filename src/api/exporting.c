@@ -7,6 +7,7 @@
 #include "job/figure/figure.h"
 #include "job/job.h"
 #include "job/picture/convert.h"
+#include "job/picture/diagram.h"
 #include "job/picture/render.h"
 #include <dirent.h>
 #include <errno.h>
@@ -18,6 +19,17 @@
 
 typedef Status RunJob(void *options, Parsed *parsed, Err *err);
 
+static Status run_diagram(void *options, Parsed *parsed, Err *err)
+{
+    MadeDiagram made = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(diagram_make(options, parsed, &made, err));
+    status = diagram_write(options, parsed, &made, err);
+done:
+    madediagram_release(&made);
+    return status;
+}
+
 /* The operations that write files, by command. */
 static const struct {
     const Command *command;
@@ -25,9 +37,10 @@ static const struct {
 } exporters[] = {{&command_export, export_run},
                  {&command_scene, scene_run},
                  {&command_render, render_run},
-                 {&command_convert, convert_run}};
+                 {&command_convert, convert_run},
+                 {&command_diagram, run_diagram}};
 
-static const char of_export[] = "export scene render convert";
+static const char of_export[] = "export scene render convert diagram";
 
 static RunJob *find_exporter(const Command *command)
 {
@@ -118,13 +131,17 @@ static Status pass_folder(const Sink *sink, const char *folder, Err *err)
 {
     struct dirent **entries = NULL;
     const int n = scandir(folder, &entries, NULL, alphasort);
-    Status status = n < 0 ? mem_out_of("to list", folder, err) : STATUS_OK;
+    Status status = STATUS_OK;
+    if (n < 0)
+        return mem_out_of("to list", folder, err);
     for (int i = 0; i < n; i++) {
         const char *name = entries[i]->d_name;
-        if (status == STATUS_OK && strcmp(name, ".") != 0 && strcmp(name, "..") != 0)
-            status = pass_file(sink, folder, name, err);
-        free(entries[i]);
+        if (strcmp(name, ".") != 0 && strcmp(name, "..") != 0)
+            TRY_GOTO(pass_file(sink, folder, name, err));
     }
+done:
+    for (int i = 0; i < n; i++)
+        free(entries[i]);
     free(entries);
     return status;
 }

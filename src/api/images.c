@@ -14,11 +14,12 @@ static Status read_image(const char *path, corcast_image **out, Err *err)
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
     Status status = image_read(&made->color, path, ALPHA_KEPT, NULL, err);
-    if (status == STATUS_OK)
-        *out = made;
-    else
+    if (status != STATUS_OK) {
         corcast_image_free(made);
-    return status;
+        return status;
+    }
+    *out = made;
+    return STATUS_OK;
 }
 
 int corcast_image_read(const char *path, corcast_image **out, corcast_error *error)
@@ -35,18 +36,11 @@ static size_t bytes_of(corcast_type type)
     return (unsigned)type < sizeof bytes / sizeof *bytes ? bytes[type] : 0;
 }
 
-/* The caller's pixels. */
-typedef struct Pixels {
-    int width, height, channels;
-    corcast_type type;
-    const void *at;
-    size_t size; /* bytes */
-} Pixels;
-
-static Status check_pixels(const Pixels *pixels, Err *err)
+static Status check_pixels(const corcast_pixels *pixels, Err *err)
 {
+    TRY(argument_check(pixels, "pixels", err));
     const int channels = pixels->channels;
-    TRY(argument_check(pixels->at, "pixels", err));
+    TRY(argument_check(pixels->data, "pixels->data", err));
     if (pixels->type != CORCAST_U8 && pixels->type != CORCAST_U16 && pixels->type != CORCAST_F32)
         return err_set(err, STATUS_USAGE,
                        "type is %d; it must be CORCAST_U8, CORCAST_U16 or CORCAST_F32",
@@ -66,40 +60,39 @@ static Status check_pixels(const Pixels *pixels, Err *err)
     return STATUS_OK;
 }
 
-static Status fill_image(const Pixels *pixels, Image *image, Err *err)
+static Status fill_image(const corcast_pixels *pixels, Image *image, Err *err)
 {
     if (pixels->type == CORCAST_F32) {
         TRY(plane_init_unset(&image->plane, pixels->width, pixels->height, pixels->channels, err));
-        memcpy(image->plane.values, pixels->at, pixels->size);
+        memcpy(image->plane.values, pixels->data, pixels->size);
         return STATUS_OK;
     }
     TRY(picture_init(&image->picture, pixels->width, pixels->height, pixels->channels,
                      pixels->type == CORCAST_U8 ? 8 : 16, err));
-    memcpy(picture_codes(&image->picture), pixels->at, pixels->size);
+    memcpy(picture_codes(&image->picture), pixels->data, pixels->size);
     return STATUS_OK;
 }
 
-static Status from_pixels(const Pixels *pixels, corcast_image **out, Err *err)
+static Status from_pixels(const corcast_pixels *pixels, corcast_image **out, Err *err)
 {
     corcast_image *made = NULL;
     TRY(argument_check(out, "out", err));
     TRY(check_pixels(pixels, err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
     Status status = fill_image(pixels, &made->color, err);
-    if (status == STATUS_OK)
-        *out = made;
-    else
+    if (status != STATUS_OK) {
         corcast_image_free(made);
-    return status;
+        return status;
+    }
+    *out = made;
+    return STATUS_OK;
 }
 
-int corcast_image_from_pixels(int width, int height, int channels, corcast_type type,
-                              const void *pixels, size_t size, corcast_image **out,
+int corcast_image_from_pixels(const corcast_pixels *pixels, corcast_image **out,
                               corcast_error *error)
 {
     Call call = call_begin(error);
-    const Pixels given = {width, height, channels, type, pixels, size};
-    return call_end(&call, from_pixels(&given, out, &call.err));
+    return call_end(&call, from_pixels(pixels, out, &call.err));
 }
 
 /* ---- reading back ---------------------------------------------------------------------------- */
@@ -145,11 +138,13 @@ int corcast_image_shape(const corcast_image *image, corcast_plane plane, int *wi
     Call call = call_begin(error);
     PlaneShape shape;
     Status status = get_shape(image, plane, &shape, &call.err);
-    if (status == STATUS_OK && width)
+    if (status != STATUS_OK)
+        return call_end(&call, status);
+    if (width)
         *width = shape.width;
-    if (status == STATUS_OK && height)
+    if (height)
         *height = shape.height;
-    if (status == STATUS_OK && channels)
+    if (channels)
         *channels = shape.channels;
     return call_end(&call, status);
 }

@@ -87,6 +87,15 @@ int corcast_compare(const corcast_image *a, const corcast_image *b, const corcas
 
 /* ---- verify ---------------------------------------------------------------------------------- */
 
+static Status report_verification(const Verification *result, corcast_report **report, Err *err)
+{
+    if (report)
+        TRY(report_new(verify_json(result), report, err));
+    if (result->agrees)
+        return STATUS_OK;
+    return err_set(err, STATUS_DIFFERS, "%s", result->found.planes[PLANE_COLOR].cause);
+}
+
 static Status verify(const RequestForm *form, corcast_report **report, const Call *call, Err *err)
 {
     Request request = {0};
@@ -96,10 +105,7 @@ static Status verify(const RequestForm *form, corcast_report **report, const Cal
     TRY(path_check(form->output, "folder", err));
     TRY_GOTO(request_open(&request, form, call, err));
     TRY_GOTO(verify_run(request.parsed.options, &request.parsed, &result, err));
-    if (report)
-        status = report_new(verify_json(&result), report, err);
-    if (status == STATUS_OK && !result.agrees)
-        status = err_set(err, STATUS_DIFFERS, "%s", result.found.planes[PLANE_COLOR].cause);
+    status = report_verification(&result, report, err);
     verification_release(&result);
 done:
     return request_close(&request, status, err);

@@ -64,11 +64,12 @@ static Status new_mesh(const corcast_tree *tree, const corcast_options *options,
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_MESH, sizeof *made, err));
     Status status = make_mesh(&form, made, call, err);
-    if (status == STATUS_OK)
-        *out = made;
-    else
+    if (status != STATUS_OK) {
         corcast_mesh_free(made);
-    return status;
+        return status;
+    }
+    *out = made;
+    return STATUS_OK;
 }
 
 int corcast_mesh_new(const corcast_tree *tree, const corcast_options *options, corcast_mesh **out,

@@ -24,11 +24,12 @@ Status report_new(json_t *json, corcast_report **out, Err *err)
     text_json(&made->text, json_incref(json), 2);
     text_puts(&made->text, "\n");
     status = text_check(&made->text, err);
-    if (status == STATUS_OK)
-        *out = made;
-    else
+    if (status != STATUS_OK) {
         corcast_report_free(made);
-    return status;
+        return status;
+    }
+    *out = made;
+    return STATUS_OK;
 }
 
 const char *corcast_report_json(const corcast_report *report)

@@ -104,8 +104,8 @@ static Status unset(corcast_options *options, const Option *option, Err *err)
     options->texts = kept;
     status = parse_again(options, err);
     options->texts = all;
-    if (status == STATUS_OK)
-        remove_texts(&options->texts, option->name, options->texts.n);
+    TRY_GOTO(status);
+    remove_texts(&options->texts, option->name, options->texts.n);
 done:
     ARRAY_RELEASE(&kept);
     return status;
@@ -190,12 +190,12 @@ int corcast_options_callbacks(corcast_options *options, corcast_progress *progre
 {
     Call call = call_begin(error);
     Status status = handle_check(options, HANDLE_OPTIONS, "options", &call.err);
-    if (status == STATUS_OK) {
-        options->progress = progress;
-        options->message = message;
-        options->user = user;
-    }
-    return call_end(&call, status);
+    if (status != STATUS_OK)
+        return call_end(&call, status);
+    options->progress = progress;
+    options->message = message;
+    options->user = user;
+    return call_end(&call, STATUS_OK);
 }
 
 void corcast_options_free(corcast_options *options)

@@ -34,8 +34,9 @@ Status tree_handle_new(Tree *tree, const char *name, corcast_tree **out, Err *er
 /* Gives a tree to the caller as a handle, or releases it. */
 static Status hand_over(Status status, Tree *tree, const char *name, corcast_tree **out, Err *err)
 {
-    if (status == STATUS_OK)
-        status = tree_handle_new(tree, name, out, err);
+    TRY_GOTO(status);
+    status = tree_handle_new(tree, name, out, err);
+done:
     tree_release(tree);
     return status;
 }
@@ -45,7 +46,7 @@ static Status hand_over(Status status, Tree *tree, const char *name, corcast_tre
 /* A file on disk, or in memory. */
 typedef struct TreeFile {
     const char *path;
-    const TreeBytes *bytes; /* NULL: on disk */
+    const MemoryFile *bytes; /* NULL: on disk */
 } TreeFile;
 
 /* Reads a tree by the options of reading of a request, as commands do. */
@@ -79,17 +80,21 @@ int corcast_tree_read(const char *path, const corcast_options *options, corcast_
     return call_end(&call, read_tree(&file, options, out, &call, &call.err));
 }
 
+static Status read_bytes(const TreeFile *file, const corcast_options *options, corcast_tree **out,
+                         const Call *call, Err *err)
+{
+    TRY(argument_check(file->bytes->bytes, "bytes", err));
+    return read_tree(file, options, out, call, err);
+}
+
 int corcast_tree_read_bytes(const void *bytes, size_t size, const char *name,
                             const corcast_options *options, corcast_tree **out,
                             corcast_error *error)
 {
     Call call = call_begin(error);
-    const TreeBytes in_memory = {.name = name, .bytes = bytes, .size = size};
+    const MemoryFile in_memory = {.name = name, .bytes = bytes, .size = size};
     const TreeFile file = {.path = name, .bytes = &in_memory};
-    Status status = argument_check(bytes, "bytes", &call.err);
-    if (status == STATUS_OK)
-        status = read_tree(&file, options, out, &call, &call.err);
-    return call_end(&call, status);
+    return call_end(&call, read_bytes(&file, options, out, &call, &call.err));
 }
 
 /* ---- arrays ---------------------------------------------------------------------------------- */
@@ -236,13 +241,15 @@ int corcast_tree_field(corcast_tree *tree, const char *name, const corcast_optio
     Call call = call_begin(error);
     TreeField field = {0};
     Status status = argument_check(values, "values", &call.err);
-    if (status == STATUS_OK)
-        status = get_field(tree, name, options, &field, &call);
-    if (status == STATUS_OK)
-        *values = field.value;
-    if (status == STATUS_OK && unit)
+    if (status != STATUS_OK)
+        return call_end(&call, status);
+    status = get_field(tree, name, options, &field, &call);
+    if (status != STATUS_OK)
+        return call_end(&call, status);
+    *values = field.value;
+    if (unit)
         *unit = field.unit;
-    return call_end(&call, status);
+    return call_end(&call, STATUS_OK);
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */

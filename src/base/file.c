@@ -311,13 +311,13 @@ done:
     return status;
 }
 
-Status file_read_memory(const void *from, size_t from_size, const char *name, const FileForm *form,
-                        char **bytes, size_t *size, Err *err)
+Status file_read_memory(const MemoryFile *file, const FileForm *form, char **bytes, size_t *size,
+                        Err *err)
 {
-    FILE *stream = fmemopen((void *)(uintptr_t)from, from_size, "r");
+    FILE *stream = fmemopen((void *)(uintptr_t)file->bytes, file->size, "r");
     if (!stream)
-        return mem_out_of("to read", name, err);
-    Status status = read_stream(stream, name, form, bytes, size, err);
+        return mem_out_of("to read", file->name, err);
+    Status status = read_stream(stream, file->name, form, bytes, size, err);
     fclose(stream);
     return status;
 }

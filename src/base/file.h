@@ -29,10 +29,16 @@ typedef struct FileForm {
  *          reading fails. STATUS_MEMORY, naming the file. */
 MUST_CHECK Status file_read(const char *path, const FileForm *form, char **bytes, size_t *size,
                             Err *err);
-/* Does the same for a file in memory, the `from_size` bytes at `from`, which are copied. `name`
- * stands for the path in error sentences. Errors: those of file_read. */
-MUST_CHECK Status file_read_memory(const void *from, size_t from_size, const char *name,
-                                   const FileForm *form, char **bytes, size_t *size, Err *err);
+/* The bytes of a file in memory. */
+typedef struct MemoryFile {
+    const char *name; /* stands for the path */
+    const void *bytes;
+    size_t size;
+} MemoryFile;
+/* Copies the bytes of a file in memory into *bytes (owned), checked and changed as file_read does
+ * with a file. Errors: those of file_read. */
+MUST_CHECK Status file_read_memory(const MemoryFile *file, const FileForm *form, char **bytes,
+                                   size_t *size, Err *err);
 /* Adds the size and the bytes of a file to `hash`. Errors: those of file_read. */
 MUST_CHECK Status file_hash(const char *path, Hash *hash, Err *err);
 /* Converts bytes in memory to a text, in place, like file_read. `path` and `form` are for the error

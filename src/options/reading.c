@@ -157,7 +157,7 @@ static Status read_file(const Parsed *parsed, const char *path, Tree *tree, Tree
     return STATUS_OK;
 }
 
-Status reading_tree_bytes(const Parsed *parsed, const TreeBytes *file, Tree *tree, Err *err)
+Status reading_tree_bytes(const Parsed *parsed, const MemoryFile *file, Tree *tree, Err *err)
 {
     TreeReading reading = {0};
     TRY(check(&parsed->reading, err));

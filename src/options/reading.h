@@ -20,7 +20,7 @@ MUST_CHECK Status reading_tree(const Parsed *parsed, const char *path, Tree *tre
                                TreeReading *reading, Err *err);
 /* Reads a tree from the bytes of a file as the options say, with the notes of reading_tree. Errors:
  * as tree_read_bytes. */
-MUST_CHECK Status reading_tree_bytes(const Parsed *parsed, const TreeBytes *file, Tree *tree,
+MUST_CHECK Status reading_tree_bytes(const Parsed *parsed, const MemoryFile *file, Tree *tree,
                                      Err *err);
 
 #endif

@@ -63,6 +63,11 @@ class _Nodes(ctypes.Structure):
                 ("parents", POINTER(ctypes.c_int32)), ("ids", POINTER(ctypes.c_int32))]
 
 
+class _Pixels(ctypes.Structure):
+    _fields_ = [("width", c_int), ("height", c_int), ("channels", c_int), ("type", c_int),
+                ("data", c_void_p), ("size", c_size_t)]
+
+
 class _Triangles(ctypes.Structure):
     _fields_ = [("n_vertices", c_size_t), ("n_triangles", c_size_t),
                 ("vertices", POINTER(c_double)), ("indices", POINTER(ctypes.c_uint32)),
@@ -76,7 +81,7 @@ _FUNCTIONS = {
     "schema": "sH", "tree_read": "shH", "tree_from_nodes": "pH", "tree_copy": "hH",
     "tree_nodes": "hp", "tree_field": "hshpp", "tree_write": "hs", "grow": "hHH",
     "refine": "hhH", "certify": "hhH", "info": "hhH", "scene_new": "hhH", "render": "hHH",
-    "image_read": "sH", "image_from_pixels": "iiiipzH", "image_shape": "hippp",
+    "image_read": "sH", "image_from_pixels": "pH", "image_shape": "hippp",
     "image_pixels": "hiipz", "image_write": "hiis", "compare": "hhhH", "mesh_new": "hhH",
     "mesh_triangles": "hp", "export": "hhs", "export_bytes": "hhsfp", "verify": "hhsH",
     "figure": "shs",
@@ -506,8 +511,9 @@ class Image(_Handle):
             raise ValueError(f"an array of shape {pixels.shape} is no picture")
         channels = pixels.shape[2] if pixels.ndim == 3 else 1
         image = cls()
-        _call("image_from_pixels", pixels.shape[1], pixels.shape[0], channels,
-              _type_of(pixels.dtype), pixels.ctypes.data, pixels.nbytes, byref(image._handle))
+        given = _Pixels(pixels.shape[1], pixels.shape[0], channels, _type_of(pixels.dtype),
+                        pixels.ctypes.data, pixels.nbytes)
+        _call("image_from_pixels", byref(given), byref(image._handle))
         return image
 
     def _shape(self, plane):

@@ -524,15 +524,14 @@ typedef struct TreeSource {
 } TreeSource;
 
 /* Takes the bytes of the source from `file`, or reads the file `path` if that is NULL. */
-static Status fill_source(TreeSource *source, const char *path, const TreeBytes *file, Err *err)
+static Status fill_source(TreeSource *source, const char *path, const MemoryFile *file, Err *err)
 {
     const FileForm *form = source->format ? &source->format->form : &any_form;
-    return file ? file_read_memory(file->bytes, file->size, path, form, &source->bytes,
-                                   &source->size, err)
+    return file ? file_read_memory(file, form, &source->bytes, &source->size, err)
                 : file_read(path, form, &source->bytes, &source->size, err);
 }
 
-static Status open_source(TreeSource *source, const char *path, const TreeBytes *file,
+static Status open_source(TreeSource *source, const char *path, const MemoryFile *file,
                           const char *called, Err *err)
 {
     const Format *format = NULL;
@@ -650,7 +649,7 @@ done:
     return status;
 }
 
-static Status read_any(Tree *tree, const char *path, const TreeBytes *file,
+static Status read_any(Tree *tree, const char *path, const MemoryFile *file,
                        const ReadOptions *options, TreeReading *reading, Err *err)
 {
     static const ReadOptions nothing = {0};
@@ -661,8 +660,8 @@ static Status read_any(Tree *tree, const char *path, const TreeBytes *file,
     TRY_GOTO(open_source(&source, path, file, said->format, err));
     made.format = source.format->name;
     if (file && source.format->read == pvd_read)
-        TRY_GOTO(err_set(err, STATUS_USAGE, "%s: a PVD file in memory cannot name other files",
-                         path));
+        TRY_GOTO(
+            err_set(err, STATUS_USAGE, "%s: a PVD file in memory cannot name other files", path));
     TRY_GOTO(check_options(source.format, source.name, said, err));
     TRY_GOTO(read_source(&source, tree, said, &made, err));
     if (reading) {
@@ -681,7 +680,7 @@ Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options, Tr
     return read_any(tree, path, NULL, options, reading, err);
 }
 
-Status tree_read_bytes(Tree *tree, const TreeBytes *file, const ReadOptions *options,
+Status tree_read_bytes(Tree *tree, const MemoryFile *file, const ReadOptions *options,
                        TreeReading *reading, Err *err)
 {
     return read_any(tree, file->name, file, options, reading, err);

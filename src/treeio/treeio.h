@@ -69,16 +69,9 @@ MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
 MUST_CHECK Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options,
                                TreeReading *reading, Err *err);
 
-/* A file in memory. */
-typedef struct TreeBytes {
-    const char *name; /* stands for the path */
-    const void *bytes;
-    size_t size;
-} TreeBytes;
-
 /* Reads a tree from the bytes of a file, as tree_read_as does. Errors: also STATUS_USAGE for an
  * index of other files (PVD). */
-MUST_CHECK Status tree_read_bytes(Tree *tree, const TreeBytes *file, const ReadOptions *options,
+MUST_CHECK Status tree_read_bytes(Tree *tree, const MemoryFile *file, const ReadOptions *options,
                                   TreeReading *reading, Err *err);
 
 /* ---- writing ---- */

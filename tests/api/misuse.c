@@ -130,17 +130,32 @@ static void wrong_arrays(void)
     corcast_tree_free(out);
 }
 
+static void wrong_pixels(const unsigned char *data)
+{
+    corcast_image *image = NULL;
+    const corcast_pixels good = {2, 2, 3, CORCAST_U8, data, 12};
+    corcast_pixels pixels = good;
+    EXPECT(2, "pixels is NULL", corcast_image_from_pixels(NULL, &image, error));
+    pixels.size = 11;
+    EXPECT(2, "12", corcast_image_from_pixels(&pixels, &image, error));
+    pixels = good;
+    pixels.channels = 7;
+    EXPECT(2, "channels", corcast_image_from_pixels(&pixels, &image, error));
+    pixels = good;
+    pixels.type = (corcast_type)9;
+    EXPECT(2, "type", corcast_image_from_pixels(&pixels, &image, error));
+    pixels = good;
+    pixels.width = -2;
+    EXPECT(2, "sides", corcast_image_from_pixels(&pixels, &image, error));
+}
+
 static void small_buffers(void)
 {
     unsigned char pixels[12] = {0};
+    const corcast_pixels given = {2, 2, 3, CORCAST_U8, pixels, 12};
     corcast_image *image = NULL;
-    EXPECT(2, "12", corcast_image_from_pixels(2, 2, 3, CORCAST_U8, pixels, 11, &image, error));
-    EXPECT(2, "channels",
-           corcast_image_from_pixels(2, 2, 7, CORCAST_U8, pixels, 28, &image, error));
-    EXPECT(2, "type",
-           corcast_image_from_pixels(2, 2, 3, (corcast_type)9, pixels, 12, &image, error));
-    EXPECT(2, "sides", corcast_image_from_pixels(-2, 2, 3, CORCAST_U8, pixels, 12, &image, error));
-    OK(corcast_image_from_pixels(2, 2, 3, CORCAST_U8, pixels, 12, &image, error));
+    wrong_pixels(pixels);
+    OK(corcast_image_from_pixels(&given, &image, error));
     EXPECT(2, "needs 12",
            corcast_image_pixels(image, CORCAST_COLOR, CORCAST_U8, pixels, 11, error));
     EXPECT(2, "no depth",
