@@ -81,7 +81,7 @@ Status parsed_init(Parsed *parsed, const Command *command, Err *err)
 
 struct OwnedText {
     OwnedText *next;
-    char chars[];
+    char value[];
 };
 
 static void release_texts(OwnedText *text)
@@ -455,12 +455,12 @@ Status options_parse(Parsed *parsed, int argc, char **argv, Err *err)
 static Status keep_text(Parsed *parsed, const char *chars, const char **kept, Err *err)
 {
     size_t size = strlen(chars) + 1;
-    OwnedText *text;
-    TRY(mem_alloc(&text, 1, sizeof *text + size, "a value", err));
-    memcpy(text->chars, chars, size);
-    text->next = parsed->texts;
-    parsed->texts = text;
-    *kept = text->chars;
+    OwnedText *kept_text;
+    TRY(mem_alloc(&kept_text, 1, sizeof *kept_text + size, "a value", err));
+    memcpy(kept_text->value, chars, size);
+    kept_text->next = parsed->texts;
+    parsed->texts = kept_text;
+    *kept = kept_text->value;
     return STATUS_OK;
 }
 

@@ -4,7 +4,7 @@
  * fails must have a sentence, and one that succeeds none. Sizes and counts are kept small, and
  * files are those of this process. */
 #include "corcast.h"
-#include "tests/fuzz/fuzz.h"
+#include "fuzz.h"
 
 #include <stdio.h>
 

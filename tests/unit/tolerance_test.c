@@ -412,7 +412,7 @@ static void reads_limits_of_all_kinds(void **state)
                      STATUS_OK);
     assert_string_equal(read.tier, "ours");
     assert_true(read.limits[LIMIT_COLOR_LEVELS] == 2.385 && isinf(read.limits[LIMIT_BAND_PPM]) &&
-                read.limits[LIMIT_COLOR_COMMON_ONLY]);
+                read.limits[LIMIT_COLOR_COMMON_ONLY] == 1);
     assert_true(read.limits[LIMIT_REGION_PIXELS] == 17 &&
                 isinf(read.limits[LIMIT_SEGMENTS_MISSING]));
     assert_true(read.limits[LIMIT_PIXELMATCH] == 0.2 && read.limits[LIMIT_DEPTH_P99_MM] == 0.00251);

@@ -191,14 +191,12 @@ static void options_of_reading_are_refused_of_a_tree_in_memory(void **state)
     (void)state;
     MadeTree tree = made(&growth, NULL, NULL, NULL);
     Parsed parsed;
-    InfoReport report;
     Err err = {""};
     must(parsed_init(&parsed, &command_info, &err), &err);
     parsed_give(&parsed, &tree.tree, NULL);
     must(options_set(&parsed, "input-unit", "um", &err), &err);
-    assert_int_equal(info_make(parsed.options, &parsed, &report, &err), STATUS_USAGE);
+    assert_int_equal(options_finish(&parsed, &err), STATUS_USAGE);
     assert_string_equal(err.text, "--input-unit is for a tree in a file");
-    inforeport_release(&report);
     parsed_release(&parsed);
     madetree_release(&tree);
 }
