@@ -90,14 +90,14 @@ class Browser {
   }
 }
 
-// Runs `body`, with a minute's patience, and ends the program: exit status 1 if any expectation failed.
+// Runs `body`, with three minutes' patience, and ends the program: exit status 1 if any expectation failed.
 function runIn(chromium, args, body) {
   const browser = new Browser(chromium, args);
   const patience = setTimeout(function () {
-    console.log("expected the browser to answer within a minute");
+    console.log("expected the browser to answer within three minutes");
     browser.process.kill("SIGKILL");
     process.exit(1);
-  }, 60000);
+  }, 180000);
   browser.start().then(() => body(browser)).catch(function (error) {
     browser.failures++;
     console.log(error.message);

@@ -209,22 +209,19 @@ static FieldScaleParams scale_params(const Coloring *coloring, const Look *look)
 }
 
 static Status color_field(const Coloring *coloring, const ColoredTree *tree, const Look *look,
-                          Appearance *appearance, Err *err)
+                          Colormap *map, Appearance *appearance, Err *err)
 {
     const FieldScaleParams params = scale_params(coloring, look);
     FieldValues drawn = {0}, whole = {0};
-    Colormap map = {0};
     Status status;
     const bool of_tree = params.of_tree && tree->whole != tree->drawn;
-    TRY_GOTO(read_map(coloring, &map, err));
     TRY_GOTO(read_values(coloring, tree->drawn, tree->joined, &drawn, err));
     if (of_tree)
         TRY_GOTO(read_values(coloring, tree->whole, tree->joined, &whole, err));
-    TRY_GOTO(fieldscale_color(&params, &map, of_tree ? &whole : &drawn, &drawn, appearance, err));
+    status = fieldscale_color(&params, map, of_tree ? &whole : &drawn, &drawn, appearance, err);
 done:
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", tree->path);
-    colormap_release(&map);
     fieldvalues_release(&drawn);
     fieldvalues_release(&whole);
     return status;
@@ -233,8 +230,13 @@ done:
 Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree, const Look *look,
                            Appearance *appearance, Err *err)
 {
-    return coloring->field ? color_field(coloring, tree, look, appearance, err)
-                           : stage_appearance(look, NULL, NULL, appearance, err);
+    if (!coloring->field)
+        return stage_appearance(look, NULL, NULL, appearance, err);
+    Colormap map = {0};
+    TRY(read_map(coloring, &map, err));
+    Status status = color_field(coloring, tree, look, &map, appearance, err);
+    colormap_release(&map);
+    return status;
 }
 
 /* ---- what is said ---------------------------------------------------------------------------- */
