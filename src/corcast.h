@@ -3,7 +3,7 @@
  * Link with `pkg-config --cflags --libs corcast`. The header is C11 and C++11 and includes nothing
  * of corcast but itself.
  *
- * A program in eight lines (docs/LIBRARY.md has more):
+ * A first program (docs/examples/tree.c is a longer one):
  *
  *     corcast_error *error = corcast_error_new();
  *     corcast_options *options = NULL;
@@ -17,12 +17,12 @@
  *     corcast_options_free(options);
  *     corcast_error_free(error);
  *
- * HANDLES. All objects are opaque. A function whose last letters are _new, _read, _copy or the like
- * stores a handle in its `out` argument; release it with the _free function of its type, which
- * accepts NULL. A handle does not refer to another handle: a scene keeps what it needs of its tree,
- * and may outlive it. In this header, a parameter is never NULL unless its comment says so; passing
- * NULL, or a handle of another type, is an error with a sentence and not a crash. The use of a
- * handle after it was freed is undefined; debug builds of the library report it as an error.
+ * HANDLES. All objects are opaque. A function with a parameter `out` or `report` stores a new
+ * handle there; release it with the _free function of its type, which accepts NULL. A handle does
+ * not refer to another handle: a scene keeps what it needs of its tree, and may outlive it. In this
+ * header, a parameter is never NULL unless its comment says so; passing NULL, or a handle of
+ * another type, is an error with a sentence and not a crash. The use of a handle after it was freed
+ * is undefined; debug builds of the library report it as an error.
  *
  * ERRORS. A function that can fail returns an int: CORCAST_OK, or one of the other values of
  * corcast_status, which are the exit statuses of the command line. A failed function leaves its
@@ -37,10 +37,10 @@
  * begins, and refuses an option that would have no effect. With the same options and input the
  * library makes the same bytes as the command line, also with any number of threads.
  *
- * THREADS. Two threads may use two handles at the same time. Two threads may pass one handle to two
- * functions at the same time if both take it as a pointer to const. An operation may use several
- * threads of its own: the option "threads", 0 for all processors. Callbacks are called by the
- * thread that called the operation; those of corcast_verify, one at a time, by any thread.
+ * THREADS. Different threads may use different handles at the same time. Two threads may pass one
+ * handle to two functions at the same time if both take it as a pointer to const. An operation may
+ * use several threads of its own: the option "threads", 0 for all processors. Callbacks are called
+ * by the thread that called the operation; those of corcast_verify, one at a time, by any thread.
  *
  * SURROUNDINGS. The library has no global state. It never writes to standard output or standard
  * error, never reads standard input, never ends the process, and never reads or changes the
@@ -124,7 +124,8 @@ typedef struct corcast_options corcast_options;
 /* Makes the options of a command, all with their defaults.
  *
  * command  "grow", "refine", "certify", "info", "convert", "render", "scene", "export",
- *          "compare", "verify" or "figure": the operations of this header say which they take.
+ *          "compare", "verify", "figure", "bifurcation" or "diagram": the operations of this header
+ *          say which they take.
  * Errors   CORCAST_WRONG for an unknown command.
  * Stability: stable. */
 CORCAST_API int corcast_options_new(const char *command, corcast_options **out,
@@ -132,13 +133,12 @@ CORCAST_API int corcast_options_new(const char *command, corcast_options **out,
 
 /* Sets one option.
  *
- * name     without dashes: "terminals". One name is not of the command line: "templates", the
- *          folder with looks, fonts and templates. Default: templates/ of the installed library.
- * value    as on the command line: "1000", "800x600", "on". The library copies it. A flag takes
- *          "on" or "off". An option that may be given several times adds one value per call. NULL
- *          sets the default again.
- * Errors   CORCAST_WRONG for an unknown name, and for a value that is malformed or out of range;
- *          the option then keeps its value. Conditions between options are checked by the operation
+ * name     without dashes: "terminals". One name does not exist on the command line: "templates",
+ * the folder with looks, fonts and templates. Default: templates/ of the installed library. value
+ * as on the command line: "1000", "800x600", "on". The library copies it. A flag takes "on" or
+ * "off". An option that may be given several times adds one value per call. NULL sets the default
+ * again. Errors   CORCAST_WRONG for an unknown name, and for a value that is malformed or out of
+ * range; the option then keeps its value. Conditions between options are checked by the operation
  *          that takes the options.
  * Stability: stable. */
 CORCAST_API int corcast_options_set(corcast_options *options, const char *name, const char *value,
@@ -154,8 +154,9 @@ CORCAST_API int corcast_options_set(corcast_options *options, const char *name, 
 CORCAST_API int corcast_options_get(corcast_options *options, const char *name, const char **value,
                                     corcast_error *error);
 
-/* Receives the progress of an operation. `step` names what is done, "growing"; a step starts with
- * fraction 0, and a call with step NULL ends it. `fraction` is in [0, 1]. Return 0 to continue.
+/* Receives the progress of an operation. `step` names the current step, for example
+ * "growing". The first call of a step has the fraction 0; after its last call comes one with step
+ * NULL. `fraction` is in [0, 1]. Return 0 to continue.
  * Any other value stops the operation soon: it fails with CORCAST_FAILED and the kind "cancelled",
  * unless it ends before it notices. The callback must not use the handles of the operation that
  * calls it. */
@@ -180,8 +181,8 @@ CORCAST_API void corcast_options_free(corcast_options *options);
 /* ---- reports --------------------------------------------------------------------------------- */
 
 /* Facts and numbers that an operation found: a JSON document, the one that the command line writes
- * for --json. Operations have a parameter `report` that receives one; NULL there: none is made.
- * docs/REFERENCE.md and docs/FORMATS.md describe the members. */
+ * for --json. Operations have a parameter `report` that receives one; pass NULL if you do not need
+ * it. docs/REFERENCE.md and docs/FORMATS.md describe the members. */
 typedef struct corcast_report corcast_report;
 
 /* Returns the report as JSON text in UTF-8. The string belongs to the report. Returns "" if
@@ -191,12 +192,10 @@ CORCAST_API const char *corcast_report_json(const corcast_report *report);
 
 /* Finds one number of a report.
  *
- * key      names of members separated by dots: "summary.volume_mm3". Items of arrays are numbers
- *          from 0 on: "cases.0.ssim".
- * value    receives the number; 1 or 0 for true or false; NAN for null.
- * Errors   CORCAST_WRONG if there is no such member, or if it is neither a number, nor true, false
- *          or null.
- * Stability: stable. */
+ * key      names of members separated by dots: "parts.radii" of certify. Items of arrays are
+ * numbers from 0 on: "cases.0.ssim". value    receives the number; 1 or 0 for true or false; NAN
+ * for null. Errors   CORCAST_WRONG if there is no such member, or if it is neither a number, nor
+ * true, false or null. Stability: stable. */
 CORCAST_API int corcast_report_number(const corcast_report *report, const char *key, double *value,
                                       corcast_error *error);
 
@@ -220,9 +219,9 @@ CORCAST_API int corcast_schema(const char *command, corcast_report **out, corcas
 
 /* ---- trees ----------------------------------------------------------------------------------- */
 
-/* An arterial tree, or a forest of several. Node i other than a root is the distal end of segment
- * i: the straight tube from its parent's position to its own, with one radius. Parents come before
- * their children. */
+/* An arterial tree, or a forest of several. Each node i, except a root, is the distal end of
+ * segment i: the straight tube from its parent's position to its own, with one radius. Parents come
+ * before their children. */
 typedef struct corcast_tree corcast_tree;
 
 /* The nodes of a tree as arrays with an entry per node; positions has three. */
@@ -257,7 +256,7 @@ CORCAST_API int corcast_tree_read_bytes(const void *bytes, size_t size, const ch
                                         const corcast_options *options, corcast_tree **out,
                                         corcast_error *error);
 
-/* Makes a tree of arrays, which are copied.
+/* Makes a tree from arrays, which are copied.
  *
  * nodes    ids may be NULL: nodes get the ids 1, 2, ... in order.
  * Errors   CORCAST_WRONG, with the id of the node, unless there are 1 to 100,000,000 nodes, parents
@@ -282,14 +281,13 @@ CORCAST_API int corcast_tree_nodes(const corcast_tree *tree, corcast_nodes *node
  * tree: radius, length, flow, velocity, pressure, wss, reynolds, level, strahler,
  * diameter-strahler, tree, branch (docs/METHODS.md has the definitions).
  *
- * options  NULL, or options of "info", whose group "blood" says what the tree does not: "p-perf".
- * values   receives an array with an entry per node; NAN at roots, and wherever there is no value.
- *          It belongs to the tree and is valid until the tree is freed or changed, or the same
- *          field is found again.
- * unit     receives the unit, "" for a pure number, valid as long as `values`. May be NULL.
- * Errors   CORCAST_WRONG for an unknown name, and for a field that needs a number that neither the
- *          tree nor the options have; the sentence names the option.
- * Stability: stable. */
+ * options  NULL, or options of "info", whose group "blood" supplies numbers that the tree's file
+ * does not state: "p-perf". values   receives an array with an entry per node; NAN at roots, and
+ * wherever there is no value. It belongs to the tree and is valid until the tree is freed or
+ * changed, or the same field is found again. unit     receives the unit, "" for a pure number,
+ * valid as long as `values`. May be NULL. Errors   CORCAST_WRONG for an unknown name, and for a
+ * field that needs a number that neither the tree nor the options have; the sentence names the
+ * option. Stability: stable. */
 CORCAST_API int corcast_tree_field(corcast_tree *tree, const char *name,
                                    const corcast_options *options, const double **values,
                                    const char **unit, corcast_error *error);
@@ -332,11 +330,13 @@ CORCAST_API int corcast_grow(const corcast_options *options, corcast_tree **out,
 CORCAST_API int corcast_refine(corcast_tree *tree, const corcast_options *options,
                                corcast_report **report, corcast_error *error);
 
-/* Proves a lower bound of the target that any tree of this topology can reach.
+/* Proves how low the target of growth can get: finds a lower bound of the target of all trees with
+ * this topology.
  *
  * options  NULL, or options of "certify".
- * report   receives what `certify --json` writes: bound, target, above (their distance over the
- *          bound), ...
+ * report   receives what `certify --json` writes: "target" of the tree; "best_geometry", the lowest
+ *          target that was found for this topology; "bound", the proven lower bound; and "gap",
+ *          best_geometry / bound - 1; ...
  * Stability: provisional. */
 CORCAST_API int corcast_certify(const corcast_tree *tree, const corcast_options *options,
                                 corcast_report **report, corcast_error *error);
@@ -351,7 +351,7 @@ CORCAST_API int corcast_info(const corcast_tree *tree, const corcast_options *op
 
 /* ---- pictures -------------------------------------------------------------------------------- */
 
-/* A picture, with planes that may lie beside it. */
+/* A picture and, optionally, planes of the same size: depth, normals, ids. */
 typedef struct corcast_image corcast_image;
 
 typedef enum corcast_plane {
@@ -404,13 +404,13 @@ CORCAST_API int corcast_image_read(const char *path, corcast_image **out, corcas
  * padding. */
 typedef struct corcast_pixels {
     int width, height; /* each in [1, 1048576] */
-    int channels;      /* 1, 3 or 4; 4 are red, green, blue and alpha, of integers alone */
+    int channels;      /* 1, 3 or 4; 4 are red, green, blue and alpha, for integer types */
     corcast_type type; /* CORCAST_U8, CORCAST_U16 or CORCAST_F32 */
     const void *data;  /* aligned for the type */
     size_t size;       /* of `data` in bytes: width * height * channels * bytes per number */
 } corcast_pixels;
 
-/* Makes a picture of pixels, which are copied. Errors: CORCAST_WRONG for other channels, types or
+/* Makes a picture from pixels, which are copied. Errors: CORCAST_WRONG for other channels, types or
  * sizes than corcast_pixels states.
  * Stability: stable. */
 CORCAST_API int corcast_image_from_pixels(const corcast_pixels *pixels, corcast_image **out,
@@ -490,7 +490,7 @@ CORCAST_API int corcast_mesh_triangles(const corcast_mesh *mesh, corcast_triangl
  * Stability: provisional. */
 CORCAST_API void corcast_mesh_free(corcast_mesh *mesh);
 
-/* Writes what a command makes of a tree to files, with the bytes of the command line.
+/* Runs a command on a tree and writes its files, with the bytes of the command line.
  *
  * options  of "export" (meshes, curves, volumes, pages), "scene" (POV-Ray, OpenSCAD, Tachyon),
  *          "render" (pictures, planes, animations, pages), "diagram" or "convert" (trees). The

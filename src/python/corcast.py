@@ -383,11 +383,9 @@ class Tree(_Handle):
         return self._report("refine", options)
 
     def certify(self, **options):
-        """Proves how low the target of this topology can get; `gap` of the report is the distance
-        of the tree's target above that bound, over the bound."""
-        report = self._report("certify", options)
-        report.setdefault("gap", report.get("above"))
-        return report
+        """Proves how low the target of this topology can get: `bound` of the report is a lower
+        bound, and `gap` is best_geometry / bound - 1 of the best positions that were found."""
+        return self._report("certify", options)
 
     def info(self, **options):
         """Returns what `corcast info --json` writes: counts, lengths, volume, pressures."""
