@@ -1,7 +1,14 @@
-/* What a comparison of two images finds, and the tolerance that it is judged by.
+/* Declares the result of comparing two images, and the tolerance that decides whether they agree.
  *
- * Of two images the first, A, is the reference. The second, B, is judged. Differences are B - A.
- * A level is 1/255 of the range of 8-bit codes, for images of all depths. */
+ * Terms of the module compare:
+ *   A, B       the two images: A is the reference, B is judged. Differences are B - A.
+ *   level      1/255 of the range of codes, for images of all bit depths.
+ *   label      what a pixel shows: the id of a segment, or 0 for the background.
+ *   edge       a pixel is at an edge if one of its 8 neighbours has another label in A or in B. The
+ *              pixels at edges form the band; all other pixels are the interior.
+ *   settled    a differing pixel is settled if a third computation has shown that A is wrong there
+ *              and B is right (compare/checks/settled.h).
+ *   tier       a named, built-in tolerance (compare/rules/tolerance.h). */
 #ifndef CORCAST_COMPARE_RESULT_H
 #define CORCAST_COMPARE_RESULT_H
 
@@ -13,13 +20,13 @@ typedef enum PlaneKind { PLANE_COLOR, PLANE_DEPTH, PLANE_NORMAL, PLANE_ID, PLANE
 /* Returns "color", "depth", "normal" or "id". */
 const char *plane_kind_name(PlaneKind kind);
 
-/* One rendering of a scene. All planes have one size. All members are borrowed; a comparison looks
- * at those that its contract names. */
+/* One rendering of a scene. All planes have equal size. All members are borrowed. Each comparison
+ * function reads only the members that its contract names. */
 typedef struct Rendering {
-    const Picture *picture;
+    const Picture *picture;      /* integer codes */
     const Plane *color;          /* linear colours in floats, which may exceed 1 */
-    const IdPlane *ids;          /* NULL, in both renderings: unknown. The background is then the
-                                  * colour that three corners of each picture share. */
+    const IdPlane *ids;          /* NULL, in both renderings: unknown. The background is then
+                                  * the colour that three corners of each picture share. */
     const Plane *depth, *normal; /* NULL, in both renderings: unknown */
     const Picture *transparent;  /* The picture before it was composited over a background, for
                                   * pixelmatch; NULL or without codes: the picture was opaque. */
@@ -27,61 +34,68 @@ typedef struct Rendering {
 
 /* ---- tolerance ------------------------------------------------------------------------------- */
 
-/* The numbers of a tolerance. The limits come first, in the order in which they are judged. Limits
- * in ppm are parts per million of the pixels that are judged. */
+/* The numbers of a tolerance: first limits, in the order in which they are judged, then settings.
+ * Limits in ppm are parts per million of MEASURE_JUDGED_PIXELS. "Beyond" means: the difference of
+ * the pixel is larger than the named setting. */
 typedef enum Limit {
-    LIMIT_NONE,              /* of a measure that is reported and not judged */
-    LIMIT_NAN,               /* pixels with a value that is not a number; always 0 */
-    LIMIT_REGION_PIXELS,     /* largest 8-connected region of missing, or of extra, pixels */
+    LIMIT_NONE,              /* no limit: the measure is reported and not judged */
+    LIMIT_NAN,               /* pixels with a value that is not a number; the limit is always 0 */
+    LIMIT_REGION_PIXELS,     /* pixels in the largest 8-connected region of missing, or of extra,
+                              * pixels */
     LIMIT_COVERAGE_PPM,      /* depth and normal: pixels that show a surface in one image only */
-    LIMIT_SEGMENTS_MISSING,  /* segments of more than 2 pixels in one image only */
-    LIMIT_SILHOUETTE_PX,     /* shift of the outline of all that is seen */
-    LIMIT_COLOR_PPM,         /* pixels off by more than LIMIT_COLOR_LEVELS */
-    LIMIT_INTERIOR_LEVELS,   /* largest difference of a pixel off the edges */
-    LIMIT_INTERIOR_PPM,      /* of the pixels off the edges: off by more than LIMIT_COLOR_LEVELS */
-    LIMIT_BAND_PPM,          /* of the pixels at edges: off by more than LIMIT_COLOR_LEVELS */
+    LIMIT_SEGMENTS_MISSING,  /* segments that cover more than 2 pixels, in one image only */
+    LIMIT_SILHOUETTE_PX,     /* shift of the outline of all vessels together */
+    LIMIT_COLOR_PPM,         /* pixels beyond LIMIT_COLOR_LEVELS */
+    LIMIT_INTERIOR_LEVELS,   /* largest difference of a pixel in the interior */
+    LIMIT_INTERIOR_PPM,      /* of the interior: pixels beyond LIMIT_COLOR_LEVELS */
+    LIMIT_BAND_PPM,          /* of the pixels at edges: pixels beyond LIMIT_COLOR_LEVELS */
     LIMIT_SEGMENT_PX,        /* shift of the outline of one segment */
     LIMIT_SEGMENT_LEVELS,    /* mean difference of one segment, in the worst channel */
     LIMIT_GAIN,              /* |1 - g| of B = g A + o, minus two standard errors of g */
     LIMIT_OFFSET_LEVELS,     /* |o| of B = g A + o, minus two standard errors of o */
     LIMIT_BIAS_LEVELS,       /* mean difference of all pixels, in the worst channel */
-    LIMIT_SIGN_SIGMA,        /* |m - n| / sqrt(m + n) of m pixels brighter and n darker in B */
-    LIMIT_PIXELMATCH_PPM,    /* pixels that pixelmatch finds different at LIMIT_PIXELMATCH */
+    LIMIT_SIGN_SIGMA,        /* |m - n| / sqrt(m + n); m pixels are brighter and n darker in B */
+    LIMIT_PIXELMATCH_PPM,    /* pixels that pixelmatch marks at threshold LIMIT_PIXELMATCH */
     LIMIT_ID_PPM,            /* pixels with different ids */
-    LIMIT_ID_INTERIOR_PPM,   /* of the pixels off the edges: with different ids */
-    LIMIT_ID_BAND_PPM,       /* of the pixels at edges: with different ids */
-    LIMIT_DEPTH_PPM,         /* pixels off by more than LIMIT_DEPTH_MAX_MM */
+    LIMIT_ID_INTERIOR_PPM,   /* of the interior: pixels with different ids */
+    LIMIT_ID_BAND_PPM,       /* of the pixels at edges: pixels with different ids */
+    LIMIT_DEPTH_PPM,         /* pixels beyond LIMIT_DEPTH_MAX_MM */
     LIMIT_DEPTH_P99_MM,      /* 99th percentile of depth differences */
-    LIMIT_DEPTH_P99_PART,    /* 99th percentile of depth differences over the depth in A */
-    LIMIT_NORMAL_PPM,        /* pixels off by more than LIMIT_NORMAL_MAX_DEG */
+    LIMIT_DEPTH_P99_PART,    /* 99th percentile of depth difference / depth in A */
+    LIMIT_NORMAL_PPM,        /* pixels beyond LIMIT_NORMAL_MAX_DEG */
     LIMIT_NORMAL_MEDIAN_DEG, /* median angle between normals */
-    /* Settings of measures. */
-    LIMIT_COLOR_LEVELS,      /* a pixel that is off by at most this many levels is the same */
-    LIMIT_COLOR_COMMON_ONLY, /* 1: LIMIT_COLOR_PPM counts only pixels seen in both images; or 0 */
-    LIMIT_DEPTH_MAX_MM,      /* a depth that is off by at most this is the same */
-    LIMIT_NORMAL_MAX_DEG,    /* a normal that is off by at most this is the same */
+    /* Settings of measures: the maximum difference of a pixel that counts as equal, and others. */
+    LIMIT_COLOR_LEVELS,      /* maximum difference of colours that count as equal */
+    LIMIT_COLOR_COMMON_ONLY, /* 1: LIMIT_COLOR_PPM counts only pixels that show a vessel in both
+                              * images; 0: it counts all pixels */
+    LIMIT_DEPTH_MAX_MM,      /* maximum difference of depths that count as equal */
+    LIMIT_NORMAL_MAX_DEG,    /* maximum angle between normals that count as equal */
     LIMIT_PIXELMATCH,        /* threshold of pixelmatch, in [0, 1]; NAN: pixelmatch does not run */
     LIMITS
 } Limit;
 
-/* What still counts as agreement. Perceptual measures are in no tier: they judge nothing. */
+/* The differences up to which two images agree. Perceptual measures (FLIP, SSIM, CIEDE2000) have no
+ * limits. */
 typedef struct Tolerance {
-    const char *tier;      /* name in verdicts: "A", "B", "surface", "none", "given"; borrowed */
+    const char *tier;      /* name in verdicts: "A", "B", "surface" or "none" for a tier, "given" or
+                            * a name from a tolerance file for others; borrowed */
     double limits[LIMITS]; /* INFINITY: not judged */
-    /* One pixel of a picture of at least SPARE_OF pixels may be off by up to this many levels and
-     * is not counted in LIMIT_COLOR_PPM. 0: no pixel. Files of tolerances cannot set it. */
+    /* If only one pixel is beyond LIMIT_COLOR_LEVELS, and no unsettled pixel differs by more than
+     * this many levels, LIMIT_COLOR_PPM is met in pictures of at least SPARE_OF judged pixels. 0:
+     * no such exception. Tolerance files set it to 0. */
     double spare_levels;
     const char *title;      /* name of what is compared; NULL: the plane's name. Borrowed. */
-    const uint8_t *settled; /* per pixel: a SettledCause; no limit counts settled pixels. NULL: no
-                             * pixel is settled. Borrowed. */
+    const uint8_t *settled; /* per pixel: a SettledCause; limits do not count settled pixels. NULL:
+                             * no pixel is settled. Borrowed. */
 } Tolerance;
 
 enum { SPARE_OF = 1000 };
 
-/* ---- what is found --------------------------------------------------------------------------- */
+/* ---- measures -------------------------------------------------------------------------------- */
 
-/* The numbers that a comparison finds. compare/measure.c has a row for each use of each of them:
- * its key in JSON, its words and unit in texts, and the limit that judges it. */
+/* The measures of a comparison. The table in compare/measure.c contains, for each use of a measure,
+ * its key in JSON, its name and unit in texts, and its limit. "Differing" means: not equal in some
+ * channel. */
 typedef enum MeasureId {
     MEASURE_NONE,
     MEASURE_PIXELS,
@@ -89,22 +103,25 @@ typedef enum MeasureId {
     MEASURE_HEIGHT,
     MEASURE_BITS,             /* 8 or 16; 32: floats; 24: ids */
     MEASURE_DIFFERING_PIXELS, /* not equal in some channel */
-    /* Coverage, where it is known which pixels show something. */
-    MEASURE_MISSING_PIXELS, /* show something in A only */
-    MEASURE_EXTRA_PIXELS,   /* show something in B only */
-    MEASURE_COMMON_PIXELS,  /* show something in both */
-    MEASURE_UNCOMMON_PIXELS,
-    MEASURE_LARGEST_REGION, /* pixels of the largest 8-connected region missing or extra */
-    MEASURE_NAN_PIXELS,     /* pixels with a value that is not a number, the sum of both images */
-    MEASURE_NOT_FINITE,     /* MEASURE_NAN_PIXELS of float colours */
+    /* Coverage, if it is known which pixels show a vessel. */
+    MEASURE_MISSING_PIXELS,  /* show a vessel in A only */
+    MEASURE_EXTRA_PIXELS,    /* show a vessel in B only */
+    MEASURE_COMMON_PIXELS,   /* show a vessel in both images */
+    MEASURE_UNCOMMON_PIXELS, /* missing and extra pixels */
+    MEASURE_LARGEST_REGION,  /* pixels in the largest 8-connected region of missing, or of extra,
+                              * pixels */
+    MEASURE_NAN_PIXELS,      /* pixels with a value that is not a number, in A plus in B */
+    MEASURE_NOT_FINITE,      /* MEASURE_NAN_PIXELS of float colours */
     /* Pixels that limits count. */
     MEASURE_JUDGED_PIXELS, /* pixels that limits in ppm refer to */
-    MEASURE_BEYOND_PIXELS, /* off by more than the tolerance allows for one pixel, not settled */
+    MEASURE_BEYOND_PIXELS, /* unsettled pixels that differ by more than the setting for one pixel:
+                            * LIMIT_COLOR_LEVELS, LIMIT_DEPTH_MAX_MM or LIMIT_NORMAL_MAX_DEG; or
+                            * whose ids differ */
     MEASURE_SETTLED_PIXELS,
-    MEASURE_BAND_PIXELS,     /* at edges: they touch a pixel of another label in either image */
-    MEASURE_INTERIOR_PIXELS, /* off the edges */
-    MEASURE_BAND_BEYOND,
-    MEASURE_INTERIOR_BEYOND,
+    MEASURE_BAND_PIXELS,       /* at edges */
+    MEASURE_INTERIOR_PIXELS,   /* not at edges */
+    MEASURE_BAND_BEYOND,       /* the part of MEASURE_BEYOND_PIXELS that is at edges */
+    MEASURE_INTERIOR_BEYOND,   /* the part of MEASURE_BEYOND_PIXELS that is not at edges */
     MEASURE_UNSETTLED_MAX_ABS, /* levels; largest difference of a pixel that is not settled */
     /* Sizes of colour differences, in levels; MEASURE_MAX_CODE in codes. */
     MEASURE_MAX_ABS,
@@ -113,19 +130,19 @@ typedef enum MeasureId {
     MEASURE_RMSE,
     MEASURE_PSNR_DB, /* INFINITY: equal pictures */
     MEASURE_INTERIOR_MAX_ABS,
-    MEASURE_EDGE_MISMATCH, /* of the pixels at edges, the fraction whose labels differ */
+    MEASURE_EDGE_MISMATCH, /* fraction of the pixels at edges whose labels differ in A and B */
     MEASURE_EDGE_MISMATCH_PERCENT,
     /* Signed colour differences. */
     MEASURE_BIAS_LEVELS,
     MEASURE_SIGN_SIGMA, /* positive: B is brighter more often than darker */
-    MEASURE_GAIN,       /* g of the least squares fit B = g A + o over pixels seen in both */
+    MEASURE_GAIN,       /* g of the least squares fit B = g A + o over common pixels */
     MEASURE_OFFSET_LEVELS,
-    MEASURE_GAIN_ERROR, /* standard errors of the two */
+    MEASURE_GAIN_ERROR, /* standard errors of gain and offset */
     MEASURE_OFFSET_ERROR,
-    MEASURE_GAIN_EXCESS, /* distance from 1 beyond two standard errors */
-    MEASURE_OFFSET_EXCESS,
+    MEASURE_GAIN_EXCESS,   /* max(0, |gain - 1| - 2 standard errors) */
+    MEASURE_OFFSET_EXCESS, /* max(0, |offset| - 2 standard errors) */
     MEASURE_SILHOUETTE_PX, /* shift of the outline; positive: outwards */
-    /* Segments, where ids are known. */
+    /* Segments, if ids are known. */
     MEASURE_SEGMENTS,
     MEASURE_SEGMENTS_MISSING,
     MEASURE_SEGMENT_LEVELS, /* of the worst segment with at least 64 common pixels */
@@ -134,7 +151,7 @@ typedef enum MeasureId {
     MEASURE_FLIP_MEAN,
     MEASURE_FLIP_P95,
     MEASURE_FLIP_MAX,
-    MEASURE_FLIP_WEIGHTED_MEAN, /* each pixel's weight is its error */
+    MEASURE_FLIP_WEIGHTED_MEAN, /* the weight of each pixel is its FLIP error */
     MEASURE_FLIP_WEIGHTED_MEDIAN,
     MEASURE_FLIP_WEIGHTED_P95,
     MEASURE_HDR_FLIP_MEAN, /* of float colours */
@@ -142,54 +159,56 @@ typedef enum MeasureId {
     MEASURE_DE2000_MEAN,
     MEASURE_DE2000_MAX,
     MEASURE_PIXELMATCH_PIXELS, /* NAN unless the tolerance has LIMIT_PIXELMATCH */
-    /* Depth in mm, normals in degrees; over common pixels, percentiles by nearest rank. */
+    /* Differences of depths in mm, angles between normals in degrees, over the common pixels.
+     * Percentiles are by nearest rank. */
     MEASURE_MEDIAN,
     MEASURE_P99,
     MEASURE_MAX,
-    MEASURE_P99_PART, /* of depth differences over the depth in A */
+    MEASURE_P99_PART, /* 99th percentile of depth difference / depth in A */
     MEASURE_MISMATCH_FRACTION,
     MEASURES
 } MeasureId;
 
 typedef struct PixelPlace {
     int x, y;            /* from the top left; -1: there is no such pixel */
-    uint32_t id_a, id_b; /* the segments that it shows; 0: none */
+    uint32_t id_a, id_b; /* the segments that the pixel shows in A and in B; 0: none */
 } PixelPlace;
 
-/* Pixels to look at. */
+/* The pixels that a result points to, as examples of the largest differences. */
 typedef enum PlaceId {
-    PLACE_WORST,  /* the first pixel with the largest difference */
-    PLACE_REGION, /* the first pixel of the largest region */
-    PLACE_NAN,    /* the first pixel that is not a number */
-    PLACE_SEGMENT_LEVELS,
-    PLACE_SEGMENT_PX,
-    PLACE_SEGMENT_MISSING,
+    PLACE_WORST,           /* the first pixel with the largest difference */
+    PLACE_REGION,          /* the first pixel of the largest region */
+    PLACE_NAN,             /* the first pixel that is not a number */
+    PLACE_SEGMENT_LEVELS,  /* middle of the box of the segment of MEASURE_SEGMENT_LEVELS */
+    PLACE_SEGMENT_PX,      /* middle of the box of the segment of MEASURE_SEGMENT_PX */
+    PLACE_SEGMENT_MISSING, /* middle of the box of a segment that is in one image only */
     PLACES
 } PlaceId;
 
-/* One limit, and the measured value that it judges. */
+/* One limit, applied to one measure. */
 typedef struct Rule {
     char name[64];    /* "pixels off by more than 2 levels" */
     const char *unit; /* "ppm", "mm", "pixels" */
     double measured, allowed;
-    bool met;
-    PixelPlace at;    /* a pixel to look at; x is -1 if none stands out */
-    char at_what[48]; /* what is there: "the worst, 155 levels, is" */
+    bool met;         /* measured <= allowed */
+    PixelPlace at;    /* an example of a pixel; x is -1 if there is none */
+    char at_what[48]; /* description of `at`: "the worst, 155 levels, is" */
 } Rule;
 
 enum { RULES_MAX = 16 };
 
-/* Every pixel of a picture is in exactly one class, the first that fits. */
+/* The class of a pixel: the first of these whose condition holds. "Ids agree" means: A and B show
+ * the same segment. */
 typedef enum PixelClass {
-    PIXEL_SETTLED,       /* differs, and the difference is known to be A's fault */
-    PIXEL_MISSING,       /* seen in A only, off the edges */
-    PIXEL_EXTRA,         /* seen in B only, off the edges */
-    PIXEL_WRONG_SEGMENT, /* seen in both with different ids, off the edges */
+    PIXEL_SETTLED,       /* differs, and A is known to be wrong */
+    PIXEL_MISSING,       /* shows a vessel in A only, not at an edge */
+    PIXEL_EXTRA,         /* shows a vessel in B only, not at an edge */
+    PIXEL_WRONG_SEGMENT, /* shows vessels with different ids, not at an edge */
     PIXEL_EDGE,          /* ids differ, at an edge */
-    PIXEL_SHADOW,        /* ids and geometry agree, one is over 1.5 times as bright as the other */
-    PIXEL_GEOMETRY,      /* ids agree, depth or normal does not */
-    PIXEL_SHADING,  /* ids agree, and geometry where known; colour is off by more than a code */
-    PIXEL_ROUNDING, /* as PIXEL_SHADING, but off by one code */
+    PIXEL_SHADOW,        /* ids and geometry agree; one is over 1.5 times as bright as the other */
+    PIXEL_GEOMETRY,      /* ids agree; depth or normal differs */
+    PIXEL_SHADING,  /* ids and geometry agree or are unknown; colour differs by over one code */
+    PIXEL_ROUNDING, /* ids and geometry agree or are unknown; colour differs by one code */
     PIXEL_IDENTICAL,
     PIXEL_CLASSES
 } PixelClass;
@@ -197,58 +216,60 @@ typedef enum PixelClass {
 /* Returns "missing", "extra", "wrong_segment", "edge" and so on. */
 const char *pixel_class_name(PixelClass pixel_class);
 
-/* What is known of one segment in two images. */
+/* Measures of one segment in two images. */
 typedef struct LedgerEntry {
     uint32_t id;
-    size_t area_a, area_b;        /* pixels */
-    size_t common;                /* pixels that show the segment in both images */
-    size_t differing;             /* pixels that show it in either and differ in colour or id */
-    double outline_px;            /* length of its outline in A; in B if A does not show it */
-    double signed_levels[3];      /* per channel: mean difference of the common pixels */
-    double gain;                  /* g of the least squares fit B = g A; NAN if A is black */
-    double moved_px;              /* (area_b - area_a) / outline_px; positive: outwards */
-    double max_levels;            /* largest difference of a common pixel */
-    int left, top, right, bottom; /* box of its pixels in either image, inclusive */
+    size_t area_a, area_b; /* pixels */
+    size_t common;         /* pixels that show the segment in both images */
+    size_t differing; /* pixels that show the segment in either image, and differ in colour or id */
+    double outline_px;       /* length of the segment's outline in A; in B if A does not show it */
+    double signed_levels[3]; /* per channel: mean difference of the common pixels */
+    double gain;             /* g of the least squares fit B = g A; NAN if A is black */
+    double moved_px;         /* (area_b - area_a) / outline_px; positive: outwards */
+    double max_levels;       /* largest difference of a common pixel */
+    int left, top, right, bottom; /* box of the segment's pixels in both images, inclusive */
 } LedgerEntry;
 
+/* The account of all segments. Release it with ledger_release. */
 typedef struct Ledger {
     LedgerEntry *entries; /* owned; ids ascend */
     size_t n;
 } Ledger;
 
 void ledger_release(Ledger *ledger);
-/* Returns the mean difference of the worst channel. */
+/* Returns the mean difference of the common pixels, in the channel with the largest, in levels. */
 double ledger_entry_levels(const LedgerEntry *entry);
-/* Appends the ledger as CSV with a header line. */
+/* Appends the ledger as CSV with a header line: one line per segment. */
 void ledger_csv(const Ledger *ledger, Text *out);
 
 enum { WORST_SEGMENTS = 6 };
 
-/* The result of comparing two planes of one kind. Holds no memory. */
+/* The result of comparing two planes of one kind. Owns nothing; `tolerance` borrows. */
 typedef struct CompareResult {
     PlaneKind kind;
     Tolerance tolerance;
     bool agrees;
-    char reason[400]; /* a sentence about the first broken rule; "" if the planes agree */
-    char cause[200];  /* what made B of A, where compare_cause found it; else "" */
+    char reason[400]; /* a sentence about the first rule that is not met; "" if the planes agree */
+    char cause[200];  /* compare_cause's sentence about what changed A into B; "" if unknown */
     Rule rules[RULES_MAX];
     int n_rules;
-    bool has_ids;            /* id planes were given: places carry ids */
-    bool has_mask;           /* it is known which pixels show something */
-    double values[MEASURES]; /* by MeasureId; NAN: has no meaning, or was not measured */
-    PixelPlace places[PLACES];
-    size_t classes[PIXEL_CLASSES];              /* pixels in each class */
-    LedgerEntry worst_segments[WORST_SEGMENTS]; /* by differing pixels, most first */
+    bool has_ids;                  /* id planes were compared: `places` contain ids */
+    bool has_mask;                 /* it is known which pixels show a vessel */
+    double values[MEASURES];       /* by MeasureId; NAN: not defined, or not measured */
+    PixelPlace places[PLACES];     /* by PlaceId */
+    size_t classes[PIXEL_CLASSES]; /* pixels in each class */
+    LedgerEntry worst_segments[WORST_SEGMENTS]; /* sorted by falling number of differing pixels */
     int n_worst_segments;
 } CompareResult;
 
-/* Returns a measure that is a count. It must have been measured. */
+/* Returns a measure that is a count. The measure must not be NAN. */
 static inline size_t result_count(const CompareResult *result, MeasureId id)
 {
     return (size_t)result->values[id];
 }
 
-/* Returns the name of what is compared: the tolerance's title or the plane's name. */
+/* Returns the name of what is compared: the title of the tolerance, or else the name of the plane.
+ * Borrowed from `result`. */
 const char *result_title(const CompareResult *result);
 
 #endif

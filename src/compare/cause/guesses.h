@@ -1,5 +1,9 @@
-/* Guesses at what made B of A. Each writes a sentence if it explains the pictures, which have one
- * shape, depth and gamma; otherwise it does not change `out`. Private to the module compare. */
+/* Tests hypotheses ("guesses") about what changed picture A into picture B.
+ *
+ * Each cause_* function below tests one kind of cause. If this cause explains the difference of the
+ * pictures, the function writes a sentence to out->text. Otherwise out->text does not change. The
+ * pictures A and B have equal size, channels, bit depth and gamma. Private to the module compare.
+ */
 #ifndef CORCAST_COMPARE_CAUSE_GUESSES_H
 #define CORCAST_COMPARE_CAUSE_GUESSES_H
 
@@ -7,52 +11,73 @@
 
 enum { CAUSE_SAMPLES = 256 };
 
-/* Pixels that differ, evenly spread over all that do. */
+/* Up to CAUSE_SAMPLES of the pixels that differ: every k-th of them in scan order. */
 typedef struct Samples {
     PixelPlace at[CAUSE_SAMPLES];
     int n;
 } Samples;
 
-/* A sentence about the cause, "" as long as there is none. `size` is that of `text`. */
+/* A sentence about the cause. */
 typedef struct Sentence {
-    char *text;
-    size_t size;
+    char *text;  /* "" until a cause is found; borrowed */
+    size_t size; /* capacity of `text` in bytes */
 } Sentence;
 
-/* Moved by (dx, dy): pixel (x, y) of A is (x + dx, y + dy) of B. */
+/* A translation by (dx, dy) pixels, right and down being positive: pixel (x, y) of A is pixel
+ * (x + dx, y + dy) of B. dx = dy = 0: no translation. */
 typedef struct Shift {
     int dx, dy;
-    double off; /* the mean difference of the samples under it, codes summed over the channels */
+    double off; /* mean over the samples of the difference that remains after this translation: sum
+                 * over the channels of the absolute difference of codes */
 } Shift;
 
-/* Returns the shift with the smallest mean difference of the samples that stay within the picture;
- * three of four samples must. Returns no shift if none makes the difference much smaller. */
-Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples);
-/* Returns true if colours are as far from grey in both pictures, within 3 %, or if A has too little
- * colour to tell.
+/* Finds the translation of at most 48 pixels along each axis that leaves the smallest mean
+ * difference of the samples. At least three of four samples must stay within the picture.
  *
- * aa   sum of the squares of A's channels minus the pixel's mean, in levels.
- * ab   sum of the products of these with B's. */
+ * Returns the best translation. Returns dx = dy = 0, and the mean difference without a translation,
+ * if a subset of the samples shows that no translation removes 30 % of the difference. */
+Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples);
+/* Returns true if both pictures have the same saturation: the distances of their colours from grey
+ * agree within 3 %. Also returns true if A has too little colour to decide.
+ *
+ * aa   sum of the squares of (A's channel - mean of the pixel's channels), in levels.
+ * ab   sum of the products of these deviations in A and in B. */
 bool cause_is_same_saturation(double aa, double ab);
 
-/* Moved by whole pixels: the shift leaves less than a fiftieth of the differences where both
- * pictures have pixels, and colours are as far from grey as before. Returns true if a part of the
- * picture was moved and another part was not. Cost O(1), or O(pixels) if the samples agree. */
+/* Tests whether B is A translated by whole pixels.
+ *
+ * Writes the sentence if the translation leaves at most 2 % of the differences in the area that
+ * both pictures cover, and the saturation did not change.
+ *
+ * shift     from cause_best_shift.
+ * Returns   true if the translation fits, but a part of the picture did not move; no sentence is
+ *           written then. Returns false in all other cases, whether or not a sentence is written.
+ * Cost      O(1), or O(pixels) if the samples fit. */
 bool cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
                  Sentence *out);
-/* Moved by fractions of pixels (`start` is near), blurred or sharpened. Cost O(1). Errors:
- * STATUS_MEMORY, as of all guesses below. */
+/* Tests whether B is A translated by fractions of a pixel, blurred or sharpened.
+ *
+ * start    the nearest translation by whole pixels, from cause_best_shift.
+ * Errors   STATUS_MEMORY.
+ * Cost     O(1). */
 MUST_CHECK Status cause_warp(const Picture *a, const Picture *b, const Samples *samples,
                              const Shift *start, Sentence *out, Err *err);
-/* Each code of A became one code of B: a gain, an offset, a gamma, one encoding too many or
- * missing. */
+/* Tests whether one curve maps each code of A to the code of B: a gain, an offset, a gamma, or an
+ * sRGB encoding that was applied once too often or not at all.
+ *
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status cause_tone(const Picture *a, const Picture *b, const Samples *samples,
                              Sentence *out, Err *err);
-/* Only the background has another colour. */
+/* Tests whether only the colour of the background differs.
+ *
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status cause_background(const Picture *a, const Picture *b, const Samples *samples,
                                    Sentence *out, Err *err);
-/* Where the differences are: one thing missing or extra, outlines only, highlights only, shading
- * only. */
+/* Tests whether the differences are confined to one kind of pixels: one object that is missing or
+ * extra, outlines, highlights, or shading.
+ *
+ * result   the comparison of A and B.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status cause_place(const Picture *a, const Picture *b, const Samples *samples,
                               const CompareResult *result, Sentence *out, Err *err);
 

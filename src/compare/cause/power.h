@@ -1,71 +1,92 @@
-/* Measures what a rule finds: plants faults of every kind and size in a renderer's picture, and
- * asks the rule about each, beside rules that other projects publish. */
+/* Measures the statistical power of a comparison rule: how many faults of a renderer the rule
+ * detects.
+ *
+ * Plants synthetic faults of every kind and size in a picture and applies the rule to each faulty
+ * picture. Applies rules that other projects publish to the same pictures, for reference. */
 #ifndef CORCAST_COMPARE_CAUSE_POWER_H
 #define CORCAST_COMPARE_CAUSE_POWER_H
 
 #include "compare/cause/picture_fault.h"
 #include <jansson.h>
 
-/* A rule that a project publishes for its own tests. Either pixelmatch decides, or levels. */
+/* A rule that a project publishes for its own tests. The rule counts either the pixels that
+ * pixelmatch marks, or the pixels whose difference exceeds `levels`. */
 typedef struct PublishedRule {
-    const char *name;  /* "Blender" */
-    const char *says;  /* the rule in words */
-    double pixelmatch; /* no pixel may differ at this threshold of pixelmatch; NAN: levels decide */
-    double levels, ppm; /* at most `ppm` of the pixels may be off by more than `levels` */
-    double most_levels; /* no pixel may be off by more than this */
+    const char *name;   /* name of the project: "Blender" */
+    const char *says;   /* the rule in words */
+    double pixelmatch;  /* threshold of pixelmatch, which may mark no pixel; NAN: the members below
+                         * define the rule */
+    double levels, ppm; /* at most `ppm` parts per million of the pixels may differ by more than
+                         * `levels` (of 255) */
+    double most_levels; /* no pixel may differ by more than this; INFINITY: no limit */
 } PublishedRule;
 
 enum { PUBLISHED_RULES = 5, POWER_RULES = 1 + PUBLISHED_RULES };
 extern const PublishedRule published_rules[PUBLISHED_RULES];
 
-/* The rule that is measured. `differs` sets *differs if the rule calls a picture different from the
- * reference; several threads call it at once. */
+/* The rule whose power is measured. */
 typedef struct PowerRule {
-    const char *name;
+    const char *name; /* borrowed */
+    /* Sets *differs to true if the rule rejects `picture` as different from `reference`. Must be
+     * thread-safe: several threads call it at the same time. */
     Status (*differs)(void *context, const Picture *reference, const Picture *picture,
                       bool *differs, Err *err);
-    void *context;
+    void *context; /* passed to `differs`; borrowed */
 } PowerRule;
 
-/* A fault of one size. */
+/* One planted fault: a kind of fault and its size. */
 typedef struct PowerCase {
     const PictureFault *fault;
-    double size;
-    bool exists;             /* the fault changes some pixel's codes */
-    bool found[POWER_RULES]; /* by the measured rule, then by the published rules */
+    double size;             /* in the unit of the fault; ignored if the fault has no size */
+    bool exists;             /* the fault changes at least one code of the picture; else the case
+                              * is not counted */
+    bool found[POWER_RULES]; /* per rule: the rule detects the fault. The measured rule is first,
+                              * then the published rules follow in their order */
 } PowerCase;
 
+/* The result of power_measure. Arrays of POWER_RULES are per rule, in the order of
+ * PowerCase.found. */
 typedef struct Power {
-    const char *name;           /* of the measured rule; borrowed */
-    PowerCase *cases;           /* owned; in the order of the faults, sizes rising */
+    const char *name;           /* name of the measured rule; borrowed from the PowerRule */
+    PowerCase *cases;           /* owned; ordered by fault, then by rising size */
     size_t n;                   /* number of cases */
     size_t planted;             /* number of cases that exist */
-    size_t missed[POWER_RULES]; /* number of these that the rule does not find */
-    bool alarm[POWER_RULES];    /* the rule calls the two drawings without a fault different */
-    bool repeats;               /* the two drawings are equal */
-    int width, height, bits;
+    size_t missed[POWER_RULES]; /* number of existing cases that the rule does not detect */
+    bool alarm[POWER_RULES];    /* false alarm: the rule rejects `drawn`, which has no fault */
+    bool repeats;               /* PowerInput.reference and PowerInput.drawn have equal codes */
+    int width, height, bits;    /* of the pictures */
 } Power;
 
-/* What power_measure plants faults in. All members are borrowed. */
+/* The input of power_measure. All members are borrowed. */
 typedef struct PowerInput {
-    const Picture *reference, *drawn; /* two drawings of one scene, of one shape, in sRGB */
+    /* Two drawings of one scene, both without planted faults. They have equal size, channels and
+     * bit depth, and are in sRGB. Faults are planted in copies of `drawn`. */
+    const Picture *reference, *drawn;
     const PowerRule *rule;
-    /* Receives each picture whose fault the rule misses. NULL: nobody wants them. */
+    /* Receives each faulty picture that the measured rule does not detect. The picture is valid
+     * during the call only. Must be thread-safe. NULL: not called. */
     Status (*keep)(void *context, const PowerCase *missed, const Picture *picture, Err *err);
-    void *keep_context;
+    void *keep_context; /* passed to `keep` */
 } PowerInput;
 
-/* Plants every fault in `drawn`, and asks all rules whether each picture differs from `reference`.
+/* Plants every fault in every size in copies of input->drawn, and applies all rules to each faulty
+ * picture and input->reference.
  *
- * power     is set on success; release it with power_release.
- * threads   0: all processors.
- * Errors    STATUS_INPUT if shapes differ; STATUS_MEMORY; those of the rule and of `keep`. */
+ * threads   number of threads; 0: all processors.
+ * power     release it with power_release. It borrows the name of the rule.
+ * Errors    STATUS_INPUT if the two drawings differ in size, channels or bit depth; STATUS_MEMORY;
+ *           any error of the rule and of `keep`. */
 MUST_CHECK Status power_measure(const PowerInput *input, int threads, Power *power, Err *err);
 void power_release(Power *power);
 
-/* Appends a table: the smallest size from which on each rule finds each fault. */
+/* Appends a table with a row per fault and a column per rule.
+ *
+ * A cell contains the smallest size from which on the rule detects the fault, or "never". For a
+ * fault without a size it contains "found" or "missed". It contains "-" if no case of the fault
+ * exists. The last rows contain the counts of missed cases, and the false alarms. */
 void power_text(const Power *power, Text *out);
-/* Returns the result as JSON. The caller releases it. Returns NULL if memory runs out. */
+/* Returns the result as JSON: a new reference, which the caller releases. Returns NULL if memory
+ * runs out. */
 json_t *power_json(const Power *power);
 
 #endif

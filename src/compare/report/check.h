@@ -1,43 +1,48 @@
-/* Checks: what a report judges, in the one form that text, JUnit XML and page are written from.
- * Private to the module compare. */
+/* Converts the results of a report to a list of checks, from which the text, the JUnit XML and the
+ * HTML page are written. Private to the module compare. */
 #ifndef CORCAST_COMPARE_REPORT_CHECK_H
 #define CORCAST_COMPARE_REPORT_CHECK_H
 
 #include "compare/report/report.h"
 
-/* A number that is reported beside the rules. All members are borrowed. */
+/* A measure that is reported in addition to the rules. All members are borrowed. */
 typedef struct CheckMeasure {
-    const char *table; /* the heading it stands under: "Colour: sizes of differences" */
+    const char *table; /* heading of the table that lists it: "Colour: sizes of differences" */
     const char *name, *unit;
     double value; /* never NAN */
 } CheckMeasure;
 
 enum { MEASURES_MAX = 40 };
 
-/* One thing that is judged: a plane, alpha, the settled pixels, the colours or the place of an
- * implicit surface, or two programs of which one may be the witness. */
+/* One item that is judged: a plane; alpha; the settled pixels (A is known to be wrong there, see
+ * checks/settled.h); the colours or the position of an implicit surface; or a pair of programs, one
+ * of which may be the witness (a third, independent renderer, see checks/witness.h). */
 typedef struct Check {
     const char *title; /* "color", "settled", "exact color", "surface"; borrowed */
     bool agrees;
-    const char *reason; /* as in CompareResult; borrowed */
+    const char *reason; /* sentence about the first rule that is not met; borrowed */
     Rule rules[RULES_MAX];
     int n_rules;
-    CheckMeasure measures[MEASURES_MAX]; /* those of one table follow each other */
+    CheckMeasure measures[MEASURES_MAX]; /* measures of one table are adjacent */
     int n_measures;
-    const Settled *settled; /* whose first pixels are listed; NULL in other checks. Borrowed */
+    const Settled
+        *settled; /* check of the settled pixels: lists the first of them; else NULL. Borrowed */
 } Check;
 
 enum { CHECKS_MAX = PLANE_KINDS + 4 + WITNESS_PAIRS };
 
-/* Returns the check of one plane: its rules, and the measures that are known. */
+/* Returns the check of one plane: its rules, and the measures that are not NAN. It borrows from
+ * `plane`. */
 Check check_plane(const CompareResult *plane);
-/* Sets all checks of a report, in the order in which they are shown, and returns their number. */
+/* Makes all checks of a report, in the order in which they are shown. They borrow from `report`.
+ * Returns their number. */
 int report_checks(const ReportCase *report, Check checks[CHECKS_MAX]);
 
 /* Returns the reason of the first check that does not agree, borrowed; NULL if all agree. */
 const char *report_reason(const ReportCase *report);
-/* Returns by how much the worst broken rule is exceeded: measured over allowed, at least 1; 0 if
- * all rules are met. */
+/* Returns the largest ratio measured / allowed of the rules that are not met, clamped to
+ * [1, 10^12]. If `allowed` is not above 0, the ratio is `measured`. Returns 0 if all rules are
+ * met. */
 double report_severity(const ReportCase *report);
 
 #endif

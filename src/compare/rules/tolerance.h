@@ -33,8 +33,9 @@ Tolerance tolerance_surface(double depth_mm);
 /* Changes the limits that an INI file names, as in "color_ppm = 20"; "inf" leaves a limit unjudged.
  *
  * name     receives the file's `tier`, or "given" if it has none; the caller frees it after the
- * last use of the tolerance. Control characters of the name become blanks. Errors   STATUS_INPUT,
- * naming file and line, for an unknown key and a value out of range; STATUS_IO; STATUS_MEMORY. */
+ *          last use of the tolerance. Control characters of the name become blanks.
+ * Errors   STATUS_INPUT, with file and line, for an unknown key and a value out of range;
+ *          STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *err);
 
 #endif

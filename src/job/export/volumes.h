@@ -1,4 +1,4 @@
-/* The vessels of a tree as volumes of voxels, and the options about them. */
+/* Writes the vessels of a tree as voxel volumes, and declares the options for volumes. */
 #ifndef CORCAST_JOB_EXPORT_VOLUMES_H
 #define CORCAST_JOB_EXPORT_VOLUMES_H
 
@@ -8,9 +8,9 @@
 #include "voxel/voxel.h"
 
 typedef struct VolumeOptions {
-    NumberList voxel; /* mm: one number, or one for each axis; empty: a 256th of the longest side */
-    int depth, labels;      /* choices */
-    const char *centreline; /* a file, or NULL */
+    NumberList voxel;  /* voxel size, mm: one number, or one per axis; empty: longest side / 256 */
+    int depth, labels; /* choices */
+    const char *centreline; /* path of the centreline volume; NULL: none */
 } VolumeOptions;
 
 extern const OptionTable volume_table; /* sets a VolumeOptions */
@@ -18,17 +18,23 @@ extern const OptionTable volume_table; /* sets a VolumeOptions */
 /* Appends the extensions of volume files: ".nii.gz, .nii". */
 void volumes_extensions(Text *out);
 
-/* Sets the paths and roles of the files that are written for `output`: volumes, and beside them the
- * tree as CSV, a manifest and, of a density file, a scene. `files` is zeroed, except for the taker;
- * fileset_release releases it, also after an error. Errors: STATUS_MEMORY. */
+/* Sets the paths and roles of the output files: the volumes, the tree as CSV, a JSON manifest and,
+ * for density files, a scene. The names of the additional files are derived from `output`.
+ *
+ * output   path of the volume.
+ * files    zeroed before, except for its taker (FileTaker); the caller releases it with
+ *          fileset_release even after an error.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status volumes_name(const VolumeOptions *options, const VolumeFormat *format,
                                const char *output, FileSet *files, Err *err);
 
-/* Writes the volumes and what is beside them. Reports the expected cost, and the result.
+/* Writes the volumes and the additional files. Prints the expected cost before, and the number of
+ * filled voxels and their volume after.
  *
- * files   volumes_name has named them.
- * Errors  STATUS_USAGE if a format cannot hold what is wanted; those of stage_geometry,
- *         voxelgrid_make, volume_check, work_make, voxels_write and work_write. */
+ * files    volumes_name has set the paths.
+ * Errors   STATUS_USAGE if --voxel is not one or three numbers above 0, or if the centreline's file
+ *          has no extension of a volume; the errors of stage_geometry, voxelgrid_make,
+ *          volume_check, work_make, voxels_write and work_write. */
 MUST_CHECK Status volumes_write(const VolumeOptions *options, const VolumeFormat *format,
                                 const PictureTree *of, FileSet *files, const Parsed *parsed,
                                 Err *err);

@@ -1,21 +1,26 @@
-/* Paths in the recipe of a figure. They start at the recipe's folder, wherever the program runs. */
+/* Resolves the paths in the recipe of a figure. Relative paths are relative to the recipe's folder,
+ * not to the working directory. */
 #ifndef CORCAST_JOB_FIGURE_FIGURE_PATHS_H
 #define CORCAST_JOB_FIGURE_FIGURE_PATHS_H
 
 #include "options/options.h"
 
-/* Puts `folder` before the relative paths among the values of options: files, templates that are
- * named with a '/', files of values, and files in a domain's description. The option `recipe` and
- * options that `is_fixed` names keep their values.
+/* Prefixes `folder` to the relative paths in the values of options: input files, templates whose
+ * name contains a '/', files of values, and files in the description of a domain. Does not change
+ * the option `recipe` and the options that `is_fixed` selects.
  *
- * folder    with its final '/'; "": nothing changes.
- * is_fixed  returns true for a setting that keeps its value; NULL: there is none.
- * Errors    STATUS_MEMORY. */
+ * folder     ends with '/'; "": nothing changes.
+ * is_fixed   returns true for a setting that is not to be changed; NULL: there is no such setting.
+ * Errors     STATUS_MEMORY. */
 MUST_CHECK Status figure_rebase(Parsed *parsed, const char *folder,
                                 bool (*is_fixed)(const Setting *setting), Err *err);
 
-/* Makes the path that `path` is from the folder, in *out (owned). "-" is standard input. Errors:
- * STATUS_MEMORY. */
+/* Prefixes `folder` to a relative path. Copies an absolute path unchanged, and "-", which is
+ * standard input.
+ *
+ * folder   ends with '/', or is "".
+ * out      receives the path; the caller frees it.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status figure_path(const char *folder, const char *path, char **out, Err *err);
 
 #endif

@@ -1,4 +1,5 @@
-/* The recipe of a figure: sections of an INI file, each with the options that its kind has. */
+/* Reads and writes the recipe of a figure: an INI file. Its sections are [figure], [panels],
+ * [panel NAME], [inset NAME] and [text NAME]. The keys of a section are options. */
 #ifndef CORCAST_JOB_FIGURE_FIGURE_PLAN_H
 #define CORCAST_JOB_FIGURE_FIGURE_PLAN_H
 
@@ -6,60 +7,80 @@
 #include "job/tree/makers.h"
 #include "options/options.h"
 
-/* What a panel is beside a picture of `render`. */
+/* The options that a panel has in addition to the options of `render`. Strings are borrowed from
+ * FigurePlan.text, like the strings of the next two structs. */
 typedef struct PanelOptions {
-    const char *tree, *title;
-    int span;
-    double aspect; /* width over height; 0: the cell's */
+    const char *tree, *title; /* `tree`: the tree's file; NULL: Section.maker makes the tree */
+    int span;                 /* number of columns that the panel covers */
+    double aspect;            /* width / height of the panel; 0: that of its cell */
 } PanelOptions;
 
+/* The options of an inset: a magnified part of a panel. A member `has_X` is true if X is
+ * specified. */
 typedef struct InsetOptions {
-    const char *of; /* the panel */
-    Vec3 at, place; /* middles, from the panel's upper left corner, over width and height */
-    double magnify;
-    double width_mm, height_mm; /* 0: as wide */
-    double scale_bar_mm;
+    const char *of; /* name of the panel */
+    Vec3 at, place; /* middle of the magnified part, and middle of the inset: from the panel's upper
+                     * left corner, x as a fraction of the panel's width, y as a fraction of its
+                     * height; z is ignored */
+    double magnify; /* magnification relative to the panel */
+    double width_mm, height_mm; /* size of the inset on the page; height 0: equal to the width */
+    double scale_bar_mm;        /* length in the tree that the inset's scale bar stands for */
     bool has_at, has_place, has_scale_bar;
 } InsetOptions;
 
+/* The options of a line of text on the page. */
 typedef struct TextOptions {
     const char *text;
-    Vec3 at; /* mm from the page's upper left corner; of the baseline */
-    double text_pt;
+    Vec3 at; /* a point on the baseline: mm from the page's upper left corner, right and down */
+    double text_pt; /* font size, if has_text_pt; else the figure's font size applies */
     bool bold, has_at, has_text_pt;
-    FigureAlign align;
-    Vec3 color; /* sRGB in [0, 1] */
+    FigureAlign align; /* whether the text begins, ends or has its middle at `at` */
+    Vec3 color;        /* sRGB in [0, 1] */
 } TextOptions;
 
 typedef enum SectionKind { SECTION_PANEL, SECTION_INSET, SECTION_TEXT } SectionKind;
 
+/* A section [panel NAME], [inset NAME] or [text NAME], with the values of its keys. */
 typedef struct Section {
     SectionKind kind;
-    const char *name;       /* borrowed from the plan's text */
-    Parsed own;             /* of PanelOptions, InsetOptions or TextOptions */
-    Parsed render;          /* of a panel: those of `render` */
-    const TreeMaker *maker; /* makes the panel's tree; NULL: the tree is a file */
-    const char *arguments;  /* of the maker; borrowed from the plan's text */
-    char tree_name[40];     /* "the tree of grow"; meaningless without a maker */
-    bool made;              /* the panel itself says by what, not [panels] */
+    const char *name;       /* borrowed from FigurePlan.text */
+    Parsed own;             /* own.options is a PanelOptions, InsetOptions or TextOptions */
+    Parsed render;          /* panels: render.options is a RenderOptions; else zeroed */
+    const TreeMaker *maker; /* panels: the command that makes the tree; NULL: the tree is a file */
+    const char *arguments;  /* the options of that command, as in the recipe; borrowed from
+                             * FigurePlan.text; NULL without a maker */
+    char tree_name[40];     /* names the tree in messages: "the tree of grow"; not used without a
+                             * maker */
+    bool made;              /* `maker` is from the panel's own section, not from [panels] */
 } Section;
 
 typedef struct FigurePlan {
-    Section **sections; /* owned, and each of them; in the order of the recipe */
+    Section **sections; /* in the order of the recipe; the array and each section are owned */
     size_t n, capacity;
-    char *text; /* owned; what values point into */
+    char *text; /* the contents of the recipe, which names and values point into; owned */
 } FigurePlan;
 
-/* Reads a recipe; `figure->find_command` must be set. Keys of [figure] go to `figure`'s options,
- * where the command line does not say otherwise; those of [panels], which stands before all panels,
- * are every panel's. STATUS_USAGE or STATUS_INPUT, naming file and line, for sections and keys that
- * there are none of, or that stand there twice, and for values that options do not take. *plan is
- * owned (figureplan_release), also on failure. */
+/* Reads a recipe.
+ *
+ * Keys of [figure] set options of `figure`. A value from the command line takes precedence over the
+ * recipe's value. Keys of [panels] apply to every panel; the section must come before all panels. A
+ * panel's own value takes precedence.
+ *
+ * figure   the parsed command line of `figure`; figure->find_command must be set. Afterwards its
+ *          options borrow strings from plan->text.
+ * plan     zero it before. The caller releases it with figureplan_release even after an error.
+ * Errors   STATUS_USAGE, with file and line, for an unknown section or key, and for one that
+ *          occurs twice; the errors of setting_read, with file and line, for a value that its
+ *          option does not accept; STATUS_USAGE, with the file, if there is no panel, or if a
+ *          panel has no tree; STATUS_INPUT for a malformed line; STATUS_IO if the file cannot be
+ *          read; STATUS_MEMORY. */
 MUST_CHECK Status figureplan_read(const char *path, Parsed *figure, FigurePlan *plan, Err *err);
+/* Releases the plan and zeroes it. The options of `figure` must not be used any more if they borrow
+ * from the plan. */
 void figureplan_release(FigurePlan *plan);
 
-/* Appends a recipe that says all that this one and the command line do, and what holds without
- * their saying. */
+/* Appends a complete recipe to `text`: the recipe that was read, the options of the command line,
+ * and all defaults. If memory runs out, `text` records it. */
 void figureplan_put(const FigurePlan *plan, const Parsed *figure, Text *text);
 
 #endif

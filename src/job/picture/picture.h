@@ -1,5 +1,11 @@
-/* What a picture shows: the options that scene, render and verify share, and the scene they
- * make. */
+/* Declares the options that define a picture, and builds the scene of the picture from them. The
+ * commands scene, render, view and verify share these options.
+ *
+ * "Specified" means: given on the command line or in a recipe. All strings and tables that an
+ * options struct points to are borrowed from the parsed command line (Parsed).
+ *
+ * Errors are written to `err`. Results are set on success only, except where a contract states
+ * something else. */
 #ifndef CORCAST_JOB_PICTURE_PICTURE_H
 #define CORCAST_JOB_PICTURE_PICTURE_H
 
@@ -11,133 +17,211 @@
 #include "tree/tree.h"
 
 typedef struct PictureOptions {
-    ViewParams stage; /* but projection, view and size, which are below */
-    int model, potential, joints, projection, view, color_blend, frame; /* choices */
-    NumberList turn; /* degrees about the upright, and then up */
+    /* Camera options. Its projection, view and size are not used; the members below replace them.
+     * picture_view_params combines all of them. */
+    ViewParams stage;
+    /* Choices, each the index of an option's value:
+     * model        a SceneModel.
+     * potential    0: all vessels of an isosurface blend; 1: only vessels that are connected by a
+     *              short path along the tree.
+     * joints       a JointForm.
+     * projection   a Projection.
+     * view         a NamedView.
+     * color_blend  models of fields: 0: a point has the colour of its largest segment; 1: the
+     *              colour at the mean value of the segments that blend there.
+     * frame        what the camera frames: 0: the tree; 1: the domain that the tree was grown in;
+     *              2: the geometry that is drawn. */
+    int model, potential, joints, projection, view, color_blend, frame;
+    NumberList turn; /* degrees: rotation of the camera around the up axis to the right, then its
+                      * elevation; up to two numbers; a missing number is 0 */
     PictureSize size;
-    int antialias;
-    int occlusion;    /* beams a pixel, or rays a sample; 0: none */
-    double tolerance; /* of a mesh, over the local radius */
-    bool
-        part_overlaps; /* likewise: thin vessels that overlap others that they do not belong with */
-    bool as_mesh;      /* the model is a mesh, whatever `model` says */
-    bool by_tiles;     /* nothing but pictures tile by tile is made of the geometry */
-    double prune_radius_mm;
-    const char *look;
-    Vec3 background; /* sRGB in [0, 1] */
-    bool has_background;
+    int antialias;      /* a pixel has antialias x antialias samples */
+    int occlusion;      /* ambient occlusion: number of occlusion directions per pixel, or with
+                         * render's --exact number of rays per sample; 0: no ambient occlusion */
+    double tolerance;   /* mesh: maximum distance of the triangles from the surface / the local
+                         * vessel radius */
+    bool part_overlaps; /* mesh: makes vessels thinner that overlap vessels to which they are not
+                         * connected */
+    bool as_mesh;       /* options are checked as if `model` were the mesh; set for output
+                         * formats that hold triangles */
+    bool by_tiles;      /* the geometry is only rendered tile by tile; saves memory, see
+                         * GeometryParams.implied_ends */
+    double prune_radius_mm; /* segments thinner than this radius are removed; 0: none */
+    const char *look;       /* name in templates/looks, or path of a look file */
+    Vec3 background;        /* sRGB in [0, 1], or transparent (picture_is_transparent) */
+    bool has_background;    /* `background` is specified; else the look's background applies */
+    /* The option of this name is specified: */
     bool has_height, has_angle, has_view, has_turn, has_joints, has_antialias;
-    int erf;          /* choice: ErfForm */
-    double cell_beta; /* as in CellParams */
+    int erf;          /* choice: ErfForm; POV-Ray's isosurface */
+    double cell_beta; /* POV-Ray's isosurface: a cell is split while its side / the smallest radius
+                       * that matters in the cell is larger than this; 0: CELL_BETA */
     Coloring coloring;
 } PictureOptions;
 
-/* Of zeroed options: for POV-Ray's pictures, of one ray a pixel. */
+/* Sets the defaults of pictures that are compared with POV-Ray's: one sample per pixel. Overwrites
+ * all of *options. */
 void picture_set_defaults(PictureOptions *options);
-/* The default of --antialias, where pictures are not compared with POV-Ray's. */
+/* Default of --antialias for pictures that are not compared with POV-Ray's. */
 enum { PICTURE_ANTIALIAS = 3 };
-/* How far triangles may be off the surface, over the local radius, where nothing else is said. */
+/* Default of --tolerance: maximum distance of triangles from the surface / the local radius. */
 #define MESHING_TOLERANCE 0.02
 
-/* Of --antialias, --prune-radius (mm) and --tolerance, wherever they are options. */
+/* Accepted ranges of --antialias, --prune-radius (mm) and --tolerance, for all commands. */
 extern const Range antialias_range, prune_range, tolerance_range;
-extern const OptionTable picture_table; /* sets a PictureOptions but its coloring */
-/* The tables that set the PictureOptions at `path` of a command's options. */
+/* Sets a PictureOptions, except its member `coloring`. */
+extern const OptionTable picture_table;
+/* Lists the option tables that set a PictureOptions, including `coloring`. The PictureOptions is
+ * the member `path` of the command's options struct `Type`. */
 #define PICTURE_TABLES(Type, path)                                                                 \
     {&picture_table, offsetof(Type, path)}, COLORING_TABLES(Type, path.coloring)
 
-/* How POV-Ray's isosurface is cut into cells. */
+/* Returns how the isosurface that is written for POV-Ray is cut into cells. */
 CellParams picture_cells(const PictureOptions *options);
 
-/* Returns the condition of --dpi if the resolution has an effect neither on the size nor on the
- * file `output`, NULL for a picture in memory. */
+/* Returns the set of unmet conditions of the option --dpi (OptionTable.unmet).
+ *
+ * The set contains WHEN(ON_PAPER_OR_KEPT) if --dpi has no effect: the size is in pixels, and the
+ * format of the file `output` does not store a resolution. The set is empty otherwise.
+ *
+ * output   path of the picture file; NULL: a picture in memory, for which the set is empty. */
 ConditionSet picture_unmet_dpi(const PictureSize *size, const char *output);
 
-/* STATUS_USAGE when an option is given that only the native renderer knows. */
+/* Checks that POV-Ray can draw what the options specify.
+ *
+ * Errors   STATUS_USAGE if ambient occlusion is specified. */
 MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 
-/* A tree as it is drawn. */
+/* A tree that has been read for drawing. Release it with picture_tree_release. */
 typedef struct PictureTree {
-    const char *path; /* for sentences; borrowed */
-    Tree tree;
-    Tree whole;    /* before segments were cut off, for colours that are of it; zeroed: as `tree` */
-    char *joined;  /* as coloring_join has it; owned, or NULL */
-    size_t pruned; /* segments that were cut off */
+    const char *path; /* the tree's file, for messages; borrowed from the Parsed */
+    Tree tree;        /* without pruned segments; owned */
+    Tree whole;       /* with pruned segments; owned. Only stored if the range of colours is that of
+                       * the whole tree (RANGE_OF_TREE); else zeroed, and n is 0 */
+    char *joined;     /* if --color-by names a file of values: the name of the tree's column that
+                       * the values were read into; else NULL. Owned */
+    size_t pruned;    /* number of segments that were pruned */
 } PictureTree;
 
-/* Reads the tree that is the first operand, with the flows and the values that options say of it,
- * and cuts off the segments thinner than `prune_radius_mm`, 0 for none. STATUS_INPUT when no other
- * is left, and as tree_read, blood_settle and coloring_join. */
+/* Reads the tree that is the first operand, and the flows and values that options add to it. Then
+ * removes the segments thinner than `prune_radius_mm`.
+ *
+ * prune_radius_mm   0: removes none.
+ * out               release it with picture_tree_release.
+ * Errors            STATUS_INPUT if no segment is left; the errors of reading_tree, blood_settle
+ *                   and coloring_join; STATUS_MEMORY. */
 MUST_CHECK Status picture_read_tree(const Coloring *coloring, double prune_radius_mm,
                                     const Parsed *parsed, PictureTree *out, Err *err);
 void picture_tree_release(PictureTree *tree);
-/* The same for coloring_appearance; borrowed. */
+/* Returns the tree as coloring_appearance takes it. The result borrows from `tree` and owns
+ * nothing. */
 ColoredTree picture_colored_tree(const PictureTree *tree);
 
-/* What a picture is made from. */
+/* The input of a picture: a tree and a look. Release it with picture_source_release. */
 typedef struct PictureSource {
     PictureTree of;
-    Look look;
-    Box domain; /* about the tree's own, where that is framed */
+    Look look;  /* with the background that the options specify */
+    Box domain; /* the box around the domain that the tree was grown in, in the coordinates of the
+                 * tree; only set if the options frame the domain */
 } PictureSource;
 
-/* Reads look and tree, which is the first operand. STATUS_USAGE when options fight each other, or
- * say of the blood what the law of its viscosity does not take; STATUS_INPUT when a domain is to be
- * framed that the tree does not tell. */
+/* Checks the options, and reads the look and the tree, which is the first operand.
+ *
+ * source   release it with picture_source_release. It borrows from `parsed`.
+ * Errors   STATUS_USAGE if options exclude each other, or have no effect with this look or this
+ *          law of blood viscosity; STATUS_INPUT if the domain is to be framed, and the tree's file
+ *          does not state it; the errors of coloring_read_look, picture_read_tree and
+ *          tree_domain_box. */
 MUST_CHECK Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
                                       PictureSource *source, Err *err);
 void picture_source_release(PictureSource *source);
-/* Whether there is to be nothing behind what is drawn. */
+/* Returns true if the options specify a transparent background. */
 bool picture_is_transparent(const PictureOptions *options);
-/* The view that the options ask for, of a source that is borrowed. */
+/* Returns the parameters of stage_view that the options specify. The result borrows the tree and
+ * the domain of `source`. */
 ViewParams picture_view_params(const PictureOptions *options, const PictureSource *source);
-/* Each of the three things that a picture is of, as the options ask for it. `report` may be NULL.
- */
+
+/* Makes the geometry of a picture.
+ *
+ * common     provides the number of threads, and receives progress reports.
+ * geometry   borrows nothing; release it with geometry_release.
+ * report     may be NULL.
+ * Errors     the errors of stage_geometry. */
 MUST_CHECK Status picture_geometry(const PictureOptions *options, const PictureSource *source,
                                    const Common *common, Geometry *geometry, StageReport *report,
                                    Err *err);
+/* Makes the appearance of a picture.
+ *
+ * appearance   release it with appearance_release.
+ * Errors       STATUS_USAGE if colours are to blend and the colour map or the number of classes
+ *              does not allow it; the errors of coloring_appearance and stage_blend. */
 MUST_CHECK Status picture_appearance(const PictureOptions *options, const PictureSource *source,
                                      Appearance *appearance, Err *err);
+/* Makes the view of a picture.
+ *
+ * view     owns and borrows nothing.
+ * Errors   the errors of stage_view. */
 MUST_CHECK Status picture_view(const PictureOptions *options, const PictureSource *source,
                                const Geometry *geometry, View *view, Err *err);
 
-/* What a scene has lost of its tree. */
+/* What a user should know about a scene: which parts of the tree it does not show. */
 typedef struct PictureReport {
     StageReport staged;
-    size_t pruned; /* segments */
+    size_t pruned; /* number of segments that were pruned */
     JointForm joints;
-    bool shadows; /* were asked for */
+    bool shadows; /* lights cast shadows */
 } PictureReport;
 
-/* Reads the tree and the look and makes all three. */
+/* Reads the tree and the look, and makes geometry, appearance and view.
+ *
+ * scene    release it with scene_release.
+ * report   must not be NULL.
+ * Errors   the errors of picture_read_source and picture_scene_of. */
 MUST_CHECK Status picture_scene(const PictureOptions *options, const Parsed *parsed, Scene *scene,
                                 PictureReport *report, Err *err);
 
-/* The same of a source that is there. `anatomy` may be NULL. */
+/* Makes geometry, appearance and view from a source that has been read.
+ *
+ * scene     release it with scene_release.
+ * anatomy   receives how the vessels are connected; release it with anatomy_release. NULL: it is
+ *           not computed.
+ * report    must not be NULL.
+ * Errors    the errors of picture_appearance, picture_geometry and picture_view; STATUS_INPUT if
+ *           the whole tree is nearer to the camera than renderers draw; STATUS_MEMORY. */
 MUST_CHECK Status picture_scene_of(const PictureOptions *options, const PictureSource *source,
                                    const Parsed *parsed, Scene *scene, Anatomy *anatomy,
                                    PictureReport *report, Err *err);
 
-/* Says how many segments are pruned, cannot be drawn, or have no surface, how many places are not
- * joined, and what the colours mean. Call it after all checks: an operation that is refused says
- * nothing else. Errors: STATUS_MEMORY. */
+/* Prints notes about a scene: what is too small or too near to be drawn, how many segments are
+ * pruned or not drawn, how many joints could not be built as specified, and what the colours mean.
+ *
+ * Call it after all checks, so that a refused operation prints only its error.
+ *
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status picture_say(const Scene *scene, const PictureReport *report, const Talk *talk,
                               Err *err);
 
-/* Says which effects of the look POV-Ray does not draw; `what` ends the sentence with what becomes
- * of them. Errors: STATUS_USAGE for an x-ray, of which nothing would be left; STATUS_MEMORY. */
+/* Prints a note that lists the effects of the look that POV-Ray does not draw, if there are any.
+ *
+ * what     the end of the sentence, about these effects: "left out on both sides".
+ * Errors   STATUS_USAGE if the look is an x-ray, because nothing of the picture would be left;
+ *          STATUS_MEMORY. */
 MUST_CHECK Status picture_say_effects(const PictureOptions *options, const View *view,
                                       const char *what, const Talk *talk, Err *err);
 
-/* STATUS_MEMORY when an image of this size with `bytes_a_pixel` in memory cannot fit the
- * machine. */
+/* Checks that an image of this size fits into the memory of this machine.
+ *
+ * bytes_a_pixel   memory per pixel.
+ * Errors          STATUS_MEMORY if the image needs 90 % of the machine's memory or more. */
 MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err *err);
 
-/* STATUS_INPUT when an id of the geometry is larger than those that an id plane holds, naming the
- * file of the tree. */
+/* Checks that an id plane can hold all segment ids of a geometry.
+ *
+ * tree_path   the file of the tree, for the message.
+ * Errors      STATUS_INPUT if an id is larger than IMAGE_MAX_ID. */
 MUST_CHECK Status picture_check_ids(const Geometry *geometry, const char *tree_path, Err *err);
 
-/* One line that says what a geometry shows. */
+/* Appends a description of a geometry in one line: the name of the tree's file, the number of
+ * segments and the model. */
 void picture_description(const Geometry *geometry, const char *tree_path, Text *out);
 
 #endif

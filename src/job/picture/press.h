@@ -1,5 +1,7 @@
-/* How a picture's file is packed, and in whose colours: the options that commands which write
- * pictures share. */
+/* Reads the options that define how a picture is stored in its file: bits, compression, quality and
+ * CMYK colours. All commands that write pictures share these options.
+ *
+ * These settings, read and completed, are called an output profile (type Press). */
 #ifndef CORCAST_JOB_PICTURE_PRESS_H
 #define CORCAST_JOB_PICTURE_PRESS_H
 
@@ -8,30 +10,38 @@
 #include "options/options.h"
 
 typedef struct PressOptions {
-    const char *preset;      /* NULL: none */
-    int column;              /* choice: the width that a preset gives */
-    int bits;                /* 0: what is usual of the format */
-    int compression, intent; /* choices: ImageCompression, InkIntent */
-    int quality;             /* of a JPEG */
-    const char *cmyk_profile;
+    const char *preset;       /* a publisher's requirements (preset.h): name or path; NULL: none */
+    int column;               /* choice: the width is 0: one column of the preset, 1: two columns */
+    int bits;                 /* bits per channel: 8, 16 or 32; 0: the default of the format */
+    int compression, intent;  /* choices: ImageCompression (TIFF); InkIntent (CMYK) */
+    int quality;              /* JPEG: 1..100 */
+    const char *cmyk_profile; /* ICC profile that colours are converted to; NULL: sRGB */
 } PressOptions;
 
-extern const OptionTable press_table;
+extern const OptionTable press_table; /* sets a PressOptions */
+/* Sets the defaults. Overwrites all of *options. */
 void press_set_defaults(PressOptions *options);
 
-/* Checks the bits of a channel against the format of the file `output`.
- * Errors  STATUS_USAGE when the format cannot have them. */
+/* Checks that the format of the file `output` can store the specified number of bits per channel.
+ * Accepts any number for pages (.pdf, .svg).
+ *
+ * Errors   STATUS_USAGE if the format cannot. */
 MUST_CHECK Status press_check(const PressOptions *options, const char *output, Err *err);
 
-/* What writers take. */
+/* The output profile of a picture, as writers of images take it. Release it with press_release. */
 typedef struct Press {
-    int bits; /* of codes: 8 or 16 */
-    ImagePacking packing;
-    Inks *inks; /* owned; in packing */
+    int bits;             /* bits per channel of integer codes: 8 or 16 */
+    ImagePacking packing; /* borrows `inks` */
+    Inks *inks;           /* the conversion to CMYK; NULL: none; owned */
 } Press;
 
-/* Reads the profile, if there is one, and decides on what is left open; `threads` as
- * Common.threads. Errors as inks_read. */
+/* Reads the ICC profile, if one is specified and the format can contain it, and sets the defaults
+ * of the format.
+ *
+ * output    path of the picture file, whose extension is the format.
+ * threads   as Common.threads.
+ * press     release it with press_release.
+ * Errors    the errors of inks_read. */
 MUST_CHECK Status press_open(const PressOptions *options, const char *output, int threads,
                              Press *press, Err *err);
 void press_release(Press *press);

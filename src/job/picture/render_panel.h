@@ -1,45 +1,53 @@
-/* Panels: pictures, or lines, for a page that holds several of them. */
+/* Draws a panel: one picture of a tree, with its insets, for a page with several panels. A panel is
+ * an image, or with --ink a line drawing. */
 #ifndef CORCAST_JOB_PICTURE_RENDER_PANEL_H
 #define CORCAST_JOB_PICTURE_RENDER_PANEL_H
 
 #include "image/image.h"
 #include "job/picture/render.h"
 
-/* A part of a panel, magnified. */
+/* An inset: a part of a panel, magnified. The results must be zeroed before panel_draw. */
 typedef struct PanelInset {
-    double
-        at[2]; /* middle of the part, from the panel's upper left corner, in widths and heights */
-    double magnify;
+    double at[2];    /* middle of the part, from the panel's upper left corner: x as a fraction of
+                      * the panel's width, y as a fraction of its height */
+    double magnify;  /* magnification relative to the panel */
     int pixels[2];   /* width and height of the inset */
-    Picture picture; /* result, unless the panel is in lines; owned */
-    Strokes strokes; /* result, if the panel is in lines; owned */
+    Picture picture; /* result, unless Panel.in_lines; owned */
+    Strokes strokes; /* result, if Panel.in_lines; owned */
 } PanelInset;
 
-/* A picture of a tree on a page. */
+/* A panel. The caller sets the first four members, and zeroes the results before panel_draw. */
 typedef struct Panel {
-    const char *name;         /* "[panel a]", for sentences; borrowed */
-    const FigureFonts *fonts; /* of the page; borrowed */
-    PanelInset *insets;       /* borrowed */
+    const char *name;         /* "[panel a]", for messages; borrowed */
+    const FigureFonts *fonts; /* the fonts of the page; borrowed */
+    PanelInset *insets;       /* the array is borrowed; panel_release releases its results */
     size_t n_insets;
-    bool in_lines;         /* result: --ink was given */
-    Picture picture;       /* result, of 8 bits, unless it is in lines; owned */
-    Strokes strokes;       /* result, if it is in lines; owned */
+    bool in_lines;         /* result: the panel is a line drawing, because --ink is specified */
+    Picture picture;       /* result, unless in_lines: 8 bits per channel; owned */
+    Strokes strokes;       /* result, if in_lines; owned */
     Scene scene;           /* result; owned */
-    PictureReport report;  /* result: what the scene has lost; the caller says it */
-    Annotation annotation; /* result: legend, scale bar and letter, which the caller draws */
+    PictureReport report;  /* result: what the scene does not show; the caller reports it */
+    Annotation annotation; /* result: legend, scale bar and letter, which the caller draws; borrows
+                            * from the Parsed */
 } Panel;
 
-/* Returns the part of the camera's picture that an inset shows, in widths and heights. */
+/* Returns the part of the panel that an inset shows: left and right as fractions of the panel's
+ * width, top and bottom as fractions of its height.
+ *
+ * camera   the camera of the panel. */
 FigureBox panel_part(const PanelInset *inset, const Camera *camera);
-/* Returns the view of an inset. */
+/* Returns the view of an inset. `view` is the view of the panel, with an orthographic camera. */
 View panel_inset_view(const PanelInset *inset, const View *view);
 
-/* Draws a panel and its insets into memory. parsed->options are RenderOptions without output,
- * planes, JSON, parts and animation.
+/* Draws a panel and its insets into memory.
  *
- * panel   owned; the caller calls panel_release even after an error.
- * Errors  STATUS_USAGE for insets of a picture in perspective; errors of render_make. */
+ * parsed   parsed->options is a RenderOptions. It must not specify output, planes, JSON, tiles or
+ *          animation.
+ * panel    the caller releases it with panel_release even after an error.
+ * Errors   STATUS_USAGE for insets in a perspective picture, and for a legend in a line drawing;
+ * the errors of render_make. */
 MUST_CHECK Status panel_draw(Parsed *parsed, Panel *panel, Err *err);
+/* Releases the results of the panel and of its insets. */
 void panel_release(Panel *panel);
 
 #endif

@@ -1,5 +1,5 @@
-/* The operation `compare`: compares two images or planes, two noisy images, or two folders of
- * images. */
+/* Compares two images or planes, two noisy images, or two folders of images: the operation
+ * `compare`. Image A is the reference, and image B is judged. */
 #ifndef CORCAST_JOB_VERIFY_COMPARE_H
 #define CORCAST_JOB_VERIFY_COMPARE_H
 
@@ -13,55 +13,63 @@ typedef enum ComparisonKind {
     COMPARED_NOTHING /* a reference was accepted, with --accept */
 } ComparisonKind;
 
-/* One of two images. All but the name is owned. */
+/* Image A or image B of a comparison. All members except `name` are owned. */
 typedef struct ComparedSide {
     const char *name; /* path of the file, or "A" or "B"; borrowed */
-    Image image;      /* empty if only ids are compared */
-    Picture alpha;    /* empty if the image is opaque */
-    IdPlane ids;      /* empty if unknown */
-    Picture shown;    /* the image as 16-bit sRGB; empty if image.picture is already sRGB */
+    Image image;      /* zeroed if only ids are compared */
+    Picture alpha;    /* zeroed if the image is opaque */
+    IdPlane ids;      /* zeroed if the ids are unknown */
+    Picture shown;    /* the image as 16-bit sRGB, for pictures of the difference; zeroed if not
+                       * needed,    or if image.picture is already sRGB */
 } ComparedSide;
 
-/* The result of a comparison. Release it with comparison_release. */
+/* The result of a comparison. Release it with comparison_release. Members marked with a kind are
+ * zeroed in comparisons of another kind. */
 typedef struct Comparison {
     ComparisonKind kind;
-    bool agrees;
-    double seconds;        /* time taken, reading included */
-    PlaneKind plane;       /* COMPARED_PAIR: what the files hold */
+    bool agrees;           /* no limit is exceeded; true for COMPARED_NOTHING */
+    double seconds;        /* duration of the comparison, including reading */
+    PlaneKind plane;       /* COMPARED_PAIR: what the files contain */
     ComparedSide sides[2]; /* COMPARED_PAIR */
     CompareResult result;  /* COMPARED_PAIR */
-    Ledger ledger;         /* COMPARED_PAIR, if ids are known: one row per segment */
+    Ledger ledger;         /* COMPARED_PAIR of integer pictures with ids: one entry per segment */
     NoiseResult noise;     /* COMPARED_NOISE */
     Suite suite;           /* COMPARED_SUITES */
-    char *tier;            /* name of the tier if a tolerance file states it; owned */
+    char *tier;            /* name of the tolerance if it is from a file, else NULL; owned */
 } Comparison;
 
-/* Describes the operation. Its options set a CompareOptions. */
+/* The command line of the operation. Its options set a CompareOptions. */
 extern const Command command_compare;
 
-/* Checks the options, reads the files and compares them. options->given stands in for the operands.
- * A difference is not an error, but comparison->agrees is false. Changes options->metrics to the
- * value that holds.
+/* Checks the options, reads the files and compares them. With options->accept it replaces a
+ * reference instead.
  *
- * comparison  set on success; release it with comparison_release. It borrows file names from
- *             `parsed`.
- * Errors      STATUS_USAGE if options exclude each other or have no effect; STATUS_INPUT if a file
- *             is bad, or the images differ in size or depth; STATUS_IO; STATUS_MEMORY. */
+ * If the images differ, it succeeds and sets comparison->agrees to false.
+ *
+ * options      options->given replaces the operands if it is not zeroed. Receives the default of
+ *              `metrics`, which depends on other options.
+ * comparison   release it with comparison_release. It borrows file names from `parsed`.
+ * Errors       STATUS_USAGE if options exclude each other or have no effect; STATUS_INPUT if a file
+ *              is malformed, or if the images differ in size or bit depth; STATUS_IO;
+ *              STATUS_MEMORY. */
 MUST_CHECK Status compare_make(CompareOptions *options, Parsed *parsed, Comparison *comparison,
                                Err *err);
 
-/* Writes the files that the options name: JUnit XML, ledger, pictures of the difference, page and
- * report. Errors: STATUS_IO, STATUS_MEMORY. */
+/* Writes the output files that the options specify: JUnit XML, the ledger of segments, pictures of
+ * the difference, the HTML page and the report folder.
+ *
+ * Errors   STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status compare_write(const CompareOptions *options, const Parsed *parsed,
                                 const Comparison *comparison, Err *err);
 
 void comparison_release(Comparison *comparison);
 
-/* Appends the verdict in one line, with options->metrics all measures. Appends nothing for
+/* Appends the verdict of two images as one line, followed by all measures if options->metrics is
+ * true. Appends the result of a noise test or of two folders as text. Appends nothing for
  * COMPARED_NOTHING. */
 void comparison_text(const CompareOptions *options, const Comparison *comparison, Text *out);
-/* Returns all measures as JSON: a new reference; NULL for COMPARED_NOTHING, or if memory runs
- * out. */
+/* Returns the verdict and all measures as JSON: a new reference, which the caller releases. Returns
+ * NULL for COMPARED_NOTHING, and if memory runs out. */
 json_t *comparison_json(const Comparison *comparison);
 
 #endif

@@ -1,4 +1,7 @@
-/* The options of `compare`, and the tolerance that they state. */
+/* Declares the options of the command `compare`, and computes the tolerance from them.
+ *
+ * The command compares A, the reference, with B, the image that is judged. All strings in the
+ * option structs are borrowed from the parsed command line. */
 #ifndef CORCAST_JOB_VERIFY_COMPARE_OPTIONS_H
 #define CORCAST_JOB_VERIFY_COMPARE_OPTIONS_H
 
@@ -6,57 +9,69 @@
 #include "image/image.h"
 #include "options/options.h"
 
-/* Tolerances that are built in. */
+/* The built-in tolerances, called tiers: A (identity), B (single precision), surface (implicit
+ * surfaces) and none (nothing is judged). See compare/rules/tolerance.h. */
 typedef enum Tier { TIER_A, TIER_B, TIER_SURFACE, TIER_NONE } Tier;
 
-/* The options that state a tolerance. A member `has_X` says whether X is stated. */
+/* The options that define the tolerance. A member `has_X` is true if X is specified. */
 typedef struct JudgeOptions {
     Tier tier;
-    const char *tolerance; /* file that changes the tier; NULL: none */
+    const char *tolerance; /* file with limits that replace limits of the tier; NULL: none. With a
+                            * file and without --tier, only NaNs are judged otherwise. */
     bool has_tier, has_levels, has_ppm, has_pixelmatch;
-    double levels;     /* 8-bit levels that a pixel may be off */
-    double ppm;        /* pixels per million that may be off by more */
-    double pixelmatch; /* threshold of pixelmatch, 0..1 */
+    double levels;     /* maximum difference of a pixel, in levels of 1/255 */
+    double ppm;        /* parts per million of the pixels that may differ by more */
+    double pixelmatch; /* threshold of pixelmatch, in [0, 1] */
 } JudgeOptions;
 
 extern const OptionTable judge_options; /* sets a JudgeOptions */
 
-/* An image in memory that stands in for a file. The pointers are borrowed; NULL: there is none. */
+/* An image in memory that is compared instead of a file. The pointers are borrowed. Both are NULL
+ * if there is no such image. */
 typedef struct GivenImage {
-    const Image *image; /* codes or floats, with or without alpha */
-    const IdPlane *ids;
+    const Image *image; /* integer codes or floats, with or without alpha */
+    const IdPlane *ids; /* id of the visible segment per pixel; NULL: unknown */
 } GivenImage;
 
-/* What the options of `compare` set. Files and texts that are not given are NULL. */
+/* The options of `compare`. Paths and texts that are not specified are NULL. */
 typedef struct CompareOptions {
-    PlaneKind kind; /* what the files hold; PLANE_KINDS: decided by their names */
+    PlaneKind kind; /* what the files contain; PLANE_KINDS: derived from the name of file A */
     JudgeOptions judge;
-    const char *ids_a, *ids_b; /* id planes of both sides */
-    const char *layer;         /* layer or part of OpenEXR files that is read */
-    int bits; /* pictures are converted to sRGB of 8 * bits bits; 0: they are not */
-    const char *heat, *difference, *flicker, *ledger, *page, *junit; /* files that are written */
-    const char *report;                                              /* folder that is written */
-    const char *reference;        /* folder of reference images; the operand is a folder, too */
-    const char *accept, *reason;  /* the image that becomes its reference, and why */
-    const char *noise, *variance; /* noisy images: other renderings, or a file of variances */
-    double alarms;                /* rate of false alarms of the noise test, 0..1 */
-    bool json;                    /* for the command line: the result is printed as JSON */
-    bool metrics, has_metrics;    /* perceptual measures are computed; whether this is stated */
-    double depth_mm;              /* maximum difference of depths; 0: not stated */
-    Vec3 background;              /* transparent images are composited over it; sRGB in [0, 1] */
-    GivenImage given[2];          /* stand in for the operands; set by the caller; zeroed: none */
+    const char *ids_a, *ids_b; /* files of the id planes of A and B */
+    const char *layer;         /* layer or part that is read from OpenEXR files */
+    int bits; /* 1, 2: pictures are converted to sRGB of 8 or 16 bits before they are compared;
+               * 0: they are compared as stored */
+    const char *heat, *difference, *flicker, *ledger, *page, *junit; /* output files */
+    const char *report;                                              /* output folder */
+    const char *reference; /* folder of reference images; the operand is then the folder of the
+                            * images that are judged */
+    const char *accept, *reason;  /* case whose image replaces its reference, and the reason */
+    const char *noise, *variance; /* test of noisy images: paths of other renderings, separated by
+                                   * commas, or a file of variances per pixel */
+    double alarms;                /* false alarm rate of the noise test, in (0, 1) */
+    bool json;                    /* the command line prints the result as JSON */
+    bool metrics, has_metrics;    /* perceptual measures are computed; `metrics` is specified */
+    double depth_mm;              /* maximum difference of depths; 0: not specified */
+    Vec3 background;     /* colour over which transparent images are composited; sRGB in [0, 1] */
+    GivenImage given[2]; /* A and B in memory, used instead of the operands; set by the caller;
+                          * zeroed: A and B are files */
 } CompareOptions;
 
 extern const OptionTable compare_options; /* sets a CompareOptions, except `judge` */
+/* Sets the defaults of a zeroed CompareOptions. */
 void compare_set_defaults(void *options);
-/* Returns the conditions of options that do not hold for two files of this kind. */
+/* Returns the set of option conditions (options/conditions.h) that are not met if two files of this
+ * kind are compared. */
 ConditionSet compare_unmet(PlaneKind kind);
 
-/* Finds the tolerance: the tier, changed by the tolerance file, changed by single limits.
+/* Computes the tolerance. Starts with the limits of the tier. Limits from the tolerance file
+ * replace them, and limits from other options replace those.
  *
- * depth_mm   maximum difference of depths; 0: not specified.
- * name       receives the tier's name if the file states one (owned); the tolerance borrows it.
- * Errors     STATUS_INPUT if the file is bad, STATUS_MEMORY. */
+ * depth_mm    maximum difference of depths; 0: not specified.
+ * tolerance   borrows *name.
+ * name        set only if there is a tolerance file: receives the name that the file
+ *             specifies, or "given"; the caller frees it after the last use of the tolerance.
+ * Errors      the errors of tolerance_read: STATUS_INPUT, STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status compare_tolerance(const JudgeOptions *options, double depth_mm,
                                     Tolerance *tolerance, char **name, Err *err);
 
