@@ -1,41 +1,42 @@
-/* Commands and their options as text: help, manual pages, the reference, completions of shells.
- * All is made of the descriptions. */
+/* Formats the help, manual pages, the reference and shell completions from the option tables. */
 #ifndef CORCAST_CLI_HELP_H
 #define CORCAST_CLI_HELP_H
 
 #include "options/options.h"
 
-/* Prints what `corcast COMMAND --help` does; without a command, what `corcast --help` does. */
+/* Prints the help of a command; if `command` is NULL, the overview of all commands. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status help_print(const Command *command, Err *err);
 
-/* "Exit status: ..." without those words, one line. */
+/* The meanings of the exit codes as one line, without the words "Exit status:". */
 extern const char help_exit_status[];
 
-/* Appends the option's meaning, which values it takes, and what holds without it; `plain` has its
- * default. */
+/* Appends the option's help, the accepted values, and the value or phrase that applies if the
+ * option is not given. `plain` has the default value. `text` fails if memory runs out. */
 void help_put_meaning(const Setting *plain, Text *text);
-/* Appends the chars, after a backslash those that are among `special`; NULL, from a text that
- * failed, makes `text` fail. */
+/* Appends `chars`, with a backslash before each character that is in `special`. If `chars` is NULL,
+ * from a Text that failed, `text` fails. `text` fails if memory runs out. */
 void help_put_escaped(const char *chars, const char *special, Text *text);
 
-/* All of these append; `plain` has the defaults of a command. */
+/* Appends a description of a command. `plain` has the default values. `text` fails if memory runs
+ * out. */
 typedef void HelpPut(const Parsed *plain, Text *text);
 
-/* What `put` makes of the command with its defaults. */
+/* Calls `put` with the default values of `command`. Errors: STATUS_MEMORY. */
 MUST_CHECK Status help_put(HelpPut *put, const Command *command, Text *text, Err *err);
-/* Likewise of all commands. */
+/* Calls help_put for every command. Errors: STATUS_MEMORY. */
 MUST_CHECK Status help_put_all(HelpPut *put, Text *text, Err *err);
 
-/* A page for man, of section 1. */
+/* Appends the manual page of a command, in section 1. `text` fails if memory runs out. */
 void manual_put(const Parsed *plain, Text *text);
-/* The page corcast.1, which names the others. */
+/* Appends the manual page corcast.1, which lists the commands. `text` fails if memory runs out. */
 void manual_put_overview(Text *text);
-/* Appends a JSON object whose member "commands" describes a command, or all if it is NULL, as
- * command_schema does. */
+/* Appends a JSON object whose member "commands" describes `command`, or every command if `command`
+ * is NULL, as command_schema does. Errors: STATUS_MEMORY. */
 MUST_CHECK Status schema_put(const Command *command, Text *text, Err *err);
-/* docs/REFERENCE.md. */
+/* Appends the content of docs/REFERENCE.md. Errors: STATUS_MEMORY. */
 MUST_CHECK Status reference_put(Text *text, Err *err);
-/* Completion for bash, zsh, fish. */
+/* Append the completion script for bash, zsh or fish. Errors: STATUS_MEMORY. */
 MUST_CHECK Status completion_put_bash(Text *text, Err *err);
 MUST_CHECK Status completion_put_zsh(Text *text, Err *err);
 MUST_CHECK Status completion_put_fish(Text *text, Err *err);

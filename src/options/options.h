@@ -1,7 +1,9 @@
-/* Options, each described once. A description says what an option is called, what it sets, which
- * values it takes and what it means; command line, recipe, help, man page, completion and reference
- * are made from it, and values are written back through it. A Command is what is known of an
- * operation before it runs; how it is run is its caller's. */
+/* Describes commands and their options, and reads and writes the values of options.
+ *
+ * An Option is a row of a table: the option's name, the struct member that it sets, the values that
+ * it takes, and its help. The command line, recipes, the help, the man pages, shell completion and
+ * the reference are all generated from these rows. A Command describes an operation. It does not
+ * contain the function that runs the operation. */
 #ifndef CORCAST_OPTIONS_OPTIONS_H
 #define CORCAST_OPTIONS_OPTIONS_H
 
@@ -14,30 +16,31 @@
 #include <stddef.h>
 
 typedef enum OptionKind {
-    OPTION_FLAG,    /* bool: no value */
-    OPTION_SWITCH,  /* bool: on or off */
-    OPTION_TEXT,    /* const char *: borrowed */
-    OPTION_INPUT,   /* const char *: a file that is read; given at most once */
-    OPTION_OUTPUT,  /* const char *: a file that is written; likewise */
-    OPTION_FOLDER,  /* const char *: a folder that is written to; likewise */
-    OPTION_LOOKUP,  /* const char *: a name, or with a '/' a file that is read; likewise */
-    OPTION_WHOLE,   /* int, in the range */
-    OPTION_SEED,    /* uint64_t */
-    OPTION_COUNT,   /* size_t, in the range */
-    OPTION_NUMBER,  /* double, finite, in the range */
-    OPTION_CURVE,   /* LogCurve, its values in the range: NUMBER or PLACE:NUMBER,... */
-    OPTION_VECTOR,  /* Vec3: X,Y or X,Y,Z */
-    OPTION_VECTORS, /* VectorList: X,Y or X,Y,Z, given several times */
-    OPTION_NUMBERS, /* NumberList: A,B,... */
-    OPTION_COLOR,   /* Vec3: R,G,B, each in [0, 1], sRGB; #RGB, #RRGGBB or a name; COLOR_NONE */
-    OPTION_SIZE,    /* PictureSize: WxH in pixels, each in the range, or in lengths, as 89mmx60mm */
-    OPTION_RANGE,   /* RangeEnds: A,B with A below B */
-    OPTION_CHOICE   /* int or an enum: index into choices */
+    OPTION_FLAG,    /* bool; takes no value on the command line */
+    OPTION_SWITCH,  /* bool; takes on or off; without a value it is on */
+    OPTION_TEXT,    /* const char *; borrowed */
+    OPTION_INPUT,   /* const char *; path of a file to read; borrowed */
+    OPTION_OUTPUT,  /* const char *; path of a file to write; borrowed */
+    OPTION_FOLDER,  /* const char *; path of a folder to write to; borrowed */
+    OPTION_LOOKUP,  /* const char *; name of a template, or a path with a '/' to read; borrowed */
+    OPTION_WHOLE,   /* int, in Option.range */
+    OPTION_SEED,    /* uint64_t, from 0 to 9999999999999999999 */
+    OPTION_COUNT,   /* size_t, in Option.range */
+    OPTION_NUMBER,  /* double, finite, in option_range */
+    OPTION_CURVE,   /* LogCurve, values in option_range: NUMBER or PLACE:NUMBER,... */
+    OPTION_VECTOR,  /* Vec3: X,Y or X,Y,Z; Z is 0 if missing */
+    OPTION_VECTORS, /* VectorList: X,Y or X,Y,Z; each use appends, up to MAX_LIST */
+    OPTION_NUMBERS, /* NumberList: A,B,...; up to MAX_LIST numbers */
+    OPTION_COLOR,   /* Vec3, sRGB: R,G,B in [0, 1], #RGB, #RRGGBB, a name; see can_be_none */
+    OPTION_SIZE,    /* PictureSize: WxH in pixels, each in option_range; or 89mmx60mm, or 89mm */
+    OPTION_RANGE,   /* RangeEnds: A,B; A is below B if both are values or both percentiles */
+    OPTION_CHOICE   /* int or an enum; index into Option.choices */
 } OptionKind;
 
+/* Maximum number of elements of a VectorList or a NumberList. */
 enum { MAX_LIST = 64 };
 
-/* What an option sets whose colour is none. */
+/* The value of an OPTION_COLOR for the word "none". */
 #define COLOR_NONE vec3(-1, -1, -1)
 static inline bool color_is_none(Vec3 color)
 {
@@ -54,26 +57,28 @@ typedef struct NumberList {
     size_t n;
 } NumberList;
 
-/* Each a value, or a percentile, 0 to 100, of values that there are. */
+/* The two ends of a range. at[i] is a percentile in [0, 100] of the data if percent[i] is true,
+ * else a value. */
 typedef struct RangeEnds {
     double at[2];
     bool percent[2];
 } RangeEnds;
 
-/* Width and height of a picture, in pixels or on paper. */
+/* Width and height of a picture, given in pixels or as lengths on paper. */
 typedef struct PictureSize {
-    int pixels[2]; /* of lengths, what they are at `dpi`, once all options are read */
-    double mm[2];  /* 0 0: pixels were given */
-    double dpi;    /* pixels an inch on paper; 0: not known */
-    bool has_dpi;  /* given, not the default of lengths */
+    int pixels[2]; /* 0 for lengths until options_settle derives it from mm and dpi */
+    double mm[2];  /* lengths on paper; {0, 0} if the size was given in pixels */
+    double dpi;    /* pixels per inch; 0: not specified */
+    bool has_dpi;  /* dpi was given by an option; false if it is the default of 300 for lengths */
 } PictureSize;
 
+/* Returns true if the size was given as lengths. */
 static inline bool size_is_on_paper(const PictureSize *size)
 {
     return size->mm[0] > 0;
 }
 
-/* The headings that options stand under, in the order of the help. */
+/* The headings of the help, in the order of the help. Each option is under one of them. */
 typedef enum OptionGroup {
     GROUP_FILES,
     GROUP_INPUT,
@@ -95,36 +100,45 @@ typedef enum OptionGroup {
     OPTION_GROUPS
 } OptionGroup;
 
+/* The text of each heading. */
 extern const char *const option_group_names[OPTION_GROUPS];
 
 typedef struct Option {
     const char *name;   /* without the dashes */
-    const char *member; /* what it sets, as the struct has it: "params.gamma" */
-    size_t where;       /* offset of that in the struct */
-    size_t given;       /* offset of a bool that is set when the option is present ... */
-    bool has_given;     /* ... if there is one */
-    bool aside;         /* what a command makes does not depend on it */
-    bool can_be_none;   /* of OPTION_COLOR: it takes "none" */
-    bool is_told;       /* of a file that is written: the command that it tells has its own name */
+    const char *member; /* path of the member that the option sets: "params.gamma" */
+    size_t where;       /* offset of that member in the struct */
+    size_t given;       /* offset of a bool that is set to true when the option is read */
+    bool has_given;     /* `given` is valid */
+    bool aside;         /* the command's result does not depend on the option */
+    bool can_be_none;   /* OPTION_COLOR only: the option accepts "none" */
+    bool is_told;       /* OPTION_OUTPUT only: command_line_text shows the name of the file. If
+                         * false, it shows the extension of --output only, and leaves out any other
+                         * output file. */
     OptionKind kind;
     OptionGroup group;
-    const MetaRow *meta; /* the key of a tree that it says: range and unit are its; NULL: none */
-    const Range *range;  /* of OPTION_WHOLE, COUNT, NUMBER, CURVE, SIZE; NULL: any number */
-    const char *const *choices; /* of OPTION_CHOICE; ends with NULL */
-    const char *unit;           /* "mm"; NULL: none */
-    const char *argument;       /* "T.swc"; NULL: named after unit or kind */
-    const char *otherwise; /* NULL: without the option the value before holds; "": nothing does;
-                            * or what does in words, "the tree's" */
-    const char *list;      /* the command that lists the values; NULL: none */
-    ConditionSet when;     /* all of these must hold for the option to have an effect */
-    const char *needs;    /* names parted by blanks: one of these options must be on, if the command
-                           * has any of them; NULL: none */
-    const char *excludes; /* names parted by blanks: these options must be off; NULL: none */
-    const char *clash;    /* ends the sentence "--NAME and --OTHER"; NULL: " exclude each other" */
+    const MetaRow
+        *meta; /* metadata key of a tree that the option sets; gives range and unit; NULL: none */
+    const Range *range;         /* NULL: any number. Must not be NULL for OPTION_WHOLE, COUNT,
+                                 * CURVE and SIZE. */
+    const char *const *choices; /* OPTION_CHOICE only: the accepted words; NULL ends the list */
+    const char *unit;           /* "mm"; a number may have it as a suffix; NULL: none */
+    const char
+        *argument; /* placeholder of the value in the help: "T.swc"; NULL: from unit or kind */
+    const char *otherwise; /* what applies if the option is not given. NULL: the default value; "":
+                            * nothing; else a phrase for the help: "the tree's" */
+    const char *list;  /* name of the command that lists the accepted names: "looks"; NULL: none */
+    ConditionSet when; /* the option has an effect only if all of these conditions hold */
+    const char *needs; /* option names separated by blanks. The option has an effect only if one of
+                        * them is on. Names that the command does not have are ignored; if it
+                        * has none of them, nothing is needed. NULL: none */
+    const char *excludes; /* option names separated by blanks, which must all be off; NULL: none */
+    const char
+        *clash; /* end of the error sentence "--NAME and --OTHER"; NULL: " exclude each other" */
     const char *help;
 } Option;
 
-/* Range and unit, the option's own or those of the key; NULL: any number, or none. */
+/* Return the range and the unit of an option: those of Option.meta if it is set, else the option's
+ * own. NULL: any number, or no unit. */
 static inline const Range *option_range(const Option *option)
 {
     return option->meta ? &option->meta->range : option->range;
@@ -134,30 +148,34 @@ static inline const char *option_unit(const Option *option)
     return option->meta ? option->meta->unit : option->unit;
 }
 
-/* What an option sets, checked by the compiler: SETS(NUMBER, Growing, params.gamma) is an
- * OPTION_NUMBER and sets that member, which must be a double. */
+/* Fills the kind, the member and the offset of an Option. SETS(NUMBER, Growing, params.gamma) is an
+ * OPTION_NUMBER that sets the member params.gamma of a Growing. Compilation fails if the member's
+ * type does not fit the kind. */
 #define SETS(KIND, Type, path)                                                                     \
     .kind = OPTION_##KIND, .member = #path,                                                        \
     .where = offsetof(Type, path) + 0 * sizeof(_Generic(((Type *)0)->path, OPTION_TYPE_##KIND      \
                                                         : (char)0))
+/* Names the bool member that is set to true when the option is read. */
 #define GIVEN(Type, path)                                                                          \
     .has_given = true, .given = offsetof(Type, path) + 0 * sizeof(_Generic(((Type *)0)->path, bool \
                                                                            : (char)0))
-/* Likewise of an OPTION_NUMBER that says the key of a tree; `known` is an array of bools, by key.
- */
+/* Fills an OPTION_NUMBER that sets a metadata key of a tree, and takes range and unit from the key.
+ * `known` is an array of bools with the key as index; the option sets known[META_KEY]. */
 #define SETS_KEY(Type, path, known, KEY)                                                           \
     SETS(NUMBER, Type, path), GIVEN(Type, known[META_##KEY]), .meta = &meta_rows[META_##KEY]
+/* Sets Option.range from `least` to `most`, both included. */
 #define FROM_TO(least, most)                                                                       \
     .range = &(const Range)                                                                        \
     {                                                                                              \
         least, most                                                                                \
     }
 
-/* The resolution of the PictureSize at `path`. */
+/* Fills the option --dpi, which sets the resolution of the PictureSize at `path`. */
 #define DPI_OF_SIZE(Type, path)                                                                    \
     .name = "dpi", SETS(NUMBER, Type, path.dpi), GIVEN(Type, path.has_dpi), FROM_TO(1, 1e5),       \
     .argument = "N", .otherwise = "300 of a size on paper"
 
+/* The C type of the member that an option of each kind sets. Used by SETS. */
 #define OPTION_TYPE_FLAG bool
 #define OPTION_TYPE_SWITCH bool
 #define OPTION_TYPE_TEXT const char *
@@ -181,18 +199,19 @@ static inline const char *option_unit(const Option *option)
 typedef struct Parsed Parsed;
 typedef struct OwnedText OwnedText;
 
-/* Descriptions that set members of one struct. */
+/* Options that set members of one struct, which the functions receive as `set`. */
 typedef struct OptionTable {
     const Option *options;
     size_t n;
-    /* Once all are read, sets options, of other tables as well, that nobody has (setting->said);
-     * NULL: nothing follows from these. */
+    /* Called when all options have been read. Derives values of options that were not given
+     * (Setting.said is false), also of other tables. May be NULL. */
     Status (*settle)(void *set, const Parsed *parsed, Err *err);
-    /* Returns which conditions do not hold for these values, `set`; conditions that are known only
-     * later count as holding. NULL: the table knows of no condition. */
+    /* Returns the conditions that do not hold for the values in `set`. A condition that is known
+     * only later counts as holding. NULL: all conditions hold. */
     ConditionSet (*unmet)(const void *set, const Parsed *parsed);
 } OptionTable;
 
+/* Initialize an OptionTable with an array of options: OPTION_ROWS inside braces, with functions. */
 #define OPTION_ROWS(array) .options = array, .n = sizeof(array) / sizeof *(array)
 #define OPTION_TABLE(array)                                                                        \
     {                                                                                              \
@@ -201,167 +220,207 @@ typedef struct OptionTable {
 
 enum { MAX_OPERANDS = 4096, MAX_TABLES = 8 };
 
+/* The description of an operation and its options. */
 typedef struct Command {
     const char *name;
     const char *summary;  /* one line */
     const char *operands; /* "T.swc -o P.png" */
-    const char *examples; /* lines; may be NULL */
+    const char *examples; /* command lines, each ending with a newline; may be NULL */
     int min_operands, max_operands;
-    bool needs_output; /* the option output must be given */
-    bool writes_last;  /* the last operand is written; the others are read */
-    bool is_lookup;    /* operands are names, not files */
-    bool reads_tree;   /* it has the options of reading, which set parsed->reading */
-    bool own_recipe;   /* it prints its --dump-recipe itself */
-    bool own_check;    /* it calls options_check itself, or never */
-    size_t size;       /* of the struct that its options set; 0: it has none of its own */
-    void (*set_defaults)(void *options); /* of that struct, zeroed before; NULL: zeros */
+    bool needs_output; /* --output must be given, except if Parsed.in_memory is true */
+    bool writes_last;  /* the last operand is a file to write; all others are files to read */
+    bool is_lookup;    /* operands are names, not files; they are not checked as files */
+    bool reads_tree;   /* the command has the options for reading trees, which set Parsed.reading */
+    bool own_recipe;   /* the command prints the recipe of --dump-recipe itself */
+    bool own_check;    /* options_finish does not call options_check for this command */
+    size_t size;       /* bytes of the struct that the options set; 0: none */
+    void (*set_defaults)(void *options); /* receives the zeroed struct; NULL: all zero */
     struct {
         const OptionTable *table;
-        size_t at; /* offset in that struct of the one that the table sets */
+        size_t at; /* offset, in the struct of `size` bytes, of the struct that `table` sets */
     } tables[MAX_TABLES];
 } Command;
 
-/* Finds the command of this name; NULL when there is none. */
+/* Returns the command with this name; NULL if there is none. */
 typedef const Command *FindCommand(const char *name);
 
-/* The options that every command has. */
+/* The values of the options that every command has. */
 typedef struct Common {
     bool quiet, help;
-    const Talk *talk; /* who listens to what the command tells; NULL: nobody */
+    const Talk *talk; /* receives messages and progress; NULL: nobody; borrowed */
     int threads;      /* 0: all processors */
     uint64_t seed;
-    bool dump; /* a recipe that says all options is printed */
-    const char *recipe;
-    char *recipe_text; /* what the values of a recipe point into; owned */
+    bool dump;          /* --dump-recipe was given */
+    const char *recipe; /* path of a recipe to read; NULL: none; borrowed */
+    char *recipe_text;  /* text of the recipe, into which values point; owned */
 } Common;
 
-/* An option, bound to what it sets. */
+/* An option and the struct that it sets. */
 typedef struct Setting {
     const Option *option;
-    char *base; /* the struct that `where` and `given` are offsets in */
-    bool typed; /* it stands on the command line */
-    bool said;  /* there, or in the recipe */
+    char *base; /* the struct to which Option.where and Option.given are offsets; borrowed */
+    bool typed; /* the option was given on the command line or by options_set */
+    bool said;  /* the option was given on the command line, by options_set or in a recipe */
 } Setting;
 
+/* A command with the values of its options. Release with parsed_release. */
 struct Parsed {
     const Command *command;
-    FindCommand *find_command; /* checks the names of a recipe's sections; NULL: any name stands */
-    void *options;             /* of the command, command->size bytes; owned */
+    FindCommand *find_command; /* checks section names of a recipe; NULL: accepts any name */
+    void *options;             /* the struct that the options set, command->size bytes; owned */
     Common common;
-    ReadOptions reading; /* of commands that read trees */
-    Setting *settings;   /* all options, the command's first; owned */
+    ReadOptions reading; /* set by the options of commands with Command.reads_tree */
+    Setting *settings;   /* all options; the tables of the command come first; owned */
     size_t n_settings;
-    OwnedText *texts; /* values that options_set copied; owned */
-    Files files;      /* that operands and options name */
+    OwnedText *texts; /* list of the values that options_set copied; owned */
+    Files files;      /* the files that operands and options name; owned */
     const char *operands[MAX_OPERANDS];
     int n_operands;
-    const Tree *given;      /* set by parsed_give; borrowed; NULL: none */
-    const char *given_name; /* set by parsed_give; borrowed; NULL: none */
-    bool in_memory;         /* the caller takes the result in memory: --output may be missing */
+    const Tree *given;      /* tree in memory from parsed_give; borrowed; NULL: none */
+    const char *given_name; /* operand or value that stands for the tree; borrowed; NULL: none */
+    bool
+        in_memory; /* the caller takes the result in memory: --output and operands may be missing */
 };
 
-/* The command's options with their defaults, in *parsed (parsed_release). */
+/* Initializes *parsed with the command's options and their default values. The caller sets
+ * find_command, common.talk and in_memory afterwards if it needs them, and releases *parsed with
+ * parsed_release. After an error nothing needs to be released. Errors: STATUS_MEMORY. */
 MUST_CHECK Status parsed_init(Parsed *parsed, const Command *command, Err *err);
+/* Frees everything that *parsed owns, and zeroes it. */
 void parsed_release(Parsed *parsed);
 
-/* Makes `tree` what the command reads: its first operand or, for a command without operands, the
- * value of --from. `name` then stands for the tree in sentences and in provenance: the path that
- * the tree was read from. NULL calls the tree parsed_memory in sentences, and names it in
- * provenance as the help names the operand. Tree and name are borrowed until parsed_release. Call
- * it before operands are added. */
+/* Makes the command read a tree in memory: as its first operand or, if the command takes no
+ * operands and has the option --from, as the value of --from. Call it before operands are added.
+ *
+ * tree  borrowed until parsed_release.
+ * name  the path that the tree was read from, for error sentences and provenance; borrowed until
+ *       parsed_release. NULL: sentences name an operand parsed_memory, and a value of --from by its
+ *       placeholder in the help; provenance uses the placeholder in the help for both. */
 void parsed_give(Parsed *parsed, const Tree *tree, const char *name);
 extern const char parsed_memory[]; /* "the tree" */
 
-/* Reads the arguments after the command's name, the recipe first so that the command line wins.
- * STATUS_USAGE with a sentence that names the option, its value and what is allowed; errors as
- * files_read and files_write have them for the files that operands and options name. Of a value
- * given twice the last holds. With --help, nothing needs to be there. */
+/* Reads the arguments that follow the command's name, then does what options_finish does. With
+ * --help, options_finish is not called. Values of argv are borrowed until parsed_release.
+ *
+ * An option that names a file or folder may be given once on the command line. For any other option
+ * the last value applies, except that OPTION_VECTORS collects all values. The command line takes
+ * precedence over the recipe.
+ *
+ * Errors  STATUS_USAGE, with the option, its value and the accepted values; also if an operand or
+ *         an option is missing, unknown or without effect. STATUS_INPUT or STATUS_IO if the recipe
+ *         cannot be read. The errors of files_read and files_write. The errors of
+ * OptionTable.settle. STATUS_MEMORY. */
 MUST_CHECK Status options_parse(Parsed *parsed, int argc, char **argv, Err *err);
 
-/* Sets an option by its name, without dashes, as the command line does: the first value replaces
- * the default, and each value of an OPTION_VECTORS is appended. An option may be set again.
+/* Sets an option by its name, which has no dashes. A value replaces the value before, except that
+ * OPTION_VECTORS appends each value. An option may be set several times.
  *
- * value   as the command line takes it; "on" for a flag. The value is copied.
- * Errors  STATUS_USAGE with the sentence of the command line: there is no such option, or it does
- *         not take this value, and keeps the value before. STATUS_MEMORY. */
+ * value   as on the command line; "on" for a flag. The value is copied.
+ * Errors  STATUS_USAGE if the command has no such option or the option does not accept the value;
+ *         the value before is unchanged. STATUS_MEMORY. */
 MUST_CHECK Status options_set(Parsed *parsed, const char *name, const char *value, Err *err);
-/* Appends the value of an option as options_set takes it. The values of an OPTION_VECTORS stand on
- * a line each. Appends nothing for an option that has no value and for a flag that is not set.
- * Errors  STATUS_USAGE when there is no such option. STATUS_MEMORY. */
+/* Appends the value of an option in the form that options_set accepts. The values of an
+ * OPTION_VECTORS are separated by newlines. Appends nothing for an option without a value and for a
+ * flag that is not set.
+ *
+ * Errors  STATUS_USAGE if there is no such option. STATUS_MEMORY. */
 MUST_CHECK Status options_get(const Parsed *parsed, const char *name, Text *text, Err *err);
-/* Completes options that were set by name: reads the recipe, sets what follows from other options,
- * and checks everything that options_parse checks. Call it once, after the operands are set.
+/* Completes the options after they were set: reads the recipe, calls options_settle, checks that
+ * the required operands and options are present, notes all files in Parsed.files, and calls
+ * options_check unless Command.own_check is true. Call it once, after the operands are set.
+ *
  * Errors  as options_parse. */
 MUST_CHECK Status options_finish(Parsed *parsed, Err *err);
 
-/* Whether an option is a key of a recipe. */
+/* Returns true if an option is to be written to a recipe. */
 typedef bool OptionIsKey(const Option *option);
-/* Appends the lines of a recipe that say what these options say, whether they were given or not:
- * all that has a value. The text fails when memory runs out. */
+/* Appends a line `name = value` for each value of the options for which `is_key` returns true. An
+ * option without Option.given and Option.otherwise is written even if it was not given. Any other
+ * option is written only if setting_differs from the default. `text` fails if memory runs out. */
 void options_put_keys(const Parsed *parsed, OptionIsKey *is_key, Text *text);
-/* Appends a recipe for the command, of all options but what is written and what the result does not
- * depend on. Likewise. */
+/* Appends a recipe for the command. Leaves out the options with Option.aside and those of the kinds
+ * OPTION_OUTPUT and OPTION_FOLDER. `text` fails if memory runs out. */
 void options_put_recipe(const Parsed *parsed, Text *text);
-/* Makes pixels of the sizes on paper, once all options are read. STATUS_USAGE when they are too
- * many. */
+/* Calls OptionTable.settle of each table of the command, then computes the pixels of sizes that
+ * were given as lengths, at 300 pixels per inch if no resolution was given. Call it after all
+ * options are read.
+ *
+ * Errors  STATUS_USAGE if a width or height in pixels is outside the option's range; the errors of
+ *         OptionTable.settle. */
 MUST_CHECK Status options_settle(const Parsed *parsed, Err *err);
 
-/* Returns the path that the command writes to: its last operand or -o; NULL if there is none. */
+/* Returns the path that the command writes to: the last operand if Command.writes_last is true and
+ * there is an operand, else the value of --output; NULL if there is none. Borrowed. */
 const char *options_output(const Parsed *parsed);
 
-/* Whether the option stands on the command line. */
+/* Returns true if the option was given on the command line or by options_set. */
 bool options_typed(const Parsed *parsed, const char *name);
-/* Returns true if the option was given, on the command line or in a recipe. */
+/* Returns true if the option was given on the command line, by options_set or in a recipe. */
 bool options_said(const Parsed *parsed, const char *name);
 
-/* Returns the conditions of options that do not hold, as far as is known before the command runs.
- */
+/* Returns the conditions that do not hold, as far as is known before the command runs. */
 ConditionSet options_unmet(const Parsed *parsed);
-/* Whether an option of the command has an effect if it is given. `unmet` is from options_unmet. */
+/* Returns true if giving an option of the command has an effect: its conditions are not in `unmet`,
+ * and Option.needs and Option.excludes are fulfilled. `unmet` is from options_unmet. */
 bool options_has_effect(const Parsed *parsed, const Option *option, ConditionSet unmet);
-/* Refuses the first option of the command line that has no effect. A recipe's options are defaults
- * for many runs, and may be without effect in this one.
- * Errors  STATUS_USAGE with a sentence that names the option and what it needs. STATUS_MEMORY. */
+/* Checks that every option for which options_typed is true has an effect. Options that only a
+ * recipe gives are not checked, because a recipe may serve many runs.
+ *
+ * Errors  STATUS_USAGE for the first option without effect, with the option and the reason.
+ *         STATUS_MEMORY. */
 MUST_CHECK Status options_check(const Parsed *parsed, Err *err);
-/* Refuses the first option of the command line that has a condition of `unmet`: for conditions that
- * are known only after a file is read. Errors as options_check. */
+/* Checks that no option for which options_typed is true has a condition in `unmet`. For conditions
+ * that are known only after a file has been read.
+ *
+ * Errors  STATUS_USAGE for the first option with a condition in `unmet`. STATUS_MEMORY. */
 MUST_CHECK Status options_refuse(const Parsed *parsed, ConditionSet unmet, Err *err);
 
-/* Rooms name fields, in backquotes: `p_perf_mmhg`. Puts the option that sets the field there,
- * --p-perf: the one whose name, with its unit or without, or whose member is called so. What no
- * option sets stays as it is. */
+/* Replaces names of struct fields in an error sentence by names of options. Lower modules write a
+ * field in backquotes: `p_perf_mmhg` becomes --p-perf. An option matches if the field is the last
+ * component of Option.member, or the option's name with or without its unit (in any case, '_' for
+ * '-'). A field that no option matches stays as it is. Cuts a sentence that becomes too long for
+ * *err. Allocates no memory. */
 void options_name_fields(const Parsed *parsed, Err *err);
 
-/* The option of this name, which may be longer than `length`; NULL when there is none. */
+/* Returns the option whose name is the first `length` bytes of `name`; NULL if there is none.
+ * `name` has no dashes and need not end after `length` bytes. Borrowed from *parsed. */
 const Setting *parsed_find(const Parsed *parsed, const char *name, size_t length);
 
-/* The text of an option whose value is a text or a path; NULL without one, or such an option. */
+/* Returns the value of an option of the kinds OPTION_TEXT, INPUT, OUTPUT, FOLDER or LOOKUP. Returns
+ * NULL if the option has no value or the command does not have it. Borrowed. */
 const char *parsed_text(const Parsed *parsed, const char *name);
 
 /* ---- values ------------------------------------------------------------------------------------
  */
 
-/* Reads a value. STATUS_USAGE as options_parse has it. */
+/* Parses `value`, stores it in the struct, and sets the bool of Option.given. Values of text kinds
+ * are borrowed. Does not set `typed` and `said`.
+ *
+ * Errors  STATUS_USAGE, with the option, the value and the accepted values; STATUS_MEMORY. */
 MUST_CHECK Status setting_read(const Setting *setting, const char *value, Err *err);
-/* Whether every command has the option. */
+/* Returns true if every command has the option. */
 bool setting_is_common(const Parsed *parsed, const Setting *setting);
-/* How often the option has to be given to say what it says: 0 or 1, or the length of a list of
- * vectors. */
+/* Returns how many times the option has to be given to set its value again: 0 for a flag that is
+ * off, a text that is NULL and an empty list; the length of a list of vectors; else 1. */
 size_t setting_count(const Setting *setting);
-/* Appends value number `at` as setting_read takes it; a flag's is that of recipes. */
+/* Appends the value with index `at`, which must be below setting_count, in the form that
+ * setting_read accepts. A flag gives "on". `text` fails if memory runs out. */
 void setting_put(const Setting *setting, size_t at, Text *text);
-/* Whether the option says something else than `plain`, the same option of other variables. One that
- * has a `given` does where it was given. `text`, which is made of the answer, fails when memory
- * runs out. */
+/* Returns true if the value differs from the value of `plain`, the same option of another Parsed.
+ * If the option has Option.given, returns whether it was given, and `plain` is not read. If memory
+ * runs out, returns false and `text` fails. */
 bool setting_differs(const Setting *setting, const Setting *plain, Text *text);
 
-/* "N", "X,Y,Z", "MM": what stands for the value. */
+/* Appends the placeholder of the value: "N", "X,Y,Z", "MM"; nothing for a flag. `text` fails if
+ * memory runs out. */
 void option_put_argument(const Option *option, Text *text);
-/* What values the option takes, "from 1 to 9", or "" where its argument says it. */
+/* Appends the accepted values: the range, "from 1 to 9", or the choices, separated by commas.
+ * Appends nothing for an option without range or choices and for OPTION_SIZE. `text` fails if
+ * memory runs out. */
 void option_put_allowed(const Option *option, Text *text);
-/* Returns the name of a kind, as a schema has it: "number". */
+/* Returns the name of a kind, as in the JSON schema: "number". A static string. */
 const char *option_kind_name(OptionKind kind);
-/* Whether the value is a file or folder by name. */
+/* Returns true for OPTION_INPUT, OPTION_OUTPUT, OPTION_FOLDER and OPTION_LOOKUP. */
 bool option_is_path(const Option *option);
 
 #endif

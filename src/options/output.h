@@ -1,4 +1,4 @@
-/* What the output of all commands has in common: provenance and JSON. */
+/* What commands share when they write: shell words, the command line for provenance, and JSON. */
 #ifndef CORCAST_OPTIONS_OUTPUT_H
 #define CORCAST_OPTIONS_OUTPUT_H
 
@@ -7,39 +7,48 @@
 
 #define GENERATOR "corcast " CORCAST_VERSION
 
-/* Whether a word is one of a list that ends in NULL. */
+/* Returns true if `word` is in the list `words`, which NULL ends. */
 bool is_one_of(const char *word, const char *const *words);
 
-/* Appends a file's name as a word for a shell that a command takes for an operand: one that looks
- * like an option gets "./" before it. */
+/* Appends a path, quoted for a shell, as an operand. A path that looks like an option gets "./"
+ * before it. `text` fails if memory runs out. */
 void put_shell_operand(Text *text, const char *path);
 
-/* The last component of a path as one line of UTF-8 for people and reports, in *out (owned). */
+/* Sets *out to the last component of a path as one line of UTF-8; the caller frees it with free().
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status shown_name(const char *path, char **out, Err *err);
 
-/* The command line for provenance, in *out (owned), one line of UTF-8 that a shell takes: the
- * operands, each option that differs from its default, whether it came from the command line or a
- * recipe, and the output under the name that the help gives it; without what the result does not
- * depend on, and of each path the last component alone, so that no folder of the user's is told. */
+/* Sets *out to the command line for provenance, one line of UTF-8 quoted for a shell; the caller
+ * frees it with free().
+ *
+ * The line contains the operands, every option for which setting_differs from the default, and the
+ * output. The output has its name in the help, with the real extension, unless Option.is_told is
+ * true. Options with Option.aside are left out. Of a path only the last component is written, so
+ * that the line reveals no folder of the user.
+ *
+ * Errors  STATUS_MEMORY. */
 MUST_CHECK Status command_line_text(const Parsed *parsed, char **out, Err *err);
 
-/* Appends `cd HERE && /PATH/corcast COMMAND`, the operands and each option that differs from its
- * default but the output and those named in `without`, which ends in NULL, all quoted for a shell:
- * the same run from any folder, to which more options may be appended. STATUS_IO when the working
- * folder has no name. */
+/* Appends `cd HERE && /PATH/corcast COMMAND`, the operands, and every option for which
+ * setting_differs from the default, quoted for a shell. The command repeats the run from any
+ * folder, and more options may be appended.
+ *
+ * without  names of options to leave out, which NULL ends. --output and --recipe are always left
+ * out. Errors   STATUS_IO if the working folder cannot be found. STATUS_MEMORY. */
 MUST_CHECK Status command_again(const Parsed *parsed, const char *const *without, Text *text,
                                 Err *err);
 
-/* Adds to `hash` the bytes of each file that an option names and the result depends on: files of
- * the user's, and files of templates/ that are chosen by name. Errors as file_read and
- * template_file. */
+/* Adds to `hash` the bytes of each file that an option of the kind OPTION_INPUT or OPTION_LOOKUP
+ * names, including files of the templates folder. Options with Option.aside are left out. Errors:
+ * those of file_read and template_file. */
 MUST_CHECK Status hash_option_files(const Parsed *parsed, Hash *hash, Err *err);
 
-/* Adds the command line to those that a tree's file says. */
+/* Adds the line of command_line_text to the metadata of a tree. Errors: STATUS_MEMORY. */
 MUST_CHECK Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err);
 
-/* Writes `object` to `path` ("-": standard output) as indented JSON with a final newline, and lets
- * go of it. Numbers that are not finite must have been left out or set to null. */
+/* Writes `object` to `path` ("-" is standard output) as indented JSON with a final newline, and
+ * releases the reference, also after an error. `object` may not contain numbers that are not
+ * finite. Errors: those of file_write_text. */
 MUST_CHECK Status json_write(json_t *object, const char *path, Err *err);
 
 #endif
