@@ -12,7 +12,8 @@
 Keyword arguments are the options of the corcast command of the same name, with `_` for `-`:
 docs/REFERENCE.md lists them, and corcast.schema("grow") returns them with ranges, units and
 defaults. A value is a string as on the command line, a number, True or False, or a sequence of
-numbers; a list of strings or of sequences gives the option several times; None leaves the default.
+numbers; a list of strings is joined by commas, a sequence of sequences gives the option several
+times; None leaves the default.
 Two keyword arguments are not options: `progress`, a function of (step, fraction) that returns False
 to stop, and `message`, a function of (sentence, is_warning). Without `message`, warnings of the
 library become Python warnings.
@@ -29,6 +30,7 @@ import numbers
 import os
 import pathlib
 import sys
+import threading
 import warnings
 from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_void_p
 
@@ -49,6 +51,9 @@ class Error(Exception):
         super().__init__(sentence)
         self.exit_status = exit_status
         self.kind = kind
+
+    def __reduce__(self):
+        return Error, (str(self), self.exit_status, self.kind)
 
 
 # ---- the library ---------------------------------------------------------------------------------
@@ -125,6 +130,9 @@ def _load():
 _library = _load()
 
 
+_field_lock = threading.Lock()
+
+
 def _text(value):
     return None if value is None else os.fsencode(value)
 
@@ -149,6 +157,9 @@ class _Handle:
 
     def __init__(self, handle=None):
         self._handle = c_void_p(handle)
+
+    def __reduce_ex__(self, _protocol):
+        raise TypeError(f"a corcast {self._kind} cannot be copied or pickled")
 
     def __del__(self):
         if getattr(self, "_handle", None):
@@ -200,8 +211,9 @@ def _value(name, value):
 
 def _values(name, value):
     """The values of an option that is given once, or several times by a list."""
-    if isinstance(value, list) and value and \
-            (_is_sequence(value[0]) or isinstance(value[0], str)):
+    if isinstance(value, list) and value and isinstance(value[0], str):
+        return [",".join(value)]
+    if _is_sequence(value) and len(value) and _is_sequence(value[0]):
         return [_value(name, item) for item in value]
     return [_value(name, value)]
 
@@ -217,6 +229,7 @@ class _Options(_Handle):
         self._progress = arguments.pop("progress", None)
         self._message = arguments.pop("message", None)
         self._raised = None
+        self._stopped = False  # the caller's function has stopped the operation
         _call("options_new", command.encode(), byref(self._handle))
         if os.environ.get("CORCAST_TEMPLATES"):
             arguments.setdefault("templates", os.environ["CORCAST_TEMPLATES"])
@@ -232,7 +245,9 @@ class _Options(_Handle):
         """Stops the operation when the caller's function does, or raises, or at Ctrl-C."""
         try:
             if self._progress and step is not None:
-                return int(self._progress(step.decode(), fraction) is False)
+                answer = self._progress(step.decode(), fraction)
+                self._stopped = answer is not None and not answer
+                return int(self._stopped)
         except BaseException as raised:  # it must not cross the library; `run` raises it again
             self._raised = raised
             return 1
@@ -252,9 +267,11 @@ class _Options(_Handle):
         """Calls an operation, and raises what a callback raised meanwhile."""
         try:
             status = _call(name, *arguments, accept=accept)
-        except Error:
+        except Error as error:
             if self._raised:
                 raise self._raised from None
+            if error.kind == "cancelled" and not self._stopped:
+                raise KeyboardInterrupt from None  # ctypes swallowed it before _show began
             raise
         if self._raised:
             raise self._raised
@@ -283,6 +300,16 @@ def _copy(pointer, shape, dtype):
     return numpy.ctypeslib.as_array(pointer, (count,)).astype(dtype, copy=True).reshape(shape)
 
 
+def _integers(name, values):
+    """The values as an array of int32; ValueError if one is not such an integer."""
+    values = numpy.asarray(values)
+    with numpy.errstate(invalid="ignore"):
+        integers = numpy.ascontiguousarray(values, numpy.int32)
+    if not (integers == values).all():
+        raise ValueError(f"{name} are not integers that fit in 32 bits")
+    return integers
+
+
 class Tree(_Handle):
     """An arterial tree, or a forest of several.
 
@@ -298,7 +325,7 @@ class Tree(_Handle):
         and ids (n), 1 or more; without ids, nodes get 1, 2, and so on."""
         positions = numpy.ascontiguousarray(positions, numpy.float64)
         radii = numpy.ascontiguousarray(radii, numpy.float64)
-        parents = numpy.ascontiguousarray(parents, numpy.int32)
+        parents = _integers("parents", parents)
         n = len(radii)
         if positions.shape != (n, 3) or parents.shape != (n,) or radii.shape != (n,):
             raise ValueError(f"positions {positions.shape}, radii {radii.shape} and parents "
@@ -307,7 +334,7 @@ class Tree(_Handle):
                        radii.ctypes.data_as(POINTER(c_double)),
                        parents.ctypes.data_as(POINTER(ctypes.c_int32)))
         if ids is not None:
-            ids = numpy.ascontiguousarray(ids, numpy.int32)
+            ids = _integers("ids", ids)
             if ids.shape != (n,):
                 raise ValueError(f"ids {ids.shape} is not ({n},)")
             nodes.ids = ids.ctypes.data_as(POINTER(ctypes.c_int32))
@@ -320,6 +347,12 @@ class Tree(_Handle):
         tree = Tree()
         _call("tree_copy", self._handle, byref(tree._handle))
         return tree
+
+    def __copy__(self):
+        return self.copy()
+
+    def __deepcopy__(self, _memo):
+        return self.copy()
 
     def _nodes(self):
         nodes = _Nodes()
@@ -357,15 +390,16 @@ class Tree(_Handle):
     def _field(self, name, options):
         options = _Options("info", options)
         values, unit = POINTER(c_double)(), c_char_p()
-        _call("tree_field", self._handle, name.encode(), options._handle, byref(values),
-              byref(unit))
-        return values, unit.value.decode()
+        with _field_lock:  # the library keeps fields in the tree
+            _call("tree_field", self._handle, name.encode(), options._handle, byref(values),
+                  byref(unit))
+            return _copy(values, (len(self),), numpy.float64), unit.value.decode()
 
     def field(self, name, **options):
         """Returns one value for each node: a column of the file, or a computed field such as
         "flow" (ml/min), "pressure" (mmHg), "wss" (Pa), "strahler"; NaN where there is none.
         Options are those of `corcast info`: p_perf=100."""
-        return _copy(self._field(name, options)[0], (len(self),), numpy.float64)
+        return self._field(name, options)[0]
 
     def unit(self, name, **options):
         """Returns the unit of a field, "" for a pure number."""

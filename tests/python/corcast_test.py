@@ -206,6 +206,45 @@ class Faults(unittest.TestCase):
             corcast.grow(terminals=600, domain="disc:1")
         self.assertIn("too full for vessels of their real thickness", str(caught[0].message))
 
+    def test_wrong_integers_copies_and_numpy_answers(self):
+        import copy
+        import pickle
+        tree = corcast.grow(terminals=20)
+        for parents in ([-1, 2 ** 32], [-1, 0.5]):
+            with self.assertRaisesRegex(ValueError, "parents are not integers"):
+                corcast.Tree.from_arrays([(0, 0, 0), (0, 1, 0)], [1, 1], parents)
+        other = copy.copy(tree)
+        self.assertTrue((other.positions == tree.positions).all())
+        del other
+        self.assertEqual(len(tree), 40)
+        with self.assertRaises(TypeError):
+            pickle.dumps(tree)
+        error = pickle.loads(pickle.dumps(corcast.Error("a", 2, "usage")))
+        self.assertEqual((str(error), error.exit_status), ("a", 2))
+        with self.assertRaises(corcast.Error):
+            corcast.grow(terminals=3000, progress=lambda step, fraction: numpy.bool_(False))
+        image = tree.render(size=(20, 20), planes=["depth", "id"])
+        self.assertIsNotNone(image.plane("depth"))
+        self.assertIsNotNone(image.plane("id"))
+
+    def test_threads_share_a_tree(self):
+        tree = corcast.grow(terminals=200)
+        expected = {name: tree.field(name) for name in ("flow", "wss", "pressure")}
+        wrong = []
+
+        def work():
+            for k in range(60):
+                name = list(expected)[k % 3]
+                if not numpy.array_equal(tree.field(name), expected[name], equal_nan=True):
+                    wrong.append(name)
+
+        threads = [threading.Thread(target=work) for _ in range(6)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(wrong, [])
+
     def test_threads_use_the_library_side_by_side(self):
         made = {}
 
