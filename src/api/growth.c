@@ -5,6 +5,7 @@
 #include "job/tree/certify.h"
 #include "job/tree/info.h"
 #include "job/tree/makers.h"
+#include <string.h>
 
 /* ---- trees that are made --------------------------------------------------------------------- */
 
@@ -16,11 +17,13 @@ static Status make_tree(const RequestForm *form, MadeTree *made, corcast_report 
     Status status = STATUS_OK;
     TRY_GOTO(request_open(&request, form, call, err));
     Parsed *parsed = &request.parsed;
-    if (report) /* the job makes a report for a file of that name, which is not written */
+    const bool has_json = parsed_find(parsed, "json", strlen("json")) != NULL;
+    if (report &&
+        has_json) /* the job makes a report for a file of that name, which is not written */
         TRY_GOTO(options_set(parsed, "json", "report.json", err));
     TRY_GOTO(tree_maker_find(parsed->command->name)->make(parsed->options, parsed, made, err));
     if (report)
-        status = report_new(json_incref(made->report), report, err);
+        status = report_new(has_json ? json_incref(made->report) : json_object(), report, err);
 done:
     return request_close(&request, status, err);
 }

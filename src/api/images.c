@@ -281,6 +281,11 @@ static Status write_floats(const corcast_image *image, corcast_plane plane, cons
     return status;
 }
 
+static bool extension_is(const char *path, const char *extension)
+{
+    return strcmp(file_extension(path), extension) == 0;
+}
+
 static Status write_image(const corcast_image *image, corcast_plane plane, corcast_type type,
                           const char *path, Err *err)
 {
@@ -291,6 +296,11 @@ static Status write_image(const corcast_image *image, corcast_plane plane, corca
     if (type == CORCAST_F32 && shape.channels == 4)
         return err_set(err, STATUS_USAGE, "%s: floats with alpha are written by corcast_export",
                        path);
+    if ((type == CORCAST_F32) != image_traits(path).floats)
+        return err_set(err, STATUS_USAGE,
+                       "%s: floats are written to .exr and .pfm, integers to other formats", path);
+    if (plane == CORCAST_ID && !extension_is(path, "png") && !extension_is(path, "ppm"))
+        return err_set(err, STATUS_USAGE, "%s: ids are written to .png and .ppm", path);
     if (type == CORCAST_F32)
         return write_floats(image, plane, path, err);
     if (plane == CORCAST_ID)

@@ -77,9 +77,15 @@ static Status set_options(Parsed *parsed, const RequestForm *form, Err *err)
         if (strcmp(text->name, "output") != 0)
             TRY(options_set(parsed, text->name, text->value, err));
     }
-    if (!form->output || !parsed_find(parsed, "output", strlen("output")))
+    if (!form->output)
         return STATUS_OK;
-    return options_set(parsed, "output", form->output, err);
+    if (parsed->command->writes_last) {
+        parsed->operands[parsed->n_operands++] = form->output;
+        return STATUS_OK;
+    }
+    return parsed_find(parsed, "output", strlen("output"))
+               ? options_set(parsed, "output", form->output, err)
+               : STATUS_OK;
 }
 
 /* Takes over what the caller's options say besides options. */

@@ -75,6 +75,18 @@ static void remove_texts(OptionTexts *texts, const char *name, size_t n)
             remove_text(texts, i);
 }
 
+/* Moves a Parsed. Settings of the options that all commands have point into the Parsed itself. */
+static void move_parsed(const Parsed *from, Parsed *to)
+{
+    *to = *from;
+    for (size_t i = 0; i < to->n_settings; i++) {
+        char **base = &to->settings[i].base;
+        const size_t at = (size_t)(*base - (const char *)from);
+        if (*base >= (const char *)from && at < sizeof *from)
+            *base = (char *)to + at;
+    }
+}
+
 /* Sets the Parsed anew from the texts, which are known to be right. */
 static Status parse_again(corcast_options *options, Err *err)
 {
@@ -89,7 +101,7 @@ static Status parse_again(corcast_options *options, Err *err)
         }
     }
     parsed_release(&options->parsed);
-    options->parsed = made;
+    move_parsed(&made, &options->parsed);
     return STATUS_OK;
 }
 
@@ -116,6 +128,8 @@ static Status set(corcast_options *options, const Option *option, const char *va
 {
     OptionTexts *texts = &options->texts;
     char *made = NULL;
+    if (option->kind == OPTION_FLAG && strcmp(value, "off") == 0)
+        return unset(options, option, err);
     if (option_is_path(option))
         TRY(path_check(value, option->name, err));
     TRY(ARRAY_RESERVE(texts, 1, "options", err));

@@ -107,6 +107,21 @@ static void wrong_options(void)
     EXPECT(2, "is not a command", corcast_options_new("gro", &options, error));
 }
 
+/* An option of all commands keeps its place when another option is reset. */
+static void reset_options(void)
+{
+    const char *value = NULL;
+    corcast_options *options = options_of("grow");
+    OK(corcast_options_set(options, "seed", "7", error));
+    OK(corcast_options_set(options, "terminals", "9", error));
+    OK(corcast_options_set(options, "terminals", NULL, error));
+    OK(corcast_options_set(options, "partial", "off", error));
+    OK(corcast_options_get(options, "seed", &value, error));
+    if (!value || strcmp(value, "7") != 0)
+        failures++, printf("seed is %s after another option was reset\n", value ? value : "NULL");
+    corcast_options_free(options);
+}
+
 static void wrong_arrays(void)
 {
     corcast_tree *out = NULL;
@@ -277,6 +292,7 @@ int main(int argc, char **argv)
     null_arguments(tree);
     wrong_handles(tree);
     wrong_options();
+    reset_options();
     wrong_arrays();
     small_buffers();
     cancelled_growth(tree);

@@ -227,6 +227,16 @@ class Faults(unittest.TestCase):
         self.assertIsNotNone(image.plane("depth"))
         self.assertIsNotNone(image.plane("id"))
 
+    def test_options_are_reset_and_flags_are_switched_off(self):
+        tree = corcast.grow(terminals=20, partial=False, seed=3)
+        self.assertTrue((tree.positions == corcast.grow(terminals=20, seed=3).positions).all())
+        with self.assertRaisesRegex(corcast.Error, "floats are written to .exr"):
+            tree.render(size=(20, 20), planes="depth").save("depth.png", plane="depth")
+        with self.assertRaisesRegex(corcast.Error, "ids are written to"):
+            tree.render(size=(20, 20), planes="id").save("id.tif", plane="id")
+        tree.export("converted.vtp", command="convert", fields="flow")
+        self.assertEqual(len(corcast.read("converted.vtp")), 40)
+
     def test_threads_share_a_tree(self):
         tree = corcast.grow(terminals=200)
         expected = {name: tree.field(name) for name in ("flow", "wss", "pressure")}
