@@ -19,17 +19,6 @@
 
 typedef Status RunJob(void *options, Parsed *parsed, Err *err);
 
-static Status run_diagram(void *options, Parsed *parsed, Err *err)
-{
-    MadeDiagram made = {0};
-    Status status = STATUS_OK;
-    TRY_GOTO(diagram_make(options, parsed, &made, err));
-    status = diagram_write(options, parsed, &made, err);
-done:
-    madediagram_release(&made);
-    return status;
-}
-
 /* The operations that write files, by command. */
 static const struct {
     const Command *command;
@@ -38,7 +27,7 @@ static const struct {
                  {&command_scene, scene_run},
                  {&command_render, render_run},
                  {&command_convert, convert_run},
-                 {&command_diagram, run_diagram}};
+                 {&command_diagram, diagram_run}};
 
 static const char of_export[] = "export scene render convert diagram";
 

@@ -18,8 +18,8 @@ static Status make_tree(const RequestForm *form, MadeTree *made, corcast_report 
     TRY_GOTO(request_open(&request, form, call, err));
     Parsed *parsed = &request.parsed;
     const bool has_json = parsed_find(parsed, "json", strlen("json")) != NULL;
-    if (report &&
-        has_json) /* the job makes a report for a file of that name, which is not written */
+    /* The job makes a report for a file of that name, which is not written. */
+    if (report && has_json)
         TRY_GOTO(options_set(parsed, "json", "report.json", err));
     TRY_GOTO(tree_maker_find(parsed->command->name)->make(parsed->options, parsed, made, err));
     if (report)

@@ -2,6 +2,7 @@
  * caller who asks for another type gets a conversion. */
 #include "api/image.h"
 
+#include "options/output.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -281,14 +282,10 @@ static Status write_floats(const corcast_image *image, corcast_plane plane, cons
     return status;
 }
 
-static bool extension_is(const char *path, const char *extension)
-{
-    return strcmp(file_extension(path), extension) == 0;
-}
-
 static Status write_image(const corcast_image *image, corcast_plane plane, corcast_type type,
                           const char *path, Err *err)
 {
+    static const char *const of_ids[] = {"png", "ppm", NULL};
     PlaneShape shape;
     Picture made = {0};
     TRY(find_plane(image, plane, type, &shape, err));
@@ -299,7 +296,7 @@ static Status write_image(const corcast_image *image, corcast_plane plane, corca
     if ((type == CORCAST_F32) != image_traits(path).floats)
         return err_set(err, STATUS_USAGE,
                        "%s: floats are written to .exr and .pfm, integers to other formats", path);
-    if (plane == CORCAST_ID && !extension_is(path, "png") && !extension_is(path, "ppm"))
+    if (plane == CORCAST_ID && !is_one_of(file_extension(path), of_ids))
         return err_set(err, STATUS_USAGE, "%s: ids are written to .png and .ppm", path);
     if (type == CORCAST_F32)
         return write_floats(image, plane, path, err);

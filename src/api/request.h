@@ -18,7 +18,7 @@ typedef ARRAY(OptionText) OptionTexts;
 struct corcast_options {
     Handle handle;
     const Command *command;
-    Parsed parsed; /* the options with these texts, for checks and corcast_options_get */
+    Parsed *parsed; /* the options with these texts, for checks and corcast_options_get; owned */
     OptionTexts texts;
     char *templates; /* the folder; NULL: the default; owned */
     Text shown;      /* what corcast_options_get returned last */

@@ -21,6 +21,28 @@ Status request_find(const char *name, const Command **command, Err *err)
     return STATUS_USAGE;
 }
 
+/* Frees what parsed_new made. NULL is allowed. */
+static void parsed_free(Parsed *parsed)
+{
+    if (parsed)
+        parsed_release(parsed);
+    free(parsed);
+}
+
+/* Makes the options of a command with their defaults. A Parsed points to itself and must not be
+ * moved. Errors: those of parsed_init. */
+static Status parsed_new(const Command *command, Parsed **out, Err *err)
+{
+    Parsed *made = NULL;
+    TRY(mem_calloc(&made, 1, sizeof *made, "options", err));
+    Status status = parsed_init(made, command, err);
+    if (status != STATUS_OK)
+        free(made);
+    else
+        *out = made;
+    return status;
+}
+
 static Status new_options(const char *name, corcast_options **out, Err *err)
 {
     const Command *command = NULL;
@@ -29,7 +51,7 @@ static Status new_options(const char *name, corcast_options **out, Err *err)
     TRY(request_find(name, &command, err));
     TRY(handle_new(&made, HANDLE_OPTIONS, sizeof *made, err));
     made->command = command;
-    Status status = parsed_init(&made->parsed, command, err);
+    Status status = parsed_new(command, &made->parsed, err);
     if (status != STATUS_OK)
         handle_free(made);
     else
@@ -51,10 +73,10 @@ static Status find_option(const corcast_options *options, const char *name, cons
 {
     static const char *const printing[] = {"help", "dump-recipe", "commands", NULL};
     TRY(argument_check(name, "name", err));
-    const Setting *setting = parsed_find(&options->parsed, name, strlen(name));
+    const Setting *setting = parsed_find(options->parsed, name, strlen(name));
     Text unused = TEXT_INIT;
     if (!setting) /* for the sentence */
-        return options_get(&options->parsed, name, &unused, err);
+        return options_get(options->parsed, name, &unused, err);
     *option = setting->option;
     if (is_one_of(name, printing))
         return err_set(err, STATUS_USAGE, "'%s' is an option of the command line alone", name);
@@ -75,34 +97,22 @@ static void remove_texts(OptionTexts *texts, const char *name, size_t n)
             remove_text(texts, i);
 }
 
-/* Moves a Parsed. Settings of the options that all commands have point into the Parsed itself. */
-static void move_parsed(const Parsed *from, Parsed *to)
-{
-    *to = *from;
-    for (size_t i = 0; i < to->n_settings; i++) {
-        char **base = &to->settings[i].base;
-        const size_t at = (size_t)(*base - (const char *)from);
-        if (*base >= (const char *)from && at < sizeof *from)
-            *base = (char *)to + at;
-    }
-}
-
 /* Sets the Parsed anew from the texts, which are known to be right. */
 static Status parse_again(corcast_options *options, Err *err)
 {
-    Parsed made;
-    TRY(parsed_init(&made, options->command, err));
+    Parsed *made = NULL;
+    Status status = STATUS_OK;
+    TRY(parsed_new(options->command, &made, err));
     for (size_t i = 0; i < options->texts.n; i++) {
         const OptionText *text = &options->texts.items[i];
-        Status status = options_set(&made, text->name, text->value, err);
-        if (status != STATUS_OK) {
-            parsed_release(&made);
-            return status;
-        }
+        TRY_GOTO(options_set(made, text->name, text->value, err));
     }
-    parsed_release(&options->parsed);
-    move_parsed(&made, &options->parsed);
-    return STATUS_OK;
+    parsed_free(options->parsed);
+    options->parsed = made;
+    made = NULL;
+done:
+    parsed_free(made);
+    return status;
 }
 
 static Status unset(corcast_options *options, const Option *option, Err *err)
@@ -134,7 +144,7 @@ static Status set(corcast_options *options, const Option *option, const char *va
         TRY(path_check(value, option->name, err));
     TRY(ARRAY_RESERVE(texts, 1, "options", err));
     TRY(mem_strdup(&made, value, err));
-    Status status = options_set(&options->parsed, option->name, value, err);
+    Status status = options_set(options->parsed, option->name, value, err);
     if (status != STATUS_OK) {
         free(made);
         return status;
@@ -187,7 +197,7 @@ static Status get_option(corcast_options *options, const char *name, const char 
         return STATUS_OK;
     }
     TRY(find_option(options, name, &option, err));
-    TRY(options_get(&options->parsed, name, &options->shown, err));
+    TRY(options_get(options->parsed, name, &options->shown, err));
     *value = options->shown.length ? text_chars(&options->shown) : NULL;
     return STATUS_OK;
 }
@@ -216,7 +226,7 @@ void corcast_options_free(corcast_options *options)
 {
     if (!handle_is(options, HANDLE_OPTIONS))
         return;
-    parsed_release(&options->parsed);
+    parsed_free(options->parsed);
     while (options->texts.n > 0)
         remove_text(&options->texts, options->texts.n - 1);
     ARRAY_RELEASE(&options->texts);

@@ -7,6 +7,7 @@
 #include "job/export/export.h"
 #include "job/export/scene.h"
 #include "job/picture/convert.h"
+#include "job/picture/diagram.h"
 #include "options/templates.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +26,7 @@ const CommandRow command_rows[] = {
     {&command_povray, run_povray},
     {&command_render, run_render},
     {&command_merge, run_merge},
-    {&command_diagram, run_diagram},
+    {&command_diagram, diagram_run},
     {&command_figure, run_figure},
     {&command_view, run_view},
     {&command_verify, run_verify},

@@ -203,6 +203,17 @@ Status diagram_write(const void *options, const Parsed *parsed, const MadeDiagra
     return status;
 }
 
+Status diagram_run(void *options, Parsed *parsed, Err *err)
+{
+    MadeDiagram made;
+    Status status = STATUS_OK;
+    TRY_GOTO(diagram_make(options, parsed, &made, err));
+    status = diagram_write(options, parsed, &made, err);
+done:
+    madediagram_release(&made);
+    return status;
+}
+
 const Command command_diagram = {
     .name = "diagram",
     .summary = "draw a tree unrolled flat, lengths and diameters true",

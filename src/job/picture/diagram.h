@@ -44,4 +44,7 @@ void madediagram_release(MadeDiagram *made);
 MUST_CHECK Status diagram_write(const void *options, const Parsed *parsed, const MadeDiagram *made,
                                 Err *err);
 
+/* Makes the diagram and writes it. Errors: those of diagram_make and diagram_write. */
+MUST_CHECK Status diagram_run(void *options, Parsed *parsed, Err *err);
+
 #endif
