@@ -110,7 +110,7 @@ void screen_drop_held(Screen *screen)
         ;
 }
 
-/* Adds a copy of a sentence to those that are held back. Returns false without memory for it. */
+/* Copies a sentence to the end of the list of held sentences. Returns false if memory runs out. */
 static bool hold(Screen *screen, const char *sentence)
 {
     HeldSentence **end = &screen->held;

@@ -1,6 +1,7 @@
-/* The rows. Their order is that of the keys in JSON, which programs may rely on; tables are sorted
- * by rank. Limits are judged in the order of the type Limit: values that are not numbers, things
- * missing or extra, wrong segments, then sizes of differences. */
+/* The table of measures. The order of the rows is the order of the keys in JSON, on which programs
+ * may rely. Tables of reports are sorted by rank. Limits are judged in the order of the type Limit:
+ * values that are not numbers, missing or extra pixels, wrong segments, then sizes of differences.
+ */
 #include "compare/measure.h"
 
 #include "compare/measures/perception.h"

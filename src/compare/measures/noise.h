@@ -9,7 +9,7 @@ typedef struct NoiseResult {
     double rate;        /* of false alarms of the whole test, as the caller gave it */
     double sigmas;      /* of the whole picture: of the worst channel, or of all channels */
     double limit;       /* largest |sigmas| that chance allows */
-    double gain;        /* of that channel: weighted mean of B over that of A */
+    double gain;        /* weighted mean of B / weighted mean of A, of the channel of `sigmas` */
     double tile_sigmas; /* of the worst tile of 32 x 32 pixels */
     double tile_limit;  /* largest |tile_sigmas| that chance allows */
     PixelPlace tile;    /* first pixel of the worst tile; without ids */

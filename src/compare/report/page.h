@@ -7,8 +7,8 @@
 /* Appends the report as JUnit XML, a test case for each check. */
 void report_junit(const ReportCase *report, Text *out);
 
-/* Return parts of a report as JSON; the worst segments are those that compare_json has. The caller
- * releases them. NULL if memory runs out. */
+/* Return parts of a report as JSON, a new reference each; NULL if memory runs out. The worst
+ * segments are the same as in compare_json. */
 json_t *worst_segments_json(const CompareResult *result);
 json_t *settled_json(const Settled *settled);
 json_t *surface_check_json(const SurfaceCheck *check);

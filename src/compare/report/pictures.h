@@ -18,7 +18,7 @@ extern const HeatStep heat_steps[HEAT_STEPS];
  * Errors: STATUS_MEMORY. */
 
 /* Makes the heat map of the difference, an 8-bit RGB picture. Only equal pixels have the colour of
- * level 0: differences of 16-bit codes below one level have that of level 1. */
+ * level 0. A difference of 16-bit codes below one level has the colour of level 1. */
 MUST_CHECK Status heat_picture(Picture *out, const Picture *a, const Picture *b, Err *err);
 /* Makes the signed difference, an 8-bit picture: 128 + 8 (B - A) in 8-bit levels, clipped. Equal
  * pixels are grey. */

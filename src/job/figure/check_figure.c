@@ -59,7 +59,8 @@ static void check_lengths(Check *check, double width_mm, double height_mm)
         refuse(check, "height: %.1f mm, more than %g mm", height_mm, preset->height_mm);
 }
 
-/* PNG's whole pixels a metre and JPEG's whole pixels an inch are not off by one in a hundred. */
+/* Checks the resolution. PNG stores whole pixels per metre, and JPEG whole pixels per inch: both
+ * round a resolution by less than one in a hundred. */
 static void check_resolution(Check *check, double dpi, const char *of)
 {
     const Preset *preset = check->preset;

@@ -12,7 +12,7 @@
 typedef struct PanelOptions {
     const char *tree, *title; /* `tree`: the tree's file; NULL: Section.maker makes the tree */
     int span;                 /* number of columns that the panel covers */
-    double aspect;            /* width / height of the panel; 0: that of its cell */
+    double aspect;            /* width / height of the panel; 0: the aspect of its cell */
 } PanelOptions;
 
 /* The options of an inset: a magnified part of a panel. A member `has_X` is true if X is

@@ -12,7 +12,7 @@ enum { MOST_WORDS = 256 };
 typedef struct Words {
     char *text;    /* owned; cut up */
     char *recipe;  /* the path of --recipe from the folder; owned; NULL: there is none */
-    char *operand; /* the first operand likewise */
+    char *operand; /* the path of the first operand from the folder; owned; NULL: there is none */
     char *word[MOST_WORDS];
     int n;
 } Words;

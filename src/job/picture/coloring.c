@@ -239,7 +239,7 @@ Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree, co
     return status;
 }
 
-/* ---- what is said ---------------------------------------------------------------------------- */
+/* ---- reports --------------------------------------------------------------------------------- */
 
 void coloring_say(const Appearance *appearance, const Talk *talk)
 {

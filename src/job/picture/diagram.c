@@ -59,7 +59,7 @@ static const Option own[] = {
      .help = "sRGB, each from 0 to 1"},
 };
 
-/* A diagram in memory is a page, as that of an .svg. */
+/* Returns true if the diagram is a page: for an .svg, and in memory, where there is no file. */
 static bool is_page(const DiagramOptions *options)
 {
     return !options->output || strcmp(file_extension(options->output), "svg") == 0;
