@@ -13,7 +13,6 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* ---- to files -------------------------------------------------------------------------------- */
 
@@ -135,21 +134,6 @@ done:
     return status;
 }
 
-/* Removes the files of a folder, and the folder. */
-static void remove_folder(const char *folder)
-{
-    struct dirent **entries = NULL;
-    const int n = scandir(folder, &entries, NULL, NULL);
-    for (int i = 0; i < n; i++) {
-        char path[512];
-        if (snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name) < (int)sizeof path)
-            (void)unlink(path);
-        free(entries[i]);
-    }
-    free(entries);
-    (void)rmdir(folder);
-}
-
 static Status check_name(const char *name, Err *err)
 {
     TRY(path_check(name, "name", err));
@@ -161,19 +145,17 @@ static Status check_name(const char *name, Err *err)
 static Status export_bytes(const corcast_tree *tree, const corcast_options *options,
                            const char *name, const Sink *sink, const Call *call, Err *err)
 {
-    char folder[] = "/tmp/corcast-XXXXXX";
-    char *path = NULL;
+    char *folder = NULL, *path = NULL;
     Status status = STATUS_OK;
     TRY(check_name(name, err));
     if (!sink->take)
         return err_set(err, STATUS_USAGE, "sink is NULL");
-    if (!mkdtemp(folder))
-        return err_set(err, STATUS_IO, "%s: cannot be made: %s", folder, strerror(errno));
+    TRY(file_temporary_folder("/tmp/", &folder, err));
     TRY_GOTO(file_join(folder, name, &path, err));
     TRY_GOTO(export_files(tree, options, path, call, err));
     status = pass_folder(sink, folder, err);
 done:
-    remove_folder(folder);
+    file_forget(folder);
     free(path);
     return status;
 }
